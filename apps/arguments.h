@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "renderer/core/settings.h"
+
+namespace apps {
+
+/// Splits `--set a=1 b=2` into one `--set` per item, so that it may stand before other arguments.
+std::vector<std::string> expand_set_arguments(const std::vector<std::string>& arguments);
+
+/// Declares the repeatable `--set key.path=value`; its texts go to `overrides`.
+void add_set_option(CLI::App& command, std::vector<std::string>& overrides);
+
+/// The settings as help text: key, default, meaning.
+std::string settings_footer(const std::vector<core::SettingHelp>& settings,
+                            const std::string& example);
+
+/// The command line as it was typed, for provenance; set once by main().
+std::string& command_line();
+
+/// Replaces the suffix of `path`, or appends it where there is none.
+std::string with_suffix(const std::string& path, const std::string& suffix);
+
+}  // namespace apps

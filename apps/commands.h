@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+namespace apps {
+
+// One function per subcommand, in the file of its name. Each declares its arguments and a callback
+// that reads, calls one front door, writes, and prints what was written.
+void add_render_command(CLI::App& app);
+void add_reconstruct_command(CLI::App& app);
+void add_compare_command(CLI::App& app);
+void add_info_command(CLI::App& app);
+void add_report_command(CLI::App& app);
+void add_demo_command(CLI::App& app);
+
+}  // namespace apps

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+#include "apps/compare_job.h"
+
+#include <filesystem>
+#include <optional>
+
+#include "apps/arguments.h"
+#include "nlos/formats/capture_file.h"
+#include "nlos/formats/picture.h"
+#include "nlos/formats/ply_file.h"
+#include "nlos/formats/volume_file.h"
+#include "nlos/pictures.h"
+#include "renderer/core/output_file.h"
+#include "renderer/gltf.h"
+#include "renderer/ground_truth.h"
+
+namespace apps {
+namespace {
+
+enum class Kind { Scene, Volume, Mesh, Capture };
+
+constexpr std::size_t kSurfaceSamples = 100'000;
+constexpr std::uint64_t kSurfaceSeed = 0;
+
+Kind kind_of(const std::string& path) {
+    const std::string suffix = std::filesystem::path(path).extension().string();
+    if (!std::filesystem::exists(path)) {
+        throw core::Error(path, "does not exist", "must be a file to compare");
+    }
+    if (suffix == ".json") return Kind::Scene;
+    if (suffix == ".ply" || suffix == ".glb" || suffix == ".gltf") return Kind::Mesh;
+    return nlos::is_volume_file(path) ? Kind::Volume : Kind::Capture;
+}
+
+core::PointCloud surface_points(const std::string& path) {
+    core::TriangleMesh mesh;
+    if (std::filesystem::path(path).extension() == ".ply") {
+        mesh = nlos::read_ply(path);
+        if (mesh.triangles.empty()) return {mesh.vertices, mesh.normals};
+    } else {
+        for (const renderer::Object& object : renderer::load_gltf(path).objects) {
+            const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
+            for (const auto& vertex : object.mesh.vertices) mesh.vertices.push_back(vertex);
+            for (const auto& [v0, v1, v2] : object.mesh.triangles) {
+                mesh.triangles.push_back({base + v0, base + v1, base + v2});
+            }
+        }
+    }
+    return core::sample_surface(mesh, kSurfaceSamples, kSurfaceSeed);
+}
+
+// A scene file and what is needed to look at it.
+struct Truth {
+    explicit Truth(const std::string& path)
+        : description(renderer::read_scene_description(path, {})),
+          scene(renderer::load_scene(description, renderer::make_scan(description))) {}
+
+    renderer::SceneDescription description;
+    renderer::Scene scene;
+};
+
+nlos::Metrics compare_volume_to_scene(const std::string& a,
+                                      const std::string& b,
+                                      const std::string& picture_path) {
+    const nlos::Reconstruction result = nlos::read_volume(a);
+    const Truth truth(b);
+    const nlos::VolumeAxes& axes = result.volume.axes;
+    const core::DepthMap map =
+        renderer::trace_depth_map(truth.scene, axes.world_from_wall, axes.x_m, axes.y_m);
+    if (!picture_path.empty()) {
+        nlos::write_panels_png(picture_path, nlos::comparison_panels(result, map), 3);
+    }
+    return nlos::compare_to_truth(result, map);
+}
+
+nlos::Metrics compare_kinds(const std::string& a,
+                            const std::string& b,
+                            const std::string& picture_path,
+                            double threshold_m) {
+    const Kind kind_a = kind_of(a);
+    const Kind kind_b = kind_of(b);
+    if (kind_a == Kind::Volume && kind_b == Kind::Scene) {
+        return compare_volume_to_scene(a, b, picture_path);
+    }
+    if (kind_a == Kind::Mesh && kind_b == Kind::Scene) {
+        const Truth truth(b);
+        const auto map = renderer::trace_ground_truth(truth.scene, truth.description);
+        return nlos::compare_points(
+            surface_points(a), renderer::visible_points(map), threshold_m);
+    }
+    if (kind_a == Kind::Volume && kind_b == Kind::Volume) {
+        return nlos::compare_volumes(nlos::read_volume(a), nlos::read_volume(b));
+    }
+    if (kind_a == Kind::Mesh && kind_b == Kind::Mesh) {
+        return nlos::compare_points(surface_points(a), surface_points(b), threshold_m);
+    }
+    if (kind_a == Kind::Capture && kind_b == Kind::Capture) {
+        return nlos::compare_captures(nlos::read_capture(a), nlos::read_capture(b));
+    }
+    throw core::Error(a,
+                      "cannot be compared with " + b,
+                      "must be a volume, mesh or point cloud against a scene.json, or two files of "
+                      "one kind");
+}
+
+}  // namespace
+
+nlos::Metrics compare_files(const std::string& a,
+                            const std::string& b,
+                            const std::string& metrics_path,
+                            double fscore_threshold_m) {
+    std::optional<core::OutputFile> probe;
+    if (!metrics_path.empty()) probe.emplace(metrics_path);
+    const std::string picture = metrics_path.empty() ? "" : with_suffix(metrics_path, ".png");
+    const nlos::Metrics metrics = compare_kinds(a, b, picture, fscore_threshold_m);
+    if (!metrics_path.empty()) {
+        core::Json json = core::write_value(metrics);
+        json["result"] = a;
+        json["reference"] = b;
+        core::write_text_file(metrics_path, json.dump(2) + "\n");
+    }
+    return metrics;
+}
+
+}  // namespace apps

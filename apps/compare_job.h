@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+#include "nlos/compare.h"
+
+namespace apps {
+
+/// Scores file A against file B: a volume, mesh, point cloud or capture against a scene.json (its
+/// ray-traced truth) or another of its kind.
+///
+/// metrics_path         METRICS.json to write; empty: none. A picture goes beside it when a volume
+///                      is scored against a scene.
+/// fscore_threshold_m   distance that counts as a match for meshes and clouds; volumes take their
+///                      voxel diagonal
+/// throws               core::Error when the two cannot be compared
+nlos::Metrics compare_files(const std::string& a,
+                            const std::string& b,
+                            const std::string& metrics_path,
+                            double fscore_threshold_m);
+
+}  // namespace apps

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/core.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "apps/arguments.h"
+#include "apps/commands.h"
+#include "apps/compare_job.h"
+#include "apps/reconstruct_job.h"
+#include "apps/render_job.h"
+#include "apps/report.h"
+#include "apps/terminal.h"
+#include "nlos/formats/picture.h"
+#include "nlos/pictures.h"
+#include "renderer/core/output_file.h"
+#include "renderer/ground_truth.h"
+
+namespace apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct DemoArguments {
+    std::string folder = "out/demo";
+};
+
+std::string letter_scene() {
+    const fs::path in_working_folder = "scenes/letter/scene.json";
+    if (fs::exists(in_working_folder)) return in_working_folder.string();
+    return std::string(NLOS_SCENES_DIR) + "/letter/scene.json";
+}
+
+void write_truth_picture(const std::string& scene_path, const std::string& picture_path) {
+    const auto description = renderer::read_scene_description(scene_path, {});
+    const auto scene = renderer::load_scene(description, renderer::make_scan(description));
+    const auto truth = renderer::trace_ground_truth(scene, description);
+    nlos::write_panels_png(picture_path, nlos::truth_panels(truth), 2);
+}
+
+void stop_if_interrupted() {
+    if (interrupt_requested()) throw core::Failure("demo", "interrupted");
+}
+
+void run(const DemoArguments& arguments) {
+    const fs::path folder = arguments.folder;
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error) throw core::Error(folder.string(), "cannot be made", "must be a writable folder");
+    const auto file = [&](const std::string& name) { return (folder / name).string(); };
+
+    const std::string scene = letter_scene();
+    fmt::print("scene        {}\n", scene);
+    write_truth_picture(scene, file("ground_truth.png"));
+    const RenderJob render = render_to_file(scene, {}, file("capture.h5"));
+    fmt::print("capture      {} ({:.2f} s)\n", file("capture.h5"), render.seconds);
+    for (const std::string method : {"lct", "bp"}) {
+        stop_if_interrupted();
+        const std::string volume = file("volume_" + method + ".h5");
+        const auto result =
+            reconstruct_to_file(file("capture.h5"), {"method=" + method}, volume, "");
+        const auto metrics =
+            compare_files(volume, scene, file("metrics_" + method + ".json"), 0.01);
+        fmt::print("{:<12} {} ({:.2f} s, depth error {:.2f} mm, mask IoU {:.3f})\n",
+                   method,
+                   volume,
+                   result.seconds,
+                   1e3 * metrics.depth_mae_m.value_or(0.0),
+                   metrics.mask_iou_best.value_or(0.0));
+    }
+    write_report(folder.string(), file("report.html"));
+    fmt::print("wrote {}\n", file("report.html"));
+}
+
+}  // namespace
+
+void add_demo_command(CLI::App& app) {
+    CLI::App* command = app.add_subcommand(
+        "demo", "Scene, capture, reconstruction, comparison and report in one go");
+    const auto arguments = std::make_shared<DemoArguments>();
+    command->add_option("-o,--output", arguments->folder, "Folder for the results")
+        ->capture_default_str();
+    command->footer(settings_footer({}, "nlos demo -o out/demo"));
+    command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace apps

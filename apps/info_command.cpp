@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/core.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "apps/arguments.h"
+#include "apps/commands.h"
+#include "nlos/formats/capture_file.h"
+#include "nlos/formats/ply_file.h"
+#include "nlos/formats/volume_file.h"
+#include "renderer/gltf.h"
+#include "renderer/scene_file.h"
+
+namespace apps {
+namespace {
+
+struct InfoArguments {
+    std::string file;
+    std::vector<std::string> overrides;
+};
+
+// What `--set` of info reaches.
+struct InfoOptions {
+    nlos::CaptureReadSettings capture;
+};
+
+template <class Visitor>
+void for_each_field(InfoOptions& options, Visitor&& visit) {
+    visit("capture", options.capture, "what the capture file leaves open");
+}
+
+void print_range(const char* axis, const std::vector<double>& centers_m) {
+    if (centers_m.empty()) return;
+    fmt::print("{}: {} voxels, {:.4f} to {:.4f} m\n",
+               axis,
+               centers_m.size(),
+               centers_m.front(),
+               centers_m.back());
+}
+
+void describe_volume(const std::string& path) {
+    const nlos::Reconstruction volume = nlos::read_volume(path);
+    fmt::print("format: reconstructed volume (HDF5)\n");
+    fmt::print("method: {}\n", volume.method);
+    print_range("x", volume.volume.axes.x_m);
+    print_range("y", volume.volume.axes.y_m);
+    print_range("z", volume.volume.axes.z_m);
+    fmt::print("surface points: {}\n", volume.points.positions.size());
+    fmt::print("time: {:.2f} s, peak memory: {:.2f} GB\n",
+               volume.seconds,
+               static_cast<double>(volume.peak_bytes) * 1e-9);
+    fmt::print("settings: {}\n", core::write_value(volume.settings).dump());
+}
+
+void describe_scene(const std::string& path) {
+    const renderer::SceneDescription scene = renderer::read_scene_description(path, {});
+    fmt::print("format: scene description\n{}\n", core::write_value(scene).dump(2));
+}
+
+void describe_geometry(const std::string& path) {
+    const renderer::SceneGeometry geometry = renderer::load_gltf(path);
+    fmt::print("format: glTF 2.0\n");
+    for (const renderer::Object& object : geometry.objects) {
+        Eigen::AlignedBox3d box;
+        for (const core::Vec3& vertex : object.mesh.vertices) box.extend(vertex);
+        fmt::print("object {}: {} triangles, role {}, albedo {:.3f}, x {:.3f} to {:.3f}, "
+                   "y {:.3f} to {:.3f}, z {:.3f} to {:.3f} m\n",
+                   object.name.empty() ? "(unnamed)" : object.name,
+                   object.mesh.triangles.size(),
+                   core::enum_name(object.role),
+                   object.material.albedo,
+                   box.min().x(),
+                   box.max().x(),
+                   box.min().y(),
+                   box.max().y(),
+                   box.min().z(),
+                   box.max().z());
+    }
+}
+
+void run(const InfoArguments& arguments) {
+    const std::string& path = arguments.file;
+    if (!std::filesystem::exists(path)) {
+        throw core::Error(path, "does not exist", "must be a capture, volume, scene or mesh");
+    }
+    InfoOptions options;
+    for (const std::string& text : arguments.overrides) core::apply_override(options, text);
+    const std::string suffix = std::filesystem::path(path).extension().string();
+    if (suffix == ".json") return describe_scene(path);
+    if (suffix == ".glb" || suffix == ".gltf") return describe_geometry(path);
+    if (suffix == ".ply") {
+        const core::TriangleMesh mesh = nlos::read_ply(path);
+        fmt::print("format: PLY, {} points, {} triangles\n",
+                   mesh.vertices.size(),
+                   mesh.triangles.size());
+        return;
+    }
+    if (nlos::is_volume_file(path)) return describe_volume(path);
+    const core::Capture capture = nlos::read_capture(path, options.capture);
+    fmt::print("format: {}\n", nlos::capture_format(path).value_or("unknown"));
+    for (const std::string& line : nlos::describe_capture(capture)) fmt::print("{}\n", line);
+}
+
+}  // namespace
+
+void add_info_command(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("info", "Say what a file is and what it holds");
+    const auto arguments = std::make_shared<InfoArguments>();
+    command->add_option("FILE", arguments->file, "Capture, volume, scene.json, glTF or PLY")
+        ->required();
+    add_set_option(*command, arguments->overrides);
+    command->footer(settings_footer(core::settings_help(InfoOptions{}),
+                                    "nlos info scenes/letter/scene.json"));
+    command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace apps

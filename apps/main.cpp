@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <new>
+
+#include "apps/arguments.h"
+#include "apps/commands.h"
+#include "apps/terminal.h"
+#include "apps/version.h"
+#include "renderer/core/error.h"
+
+namespace {
+
+constexpr int kFailed = 1;
+constexpr int kBadInput = 2;
+
+// Whatever a message holds, it ends up as exactly one line.
+int fail(int status, std::string message) {
+    std::replace(message.begin(), message.end(), '\n', ' ');
+    std::fprintf(stderr, "%s\n", message.c_str());
+    return status;
+}
+
+int run(const std::vector<std::string>& arguments) {
+    CLI::App app("Non-line-of-sight imaging: simulate, reconstruct, compare.", "nlos");
+    app.set_version_flag("--version", apps::version_text());
+    app.require_subcommand(1);
+    app.footer("Example:\n  nlos demo -o out/demo");
+    apps::add_render_command(app);
+    apps::add_reconstruct_command(app);
+    apps::add_compare_command(app);
+    apps::add_info_command(app);
+    apps::add_report_command(app);
+    apps::add_demo_command(app);
+
+    std::vector<std::string> reversed = apps::expand_set_arguments(arguments);
+    std::reverse(reversed.begin(), reversed.end());
+    try {
+        app.parse(reversed);
+    } catch (const CLI::ParseError& error) {
+        if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+        return fail(kBadInput, std::string("nlos: ") + error.what() + "; see nlos --help");
+    }
+    return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    const std::vector<std::string> arguments(argv + 1, argv + argc);
+    apps::command_line() = "nlos";
+    for (const std::string& argument : arguments) apps::command_line() += " " + argument;
+    apps::catch_interrupt();
+    try {
+        return run(arguments);
+    } catch (const core::Error& error) {
+        return fail(kBadInput, error.what());
+    } catch (const core::Failure& error) {
+        return fail(kFailed, error.what());
+    } catch (const std::bad_alloc&) {
+        return fail(kFailed, "nlos: not enough memory");
+    } catch (const std::exception& error) {
+        return fail(kFailed, std::string("nlos: ") + error.what());
+    }
+}

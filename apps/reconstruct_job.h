@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "nlos/formats/capture_file.h"
+#include "nlos/reconstruct.h"
+
+namespace apps {
+
+/// What `--set` of reconstruct reaches: the method's settings, and `capture.` for the file.
+struct ReconstructOptions {
+    nlos::ReconstructSettings reconstruct;
+    nlos::CaptureReadSettings capture;
+};
+
+template <class Visitor>
+void for_each_field(ReconstructOptions& options, Visitor&& visit) {
+    for_each_field(options.reconstruct, visit);
+    visit("capture", options.capture, "what the capture file leaves open");
+}
+
+/// Reconstructs a capture file into a volume file and the picture beside it.
+///
+/// overrides   `key.path=value` texts for ReconstructOptions
+/// ply_path    where to write the surface points; empty: nowhere
+nlos::Reconstruction reconstruct_to_file(const std::string& capture_path,
+                                         const std::vector<std::string>& overrides,
+                                         const std::string& volume_path,
+                                         const std::string& ply_path);
+
+}  // namespace apps

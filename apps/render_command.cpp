@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/core.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "apps/arguments.h"
+#include "apps/commands.h"
+#include "apps/render_job.h"
+#include "renderer/core/parallel.h"
+
+namespace apps {
+namespace {
+
+struct RenderArguments {
+    std::string scene;
+    std::string output;
+    std::vector<std::string> overrides;
+    std::vector<std::string> shorthands;  ///< --samples 64 becomes render.samples=64
+    int threads = 0;
+};
+
+void add_shorthand(CLI::App& command,
+                   RenderArguments& arguments,
+                   const std::string& flag,
+                   const std::string& key,
+                   const std::string& type,
+                   const std::string& help) {
+    command
+        .add_option_function<std::string>(
+            flag,
+            [&arguments, key](const std::string& value) {
+                arguments.shorthands.push_back(key + "=" + value);
+            },
+            help)
+        ->type_name(type);
+}
+
+void run(const RenderArguments& arguments) {
+    const core::ThreadLimit threads(arguments.threads);
+    std::vector<std::string> overrides = arguments.overrides;
+    overrides.insert(overrides.end(), arguments.shorthands.begin(), arguments.shorthands.end());
+    const RenderJob job = render_to_file(arguments.scene, overrides, arguments.output);
+    if (job.interrupted) {
+        throw core::Failure("render",
+                            fmt::format("interrupted; {} holds {} samples per pair",
+                                        arguments.output,
+                                        job.samples_per_pair));
+    }
+    fmt::print("wrote {} ({} pairs x {} bins, {} by {}, {} samples per pair, {:.2f} s)\n",
+               arguments.output,
+               job.num_pairs,
+               job.num_bins,
+               job.pattern,
+               job.estimator,
+               job.samples_per_pair,
+               job.seconds);
+}
+
+}  // namespace
+
+void add_render_command(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("render", "Simulate the transients a scan records");
+    const auto arguments = std::make_shared<RenderArguments>();
+    command->add_option("SCENE", arguments->scene, "Scene description (.json)")->required();
+    command->add_option("-o,--output", arguments->output, "Capture to write (.h5)")->required();
+    add_shorthand(*command, *arguments, "--method", "render.method", "NAME", "Estimator");
+    add_shorthand(
+        *command, *arguments, "--samples", "render.samples", "N", "Candidate paths per pair");
+    add_shorthand(
+        *command, *arguments, "--seconds", "render.seconds", "S", "Render for this long instead");
+    add_shorthand(*command,
+                  *arguments,
+                  "--max-bounces",
+                  "render.max_bounces",
+                  "K",
+                  "Bounces, both on the relay wall included");
+    add_shorthand(*command, *arguments, "--seed", "render.seed", "N", "Seed of the random numbers");
+    command->add_option("--threads", arguments->threads, "Threads; 0 takes all processors")
+        ->capture_default_str()
+        ->check(CLI::NonNegativeNumber);
+    add_set_option(*command, arguments->overrides);
+    command->footer(settings_footer(core::settings_help(renderer::SceneDescription{}),
+                                    "nlos render scenes/letter/scene.json -o letter.h5"));
+    command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace apps

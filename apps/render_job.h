@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "renderer/scene_file.h"
+
+namespace apps {
+
+/// What a finished render has to say about itself.
+struct RenderJob {
+    std::size_t num_pairs = 0;
+    int num_bins = 0;
+    std::string pattern;
+    std::string estimator;
+    std::uint64_t samples_per_pair = 0;
+    double seconds = 0.0;
+    bool interrupted = false;
+};
+
+/// Renders a scene file into a capture file that carries settings, seed, version and command line.
+/// throws   core::Error, core::Failure as the front doors do
+RenderJob render_to_file(const std::string& scene_path,
+                         const std::vector<std::string>& overrides,
+                         const std::string& capture_path);
+
+}  // namespace apps

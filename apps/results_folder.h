@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "nlos/compare.h"
+#include "renderer/core/settings.h"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace apps {
+
+/// A name and what it stands for, in words for people.
+using Fact = std::pair<std::string, std::string>;
+
+/// A capture or volume, reduced to what a page shows of it.
+struct ResultCard {
+    std::string file;
+    std::string picture_png;  ///< bytes of a PNG file
+    std::vector<Fact> facts;
+    std::vector<std::string> notes;
+    core::Json settings;  ///< how it was made; null when unknown
+};
+
+/// A METRICS.json.
+struct ScoredResult {
+    std::string file;
+    std::string name;       ///< to show: the file's, without suffix and a leading `metrics_`
+    std::string result;     ///< name of the scored file; empty when unknown
+    std::string reference;  ///< name of what it was scored against
+    nlos::Metrics metrics;
+    std::string picture_png;  ///< of the picture beside it; empty: none
+};
+
+/// A picture lying in the folder.
+struct Figure {
+    std::string file;
+    std::string mime_type;
+    std::string bytes;
+};
+
+/// Any other JSON file.
+struct JsonDocument {
+    std::string file;
+    core::Json content;
+};
+
+/// What lies in a results folder, in the order of the files' names.
+struct ResultsFolder {
+    std::string name;
+    std::vector<ScoredResult> scores;
+    std::vector<ResultCard> captures;
+    std::vector<ResultCard> volumes;
+    std::vector<Figure> figures;  ///< but for those beside a volume, capture or METRICS.json
+    std::vector<JsonDocument> documents;
+    std::vector<Fact> unreadable;  ///< file and what is wrong with it
+
+    bool empty() const {
+        return scores.empty() && captures.empty() && volumes.empty() && figures.empty() &&
+               documents.empty() && unreadable.empty();
+    }
+};
+
+/// Reads every capture, volume, JSON file and picture of a folder (not of folders inside it).
+///
+/// returns   what was found; files that cannot be read are listed with their error
+/// throws    core::Error when the folder does not exist or holds nothing of these
+ResultsFolder read_results_folder(const std::string& folder);
+
+/// A number with three significant digits and no exponent where it can be avoided.
+std::string short_number(double value);
+
+}  // namespace apps

@@ -1,0 +1,40 @@
+#!/usr/bin/env bash
+# Installs what the project builds with. Debian 12: by apt-get, asking nothing. Elsewhere: prints
+# the list and stops. Does nothing when all is there.
+set -euo pipefail
+
+packages=(
+    g++ cmake ninja-build pkg-config git ca-certificates
+    libembree-dev libtbb-dev libtinygltf-dev nlohmann-json3-dev libfmt-dev libcli11-dev
+    libeigen3-dev libfftw3-dev libhdf5-dev libmatio-dev libflann-dev liblz4-dev libopencv-dev
+    libgtest-dev libbenchmark-dev
+)
+
+missing=()
+if command -v dpkg-query >/dev/null; then
+    for package in "${packages[@]}"; do
+        dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'ok installed' ||
+            missing+=("$package")
+    done
+else
+    missing=("${packages[@]}")
+fi
+[ ${#missing[@]} -eq 0 ] && exit 0
+
+system=unknown
+[ -r /etc/os-release ] && system=$(. /etc/os-release && echo "${ID:-unknown} ${VERSION_ID:-}")
+if [ "$system" != "debian 12" ]; then
+    echo "This is $system, not Debian 12. Please install these (Debian's names) and run again:" >&2
+    printf '  %s\n' "${missing[@]}" >&2
+    exit 1
+fi
+
+as_root=()
+if [ "$(id -u)" -ne 0 ]; then
+    command -v sudo >/dev/null || { echo "Run as root, or install sudo." >&2; exit 1; }
+    as_root=(sudo)
+fi
+echo "Installing ${#missing[@]} Debian packages: ${missing[*]}"
+"${as_root[@]}" apt-get update -qq
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+    apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "nlos/method_input.h"
+
+#include <span>
+#include <vector>
+
+namespace nlos {
+
+/// Backprojection: v(p) = sum over pairs (l, s) of H(l, s; |l - p| + |p - s|), linear in time
+/// between bin centres. Adjoint of a forward model without falloff and cosines.
+///
+/// input     any scan; confocal grids whose y positions share a lattice with the voxels' take the
+///           fast way (shifted additions of whole rows), all others the general one
+/// returns   sums in the histograms' unit
+/// throws    core::Failure when asked to stop
+/// source    [Velten2012]
+Volume backproject(const MethodInput& input);
+
+/// Memory that backproject() takes on top of its input, its volume included [bytes].
+double backproject_bytes(const MethodInput& input);
+
+/// Confocal measurements on a wall grid.
+template <class Real>
+struct ConfocalGrid {
+    const WallGrid& grid;
+    core::TimeAxis time_axis;
+    std::span<const Real> histograms;     ///< [point of the capture][bin]
+    std::vector<double> device_legs_m{};  ///< per point, part of the axis; empty: none
+};
+
+/// Measurement pairs in the wall's frame, in any arrangement.
+template <class Real>
+struct PairList {
+    core::ScanPattern pattern;
+    core::TimeAxis time_axis;
+    std::span<const Real> histograms;         ///< [pair][bin], pairs as in core::Scan
+    std::vector<core::Vec3> illumination;     ///< [m]; confocal: the same as `sensing`
+    std::vector<core::Vec3> sensing;          ///< [m]
+    std::vector<double> illumination_legs_m;  ///< laser to each point, part of the axis
+    std::vector<double> sensing_legs_m;       ///< each point to the detector, part of the axis
+};
+
+/// True when backproject_confocal_grid() serves: the voxels' y positions and the grid's are every
+/// n-th point of one lattice, n up to 4.
+bool shares_lattice(const WallGrid& grid, const VolumeAxes& axes);
+
+/// Adds the backprojection to `volume` [x][y][z]; Real is float or double.
+///
+/// source   the lateral shift in reconstruction of confocal scans: the path length depends only on
+///          depth and on the offset of voxel and wall point
+template <class Real>
+void backproject_confocal_grid(const ConfocalGrid<Real>& data,
+                               const VolumeAxes& axes,
+                               std::span<Real> volume,
+                               const core::Progress& progress);
+
+/// Adds the backprojection to `volume` [x][y][z]; Real is float or double.
+template <class Real>
+void backproject_pairs(const PairList<Real>& data,
+                       const VolumeAxes& axes,
+                       std::span<Real> volume,
+                       const core::Progress& progress);
+
+}  // namespace nlos

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: MIT
+#include "nlos/formats/capture_file.h"
+
+#include "nlos/formats/capture_reader.h"
+#include "renderer/core/error.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+
+namespace nlos {
+namespace {
+
+const std::array<const CaptureReader*, 3> kReaders{
+    &kYtalReader, &kStanfordReader, &kPointListReader};
+
+const CaptureReader* find_reader(const std::string& path) {
+    for (const CaptureReader* reader : kReaders) {
+        if (reader->recognise(path)) return reader;
+    }
+    return nullptr;
+}
+
+void check_settings(const CaptureReadSettings& settings) {
+    const auto check = [](const char* key, bool ok, double found, const char* allowed) {
+        if (!ok)
+            throw core::Error(
+                std::string("capture.") + key, fmt::format("found {}", found), allowed);
+    };
+    const double width = settings.bin_width_m.value_or(1.0);
+    check("bin_width_m", width > 0.0 && std::isfinite(width), width, "must be positive [m]");
+    const double pitch = settings.pitch_m.value_or(1.0);
+    check("pitch_m", pitch > 0.0 && std::isfinite(pitch), pitch, "must be positive [m]");
+    const double shift = settings.opl_shift_m.value_or(0.0);
+    check("opl_shift_m", std::isfinite(shift), shift, "must be finite [m]");
+    const int zero = settings.zero_bins.value_or(0);
+    check("zero_bins", zero >= 0, zero, "must not be negative");
+}
+
+void zero_leading_bins(int wanted, core::Capture& capture) {
+    const int count = std::min(wanted, capture.time_axis.num_bins);
+    if (count <= 0) return;
+    for (std::size_t pair = 0; pair < capture.transient.num_pairs(); ++pair) {
+        const auto leading =
+            capture.transient.histogram(pair).first(static_cast<std::size_t>(count));
+        std::fill(leading.begin(), leading.end(), 0.0F);
+    }
+    capture.notes.push_back(fmt::format(
+        "the first {} bins (the direct return) are set to 0; capture.zero_bins overrides", count));
+}
+
+std::string point_count(const core::WallPoints& points) {
+    return points.grid ? fmt::format("{} x {}", (*points.grid)[0], (*points.grid)[1])
+                       : fmt::format("{}", points.size());
+}
+
+/// Largest extents of the points along x, y and z.
+core::Vec3 extents_of(const core::WallPoints& points) {
+    core::Vec3 low = points.positions.front();
+    core::Vec3 high = low;
+    for (const core::Vec3& position : points.positions) {
+        low = low.cwiseMin(position);
+        high = high.cwiseMax(position);
+    }
+    return high - low;
+}
+
+}  // namespace
+
+core::Capture read_capture(const std::string& path, const CaptureReadSettings& settings) {
+    check_settings(settings);
+    if (!std::filesystem::exists(path)) {
+        throw core::Error(path, "does not exist", "must be a capture file");
+    }
+    const CaptureReader* reader = find_reader(path);
+    if (reader == nullptr) {
+        std::string known;
+        for (const CaptureReader* row : kReaders) {
+            known += (known.empty() ? "" : ", or ") + std::string(row->content);
+        }
+        throw core::Error(path, "is no capture in a known format", "must be " + known);
+    }
+    core::Capture capture = reader->read(path, settings);
+    zero_leading_bins(settings.zero_bins.value_or(reader->default_zero_bins), capture);
+    capture.time_axis.opl_start_m += settings.opl_shift_m.value_or(0.0);
+    validate(capture, path);
+    return capture;
+}
+
+std::optional<std::string> capture_format(const std::string& path) {
+    const CaptureReader* reader = find_reader(path);
+    if (reader == nullptr) return std::nullopt;
+    return reader->name;
+}
+
+std::vector<std::string> describe_capture(const core::Capture& capture) {
+    const core::Scan& scan = capture.scan;
+    const core::TimeAxis& axis = capture.time_axis;
+    const core::Vec3 sensed = extents_of(scan.sensing);
+    const core::Vec3 lit = extents_of(scan.illumination);
+    double sum = 0.0;
+    float low = capture.transient.values()[0];
+    float high = low;
+    for (const float value : capture.transient.values()) {
+        sum += value;
+        low = std::min(low, value);
+        high = std::max(high, value);
+    }
+    const bool device = scan.opl_origin == core::OplOrigin::Device;
+    std::vector<std::string> lines{
+        fmt::format("scan: {}, {} sensing points over {:.4g} x {:.4g} x {:.4g} m",
+                    enum_name(scan.pattern),
+                    point_count(scan.sensing),
+                    sensed.x(),
+                    sensed.y(),
+                    sensed.z()),
+        fmt::format("illumination: {} points over {:.4g} x {:.4g} x {:.4g} m",
+                    point_count(scan.illumination),
+                    lit.x(),
+                    lit.y(),
+                    lit.z()),
+        fmt::format("time axis: {} bins of {:.6g} m of path length, from {:.6g} to {:.6g} m",
+                    axis.num_bins,
+                    axis.bin_width_m,
+                    axis.opl_start_m,
+                    axis.opl_end_m()),
+        fmt::format("path lengths {} the legs to laser and detector",
+                    device ? "include" : "exclude"),
+        fmt::format("histograms: {}, from {:.6g} to {:.6g}, sum {:.6g}",
+                    enum_name(capture.unit),
+                    low,
+                    high,
+                    sum)};
+    if (!device) {
+        // Seen at right angles from a confocal point, depth is half the path length.
+        lines.push_back(fmt::format("depth range: {:.4g} to {:.4g} m",
+                                    0.5 * std::max(0.0, axis.opl_start_m),
+                                    0.5 * axis.opl_end_m()));
+    }
+    lines.insert(lines.end(), capture.notes.begin(), capture.notes.end());
+    return lines;
+}
+
+}  // namespace nlos

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/core/capture.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace nlos {
+
+/// What a capture file leaves open; empty fields take the format's own defaults.
+struct CaptureReadSettings {
+    std::optional<int> zero_bins;       ///< leading bins set to 0 (Stanford: 600)
+    std::optional<double> bin_width_m;  ///< replaces the file's bin width [m of path]
+    std::optional<double> pitch_m;  ///< distance of grid neighbours, where only indices are stored
+    std::optional<double> opl_shift_m;  ///< added to the axis start (time zero)
+};
+
+template <class Visitor>
+void for_each_field(CaptureReadSettings& s, Visitor&& visit) {
+    visit("zero_bins", s.zero_bins, "leading bins set to 0; null: the format's own (Stanford 600)");
+    visit("bin_width_m", s.bin_width_m, "replaces the file's bin width [m of path length]");
+    visit("pitch_m", s.pitch_m, "distance of grid neighbours where only indices are stored [m]");
+    visit("opl_shift_m", s.opl_shift_m, "added to the start of the axis (time zero) [m]");
+}
+
+/// Reads a capture in any known format, recognised by its content.
+///
+/// returns   a valid capture (see core::validate) whose notes say what was converted or assumed
+/// throws    core::Error naming the file and what is wrong with it
+core::Capture read_capture(const std::string& path, const CaptureReadSettings& settings = {});
+
+/// The name of the format of a file that read_capture() reads, or nothing.
+std::optional<std::string> capture_format(const std::string& path);
+
+/// A capture in a few lines for people: wall, points, bins, depth range, unit.
+std::vector<std::string> describe_capture(const core::Capture& capture);
+
+/// Writes a capture as HDF5 in the y-tal layout; whole or not at all.
+///
+/// y-tal refuses files with any name of its root that it does not know, so the group /nlos (unit,
+/// variance) is written only for captures with a variance or in another unit than radiance.
+///
+/// throws    core::Error for a bad target, core::Failure when writing fails
+void write_capture(const std::string& path, const core::Capture& capture);
+
+}  // namespace nlos

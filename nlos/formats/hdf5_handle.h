@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace nlos {
+
+/// Extents of an array, slowest first; empty for a scalar.
+using Shape = std::vector<std::size_t>;
+
+/// Text of a shape for messages: (64, 64, 3).
+std::string shape_text(const Shape& shape);
+
+/// True when the file starts like an HDF5 file. Throws nothing.
+bool is_hdf5_file(const std::string& path);
+
+/// Closes what an HDF5 identifier stands for. Identifiers are 64-bit integers, so that headers need
+/// nothing of HDF5.
+class Hdf5Handle {
+ public:
+    using Close = int (*)(std::int64_t);
+
+    Hdf5Handle() = default;
+    Hdf5Handle(std::int64_t id, Close close_function) : id_(id), close_(close_function) {}
+    ~Hdf5Handle() { close(); }
+    Hdf5Handle(Hdf5Handle&& other) noexcept { swap(other); }
+    Hdf5Handle& operator=(Hdf5Handle&& other) noexcept {
+        swap(other);
+        return *this;
+    }
+
+    bool is_valid() const { return id_ >= 0; }
+    std::int64_t id() const { return id_; }
+
+    /// Closes now; false when the library reports an error.
+    bool close() {
+        const std::int64_t id = std::exchange(id_, -1);
+        return id < 0 || close_(id) >= 0;
+    }
+
+ private:
+    void swap(Hdf5Handle& other) noexcept {
+        std::swap(id_, other.id_);
+        std::swap(close_, other.close_);
+    }
+
+    std::int64_t id_ = -1;
+    Close close_ = nullptr;
+};
+
+/// Keeps the HDF5 library from printing its own messages; to be called before any use of it.
+void prepare_hdf5();
+
+}  // namespace nlos

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: MIT
+#include "nlos/formats/mat_file.h"
+
+#include "nlos/formats/file_memory.h"
+#include "renderer/core/error.h"
+
+#include <fmt/core.h>
+#include <matio.h>
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+
+namespace nlos {
+namespace {
+
+using MatFile = std::unique_ptr<mat_t, int (*)(mat_t*)>;
+using MatVariable = std::unique_ptr<matvar_t, void (*)(matvar_t*)>;
+
+// Layout of a v5 file: a text header, then elements of an 8-byte tag (type, size) and a body.
+constexpr std::uint64_t kHeaderBytes = 128;
+constexpr std::uint64_t kTagBytes = 8;
+
+[[noreturn]] void throw_damaged(const std::string& path) {
+    throw core::Error(path, "is damaged or cut short", "must be a complete MATLAB v5 file");
+}
+
+std::uint32_t swap_bytes(std::uint32_t bits) {
+    return bits >> 24 | (bits >> 8 & 0xff00U) | (bits << 8 & 0xff0000U) | bits << 24;
+}
+
+/// Checks that every element lies within the file, which the library takes for granted.
+void check_elements(const std::string& path) {
+    std::error_code error;
+    const std::uint64_t file_bytes = std::filesystem::file_size(path, error);
+    std::ifstream file(path, std::ios::binary);
+    std::array<char, kHeaderBytes> header{};
+    if (error || !file.read(header.data(), header.size())) throw_damaged(path);
+    const bool swapped = header[kHeaderBytes - 2] == 'M';
+    for (std::uint64_t begin = kHeaderBytes; begin < file_bytes;) {
+        std::array<std::uint32_t, 2> tag{};
+        file.seekg(static_cast<std::streamoff>(begin));
+        if (!file.read(reinterpret_cast<char*>(tag.data()), kTagBytes)) throw_damaged(path);
+        const std::uint32_t type = swapped ? swap_bytes(tag[0]) : tag[0];
+        const std::uint32_t size = swapped ? swap_bytes(tag[1]) : tag[1];
+        const bool is_variable = type == MAT_T_MATRIX || type == MAT_T_COMPRESSED;
+        begin += kTagBytes + size;
+        if (!is_variable || size == 0 || begin > file_bytes) throw_damaged(path);
+    }
+}
+
+MatFile open_mat(const std::string& path) {
+    if (!is_mat5_file(path)) {
+        throw core::Error(path, "is no MATLAB v5 file", "must be saved as v5, v6 or v7");
+    }
+    check_elements(path);
+    MatFile file(Mat_Open(path.c_str(), MAT_ACC_RDONLY), Mat_Close);
+    if (!file) throw_damaged(path);
+    return file;
+}
+
+/// Extents of a variable after checking them against the file's size and the memory.
+Shape checked_shape(const matvar_t& variable, const std::string& path) {
+    // Deflate shrinks by less than 1032 to 1.
+    constexpr std::uint64_t kLargestRatio = 1100;
+    constexpr int kHighestRank = 8;
+    const std::string where = path + ": " + variable.name;
+    if (variable.rank < 2 || variable.rank > kHighestRank || variable.dims == nullptr) {
+        throw_damaged(path);
+    }
+    const Shape shape(variable.dims, variable.dims + variable.rank);
+    const std::uint64_t most = std::filesystem::file_size(path) * kLargestRatio;
+    std::uint64_t count = 1;
+    for (const std::size_t extent : shape) {
+        if (extent == 0) throw core::Error(where, "is empty", "must hold numbers");
+        if (extent > most / count) {
+            throw core::Error(where,
+                              "claims shape " + shape_text(shape) + ", more than the file holds",
+                              "must be complete");
+        }
+        count *= extent;
+    }
+    require_memory(count * 2 * sizeof(double), where);
+    return shape;
+}
+
+template <class Stored, class T>
+void append(const matvar_t& variable, std::size_t count, std::vector<T>& values) {
+    const auto* stored = static_cast<const Stored*>(variable.data);
+    values.reserve(count);
+    for (std::size_t i = 0; i < count; ++i) values.push_back(static_cast<T>(stored[i]));
+}
+
+template <class T>
+void convert(const matvar_t& variable, std::size_t count, std::vector<T>& values) {
+    switch (variable.class_type) {
+        case MAT_C_DOUBLE:
+            return append<double>(variable, count, values);
+        case MAT_C_SINGLE:
+            return append<float>(variable, count, values);
+        case MAT_C_INT8:
+            return append<std::int8_t>(variable, count, values);
+        case MAT_C_UINT8:
+            return append<std::uint8_t>(variable, count, values);
+        case MAT_C_INT16:
+            return append<std::int16_t>(variable, count, values);
+        case MAT_C_UINT16:
+            return append<std::uint16_t>(variable, count, values);
+        case MAT_C_INT32:
+            return append<std::int32_t>(variable, count, values);
+        case MAT_C_UINT32:
+            return append<std::uint32_t>(variable, count, values);
+        default:
+            break;
+    }
+}
+
+bool is_number_class(const matvar_t& variable) {
+    return variable.isComplex == 0 && variable.class_type >= MAT_C_DOUBLE &&
+           variable.class_type <= MAT_C_UINT32;
+}
+
+}  // namespace
+
+bool is_mat5_file(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::array<char, kHeaderBytes> header{};
+    if (!file.read(header.data(), header.size())) return false;
+    const std::string_view mark(header.data() + kHeaderBytes - 4, 4);
+    using namespace std::string_view_literals;
+    return mark == "\x00\x01IM"sv || mark == "\x01\x00MI"sv;
+}
+
+std::vector<std::string> mat_variable_names(const std::string& path) {
+    const MatFile file = open_mat(path);
+    std::vector<std::string> names;
+    while (true) {
+        const MatVariable variable(Mat_VarReadNextInfo(file.get()), Mat_VarFree);
+        if (!variable) return names;
+        if (variable->name != nullptr) names.emplace_back(variable->name);
+    }
+}
+
+template <class T>
+MatArray<T> read_mat_array(const std::string& path, const std::string& variable) {
+    const MatFile file = open_mat(path);
+    const MatVariable info(Mat_VarReadInfo(file.get(), variable.c_str()), Mat_VarFree);
+    if (!info) {
+        throw core::Error(
+            path + ": " + variable, "is missing or damaged", "must be a number array");
+    }
+    if (!is_number_class(*info)) {
+        throw core::Error(path + ": " + variable, "is not a real array", "must be a number array");
+    }
+    MatArray<T> array{checked_shape(*info, path), {}};
+    std::size_t count = 1;
+    for (const std::size_t extent : array.shape) count *= extent;
+    if (Mat_VarReadDataAll(file.get(), info.get()) != 0 || info->data == nullptr ||
+        info->nbytes < count * static_cast<std::size_t>(info->data_size)) {
+        throw_damaged(path);
+    }
+    convert(*info, count, array.values);
+    return array;
+}
+
+template MatArray<float> read_mat_array<float>(const std::string&, const std::string&);
+template MatArray<double> read_mat_array<double>(const std::string&, const std::string&);
+
+}  // namespace nlos

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+#include "nlos/formats/volume_file.h"
+
+#include "nlos/formats/hdf5_reader.h"
+#include "nlos/formats/hdf5_writer.h"
+#include "renderer/core/error.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace nlos {
+namespace {
+
+using core::Error;
+using core::Transform;
+using core::Vec3;
+
+constexpr const char* kPose = "world_from_wall";
+
+using RowMajor4 = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
+
+void write_axis(Hdf5Writer& file,
+                const std::string& name,
+                const std::vector<double>& centres_m,
+                const RowMajor4& pose) {
+    file.write(name, {centres_m.size()}, centres_m);
+    file.write_attribute(name, kPose, {4, 4}, {pose.data(), 16});
+}
+
+template <class Vectors>
+void write_vectors(Hdf5Writer& file, const std::string& name, Shape shape, const Vectors& vectors) {
+    std::vector<double> values;
+    for (const auto& vector : vectors) values.insert(values.end(), vector.begin(), vector.end());
+    shape.push_back(3);
+    file.write(name, shape, values);
+}
+
+std::vector<Vec3> read_vectors(const Hdf5Reader& file, const std::string& name, Shape shape) {
+    shape.push_back(3);
+    const std::vector<double> values = file.read_doubles(name, shape);
+    std::vector<Vec3> vectors;
+    for (std::size_t i = 0; i + 2 < values.size(); i += 3) {
+        vectors.emplace_back(values[i], values[i + 1], values[i + 2]);
+    }
+    return vectors;
+}
+
+/// Throws unless every value is finite.
+template <class Values>
+void require_finite(const Hdf5Reader& file, const std::string& name, const Values& values) {
+    for (const auto value : values) {
+        if (!std::isfinite(value)) {
+            throw Error(file.where(name), fmt::format("found {}", value), "must be finite numbers");
+        }
+    }
+}
+
+std::vector<double> read_axis(const Hdf5Reader& file, const std::string& name) {
+    const Shape shape = file.shape(name);
+    if (shape.size() != 1 || shape[0] == 0) {
+        throw Error(file.where(name), "has shape " + shape_text(shape), "must have shape (N,)");
+    }
+    std::vector<double> centres_m = file.read_doubles(name, shape);
+    require_finite(file, name, centres_m);
+    return centres_m;
+}
+
+Transform read_pose(const Hdf5Reader& file) {
+    const auto values = file.real_attribute("x_m", kPose);
+    const std::string name = std::string("x_m attribute ") + kPose;
+    if (!values || values->size() != 16) {
+        throw Error(file.where(name), "is missing or misshapen", "must be a (4, 4) matrix");
+    }
+    require_finite(file, name, *values);
+    Transform pose;
+    pose.matrix() = Eigen::Map<const RowMajor4>(values->data());
+    return pose;
+}
+
+core::DepthMap read_depth(const Hdf5Reader& file, const VolumeAxes& axes) {
+    core::DepthMap depth(axes.x_m, axes.y_m);
+    depth.world_from_wall = axes.world_from_wall;
+    depth.depth_m = file.read_doubles("depth_m", {axes.x_m.size(), axes.y_m.size()});
+    for (const double value : depth.depth_m) {
+        if (std::isinf(value)) {
+            throw Error(file.where("depth_m"), "found inf", "must be depths, NaN for background");
+        }
+    }
+    return depth;
+}
+
+core::PointCloud read_points(const Hdf5Reader& file) {
+    core::PointCloud points;
+    const Shape shape = file.shape("points");
+    points.positions = read_vectors(file, "points", {shape.empty() ? 0 : shape[0]});
+    for (const Vec3& position : points.positions) require_finite(file, "points", position);
+    if (file.has("point_normals")) {
+        points.normals = read_vectors(file, "point_normals", {points.positions.size()});
+        for (const Vec3& normal : points.normals) require_finite(file, "point_normals", normal);
+    }
+    return points;
+}
+
+ReconstructSettings read_settings(const Hdf5Reader& file) {
+    ReconstructSettings settings;
+    const auto text = file.text_attribute("/", "settings");
+    if (!text) return settings;
+    const std::string where = file.where("attribute settings");
+    const core::Json json = core::Json::parse(*text, nullptr, /*allow_exceptions=*/false);
+    if (json.is_discarded()) throw Error(where, "is not JSON", "must be a settings echo");
+    core::read_value(json, where, settings);
+    return settings;
+}
+
+/// A root attribute that holds one number; 0 when missing.
+double read_number(const Hdf5Reader& file, const std::string& name) {
+    const auto values = file.real_attribute("/", name);
+    if (!values) return 0.0;
+    if (values->size() != 1 || !std::isfinite((*values)[0]) || (*values)[0] < 0.0) {
+        throw Error(
+            file.where("attribute " + name), "is no count", "must be one number, 0 or more");
+    }
+    return (*values)[0];
+}
+
+}  // namespace
+
+void write_volume(const std::string& path, const Reconstruction& reconstruction) {
+    const Volume& volume = reconstruction.volume;
+    const VolumeAxes& axes = volume.axes;
+    const Shape columns{axes.x_m.size(), axes.y_m.size()};
+    const RowMajor4 pose = axes.world_from_wall.matrix();
+
+    Hdf5Writer file(path);
+    file.write("volume", {columns[0], columns[1], axes.z_m.size()}, volume.values);
+    write_axis(file, "x_m", axes.x_m, pose);
+    write_axis(file, "y_m", axes.y_m, pose);
+    write_axis(file, "z_m", axes.z_m, pose);
+    file.write("depth_m", columns, reconstruction.depth.depth_m);
+    file.write("max_projection", columns, max_projection(volume));
+    if (!volume.normals.empty()) write_vectors(file, "normals", columns, volume.normals);
+    const core::PointCloud& points = reconstruction.points;
+    write_vectors(file, "points", {points.positions.size()}, points.positions);
+    if (!points.normals.empty()) {
+        write_vectors(file, "point_normals", {points.normals.size()}, points.normals);
+    }
+    file.write_attribute("/", "method", reconstruction.method);
+    file.write_attribute("/", "reason", reconstruction.reason);
+    file.write_attribute("/", "settings", core::write_value(reconstruction.settings).dump());
+    const auto peak_bytes = static_cast<double>(reconstruction.peak_bytes);
+    file.write_attribute("/", "seconds", {}, {&reconstruction.seconds, 1});
+    file.write_attribute("/", "peak_bytes", {}, {&peak_bytes, 1});
+    file.finish();
+}
+
+Reconstruction read_volume(const std::string& path) {
+    const Hdf5Reader file(path);
+    Reconstruction result;
+    VolumeAxes& axes = result.volume.axes;
+    axes.x_m = read_axis(file, "x_m");
+    axes.y_m = read_axis(file, "y_m");
+    axes.z_m = read_axis(file, "z_m");
+    axes.world_from_wall = read_pose(file);
+    const Shape columns{axes.x_m.size(), axes.y_m.size()};
+    result.volume.values = file.read_floats("volume", {columns[0], columns[1], axes.z_m.size()});
+    require_finite(file, "volume", result.volume.values);
+    if (file.has("normals")) {
+        for (const Vec3& normal : read_vectors(file, "normals", columns)) {
+            result.volume.normals.push_back(normal.cast<float>());
+        }
+    }
+    result.depth = read_depth(file, axes);
+    result.points = read_points(file);
+    result.method = file.text_attribute("/", "method").value_or("");
+    result.reason = file.text_attribute("/", "reason").value_or("");
+    result.settings = read_settings(file);
+    result.seconds = read_number(file, "seconds");
+    result.peak_bytes =
+        static_cast<std::uint64_t>(std::min(read_number(file, "peak_bytes"), 0x1p63));
+    return result;
+}
+
+bool is_volume_file(const std::string& path) {
+    return is_hdf5_file(path) && Hdf5Reader(path).has("volume");
+}
+
+}  // namespace nlos

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT
+#include "nlos/formats/capture_file.h"
+#include "nlos/formats/hdf5_writer.h"
+#include "nlos/formats/ytal_layout.h"
+
+namespace nlos {
+namespace {
+
+using core::Capture;
+using core::Vec3;
+using core::WallPoints;
+
+/// How the points of a capture stand in the file.
+struct Layout {
+    bool exhaustive;
+    bool grids;  ///< points as (X, Y, 3) and not as (N, 3)
+
+    HFormat h_format() const {
+        if (exhaustive) return grids ? HFormat::TLxLySxSy : HFormat::TLiSi;
+        return grids ? HFormat::TSxSy : HFormat::TSi;
+    }
+};
+
+Layout layout_of(const core::Scan& scan) {
+    const bool exhaustive = scan.pattern == core::ScanPattern::Exhaustive;
+    // A single illumination point is a grid of one by one as well.
+    const bool illumination_is_grid = scan.illumination.grid || scan.illumination.size() == 1;
+    return {exhaustive, scan.sensing.grid && (!exhaustive || illumination_is_grid)};
+}
+
+/// (X, Y) or (N,) of some points.
+Shape extents_of(const WallPoints& points, const Layout& layout) {
+    if (!layout.grids) return {points.size()};
+    const auto grid = points.grid.value_or(std::array<std::size_t, 2>{1, 1});
+    return {grid[0], grid[1]};
+}
+
+std::vector<float> to_floats(const std::vector<Vec3>& vectors) {
+    std::vector<float> values;
+    values.reserve(3 * vectors.size());
+    for (const Vec3& vector : vectors) {
+        for (const double coordinate : vector) values.push_back(static_cast<float>(coordinate));
+    }
+    return values;
+}
+
+void write_points(Hdf5Writer& file,
+                  const std::string& device,
+                  const WallPoints& points,
+                  const Layout& layout) {
+    Shape shape = extents_of(points, layout);
+    shape.push_back(3);
+    file.write(device + "_grid_xyz", shape, to_floats(points.positions));
+    file.write(device + "_grid_normals", shape, to_floats(points.normals));
+    file.write_enum(device + "_grid_format",
+                    grid_format_members(),
+                    static_cast<int>(layout.grids ? GridFormat::XY3 : GridFormat::N3));
+}
+
+/// Writes [pair][bin] with time slowest. Not compressed: the noise of rendered and measured
+/// histograms leaves deflate little to save for many times the writing time.
+void write_transient(Hdf5Writer& file,
+                     const std::string& name,
+                     const Shape& shape,
+                     const core::Transient& transient) {
+    constexpr std::size_t kPairsAtOnce = 16;  // one cache line of every row at a time
+    const std::size_t pairs = transient.num_pairs();
+    file.write_rows(
+        name, shape, [&](std::size_t first, std::size_t count, std::vector<float>& rows) {
+            for (std::size_t begin = 0; begin < pairs; begin += kPairsAtOnce) {
+                const std::size_t end = std::min(pairs, begin + kPairsAtOnce);
+                for (std::size_t row = 0; row < count; ++row) {
+                    for (std::size_t pair = begin; pair < end; ++pair) {
+                        rows[row * pairs + pair] = transient.histogram(pair)[first + row];
+                    }
+                }
+            }
+        });
+}
+
+/// What y-tal has no name for.
+void write_own_group(Hdf5Writer& file, const Shape& h_shape, const Capture& capture) {
+    if (!capture.variance && capture.unit == core::TransientUnit::Radiance) return;
+    file.create_group("nlos");
+    file.write_attribute("nlos", "unit", std::string(enum_name(capture.unit)));
+    if (capture.variance) write_transient(file, "nlos/variance", h_shape, *capture.variance);
+}
+
+}  // namespace
+
+void write_capture(const std::string& path, const Capture& capture) {
+    validate(capture, path);
+    const core::Scan& scan = capture.scan;
+    const Layout layout = layout_of(scan);
+    Shape h_shape{static_cast<std::size_t>(capture.time_axis.num_bins)};
+    const auto add_extents = [&](const WallPoints& points) {
+        const Shape extents = extents_of(points, layout);
+        h_shape.insert(h_shape.end(), extents.begin(), extents.end());
+    };
+    if (layout.exhaustive) add_extents(scan.illumination);
+    add_extents(scan.sensing);
+
+    Hdf5Writer file(path);
+    write_transient(file, "H", h_shape, capture.transient);
+    file.write_enum("H_format", h_format_members(), static_cast<int>(layout.h_format()));
+    file.write("sensor_xyz", {3}, to_floats({scan.detector_position}));
+    write_points(file, "sensor", scan.sensing, layout);
+    file.write("laser_xyz", {3}, to_floats({scan.laser_position}));
+    write_points(file, "laser", scan.illumination, layout);
+    file.write_enum("volume_format", volume_format_members(), kVolumeFormatXYZ3);
+    file.write_real("delta_t", capture.time_axis.bin_width_m);
+    file.write_real("t_start", capture.time_axis.opl_start_m);
+    file.write_bool("t_accounts_first_and_last_bounces",
+                    scan.opl_origin == core::OplOrigin::Device);
+    file.write_text("scene_info", scene_info_text(capture.scene_info));
+    write_own_group(file, h_shape, capture);
+    file.finish();
+}
+
+}  // namespace nlos

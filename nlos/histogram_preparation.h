@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/core/time_axis.h"
+#include "renderer/core/transient.h"
+
+#include <optional>
+#include <vector>
+
+namespace nlos {
+
+/// Ambient light of a capture and where its signal ends.
+struct SignalExtent {
+    std::vector<double> ambient_per_bin;  ///< per pair
+    int end_bin = 0;                      ///< bins from here on hold nothing but ambient light
+};
+
+/// Finds constant background light and the end of the signal in photon counts.
+///
+/// Of 32 segments of the axis (zeroed bins at its start left out), the eight that are darkest over
+/// all pairs give each pair's ambient level. The signal ends with the last segment whose sum over
+/// all pairs exceeds the ambient light by 5 standard deviations and by 1 % of the strongest
+/// segment: noise behind it would be raised by range^4 and outshine the scene.
+///
+/// returns   nothing when the axis is too short to tell (fewer than 64 filled bins)
+/// throws    nothing
+std::optional<SignalExtent> find_signal(const core::Transient& transient);
+
+/// What to do to histograms before a method sees them.
+struct PreparationPlan {
+    int merge_bins = 1;
+    int num_bins = 0;                     ///< after merging; later bins are dropped
+    std::vector<double> ambient_per_bin;  ///< per pair, before merging; empty: none
+};
+
+/// Takes off ambient light, adds up neighbouring bins and drops those behind the plan's end.
+core::Transient prepare_histograms(const core::Transient& transient, const PreparationPlan& plan);
+
+}  // namespace nlos

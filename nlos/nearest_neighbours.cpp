@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+#include "nlos/nearest_neighbours.h"
+
+#include <flann/flann.hpp>
+
+#include <cassert>
+#include <cmath>
+
+namespace nlos {
+namespace {
+
+constexpr int kLeafSize = 10;
+
+/// FLANN takes writable rows and does not write to them.
+flann::Matrix<double> rows_of(const std::vector<core::Vec3>& points) {
+    static_assert(sizeof(core::Vec3) == 3 * sizeof(double));
+    return {const_cast<double*>(points.front().data()), points.size(), 3};
+}
+
+}  // namespace
+
+NearestNeighbours nearest_neighbours(const std::vector<core::Vec3>& queries,
+                                     const std::vector<core::Vec3>& points) {
+    assert(!points.empty());
+    NearestNeighbours result;
+    result.distances_m.resize(queries.size());
+    result.indices.resize(queries.size());
+    if (queries.empty()) return result;
+
+    flann::Index<flann::L2_Simple<double>> tree(rows_of(points),
+                                                flann::KDTreeSingleIndexParams(kLeafSize));
+    tree.buildIndex();
+    flann::Matrix<std::size_t> indices(result.indices.data(), queries.size(), 1);
+    flann::Matrix<double> squared(result.distances_m.data(), queries.size(), 1);
+    tree.knnSearch(
+        rows_of(queries), indices, squared, 1, flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED));
+    for (double& distance : result.distances_m) distance = std::sqrt(distance);
+    return result;
+}
+
+}  // namespace nlos

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "nlos/formats/picture.h"
+#include "nlos/reconstruct.h"
+#include "renderer/core/capture.h"
+#include "renderer/core/depth_map.h"
+
+#include <vector>
+
+namespace nlos {
+
+// Pictures of results, to be drawn by nlos/formats/picture.h. Views along the wall's normal show
+// what an eye at the wall sees: y upwards and x running right to left.
+
+/// Front, side and top maximum projections and the depth map; two columns align their axes.
+std::vector<Panel> volume_panels(const Reconstruction& reconstruction);
+
+/// Streak image of the middle row of wall points, light over the wall, and mean transient.
+///
+/// Point lists have no picture of the wall; a single time gate has nothing but that.
+std::vector<Panel> capture_panels(const core::Capture& capture);
+
+/// True depth, reconstructed depth on the same scale, and their signed difference.
+/// throws    core::Error when the two have different columns
+std::vector<Panel> comparison_panels(const Reconstruction& reconstruction,
+                                     const core::DepthMap& truth);
+
+/// True depth and, where known, the albedo seen and how far the surface faces the wall.
+std::vector<Panel> truth_panels(const core::DepthMap& truth);
+
+}  // namespace nlos

@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: MIT
+#include "nlos/reconstruct.h"
+
+#include "nlos/backprojection.h"
+#include "nlos/histogram_preparation.h"
+#include "nlos/light_cone_transform.h"
+#include "nlos/surface.h"
+#include "nlos/wall_frame.h"
+#include "renderer/core/process.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+
+namespace nlos {
+namespace {
+
+constexpr int kMaxVoxelsPerAxis = 65536;
+constexpr int kFewestBins = 8;  // for lct, after merging and dropping
+constexpr std::size_t kDefaultColumns = 64;
+
+void require(bool holds, const char* key, const std::string& found, const std::string& allowed) {
+    if (!holds) throw core::Error(key, found, allowed);
+}
+
+/// Empty when the light-cone transform can serve, else what the capture or settings have instead.
+std::string why_not_lct(const core::Capture& capture,
+                        const WallFrame& wall,
+                        const VolumeSettings& volume) {
+    if (capture.scan.pattern != core::ScanPattern::Confocal) {
+        return fmt::format(
+            "{} scan",
+            capture.scan.pattern == core::ScanPattern::Single ? "a single-laser" : "an exhaustive");
+    }
+    if (!wall.grid) return wall.why_no_grid;
+    if (capture.time_axis.num_bins < kFewestBins) {
+        return fmt::format("a time axis of {} bins", capture.time_axis.num_bins);
+    }
+    const auto [nx, ny] = wall.grid->size;
+    if (volume.voxels && (static_cast<std::size_t>((*volume.voxels)[0]) != nx ||
+                          static_cast<std::size_t>((*volume.voxels)[1]) != ny)) {
+        return fmt::format("volume.voxels of {} x {} for a scan of {} x {}",
+                           (*volume.voxels)[0],
+                           (*volume.voxels)[1],
+                           nx,
+                           ny);
+    }
+    return "";
+}
+
+void choose_method(const core::Capture& capture, const WallFrame& wall, Reconstruction& result) {
+    ReconstructSettings& settings = result.settings;
+    const std::string obstacle = why_not_lct(capture, wall, settings.volume);
+    if (settings.method == Method::Lct && !obstacle.empty()) {
+        throw core::Error("method=lct",
+                          "found " + obstacle,
+                          "lct needs a confocal scan on an even planar grid, voxel columns at its "
+                          "points and at least 8 bins; method=bp works for this capture");
+    }
+    if (settings.method == Method::Auto) {
+        settings.method = obstacle.empty() ? Method::Lct : Method::Bp;
+        result.reason = obstacle.empty() ? "confocal scan on an even planar grid" : obstacle;
+    } else {
+        result.reason = "as set";
+    }
+    result.method = core::enum_name(settings.method);
+}
+
+/// As many bins as keep the range they cover within a quarter of the wall points' distance: finer
+/// depth than that no aperture of this sampling resolves, and noise and work shrink with the bins.
+int default_merge_bins(const core::TimeAxis& axis, const WallFrame& wall) {
+    if (!wall.grid) return 1;
+    const double limit_m = 0.25 * std::min(wall.grid->pitch_m[0], wall.grid->pitch_m[1]);
+    int merge = 1;
+    while (axis.num_bins / (2 * merge) >= kFewestBins && merge * axis.bin_width_m <= limit_m)
+        merge *= 2;
+    return merge;
+}
+
+/// Fills in merge_bins, ambient and snr, and says what becomes of the histograms.
+PreparationPlan choose_preparation(const core::Capture& capture,
+                                   const WallFrame& wall,
+                                   ReconstructSettings& settings) {
+    const bool is_counts = capture.unit == core::TransientUnit::Counts;
+    if (!settings.snr) settings.snr = is_counts ? 0.1 : 1.0;
+    if (settings.ambient == Ambient::Auto) {
+        settings.ambient = is_counts ? Ambient::Subtract : Ambient::Keep;
+    }
+    if (!settings.merge_bins) settings.merge_bins = default_merge_bins(capture.time_axis, wall);
+    PreparationPlan plan;
+    plan.merge_bins = *settings.merge_bins;
+    require(plan.merge_bins <= capture.time_axis.num_bins,
+            "merge_bins",
+            fmt::format("{}", plan.merge_bins),
+            fmt::format("must not exceed the capture's {} bins", capture.time_axis.num_bins));
+    plan.num_bins = capture.time_axis.num_bins / plan.merge_bins;
+    if (settings.ambient == Ambient::Subtract) {
+        if (auto signal = find_signal(capture.transient)) {
+            plan.ambient_per_bin = std::move(signal->ambient_per_bin);
+            const int end = (signal->end_bin + plan.merge_bins - 1) / plan.merge_bins;
+            if (!settings.volume.z_range_m) {
+                plan.num_bins =
+                    std::clamp(end, std::min(kFewestBins, plan.num_bins), plan.num_bins);
+            }
+        }
+    }
+    return plan;
+}
+
+/// Half the path lengths that the axis covers once device legs are taken off.
+std::array<double, 2> default_z_range(const core::Scan& scan, const core::TimeAxis& axis) {
+    double shortest_leg = scan.device_legs_m(0);
+    double longest_leg = shortest_leg;
+    for (std::size_t pair = 1; pair < scan.num_pairs(); ++pair) {
+        const double leg = scan.device_legs_m(pair);
+        shortest_leg = std::min(shortest_leg, leg);
+        longest_leg = std::max(longest_leg, leg);
+    }
+    const double begin = std::max(0.0, 0.5 * (axis.opl_start_m - longest_leg));
+    const double end = 0.5 * (axis.opl_end_m() - shortest_leg);
+    require(end > begin,
+            "capture",
+            fmt::format("the time axis ends at a range of {:.4g} m", end),
+            "it must reach beyond the wall");
+    return {begin, end};
+}
+
+/// Columns at the scan's points or evenly over its footprint, depths at the bins' ranges.
+void choose_axes(const core::Scan& scan,
+                 const core::TimeAxis& axis,
+                 const WallFrame& wall,
+                 ReconstructSettings& settings,
+                 VolumeAxes& axes) {
+    VolumeSettings& volume = settings.volume;
+    if (!volume.z_range_m) volume.z_range_m = default_z_range(scan, axis);
+    const double depth = (*volume.z_range_m)[1] - (*volume.z_range_m)[0];
+    std::array<double, 2> low = wall.min_m;
+    std::array<double, 2> high = wall.max_m;
+    const double size = std::max(high[0] - low[0], high[1] - low[1]);
+    for (int i = 0; i < 2; ++i) {  // points on a line, or one point: a square, or as wide as deep
+        if (high[i] - low[i] > 1e-3 * size && size > 0.0) continue;
+        const double center = 0.5 * (low[i] + high[i]);
+        low[i] = center - 0.5 * (size > 0.0 ? size : depth);
+        high[i] = center + 0.5 * (size > 0.0 ? size : depth);
+    }
+    if (!volume.voxels) {
+        const std::array<std::size_t, 2> columns =
+            wall.grid ? wall.grid->size : std::array{kDefaultColumns, kDefaultColumns};
+        const double step = 0.5 * axis.bin_width_m;
+        volume.voxels = {
+            static_cast<int>(columns[0]),
+            static_cast<int>(columns[1]),
+            static_cast<int>(std::clamp(std::round(depth / step), 1.0, double{kMaxVoxelsPerAxis}))};
+    }
+    const auto [nx, ny, nz] = *volume.voxels;
+    axes.x_m = cell_centers(low[0], high[0], static_cast<std::size_t>(nx));
+    axes.y_m = cell_centers(low[1], high[1], static_cast<std::size_t>(ny));
+    axes.z_m =
+        cell_centers((*volume.z_range_m)[0], (*volume.z_range_m)[1], static_cast<std::size_t>(nz));
+    axes.world_from_wall = wall.world_from_wall;
+}
+
+void check_memory(double needed_bytes) {
+    const auto available = static_cast<double>(core::available_memory_bytes());
+    if (needed_bytes <= available) return;
+    throw core::Failure(
+        "reconstruct",
+        fmt::format("needs {:.2f} GB of memory and {:.2f} GB are available; fewer volume.voxels or "
+                    "larger merge_bins need less",
+                    1e-9 * needed_bytes,
+                    1e-9 * available));
+}
+
+double method_bytes(const MethodInput& input, Method method) {
+    return method == Method::Lct ? light_cone_transform_bytes(input) : backproject_bytes(input);
+}
+
+Volume run_method(const MethodInput& input, const ReconstructSettings& settings) {
+    if (settings.method == Method::Lct) {
+        return light_cone_transform(input, settings.falloff, *settings.snr);
+    }
+    return backproject(input);
+}
+
+}  // namespace
+
+void validate(const ReconstructSettings& settings) {
+    if (settings.snr) {
+        require(*settings.snr > 0.0 && std::isfinite(*settings.snr),
+                "snr",
+                fmt::format("{}", *settings.snr),
+                "must be positive");
+    }
+    require(settings.mask_threshold > 0.0 && settings.mask_threshold < 1.0,
+            "mask_threshold",
+            fmt::format("{}", settings.mask_threshold),
+            "must lie between 0 and 1");
+    if (settings.merge_bins) {
+        require(*settings.merge_bins >= 1,
+                "merge_bins",
+                fmt::format("{}", *settings.merge_bins),
+                "must be at least 1");
+    }
+    if (settings.volume.voxels) {
+        for (const int count : *settings.volume.voxels) {
+            require(count >= 1 && count <= kMaxVoxelsPerAxis,
+                    "volume.voxels",
+                    fmt::format("{}", count),
+                    "each number must lie between 1 and 65536");
+        }
+    }
+    if (settings.volume.z_range_m) {
+        const auto [begin, end] = *settings.volume.z_range_m;
+        require(begin >= 0.0 && end > begin && std::isfinite(end),
+                "volume.z_range_m",
+                fmt::format("[{}, {}]", begin, end),
+                "must be two depths, ascending and not below 0");
+    }
+}
+
+Reconstruction reconstruct(const core::Capture& capture,
+                           const ReconstructSettings& settings,
+                           const core::Progress& progress) {
+    const auto start = std::chrono::steady_clock::now();
+    validate(settings);
+    core::validate(capture, "capture");
+
+    Reconstruction result;
+    result.settings = settings;
+    const WallFrame wall = derive_wall_frame(capture.scan);
+    choose_method(capture, wall, result);
+
+    const PreparationPlan plan = choose_preparation(capture, wall, result.settings);
+    core::TimeAxis axis = capture.time_axis;
+    axis.bin_width_m *= plan.merge_bins;
+    axis.num_bins = plan.num_bins;
+    VolumeAxes axes;
+    choose_axes(capture.scan, axis, wall, result.settings, axes);
+
+    const bool is_ready =
+        plan.num_bins == capture.time_axis.num_bins && plan.ambient_per_bin.empty();
+    const auto input_with = [&](const core::Transient& transient) {
+        return MethodInput{
+            capture.scan, axis, transient, wall, axes, *result.settings.volume.z_range_m, progress};
+    };
+    const double prepared_bytes =
+        is_ready ? 0.0 : 4.0 * static_cast<double>(capture.scan.num_pairs()) * axis.num_bins;
+    check_memory(prepared_bytes +
+                 method_bytes(input_with(capture.transient), result.settings.method));
+    check_stop(progress);
+    const core::Transient prepared =
+        is_ready ? core::Transient() : prepare_histograms(capture.transient, plan);
+    result.volume =
+        run_method(input_with(is_ready ? capture.transient : prepared), result.settings);
+
+    result.depth = extract_depth_map(result.volume, settings.mask_threshold);
+    result.points = surface_points(result.depth);
+    result.seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    result.peak_bytes = core::peak_rss_bytes();
+    return result;
+}
+
+}  // namespace nlos

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "nlos/reconstruct_settings.h"
+#include "nlos/volume.h"
+#include "renderer/core/capture.h"
+#include "renderer/core/depth_map.h"
+#include "renderer/core/mesh.h"
+#include "renderer/core/progress.h"
+
+#include <cstdint>
+#include <string>
+
+namespace nlos {
+
+struct Reconstruction {
+    Volume volume;
+    core::DepthMap depth;     ///< sub-bin depth of the brightest voxel per column; NaN = background
+    core::PointCloud points;  ///< foreground of `depth` in world coordinates, normals to the wall
+    std::string method;       ///< the one that ran
+    std::string reason;       ///< why `auto` took it
+    ReconstructSettings settings;  ///< with every choice filled in
+    double seconds = 0.0;
+    std::uint64_t peak_bytes = 0;
+};
+
+/// Throws core::Error naming the first setting that is out of range.
+void validate(const ReconstructSettings& settings);
+
+/// Reconstructs the hidden scene from a capture.
+///
+/// returns   volume, depth map and points, in metres
+/// throws    core::Error when the method cannot serve this capture (names one that can) or a
+///           setting is out of range; core::Failure when memory does not suffice or
+///           `progress` asks to stop
+Reconstruction reconstruct(const core::Capture& capture,
+                           const ReconstructSettings& settings,
+                           const core::Progress& progress);
+
+}  // namespace nlos

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/core/capture.h"
+
+#include <fmt/core.h>
+
+#include <cmath>
+
+namespace core {
+namespace {
+
+void validate_points(const WallPoints& points, const std::string& where) {
+    if (points.size() == 0) throw Error(where, "found no point", "must have at least one");
+    if (points.normals.size() != points.size()) {
+        throw Error(where + " normals",
+                    fmt::format("found {} for {} points", points.normals.size(), points.size()),
+                    "must be one per point");
+    }
+    if (points.grid && (*points.grid)[0] * (*points.grid)[1] != points.size()) {
+        throw Error(where + " grid",
+                    fmt::format("found {} x {}", (*points.grid)[0], (*points.grid)[1]),
+                    fmt::format("must multiply to {} points", points.size()));
+    }
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (!points.positions[i].allFinite() || !points.normals[i].allFinite()) {
+            throw Error(where, fmt::format("point {} is not finite", i), "must be finite numbers");
+        }
+        if (points.normals[i].norm() < 1e-6) {
+            throw Error(where + " normals",
+                        fmt::format("normal {} has length 0", i),
+                        "must be unit vectors");
+        }
+    }
+}
+
+}  // namespace
+
+void validate(const Capture& capture, const std::string& where) {
+    validate(capture.time_axis, where + ": time axis");
+    validate_points(capture.scan.sensing, where + ": sensing points");
+    validate_points(capture.scan.illumination, where + ": illumination points");
+    const bool confocal = capture.scan.pattern == ScanPattern::Confocal;
+    if (confocal && capture.scan.illumination.size() != capture.scan.sensing.size()) {
+        throw Error(where + ": illumination points",
+                    fmt::format("found {}", capture.scan.illumination.size()),
+                    fmt::format("must equal the {} sensing points of a confocal scan",
+                                capture.scan.sensing.size()));
+    }
+    if (capture.transient.num_pairs() != capture.scan.num_pairs() ||
+        capture.transient.num_bins() != static_cast<std::size_t>(capture.time_axis.num_bins)) {
+        throw Error(where + ": H",
+                    fmt::format("found {} pairs x {} bins",
+                                capture.transient.num_pairs(),
+                                capture.transient.num_bins()),
+                    fmt::format("must be {} x {}",
+                                capture.scan.num_pairs(),
+                                capture.time_axis.num_bins));
+    }
+    for (const float value : capture.transient.values()) {
+        if (!std::isfinite(value)) {
+            throw Error(where + ": H", fmt::format("found {}", value), "must be finite numbers");
+        }
+    }
+}
+
+}  // namespace core

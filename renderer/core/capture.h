@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "renderer/core/settings.h"
+#include "renderer/core/time_axis.h"
+#include "renderer/core/transient.h"
+#include "renderer/core/types.h"
+
+namespace core {
+
+/// How illumination and sensing points pair up.
+enum class ScanPattern { Single, Confocal, Exhaustive };
+
+/// Where path lengths start and end: at the wall points, or at laser and detector.
+enum class OplOrigin { Device, RelayWall };
+
+/// What the numbers of a histogram are.
+enum class TransientUnit { Radiance, Counts };
+
+template <>
+struct EnumNames<ScanPattern> {
+    static constexpr std::array<std::pair<ScanPattern, std::string_view>, 3> value{
+        {{ScanPattern::Single, "single"},
+         {ScanPattern::Confocal, "confocal"},
+         {ScanPattern::Exhaustive, "exhaustive"}}};
+};
+template <>
+struct EnumNames<OplOrigin> {
+    static constexpr std::array<std::pair<OplOrigin, std::string_view>, 2> value{
+        {{OplOrigin::RelayWall, "relay_wall"}, {OplOrigin::Device, "device"}}};
+};
+template <>
+struct EnumNames<TransientUnit> {
+    static constexpr std::array<std::pair<TransientUnit, std::string_view>, 2> value{
+        {{TransientUnit::Radiance, "radiance"}, {TransientUnit::Counts, "counts"}}};
+};
+
+/// Points on the relay wall, either a grid of shape (X, Y) with x before y, or a plain list.
+struct WallPoints {
+    std::vector<Vec3> positions;                     ///< [m, world]
+    std::vector<Vec3> normals;                       ///< unit, towards the hidden side
+    std::optional<std::array<std::size_t, 2>> grid;  ///< (X, Y) with X * Y positions; nothing: a list
+
+    std::size_t size() const { return positions.size(); }
+};
+
+/// The relay-wall points of a measurement and how they pair up.
+///
+/// Pairs are numbered s for single and confocal scans and l * num_sensing + s for exhaustive ones.
+struct Scan {
+    ScanPattern pattern = ScanPattern::Confocal;
+    WallPoints illumination;  ///< confocal: the same points as `sensing`; single: one point
+    WallPoints sensing;
+    OplOrigin opl_origin = OplOrigin::RelayWall;
+    Vec3 laser_position = Vec3::Zero();     ///< [m, world]; counts only with OplOrigin::Device
+    Vec3 detector_position = Vec3::Zero();  ///< [m, world]; counts only with OplOrigin::Device
+
+    std::size_t num_pairs() const {
+        return pattern == ScanPattern::Exhaustive ? illumination.size() * sensing.size()
+                                                  : sensing.size();
+    }
+    std::size_t illumination_index(std::size_t pair) const {
+        if (pattern == ScanPattern::Single) return 0;
+        return pattern == ScanPattern::Confocal ? pair : pair / sensing.size();
+    }
+    std::size_t sensing_index(std::size_t pair) const { return pair % sensing.size(); }
+
+    /// Length of laser -> wall and wall -> detector that the axis includes for a pair [m].
+    double device_legs_m(std::size_t pair) const {
+        if (opl_origin == OplOrigin::RelayWall) return 0.0;
+        return (illumination.positions[illumination_index(pair)] - laser_position).norm() +
+               (sensing.positions[sensing_index(pair)] - detector_position).norm();
+    }
+};
+
+/// What a detector recorded, or a renderer computed: transients and where they belong.
+struct Capture {
+    Scan scan;
+    TimeAxis time_axis;
+    Transient transient;                ///< (num_pairs, num_bins)
+    std::optional<Transient> variance;  ///< of each value of `transient`, when known
+    TransientUnit unit = TransientUnit::Radiance;
+    std::vector<int> orders;          ///< bounce orders of `by_order`; empty when not resolved
+    std::vector<Transient> by_order;  ///< one per entry of `orders`; they sum to `transient`
+
+    Json scene_info = Json::object();  ///< free dictionary: settings echo, version, seed, ...
+    std::vector<std::string> notes;    ///< what the reader assumed or changed; shown by `nlos info`
+};
+
+/// Throws Error unless points, pairs, bins and normals agree and every value is finite.
+///
+/// where   prefix of messages, usually the file's name
+void validate(const Capture& capture, const std::string& where);
+
+}  // namespace core

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/core/mesh.h"
+
+#include "renderer/core/error.h"
+#include "renderer/core/random.h"
+#include "renderer/core/sampling.h"
+
+namespace core {
+
+PointCloud sample_surface(const TriangleMesh& mesh, std::size_t count, std::uint64_t seed) {
+    std::vector<Vec3> area_vectors;
+    std::vector<double> areas;
+    for (const auto& [a, b, c] : mesh.triangles) {
+        area_vectors.push_back(
+            triangle_area_vector(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]));
+        areas.push_back(area_vectors.back().norm());
+    }
+    double total = 0.0;
+    for (const double area : areas) total += area;
+    if (!(total > 0.0)) throw Error("mesh", "has no area", "must have a triangle of positive area");
+
+    const DiscreteDistribution by_area(areas);
+    PointCloud cloud;
+    Rng rng(seed, 0, 0);
+    for (std::size_t i = 0; i < count; ++i) {
+        double u = 0.0;
+        const std::size_t index = by_area.sample(rng.uniform(), u);
+        const Vec2 b = sample_triangle({u, rng.uniform()});
+        const auto& [v0, v1, v2] = mesh.triangles[index];
+        cloud.positions.push_back((1.0 - b.sum()) * mesh.vertices[v0] + b.x() * mesh.vertices[v1] +
+                                  b.y() * mesh.vertices[v2]);
+        cloud.normals.push_back(area_vectors[index] / areas[index]);
+    }
+    return cloud;
+}
+
+}  // namespace core

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "renderer/core/types.h"
+
+namespace core {
+
+/// An indexed triangle mesh.
+struct TriangleMesh {
+    std::vector<Vec3> vertices;  ///< [m]
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+    std::vector<Vec3> normals;  ///< per vertex, unit; empty when unknown
+};
+
+/// Area vector of a triangle: half the cross product of its edges; its norm is the area [m^2].
+inline Vec3 triangle_area_vector(const Vec3& a, const Vec3& b, const Vec3& c) {
+    return 0.5 * (b - a).cross(c - a);
+}
+
+/// Points with normals, in no order.
+struct PointCloud {
+    std::vector<Vec3> positions;  ///< [m, world]
+    std::vector<Vec3> normals;    ///< unit; empty when unknown
+};
+
+/// Draws `count` points uniformly by area, with the normals of their facets.
+/// Throws Error when the mesh has no area.
+PointCloud sample_surface(const TriangleMesh& mesh, std::size_t count, std::uint64_t seed);
+
+}  // namespace core

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+namespace core {
+
+/// A result file that appears whole or not at all: written under a temporary name beside the
+/// target, renamed by commit(), removed again when commit() is never reached.
+class OutputFile {
+   public:
+    /// Throws Error when the target's folder does not exist or cannot be written.
+    explicit OutputFile(std::string target);
+    ~OutputFile();
+    OutputFile(const OutputFile&) = delete;
+    OutputFile& operator=(const OutputFile&) = delete;
+
+    /// Where to write; ends in the target's suffix.
+    const std::string& temporary() const { return temporary_; }
+
+    /// Moves the finished file to its final name. Throws Failure when that fails.
+    void commit();
+
+   private:
+    std::string target_;
+    std::string temporary_;
+    bool committed_ = false;
+};
+
+/// Writes a whole text file by way of OutputFile.
+void write_text_file(const std::string& path, const std::string& text);
+
+}  // namespace core

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+namespace core {
+
+/// Calls `body(i)` for every i in [0, count), on all threads allowed; order unspecified.
+/// The first exception thrown by a body is rethrown here.
+void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body);
+
+/// Calls `body(begin, end)` for consecutive blocks of at most `block` items, on all threads allowed.
+/// The blocks depend on `count` and `block` only, never on the number of threads.
+void parallel_blocks(std::size_t count,
+                     std::size_t block,
+                     const std::function<void(std::size_t begin, std::size_t end)>& body);
+
+/// Sums `term(i)` over [0, count): blocks in parallel, partial sums merged in index order, so the
+/// result has the same bits for any number of threads.
+///
+/// zero   the neutral element; T needs +=
+template <class T>
+T parallel_sum(std::size_t count, T zero, const std::function<T(std::size_t)>& term) {
+    constexpr std::size_t kBlock = 1024;
+    std::vector<T> partial((count + kBlock - 1) / kBlock, zero);
+    parallel_blocks(count, kBlock, [&](std::size_t begin, std::size_t end) {
+        T& sum = partial[begin / kBlock];
+        for (std::size_t i = begin; i < end; ++i) sum += term(i);
+    });
+    T total = zero;
+    for (const T& sum : partial) total += sum;
+    return total;
+}
+
+/// Limits parallel loops to `count` threads while it lives; 0 means all processors.
+class ThreadLimit {
+   public:
+    explicit ThreadLimit(int count);
+    ~ThreadLimit();
+    ThreadLimit(const ThreadLimit&) = delete;
+    ThreadLimit& operator=(const ThreadLimit&) = delete;
+
+   private:
+    void* control_;
+};
+
+/// Threads that a parallel loop may use now.
+int thread_count();
+
+}  // namespace core

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+
+namespace core {
+
+/// The largest amount of memory this process has held so far [bytes].
+std::uint64_t peak_rss_bytes();
+
+/// Memory that the machine can still give [bytes].
+std::uint64_t available_memory_bytes();
+
+/// CPU time of all threads of this process so far [s].
+double cpu_seconds();
+
+}  // namespace core

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <functional>
+#include <string>
+
+namespace core {
+
+/// How long work talks to its caller. Nothing below the program prints; it reports here.
+struct Progress {
+    /// Called now and then from the calling thread: the share done in [0, 1] and a short text such
+    /// as the rate. May be empty.
+    std::function<void(double share, const std::string& detail)> report;
+
+    /// Asked between passes; true ends the work early with what is there. May be empty.
+    std::function<bool()> stop_requested;
+
+    void update(double share, const std::string& detail) const {
+        if (report) report(share, detail);
+    }
+    bool should_stop() const { return stop_requested && stop_requested(); }
+};
+
+}  // namespace core

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/core/sampling.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace core {
+namespace {
+
+constexpr double kBelowOne = 0x1.fffffffffffffp-1;
+
+double azimuth_share(double x, double y) {
+    const double share = std::atan2(y, x) / (2.0 * kPi);
+    return std::min(share < 0.0 ? share + 1.0 : share, kBelowOne);
+}
+
+}  // namespace
+
+Vec2 sample_triangle(const Vec2& u) {
+    // b0 has density 2 b0 on [0, 1]; given it, b1 / (1 - b0) is uniform.
+    const double root = std::sqrt(u.x());
+    return {root * (1.0 - u.y()), root * u.y()};
+}
+
+Vec2 invert_triangle(const Vec2& barycentric) {
+    const double root = barycentric.sum();
+    return {root * root, root > 0.0 ? barycentric.y() / root : 0.0};
+}
+
+Vec3 sample_cosine_hemisphere(const Vec2& u) {
+    const double radius = std::sqrt(u.x());
+    const double angle = 2.0 * kPi * u.y();
+    return {radius * std::cos(angle), radius * std::sin(angle), std::sqrt(1.0 - u.x())};
+}
+
+double pdf_cosine_hemisphere(const Vec3& direction) { return std::max(0.0, direction.z()) / kPi; }
+
+Vec2 invert_cosine_hemisphere(const Vec3& direction) {
+    return {direction.x() * direction.x() + direction.y() * direction.y(),
+            azimuth_share(direction.x(), direction.y())};
+}
+
+Vec3 sample_sphere(const Vec2& u) {
+    const double z = 1.0 - 2.0 * u.x();
+    const double radius = 2.0 * std::sqrt(u.x() * (1.0 - u.x()));
+    const double angle = 2.0 * kPi * u.y();
+    return {radius * std::cos(angle), radius * std::sin(angle), z};
+}
+
+Vec2 invert_sphere(const Vec3& direction) {
+    return {0.5 * (1.0 - direction.z()), azimuth_share(direction.x(), direction.y())};
+}
+
+DiscreteDistribution::DiscreteDistribution(std::span<const double> weights)
+    : cumulative_(weights.size()) {
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+        assert(weights[i] >= 0.0 && std::isfinite(weights[i]));
+        sum_ += weights[i];
+        cumulative_[i] = sum_;
+    }
+    assert(sum_ > 0.0);
+    for (double& value : cumulative_) value /= sum_;
+    // Trailing zero weights must keep an empty share although rounding lifts the end to 1.
+    for (std::size_t i = cumulative_.size(); i-- > 0 && (i + 1 == cumulative_.size() ||
+                                                        weights[i + 1] == 0.0);) {
+        cumulative_[i] = 1.0;
+    }
+}
+
+std::size_t DiscreteDistribution::sample(double u, double& remapped) const {
+    const auto it = std::upper_bound(cumulative_.begin(), cumulative_.end(), u);
+    const auto index = static_cast<std::size_t>(it - cumulative_.begin());
+    remapped = remap(index, u);
+    return index;
+}
+
+std::size_t DiscreteDistribution::sample_from(std::size_t hint, double u, double& remapped) const {
+    // Gallop: shares are usually narrower than the steps of u only by a small factor.
+    std::size_t step = 1;
+    std::size_t low = hint;
+    while (low + step < cumulative_.size() && cumulative_[low + step - 1] <= u) {
+        low += step;
+        step *= 2;
+    }
+    const auto first = cumulative_.begin() + static_cast<std::ptrdiff_t>(low);
+    const auto last =
+        cumulative_.begin() + static_cast<std::ptrdiff_t>(std::min(low + step, cumulative_.size()));
+    const auto it = std::upper_bound(first, last, u);
+    const auto index = static_cast<std::size_t>(it - cumulative_.begin());
+    remapped = remap(index, u);
+    return index;
+}
+
+double DiscreteDistribution::probability(std::size_t index) const {
+    return cumulative_[index] - begin_of(index);
+}
+
+double DiscreteDistribution::invert(std::size_t index, double remapped) const {
+    return begin_of(index) + remapped * probability(index);
+}
+
+double DiscreteDistribution::remap(std::size_t index, double u) const {
+    return std::clamp((u - begin_of(index)) / probability(index), 0.0, kBelowOne);
+}
+
+}  // namespace core

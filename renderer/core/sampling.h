@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "renderer/core/types.h"
+
+namespace core {
+
+/// Warps of the unit square, each with its density and its inverse (source [Shirley1997] for the
+/// disk, [Osada2002] for the triangle; the others follow from their cumulative distributions).
+
+/// Barycentric coordinates (b1, b2) of a point uniform by area on a triangle; b0 = 1 - b1 - b2.
+Vec2 sample_triangle(const Vec2& u);
+/// The u that sample_triangle maps to `barycentric`.
+Vec2 invert_triangle(const Vec2& barycentric);
+
+/// Unit vector about +z with density cos(theta)/pi.
+Vec3 sample_cosine_hemisphere(const Vec2& u);
+double pdf_cosine_hemisphere(const Vec3& direction);  ///< pdf_solid_angle [1/sr]
+Vec2 invert_cosine_hemisphere(const Vec3& direction);
+
+/// Unit vector uniform on the sphere, density 1/(4 pi).
+Vec3 sample_sphere(const Vec2& u);
+inline double pdf_sphere() { return 1.0 / (4.0 * kPi); }  ///< pdf_solid_angle [1/sr]
+Vec2 invert_sphere(const Vec3& direction);
+
+/// Picks indices with probabilities proportional to given weights, in index order along u.
+class DiscreteDistribution {
+   public:
+    DiscreteDistribution() = default;
+    /// weights   not negative, finite, with a positive sum (asserted)
+    explicit DiscreteDistribution(std::span<const double> weights);
+
+    std::size_t size() const { return cumulative_.size(); }
+    double sum() const { return sum_; }
+
+    /// The index whose share of [0, 1) holds u. `remapped` becomes uniform in [0, 1) given the index.
+    std::size_t sample(double u, double& remapped) const;
+    /// Like sample(), when u does not decrease from call to call: continues from index `hint`.
+    std::size_t sample_from(std::size_t hint, double u, double& remapped) const;
+    double probability(std::size_t index) const;
+    /// The u for which sample() gives `index` and `remapped`.
+    double invert(std::size_t index, double remapped) const;
+
+   private:
+    double begin_of(std::size_t index) const { return index == 0 ? 0.0 : cumulative_[index - 1]; }
+    double remap(std::size_t index, double u) const;
+
+    std::vector<double> cumulative_;  ///< upper end of each index's share, last is 1
+    double sum_ = 0.0;
+};
+
+}  // namespace core

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/core/settings.h"
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+
+namespace core {
+namespace {
+
+std::string shortened(const Json& json) {
+    constexpr std::size_t kLongest = 60;
+    std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+    if (text.size() > kLongest) text = text.substr(0, kLongest) + "...";
+    return text;
+}
+
+}  // namespace
+
+void throw_wrong_type(const std::string& where, const Json& found, const std::string& allowed) {
+    throw Error(where, "found " + shortened(found), "must be " + allowed);
+}
+
+std::string join_key(const std::string& where, const std::string& key) {
+    const bool top = where.empty() || where.ends_with(": ");
+    return top || where == "--set" ? where + (where == "--set" ? " " : "") + key : where + "." + key;
+}
+
+void read_value(const Json& json, const std::string& where, bool& value) {
+    if (!json.is_boolean()) throw_wrong_type(where, json, "true or false");
+    value = json.get<bool>();
+}
+
+void read_value(const Json& json, const std::string& where, int& value) {
+    const bool whole = json.is_number_integer() ||
+                       (json.is_number_float() && std::trunc(json.get<double>()) == json.get<double>());
+    if (!whole || std::abs(json.get<double>()) > std::numeric_limits<int>::max()) {
+        throw_wrong_type(where, json, "a whole number");
+    }
+    value = static_cast<int>(json.get<double>());
+}
+
+void read_value(const Json& json, const std::string& where, std::uint64_t& value) {
+    if (!json.is_number_integer() || (!json.is_number_unsigned() && json.get<std::int64_t>() < 0)) {
+        throw_wrong_type(where, json, "a whole number that is not negative");
+    }
+    value = json.get<std::uint64_t>();
+}
+
+void read_value(const Json& json, const std::string& where, double& value) {
+    if (!json.is_number() || !std::isfinite(json.get<double>())) {
+        throw_wrong_type(where, json, "a finite number");
+    }
+    value = json.get<double>();
+}
+
+void read_value(const Json& json, const std::string& where, std::string& value) {
+    if (!json.is_string()) throw_wrong_type(where, json, "a text");
+    value = json.get<std::string>();
+}
+
+void read_value(const Json& json, const std::string& where, Vec3& value) {
+    std::array<double, 3> numbers{};
+    read_value(json, where, numbers);
+    value = Vec3(numbers[0], numbers[1], numbers[2]);
+}
+
+void check_keys(const Json& json, const std::string& where, const std::vector<std::string>& known) {
+    for (const auto& [key, value] : json.items()) {
+        if (std::find(known.begin(), known.end(), key) == known.end()) {
+            throw Error(join_key(where, key),
+                        "found an unknown key",
+                        fmt::format("known keys are {}", fmt::join(known, ", ")));
+        }
+    }
+}
+
+Json parse_override(const std::string& text) {
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos || equals == 0) {
+        throw Error("--set", "found '" + text + "'", "must be key.path=value");
+    }
+    const std::string value_text = text.substr(equals + 1);
+    Json value = Json::parse(value_text, nullptr, /*allow_exceptions=*/false);
+    if (value.is_discarded()) value = value_text;
+
+    std::string path = text.substr(0, equals);
+    while (true) {
+        const std::size_t dot = path.rfind('.');
+        const std::string key = dot == std::string::npos ? path : path.substr(dot + 1);
+        if (key.empty()) throw Error("--set", "found '" + text + "'", "must be key.path=value");
+        Json outer = Json::object();
+        outer[key] = std::move(value);
+        value = std::move(outer);
+        if (dot == std::string::npos) return value;
+        path.resize(dot);
+    }
+}
+
+Json read_json_file(const std::string& path) {
+    std::ifstream file(path);
+    if (!file) throw Error(path, "cannot be opened", "must be a readable JSON file");
+    try {
+        return Json::parse(file);
+    } catch (const Json::exception& error) {
+        const std::string message = error.what();
+        const std::size_t start = message.find("] ");
+        throw Error(path,
+                    "is not valid JSON (" +
+                        (start == std::string::npos ? message : message.substr(start + 2)) + ")",
+                    "must be one JSON object");
+    }
+}
+
+}  // namespace core

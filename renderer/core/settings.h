@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <concepts>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "renderer/core/error.h"
+#include "renderer/core/types.h"
+
+namespace core {
+
+/// Keeps keys in the order in which they were listed.
+using Json = nlohmann::ordered_json;
+
+/// Settings are structs with defaults whose fields are listed once:
+///
+///     template <class Visitor> void for_each_field(TimeAxis& axis, Visitor&& visit) {
+///         visit("num_bins", axis.num_bins, "number of bins");  ...
+///     }
+///
+/// From that list come JSON reading, `--set key.path=value`, the help text, errors about unknown
+/// keys and the echo stored with every result. A field is a value, an enum that specialises
+/// EnumNames, a struct with fields of its own, or an optional of any of these (null when empty).
+struct AnyVisitor {
+    template <class T>
+    void operator()(const char*, T&, const char*) const {}
+};
+template <class T>
+concept SettingsStruct = requires(T& value, AnyVisitor visitor) { for_each_field(value, visitor); };
+
+/// Specialise with `static constexpr std::array<std::pair<E, std::string_view>, N> value`.
+template <class E>
+struct EnumNames;
+
+template <class E>
+std::string enum_choices() {
+    std::string text;
+    for (const auto& [value, name] : EnumNames<E>::value) {
+        if (!text.empty()) text += "|";
+        text += name;
+    }
+    return text;
+}
+
+template <class E>
+std::string_view enum_name(E wanted) {
+    for (const auto& [value, name] : EnumNames<E>::value) {
+        if (value == wanted) return name;
+    }
+    return "?";
+}
+
+/// Throws the error for a JSON value of the wrong type: `where: found <json>; must be <allowed>`.
+[[noreturn]] void throw_wrong_type(const std::string& where,
+                                   const Json& found,
+                                   const std::string& allowed);
+
+// Values of settings. Each throws Error naming `where` when the JSON has another type or shape.
+void read_value(const Json& json, const std::string& where, bool& value);
+void read_value(const Json& json, const std::string& where, int& value);
+void read_value(const Json& json, const std::string& where, std::uint64_t& value);
+void read_value(const Json& json, const std::string& where, double& value);
+void read_value(const Json& json, const std::string& where, std::string& value);
+void read_value(const Json& json, const std::string& where, Vec3& value);
+
+template <class E>
+    requires std::is_enum_v<E>
+void read_value(const Json& json, const std::string& where, E& value) {
+    if (json.is_string()) {
+        for (const auto& [candidate, name] : EnumNames<E>::value) {
+            if (json.get_ref<const std::string&>() == name) {
+                value = candidate;
+                return;
+            }
+        }
+    }
+    throw_wrong_type(where, json, "one of " + enum_choices<E>());
+}
+
+template <class T, std::size_t N>
+void read_value(const Json& json, const std::string& where, std::array<T, N>& value) {
+    if (!json.is_array() || json.size() != N) {
+        throw_wrong_type(where, json, "a list of " + std::to_string(N) + " numbers");
+    }
+    for (std::size_t i = 0; i < N; ++i) {
+        read_value(json[i], where + "[" + std::to_string(i) + "]", value[i]);
+    }
+}
+
+template <class T>
+void read_value(const Json& json, const std::string& where, std::vector<T>& value) {
+    if (!json.is_array()) throw_wrong_type(where, json, "a list");
+    value.clear();
+    for (std::size_t i = 0; i < json.size(); ++i) {
+        read_value(json[i], where + "[" + std::to_string(i) + "]", value.emplace_back());
+    }
+}
+
+template <class S>
+    requires SettingsStruct<S>
+void read_value(const Json& json, const std::string& where, S& settings);
+
+template <class T>
+void read_value(const Json& json, const std::string& where, std::optional<T>& value) {
+    if (json.is_null()) {
+        value.reset();
+        return;
+    }
+    if (!value) value.emplace();
+    read_value(json, where, *value);
+}
+
+/// Throws Error for keys of `json` that are not among `known`, naming the known ones.
+void check_keys(const Json& json, const std::string& where, const std::vector<std::string>& known);
+
+/// The name of a key below `where`, as errors print it.
+std::string join_key(const std::string& where, const std::string& key);
+
+/// Reads the keys present in `json` into `settings` and leaves the others as they are.
+template <class S>
+    requires SettingsStruct<S>
+void read_value(const Json& json, const std::string& where, S& settings) {
+    if (!json.is_object()) throw_wrong_type(where, json, "an object with named fields");
+    std::vector<std::string> known;
+    for_each_field(settings, [&](const char* name, auto& field, const char*) {
+        known.emplace_back(name);
+        if (const auto it = json.find(name); it != json.end()) {
+            read_value(*it, join_key(where, name), field);
+        }
+    });
+    check_keys(json, where, known);
+}
+
+inline Json write_value(bool value) { return value; }
+inline Json write_value(int value) { return value; }
+inline Json write_value(std::uint64_t value) { return value; }
+inline Json write_value(double value) { return value; }
+inline Json write_value(const std::string& value) { return value; }
+inline Json write_value(const Vec3& value) { return {value.x(), value.y(), value.z()}; }
+
+template <class E>
+    requires std::is_enum_v<E>
+Json write_value(E value) {
+    return std::string(enum_name(value));
+}
+
+template <class S>
+    requires SettingsStruct<S>
+Json write_value(S settings);
+
+template <class T>
+Json write_value(const std::optional<T>& value);
+
+template <class List>
+    requires requires(const List& list) {
+        list.begin();
+        typename List::value_type;
+        requires !std::same_as<List, std::string>;
+    } && (!SettingsStruct<List>)
+Json write_value(const List& list) {
+    Json json = Json::array();
+    for (const auto& item : list) json.push_back(write_value(item));
+    return json;
+}
+
+template <class T>
+Json write_value(const std::optional<T>& value) {
+    return value ? write_value(*value) : Json(nullptr);
+}
+
+/// All fields with their present values: the settings echo.
+template <class S>
+    requires SettingsStruct<S>
+Json write_value(S settings) {
+    Json json = Json::object();
+    for_each_field(settings, [&](const char* name, auto& field, const char*) {
+        json[name] = write_value(field);
+    });
+    return json;
+}
+
+/// Parses `key.path=value` into nested JSON; the value is JSON or, failing that, a string.
+/// Throws Error when there is no '=' or an empty key.
+Json parse_override(const std::string& text);
+
+/// Applies one `--set key.path=value`.
+template <SettingsStruct S>
+void apply_override(S& settings, const std::string& text) {
+    read_value(parse_override(text), "--set", settings);
+}
+
+/// One line of help: full key, default and meaning.
+struct SettingHelp {
+    std::string key;
+    std::string default_value;
+    std::string meaning;
+};
+
+template <class T>
+std::string choices_of(const T&) {
+    if constexpr (std::is_enum_v<T>) return " (" + enum_choices<T>() + ")";
+    return "";
+}
+
+/// Lists every field, nested ones by their dotted key, with default and meaning.
+template <SettingsStruct S>
+std::vector<SettingHelp> settings_help(S defaults, const std::string& prefix = "") {
+    std::vector<SettingHelp> lines;
+    for_each_field(defaults, [&](const char* name, auto& field, const char* meaning) {
+        using Field = std::remove_reference_t<decltype(field)>;
+        if constexpr (SettingsStruct<Field>) {
+            const auto nested = settings_help(field, prefix + name + ".");
+            lines.insert(lines.end(), nested.begin(), nested.end());
+        } else {
+            lines.push_back({prefix + name, write_value(field).dump(), meaning + choices_of(field)});
+        }
+    });
+    return lines;
+}
+
+/// Reads a whole JSON file. Throws Error when it is missing or not JSON.
+Json read_json_file(const std::string& path);
+
+}  // namespace core

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/area_sampler.h"
+#include "renderer/core/random.h"
+#include "renderer/light_path.h"
+#include "renderer/pass_histogram.h"
+
+namespace renderer {
+
+/// Transient path tracing from the sensing point.
+///
+/// Every vertex is drawn either from the hidden area or from the BSDF of the vertex before it; both
+/// kinds are weighted by the balance heuristic (source [Veach1997]). Every vertex is connected to
+/// the illumination point, which gives one path of every bounce order. The third bounce is traced
+/// in packets of coherent shadow rays; longer paths continue from its vertices.
+class PathTracer {
+   public:
+    /// scene   must outlive the tracer
+    PathTracer(const Scene& scene, const RenderSettings& settings);
+
+    /// Adds the contributions of `num_samples` paths to `histogram`, so that their sum estimates H.
+    ///
+    /// rng   owned by this pair and pass
+    void trace(const PathEnds& ends, int num_samples, core::Rng& rng, PassHistogram& histogram) const;
+
+   private:
+    class Walk;
+
+    const Scene* scene_;
+    AreaSampler area_sampler_;
+    int max_order_;
+    bool by_order_;
+    double laser_spot_m2_;
+};
+
+}  // namespace renderer

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/ray_caster.h"
+
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "renderer/core/error.h"
+
+namespace renderer {
+namespace {
+
+using core::Vec3;
+
+// Rounding a coordinate to float moves it by at most 2^-24 of its size; the intersection test and
+// the subtraction of the ray's origin add a few such steps.
+constexpr double kRoundingSteps = 16.0 * 0x1.0p-24;
+
+void throw_embree_error(void*, RTCError code, const char* message) {
+    if (code == RTC_ERROR_OUT_OF_MEMORY) throw core::Failure("ray tracing", "not enough memory");
+    throw core::Failure("ray tracing", message != nullptr ? message : "unknown Embree error");
+}
+
+Vec3 moved_off(const Vec3& point, const Vec3& normal, const Vec3& towards, double offset) {
+    return point + std::copysign(offset, normal.dot(towards)) * normal;
+}
+
+}  // namespace
+
+struct RayCaster::Embree {
+    RTCDevice device = nullptr;
+    RTCScene scene = nullptr;
+
+    explicit Embree() {
+        device = rtcNewDevice(nullptr);
+        if (device == nullptr) throw core::Failure("ray tracing", "Embree does not start");
+        rtcSetDeviceErrorFunction(device, throw_embree_error, nullptr);
+        scene = rtcNewScene(device);
+        rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+        rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
+    }
+    ~Embree() {
+        rtcReleaseScene(scene);
+        rtcReleaseDevice(device);
+    }
+    Embree(const Embree&) = delete;
+    Embree& operator=(const Embree&) = delete;
+
+    void add_triangles(std::span<const std::array<Vec3, 3>> corners, const Vec3& origin) {
+        RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+        auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry,
+                                                                     RTC_BUFFER_TYPE_VERTEX,
+                                                                     0,
+                                                                     RTC_FORMAT_FLOAT3,
+                                                                     3 * sizeof(float),
+                                                                     3 * corners.size()));
+        auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry,
+                                                                       RTC_BUFFER_TYPE_INDEX,
+                                                                       0,
+                                                                       RTC_FORMAT_UINT3,
+                                                                       3 * sizeof(unsigned),
+                                                                       corners.size()));
+        for (std::size_t i = 0; i < 3 * corners.size(); ++i) {
+            const Vec3 local = corners[i / 3][i % 3] - origin;
+            for (int axis = 0; axis < 3; ++axis) {
+                vertices[3 * i + static_cast<std::size_t>(axis)] = static_cast<float>(local[axis]);
+            }
+            indices[i] = static_cast<unsigned>(i);
+        }
+        rtcCommitGeometry(geometry);
+        rtcAttachGeometry(scene, geometry);
+        rtcReleaseGeometry(geometry);
+        rtcCommitScene(scene);
+    }
+};
+
+RayCaster::RayCaster(std::span<const std::array<Vec3, 3>> corners, std::span<const Vec3> extra)
+    : embree_(std::make_unique<Embree>()), corners_(corners.begin(), corners.end()) {
+    Eigen::AlignedBox3d box;
+    for (const auto& triangle : corners) {
+        for (const Vec3& corner : triangle) box.extend(corner);
+    }
+    for (const Vec3& point : extra) box.extend(point);
+    origin_ = box.center();
+    offset_m_ = kRoundingSteps * 0.5 * box.sizes().maxCoeff();
+    embree_->add_triangles(corners, origin_);
+}
+
+RayCaster::~RayCaster() = default;
+RayCaster::RayCaster(RayCaster&&) noexcept = default;
+RayCaster& RayCaster::operator=(RayCaster&&) noexcept = default;
+
+std::optional<RayHit> RayCaster::first_hit(const Vec3& from,
+                                           const Vec3& normal,
+                                           const Vec3& direction) const {
+    const Vec3 start = moved_off(from, normal, direction, offset_m_) - origin_;
+    RTCRayHit query{};
+    query.ray.org_x = static_cast<float>(start.x());
+    query.ray.org_y = static_cast<float>(start.y());
+    query.ray.org_z = static_cast<float>(start.z());
+    query.ray.dir_x = static_cast<float>(direction.x());
+    query.ray.dir_y = static_cast<float>(direction.y());
+    query.ray.dir_z = static_cast<float>(direction.z());
+    query.ray.tfar = std::numeric_limits<float>::infinity();
+    query.ray.mask = ~0U;
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcIntersect1(embree_->scene, &context, &query);
+    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+
+    // The distance once more in double precision, from the facet's plane.
+    const auto& [a, b, c] = corners_[query.hit.primID];
+    const Vec3 area_vector = (b - a).cross(c - a);
+    const double slope = area_vector.dot(direction);
+    const double distance = area_vector.dot(a - from) / slope;
+    if (!std::isfinite(distance) || distance <= 0.0) return std::nullopt;
+    return RayHit{query.hit.primID, distance};
+}
+
+bool RayCaster::is_blocked(const Vec3& a,
+                           const Vec3& normal_a,
+                           const Vec3& b,
+                           const Vec3& normal_b) const {
+    const Vec3 from = moved_off(a, normal_a, b - a, offset_m_) - origin_;
+    const Vec3 to = moved_off(b, normal_b, a - b, offset_m_) - origin_;
+    const Vec3 along = to - from;
+    RTCRay ray{};
+    ray.org_x = static_cast<float>(from.x());
+    ray.org_y = static_cast<float>(from.y());
+    ray.org_z = static_cast<float>(from.z());
+    ray.dir_x = static_cast<float>(along.x());
+    ray.dir_y = static_cast<float>(along.y());
+    ray.dir_z = static_cast<float>(along.z());
+    ray.tfar = 1.0F;
+    ray.mask = ~0U;
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded1(embree_->scene, &context, &ray);
+    return ray.tfar < 0.0F;
+}
+
+void RayCaster::add_segment(SegmentPacket& packet,
+                            const Vec3& a,
+                            const Vec3& normal_a,
+                            const Vec3& b,
+                            const Vec3& normal_b) const {
+    const Vec3 from = moved_off(a, normal_a, b - a, offset_m_) - origin_;
+    const Vec3 along = moved_off(b, normal_b, a - b, offset_m_) - origin_ - from;
+    const auto lane = static_cast<std::size_t>(packet.count++);
+    packet.from_x[lane] = static_cast<float>(from.x());
+    packet.from_y[lane] = static_cast<float>(from.y());
+    packet.from_z[lane] = static_cast<float>(from.z());
+    packet.along_x[lane] = static_cast<float>(along.x());
+    packet.along_y[lane] = static_cast<float>(along.y());
+    packet.along_z[lane] = static_cast<float>(along.z());
+}
+
+void RayCaster::trace(SegmentPacket& packet) const {
+    constexpr int kSize = SegmentPacket::kSize;
+    alignas(64) std::array<int, kSize> valid;
+    RTCRay16 rays;
+    for (int lane = 0; lane < kSize; ++lane) {
+        const auto i = static_cast<std::size_t>(lane);
+        valid[i] = lane < packet.count ? -1 : 0;
+        rays.org_x[lane] = packet.from_x[i];
+        rays.org_y[lane] = packet.from_y[i];
+        rays.org_z[lane] = packet.from_z[i];
+        rays.dir_x[lane] = packet.along_x[i];
+        rays.dir_y[lane] = packet.along_y[i];
+        rays.dir_z[lane] = packet.along_z[i];
+        rays.tnear[lane] = 0.0F;
+        rays.tfar[lane] = 1.0F;
+        rays.time[lane] = 0.0F;
+        rays.mask[lane] = ~0U;
+        rays.flags[lane] = 0;
+    }
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    rtcOccluded16(valid.data(), embree_->scene, &context, &rays);
+    for (int lane = 0; lane < packet.count; ++lane) {
+        packet.blocked[static_cast<std::size_t>(lane)] = rays.tfar[lane] < 0.0F;
+    }
+}
+
+}  // namespace renderer

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "renderer/core/types.h"
+
+namespace renderer {
+
+/// Where a ray first meets the scene.
+struct RayHit {
+    std::uint32_t triangle = 0;
+    double distance_m = 0.0;
+};
+
+/// Shadow segments that Embree answers together; lanes beyond `count` are ignored.
+///
+/// Single precision, relative to RayCaster::origin(); filled by RayCaster::add_segment.
+struct alignas(64) SegmentPacket {
+    static constexpr int kSize = 16;
+    std::array<float, kSize> from_x, from_y, from_z;
+    std::array<float, kSize> along_x, along_y, along_z;
+    std::array<bool, kSize> blocked;
+    int count = 0;
+
+    bool full() const { return count == kSize; }
+};
+
+/// Ray queries against a fixed set of triangles (Embree, robust mode).
+///
+/// Embree works in single precision. Vertices are therefore stored relative to the centre of the
+/// set, and segments between surface points are shortened by moving their ends off the surfaces by
+/// offset_m(), a bound of the rounding of coordinates of that size: small against 0.1 mm facets,
+/// and independent of how far the set lies from the world's origin.
+class RayCaster {
+   public:
+    /// corners   three world points per triangle [m]
+    /// extra     points that rays will start from, so that rounding is bounded for them too
+    RayCaster(std::span<const std::array<core::Vec3, 3>> corners,
+              std::span<const core::Vec3> extra);
+    ~RayCaster();
+    RayCaster(RayCaster&&) noexcept;
+    RayCaster& operator=(RayCaster&&) noexcept;
+
+    /// Distance by which segment ends leave their surfaces [m].
+    double offset_m() const { return offset_m_; }
+    const core::Vec3& origin() const { return origin_; }
+
+    /// Nearest triangle along a ray that starts on a surface with `normal` (unit, either side).
+    std::optional<RayHit> first_hit(const core::Vec3& from,
+                                    const core::Vec3& normal,
+                                    const core::Vec3& direction) const;
+
+    /// True when something lies between two surface points with the given normals (unit).
+    bool is_blocked(const core::Vec3& a,
+                    const core::Vec3& normal_a,
+                    const core::Vec3& b,
+                    const core::Vec3& normal_b) const;
+
+    /// Appends the segment a-b to a packet that is not full.
+    void add_segment(SegmentPacket& packet,
+                     const core::Vec3& a,
+                     const core::Vec3& normal_a,
+                     const core::Vec3& b,
+                     const core::Vec3& normal_b) const;
+
+    /// Answers all segments of a packet: sets blocked[0 .. count).
+    void trace(SegmentPacket& packet) const;
+
+   private:
+    struct Embree;
+    std::unique_ptr<Embree> embree_;
+    core::Vec3 origin_ = core::Vec3::Zero();
+    double offset_m_ = 0.0;
+    std::vector<std::array<core::Vec3, 3>> corners_;  ///< for distances in double precision
+};
+
+}  // namespace renderer

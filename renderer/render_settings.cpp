@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/render_settings.h"
+
+#include <fmt/core.h>
+
+namespace renderer {
+
+void validate(const RenderSettings& settings, const std::string& where) {
+    if (settings.max_bounces < 1) {
+        throw core::Error(where + ".max_bounces",
+                          fmt::format("found {}", settings.max_bounces),
+                          "must be at least 1");
+    }
+    if (settings.samples < 1) {
+        throw core::Error(where + ".samples",
+                          fmt::format("found {}", settings.samples),
+                          "must be at least 1");
+    }
+    if (settings.seconds && !(*settings.seconds > 0.0)) {
+        throw core::Error(where + ".seconds",
+                          fmt::format("found {}", *settings.seconds),
+                          "must be above 0");
+    }
+    if (!(settings.laser_spot_m2 > 0.0)) {
+        throw core::Error(where + ".laser_spot_m2",
+                          fmt::format("found {}", settings.laser_spot_m2),
+                          "must be above 0");
+    }
+}
+
+}  // namespace renderer

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/scene_file.h"
+
+#include <fmt/core.h>
+
+#include <filesystem>
+
+namespace renderer {
+namespace {
+
+using core::Error;
+using core::Vec3;
+
+void require(bool holds, const std::string& where, double found, const std::string& allowed) {
+    if (!holds) throw Error(where, fmt::format("found {}", found), "must be " + allowed);
+}
+
+void validate_wall(const RelayWall& wall, const std::string& where) {
+    require(wall.normal.norm() > 1e-9, where + ".normal length", wall.normal.norm(), "above 0");
+    require(wall.up.cross(wall.normal.normalized()).norm() > 1e-9 * (1.0 + wall.up.norm()),
+            where + ".up part across the normal",
+            0.0,
+            "above 0");
+    for (const double size : wall.size_m) require(size > 0.0, where + ".size_m", size, "above 0");
+    require(wall.albedo >= 0.0 && wall.albedo <= 1.0,
+            where + ".albedo",
+            wall.albedo,
+            "between 0 and 1");
+}
+
+void validate_grid(const std::array<int, 2>& shape, const std::string& where) {
+    for (const int count : shape) require(count >= 1, where, count, "at least 1 in both directions");
+}
+
+void validate_normals(const std::vector<Vec3>& points,
+                      const std::vector<Vec3>& normals,
+                      const std::string& where) {
+    if (points.size() != normals.size()) {
+        throw Error(where,
+                    fmt::format("found {} normals for {} points", normals.size(), points.size()),
+                    "must be one normal per point");
+    }
+    for (const Vec3& normal : normals) {
+        require(normal.norm() > 1e-9, where + " length", normal.norm(), "above 0");
+    }
+}
+
+void validate_scan(const ScanSettings& scan, const std::string& where) {
+    validate_grid(scan.sensing_points, where + ".sensing_points");
+    validate_grid(scan.illumination_points, where + ".illumination_points");
+    validate_normals(scan.sensing_points_m, scan.sensing_normals, where + ".sensing_normals");
+    validate_normals(scan.illumination_points_m,
+                     scan.illumination_normals,
+                     where + ".illumination_normals");
+    const bool single = scan.pattern == core::ScanPattern::Single;
+    if (single && scan.illumination_points_m.size() > 1) {
+        require(false,
+                where + ".illumination_points_m",
+                static_cast<double>(scan.illumination_points_m.size()),
+                "one point for a single scan");
+    }
+    if (scan.pattern == core::ScanPattern::Confocal && !scan.illumination_points_m.empty()) {
+        throw Error(where + ".illumination_points_m",
+                    "found points for a confocal scan",
+                    "must be left out: the sensing points are lit");
+    }
+    if (scan.opl_origin == core::OplOrigin::Device && (!scan.laser_m || !scan.detector_m)) {
+        throw Error(where + ".opl_origin",
+                    "found device without laser_m and detector_m",
+                    "must be relay_wall, or both positions given");
+    }
+}
+
+core::WallPoints wall_grid(const RelayWall& wall, const std::array<int, 2>& shape) {
+    const core::Transform world_from_wall = wall.world_from_wall();
+    core::WallPoints points;
+    points.grid = {static_cast<std::size_t>(shape[0]), static_cast<std::size_t>(shape[1])};
+    for (int ix = 0; ix < shape[0]; ++ix) {
+        for (int iy = 0; iy < shape[1]; ++iy) {
+            const double x = wall.size_m[0] * ((ix + 0.5) / shape[0] - 0.5);
+            const double y = wall.size_m[1] * ((iy + 0.5) / shape[1] - 0.5);
+            points.positions.push_back(world_from_wall * Vec3(x, y, 0.0));
+        }
+    }
+    points.normals.assign(points.positions.size(), wall.normal.normalized());
+    return points;
+}
+
+core::WallPoints explicit_points(const std::vector<Vec3>& positions,
+                                 const std::vector<Vec3>& normals) {
+    core::WallPoints points;
+    points.positions = positions;
+    for (const Vec3& normal : normals) points.normals.push_back(normal.normalized());
+    return points;
+}
+
+core::WallPoints illumination_points(const SceneDescription& scene,
+                                     const core::WallPoints& sensing) {
+    const ScanSettings& scan = scene.scan;
+    if (scan.pattern == core::ScanPattern::Confocal) return sensing;
+    if (!scan.illumination_points_m.empty()) {
+        return explicit_points(scan.illumination_points_m, scan.illumination_normals);
+    }
+    if (scan.pattern == core::ScanPattern::Exhaustive) {
+        return wall_grid(scene.relay_wall, scan.illumination_points);
+    }
+    core::WallPoints spot;
+    spot.positions = {scan.illumination_m.value_or(scene.relay_wall.center_m)};
+    spot.normals = {scene.relay_wall.normal.normalized()};
+    spot.grid = {1, 1};
+    return spot;
+}
+
+}  // namespace
+
+core::Transform RelayWall::world_from_wall() const {
+    const Vec3 z = normal.normalized();
+    const Vec3 x = up.cross(z).normalized();
+    core::Transform transform = core::Transform::Identity();
+    transform.linear().col(0) = x;
+    transform.linear().col(1) = z.cross(x);
+    transform.linear().col(2) = z;
+    transform.translation() = center_m;
+    return transform;
+}
+
+SceneDescription read_scene_description(const std::string& path,
+                                        const std::vector<std::string>& overrides) {
+    SceneDescription scene;
+    core::read_value(core::read_json_file(path), path + ": ", scene);
+    for (const std::string& text : overrides) core::apply_override(scene, text);
+    if (scene.geometry.empty()) {
+        throw Error(path + ": geometry", "found nothing", "must name a .glb or .gltf file");
+    }
+    scene.geometry = (std::filesystem::path(path).parent_path() / scene.geometry).string();
+    validate(scene, path + ": ");
+    return scene;
+}
+
+void validate(const SceneDescription& scene, const std::string& where) {
+    validate_wall(scene.relay_wall, where + "relay_wall");
+    validate_scan(scene.scan, where + "scan");
+    core::validate(scene.time_axis, where + "time_axis");
+    validate(scene.render, where + "render");
+    validate_grid(scene.ground_truth.depth_resolution, where + "ground_truth.depth_resolution");
+    if (scene.time_axis.num_bins > 1 && scene.render.gate != GateShape::Box) {
+        throw Error(where + "render.gate",
+                    fmt::format("found {} for {} bins",
+                                core::enum_name(scene.render.gate),
+                                scene.time_axis.num_bins),
+                    "must be box unless time_axis.num_bins is 1");
+    }
+}
+
+core::Scan make_scan(const SceneDescription& scene) {
+    core::Scan scan;
+    scan.pattern = scene.scan.pattern;
+    scan.sensing = scene.scan.sensing_points_m.empty()
+                       ? wall_grid(scene.relay_wall, scene.scan.sensing_points)
+                       : explicit_points(scene.scan.sensing_points_m, scene.scan.sensing_normals);
+    scan.illumination = illumination_points(scene, scan.sensing);
+    scan.opl_origin = scene.scan.opl_origin;
+    scan.laser_position = scene.scan.laser_m.value_or(Vec3::Zero());
+    scan.detector_position = scene.scan.detector_m.value_or(Vec3::Zero());
+    return scan;
+}
+
+bool rectangle_carries_scan(const RelayWall& wall, const core::Scan& scan) {
+    const core::Transform wall_from_world = wall.world_from_wall().inverse();
+    const double tolerance = 1e-6 * (wall.size_m[0] + wall.size_m[1]);
+    const auto lies_on_it = [&](const Vec3& point) {
+        const Vec3 p = wall_from_world * point;
+        return std::abs(p.z()) < tolerance && std::abs(p.x()) < 0.5 * wall.size_m[0] + tolerance &&
+               std::abs(p.y()) < 0.5 * wall.size_m[1] + tolerance;
+    };
+    return std::all_of(scan.sensing.positions.begin(), scan.sensing.positions.end(), lies_on_it) &&
+           std::all_of(scan.illumination.positions.begin(),
+                       scan.illumination.positions.end(),
+                       lies_on_it);
+}
+
+}  // namespace renderer

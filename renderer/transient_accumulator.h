@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "renderer/core/transient.h"
+#include "renderer/pass_histogram.h"
+
+namespace renderer {
+
+/// Sums and sums of squares of pass estimates, in double precision.
+///
+/// All passes have the same number of samples, so the mean over passes estimates H and their spread
+/// its variance, whatever stratification a pass uses inside.
+class TransientAccumulator {
+   public:
+    /// variance   whether to keep sums of squares
+    TransientAccumulator(std::size_t num_pairs, int num_bins, int num_channels, bool variance);
+
+    /// Adds the estimate of one pass for one pair; different pairs may be added concurrently.
+    void add_pass(std::size_t pair, PassHistogram& histogram);
+
+    /// Mean over passes of one channel.
+    core::Transient mean(int channel, int num_passes) const;
+    /// Mean over passes of the sum of all channels.
+    core::Transient mean_of_all(int num_passes) const;
+    /// Variance of mean_of_all(); needs two passes and sums of squares.
+    core::Transient variance(int num_passes) const;
+
+   private:
+    std::size_t num_pairs_;
+    std::size_t num_bins_;
+    std::size_t num_channels_;
+    std::vector<double> sums_;     ///< [pair][channel][bin]
+    std::vector<double> squares_;  ///< [pair][bin] of the sum over channels; empty: not kept
+};
+
+}  // namespace renderer

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/geometry.h"
+
+#include <string>
+#include <vector>
+
+namespace scenes {
+
+/// A scene of this folder. Adding one: a function here, a .cpp, a line in generated_scenes().
+struct GeneratedScene {
+    std::string name;  ///< of its folder
+    renderer::SceneGeometry geometry;
+    std::string description;  ///< text of scene.json; empty when that is written by hand
+};
+
+GeneratedScene make_letter();  ///< a flat F
+GeneratedScene make_bars();    ///< a smooth closed surface behind bars
+GeneratedScene make_corner();  ///< the corner of a room with two objects
+GeneratedScene make_glossy();  ///< two GGX surfaces and a retroreflective plate
+GeneratedScene make_curved();  ///< a torus in front of a curved relay wall
+
+std::vector<GeneratedScene> generated_scenes();
+
+/// Writes scene.glb, and scene.json where it is generated, to `folder`/name, which must exist.
+void write_scene(const GeneratedScene& scene, const std::string& folder);
+
+}  // namespace scenes

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/core/output_file.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "renderer/core/error.h"
+#include "tests/support/file_bytes.h"
+#include "tests/support/temporary_folder.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(OutputFile, AppearsOnlyWhenCommitted) {
+    const test_support::TemporaryFolder folder;
+    const std::string target = folder.file("result.txt");
+    {
+        core::OutputFile output(target);
+        std::ofstream(output.temporary()) << "half";
+        EXPECT_FALSE(fs::exists(target));
+        EXPECT_TRUE(fs::exists(output.temporary()));
+    }
+    EXPECT_TRUE(fs::is_empty(folder.path()));
+    core::write_text_file(target, "whole");
+    EXPECT_EQ(test_support::file_bytes(target), "whole");
+}
+
+TEST(OutputFile, FailedWorkLeavesTheOlderResult) {
+    const test_support::TemporaryFolder folder;
+    const std::string target = folder.file("result.txt");
+    core::write_text_file(target, "old");
+    {
+        core::OutputFile output(target);
+        std::ofstream(output.temporary()) << "new";
+    }
+    EXPECT_EQ(test_support::file_bytes(target), "old");
+}
+
+TEST(OutputFile, ImpossibleTargetsAreNamed) {
+    const test_support::TemporaryFolder folder;
+    EXPECT_THROW(core::OutputFile(folder.file("missing/result.txt")), core::Error);
+    EXPECT_THROW(core::OutputFile(folder.path().string()), core::Error);
+}
+
+}  // namespace

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/core/settings.h"
+
+#include <gtest/gtest.h>
+
+namespace {
+
+enum class Colour { Red, Green };
+
+struct Inner {
+    double width_m = 0.5;
+    std::array<int, 2> shape{1, 2};
+};
+
+struct Outer {
+    Inner inner;
+    int count = 3;
+    bool on = false;
+    Colour colour = Colour::Red;
+    std::optional<double> limit;
+    std::optional<Inner> extra;
+};
+
+template <class Visitor>
+void for_each_field(Inner& s, Visitor&& visit) {
+    visit("width_m", s.width_m, "width [m]");
+    visit("shape", s.shape, "shape");
+}
+
+template <class Visitor>
+void for_each_field(Outer& s, Visitor&& visit) {
+    visit("inner", s.inner, "nested");
+    visit("count", s.count, "count");
+    visit("on", s.on, "switch");
+    visit("colour", s.colour, "colour");
+    visit("limit", s.limit, "limit");
+    visit("extra", s.extra, "extra");
+}
+
+std::string message_of(const std::string& json) {
+    try {
+        Outer outer;
+        core::read_value(core::Json::parse(json), "file.json: ", outer);
+    } catch (const core::Error& error) {
+        return error.what();
+    }
+    return "no error";
+}
+
+}  // namespace
+
+template <>
+struct core::EnumNames<Colour> {
+    static constexpr std::array<std::pair<Colour, std::string_view>, 2> value{
+        {{Colour::Red, "red"}, {Colour::Green, "green"}}};
+};
+
+namespace {
+
+TEST(Settings, ReadingChangesOnlyWhatIsPresent) {
+    Outer outer;
+    core::read_value(core::Json::parse(R"({"inner": {"shape": [7, 8]}, "colour": "green"})"),
+                     "file.json: ",
+                     outer);
+    EXPECT_EQ(outer.inner.shape, (std::array<int, 2>{7, 8}));
+    EXPECT_EQ(outer.inner.width_m, 0.5);
+    EXPECT_EQ(outer.colour, Colour::Green);
+    EXPECT_EQ(outer.count, 3);
+}
+
+TEST(Settings, EchoReadsBackToTheSameEcho) {
+    Outer outer;
+    outer.limit = 2.5;
+    outer.extra = Inner{0.25, {4, 5}};
+    const core::Json echo = core::write_value(outer);
+    Outer copy;
+    core::read_value(echo, "echo: ", copy);
+    EXPECT_EQ(core::write_value(copy), echo);
+    EXPECT_TRUE(core::write_value(Outer{})["limit"].is_null());
+}
+
+TEST(Settings, UnknownKeyListsKnownKeys) {
+    EXPECT_EQ(message_of(R"({"inner": {"widht_m": 1}})"),
+              "file.json: inner.widht_m: found an unknown key; known keys are width_m, shape");
+}
+
+TEST(Settings, WrongTypesNameKeyValueAndWhatIsAllowed) {
+    EXPECT_EQ(message_of(R"({"count": "many"})"),
+              "file.json: count: found \"many\"; must be a whole number");
+    EXPECT_EQ(message_of(R"({"count": 1.5})"), "file.json: count: found 1.5; must be a whole number");
+    EXPECT_EQ(message_of(R"({"on": 1})"), "file.json: on: found 1; must be true or false");
+    EXPECT_EQ(message_of(R"({"colour": "blue"})"),
+              "file.json: colour: found \"blue\"; must be one of red|green");
+    EXPECT_EQ(message_of(R"({"inner": 5})"),
+              "file.json: inner: found 5; must be an object with named fields");
+    EXPECT_EQ(message_of(R"({"inner": {"shape": [1]}})"),
+              "file.json: inner.shape: found [1]; must be a list of 2 numbers");
+    EXPECT_EQ(message_of(R"({"inner": {"width_m": null}})"),
+              "file.json: inner.width_m: found null; must be a finite number");
+}
+
+TEST(Settings, OverridesReachNestedFields) {
+    Outer outer;
+    core::apply_override(outer, "inner.shape=[3,4]");
+    core::apply_override(outer, "colour=green");
+    core::apply_override(outer, "extra.width_m=2");
+    core::apply_override(outer, "limit=null");
+    EXPECT_EQ(outer.inner.shape, (std::array<int, 2>{3, 4}));
+    EXPECT_EQ(outer.colour, Colour::Green);
+    ASSERT_TRUE(outer.extra);
+    EXPECT_EQ(outer.extra->width_m, 2.0);
+}
+
+TEST(Settings, MalformedOverridesAreRejected) {
+    Outer outer;
+    for (const char* text : {"count", "=3", "inner..shape=[1,2]", "inner.width_m=nan", "none=1"}) {
+        EXPECT_THROW(core::apply_override(outer, text), core::Error) << text;
+    }
+}
+
+TEST(Settings, HelpListsEveryLeafWithItsDefault) {
+    const auto lines = core::settings_help(Outer{});
+    ASSERT_EQ(lines.size(), 7U);
+    EXPECT_EQ(lines[0].key, "inner.width_m");
+    EXPECT_EQ(lines[0].default_value, "0.5");
+    EXPECT_EQ(lines[4].meaning, "colour (red|green)");
+}
+
+}  // namespace

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+#include "nlos/reconstruct.h"
+
+#include "tests/nlos/confocal_scene.h"
+#include "tests/support/error_message.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace nlos {
+namespace {
+
+using core::Vec3;
+
+core::Capture example() {
+    core::Capture capture = nlos_test::confocal_capture(
+        nlos_test::wall_grid({16, 16}, {0.05, 0.05}), {0.0, 0.016, 128});
+    nlos_test::add_scatterer(capture, Vec3(0.075, -0.125, 0.5), 4.0);
+    return capture;
+}
+
+ReconstructSettings with(const std::vector<std::string>& overrides) {
+    ReconstructSettings settings;
+    for (const std::string& text : overrides) core::apply_override(settings, text);
+    return settings;
+}
+
+TEST(Reconstruct, EveryMethodFindsAPointInWorldCoordinates) {
+    core::Transform pose = core::Transform::Identity();
+    pose.translate(Vec3(1.0, -2.0, 0.5));
+    pose.rotate(Eigen::AngleAxisd(1.1, Vec3(0.3, 1.0, -0.2).normalized()));
+    core::Capture capture = nlos_test::confocal_capture(
+        nlos_test::wall_grid({16, 16}, {0.05, 0.05}, pose), {0.0, 0.016, 128});
+    const Vec3 scatterer = pose * Vec3(0.075, -0.125, 0.5);
+    nlos_test::add_scatterer(capture, scatterer, 4.0);
+    for (const char* method : {"method=lct", "method=bp"}) {
+        const Reconstruction result = reconstruct(capture, with({method}), {});
+        const std::vector<float> projection = max_projection(result.volume);
+        const auto column = static_cast<std::size_t>(
+            std::max_element(projection.begin(), projection.end()) - projection.begin());
+        const Vec3 found = result.depth.point_world(column / 16, column % 16);
+        EXPECT_LT((found - scatterer).norm(), 0.01) << method;
+    }
+}
+
+TEST(Reconstruct, AutoTakesTheLightConeTransformForConfocalGrids) {
+    const Reconstruction result = reconstruct(example(), {}, {});
+    EXPECT_EQ(result.method, "lct");
+    EXPECT_EQ(result.settings.method, Method::Lct);
+    EXPECT_EQ(result.settings.volume.voxels, (std::array{16, 16, 128}));
+    EXPECT_EQ(result.settings.merge_bins, 1);
+    EXPECT_EQ(result.settings.snr, 1.0);
+    EXPECT_GT(result.peak_bytes, 0U);
+}
+
+TEST(Reconstruct, AutoFallsBackToBackprojectionAndSaysWhy) {
+    core::Capture capture = example();
+    capture.scan.pattern = core::ScanPattern::Single;
+    capture.scan.illumination = nlos_test::wall_grid({1, 1}, {1.0, 1.0});
+    const Reconstruction result = reconstruct(capture, with({"volume.voxels=[4,4,8]"}), {});
+    EXPECT_EQ(result.method, "bp");
+    EXPECT_NE(result.reason.find("single-laser scan"), std::string::npos);
+}
+
+TEST(Reconstruct, LctRefusesNamingTheMethodThatWorks) {
+    core::Capture capture = example();
+    capture.scan.sensing.grid.reset();
+    EXPECT_ERROR_WITH(reconstruct(capture, with({"method=lct"}), {}), "method=bp works");
+    EXPECT_ERROR_WITH(reconstruct(example(), with({"method=lct", "volume.voxels=[8,8,8]"}), {}),
+                      "method=bp works");
+}
+
+TEST(Reconstruct, MergesBinsUpToAQuarterOfThePitch) {
+    core::Capture capture =
+        nlos_test::confocal_capture(nlos_test::wall_grid({8, 8}, {0.05, 0.04}), {0.0, 0.0048, 256});
+    EXPECT_EQ(reconstruct(capture, {}, {}).settings.merge_bins, 4);  // 9.6 mm of range, limit 10 mm
+}
+
+TEST(Reconstruct, TakesAmbientLightOffCountsAndStopsWhereTheSignalEnds) {
+    core::Capture capture = example();
+    capture.unit = core::TransientUnit::Counts;
+    for (float& value : capture.transient.values()) value = std::round(50.0F * value) + 2.0F;
+    const Reconstruction result = reconstruct(capture, with({"mask_threshold=0.9"}), {});
+    EXPECT_EQ(result.settings.ambient, Ambient::Subtract);
+    EXPECT_LT((*result.settings.volume.z_range_m)[1], 1.0);
+    ASSERT_EQ(result.points.positions.size(), 1U);
+    EXPECT_LT((result.points.positions[0] - Vec3(0.075, -0.125, 0.5)).norm(), 0.01);
+}
+
+TEST(Reconstruct, NamesSettingsOutOfRange) {
+    EXPECT_ERROR_WITH(reconstruct(example(), with({"snr=0"}), {}), "snr: 0");
+    EXPECT_ERROR_WITH(reconstruct(example(), with({"mask_threshold=1.5"}), {}), "mask_threshold");
+    EXPECT_ERROR_WITH(reconstruct(example(), with({"merge_bins=500"}), {}), "128 bins");
+    EXPECT_ERROR_WITH(reconstruct(example(), with({"volume.voxels=[0,4,4]"}), {}), "volume.voxels");
+    EXPECT_ERROR_WITH(reconstruct(example(), with({"volume.z_range_m=[0.5,0.4]"}), {}),
+                      "volume.z_range_m");
+    EXPECT_ERROR_WITH(with({"prior=tv"}), "none");
+    EXPECT_ERROR_WITH(with({"metod=bp"}), "method");
+}
+
+TEST(Reconstruct, RefusesMoreMemoryThanThereIs) {
+    try {
+        reconstruct(example(), with({"method=bp", "volume.voxels=[60000,60000,60000]"}), {});
+        FAIL() << "864 TB were found";
+    } catch (const core::Failure& failure) {
+        EXPECT_NE(std::string(failure.what()).find("GB"), std::string::npos);
+    }
+}
+
+TEST(Reconstruct, EndsWhenAskedToStop) {
+    for (const char* method : {"method=lct", "method=bp"}) {
+        int asked = 0;
+        core::Progress progress;
+        progress.stop_requested = [&] { return ++asked > 3; };
+        EXPECT_THROW(reconstruct(example(), with({method}), progress), core::Failure);
+    }
+}
+
+TEST(Reconstruct, ReportsProgressUpToTheEnd) {
+    double last = 0.0;
+    core::Progress progress;
+    progress.report = [&](double share, const std::string&) {
+        EXPECT_GE(share, last);
+        last = share;
+    };
+    reconstruct(example(), {}, progress);
+    EXPECT_DOUBLE_EQ(last, 1.0);
+}
+
+TEST(Reconstruct, ServesASingleWallPoint) {
+    core::Capture capture =
+        nlos_test::confocal_capture(nlos_test::wall_grid({1, 1}, {1.0, 1.0}), {0.0, 0.02, 40});
+    nlos_test::add_scatterer(capture, Vec3(0.0, 0.0, 0.2), 4.0);
+    const Reconstruction result = reconstruct(capture, with({"volume.voxels=[8,8,8]"}), {});
+    EXPECT_EQ(result.method, "bp");
+    for (const float value : result.volume.values) EXPECT_TRUE(std::isfinite(value));
+}
+
+}  // namespace
+}  // namespace nlos

@@ -1,0 +1,493 @@
+// SPDX-License-Identifier: MIT
+#include "nlos/formats/capture_file.h"
+#include "nlos/formats/hdf5_writer.h"
+#include "nlos/formats/ytal_layout.h"
+#include "tests/support/error_message.h"
+#include "tests/support/example_capture.h"
+#include "tests/support/file_bytes.h"
+#include "tests/support/temporary_folder.h"
+
+#include <gtest/gtest.h>
+#include <hdf5.h>
+
+#include <algorithm>
+#include <limits>
+#include <map>
+
+namespace nlos {
+namespace {
+
+using core::Capture;
+using core::ScanPattern;
+using test_support::example_capture;
+using test_support::TemporaryFolder;
+
+void expect_same_points(const core::WallPoints& a, const core::WallPoints& b) {
+    ASSERT_EQ(a.size(), b.size());
+    EXPECT_EQ(a.grid, b.grid);
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        EXPECT_LT((a.positions[i] - b.positions[i]).norm(), 1e-6);
+        EXPECT_LT((a.normals[i] - b.normals[i]).norm(), 1e-7);
+    }
+}
+
+void expect_same(const Capture& a, const Capture& b) {
+    EXPECT_EQ(a.scan.pattern, b.scan.pattern);
+    EXPECT_EQ(a.scan.opl_origin, b.scan.opl_origin);
+    EXPECT_LT((a.scan.laser_position - b.scan.laser_position).norm(), 1e-7);
+    EXPECT_LT((a.scan.detector_position - b.scan.detector_position).norm(), 1e-7);
+    expect_same_points(a.scan.sensing, b.scan.sensing);
+    expect_same_points(a.scan.illumination, b.scan.illumination);
+    EXPECT_EQ(a.time_axis.opl_start_m, b.time_axis.opl_start_m);
+    EXPECT_EQ(a.time_axis.bin_width_m, b.time_axis.bin_width_m);
+    ASSERT_EQ(a.transient.num_pairs(), b.transient.num_pairs());
+    EXPECT_TRUE(std::ranges::equal(a.transient.values(), b.transient.values()));
+    EXPECT_EQ(a.unit, b.unit);
+    EXPECT_EQ(a.scene_info, b.scene_info);
+    ASSERT_EQ(a.variance.has_value(), b.variance.has_value());
+    if (a.variance) {
+        EXPECT_TRUE(std::ranges::equal(a.variance->values(), b.variance->values()));
+    }
+}
+
+/// A written capture whose datasets a test replaces through the HDF5 library itself.
+class CaptureFile {
+ public:
+    explicit CaptureFile(const Capture& capture) : path_(folder_.file("capture.h5")) {
+        write_capture(path_, capture);
+    }
+
+    const std::string& path() const { return path_; }
+    Capture read() const { return read_capture(path_); }
+
+    void remove(const char* name) const {
+        edit([&](hid_t file) { H5Ldelete(file, name, H5P_DEFAULT); });
+    }
+
+    template <class T>
+    void replace(const char* name,
+                 hid_t type,
+                 const Shape& shape,
+                 const std::vector<T>& values) const {
+        const std::vector<hsize_t> extents(shape.begin(), shape.end());
+        edit([&](hid_t file) {
+            H5Ldelete(file, name, H5P_DEFAULT);
+            const hid_t space =
+                extents.empty()
+                    ? H5Screate(H5S_SCALAR)
+                    : H5Screate_simple(static_cast<int>(extents.size()), extents.data(), nullptr);
+            const hid_t set =
+                H5Dcreate2(file, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+            H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
+            H5Dclose(set);
+            H5Sclose(space);
+        });
+    }
+
+    /// y-tal's "None".
+    void replace_by_none(const char* name) const {
+        edit([&](hid_t file) {
+            H5Ldelete(file, name, H5P_DEFAULT);
+            const hid_t space = H5Screate(H5S_NULL);
+            H5Dclose(H5Dcreate2(
+                file, name, H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+            H5Sclose(space);
+        });
+    }
+
+    template <class Action>
+    void edit(Action&& action) const {
+        const hid_t file = H5Fopen(path_.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+        action(file);
+        H5Fclose(file);
+    }
+
+ private:
+    TemporaryFolder folder_;
+    std::string path_;
+};
+
+std::vector<float> ramp(std::size_t count) {
+    std::vector<float> values;
+    for (std::size_t i = 0; i < count; ++i) values.push_back(static_cast<float>(i));
+    return values;
+}
+
+TEST(YtalCapture, EveryScanPatternSurvivesTheRoundTrip) {
+    for (const auto pattern :
+         {ScanPattern::Confocal, ScanPattern::Single, ScanPattern::Exhaustive}) {
+        const Capture capture = example_capture(pattern);
+        expect_same(CaptureFile(capture).read(), capture);
+    }
+}
+
+TEST(YtalCapture, PointListsSurviveTheRoundTrip) {
+    for (const auto pattern :
+         {ScanPattern::Confocal, ScanPattern::Single, ScanPattern::Exhaustive}) {
+        Capture capture = example_capture(pattern);
+        capture.scan.sensing = test_support::as_list(capture.scan.sensing);
+        capture.scan.illumination = test_support::as_list(capture.scan.illumination);
+        expect_same(CaptureFile(capture).read(), capture);
+    }
+}
+
+TEST(YtalCapture, GridAndListTogetherAreWrittenAsLists) {
+    Capture capture = example_capture(ScanPattern::Exhaustive);
+    capture.scan.sensing = test_support::as_list(capture.scan.sensing);
+    const Capture read = CaptureFile(capture).read();
+    capture.scan.illumination = test_support::as_list(capture.scan.illumination);
+    expect_same(read, capture);
+}
+
+TEST(YtalCapture, UnitVarianceAndDevicesSurviveTheRoundTrip) {
+    Capture capture = example_capture(ScanPattern::Confocal);
+    capture.unit = core::TransientUnit::Counts;
+    capture.variance = capture.transient;
+    capture.scan.opl_origin = core::OplOrigin::Device;
+    capture.scan.laser_position = {-0.5, 0.0, 0.25};
+    capture.scan.detector_position = {0.5, 0.125, 0.25};
+    expect_same(CaptureFile(capture).read(), capture);
+}
+
+TEST(YtalCapture, ArraysOfManyBlocksKeepTheirOrder) {
+    Capture capture = example_capture(ScanPattern::Confocal);
+    capture.scan.sensing = test_support::example_grid(40, 41);
+    capture.scan.illumination = capture.scan.sensing;
+    capture.time_axis.num_bins = 3001;  // more values than are read or written at once
+    capture.transient = core::Transient(capture.scan.num_pairs(), 3001);
+    float next = 0.0F;
+    for (float& value : capture.transient.values()) value = next += 1.0F;
+    expect_same(CaptureFile(capture).read(), capture);
+}
+
+// The layout check: everything that h5py would show of a file written by y-tal 0.20.
+
+struct Field {
+    H5T_class_t type_class;
+    std::size_t bytes;
+    H5S_class_t space;
+    Shape shape;
+    std::map<std::string, int> members;
+
+    bool operator==(const Field&) const = default;
+};
+
+Field field_of(hid_t file, const char* name) {
+    const Hdf5Handle set(H5Dopen2(file, name, H5P_DEFAULT), H5Dclose);
+    const Hdf5Handle type(H5Dget_type(set.id()), H5Tclose);
+    const Hdf5Handle space(H5Dget_space(set.id()), H5Sclose);
+    Field field{H5Tget_class(type.id()),
+                H5Tget_size(type.id()),
+                H5Sget_simple_extent_type(space.id()),
+                {},
+                {}};
+    std::vector<hsize_t> extents(8);
+    const int rank = H5Sget_simple_extent_dims(space.id(), extents.data(), nullptr);
+    field.shape.assign(extents.begin(), extents.begin() + rank);
+    const int members = field.type_class == H5T_ENUM ? H5Tget_nmembers(type.id()) : 0;
+    for (unsigned i = 0; i < static_cast<unsigned>(members); ++i) {
+        char* member = H5Tget_member_name(type.id(), i);
+        std::int64_t value = 0;
+        H5Tget_member_value(type.id(), i, &value);
+        field.members[member] =
+            field.bytes == 1 ? static_cast<std::int8_t>(value) : static_cast<std::int32_t>(value);
+        H5free_memory(member);
+    }
+    return field;
+}
+
+std::vector<std::string> names_in_root(hid_t file) {
+    std::vector<std::string> names;
+    H5Literate(
+        file,
+        H5_INDEX_NAME,
+        H5_ITER_INC,
+        nullptr,
+        [](hid_t, const char* name, const H5L_info_t*, void* list) -> herr_t {
+            static_cast<std::vector<std::string>*>(list)->emplace_back(name);
+            return 0;
+        },
+        &names);
+    return names;
+}
+
+TEST(YtalCapture, EveryFieldIsLaidOutAsYtalWritesIt) {
+    const std::map<std::string, int> h_formats{{"UNKNOWN", 0},
+                                               {"T_Sx_Sy", 1},
+                                               {"T_Lx_Ly_Sx_Sy", 2},
+                                               {"T_Si", 3},
+                                               {"T_Li_Si", 4},
+                                               {"F_Sx_Sy", 10},
+                                               {"F_Lx_Ly_Sx_Sy", 11},
+                                               {"F_Si", 12},
+                                               {"F_Li_Si", 13}};
+    const std::map<std::string, int> grid_formats{{"UNKNOWN", 0}, {"N_3", 1}, {"X_Y_3", 2}};
+    const std::map<std::string, int> volume_formats{
+        {"UNKNOWN", 0}, {"N_3", 1}, {"X_Y_Z_3", 2}, {"X_Y_3", 3}};
+    const Field grid{H5T_FLOAT, 4, H5S_SIMPLE, {3, 2, 3}, {}};
+    const Field position{H5T_FLOAT, 4, H5S_SIMPLE, {3}, {}};
+    const Field number{H5T_FLOAT, 8, H5S_SCALAR, {}, {}};
+    const std::map<std::string, Field> expected{
+        {"H", {H5T_FLOAT, 4, H5S_SIMPLE, {5, 3, 2}, {}}},
+        {"H_format", {H5T_ENUM, 4, H5S_SIMPLE, {1}, h_formats}},
+        {"delta_t", number},
+        {"laser_grid_format", {H5T_ENUM, 4, H5S_SIMPLE, {1}, grid_formats}},
+        {"laser_grid_normals", grid},
+        {"laser_grid_xyz", grid},
+        {"laser_xyz", position},
+        {"scene_info", {H5T_STRING, sizeof(char*), H5S_SCALAR, {}, {}}},
+        {"sensor_grid_format", {H5T_ENUM, 4, H5S_SIMPLE, {1}, grid_formats}},
+        {"sensor_grid_normals", grid},
+        {"sensor_grid_xyz", grid},
+        {"sensor_xyz", position},
+        {"t_accounts_first_and_last_bounces",
+         {H5T_ENUM, 1, H5S_SCALAR, {}, {{"FALSE", 0}, {"TRUE", 1}}}},
+        {"t_start", number},
+        {"volume_format", {H5T_ENUM, 4, H5S_SIMPLE, {1}, volume_formats}}};
+
+    const CaptureFile written(example_capture(ScanPattern::Confocal));
+    written.edit([&](hid_t file) {
+        std::vector<std::string> names;
+        for (const auto& [name, field] : expected) {
+            names.push_back(name);
+            EXPECT_EQ(field_of(file, name.c_str()), field) << name;
+        }
+        EXPECT_EQ(names_in_root(file), names);  // y-tal refuses any other name
+    });
+}
+
+TEST(YtalCapture, TimeIsSlowestAndXComesBeforeY) {
+    const Capture capture = example_capture(ScanPattern::Confocal);
+    CaptureFile(capture).edit([&](hid_t file) {
+        std::vector<float> values(30);
+        const Hdf5Handle set(H5Dopen2(file, "H", H5P_DEFAULT), H5Dclose);
+        H5Dread(set.id(), H5T_NATIVE_FLOAT, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
+        // (t, x, y) = (4, 2, 1) of (5, 3, 2)
+        EXPECT_EQ(values[4 * 6 + 2 * 2 + 1], capture.transient.histogram(2 * 2 + 1)[4]);
+    });
+}
+
+// What others write differently.
+
+TEST(YtalCapture, PlainNumbersStandForEnumerationsAndTruthValues) {
+    const Capture capture = example_capture(ScanPattern::Exhaustive);
+    const CaptureFile file(capture);
+    file.replace<int>("H_format", H5T_NATIVE_INT, {}, {2});
+    file.replace<std::int64_t>("sensor_grid_format", H5T_NATIVE_INT64, {1}, {2});
+    file.replace<std::int8_t>("t_accounts_first_and_last_bounces", H5T_NATIVE_INT8, {1}, {0});
+    file.replace<double>("delta_t", H5T_NATIVE_DOUBLE, {1}, {0.008});
+    file.replace<float>("t_start", H5T_NATIVE_FLOAT, {}, {0.25F});
+    expect_same(file.read(), capture);
+}
+
+TEST(YtalCapture, MissingOptionalDatasetsAreFilledInAndNoted) {
+    const Capture capture = example_capture(ScanPattern::Single);
+    const CaptureFile file(capture);
+    for (const char* name : {"H_format", "sensor_grid_normals", "laser_grid_normals"}) {
+        file.remove(name);
+    }
+    for (const char* name : {"sensor_xyz", "laser_xyz", "sensor_grid_format", "volume_format"}) {
+        file.replace_by_none(name);
+    }
+    const Capture read = file.read();
+    expect_same(read, capture);
+    ASSERT_EQ(read.notes.size(), 2U);
+    EXPECT_NE(read.notes[0].find("sensor_grid_normals is missing"), std::string::npos);
+    EXPECT_NE(read.notes[1].find("laser_grid_normals is missing"), std::string::npos);
+}
+
+TEST(YtalCapture, LaserNormalsOfTheWrongSizeGiveWayToTheWallsInSingleScans) {
+    const Capture capture = example_capture(ScanPattern::Single);
+    const CaptureFile file(capture);
+    file.replace("laser_grid_normals", H5T_NATIVE_FLOAT, {3, 2, 3}, ramp(18));
+    const Capture read = file.read();
+    expect_same(read, capture);
+    ASSERT_EQ(read.notes.size(), 1U);
+    EXPECT_NE(read.notes[0].find("has shape (3, 2, 3)"), std::string::npos);
+}
+
+TEST(YtalCapture, DoublePrecisionAndCountsAreConverted) {
+    const Capture capture = example_capture(ScanPattern::Confocal);
+    const CaptureFile file(capture);
+    file.replace<double>("H", H5T_NATIVE_DOUBLE, {5, 3, 2}, std::vector<double>(30, 0.75));
+    EXPECT_EQ(file.read().transient.values()[17], 0.75F);
+    file.replace<std::uint16_t>(
+        "H", H5T_NATIVE_UINT16, {5, 3, 2}, std::vector<std::uint16_t>(30, 9));
+    EXPECT_EQ(file.read().transient.values()[17], 9.0F);
+}
+
+TEST(YtalCapture, CompressedHistogramsAreRead) {
+    const Capture capture = example_capture(ScanPattern::Confocal);
+    const CaptureFile file(capture);
+    std::vector<float> values(30);
+    for (std::size_t pair = 0; pair < 6; ++pair) {
+        for (std::size_t bin = 0; bin < 5; ++bin) {
+            values[bin * 6 + pair] = capture.transient.histogram(pair)[bin];
+        }
+    }
+    file.edit([&](hid_t id) {
+        const hsize_t extents[]{5, 3, 2};
+        const hsize_t chunk[]{2, 3, 1};
+        H5Ldelete(id, "H", H5P_DEFAULT);
+        const Hdf5Handle space(H5Screate_simple(3, extents, nullptr), H5Sclose);
+        const Hdf5Handle plan(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+        H5Pset_chunk(plan.id(), 3, chunk);
+        H5Pset_deflate(plan.id(), 4);
+        const Hdf5Handle set(
+            H5Dcreate2(id, "H", H5T_NATIVE_FLOAT, space.id(), H5P_DEFAULT, plan.id(), H5P_DEFAULT),
+            H5Dclose);
+        H5Dwrite(set.id(), H5T_NATIVE_FLOAT, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
+    });
+    expect_same(file.read(), capture);
+}
+
+TEST(YtalCapture, SettingsShiftTheAxisAndZeroBins) {
+    const CaptureFile file(example_capture(ScanPattern::Confocal));
+    CaptureReadSettings settings;
+    settings.zero_bins = 2;
+    settings.opl_shift_m = -0.25;
+    settings.bin_width_m = 0.5;
+    const Capture capture = read_capture(file.path(), settings);
+    EXPECT_EQ(capture.time_axis.opl_start_m, 0.0);
+    EXPECT_EQ(capture.time_axis.bin_width_m, 0.5);
+    EXPECT_EQ(capture.transient.histogram(3)[1], 0.0F);
+    EXPECT_NE(capture.transient.histogram(3)[2], 0.0F);
+    settings.zero_bins = -1;
+    EXPECT_ERROR_WITH(read_capture(file.path(), settings), "capture.zero_bins: found -1; must");
+}
+
+TEST(YtalCapture, SceneInfoInYamlIsKeptWordForWord) {
+    const std::string yaml = "original_format: synthetic\npoints:\n- - -0.25\n  - 0.1\n";
+    EXPECT_EQ(scene_info_text(parse_scene_info(yaml)), yaml);
+}
+
+TEST(YtalCapture, NumbersInSceneInfoAreNumbersInYamlToo) {
+    const core::Json info{{"small", 1e-7}, {"half", 0.5}, {"text", "1e-7 \"e\""}};
+    const std::string text = scene_info_text(info);
+    EXPECT_NE(text.find("1.0e-07"), std::string::npos) << text;
+    EXPECT_EQ(core::Json::parse(text), info);
+}
+
+// What cannot be read.
+
+TEST(YtalCapture, NamesTheDatasetThatIsMissingOrMisshapen) {
+    const auto expect_message = [](auto&& damage, const std::string& part) {
+        const CaptureFile file(example_capture(ScanPattern::Confocal));
+        damage(file);
+        EXPECT_ERROR_WITH(file.read(), file.path());
+        EXPECT_ERROR_WITH(file.read(), part);
+    };
+    using File = const CaptureFile&;
+    expect_message([](File f) { f.remove("delta_t"); }, "delta_t: is missing");
+    expect_message([](File f) { f.replace_by_none("H"); }, "H: is missing or empty");
+    expect_message([](File f) { f.remove("sensor_grid_xyz"); }, "sensor_grid_xyz: is missing");
+    expect_message(
+        [](File f) {
+            f.replace("H", H5T_NATIVE_FLOAT, {5, 2, 3}, ramp(30));
+        },
+        "H: has shape (5, 2, 3); must have shape (5, 3, 2)");
+    expect_message([](File f) { f.replace("H", H5T_NATIVE_FLOAT, {}, ramp(1)); },
+                   "H: has shape ()");
+    expect_message([](File f) { f.replace("sensor_grid_xyz", H5T_NATIVE_FLOAT, {6}, ramp(6)); },
+                   "must have shape (X, Y, 3) or (N, 3)");
+    expect_message(
+        [](File f) {
+            f.replace("laser_grid_xyz", H5T_NATIVE_FLOAT, {2, 3}, ramp(6));
+        },
+        "has 2 points that are not the 6 sensor points");
+    expect_message([](File f) { f.replace<int>("H_format", H5T_NATIVE_INT, {}, {10}); },
+                   "says that H holds frequencies");
+    expect_message([](File f) { f.replace<int>("H_format", H5T_NATIVE_INT, {}, {7}); },
+                   "H_format: found 7");
+    expect_message([](File f) { f.replace("H_format", H5T_NATIVE_FLOAT, {}, ramp(1)); },
+                   "holds no whole number");
+    expect_message(
+        [](File f) {
+            f.replace("sensor_grid_normals", H5T_NATIVE_FLOAT, {2, 3}, ramp(6));
+        },
+        "sensor_grid_normals: has shape (2, 3)");
+    expect_message(
+        [](File f) {
+            f.replace("sensor_grid_normals", H5T_NATIVE_FLOAT, {3, 2, 3}, std::vector<float>(18));
+        },
+        "has length 0");
+    expect_message([](File f) { f.replace<double>("delta_t", H5T_NATIVE_DOUBLE, {}, {0.0}); },
+                   "bin_width_m: found 0");
+    expect_message(
+        [](File f) {
+            f.replace("H", H5T_NATIVE_FLOAT, {0, 3, 2}, ramp(1));
+        },
+        "num_bins: found 0");
+}
+
+TEST(YtalCapture, RefusesNumbersThatAreNotFinite) {
+    for (const float bad :
+         {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+        for (const char* name : {"H", "sensor_grid_xyz", "sensor_grid_normals", "laser_xyz"}) {
+            const CaptureFile file(example_capture(ScanPattern::Confocal));
+            const std::map<std::string, Shape> shapes{{"H", {5, 3, 2}}, {"laser_xyz", {3}}};
+            const auto found = shapes.find(name);
+            const Shape shape = found == shapes.end() ? Shape{3, 2, 3} : found->second;
+            std::vector<float> values = ramp(30);
+            values[2] = bad;
+            file.replace(name, H5T_NATIVE_FLOAT, shape, values);
+            EXPECT_ERROR_WITH(file.read(), "finite") << name;
+        }
+    }
+}
+
+TEST(YtalCapture, RefusesShapesThatTheFileCannotHold) {
+    const CaptureFile file(example_capture(ScanPattern::Confocal));
+    file.edit([](hid_t id) {  // promised but never written
+        const hsize_t extents[]{std::size_t{1} << 40, 3, 2};
+        H5Ldelete(id, "H", H5P_DEFAULT);
+        const Hdf5Handle space(H5Screate_simple(3, extents, nullptr), H5Sclose);
+        H5Dclose(H5Dcreate2(
+            id, "H", H5T_NATIVE_FLOAT, space.id(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+    });
+    EXPECT_ERROR_WITH(file.read(), "H");
+}
+
+TEST(YtalCapture, EveryTruncationIsReported) {
+    const CaptureFile file(example_capture(ScanPattern::Confocal));
+    const std::string bytes = test_support::file_bytes(file.path());
+    for (std::size_t length = 0; length < bytes.size(); length += 1 + bytes.size() / 97) {
+        test_support::write_file_bytes(file.path(), bytes.substr(0, length));
+        EXPECT_ERROR_WITH(file.read(), file.path()) << length;
+    }
+}
+
+TEST(YtalCapture, MissingFilesAndForeignFilesAreReported) {
+    const TemporaryFolder folder;
+    EXPECT_ERROR_WITH(read_capture(folder.file("none.h5")), "none.h5: does not exist");
+    test_support::write_file_bytes(folder.file("text.h5"), "just a text");
+    EXPECT_ERROR_WITH(read_capture(folder.file("text.h5")), "is no capture in a known format");
+    EXPECT_ERROR_WITH(read_capture(folder.path().string()), "is no capture in a known format");
+    Hdf5Writer other(folder.file("other.h5"));
+    other.write_real("x", 1.0);
+    other.finish();
+    EXPECT_ERROR_WITH(read_capture(folder.file("other.h5")), "is no capture in a known format");
+    EXPECT_EQ(capture_format(folder.file("other.h5")), std::nullopt);
+}
+
+TEST(YtalCapture, AFailedWriteLeavesTheOlderFile) {
+    const CaptureFile file(example_capture(ScanPattern::Confocal));
+    const std::string before = test_support::file_bytes(file.path());
+    Capture broken = example_capture(ScanPattern::Confocal);
+    broken.transient.values()[3] = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_ERROR_WITH(write_capture(file.path(), broken), "must be finite");
+    EXPECT_EQ(test_support::file_bytes(file.path()), before);
+    EXPECT_ERROR_WITH(write_capture("/no/such/folder/a.h5", broken), "a.h5");
+}
+
+TEST(YtalCapture, DescriptionStatesWallBinsAndUnit) {
+    std::string text;
+    for (const auto& line : describe_capture(example_capture(ScanPattern::Confocal))) text += line;
+    EXPECT_NE(text.find("confocal, 3 x 2 sensing points over 0.2 x 0.1 x 0 m"), std::string::npos);
+    EXPECT_NE(text.find("5 bins of 0.008 m"), std::string::npos);
+    EXPECT_NE(text.find("radiance"), std::string::npos);
+    EXPECT_NE(text.find("depth range: 0.125 to 0.145 m"), std::string::npos) << text;
+}
+
+}  // namespace
+}  // namespace nlos

@@ -1,0 +1,12 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds with warnings as errors, and runs every test.
+#   bash tests/run.sh [PRESET] [CTEST ARGUMENTS ...]      PRESET: dev (default) or sanitize
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+preset=${1:-dev}
+[ $# -gt 0 ] && shift
+bash apps/setup.sh
+cmake --preset "$preset" >/dev/null
+cmake --build --preset "$preset"
+ctest --preset "$preset" "$@"

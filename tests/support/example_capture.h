@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/core/capture.h"
+
+namespace test_support {
+
+/// Points (X, Y) 0.1 m apart on the plane z = 0, x before y; corner at (x0, 0.2).
+inline core::WallPoints example_grid(std::size_t nx, std::size_t ny, double x0 = -0.1) {
+    core::WallPoints points;
+    points.grid = {nx, ny};
+    for (std::size_t i = 0; i < nx; ++i) {
+        for (std::size_t j = 0; j < ny; ++j) {
+            points.positions.emplace_back(
+                x0 + 0.1 * static_cast<double>(i), 0.2 + 0.1 * static_cast<double>(j), 0.0);
+        }
+    }
+    points.normals.assign(points.size(), core::Vec3::UnitZ());
+    return points;
+}
+
+inline core::WallPoints as_list(core::WallPoints points) {
+    points.grid.reset();
+    return points;
+}
+
+/// A small capture, every histogram value different: 3 x 2 sensing points and 5 bins.
+inline core::Capture example_capture(core::ScanPattern pattern) {
+    core::Capture capture;
+    capture.scan.pattern = pattern;
+    capture.scan.sensing = example_grid(3, 2);
+    if (pattern == core::ScanPattern::Confocal) capture.scan.illumination = capture.scan.sensing;
+    if (pattern == core::ScanPattern::Single) capture.scan.illumination = example_grid(1, 1, 0.3);
+    if (pattern == core::ScanPattern::Exhaustive) {
+        capture.scan.illumination = example_grid(2, 2, 0.3);
+    }
+    capture.time_axis = {0.25, 0.008, 5};
+    capture.transient = core::Transient(capture.scan.num_pairs(), capture.time_axis.num_bins);
+    float next = 0.5F;
+    for (float& value : capture.transient.values()) value = next += 1.0F;
+    capture.scene_info["seed"] = 7;
+    return capture;
+}
+
+}  // namespace test_support

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: MIT
+#include "tests/support/test_scenes.h"
+
+#include <array>
+#include <cmath>
+
+namespace test_support {
+namespace {
+
+using core::Vec3;
+
+bool crosses(const Vec3& from, const Vec3& to, const Parallelogram& shape) {
+    const Vec3 normal = shape.u.cross(shape.v);
+    const Vec3 along = to - from;
+    const double slope = normal.dot(along);
+    if (slope == 0.0) return false;
+    const double t = normal.dot(shape.corner - from) / slope;
+    if (t <= 0.0 || t >= 1.0) return false;
+    const Vec3 p = from + t * along - shape.corner;
+    const double g11 = shape.u.dot(shape.u);
+    const double g12 = shape.u.dot(shape.v);
+    const double g22 = shape.v.dot(shape.v);
+    const double determinant = g11 * g22 - g12 * g12;
+    const double a = (g22 * p.dot(shape.u) - g12 * p.dot(shape.v)) / determinant;
+    const double b = (g11 * p.dot(shape.v) - g12 * p.dot(shape.u)) / determinant;
+    return a >= 0.0 && a <= 1.0 && b >= 0.0 && b <= 1.0;
+}
+
+void subdivide(const std::array<Vec3, 3>& triangle, int level, renderer::Object& object) {
+    if (level == 0) {
+        const auto base = static_cast<std::uint32_t>(object.mesh.vertices.size());
+        for (const Vec3& corner : triangle) object.mesh.vertices.push_back(corner);
+        object.mesh.triangles.push_back({base, base + 1, base + 2});
+        return;
+    }
+    const auto& [a, b, c] = triangle;
+    const Vec3 ab = (a + b).normalized();
+    const Vec3 bc = (b + c).normalized();
+    const Vec3 ca = (c + a).normalized();
+    subdivide({a, ab, ca}, level - 1, object);
+    subdivide({ab, b, bc}, level - 1, object);
+    subdivide({ca, bc, c}, level - 1, object);
+    subdivide({ab, bc, ca}, level - 1, object);
+}
+
+}  // namespace
+
+renderer::Object parallelogram_object(const Parallelogram& shape) {
+    renderer::Object object;
+    object.mesh.vertices = {shape.corner,
+                            shape.corner + shape.u,
+                            shape.corner + shape.u + shape.v,
+                            shape.corner + shape.v};
+    object.mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    object.material.albedo = shape.albedo;
+    return object;
+}
+
+renderer::Object sphere_object(const Vec3& center, double radius, int subdivisions, double albedo) {
+    renderer::Object object;
+    object.material.albedo = albedo;
+    for (const double x : {-1.0, 1.0}) {
+        for (const double y : {-1.0, 1.0}) {
+            for (const double z : {-1.0, 1.0}) {
+                subdivide({Vec3(x, 0, 0), Vec3(0, y, 0), Vec3(0, 0, z)}, subdivisions, object);
+            }
+        }
+    }
+    for (Vec3& vertex : object.mesh.vertices) vertex = center + radius * vertex;
+    return object;
+}
+
+core::WallPoints wall_points(const std::vector<Vec3>& positions) {
+    core::WallPoints points;
+    points.positions = positions;
+    points.normals.assign(positions.size(), Vec3::UnitZ());
+    return points;
+}
+
+core::Scan confocal_scan(const std::vector<Vec3>& positions) {
+    core::Scan scan;
+    scan.pattern = core::ScanPattern::Confocal;
+    scan.sensing = wall_points(positions);
+    scan.illumination = scan.sensing;
+    return scan;
+}
+
+core::Scan single_scan(const Vec3& illumination, const std::vector<Vec3>& sensing) {
+    core::Scan scan;
+    scan.pattern = core::ScanPattern::Single;
+    scan.sensing = wall_points(sensing);
+    scan.illumination = wall_points({illumination});
+    return scan;
+}
+
+core::Scan exhaustive_scan(const std::vector<Vec3>& illumination,
+                           const std::vector<Vec3>& sensing) {
+    core::Scan scan;
+    scan.pattern = core::ScanPattern::Exhaustive;
+    scan.sensing = wall_points(sensing);
+    scan.illumination = wall_points(illumination);
+    return scan;
+}
+
+std::vector<float> third_bounce_by_quadrature(const Parallelogram& hidden,
+                                              const Parallelogram& occluder,
+                                              const core::Scan& scan,
+                                              const core::TimeAxis& axis,
+                                              double wall_albedo,
+                                              int steps) {
+    const auto num_bins = static_cast<std::size_t>(axis.num_bins);
+    std::vector<double> sums(scan.num_pairs() * num_bins, 0.0);
+    const Vec3 area_vector = hidden.u.cross(hidden.v);
+    const Vec3 normal = area_vector.normalized();
+    const double cell_area = area_vector.norm() / (double(steps) * steps);
+    const double front = std::pow(wall_albedo / core::kPi, 2) * hidden.albedo / core::kPi * cell_area;
+    for (int i = 0; i < steps; ++i) {
+        for (int j = 0; j < steps; ++j) {
+            const Vec3 p = hidden.corner + (i + 0.5) / steps * hidden.u + (j + 0.5) / steps * hidden.v;
+            for (std::size_t pair = 0; pair < scan.num_pairs(); ++pair) {
+                const Vec3& l = scan.illumination.positions[scan.illumination_index(pair)];
+                const Vec3& s = scan.sensing.positions[scan.sensing_index(pair)];
+                const Vec3 to_l = l - p;
+                const Vec3 to_s = s - p;
+                const double rl = to_l.norm();
+                const double rs = to_s.norm();
+                const double cos_l = -to_l.z() / rl;
+                const double cos_s = -to_s.z() / rs;
+                const double cos_pl = normal.dot(to_l) / rl;
+                const double cos_ps = normal.dot(to_s) / rs;
+                if (cos_l <= 0.0 || cos_s <= 0.0 || cos_pl * cos_ps <= 0.0) continue;
+                const int bin = static_cast<int>(
+                    std::floor((rl + rs - axis.opl_start_m) / axis.bin_width_m));
+                if (bin < 0 || bin >= axis.num_bins) continue;
+                if (crosses(p, l, occluder) || crosses(p, s, occluder)) continue;
+                sums[pair * num_bins + static_cast<std::size_t>(bin)] +=
+                    front * cos_l * cos_s * cos_pl * cos_ps / (rl * rl * rs * rs);
+            }
+        }
+    }
+    return {sums.begin(), sums.end()};
+}
+
+}  // namespace test_support

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <vector>
+
+#include "renderer/render.h"
+
+namespace test_support {
+
+/// A parallelogram of two triangles: corner, corner + u, corner + u + v, corner + v.
+struct Parallelogram {
+    core::Vec3 corner;
+    core::Vec3 u;
+    core::Vec3 v;
+    double albedo = 1.0;
+};
+
+renderer::Object parallelogram_object(const Parallelogram& shape);
+
+/// A sphere of `2 * 4^subdivisions * 4` facets with vertices on the sphere, inside-out or not: the
+/// facets' orientation does not matter to the renderer.
+renderer::Object sphere_object(const core::Vec3& center,
+                               double radius,
+                               int subdivisions,
+                               double albedo);
+
+/// Points on the wall z = 0 with normal +z.
+core::WallPoints wall_points(const std::vector<core::Vec3>& positions);
+
+core::Scan confocal_scan(const std::vector<core::Vec3>& positions);
+core::Scan single_scan(const core::Vec3& illumination, const std::vector<core::Vec3>& sensing);
+core::Scan exhaustive_scan(const std::vector<core::Vec3>& illumination,
+                           const std::vector<core::Vec3>& sensing);
+
+/// Third bounce of a parallelogram behind an opaque one, by brute force: `steps` x `steps` midpoints
+/// with exact visibility. Written apart from the renderer, in plain double precision.
+///
+/// occluder      may be degenerate (zero edges): then nothing is hidden
+/// wall_albedo   of both wall points
+std::vector<float> third_bounce_by_quadrature(const Parallelogram& hidden,
+                                              const Parallelogram& occluder,
+                                              const core::Scan& scan,
+                                              const core::TimeAxis& axis,
+                                              double wall_albedo,
+                                              int steps);
+
+}  // namespace test_support
