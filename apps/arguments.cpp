@@ -8,28 +8,21 @@
 namespace apps {
 
 std::vector<std::string> expand_set_arguments(const std::vector<std::string>& arguments) {
+    const auto is_item = [](const std::string& argument) {
+        return argument.find('=') != std::string::npos && !argument.starts_with('-');
+    };
     std::vector<std::string> expanded;
-    bool in_set = false;
-    for (const std::string& argument : arguments) {
-        if (argument == "--set") {
-            in_set = true;
+    for (std::size_t i = 0; i < arguments.size(); ++i) {
+        if (arguments[i] != "--set") {
+            expanded.push_back(arguments[i]);
             continue;
         }
-        const bool is_item = argument.find('=') != std::string::npos && !argument.starts_with('-');
-        if (in_set && is_item) {
-            expanded.push_back("--set=" + argument);
-            continue;
+        // The first item is taken as it is; without '=' it is reported as malformed later.
+        const bool has_first = i + 1 < arguments.size() && !arguments[i + 1].starts_with('-');
+        expanded.push_back("--set=" + (has_first ? arguments[++i] : std::string()));
+        while (has_first && i + 1 < arguments.size() && is_item(arguments[i + 1])) {
+            expanded.push_back("--set=" + arguments[++i]);
         }
-        if (in_set && (expanded.empty() || !expanded.back().starts_with("--set="))) {
-            expanded.push_back("--set=" + argument);  // no '=': reported with the others
-            in_set = false;
-            continue;
-        }
-        in_set = false;
-        expanded.push_back(argument);
-    }
-    if (in_set && (expanded.empty() || !expanded.back().starts_with("--set="))) {
-        expanded.emplace_back("--set=");
     }
     return expanded;
 }

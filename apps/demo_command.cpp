@@ -35,7 +35,7 @@ void write_truth_picture(const std::string& scene_path, const std::string& pictu
     const auto description = renderer::read_scene_description(scene_path, {});
     const auto scene = renderer::load_scene(description, renderer::make_scan(description));
     const auto truth = renderer::trace_ground_truth(scene, description);
-    nlos::write_panels_png(picture_path, nlos::truth_panels(truth), 2);
+    nlos::write_panels_png(picture_path, nlos::truth_panels(truth), 3);
 }
 
 void stop_if_interrupted() {

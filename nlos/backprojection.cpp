@@ -29,8 +29,9 @@ std::vector<double> device_legs(const core::Scan& scan,
     return legs;
 }
 
-void run_fast(const MethodInput& input, std::span<float> values) {
-    ConfocalGrid<float> data{*input.wall.grid, input.time_axis, input.transient.values()};
+void run_fast(const MethodInput& input, Compensation compensation, std::span<float> values) {
+    ConfocalGrid<float> data{
+        *input.wall.grid, input.time_axis, input.transient.values(), {}, compensation};
     if (input.scan.opl_origin == core::OplOrigin::Device) {
         for (std::size_t pair = 0; pair < input.scan.num_pairs(); ++pair) {
             data.device_legs_m.push_back(input.scan.device_legs_m(pair));
@@ -39,7 +40,7 @@ void run_fast(const MethodInput& input, std::span<float> values) {
     backproject_confocal_grid<float>(data, input.axes, values, input.progress);
 }
 
-void run_general(const MethodInput& input, std::span<float> values) {
+void run_general(const MethodInput& input, Compensation compensation, std::span<float> values) {
     const core::Scan& scan = input.scan;
     const core::Transform wall_from_world = input.axes.world_from_wall.inverse(Eigen::Isometry);
     const PairList<float> data{scan.pattern,
@@ -48,18 +49,19 @@ void run_general(const MethodInput& input, std::span<float> values) {
                                in_frame(wall_from_world, scan.illumination),
                                in_frame(wall_from_world, scan.sensing),
                                device_legs(scan, scan.illumination, scan.laser_position),
-                               device_legs(scan, scan.sensing, scan.detector_position)};
+                               device_legs(scan, scan.sensing, scan.detector_position),
+                               compensation};
     backproject_pairs<float>(data, input.axes, values, input.progress);
 }
 
 }  // namespace
 
-Volume backproject(const MethodInput& input) {
+Volume backproject(const MethodInput& input, Compensation compensation) {
     Volume volume{input.axes, std::vector<float>(input.axes.num_voxels(), 0.0F), {}};
     if (takes_fast_way(input)) {
-        run_fast(input, volume.values);
+        run_fast(input, compensation, volume.values);
     } else {
-        run_general(input, volume.values);
+        run_general(input, compensation, volume.values);
     }
     return volume;
 }
@@ -74,7 +76,7 @@ double backproject_bytes(const MethodInput& input) {
     }
     const auto points =
         static_cast<double>(input.scan.illumination.size() + input.scan.sensing.size());
-    return volume + points * (2048.0 * core::thread_count() + 64.0);
+    return volume + points * (4096.0 * core::thread_count() + 64.0);
 }
 
 }  // namespace nlos

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "nlos/method_input.h"
+#include "nlos/reconstruct_settings.h"
 
 #include <span>
 #include <vector>
@@ -9,14 +10,16 @@
 namespace nlos {
 
 /// Backprojection: v(p) = sum over pairs (l, s) of H(l, s; |l - p| + |p - s|), linear in time
-/// between bin centres. Adjoint of a forward model without falloff and cosines.
+/// between bin centres. Adjoint of a forward model without cosines, and without falloff unless each
+/// term is multiplied by what the light lost on its way.
 ///
-/// input     any scan; confocal grids whose y positions share a lattice with the voxels' take the
-///           fast way (shifted additions of whole rows), all others the general one
-/// returns   sums in the histograms' unit
-/// throws    core::Failure when asked to stop
-/// source    [Velten2012]
-Volume backproject(const MethodInput& input);
+/// input          any scan; confocal grids whose y positions share a lattice with the voxels' take
+///                the fast way (shifted additions of whole rows), all others the general one
+/// compensation   factor of each term: none, r_l^2 r_s^2 (diffuse) or r_l r_s (retro)
+/// returns        sums in the histograms' unit
+/// throws         core::Failure when asked to stop
+/// source         [Velten2012]
+Volume backproject(const MethodInput& input, Compensation compensation);
 
 /// Memory that backproject() takes on top of its input, its volume included [bytes].
 double backproject_bytes(const MethodInput& input);
@@ -28,6 +31,7 @@ struct ConfocalGrid {
     core::TimeAxis time_axis;
     std::span<const Real> histograms;     ///< [point of the capture][bin]
     std::vector<double> device_legs_m{};  ///< per point, part of the axis; empty: none
+    Compensation compensation = Compensation::None;
 };
 
 /// Measurement pairs in the wall's frame, in any arrangement.
@@ -40,6 +44,7 @@ struct PairList {
     std::vector<core::Vec3> sensing;          ///< [m]
     std::vector<double> illumination_legs_m;  ///< laser to each point, part of the axis
     std::vector<double> sensing_legs_m;       ///< each point to the detector, part of the axis
+    Compensation compensation = Compensation::None;
 };
 
 /// True when backproject_confocal_grid() serves: the voxels' y positions and the grid's are every

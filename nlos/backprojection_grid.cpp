@@ -131,7 +131,14 @@ struct ShiftRange {
     double pitch_m = 0.0;
     std::size_t num_voxels_padded = 0;
     std::size_t num_wall = 0;
+    Compensation compensation = Compensation::None;
 };
+
+/// Factor of a term whose light went `range_m` out and as far back.
+double lost_light(Compensation compensation, double range_m) {
+    if (compensation == Compensation::None) return 1.0;
+    return std::pow(range_m, compensation == Compensation::Diffuse ? 4.0 : 2.0);
+}
 
 template <class Real>
 void fill_taps(const ShiftRange& range,
@@ -150,8 +157,11 @@ void fill_taps(const ShiftRange& range,
         const double position = (opl - axis.opl_start_m) / axis.bin_width_m - 0.5;
         const double bin = std::floor(position);
         if (!(bin >= -1.0) || !(bin < axis.num_bins)) continue;
-        const auto late = static_cast<Real>(position - bin);
-        taps.all[i] = {static_cast<std::size_t>(bin + 1.0) * row_stride, Real{1} - late, late};
+        const double late = position - bin;
+        const double factor = lost_light(range.compensation, 0.5 * opl);
+        taps.all[i] = {static_cast<std::size_t>(bin + 1.0) * row_stride,
+                       static_cast<Real>(factor * (1.0 - late)),
+                       static_cast<Real>(factor * late)};
         taps.first = std::min(taps.first, i);
         taps.end = i + 1;
     }
@@ -288,7 +298,8 @@ void backproject_confocal_grid(const ConfocalGrid<Real>& data,
                     slices.first_y_m - axes.y_m[first_y],
                     data.grid.pitch_m[1] * static_cast<double>(lattice.wall_step),
                     slab.row_stride,
-                    slices.num_y};
+                    slices.num_y,
+                    data.compensation};
                 for (std::size_t d = 0; d < taps.size(); ++d) {
                     const double dx = rows.distances_m[d];
                     const double z = axes.z_m[iz];

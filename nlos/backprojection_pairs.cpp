@@ -29,47 +29,76 @@ struct VoxelBlock {
     std::size_t size() const { return sums.size(); }
 };
 
-/// Distances to a wall point plus `offset_m`, in bins.
+/// One leg of the light's way to every voxel of a block.
 template <class Real>
-void fill_distances(const VoxelBlock<Real>& block,
-                    const core::Vec3& point,
-                    double offset_m,
-                    double bin_width_m,
-                    Real* distances) {
-    const auto px = static_cast<Real>(point.x());
-    const auto py = static_cast<Real>(point.y());
-    const auto pz = static_cast<Real>(point.z());
+struct Leg {
+    std::vector<Real> distances;  ///< to a wall point, plus an offset, in bins
+    std::vector<Real> factors;    ///< make up for the light lost; empty: none
+};
+
+/// A wall point and what the path to it is longer by.
+struct LegEnd {
+    core::Vec3 point;
+    double offset_m = 0.0;
+};
+
+template <class Real>
+void fill_leg(const VoxelBlock<Real>& block,
+              const LegEnd& end,
+              double bin_width_m,
+              Compensation compensation,
+              Leg<Real>& leg) {
+    const auto px = static_cast<Real>(end.point.x());
+    const auto py = static_cast<Real>(end.point.y());
+    const auto pz = static_cast<Real>(end.point.z());
     const auto per_bin = static_cast<Real>(1.0 / bin_width_m);
-    const auto offset = static_cast<Real>(offset_m / bin_width_m);
-    for (std::size_t i = 0; i < block.size(); ++i) {
+    const auto offset = static_cast<Real>(end.offset_m / bin_width_m);
+    const std::size_t count = block.size();
+    leg.distances.resize(count);
+    for (std::size_t i = 0; i < count; ++i) {
         const Real dx = block.x[i] - px;
         const Real dy = block.y[i] - py;
         const Real dz = block.z[i] - pz;
-        distances[i] = std::sqrt(dx * dx + dy * dy + dz * dz) * per_bin + offset;
+        leg.distances[i] = std::sqrt(dx * dx + dy * dy + dz * dz) * per_bin + offset;
+    }
+    if (compensation == Compensation::None) return;
+    leg.factors.resize(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto distance = (leg.distances[i] - offset) * static_cast<Real>(bin_width_m);
+        leg.factors[i] = compensation == Compensation::Diffuse ? distance * distance : distance;
     }
 }
 
-/// Adds interpolated histogram values at positions a + b (in bins, 1 = centre of bin 0).
+/// Adds interpolated histogram values at the sums of two legs (in bins, 1 = centre of bin 0).
 ///
 /// padded   histogram with one zero before and two behind it
 template <class Real>
 void add_lookups(const Real* padded,
                  std::size_t num_bins,
-                 const Real* __restrict a,
-                 const Real* __restrict b,
+                 const Leg<Real>& out,
+                 const Leg<Real>& back,
                  VoxelBlock<Real>& block) {
     Real* __restrict sums = block.sums.data();
+    const Real* __restrict a = out.distances.data();
+    const Real* __restrict b = back.distances.data();
     const auto last = static_cast<Real>(num_bins + 1);
     const std::size_t count = block.size();
-    for (std::size_t i = 0; i < count; ++i) {
+    const auto look_up = [=](std::size_t i) {
         // Plain comparisons: std::min and std::max take references, which bars vector code here.
         Real position = a[i] + b[i];
         position = position > Real{0} ? position : Real{0};
         position = position < last ? position : last;
         const int bin = static_cast<int>(position);
         const Real late = position - static_cast<Real>(bin);
-        sums[i] += padded[bin] + late * (padded[bin + 1] - padded[bin]);
+        return padded[bin] + late * (padded[bin + 1] - padded[bin]);
+    };
+    if (out.factors.empty()) {
+        for (std::size_t i = 0; i < count; ++i) sums[i] += look_up(i);
+        return;
     }
+    const Real* __restrict fa = out.factors.data();
+    const Real* __restrict fb = back.factors.data();
+    for (std::size_t i = 0; i < count; ++i) sums[i] += fa[i] * fb[i] * look_up(i);
 }
 
 template <class Real>
@@ -81,60 +110,53 @@ class PairBackprojector {
     void fill(std::size_t begin, std::size_t end, std::span<Real> volume) const {
         VoxelBlock<Real> block(axes_, begin, end);
         std::vector<Real> padded(num_bins_ + 3, Real{0});
-        const std::vector<Real> illumination = illumination_distances(block);
-        std::vector<Real> sensing(block.size());
+        const bool is_confocal = data_.pattern == core::ScanPattern::Confocal;
+        std::vector<Leg<Real>> out(is_confocal ? 1 : data_.illumination.size());
+        for (std::size_t l = 0; l < out.size() && !is_confocal; ++l) {
+            fill_illumination_leg(l, block, out[l]);
+        }
+        Leg<Real> back;
         const std::size_t num_sensing = data_.sensing.size();
         for (std::size_t s = 0; s < num_sensing; ++s) {
-            fill_distances(block,
-                           data_.sensing[s],
-                           data_.sensing_legs_m[s] - data_.time_axis.opl_start_m,
-                           data_.time_axis.bin_width_m,
-                           sensing.data());
-            // Bin 0's centre stands half a bin behind the axis start and at 1 in `padded`.
-            for (Real& distance : sensing) distance += Real{0.5};
-            if (data_.pattern == core::ScanPattern::Confocal) {
-                std::vector<Real> out(block.size());
-                fill_distances(block,
-                               data_.illumination[s],
-                               data_.illumination_legs_m[s],
-                               data_.time_axis.bin_width_m,
-                               out.data());
-                add_pair(s, out.data(), sensing.data(), padded, block);
+            fill_sensing_leg(s, block, back);
+            if (is_confocal) {
+                fill_illumination_leg(s, block, out[0]);
+                add_pair(s, out[0], back, padded, block);
                 continue;
             }
-            for (std::size_t l = 0; l < data_.illumination.size(); ++l) {
-                add_pair(l * num_sensing + s,
-                         illumination.data() + l * block.size(),
-                         sensing.data(),
-                         padded,
-                         block);
+            for (std::size_t l = 0; l < out.size(); ++l) {
+                add_pair(l * num_sensing + s, out[l], back, padded, block);
             }
         }
         for (std::size_t i = begin; i < end; ++i) volume[i] += block.sums[i - begin];
     }
 
  private:
-    std::vector<Real> illumination_distances(const VoxelBlock<Real>& block) const {
-        std::vector<Real> distances;
-        if (data_.pattern == core::ScanPattern::Confocal) return distances;
-        distances.resize(data_.illumination.size() * block.size());
-        for (std::size_t l = 0; l < data_.illumination.size(); ++l) {
-            fill_distances(block,
-                           data_.illumination[l],
-                           data_.illumination_legs_m[l],
-                           data_.time_axis.bin_width_m,
-                           distances.data() + l * block.size());
-        }
-        return distances;
+    void fill_illumination_leg(std::size_t l, const VoxelBlock<Real>& block, Leg<Real>& leg) const {
+        fill_leg(block,
+                 {data_.illumination[l], data_.illumination_legs_m[l]},
+                 data_.time_axis.bin_width_m,
+                 data_.compensation,
+                 leg);
+    }
+
+    /// Bin 0's centre stands half a bin behind the axis start and at 1 in a padded histogram.
+    void fill_sensing_leg(std::size_t s, const VoxelBlock<Real>& block, Leg<Real>& leg) const {
+        const double start = data_.time_axis.opl_start_m - 0.5 * data_.time_axis.bin_width_m;
+        fill_leg(block,
+                 {data_.sensing[s], data_.sensing_legs_m[s] - start},
+                 data_.time_axis.bin_width_m,
+                 data_.compensation,
+                 leg);
     }
 
     void add_pair(std::size_t pair,
-                  const Real* a,
-                  const Real* b,
+                  const Leg<Real>& out,
+                  const Leg<Real>& back,
                   std::vector<Real>& padded,
                   VoxelBlock<Real>& block) const {
         std::copy_n(data_.histograms.data() + pair * num_bins_, num_bins_, padded.begin() + 1);
-        add_lookups(padded.data(), num_bins_, a, b, block);
+        add_lookups(padded.data(), num_bins_, out, back, block);
     }
 
     const PairList<Real>& data_;

@@ -46,6 +46,7 @@ class PathTracer::Walk {
 
     void trace_area_samples(int count);
     void trace_bsdf_samples(int count);
+    std::uint64_t num_rays() const { return num_rays_; }
 
    private:
     // A first vertex and what its connection to the light carries if nothing is in the way.
@@ -55,6 +56,7 @@ class PathTracer::Walk {
     };
 
     bool make_candidate(const SurfacePoint& point, Candidate& candidate) const;
+    void trace_packet();
     void keep_seen_from_sensor();
     void finish_candidates();
     Vec3 sample_sensor_direction(const Vec2& u) const;
@@ -74,6 +76,7 @@ class PathTracer::Walk {
     std::array<Candidate, SegmentPacket::kSize> candidates_;
     int num_candidates_ = 0;
     SegmentPacket packet_;
+    std::uint64_t num_rays_ = 0;
 };
 
 PathTracer::PathTracer(const Scene& scene, const RenderSettings& settings)
@@ -83,10 +86,10 @@ PathTracer::PathTracer(const Scene& scene, const RenderSettings& settings)
       by_order_(settings.by_order),
       laser_spot_m2_(settings.laser_spot_m2) {}
 
-void PathTracer::trace(const PathEnds& ends,
-                       int num_samples,
-                       core::Rng& rng,
-                       PassHistogram& histogram) const {
+std::uint64_t PathTracer::trace(const PathEnds& ends,
+                                int num_samples,
+                                core::Rng& rng,
+                                PassHistogram& histogram) const {
     // The number of each kind is rounded at random, so that its mean is the share that the weights
     // assume.
     const double expected = num_samples * kAreaShareFromWall;
@@ -94,6 +97,7 @@ void PathTracer::trace(const PathEnds& ends,
     Walk walk(*this, ends, num_samples, rng, histogram);
     walk.trace_area_samples(num_area);
     walk.trace_bsdf_samples(num_samples - num_area);
+    return walk.num_rays();
 }
 
 void PathTracer::Walk::trace_area_samples(int count) {
@@ -116,6 +120,7 @@ void PathTracer::Walk::trace_bsdf_samples(int count) {
         const double u1 = (i + rng_.uniform()) / count;
         const Vec3 direction = sample_sensor_direction({u1, rng_.uniform()});
         const auto point = scene_.first_hit(sensor.position, sensor.normal, direction);
+        ++num_rays_;
         if (!point) continue;
         if (!make_candidate(*point, candidates_[static_cast<std::size_t>(num_candidates_)])) continue;
         if (++num_candidates_ == SegmentPacket::kSize) finish_candidates();
@@ -147,6 +152,12 @@ bool PathTracer::Walk::make_candidate(const SurfacePoint& point, Candidate& cand
     return candidate.value > 0.0 || tracer_.max_order_ > 3;
 }
 
+void PathTracer::Walk::trace_packet() {
+    if (packet_.count == 0) return;
+    scene_.rays().trace(packet_);
+    num_rays_ += static_cast<std::uint64_t>(packet_.count);
+}
+
 void PathTracer::Walk::keep_seen_from_sensor() {
     packet_.count = 0;
     for (int i = 0; i < num_candidates_; ++i) {
@@ -157,7 +168,7 @@ void PathTracer::Walk::keep_seen_from_sensor() {
                                   vertex.point.position,
                                   vertex.normal);
     }
-    scene_.rays().trace(packet_);
+    trace_packet();
     int kept = 0;
     for (std::size_t i = 0; i < static_cast<std::size_t>(num_candidates_); ++i) {
         if (!packet_.blocked[i]) candidates_[static_cast<std::size_t>(kept++)] = candidates_[i];
@@ -183,7 +194,7 @@ void PathTracer::Walk::finish_candidates() {
                                   candidate.vertex.point.position,
                                   candidate.vertex.normal);
     }
-    if (packet_.count > 0) scene_.rays().trace(packet_);
+    trace_packet();
     for (std::size_t lane = 0; lane < static_cast<std::size_t>(packet_.count); ++lane) {
         const Candidate& candidate = candidates_[lane_owner[lane]];
         if (!packet_.blocked[lane]) deposit(candidate.vertex, candidate.value);
@@ -245,10 +256,12 @@ void PathTracer::Walk::extend(PathVertex vertex) {
         }
         if (!draw_next(vertex)) return;
         const double value = connection_value(vertex);
-        if (value > 0.0 && !scene_.rays().is_blocked(vertex.point.position,
-                                                     vertex.normal,
-                                                     ends_.light.position,
-                                                     ends_.light.normal)) {
+        if (!(value > 0.0)) continue;
+        ++num_rays_;
+        if (!scene_.rays().is_blocked(vertex.point.position,
+                                      vertex.normal,
+                                      ends_.light.position,
+                                      ends_.light.normal)) {
             deposit(vertex, value);
         }
     }
@@ -271,6 +284,7 @@ bool PathTracer::Walk::draw_next(PathVertex& vertex) {
         const double u1 = rng_.uniform();
         const auto local = sample_bsdf(vertex.bsdf, incoming, {u1, rng_.uniform()});
         if (!local) return false;
+        ++num_rays_;
         const auto hit =
             scene_.first_hit(vertex.point.position, vertex.normal, world_from_facet * *local);
         if (!hit) return false;
@@ -289,9 +303,12 @@ bool PathTracer::Walk::draw_next(PathVertex& vertex) {
                        (1.0 - area_share) * pdf_bsdf(vertex.bsdf, incoming, outgoing) * per_area;
     const double transport = evaluate(vertex, direction) * std::abs(outgoing.z()) * per_area;
     if (!(transport > 0.0)) return false;
-    if (from_area && scene_.rays().is_blocked(
-                         vertex.point.position, vertex.normal, next.position, next_normal)) {
-        return false;
+    if (from_area) {
+        ++num_rays_;
+        if (scene_.rays().is_blocked(
+                vertex.point.position, vertex.normal, next.position, next_normal)) {
+            return false;
+        }
     }
     vertex.throughput *= transport / pdf;
     vertex.opl_m += distance;

@@ -21,8 +21,12 @@ class PathTracer {
 
     /// Adds the contributions of `num_samples` paths to `histogram`, so that their sum estimates H.
     ///
-    /// rng   owned by this pair and pass
-    void trace(const PathEnds& ends, int num_samples, core::Rng& rng, PassHistogram& histogram) const;
+    /// rng       owned by this pair and pass
+    /// returns   the number of rays traced
+    std::uint64_t trace(const PathEnds& ends,
+                        int num_samples,
+                        core::Rng& rng,
+                        PassHistogram& histogram) const;
 
    private:
     class Walk;

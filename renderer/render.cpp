@@ -138,6 +138,7 @@ class PassLoop {
     double wall_albedo_;
     PathTracer tracer_;
     TransientAccumulator sums_;
+    std::atomic<std::uint64_t> num_rays_{0};
 };
 
 void PassLoop::run_pass(int pass, int samples) {
@@ -149,7 +150,9 @@ void PassLoop::run_pass(int pass, int samples) {
             for (std::size_t pair = begin; pair < end; ++pair) {
                 const PathEnds ends = ends_of_pair(scan_, pair, wall_albedo_);
                 core::Rng rng(settings_.seed, pair, static_cast<std::uint64_t>(pass));
-                if (settings_.max_bounces >= 3) tracer_.trace(ends, samples, rng, histogram);
+                if (settings_.max_bounces >= 3) {
+                    num_rays_ += tracer_.trace(ends, samples, rng, histogram);
+                }
                 add_short_paths(scene_, ends, settings_, histogram);
                 sums_.add_pass(pair, histogram);
                 if (histogram.num_non_finite() > 0) bad_pair = std::min(bad_pair.load(), pair);
@@ -199,6 +202,7 @@ RenderResult PassLoop::run(const core::Progress& progress) {
     fill_capture(pass, result.capture);
     result.samples_per_pair =
         static_cast<std::uint64_t>(plan.samples_per_pass) * static_cast<std::uint64_t>(pass);
+    result.num_rays = num_rays_;
     result.seconds = seconds_since(start);
     return result;
 }

@@ -15,6 +15,7 @@ struct RenderResult {
     core::Capture capture;
     Estimator estimator = Estimator::Path;  ///< the one that ran
     std::uint64_t samples_per_pair = 0;     ///< candidate paths used, whole passes
+    std::uint64_t num_rays = 0;
     double seconds = 0.0;
     bool interrupted = false;  ///< stopped early; the capture is even over all pairs
 };

@@ -3,7 +3,10 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <filesystem>
+
+#include "renderer/core/process.h"
 
 namespace renderer {
 namespace {
@@ -68,6 +71,25 @@ void validate_scan(const ScanSettings& scan, const std::string& where) {
         throw Error(where + ".opl_origin",
                     "found device without laser_m and detector_m",
                     "must be relay_wall, or both positions given");
+    }
+}
+
+// Refuses scans whose histograms alone could not be held, before anything is allocated.
+void validate_size(const SceneDescription& scene, const std::string& where) {
+    const ScanSettings& scan = scene.scan;
+    const auto count = [](const std::vector<Vec3>& points, const std::array<int, 2>& shape) {
+        return points.empty() ? static_cast<double>(shape[0]) * shape[1]
+                              : static_cast<double>(points.size());
+    };
+    double values = count(scan.sensing_points_m, scan.sensing_points) * scene.time_axis.num_bins;
+    if (scan.pattern == core::ScanPattern::Exhaustive) {
+        values *= count(scan.illumination_points_m, scan.illumination_points);
+    }
+    const double available = static_cast<double>(core::available_memory_bytes());
+    if (values * sizeof(float) > available) {
+        throw Error(where + "scan.sensing_points and time_axis.num_bins",
+                    fmt::format("found {:.3g} values in all", values),
+                    fmt::format("must fit into {:.1f} GB of memory", available * 1e-9));
     }
 }
 
@@ -143,6 +165,7 @@ void validate(const SceneDescription& scene, const std::string& where) {
     core::validate(scene.time_axis, where + "time_axis");
     validate(scene.render, where + "render");
     validate_grid(scene.ground_truth.depth_resolution, where + "ground_truth.depth_resolution");
+    validate_size(scene, where);
     if (scene.time_axis.num_bins > 1 && scene.render.gate != GateShape::Box) {
         throw Error(where + "render.gate",
                     fmt::format("found {} for {} bins",

@@ -232,6 +232,10 @@ std::string Hdf5Reader::read_text(const std::string& name) const {
     const Hdf5Handle dataset = open_dataset(name);
     const Hdf5Handle type(H5Dget_type(dataset.id()), H5Tclose);
     check_texts();
+    const haddr_t position = H5Dget_offset(dataset.id());
+    if (H5Tis_variable_str(type.id()) > 0 && position != HADDR_UNDEF) {
+        check_text_reference(path_, position);
+    }
     return fetch_text(type.id(), where(name), [&](hid_t memory, void* target) {
         return H5Dread(dataset.id(), memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, target) >= 0;
     });

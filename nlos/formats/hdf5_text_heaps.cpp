@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <cstring>
 #include <fstream>
+#include <limits>
 #include <string_view>
 #include <vector>
 
@@ -46,6 +47,7 @@ bool is_sound(const std::vector<char>& collection) {
 /// Reads the collection that begins at `begin`; empty when it does not lie within the file.
 std::vector<char> read_collection(std::ifstream& file, std::uint64_t begin) {
     std::array<char, kHeaderBytes> header{};
+    if (begin > static_cast<std::uint64_t>(std::numeric_limits<std::streamoff>::max())) return {};
     file.clear();
     file.seekg(static_cast<std::streamoff>(begin));
     if (!file.read(header.data(), header.size())) return {};
@@ -58,7 +60,42 @@ std::vector<char> read_collection(std::ifstream& file, std::uint64_t begin) {
     return collection;
 }
 
+/// True when a sound collection holds an object `index` of at least `bytes` bytes.
+bool has_object(const std::vector<char>& collection, std::uint32_t index, std::uint64_t bytes) {
+    std::uint64_t position = kHeaderBytes;
+    while (position + kHeaderBytes <= collection.size()) {
+        const auto found = value_at<std::uint16_t>(collection, position);
+        const auto size = value_at<std::uint64_t>(collection, position + 8);
+        if (found == 0) return false;
+        if (found == index) return size >= bytes;
+        position += kHeaderBytes + (size + 7) / 8 * 8;
+    }
+    return false;
+}
+
+[[noreturn]] void throw_damaged(const std::string& path) {
+    throw core::Error(path, "has damaged texts", "must be an undamaged HDF5 file");
+}
+
 }  // namespace
+
+void check_text_reference(const std::string& path, std::uint64_t position) {
+    // A reference: length (4 bytes), address of the collection (8), index of the object (4).
+    std::ifstream file(path, std::ios::binary);
+    std::vector<char> reference(16);
+    file.seekg(static_cast<std::streamoff>(position));
+    if (!file.read(reference.data(), static_cast<std::streamsize>(reference.size()))) {
+        throw_damaged(path);
+    }
+    const auto bytes = value_at<std::uint32_t>(reference, 0);
+    const auto address = value_at<std::uint64_t>(reference, 4);
+    if (bytes == 0 && address == 0) return;  // an empty text
+    const std::vector<char> collection = read_collection(file, address);
+    if (collection.empty() || !is_sound(collection) ||
+        !has_object(collection, value_at<std::uint32_t>(reference, 12), bytes)) {
+        throw_damaged(path);
+    }
+}
 
 void check_text_heaps(const std::string& path) {
     constexpr std::size_t kBlock = std::size_t{1} << 20;
@@ -75,7 +112,7 @@ void check_text_heaps(const std::string& path) {
              at = text.find(kSignature, at + 1)) {
             const std::vector<char> collection = read_collection(file, begin + at);
             if (collection.empty() || !is_sound(collection)) {
-                throw core::Error(path, "has damaged texts", "must be an undamaged HDF5 file");
+                throw_damaged(path);
             }
         }
         if (count < kBlock) return;

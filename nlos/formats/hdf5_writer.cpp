@@ -20,7 +20,7 @@ Hdf5Handle create_space(const Shape& shape) {
                      H5Sclose);
 }
 
-std::size_t count_values(const Shape& shape) {
+[[maybe_unused]] std::size_t count_values(const Shape& shape) {
     std::size_t count = 1;
     for (const std::size_t extent : shape) count *= extent;
     return count;
@@ -79,6 +79,11 @@ void Hdf5Writer::write(const std::string& name,
                        std::span<const double> values) {
     assert(values.size() == count_values(shape));
     write_dataset(name, H5T_NATIVE_DOUBLE, create_space(shape), values.data());
+}
+
+void Hdf5Writer::write(const std::string& name, const Shape& shape, std::span<const int> values) {
+    assert(values.size() == count_values(shape));
+    write_dataset(name, H5T_NATIVE_INT, create_space(shape), values.data());
 }
 
 void Hdf5Writer::write_real(const std::string& name, double value) {

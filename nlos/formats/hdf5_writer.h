@@ -24,6 +24,7 @@ class Hdf5Writer {
     void create_group(const std::string& name);
     void write(const std::string& name, const Shape& shape, std::span<const float> values);
     void write(const std::string& name, const Shape& shape, std::span<const double> values);
+    void write(const std::string& name, const Shape& shape, std::span<const int> values);
     void write_real(const std::string& name, double value);             ///< scalar float64
     void write_bool(const std::string& name, bool value);               ///< as h5py writes a bool
     void write_text(const std::string& name, const std::string& text);  ///< UTF-8, any length

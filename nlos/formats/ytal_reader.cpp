@@ -224,38 +224,74 @@ void read_axis(const Hdf5Reader& file, const CaptureReadSettings& settings, Capt
     validate(capture.time_axis, file.path() + ": time axis");
 }
 
-/// Reads (T, pairs...) with time slowest into [pair][bin].
-core::Transient read_transient(const Hdf5Reader& file,
+/// Copies rows with time slowest to bins [first, first + count) of [pair][bin].
+void copy_bins(const float* rows, std::size_t first, std::size_t count, core::Transient& transient) {
+    constexpr std::size_t kPairsAtOnce = 16;  // one cache line of every row at a time
+    const std::size_t pairs = transient.num_pairs();
+    for (std::size_t begin = 0; begin < pairs; begin += kPairsAtOnce) {
+        const std::size_t end = std::min(pairs, begin + kPairsAtOnce);
+        for (std::size_t row = 0; row < count; ++row) {
+            for (std::size_t pair = begin; pair < end; ++pair) {
+                transient.histogram(pair)[first + row] = rows[row * pairs + pair];
+            }
+        }
+    }
+}
+
+core::Transient make_transient(const Hdf5Reader& file,
                                const std::string& name,
                                const Capture& capture) {
     const std::size_t pairs = capture.scan.num_pairs();
     require_memory(sizeof(float) * pairs * static_cast<std::size_t>(capture.time_axis.num_bins),
                    file.where(name));
-    core::Transient transient(pairs, capture.time_axis.num_bins);
-    constexpr std::size_t kPairsAtOnce = 16;  // one cache line of every row at a time
+    return {pairs, capture.time_axis.num_bins};
+}
+
+/// Reads (T, pairs...) with time slowest into [pair][bin].
+core::Transient read_transient(const Hdf5Reader& file,
+                               const std::string& name,
+                               const Capture& capture) {
+    core::Transient transient = make_transient(file, name, capture);
     file.read_rows(name, [&](std::size_t first, std::size_t count, const std::vector<float>& rows) {
-        for (std::size_t begin = 0; begin < pairs; begin += kPairsAtOnce) {
-            const std::size_t end = std::min(pairs, begin + kPairsAtOnce);
-            for (std::size_t row = 0; row < count; ++row) {
-                for (std::size_t pair = begin; pair < end; ++pair) {
-                    transient.histogram(pair)[first + row] = rows[row * pairs + pair];
-                }
-            }
-        }
+        copy_bins(rows.data(), first, count, transient);
     });
     return transient;
+}
+
+void require_shape(const Hdf5Reader& file, const std::string& name, const Shape& wanted) {
+    if (file.shape(name) == wanted) return;
+    throw Error(file.where(name),
+                "has shape " + shape_text(file.shape(name)),
+                "must have shape " + shape_text(wanted) + ", as H");
+}
+
+void read_orders(const Hdf5Reader& file, Capture& capture) {
+    const Shape shape = file.shape("nlos/H_by_order");
+    Shape wanted = file.shape("H");
+    wanted.insert(wanted.begin(), shape.empty() ? 0 : shape[0]);
+    require_shape(file, "nlos/H_by_order", wanted);
+    for (const double order : file.read_doubles("nlos/orders", {wanted[0]})) {
+        capture.orders.push_back(static_cast<int>(order));
+        capture.by_order.push_back(make_transient(file, "nlos/H_by_order", capture));
+    }
+    file.read_rows("nlos/H_by_order",
+                   [&](std::size_t first, std::size_t count, const std::vector<float>& rows) {
+                       for (std::size_t i = 0; i < count; ++i) {
+                           copy_bins(rows.data() + i * (rows.size() / count),
+                                     0,
+                                     wanted[1],
+                                     capture.by_order[first + i]);
+                       }
+                   });
 }
 
 void read_own_group(const Hdf5Reader& file, Capture& capture) {
     if (const auto unit = file.text_attribute("nlos", "unit")) {
         core::read_value(core::Json(*unit), file.where("nlos attribute unit"), capture.unit);
     }
+    if (file.has("nlos/H_by_order")) read_orders(file, capture);
     if (!file.has("nlos/variance")) return;
-    if (file.shape("nlos/variance") != file.shape("H")) {
-        throw Error(file.where("nlos/variance"),
-                    "has shape " + shape_text(file.shape("nlos/variance")),
-                    "must have H's shape " + shape_text(file.shape("H")));
-    }
+    require_shape(file, "nlos/variance", file.shape("H"));
     capture.variance = read_transient(file, "nlos/variance", capture);
     for (const float value : capture.variance->values()) {
         if (!(value >= 0.0F) || !std::isfinite(value)) {

@@ -57,33 +57,56 @@ void write_points(Hdf5Writer& file,
                     static_cast<int>(layout.grids ? GridFormat::XY3 : GridFormat::N3));
 }
 
-/// Writes [pair][bin] with time slowest. Not compressed: the noise of rendered and measured
-/// histograms leaves deflate little to save for many times the writing time.
+/// Copies bins [first, first + count) of [pair][bin] to rows with time slowest.
+void copy_rows(const core::Transient& transient, std::size_t first, std::size_t count, float* rows) {
+    constexpr std::size_t kPairsAtOnce = 16;  // one cache line of every row at a time
+    const std::size_t pairs = transient.num_pairs();
+    for (std::size_t begin = 0; begin < pairs; begin += kPairsAtOnce) {
+        const std::size_t end = std::min(pairs, begin + kPairsAtOnce);
+        for (std::size_t row = 0; row < count; ++row) {
+            for (std::size_t pair = begin; pair < end; ++pair) {
+                rows[row * pairs + pair] = transient.histogram(pair)[first + row];
+            }
+        }
+    }
+}
+
+/// Not compressed: the noise of rendered and measured histograms leaves deflate little to save for
+/// many times the writing time.
 void write_transient(Hdf5Writer& file,
                      const std::string& name,
                      const Shape& shape,
                      const core::Transient& transient) {
-    constexpr std::size_t kPairsAtOnce = 16;  // one cache line of every row at a time
-    const std::size_t pairs = transient.num_pairs();
     file.write_rows(
         name, shape, [&](std::size_t first, std::size_t count, std::vector<float>& rows) {
-            for (std::size_t begin = 0; begin < pairs; begin += kPairsAtOnce) {
-                const std::size_t end = std::min(pairs, begin + kPairsAtOnce);
-                for (std::size_t row = 0; row < count; ++row) {
-                    for (std::size_t pair = begin; pair < end; ++pair) {
-                        rows[row * pairs + pair] = transient.histogram(pair)[first + row];
-                    }
-                }
-            }
+            copy_rows(transient, first, count, rows.data());
         });
+}
+
+void write_orders(Hdf5Writer& file, const Shape& h_shape, const Capture& capture) {
+    Shape shape = h_shape;
+    shape.insert(shape.begin(), capture.orders.size());
+    file.write_rows("nlos/H_by_order",
+                    shape,
+                    [&](std::size_t first, std::size_t count, std::vector<float>& rows) {
+                        for (std::size_t i = 0; i < count; ++i) {
+                            copy_rows(capture.by_order[first + i],
+                                      0,
+                                      h_shape[0],
+                                      rows.data() + i * (rows.size() / count));
+                        }
+                    });
+    file.write("nlos/orders", {capture.orders.size()}, capture.orders);
 }
 
 /// What y-tal has no name for.
 void write_own_group(Hdf5Writer& file, const Shape& h_shape, const Capture& capture) {
-    if (!capture.variance && capture.unit == core::TransientUnit::Radiance) return;
+    const bool radiance = capture.unit == core::TransientUnit::Radiance;
+    if (!capture.variance && capture.orders.empty() && radiance) return;
     file.create_group("nlos");
     file.write_attribute("nlos", "unit", std::string(enum_name(capture.unit)));
     if (capture.variance) write_transient(file, "nlos/variance", h_shape, *capture.variance);
+    if (!capture.orders.empty()) write_orders(file, h_shape, capture);
 }
 
 }  // namespace

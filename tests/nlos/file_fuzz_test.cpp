@@ -17,7 +17,9 @@
 
 // The HDF5 library does not free everything when it refuses a damaged header; only sanitizer
 // builds call this.
-extern "C" const char* __lsan_default_suppressions() { return "leak:libhdf5"; }
+extern "C" const char* __lsan_default_suppressions() {
+    return "leak:libhdf5";
+}
 
 namespace nlos {
 namespace {

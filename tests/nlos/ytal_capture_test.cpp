@@ -121,6 +121,20 @@ TEST(YtalCapture, EveryScanPatternSurvivesTheRoundTrip) {
     }
 }
 
+TEST(YtalCapture, BounceOrdersSurviveTheRoundTrip) {
+    Capture capture = example_capture(ScanPattern::Exhaustive);
+    capture.orders = {3, 5};
+    capture.by_order = {capture.transient, capture.transient};
+    for (float& value : capture.by_order[1].values()) value *= -2.0F;
+    const Capture read = CaptureFile(capture).read();
+    expect_same(read, capture);
+    EXPECT_EQ(read.orders, capture.orders);
+    ASSERT_EQ(read.by_order.size(), 2U);
+    for (std::size_t i = 0; i < 2; ++i) {
+        EXPECT_TRUE(std::ranges::equal(read.by_order[i].values(), capture.by_order[i].values()));
+    }
+}
+
 TEST(YtalCapture, PointListsSurviveTheRoundTrip) {
     for (const auto pattern :
          {ScanPattern::Confocal, ScanPattern::Single, ScanPattern::Exhaustive}) {

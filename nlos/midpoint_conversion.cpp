@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: MIT
+#include "nlos/midpoint_conversion.h"
+
+#include "nlos/conservative_resampling.h"
+#include "nlos/wall_frame.h"
+#include "renderer/core/parallel.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace nlos {
+namespace {
+
+/// A grid of half the sensing pitch that covers all midpoints, and who lands where.
+struct MidpointGrid {
+    std::array<std::size_t, 2> size{};
+    std::array<double, 2> first_m{};
+    std::array<double, 2> pitch_m{};
+    std::vector<std::vector<std::size_t>> pairs;  ///< per grid point, x before y
+};
+
+core::Vec3 midpoint(const core::Scan& scan, std::size_t pair) {
+    return 0.5 * (scan.illumination.positions[scan.illumination_index(pair)] +
+                  scan.sensing.positions[scan.sensing_index(pair)]);
+}
+
+std::optional<MidpointGrid> find_midpoint_grid(const core::Scan& scan, const WallFrame& wall) {
+    if (!wall.grid) return std::nullopt;
+    const core::Transform wall_from_world = wall.world_from_wall.inverse(Eigen::Isometry);
+    std::vector<Eigen::Vector2d> midpoints(scan.num_pairs());
+    Eigen::Vector2d low = Eigen::Vector2d::Constant(1e300);
+    Eigen::Vector2d high = -low;
+    for (std::size_t pair = 0; pair < midpoints.size(); ++pair) {
+        midpoints[pair] = (wall_from_world * midpoint(scan, pair)).head<2>();
+        low = low.cwiseMin(midpoints[pair]);
+        high = high.cwiseMax(midpoints[pair]);
+    }
+    MidpointGrid grid;
+    for (int axis = 0; axis < 2; ++axis) {
+        grid.pitch_m[axis] = 0.5 * wall.grid->pitch_m[axis];
+        grid.first_m[axis] = low[axis];
+        grid.size[axis] = static_cast<std::size_t>(
+                              std::llround((high[axis] - low[axis]) / grid.pitch_m[axis])) +
+                          1;
+    }
+    grid.pairs.resize(grid.size[0] * grid.size[1]);
+    for (std::size_t pair = 0; pair < midpoints.size(); ++pair) {
+        std::array<std::size_t, 2> at{};
+        for (int axis = 0; axis < 2; ++axis) {
+            const double position =
+                (midpoints[pair][axis] - grid.first_m[axis]) / grid.pitch_m[axis];
+            at[axis] = std::min(grid.size[axis] - 1,
+                                static_cast<std::size_t>(std::llround(std::max(0.0, position))));
+        }
+        grid.pairs[at[0] * grid.size[1] + at[1]].push_back(pair);
+    }
+    const bool is_full = std::none_of(
+        grid.pairs.begin(), grid.pairs.end(), [](const auto& pairs) { return pairs.empty(); });
+    return is_full ? std::optional(grid) : std::nullopt;
+}
+
+core::WallPoints wall_points(const MidpointGrid& grid, const WallFrame& wall) {
+    core::WallPoints points;
+    points.grid = grid.size;
+    for (std::size_t ix = 0; ix < grid.size[0]; ++ix) {
+        for (std::size_t iy = 0; iy < grid.size[1]; ++iy) {
+            points.positions.push_back(
+                wall.world_from_wall *
+                core::Vec3(grid.first_m[0] + static_cast<double>(ix) * grid.pitch_m[0],
+                           grid.first_m[1] + static_cast<double>(iy) * grid.pitch_m[1],
+                           0.0));
+        }
+    }
+    points.normals.assign(points.size(), wall.world_from_wall.linear().col(2));
+    return points;
+}
+
+/// The confocal axis starts at 0 and ends where the last bin can land.
+core::TimeAxis confocal_axis(const core::Capture& capture) {
+    double shortest = capture.scan.device_legs_m(0);
+    for (std::size_t pair = 1; pair < capture.scan.num_pairs(); ++pair) {
+        shortest = std::min(shortest, capture.scan.device_legs_m(pair));
+    }
+    core::TimeAxis axis = capture.time_axis;
+    const double end = std::max(axis.bin_width_m, axis.opl_end_m() - shortest);
+    axis.opl_start_m = 0.0;
+    axis.num_bins = static_cast<int>(std::ceil(end / axis.bin_width_m - 1e-6));
+    return axis;
+}
+
+/// Adds a pair's histogram, moved to confocal path lengths.
+void add_moved(const core::Capture& capture,
+               std::size_t pair,
+               const core::TimeAxis& axis,
+               std::span<float> sum) {
+    const core::Scan& scan = capture.scan;
+    const double offset = (scan.illumination.positions[scan.illumination_index(pair)] -
+                           scan.sensing.positions[scan.sensing_index(pair)])
+                              .norm();
+    const auto histogram = capture.transient.histogram(pair);
+    std::vector<double> edges(histogram.size() + 1);
+    for (std::size_t bin = 0; bin < edges.size(); ++bin) {
+        const double opl =
+            capture.time_axis.bin_begin_m(static_cast<double>(bin)) - scan.device_legs_m(pair);
+        edges[bin] = opl > offset ? std::sqrt(opl * opl - offset * offset) : 0.0;
+    }
+    const auto count = static_cast<std::size_t>(axis.num_bins);
+    std::vector<float> moved(count);
+    ConservativeResampling(edges,
+                           even_edges(0.0, axis.opl_end_m(), count),
+                           std::vector<double>(histogram.size(), 1.0))
+        .apply(histogram.data(), moved.data());
+    for (std::size_t bin = 0; bin < count; ++bin) sum[bin] += moved[bin];
+}
+
+}  // namespace
+
+std::optional<core::Capture> convert_to_confocal(const core::Capture& capture) {
+    const WallFrame wall = derive_wall_frame(capture.scan);
+    const std::optional<MidpointGrid> grid = find_midpoint_grid(capture.scan, wall);
+    if (!grid) return std::nullopt;
+    core::Capture confocal;
+    confocal.scan.pattern = core::ScanPattern::Confocal;
+    confocal.scan.sensing = wall_points(*grid, wall);
+    confocal.scan.illumination = confocal.scan.sensing;
+    confocal.unit = capture.unit;
+    confocal.time_axis = confocal_axis(capture);
+    confocal.transient = core::Transient(grid->pairs.size(), confocal.time_axis.num_bins);
+    core::parallel_for(grid->pairs.size(), [&](std::size_t point) {
+        const auto sum = confocal.transient.histogram(point);
+        for (const std::size_t pair : grid->pairs[point]) {
+            add_moved(capture, pair, confocal.time_axis, sum);
+        }
+        const auto share = 1.0F / static_cast<float>(grid->pairs[point].size());
+        for (float& value : sum) value *= share;
+    });
+    return confocal;
+}
+
+}  // namespace nlos

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/core/triangle_histogram.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace core {
+namespace {
+
+// Corners sorted by position along the axis; positions in any unit.
+//
+// Let p0 <= p1 <= p2 and K0, K1, K2 be positions and weights. The level set p = e cuts the edge 0-2
+// at the fraction b = (e-p0)/(p2-p0) and, for e < p1, the edge 0-1 at a = (e-p0)/(p1-p0). The part
+// below e is the triangle (corner 0, those two cuts), a share a*b of the area, and the mean of a
+// linear weight over a triangle is the mean of its corner values:
+//
+//     C(e) = a b [K0 + (a (K1-K0) + b (K2-K0))/3],        e <= p1
+//
+// and the same seen from corner 2 for e >= p1, subtracted from the mean (K0+K1+K2)/3. All factors
+// are ratios in [0, 1]: nothing cancels, however small the triangle is.
+struct SortedTriangle {
+    double p0, p1, p2;
+    double k0, k1, k2;
+
+    SortedTriangle(const std::array<double, 3>& position, const std::array<double, 3>& weight)
+        : p0(position[0]),
+          p1(position[1]),
+          p2(position[2]),
+          k0(weight[0]),
+          k1(weight[1]),
+          k2(weight[2]) {
+        order(p0, p1, k0, k1);
+        order(p1, p2, k1, k2);
+        order(p0, p1, k0, k1);
+    }
+
+    double mean() const { return (k0 + k1 + k2) / 3.0; }
+
+    // For p0 < e < p2.
+    double below(double e) const {
+        if (e < p1) {
+            const double a = (e - p0) / (p1 - p0);
+            const double b = (e - p0) / (p2 - p0);
+            return a * b * (k0 + (a * (k1 - k0) + b * (k2 - k0)) / 3.0);
+        }
+        const double a = (p2 - e) / (p2 - p1);
+        const double b = (p2 - e) / (p2 - p0);
+        return mean() - a * b * (k2 + (a * (k1 - k2) + b * (k0 - k2)) / 3.0);
+    }
+
+   private:
+    static void order(double& a, double& b, double& ka, double& kb) {
+        const bool swapped = b < a;
+        const double low = swapped ? b : a;
+        const double high = swapped ? a : b;
+        const double k_low = swapped ? kb : ka;
+        const double k_high = swapped ? ka : kb;
+        a = low;
+        b = high;
+        ka = k_low;
+        kb = k_high;
+    }
+};
+
+double mean_of(const std::array<double, 3>& values) {
+    return (values[0] + values[1] + values[2]) / 3.0;
+}
+
+}  // namespace
+
+TriangleKnots match_midpoints(const TriangleKnots& at_corners, const TriangleKnots& at_midpoints) {
+    TriangleKnots knots = at_corners;
+    const double shift = mean_of(at_midpoints.opl_m) - mean_of(at_corners.opl_m);
+    for (double& opl : knots.opl_m) opl += shift;
+
+    const double mean = mean_of(at_midpoints.weight);
+    const double corner_mean = mean_of(at_corners.weight);
+    const double lowest = *std::min_element(knots.weight.begin(), knots.weight.end()) - corner_mean;
+    const double spread = lowest < -mean ? mean / -lowest : 1.0;
+    for (double& weight : knots.weight) weight = mean + spread * (weight - corner_mean);
+    return knots;
+}
+
+double triangle_cumulative(const TriangleKnots& knots, double opl_m) {
+    const SortedTriangle triangle(knots.opl_m, knots.weight);
+    if (opl_m <= triangle.p0) return 0.0;
+    return opl_m < triangle.p2 ? triangle.below(opl_m) : triangle.mean();
+}
+
+void add_triangle(const TriangleKnots& knots,
+                  double area_m2,
+                  const TimeAxis& axis,
+                  std::span<double> histogram) {
+    const double per_m = 1.0 / axis.bin_width_m;
+    const auto position = [&](double opl_m) { return (opl_m - axis.opl_start_m) * per_m; };
+    const SortedTriangle triangle(
+        {position(knots.opl_m[0]), position(knots.opl_m[1]), position(knots.opl_m[2])},
+        knots.weight);
+    const double num_bins = axis.num_bins;
+    if (!(triangle.p2 >= 0.0) || !(triangle.p0 < num_bins)) return;
+
+    const double last = std::floor(triangle.p2);
+    if (triangle.p0 >= last) {
+        if (last < num_bins) histogram[static_cast<std::size_t>(last)] += area_m2 * triangle.mean();
+        return;
+    }
+    double edge = std::max(0.0, std::floor(triangle.p0));
+    double below = edge > triangle.p0 ? triangle.below(edge) : 0.0;
+    auto bin = static_cast<std::size_t>(edge);
+    for (edge += 1.0; edge <= last && edge <= num_bins; edge += 1.0, ++bin) {
+        const double next = edge < triangle.p2 ? triangle.below(edge) : triangle.mean();
+        histogram[bin] += area_m2 * (next - below);
+        below = next;
+    }
+    if (last < num_bins) histogram[bin] += area_m2 * (triangle.mean() - below);
+}
+
+}  // namespace core

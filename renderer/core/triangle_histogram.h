@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "renderer/core/time_axis.h"
+
+namespace core {
+
+/// A triangle over which path length and weight are linear: their values at its three corners.
+///
+/// The weight is what a unit of area adds to the histogram.
+struct TriangleKnots {
+    std::array<double, 3> opl_m{};
+    std::array<double, 3> weight{};
+};
+
+/// Linear knots of a triangle on which length and weight are only nearly linear.
+///
+/// The corner values are shifted by the same amount so that their mean is the mean at the edges'
+/// midpoints, which is the mean over the triangle up to third order. That removes the convexity
+/// bias of the corners. Weights stay at or above 0: where a corner would fall below, the spread
+/// about the mean shrinks until it does not.
+///
+/// at_corners    exact lengths [m] and weights at the corners
+/// at_midpoints  the same at the midpoints of the three edges, in any order
+TriangleKnots match_midpoints(const TriangleKnots& at_corners, const TriangleKnots& at_midpoints);
+
+/// Mean over the triangle of weight * [length < opl_m]: the cumulative histogram per unit area.
+double triangle_cumulative(const TriangleKnots& knots, double opl_m);
+
+/// Adds a triangle's exact histogram: every bin receives area times the mean over the triangle of
+/// weight * [length in bin]. What lies outside the axis is left out.
+///
+/// area_m2     of the triangle
+/// histogram   axis.num_bins values
+/// source      the linear case s -> 0 of the divided-difference form in [deBoor1978]; derived in
+///             triangle_histogram.cpp
+void add_triangle(const TriangleKnots& knots,
+                  double area_m2,
+                  const TimeAxis& axis,
+                  std::span<double> histogram);
+
+}  // namespace core

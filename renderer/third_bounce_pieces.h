@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "renderer/core/capture.h"
+#include "renderer/scene.h"
+
+namespace renderer {
+
+/// How a piece's weight follows from the geometry terms of its two legs.
+enum class PieceKind { Lambertian, Retroreflective, Glossy };
+
+/// True for surfaces whose third bounce the deterministic integrator takes: Lambertian and
+/// retroreflective ones, and GGX lobes wide enough to be smooth over a piece.
+bool is_integrable(const Material& material);
+
+/// A flat triangle small enough for the closed-form kernel; positions relative to PieceSet::origin.
+struct Piece {
+    std::array<core::Vec3, 3> corners;
+    std::uint32_t facet = 0;
+
+    core::Vec3 center() const { return (corners[0] + corners[1] + corners[2]) / 3.0; }
+    /// Midpoint of the edge from corner i to the next one.
+    core::Vec3 midpoint(std::size_t i) const { return 0.5 * (corners[i] + corners[(i + 1) % 3]); }
+};
+
+/// Pieces of one kind in the layout of vectorised loops. Nodes 0-2 are corners, 3-5 midpoints.
+struct alignas(64) PieceBlock {
+    static constexpr std::size_t kSize = 64;
+    using Lanes = std::array<double, kSize>;
+
+    std::array<Lanes, 3> x, y, z;  ///< corners, relative to PieceSet::origin [m]
+    Lanes normal_x, normal_y, normal_z;
+    Lanes center_x, center_y, center_z;
+    Lanes area_m2;
+    Lanes one_sided;                     ///< +-1: only this side of the normal is ever seen; 0: both
+    std::array<Lanes, 6> reflectance;    ///< at the nodes; albedo/pi or albedo/spot area
+    std::array<Bsdf, kSize> glossy;      ///< set for glossy pieces only
+    std::array<std::uint32_t, kSize> facet;
+    PieceKind kind = PieceKind::Lambertian;
+    std::size_t count = 0;  ///< lanes beyond it repeat lane 0 with area 0
+    core::Vec3 sphere_center;
+    double sphere_radius_m = 0.0;  ///< holds all corners
+    double longest_edge_m = 0.0;
+};
+
+/// Neighbouring pieces of one object that one shadow ray may stand for: lanes [begin, end).
+struct PieceGroup {
+    std::uint32_t block = 0;
+    std::uint32_t begin = 0;
+    std::uint32_t end = 0;
+};
+
+/// Lists of neighbours: those of item i are items[begin[i] .. begin[i + 1]).
+struct NeighbourLists {
+    std::vector<std::uint32_t> begin;
+    std::vector<std::uint32_t> items;
+};
+
+/// The hidden surfaces cut into pieces, piece i in lane i % kSize of block i / kSize.
+struct PieceSet {
+    core::Vec3 origin = core::Vec3::Zero();  ///< world; keeps precision far from the world's origin
+    std::vector<PieceBlock> blocks;
+    std::vector<PieceGroup> groups;
+    std::vector<std::uint32_t> first_group;  ///< per block, and one past the last
+    NeighbourLists piece_neighbours;         ///< pieces that share an edge
+    NeighbourLists group_neighbours;
+    std::size_t num_pieces = 0;
+};
+
+/// How finely to cut.
+struct PieceRules {
+    double tolerance = 0.01;  ///< relative L2 error that the size rule aims at
+    double laser_spot_m2 = 1e-4;
+};
+
+/// Cuts the integrable hidden facets in front of the scan's points into pieces.
+///
+/// Facets are clipped at the wall's plane and bisected along their longest edge until length,
+/// falloff and cosines are linear enough over each piece, as seen from the nearest wall point;
+/// what no pair can see within the axis is left out.
+PieceSet cut_pieces(const Scene& scene,
+                    const core::Scan& scan,
+                    const core::TimeAxis& axis,
+                    const PieceRules& rules);
+
+}  // namespace renderer

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: MIT
+// The program as its users call it: outputs, exit codes, and one line for whatever is wrong.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "nlos/formats/capture_file.h"
+#include "nlos/formats/volume_file.h"
+#include "renderer/core/settings.h"
+#include "renderer/gltf.h"
+#include "tests/support/file_bytes.h"
+#include "tests/support/temporary_folder.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+using test_support::file_bytes;
+using test_support::write_file_bytes;
+
+struct Outcome {
+    int status = -1;
+    std::string out;
+    std::string err;
+};
+
+class CommandLine : public testing::Test {
+   protected:
+    std::string file(const std::string& name) const { return folder_.file(name); }
+
+    // Runs the program in the source folder.
+    Outcome run(const std::string& arguments) const {
+        const std::string command = "cd '" NLOS_SOURCE_DIR "' && '" NLOS_PROGRAM "' " + arguments +
+                                    " >'" + file("out.txt") + "' 2>'" + file("err.txt") + "'";
+        const int raw = std::system(command.c_str());
+        return {WEXITSTATUS(raw), file_bytes(file("out.txt")), file_bytes(file("err.txt"))};
+    }
+
+    // Expects status 2, one line that contains `part`, and that `output` stays as it was.
+    void expect_bad_input(const std::string& arguments,
+                          const std::string& part,
+                          const std::string& output = "") const {
+        if (!output.empty()) write_file_bytes(output, "older result");
+        const Outcome outcome = run(arguments);
+        EXPECT_EQ(outcome.status, 2) << arguments << "\n" << outcome.err;
+        EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1)
+            << arguments << "\n" << outcome.err;
+        EXPECT_NE(outcome.err.find(part), std::string::npos) << arguments << "\n" << outcome.err;
+        if (output.empty()) return;
+        EXPECT_EQ(file_bytes(output), "older result") << arguments;
+        for (const auto& entry : fs::directory_iterator(fs::path(output).parent_path())) {
+            EXPECT_EQ(entry.path().string().find(".partial"), std::string::npos) << entry.path();
+        }
+    }
+
+    // A small scene beside a copy of the letter; `changes` are merged into its JSON.
+    std::string make_scene(const std::string& name, const core::Json& changes) const {
+        fs::copy_file(NLOS_SOURCE_DIR "/scenes/letter/scene.glb",
+                      file("scene.glb"),
+                      fs::copy_options::overwrite_existing);
+        core::Json scene = core::read_json_file(NLOS_SOURCE_DIR "/scenes/letter/scene.json");
+        scene["scan"]["sensing_points"] = {16, 16};
+        scene["render"]["samples"] = 32;
+        scene.merge_patch(changes);
+        write_file_bytes(file(name), scene.dump());
+        return file(name);
+    }
+
+    test_support::TemporaryFolder folder_;
+};
+
+TEST_F(CommandLine, SceneToScoredReconstruction) {
+    const std::string scene = make_scene("scene.json", core::Json::object());
+    const Outcome render = run("render " + scene + " -o " + file("capture.h5") + " --threads 2");
+    EXPECT_EQ(render.status, 0) << render.err;
+    EXPECT_EQ(render.err, "");
+    EXPECT_NE(render.out.find("wrote " + file("capture.h5")), std::string::npos);
+
+    for (const std::string method : {"lct", "bp"}) {
+        const std::string volume = file(method + ".h5");
+        const Outcome reconstruct = run("reconstruct " + file("capture.h5") + " -o " + volume +
+                                        " --method " + method + " --ply " + file(method + ".ply") +
+                                        " --set volume.z_range_m=[0.5,0.9]");
+        EXPECT_EQ(reconstruct.status, 0) << reconstruct.err;
+        EXPECT_TRUE(fs::exists(file(method + ".png")));
+        EXPECT_TRUE(fs::exists(file(method + ".ply")));
+        const Outcome compare =
+            run("compare " + volume + " " + scene + " -o " + file("metrics.json"));
+        EXPECT_EQ(compare.status, 0) << compare.err;
+        const core::Json metrics = core::read_json_file(file("metrics.json"));
+        EXPECT_LT(metrics["depth_mae_m"].get<double>(), 0.01) << method;
+        EXPECT_GT(metrics["mask_iou_best"].get<double>(), 0.5) << method;
+        EXPECT_TRUE(metrics.contains("rotation_error_deg"));
+        EXPECT_TRUE(metrics["rotation_error_deg"].is_null());
+        const Outcome cloud = run("compare " + file(method + ".ply") + " " + scene);
+        EXPECT_EQ(cloud.status, 0) << cloud.err;
+        EXPECT_NE(cloud.out.find("chamfer_m"), std::string::npos);
+    }
+}
+
+TEST_F(CommandLine, EqualSeedsGiveEqualFilesWhateverTheThreads) {
+    const std::string scene = make_scene("scene.json", core::Json::object());
+    std::vector<core::Capture> captures;
+    for (const std::string arguments : {"--threads 1", "--threads 2", "--threads 2 --seed 1"}) {
+        const Outcome outcome = run("render " + scene + " -o " + file("c.h5") + " " + arguments);
+        ASSERT_EQ(outcome.status, 0) << outcome.err;
+        captures.push_back(nlos::read_capture(file("c.h5")));
+    }
+    const auto values = [&](std::size_t i) { return captures[i].transient.values(); };
+    EXPECT_TRUE(std::equal(values(0).begin(), values(0).end(), values(1).begin()));
+    EXPECT_FALSE(std::equal(values(0).begin(), values(0).end(), values(2).begin()));
+}
+
+TEST_F(CommandLine, CaptureRemembersHowItWasMade) {
+    const std::string scene = make_scene("scene.json", core::Json::object());
+    ASSERT_EQ(run("render " + scene + " -o " + file("c.h5") + " --seed 7").status, 0);
+    const core::Json info = nlos::read_capture(file("c.h5")).scene_info;
+    EXPECT_EQ(info["settings"]["render"]["seed"], 7);
+    EXPECT_NE(info["command"].get<std::string>().find("--seed 7"), std::string::npos);
+    EXPECT_NE(info["program"].get<std::string>().find("nlos 0."), std::string::npos);
+}
+
+TEST_F(CommandLine, HelpOnEveryLevelEndsWithAnExample) {
+    EXPECT_NE(run("--help").out.find("Example:"), std::string::npos);
+    EXPECT_NE(run("--version").out.find("nlos 0."), std::string::npos);
+    for (const std::string name : {"render", "reconstruct", "compare", "info", "report", "demo"}) {
+        const Outcome outcome = run(name + " --help");
+        EXPECT_EQ(outcome.status, 0) << name;
+        EXPECT_NE(outcome.out.find("Example:\n  nlos " + name), std::string::npos) << name;
+    }
+    EXPECT_NE(run("render --help").out.find("time_axis.bin_width_m = 0.008"), std::string::npos);
+}
+
+TEST_F(CommandLine, BadUsageIsOneLine) {
+    expect_bad_input("", "nlos");
+    expect_bad_input("unknown", "unknown");
+    expect_bad_input("render scenes/letter/scene.json", "output");
+    expect_bad_input("reconstruct some.h5", "output");
+    expect_bad_input("render scenes/letter/scene.json -o x.h5 --samples", "samples");
+    expect_bad_input("render scenes/letter/scene.json -o " + file("x.h5") + " --threads -1", "");
+    expect_bad_input("render scenes/letter/scene.json -o " + file("none/x.h5"), "folder");
+}
+
+TEST_F(CommandLine, BadScenesAreOneLineAndKeepOlderResults) {
+    const std::string out = file("capture.h5");
+    const auto expect_bad_scene = [&](const core::Json& changes, const std::string& part) {
+        expect_bad_input("render " + make_scene("bad.json", changes) + " -o " + out, part, out);
+    };
+    expect_bad_input("render " + file("missing.json") + " -o " + out, "missing.json", out);
+    expect_bad_scene({{"scann", 1}}, "known keys are geometry");
+    expect_bad_scene({{"geometry", "missing.glb"}}, "missing.glb");
+    expect_bad_scene({{"time_axis", {{"num_bins", 0}}}}, "num_bins");
+    expect_bad_scene({{"time_axis", {{"bin_width_m", -1}}}}, "bin_width_m");
+    expect_bad_scene({{"time_axis", {{"bin_width_m", "wide"}}}}, "bin_width_m");
+    expect_bad_scene({{"relay_wall", {{"normal", {0, 0, 0}}}}}, "normal");
+    expect_bad_scene({{"relay_wall", {{"up", {0, 0, 1}}}}}, "up");
+    expect_bad_scene({{"relay_wall", {{"normal", {0, 0, -1}}}}}, "in front of");
+    expect_bad_scene({{"relay_wall", {{"center_m", {0, 0, 2}}}}}, "in front of");
+    expect_bad_scene({{"scan", {{"sensing_points", {0, 4}}}}}, "sensing_points");
+    expect_bad_scene({{"scan", {{"sensing_points", {1000000, 1000000}}}}}, "sensing_points");
+    expect_bad_scene({{"scan", {{"opl_origin", "device"}}}}, "laser_m");
+    expect_bad_scene({{"scan", {{"sensing_points_m", {{0, 0, 0}}}}}}, "normals");
+    expect_bad_scene({{"render", {{"samples", 0}}}}, "samples");
+    expect_bad_scene({{"render", {{"method", "magic"}}}}, "auto");
+    write_file_bytes(file("cut.json"), R"({"geometry": "scene.glb", )");
+    expect_bad_input("render " + file("cut.json") + " -o " + out, "JSON", out);
+    expect_bad_input("render scenes/letter/scene.json -o " + out + " --set time_axis.num_bin=3",
+                     "known keys are",
+                     out);
+    expect_bad_input("render scenes/letter/scene.json -o " + out + " --set time_axis", "--set", out);
+}
+
+TEST_F(CommandLine, BadGeometryIsOneLineAndKeepsOlderResults) {
+    const std::string out = file("capture.h5");
+    const std::string scene = make_scene("scene.json", core::Json::object());
+    const std::string glb = file_bytes(file("scene.glb"));
+    for (const double share : {0.0, 0.01, 0.3, 0.7, 0.99}) {
+        write_file_bytes(file("scene.glb"), glb.substr(0, std::size_t(share * double(glb.size()))));
+        expect_bad_input("render " + scene + " -o " + out, "scene.glb", out);
+    }
+    write_file_bytes(file("scene.gltf"), R"({"asset": {"version": "2.0"}})");
+    expect_bad_input(
+        "render " + make_scene("empty.json", {{"geometry", "scene.gltf"}}) + " -o " + out,
+        "scene.gltf",
+        out);
+}
+
+TEST_F(CommandLine, BadCapturesAreOneLineAndKeepOlderResults) {
+    const std::string out = file("volume.h5");
+    const std::string scene = make_scene("scene.json", core::Json::object());
+    ASSERT_EQ(run("render " + scene + " -o " + file("capture.h5")).status, 0);
+    const std::string bytes = file_bytes(file("capture.h5"));
+    for (const double share : {0.0, 0.001, 0.2, 0.6, 0.999}) {
+        write_file_bytes(file("cut.h5"), bytes.substr(0, std::size_t(share * double(bytes.size()))));
+        expect_bad_input("reconstruct " + file("cut.h5") + " -o " + out, "cut.h5", out);
+        expect_bad_input("info " + file("cut.h5"), "cut.h5");
+    }
+    expect_bad_input("reconstruct " + file("none.h5") + " -o " + out, "none.h5", out);
+    expect_bad_input("reconstruct " + file("capture.h5") + " -o " + out + " --method fish", "", out);
+    expect_bad_input(
+        "reconstruct " + file("capture.h5") + " -o " + out + " --set snr=-1", "snr", out);
+
+    // NaN written behind the writer's back: the first four bytes of the brightest value.
+    const core::Capture capture = nlos::read_capture(file("capture.h5"));
+    const auto values = capture.transient.values();
+    const float peak = *std::max_element(values.begin(), values.end());
+    const std::string pattern(reinterpret_cast<const char*>(&peak), sizeof(peak));
+    const std::size_t at = bytes.find(pattern);
+    ASSERT_NE(at, std::string::npos);
+    const float nan = std::nanf("");
+    std::string poisoned = bytes;
+    poisoned.replace(at, sizeof(nan), reinterpret_cast<const char*>(&nan), sizeof(nan));
+    write_file_bytes(file("nan.h5"), poisoned);
+    expect_bad_input("reconstruct " + file("nan.h5") + " -o " + out, "finite", out);
+}
+
+TEST_F(CommandLine, FilesThatDoNotFitTogetherAreRefused) {
+    const std::string scene = make_scene("scene.json", core::Json::object());
+    const std::string single = make_scene("single.json", {{"scan", {{"pattern", "single"}}}});
+    ASSERT_EQ(run("render " + single + " -o " + file("single.h5")).status, 0);
+    expect_bad_input("compare " + file("single.h5") + " " + scene, "cannot be compared");
+    expect_bad_input("reconstruct " + file("single.h5") + " -o " + file("v.h5") + " --method lct",
+                     "bp",
+                     file("v.h5"));
+    expect_bad_input("report " + file("nowhere") + " -o " + file("r.html"), "nowhere");
+}
+
+TEST_F(CommandLine, DemoMakesASelfContainedReport) {
+    const Outcome outcome = run("demo -o " + file("demo"));
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const std::string page = file_bytes(file("demo/report.html"));
+    EXPECT_NE(page.find("data:image/png;base64,"), std::string::npos);
+    EXPECT_EQ(page.find("src=\"http"), std::string::npos);
+    EXPECT_NE(outcome.out.find("wrote " + file("demo/report.html")), std::string::npos);
+}
+
+}  // namespace

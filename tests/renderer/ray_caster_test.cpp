@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/ray_caster.h"
+
+#include <gtest/gtest.h>
+
+#include "renderer/core/random.h"
+#include "renderer/scene.h"
+#include "tests/support/statistics.h"
+#include "tests/support/test_scenes.h"
+
+namespace {
+
+using core::Vec3;
+
+// A closed sphere: seen from inside, every ray must hit, and no chord may be blocked.
+class RayCasterOnSphere : public testing::TestWithParam<std::pair<Vec3, double>> {
+   protected:
+    RayCasterOnSphere() {
+        const auto& [center, radius] = GetParam();
+        const renderer::Object sphere = test_support::sphere_object(center, radius, 4, 1.0);
+        for (const auto& [a, b, c] : sphere.mesh.triangles) {
+            corners_.push_back(
+                {sphere.mesh.vertices[a], sphere.mesh.vertices[b], sphere.mesh.vertices[c]});
+        }
+    }
+
+    Vec3 normal_of(std::size_t facet) const {
+        const auto& [a, b, c] = corners_[facet];
+        return (b - a).cross(c - a).normalized();
+    }
+    Vec3 centroid_of(std::size_t facet) const {
+        const auto& [a, b, c] = corners_[facet];
+        return (a + b + c) / 3.0;
+    }
+
+    std::vector<std::array<Vec3, 3>> corners_;
+};
+
+TEST_P(RayCasterOnSphere, NoRayLeaks) {
+    const auto& [center, radius] = GetParam();
+    const renderer::RayCaster rays(corners_, {});
+    core::Rng rng(test_support::seed_of("RayCaster.leak"), 0, 0);
+    for (int i = 0; i < 20'000; ++i) {
+        const auto facet = static_cast<std::size_t>(rng.uniform() * double(corners_.size()));
+        // Towards corners and edges, where meshes leak.
+        const Vec3 target = corners_[facet][static_cast<std::size_t>(rng.uniform() * 3.0)];
+        const Vec3 direction = (target - center).normalized();
+        const auto hit = rays.first_hit(center, direction, direction);
+        ASSERT_TRUE(hit);
+        EXPECT_NEAR(hit->distance_m / radius, 1.0, 0.01);
+    }
+}
+
+TEST_P(RayCasterOnSphere, ChordsAreFreeAndWallsBlock) {
+    const auto& [center, radius] = GetParam();
+    const renderer::RayCaster rays(corners_, {});
+    core::Rng rng(test_support::seed_of("RayCaster.chord"), 0, 0);
+    renderer::SegmentPacket packet;
+    int blocked = 0;
+    int count = 0;
+    for (int i = 0; i < 20'000; ++i) {
+        const auto a = static_cast<std::size_t>(rng.uniform() * double(corners_.size()));
+        const auto b = static_cast<std::size_t>(rng.uniform() * double(corners_.size()));
+        if ((centroid_of(a) - centroid_of(b)).norm() < 0.3 * radius) continue;
+        ++count;
+        blocked += rays.is_blocked(centroid_of(a), normal_of(a), centroid_of(b), normal_of(b));
+        const Vec3 outside = centroid_of(a) + 2.0 * (centroid_of(b) - centroid_of(a));
+        EXPECT_TRUE(rays.is_blocked(centroid_of(a), normal_of(a), outside, normal_of(b)));
+        rays.add_segment(packet, centroid_of(a), normal_of(a), centroid_of(b), normal_of(b));
+        if (!packet.full()) continue;
+        rays.trace(packet);
+        for (int lane = 0; lane < packet.count; ++lane) {
+            EXPECT_FALSE(packet.blocked[static_cast<std::size_t>(lane)]);
+        }
+        packet.count = 0;
+    }
+    EXPECT_EQ(blocked, 0) << "of " << count;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Scales,
+    RayCasterOnSphere,
+    testing::Values(std::pair{Vec3(0, 0, 0), 0.5},
+                    std::pair{Vec3(1000, -1000, 1000), 0.5},  // a node translated by a kilometre
+                    std::pair{Vec3(0, 0, 0), 5e-3},           // facets of about 0.1 mm
+                    std::pair{Vec3(1, 2, 3), 100.0}));
+
+// Facets of 0.1 mm in a set-up of 1 m: seen from the wall, none hides another, all hide the back.
+TEST(RayCaster, TinyFacetsInALargeSceneHoldTight) {
+    std::vector<std::array<Vec3, 3>> corners;
+    constexpr int kSteps = 40;
+    constexpr double kStep = 1e-4;
+    const auto grid = [&](int i, int j) { return Vec3(i * kStep, j * kStep, 0.8); };
+    for (int i = 0; i < kSteps; ++i) {
+        for (int j = 0; j < kSteps; ++j) {
+            corners.push_back({grid(i, j), grid(i + 1, j), grid(i, j + 1)});
+            corners.push_back({grid(i + 1, j), grid(i + 1, j + 1), grid(i, j + 1)});
+        }
+    }
+    const Vec3 wall_point(0.3, -0.4, 0.0);
+    const renderer::RayCaster rays(corners, std::vector<Vec3>{wall_point, Vec3(-0.5, 0.5, 0)});
+    const Vec3 normal = Vec3::UnitZ();
+    for (const auto& [a, b, c] : corners) {
+        const Vec3 centroid = (a + b + c) / 3.0;
+        EXPECT_FALSE(rays.is_blocked(wall_point, normal, centroid, normal));
+        const Vec3 behind = centroid + 1e-3 * (centroid - wall_point);
+        EXPECT_TRUE(rays.is_blocked(wall_point, normal, behind, normal));
+        const auto hit = rays.first_hit(wall_point, normal, (centroid - wall_point).normalized());
+        ASSERT_TRUE(hit);
+        EXPECT_NEAR(hit->distance_m, (centroid - wall_point).norm(), 1e-9);
+    }
+}
+
+}  // namespace
