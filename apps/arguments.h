@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "renderer/core/settings.h"
+
 #include <CLI/CLI.hpp>
+
 #include <string>
 #include <vector>
-
-#include "renderer/core/settings.h"
 
 namespace apps {
 

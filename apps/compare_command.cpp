@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include <fmt/core.h>
-
-#include <memory>
-
 #include "apps/arguments.h"
 #include "apps/commands.h"
 #include "apps/compare_job.h"
+
+#include <fmt/core.h>
+
+#include <memory>
 
 namespace apps {
 namespace {
@@ -18,8 +18,8 @@ struct CompareArguments {
 };
 
 void run(const CompareArguments& arguments) {
-    const nlos::Metrics metrics = compare_files(
-        arguments.a, arguments.b, arguments.output, arguments.fscore_threshold_m);
+    const nlos::Metrics metrics =
+        compare_files(arguments.a, arguments.b, arguments.output, arguments.fscore_threshold_m);
     nlos::Metrics copy = metrics;
     for_each_field(copy, [](const char* name, const auto& value, const char* meaning) {
         if (value) fmt::print("{:<20} {:<12.6g} {}\n", name, static_cast<double>(*value), meaning);
@@ -33,7 +33,8 @@ void add_compare_command(CLI::App& app) {
     CLI::App* command =
         app.add_subcommand("compare", "Score a result against the truth or another result");
     const auto arguments = std::make_shared<CompareArguments>();
-    command->add_option("A", arguments->a, "Volume, capture (.h5), point cloud or mesh (.ply, .glb)")
+    command
+        ->add_option("A", arguments->a, "Volume, capture (.h5), point cloud or mesh (.ply, .glb)")
         ->required();
     command->add_option("B", arguments->b, "scene.json as the truth, or another of A's kind")
         ->required();

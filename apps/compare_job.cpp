@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "apps/compare_job.h"
 
-#include <filesystem>
-#include <optional>
-
 #include "apps/arguments.h"
 #include "nlos/formats/capture_file.h"
 #include "nlos/formats/picture.h"
@@ -13,6 +10,9 @@
 #include "renderer/core/output_file.h"
 #include "renderer/gltf.h"
 #include "renderer/ground_truth.h"
+
+#include <filesystem>
+#include <optional>
 
 namespace apps {
 namespace {
@@ -85,8 +85,7 @@ nlos::Metrics compare_kinds(const std::string& a,
     if (kind_a == Kind::Mesh && kind_b == Kind::Scene) {
         const Truth truth(b);
         const auto map = renderer::trace_ground_truth(truth.scene, truth.description);
-        return nlos::compare_points(
-            surface_points(a), renderer::visible_points(map), threshold_m);
+        return nlos::compare_points(surface_points(a), renderer::visible_points(map), threshold_m);
     }
     if (kind_a == Kind::Volume && kind_b == Kind::Volume) {
         return nlos::compare_volumes(nlos::read_volume(a), nlos::read_volume(b));

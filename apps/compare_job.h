@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <string>
-
 #include "nlos/compare.h"
+
+#include <string>
 
 namespace apps {
 

@@ -1,9 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <fmt/core.h>
-
-#include <filesystem>
-#include <memory>
-
 #include "apps/arguments.h"
 #include "apps/commands.h"
 #include "apps/compare_job.h"
@@ -15,6 +10,11 @@
 #include "nlos/pictures.h"
 #include "renderer/core/output_file.h"
 #include "renderer/ground_truth.h"
+
+#include <fmt/core.h>
+
+#include <filesystem>
+#include <memory>
 
 namespace apps {
 namespace {

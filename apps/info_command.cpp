@@ -1,9 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <fmt/core.h>
-
-#include <filesystem>
-#include <memory>
-
 #include "apps/arguments.h"
 #include "apps/commands.h"
 #include "nlos/formats/capture_file.h"
@@ -11,6 +6,11 @@
 #include "nlos/formats/volume_file.h"
 #include "renderer/gltf.h"
 #include "renderer/scene_file.h"
+
+#include <fmt/core.h>
+
+#include <filesystem>
+#include <memory>
 
 namespace apps {
 namespace {
@@ -64,18 +64,19 @@ void describe_geometry(const std::string& path) {
     for (const renderer::Object& object : geometry.objects) {
         Eigen::AlignedBox3d box;
         for (const core::Vec3& vertex : object.mesh.vertices) box.extend(vertex);
-        fmt::print("object {}: {} triangles, role {}, albedo {:.3f}, x {:.3f} to {:.3f}, "
-                   "y {:.3f} to {:.3f}, z {:.3f} to {:.3f} m\n",
-                   object.name.empty() ? "(unnamed)" : object.name,
-                   object.mesh.triangles.size(),
-                   core::enum_name(object.role),
-                   object.material.albedo,
-                   box.min().x(),
-                   box.max().x(),
-                   box.min().y(),
-                   box.max().y(),
-                   box.min().z(),
-                   box.max().z());
+        fmt::print(
+            "object {}: {} triangles, role {}, albedo {:.3f}, x {:.3f} to {:.3f}, "
+            "y {:.3f} to {:.3f}, z {:.3f} to {:.3f} m\n",
+            object.name.empty() ? "(unnamed)" : object.name,
+            object.mesh.triangles.size(),
+            core::enum_name(object.role),
+            object.material.albedo,
+            box.min().x(),
+            box.max().x(),
+            box.min().y(),
+            box.max().y(),
+            box.min().z(),
+            box.max().z());
     }
 }
 
@@ -91,9 +92,8 @@ void run(const InfoArguments& arguments) {
     if (suffix == ".glb" || suffix == ".gltf") return describe_geometry(path);
     if (suffix == ".ply") {
         const core::TriangleMesh mesh = nlos::read_ply(path);
-        fmt::print("format: PLY, {} points, {} triangles\n",
-                   mesh.vertices.size(),
-                   mesh.triangles.size());
+        fmt::print(
+            "format: PLY, {} points, {} triangles\n", mesh.vertices.size(), mesh.triangles.size());
         return;
     }
     if (nlos::is_volume_file(path)) return describe_volume(path);
@@ -110,8 +110,8 @@ void add_info_command(CLI::App& app) {
     command->add_option("FILE", arguments->file, "Capture, volume, scene.json, glTF or PLY")
         ->required();
     add_set_option(*command, arguments->overrides);
-    command->footer(settings_footer(core::settings_help(InfoOptions{}),
-                                    "nlos info scenes/letter/scene.json"));
+    command->footer(
+        settings_footer(core::settings_help(InfoOptions{}), "nlos info scenes/letter/scene.json"));
     command->callback([arguments] { run(*arguments); });
 }
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include <algorithm>
-#include <cstdio>
-#include <exception>
-#include <new>
-
 #include "apps/arguments.h"
 #include "apps/commands.h"
 #include "apps/terminal.h"
 #include "apps/version.h"
 #include "renderer/core/error.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <new>
 
 namespace {
 
@@ -22,6 +22,18 @@ int fail(int status, std::string message) {
     return status;
 }
 
+// CLI11 would only say that a command is missing.
+void reject_unknown_command(const CLI::App& app, const std::vector<std::string>& arguments) {
+    if (arguments.empty() || arguments.front().starts_with('-')) return;
+    std::string known;
+    for (const CLI::App* command : app.get_subcommands({})) {
+        if (command->get_name() == arguments.front()) return;
+        known += (known.empty() ? "" : ", ") + command->get_name();
+    }
+    throw core::Error(
+        "nlos", "found unknown command '" + arguments.front() + "'", "known are " + known);
+}
+
 int run(const std::vector<std::string>& arguments) {
     CLI::App app("Non-line-of-sight imaging: simulate, reconstruct, compare.", "nlos");
     app.set_version_flag("--version", apps::version_text());
@@ -33,6 +45,8 @@ int run(const std::vector<std::string>& arguments) {
     apps::add_info_command(app);
     apps::add_report_command(app);
     apps::add_demo_command(app);
+
+    reject_unknown_command(app, arguments);
 
     std::vector<std::string> reversed = apps::expand_set_arguments(arguments);
     std::reverse(reversed.begin(), reversed.end());

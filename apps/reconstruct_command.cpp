@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include <fmt/core.h>
-
-#include <memory>
-
 #include "apps/arguments.h"
 #include "apps/commands.h"
 #include "apps/reconstruct_job.h"
 #include "renderer/core/parallel.h"
+
+#include <fmt/core.h>
+
+#include <memory>
 
 namespace apps {
 namespace {
@@ -49,13 +49,14 @@ void add_reconstruct_command(CLI::App& app) {
     command->add_option("CAPTURE", arguments->capture, "Capture in any readable format")
         ->required();
     command
-        ->add_option("-o,--output", arguments->output, "Volume to write (.h5); a .png goes beside it")
+        ->add_option(
+            "-o,--output", arguments->output, "Volume to write (.h5); a .png goes beside it")
         ->required();
     command->add_option("--method", arguments->method, "Method: auto, lct or bp (default auto)");
     command->add_option("--ply", arguments->ply, "Also write the surface points (.ply)");
     command->add_option("--threads", arguments->threads, "Threads; 0 takes all processors")
         ->capture_default_str()
-        ->check(CLI::NonNegativeNumber);
+        ->check(CLI::Range(0, 1024));
     add_set_option(*command, arguments->overrides);
     command->footer(settings_footer(core::settings_help(ReconstructOptions{}),
                                     "nlos reconstruct letter.h5 -o volume.h5 --method lct"));

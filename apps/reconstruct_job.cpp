@@ -22,8 +22,7 @@ nlos::Reconstruction reconstruct_to_file(const std::string& capture_path,
     const core::Capture capture = nlos::read_capture(capture_path, options.capture);
 
     ProgressBar bar("reconstruct");
-    nlos::Reconstruction result =
-        nlos::reconstruct(capture, options.reconstruct, bar.progress());
+    nlos::Reconstruction result = nlos::reconstruct(capture, options.reconstruct, bar.progress());
     nlos::write_volume(volume_path, result);
     nlos::write_panels_png(with_suffix(volume_path, ".png"), nlos::volume_panels(result), 2);
     if (!ply_path.empty()) nlos::write_ply(ply_path, result.points);

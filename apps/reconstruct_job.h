@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "nlos/formats/capture_file.h"
 #include "nlos/reconstruct.h"
+
+#include <string>
+#include <vector>
 
 namespace apps {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include <fmt/core.h>
-
-#include <filesystem>
-#include <memory>
-
 #include "apps/arguments.h"
 #include "apps/commands.h"
 #include "apps/render_job.h"
 #include "renderer/core/parallel.h"
+
+#include <fmt/core.h>
+
+#include <filesystem>
+#include <memory>
 
 namespace apps {
 namespace {
@@ -78,7 +78,7 @@ void add_render_command(CLI::App& app) {
     add_shorthand(*command, *arguments, "--seed", "render.seed", "N", "Seed of the random numbers");
     command->add_option("--threads", arguments->threads, "Threads; 0 takes all processors")
         ->capture_default_str()
-        ->check(CLI::NonNegativeNumber);
+        ->check(CLI::Range(0, 1024));
     add_set_option(*command, arguments->overrides);
     command->footer(settings_footer(core::settings_help(renderer::SceneDescription{}),
                                     "nlos render scenes/letter/scene.json -o letter.h5"));

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "apps/render_job.h"
 
-#include <filesystem>
-
 #include "apps/arguments.h"
 #include "apps/terminal.h"
 #include "apps/version.h"
 #include "nlos/formats/capture_file.h"
 #include "renderer/core/output_file.h"
 #include "renderer/render.h"
+
+#include <filesystem>
 
 namespace apps {
 namespace {
@@ -41,8 +41,8 @@ RenderJob render_to_file(const std::string& scene_path,
     const renderer::Scene scene = renderer::load_scene(description, scan);
 
     ProgressBar bar("render");
-    renderer::RenderResult result = renderer::render(
-        scene, scan, description.time_axis, description.render, bar.progress());
+    renderer::RenderResult result =
+        renderer::render(scene, scan, description.time_axis, description.render, bar.progress());
     result.capture.scene_info = provenance(scene_path, description, result);
     nlos::write_capture(capture_path, result.capture);
 

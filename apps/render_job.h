@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "renderer/scene_file.h"
+
 #include <cstdint>
 #include <string>
 #include <vector>
-
-#include "renderer/scene_file.h"
 
 namespace apps {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include <fmt/core.h>
-
-#include <memory>
-
 #include "apps/arguments.h"
 #include "apps/commands.h"
 #include "apps/report.h"
+
+#include <fmt/core.h>
+
+#include <memory>
 
 namespace apps {
 namespace {

@@ -20,7 +20,9 @@ void on_interrupt(int) {
     std::signal(SIGINT, SIG_DFL);
 }
 
-double seconds(Clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
+double seconds(Clock::duration duration) {
+    return std::chrono::duration<double>(duration).count();
+}
 
 constexpr double kSilentSeconds = 1.0;
 constexpr double kSecondsBetweenBars = 0.1;
@@ -28,9 +30,13 @@ constexpr int kBarWidth = 30;
 
 }  // namespace
 
-void catch_interrupt() { std::signal(SIGINT, on_interrupt); }
+void catch_interrupt() {
+    std::signal(SIGINT, on_interrupt);
+}
 
-bool interrupt_requested() { return g_interrupted; }
+bool interrupt_requested() {
+    return g_interrupted;
+}
 
 ProgressBar::ProgressBar(std::string title)
     : title_(std::move(title)),

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "renderer/core/progress.h"
+
 #include <chrono>
 #include <string>
-
-#include "renderer/core/progress.h"
 
 namespace apps {
 
 /// Shows the progress of one job on standard error: a bar with rate and time left on a terminal,
 /// one line per 10 % otherwise. Jobs under a second stay silent.
 class ProgressBar {
-   public:
+ public:
     explicit ProgressBar(std::string title);
     ~ProgressBar();
     ProgressBar(const ProgressBar&) = delete;
@@ -20,7 +20,7 @@ class ProgressBar {
     /// Reports here; stops when Ctrl-C was pressed.
     core::Progress progress();
 
-   private:
+ private:
     void show(double share, const std::string& detail);
 
     std::string title_;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <cstdint>
-#include <vector>
-
 #include "renderer/core/sampling.h"
 #include "renderer/scene.h"
+
+#include <cstdint>
+#include <vector>
 
 namespace renderer {
 
@@ -14,7 +14,7 @@ namespace renderer {
 /// Facets keep the order of the file: it is usually local in space, which keeps the shadow rays of
 /// stratified numbers coherent (a space-filling curve gained nothing), and it turns with the scene.
 class AreaSampler {
-   public:
+ public:
     explicit AreaSampler(const Scene& scene);
 
     /// A surface point; `hint` is updated so that calls with rising u1 are quick (start with 0).
@@ -23,7 +23,7 @@ class AreaSampler {
     /// Density of sample() on hidden facets, pdf_area [1/m^2].
     double pdf_area() const { return 1.0 / by_area_.sum(); }
 
-   private:
+ private:
     const Scene* scene_;
     std::vector<std::uint32_t> facets_;
     core::DiscreteDistribution by_area_;

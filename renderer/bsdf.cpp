@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/bsdf.h"
 
+#include "renderer/core/sampling.h"
+
 #include <algorithm>
 #include <cmath>
-
-#include "renderer/core/sampling.h"
 
 namespace renderer {
 namespace {
@@ -34,16 +34,20 @@ double schlick(double at_normal, double cosine) {
 
 // All overloads see incoming.z > 0 and outgoing.z > 0.
 
-double evaluate_(const Lambertian& bsdf, const Vec3&, const Vec3&) { return bsdf.albedo / kPi; }
-double pdf_(const Lambertian&, const Vec3&, const Vec3& outgoing) { return outgoing.z() / kPi; }
+double evaluate_(const Lambertian& bsdf, const Vec3&, const Vec3&) {
+    return bsdf.albedo / kPi;
+}
+double pdf_(const Lambertian&, const Vec3&, const Vec3& outgoing) {
+    return outgoing.z() / kPi;
+}
 std::optional<Vec3> sample_(const Lambertian&, const Vec3&, const Vec2& u) {
     return core::sample_cosine_hemisphere(u);
 }
 
 double evaluate_(const Ggx& bsdf, const Vec3& incoming, const Vec3& outgoing) {
     const Vec3 half = (incoming + outgoing).normalized();
-    const double shadowing = 1.0 / (1.0 + smith_lambda(bsdf.alpha, incoming) +
-                                    smith_lambda(bsdf.alpha, outgoing));
+    const double shadowing =
+        1.0 / (1.0 + smith_lambda(bsdf.alpha, incoming) + smith_lambda(bsdf.alpha, outgoing));
     return ggx_normal_density(bsdf.alpha, half) * shadowing *
            schlick(bsdf.albedo, half.dot(incoming)) / (4.0 * incoming.z() * outgoing.z());
 }
@@ -74,22 +78,27 @@ std::optional<Vec3> sample_(const Ggx& bsdf, const Vec3& incoming, const Vec2& u
                       squeeze * radius * std::sin(angle);
     const double t3 = std::sqrt(std::max(0.0, 1.0 - t1 * t1 - t2 * t2));
     const Vec3 stretched = t1 * across + t2 * upward + t3 * view;
-    const Vec3 half = Vec3(bsdf.alpha * stretched.x(),
-                           bsdf.alpha * stretched.y(),
-                           std::max(1e-12, stretched.z()))
-                          .normalized();
+    const Vec3 half =
+        Vec3(bsdf.alpha * stretched.x(), bsdf.alpha * stretched.y(), std::max(1e-12, stretched.z()))
+            .normalized();
     const Vec3 outgoing = 2.0 * incoming.dot(half) * half - incoming;
     if (!(outgoing.z() > 0.0)) return std::nullopt;
     return outgoing;
 }
 
-double evaluate_(const Retroreflective&, const Vec3&, const Vec3&) { return 0.0; }
-double pdf_(const Retroreflective&, const Vec3&, const Vec3&) { return 0.0; }
+double evaluate_(const Retroreflective&, const Vec3&, const Vec3&) {
+    return 0.0;
+}
+double pdf_(const Retroreflective&, const Vec3&, const Vec3&) {
+    return 0.0;
+}
 std::optional<Vec3> sample_(const Retroreflective&, const Vec3&, const Vec2&) {
     return std::nullopt;
 }
 
-bool same_side(const Vec3& a, const Vec3& b) { return a.z() * b.z() > 0.0; }
+bool same_side(const Vec3& a, const Vec3& b) {
+    return a.z() * b.z() > 0.0;
+}
 
 // Both sides scatter alike: mirror the lower half space onto the upper.
 Vec3 upper(const Vec3& direction, double side) {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "renderer/core/types.h"
+
 #include <optional>
 #include <variant>
-
-#include "renderer/core/types.h"
 
 namespace renderer {
 

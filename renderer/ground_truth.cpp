@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/ground_truth.h"
 
+#include "renderer/core/parallel.h"
+
 #include <algorithm>
 #include <cmath>
-
-#include "renderer/core/parallel.h"
 
 namespace renderer {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <vector>
-
 #include "renderer/core/depth_map.h"
 #include "renderer/scene.h"
+
+#include <vector>
 
 namespace renderer {
 

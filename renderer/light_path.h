@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <cstdint>
-
 #include "renderer/core/types.h"
 #include "renderer/scene.h"
+
+#include <cstdint>
 
 namespace renderer {
 

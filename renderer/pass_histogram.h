@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <cstdint>
-#include <vector>
-
 #include "renderer/core/time_axis.h"
 #include "renderer/render_settings.h"
+
+#include <cstdint>
+#include <vector>
 
 namespace renderer {
 
@@ -13,7 +13,7 @@ namespace renderer {
 ///
 /// A channel is a bounce order, or channel 0 holds all of them.
 class PassHistogram {
-   public:
+ public:
     PassHistogram(const core::TimeAxis& axis, GateShape gate, int num_channels);
 
     /// Adds a contribution of a path of length `opl_m`, weighted by the gate.
@@ -40,7 +40,7 @@ class PassHistogram {
     /// Contributions so far that were not finite numbers; they are left out of the bins.
     std::uint64_t num_non_finite() const { return num_non_finite_; }
 
-   private:
+ private:
     /// Bin and weight of a path length; weight 0 when it lies outside.
     double gate_weight(double opl_m, int& bin) const;
 

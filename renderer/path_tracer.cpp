@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/path_tracer.h"
 
+#include "renderer/core/sampling.h"
+
 #include <algorithm>
 #include <cmath>
-
-#include "renderer/core/sampling.h"
 
 namespace renderer {
 namespace {
@@ -31,7 +31,7 @@ double pdf_direction(const PathEnd& end, const Vec3& direction) {
 
 // One call of trace(): what is fixed for the pair, and the paths under way.
 class PathTracer::Walk {
-   public:
+ public:
     Walk(const PathTracer& tracer,
          const PathEnds& ends,
          int num_samples,
@@ -48,7 +48,7 @@ class PathTracer::Walk {
     void trace_bsdf_samples(int count);
     std::uint64_t num_rays() const { return num_rays_; }
 
-   private:
+ private:
     // A first vertex and what its connection to the light carries if nothing is in the way.
     struct Candidate {
         PathVertex vertex;
@@ -105,7 +105,8 @@ void PathTracer::Walk::trace_area_samples(int count) {
     for (int i = 0; i < count; ++i) {
         const double u1 = (i + rng_.uniform()) / count;
         const SurfacePoint point = tracer_.area_sampler_.sample(u1, rng_.uniform(), hint);
-        if (!make_candidate(point, candidates_[static_cast<std::size_t>(num_candidates_)])) continue;
+        if (!make_candidate(point, candidates_[static_cast<std::size_t>(num_candidates_)]))
+            continue;
         if (++num_candidates_ < SegmentPacket::kSize) continue;
         keep_seen_from_sensor();
         finish_candidates();
@@ -122,7 +123,8 @@ void PathTracer::Walk::trace_bsdf_samples(int count) {
         const auto point = scene_.first_hit(sensor.position, sensor.normal, direction);
         ++num_rays_;
         if (!point) continue;
-        if (!make_candidate(*point, candidates_[static_cast<std::size_t>(num_candidates_)])) continue;
+        if (!make_candidate(*point, candidates_[static_cast<std::size_t>(num_candidates_)]))
+            continue;
         if (++num_candidates_ == SegmentPacket::kSize) finish_candidates();
     }
     finish_candidates();
@@ -141,10 +143,10 @@ bool PathTracer::Walk::make_candidate(const SurfacePoint& point, Candidate& cand
     vertex.order = 3;
 
     const double per_area = std::abs(vertex.normal.dot(direction)) / distance2;
-    const double area_pdf =
-        scene_.is_hidden(point.facet) ? tracer_.area_sampler_.pdf_area() : 0.0;
-    const double pdf = kAreaShareFromWall * area_pdf +
-                       (1.0 - kAreaShareFromWall) * pdf_direction(ends_.sensor, direction) * per_area;
+    const double area_pdf = scene_.is_hidden(point.facet) ? tracer_.area_sampler_.pdf_area() : 0.0;
+    const double pdf = kAreaShareFromWall * area_pdf + (1.0 - kAreaShareFromWall) *
+                                                           pdf_direction(ends_.sensor, direction) *
+                                                           per_area;
     vertex.throughput = weight_ * ends_.sensor.factor(direction) * per_area / pdf;
     if (!(vertex.throughput > 0.0)) return false;
     vertex.bsdf = scene_.bsdf_at(point);
@@ -258,10 +260,8 @@ void PathTracer::Walk::extend(PathVertex vertex) {
         const double value = connection_value(vertex);
         if (!(value > 0.0)) continue;
         ++num_rays_;
-        if (!scene_.rays().is_blocked(vertex.point.position,
-                                      vertex.normal,
-                                      ends_.light.position,
-                                      ends_.light.normal)) {
+        if (!scene_.rays().is_blocked(
+                vertex.point.position, vertex.normal, ends_.light.position, ends_.light.normal)) {
             deposit(vertex, value);
         }
     }

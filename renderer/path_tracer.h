@@ -15,7 +15,7 @@ namespace renderer {
 /// the illumination point, which gives one path of every bounce order. The third bounce is traced
 /// in packets of coherent shadow rays; longer paths continue from its vertices.
 class PathTracer {
-   public:
+ public:
     /// scene   must outlive the tracer
     PathTracer(const Scene& scene, const RenderSettings& settings);
 
@@ -28,7 +28,7 @@ class PathTracer {
                         core::Rng& rng,
                         PassHistogram& histogram) const;
 
-   private:
+ private:
     class Walk;
 
     const Scene* scene_;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/ray_caster.h"
 
+#include "renderer/core/error.h"
+
 #include <embree3/rtcore.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-
-#include "renderer/core/error.h"
 
 namespace renderer {
 namespace {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "renderer/core/types.h"
+
 #include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
 #include <vector>
-
-#include "renderer/core/types.h"
 
 namespace renderer {
 
@@ -38,7 +38,7 @@ struct alignas(64) SegmentPacket {
 /// offset_m(), a bound of the rounding of coordinates of that size: small against 0.1 mm facets,
 /// and independent of how far the set lies from the world's origin.
 class RayCaster {
-   public:
+ public:
     /// corners   three world points per triangle [m]
     /// extra     points that rays will start from, so that rounding is bounded for them too
     RayCaster(std::span<const std::array<core::Vec3, 3>> corners,
@@ -72,7 +72,7 @@ class RayCaster {
     /// Answers all segments of a packet: sets blocked[0 .. count).
     void trace(SegmentPacket& packet) const;
 
-   private:
+ private:
     struct Embree;
     std::unique_ptr<Embree> embree_;
     core::Vec3 origin_ = core::Vec3::Zero();

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/render.h"
 
+#include "renderer/core/parallel.h"
+#include "renderer/core/process.h"
+#include "renderer/path_tracer.h"
+#include "renderer/transient_accumulator.h"
+
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <limits>
-
-#include "renderer/core/parallel.h"
-#include "renderer/core/process.h"
-#include "renderer/path_tracer.h"
-#include "renderer/transient_accumulator.h"
 
 namespace renderer {
 namespace {
@@ -54,8 +54,8 @@ PathEnds ends_of_pair(const core::Scan& scan, std::size_t pair, double wall_albe
     ends.sensor = wall_end(scan.sensing, scan.sensing_index(pair), wall_albedo);
     ends.light = wall_end(scan.illumination, scan.illumination_index(pair), wall_albedo);
     ends.device_legs_m = scan.device_legs_m(pair);
-    ends.coincide = ends.sensor.position == ends.light.position &&
-                    ends.sensor.normal == ends.light.normal;
+    ends.coincide =
+        ends.sensor.position == ends.light.position && ends.sensor.normal == ends.light.normal;
     return ends;
 }
 
@@ -78,10 +78,9 @@ void add_short_paths(const Scene& scene,
     const core::Vec3 direction = offset / distance;
     const double value =
         ends.sensor.factor(direction) * ends.light.factor(-direction) / (distance * distance);
-    if (value > 0.0 && !scene.rays().is_blocked(ends.sensor.position,
-                                                ends.sensor.normal,
-                                                ends.light.position,
-                                                ends.light.normal)) {
+    if (value > 0.0 &&
+        !scene.rays().is_blocked(
+            ends.sensor.position, ends.sensor.normal, ends.light.position, ends.light.normal)) {
         histogram.add(channel(2), distance + ends.device_legs_m, value);
     }
 }
@@ -110,7 +109,7 @@ void require_memory(const core::Scan& scan,
 
 // Runs passes over all pairs until the plan, the clock or the caller ends them.
 class PassLoop {
-   public:
+ public:
     PassLoop(const Scene& scene,
              const core::Scan& scan,
              const core::TimeAxis& axis,
@@ -126,7 +125,7 @@ class PassLoop {
 
     RenderResult run(const core::Progress& progress);
 
-   private:
+ private:
     void run_pass(int pass, int samples);
     void fill_capture(int passes, core::Capture& capture) const;
 
@@ -192,7 +191,8 @@ RenderResult PassLoop::run(const core::Progress& progress) {
         const double share = settings_.seconds ? elapsed / *settings_.seconds
                                                : static_cast<double>(pass) / plan.num_passes;
         const double paths = static_cast<double>(scan_.num_pairs()) * plan.samples_per_pass * pass;
-        progress.update(std::min(1.0, share), fmt::format("{:.2f} M paths/s", paths / elapsed * 1e-6));
+        progress.update(std::min(1.0, share),
+                        fmt::format("{:.2f} M paths/s", paths / elapsed * 1e-6));
         if (settings_.seconds && elapsed >= *settings_.seconds) break;
         if (pass < plan.num_passes && progress.should_stop()) {
             result.interrupted = true;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <cstdint>
-
 #include "renderer/core/capture.h"
 #include "renderer/core/progress.h"
 #include "renderer/render_settings.h"
 #include "renderer/scene.h"
+
+#include <cstdint>
 
 namespace renderer {
 

@@ -12,14 +12,12 @@ void validate(const RenderSettings& settings, const std::string& where) {
                           "must be at least 1");
     }
     if (settings.samples < 1) {
-        throw core::Error(where + ".samples",
-                          fmt::format("found {}", settings.samples),
-                          "must be at least 1");
+        throw core::Error(
+            where + ".samples", fmt::format("found {}", settings.samples), "must be at least 1");
     }
     if (settings.seconds && !(*settings.seconds > 0.0)) {
-        throw core::Error(where + ".seconds",
-                          fmt::format("found {}", *settings.seconds),
-                          "must be above 0");
+        throw core::Error(
+            where + ".seconds", fmt::format("found {}", *settings.seconds), "must be above 0");
     }
     if (!(settings.laser_spot_m2 > 0.0)) {
         throw core::Error(where + ".laser_spot_m2",

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "renderer/core/settings.h"
+
 #include <cstdint>
 #include <optional>
 #include <string>
-
-#include "renderer/core/settings.h"
 
 namespace renderer {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/scene.h"
 
+#include "renderer/gltf.h"
+
 #include <algorithm>
 #include <cmath>
-
-#include "renderer/gltf.h"
 
 namespace renderer {
 namespace {

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <cstdint>
-#include <optional>
-#include <span>
-#include <vector>
-
 #include "renderer/bsdf.h"
 #include "renderer/geometry.h"
 #include "renderer/ray_caster.h"
 #include "renderer/scene_file.h"
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
 
 namespace renderer {
 
@@ -37,7 +37,7 @@ struct SurfacePoint {
 
 /// Everything that light meets: facets, their materials, the relay wall, and rays through them.
 class Scene {
-   public:
+ public:
     /// geometry     objects in world coordinates
     /// scan         points that rays will start from
     /// wall         becomes a surface unless a mesh has that role or the scan lies elsewhere
@@ -49,9 +49,7 @@ class Scene {
     const Object& object_of(std::uint32_t facet) const {
         return geometry_.objects[facets_[facet].object];
     }
-    bool is_hidden(std::uint32_t facet) const {
-        return object_of(facet).role != Role::RelayWall;
-    }
+    bool is_hidden(std::uint32_t facet) const { return object_of(facet).role != Role::RelayWall; }
     /// A direction that turns with the scene and is not parallel to `normal` (unit).
     const core::Vec3& tangent_hint(const core::Vec3& normal) const;
 
@@ -70,7 +68,7 @@ class Scene {
                                           const core::Vec3& normal,
                                           const core::Vec3& direction) const;
 
-   private:
+ private:
     SceneGeometry geometry_;
     std::vector<Facet> facets_;
     std::vector<Bsdf> bsdfs_;  ///< per object, untextured

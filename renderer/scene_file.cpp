@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/scene_file.h"
 
+#include "renderer/core/process.h"
+
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <filesystem>
-
-#include "renderer/core/process.h"
 
 namespace renderer {
 namespace {
@@ -32,7 +32,8 @@ void validate_wall(const RelayWall& wall, const std::string& where) {
 }
 
 void validate_grid(const std::array<int, 2>& shape, const std::string& where) {
-    for (const int count : shape) require(count >= 1, where, count, "at least 1 in both directions");
+    for (const int count : shape)
+        require(count >= 1, where, count, "at least 1 in both directions");
 }
 
 void validate_normals(const std::vector<Vec3>& points,
@@ -52,9 +53,8 @@ void validate_scan(const ScanSettings& scan, const std::string& where) {
     validate_grid(scan.sensing_points, where + ".sensing_points");
     validate_grid(scan.illumination_points, where + ".illumination_points");
     validate_normals(scan.sensing_points_m, scan.sensing_normals, where + ".sensing_normals");
-    validate_normals(scan.illumination_points_m,
-                     scan.illumination_normals,
-                     where + ".illumination_normals");
+    validate_normals(
+        scan.illumination_points_m, scan.illumination_normals, where + ".illumination_normals");
     const bool single = scan.pattern == core::ScanPattern::Single;
     if (single && scan.illumination_points_m.size() > 1) {
         require(false,
@@ -197,9 +197,8 @@ bool rectangle_carries_scan(const RelayWall& wall, const core::Scan& scan) {
                std::abs(p.y()) < 0.5 * wall.size_m[1] + tolerance;
     };
     return std::all_of(scan.sensing.positions.begin(), scan.sensing.positions.end(), lies_on_it) &&
-           std::all_of(scan.illumination.positions.begin(),
-                       scan.illumination.positions.end(),
-                       lies_on_it);
+           std::all_of(
+               scan.illumination.positions.begin(), scan.illumination.positions.end(), lies_on_it);
 }
 
 }  // namespace renderer

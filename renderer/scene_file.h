@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "renderer/core/capture.h"
+#include "renderer/render_settings.h"
+
 #include <array>
 #include <optional>
 #include <string>
 #include <vector>
-
-#include "renderer/core/capture.h"
-#include "renderer/render_settings.h"
 
 namespace renderer {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "renderer/core/capture.h"
+#include "renderer/scene.h"
+
 #include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
-
-#include "renderer/core/capture.h"
-#include "renderer/scene.h"
 
 namespace renderer {
 
@@ -37,9 +37,9 @@ struct alignas(64) PieceBlock {
     Lanes normal_x, normal_y, normal_z;
     Lanes center_x, center_y, center_z;
     Lanes area_m2;
-    Lanes one_sided;                     ///< +-1: only this side of the normal is ever seen; 0: both
-    std::array<Lanes, 6> reflectance;    ///< at the nodes; albedo/pi or albedo/spot area
-    std::array<Bsdf, kSize> glossy;      ///< set for glossy pieces only
+    Lanes one_sided;                   ///< +-1: only this side of the normal is ever seen; 0: both
+    std::array<Lanes, 6> reflectance;  ///< at the nodes; albedo/pi or albedo/spot area
+    std::array<Bsdf, kSize> glossy;    ///< set for glossy pieces only
     std::array<std::uint32_t, kSize> facet;
     PieceKind kind = PieceKind::Lambertian;
     std::size_t count = 0;  ///< lanes beyond it repeat lane 0 with area 0

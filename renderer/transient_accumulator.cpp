@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/transient_accumulator.h"
 
-#include <algorithm>
-
 #include "renderer/core/parallel.h"
+
+#include <algorithm>
 
 namespace renderer {
 

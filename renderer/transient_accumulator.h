@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <cstddef>
-#include <vector>
-
 #include "renderer/core/transient.h"
 #include "renderer/pass_histogram.h"
+
+#include <cstddef>
+#include <vector>
 
 namespace renderer {
 
@@ -14,7 +14,7 @@ namespace renderer {
 /// All passes have the same number of samples, so the mean over passes estimates H and their spread
 /// its variance, whatever stratification a pass uses inside.
 class TransientAccumulator {
-   public:
+ public:
     /// variance   whether to keep sums of squares
     TransientAccumulator(std::size_t num_pairs, int num_bins, int num_channels, bool variance);
 
@@ -28,7 +28,7 @@ class TransientAccumulator {
     /// Variance of mean_of_all(); needs two passes and sums of squares.
     core::Transient variance(int num_passes) const;
 
-   private:
+ private:
     std::size_t num_pairs_;
     std::size_t num_bins_;
     std::size_t num_channels_;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <optional>
-#include <vector>
-
 #include "renderer/core/capture.h"
+
+#include <optional>
+#include <utility>
+#include <vector>
 
 namespace renderer {
 
@@ -16,7 +17,7 @@ struct LengthBounds {
 
 /// The points of a scan in a few boxes, to bound their distances from a part of the scene.
 class WallBoxes {
-   public:
+ public:
     /// origin   what positions are relative to [m, world]
     WallBoxes(const core::Scan& scan, const core::Vec3& origin);
 
@@ -24,6 +25,9 @@ class WallBoxes {
     LengthBounds light_legs(const core::Vec3& center, double radius) const;
     /// Bounds of the distances from sensing points to points of a sphere.
     LengthBounds sensor_legs(const core::Vec3& center, double radius) const;
+    /// Distances from the nearest illumination point and the nearest sensing point to a sphere, exact
+    /// where *_legs() only bounds them.
+    std::pair<double, double> nearest_m(const core::Vec3& center, double radius) const;
     /// Bounds of the optical path lengths over the sphere, device legs included.
     LengthBounds path_lengths(const core::Vec3& center, double radius) const;
 
@@ -33,16 +37,22 @@ class WallBoxes {
     /// The plane that holds all points with their normal: (n, n.x). Nothing on curved walls.
     const std::optional<std::pair<core::Vec3, double>>& common_plane() const { return plane_; }
 
-   private:
-    using Boxes = std::vector<Eigen::AlignedBox3d>;
-    static Boxes make_boxes(const core::WallPoints& points, const core::Vec3& origin);
-    static LengthBounds legs(const Boxes& boxes, const core::Vec3& center, double radius);
+ private:
+    /// Consecutive points, and the box around them.
+    struct Run {
+        Eigen::AlignedBox3d box;
+        std::vector<core::Vec3> points;
+    };
+    using Runs = std::vector<Run>;
+    static Runs make_runs(const core::WallPoints& points, const core::Vec3& origin);
+    static LengthBounds legs(const Runs& runs, const core::Vec3& center, double radius);
+    static double nearest(const Runs& runs, const core::Vec3& center, double radius);
 
     bool confocal_;
-    Boxes light_;
-    Boxes sensor_;
+    Runs light_;
+    Runs sensor_;
     LengthBounds device_legs_;
-    std::vector<std::pair<core::Vec3, double>> sensor_planes_;  ///< distinct tangent planes
+    std::vector<std::pair<core::Vec3, double>> planes_;  ///< distinct tangent planes
     std::optional<std::pair<core::Vec3, double>> plane_;
 };
 

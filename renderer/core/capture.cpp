@@ -47,13 +47,12 @@ void validate(const Capture& capture, const std::string& where) {
     }
     if (capture.transient.num_pairs() != capture.scan.num_pairs() ||
         capture.transient.num_bins() != static_cast<std::size_t>(capture.time_axis.num_bins)) {
-        throw Error(where + ": H",
-                    fmt::format("found {} pairs x {} bins",
-                                capture.transient.num_pairs(),
-                                capture.transient.num_bins()),
-                    fmt::format("must be {} x {}",
-                                capture.scan.num_pairs(),
-                                capture.time_axis.num_bins));
+        throw Error(
+            where + ": H",
+            fmt::format("found {} pairs x {} bins",
+                        capture.transient.num_pairs(),
+                        capture.transient.num_bins()),
+            fmt::format("must be {} x {}", capture.scan.num_pairs(), capture.time_axis.num_bins));
     }
     for (const float value : capture.transient.values()) {
         if (!std::isfinite(value)) {

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "renderer/core/settings.h"
 #include "renderer/core/time_axis.h"
 #include "renderer/core/transient.h"
 #include "renderer/core/types.h"
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
 
 namespace core {
 
@@ -42,9 +42,10 @@ struct EnumNames<TransientUnit> {
 
 /// Points on the relay wall, either a grid of shape (X, Y) with x before y, or a plain list.
 struct WallPoints {
-    std::vector<Vec3> positions;                     ///< [m, world]
-    std::vector<Vec3> normals;                       ///< unit, towards the hidden side
-    std::optional<std::array<std::size_t, 2>> grid;  ///< (X, Y) with X * Y positions; nothing: a list
+    std::vector<Vec3> positions;  ///< [m, world]
+    std::vector<Vec3> normals;    ///< unit, towards the hidden side
+    std::optional<std::array<std::size_t, 2>>
+        grid;  ///< (X, Y) with X * Y positions; nothing: a list
 
     std::size_t size() const { return positions.size(); }
 };

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "renderer/core/types.h"
+
 #include <cmath>
 #include <cstddef>
 #include <limits>
 #include <vector>
-
-#include "renderer/core/types.h"
 
 namespace core {
 

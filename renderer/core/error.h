@@ -10,7 +10,7 @@ namespace core {
 ///
 /// what() is one line: `where: what was found; what is allowed`.
 class Error : public std::runtime_error {
-   public:
+ public:
     Error(const std::string& where, const std::string& found, const std::string& allowed)
         : std::runtime_error(where + ": " + found + "; " + allowed) {}
 };
@@ -18,7 +18,7 @@ class Error : public std::runtime_error {
 /// The input is fine and the work still cannot be done (too little memory, disk full, interrupted).
 /// Programs exit with status 1. what() is one line: `where: reason`.
 class Failure : public std::runtime_error {
-   public:
+ public:
     Failure(const std::string& where, const std::string& reason)
         : std::runtime_error(where + ": " + reason) {}
 };

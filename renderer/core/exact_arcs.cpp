@@ -43,7 +43,8 @@ double antiderivative(const Plane& plane, double q, double phi) {
     const auto& [distance, a, b, c, corners] = plane;
     return (a * a + 0.5 * q * q * (b * b + c * c)) * phi +
            2.0 * a * q * (b * std::sin(phi) - c * std::cos(phi)) +
-           q * q * (0.25 * (b * b - c * c) * std::sin(2.0 * phi) - 0.5 * b * c * std::cos(2.0 * phi));
+           q * q *
+               (0.25 * (b * b - c * c) * std::sin(2.0 * phi) - 0.5 * b * c * std::cos(2.0 * phi));
 }
 
 bool is_inside(const Plane& plane, const Vec2& p) {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
-#include <vector>
-
 #include "renderer/core/time_axis.h"
 #include "renderer/core/types.h"
+
+#include <array>
+#include <vector>
 
 namespace core {
 

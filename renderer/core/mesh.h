@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "renderer/core/types.h"
+
 #include <array>
 #include <cstdint>
 #include <vector>
-
-#include "renderer/core/types.h"
 
 namespace core {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/core/output_file.h"
 
+#include "renderer/core/error.h"
+
 #include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
-
-#include "renderer/core/error.h"
 
 namespace core {
 namespace fs = std::filesystem;

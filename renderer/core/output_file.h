@@ -8,7 +8,7 @@ namespace core {
 /// A result file that appears whole or not at all: written under a temporary name beside the
 /// target, renamed by commit(), removed again when commit() is never reached.
 class OutputFile {
-   public:
+ public:
     /// Throws Error when the target's folder does not exist or cannot be written.
     explicit OutputFile(std::string target);
     ~OutputFile();
@@ -21,7 +21,7 @@ class OutputFile {
     /// Moves the finished file to its final name. Throws Failure when that fails.
     void commit();
 
-   private:
+ private:
     std::string target_;
     std::string temporary_;
     bool committed_ = false;

@@ -28,7 +28,9 @@ ThreadLimit::ThreadLimit(int count)
           count > 0 ? static_cast<std::size_t>(count)
                     : std::max<std::size_t>(1, std::thread::hardware_concurrency()))) {}
 
-ThreadLimit::~ThreadLimit() { delete static_cast<tbb::global_control*>(control_); }
+ThreadLimit::~ThreadLimit() {
+    delete static_cast<tbb::global_control*>(control_);
+}
 
 int thread_count() {
     return static_cast<int>(

@@ -11,8 +11,8 @@ namespace core {
 /// The first exception thrown by a body is rethrown here.
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body);
 
-/// Calls `body(begin, end)` for consecutive blocks of at most `block` items, on all threads allowed.
-/// The blocks depend on `count` and `block` only, never on the number of threads.
+/// Calls `body(begin, end)` for consecutive blocks of at most `block` items, on all threads
+/// allowed. The blocks depend on `count` and `block` only, never on the number of threads.
 void parallel_blocks(std::size_t count,
                      std::size_t block,
                      const std::function<void(std::size_t begin, std::size_t end)>& body);
@@ -36,13 +36,13 @@ T parallel_sum(std::size_t count, T zero, const std::function<T(std::size_t)>& t
 
 /// Limits parallel loops to `count` threads while it lives; 0 means all processors.
 class ThreadLimit {
-   public:
+ public:
     explicit ThreadLimit(int count);
     ~ThreadLimit();
     ThreadLimit(const ThreadLimit&) = delete;
     ThreadLimit& operator=(const ThreadLimit&) = delete;
 
-   private:
+ private:
     void* control_;
 };
 

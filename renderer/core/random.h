@@ -10,7 +10,7 @@ namespace core {
 /// Work items own their streams, so results do not depend on which thread runs what.
 /// The generator is SplitMix64 from a hashed start (source [Steele2014]).
 class Rng {
-   public:
+ public:
     Rng(std::uint64_t seed, std::uint64_t work_item, std::uint64_t sample)
         : state_(mix(mix(mix(seed + kStep) ^ (work_item * kItemStep)) + sample * kSampleStep)) {}
 
@@ -19,7 +19,7 @@ class Rng {
     /// Uniform in [0, 1), all 53 bits random.
     double uniform() { return static_cast<double>(next_bits() >> 11) * 0x1.0p-53; }
 
-   private:
+ private:
     static constexpr std::uint64_t kStep = 0x9e3779b97f4a7c15ULL;
     static constexpr std::uint64_t kItemStep = 0xd1b54a32d192ed03ULL;
     static constexpr std::uint64_t kSampleStep = 0x8cb92ba72f3d8dd7ULL;

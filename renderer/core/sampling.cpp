@@ -34,7 +34,9 @@ Vec3 sample_cosine_hemisphere(const Vec2& u) {
     return {radius * std::cos(angle), radius * std::sin(angle), std::sqrt(1.0 - u.x())};
 }
 
-double pdf_cosine_hemisphere(const Vec3& direction) { return std::max(0.0, direction.z()) / kPi; }
+double pdf_cosine_hemisphere(const Vec3& direction) {
+    return std::max(0.0, direction.z()) / kPi;
+}
 
 Vec2 invert_cosine_hemisphere(const Vec3& direction) {
     return {direction.x() * direction.x() + direction.y() * direction.y(),
@@ -62,8 +64,8 @@ DiscreteDistribution::DiscreteDistribution(std::span<const double> weights)
     assert(sum_ > 0.0);
     for (double& value : cumulative_) value /= sum_;
     // Trailing zero weights must keep an empty share although rounding lifts the end to 1.
-    for (std::size_t i = cumulative_.size(); i-- > 0 && (i + 1 == cumulative_.size() ||
-                                                        weights[i + 1] == 0.0);) {
+    for (std::size_t i = cumulative_.size();
+         i-- > 0 && (i + 1 == cumulative_.size() || weights[i + 1] == 0.0);) {
         cumulative_[i] = 1.0;
     }
 }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "renderer/core/types.h"
+
 #include <cstddef>
 #include <span>
 #include <vector>
-
-#include "renderer/core/types.h"
 
 namespace core {
 
@@ -24,12 +24,14 @@ Vec2 invert_cosine_hemisphere(const Vec3& direction);
 
 /// Unit vector uniform on the sphere, density 1/(4 pi).
 Vec3 sample_sphere(const Vec2& u);
-inline double pdf_sphere() { return 1.0 / (4.0 * kPi); }  ///< pdf_solid_angle [1/sr]
+inline double pdf_sphere() {
+    return 1.0 / (4.0 * kPi);
+}  ///< pdf_solid_angle [1/sr]
 Vec2 invert_sphere(const Vec3& direction);
 
 /// Picks indices with probabilities proportional to given weights, in index order along u.
 class DiscreteDistribution {
-   public:
+ public:
     DiscreteDistribution() = default;
     /// weights   not negative, finite, with a positive sum (asserted)
     explicit DiscreteDistribution(std::span<const double> weights);
@@ -37,7 +39,8 @@ class DiscreteDistribution {
     std::size_t size() const { return cumulative_.size(); }
     double sum() const { return sum_; }
 
-    /// The index whose share of [0, 1) holds u. `remapped` becomes uniform in [0, 1) given the index.
+    /// The index whose share of [0, 1) holds u. `remapped` becomes uniform in [0, 1) given the
+    /// index.
     std::size_t sample(double u, double& remapped) const;
     /// Like sample(), when u does not decrease from call to call: continues from index `hint`.
     std::size_t sample_from(std::size_t hint, double u, double& remapped) const;
@@ -45,7 +48,7 @@ class DiscreteDistribution {
     /// The u for which sample() gives `index` and `remapped`.
     double invert(std::size_t index, double remapped) const;
 
-   private:
+ private:
     double begin_of(std::size_t index) const { return index == 0 ? 0.0 : cumulative_[index - 1]; }
     double remap(std::size_t index, double u) const;
 

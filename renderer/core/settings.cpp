@@ -27,7 +27,8 @@ void throw_wrong_type(const std::string& where, const Json& found, const std::st
 
 std::string join_key(const std::string& where, const std::string& key) {
     const bool top = where.empty() || where.ends_with(": ");
-    return top || where == "--set" ? where + (where == "--set" ? " " : "") + key : where + "." + key;
+    return top || where == "--set" ? where + (where == "--set" ? " " : "") + key
+                                   : where + "." + key;
 }
 
 void read_value(const Json& json, const std::string& where, bool& value) {
@@ -36,8 +37,9 @@ void read_value(const Json& json, const std::string& where, bool& value) {
 }
 
 void read_value(const Json& json, const std::string& where, int& value) {
-    const bool whole = json.is_number_integer() ||
-                       (json.is_number_float() && std::trunc(json.get<double>()) == json.get<double>());
+    const bool whole =
+        json.is_number_integer() ||
+        (json.is_number_float() && std::trunc(json.get<double>()) == json.get<double>());
     if (!whole || std::abs(json.get<double>()) > std::numeric_limits<int>::max()) {
         throw_wrong_type(where, json, "a whole number");
     }

@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "renderer/core/error.h"
+#include "renderer/core/types.h"
+
+#include <nlohmann/json.hpp>
+
 #include <array>
 #include <concepts>
 #include <cstdint>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
-
-#include "renderer/core/error.h"
-#include "renderer/core/types.h"
 
 namespace core {
 
@@ -34,7 +35,9 @@ struct AnyVisitor {
     void operator()(const char*, T&, const char*) const {}
 };
 template <class T>
-concept SettingsStruct = requires(T& value, AnyVisitor visitor) { for_each_field(value, visitor); };
+concept SettingsStruct = requires(T& value, AnyVisitor visitor) {
+    for_each_field(value, visitor);
+};
 
 /// Specialise with `static constexpr std::array<std::pair<E, std::string_view>, N> value`.
 template <class E>
@@ -72,7 +75,7 @@ void read_value(const Json& json, const std::string& where, std::string& value);
 void read_value(const Json& json, const std::string& where, Vec3& value);
 
 template <class E>
-    requires std::is_enum_v<E>
+requires std::is_enum_v<E>
 void read_value(const Json& json, const std::string& where, E& value) {
     if (json.is_string()) {
         for (const auto& [candidate, name] : EnumNames<E>::value) {
@@ -105,7 +108,7 @@ void read_value(const Json& json, const std::string& where, std::vector<T>& valu
 }
 
 template <class S>
-    requires SettingsStruct<S>
+requires SettingsStruct<S>
 void read_value(const Json& json, const std::string& where, S& settings);
 
 template <class T>
@@ -126,7 +129,7 @@ std::string join_key(const std::string& where, const std::string& key);
 
 /// Reads the keys present in `json` into `settings` and leaves the others as they are.
 template <class S>
-    requires SettingsStruct<S>
+requires SettingsStruct<S>
 void read_value(const Json& json, const std::string& where, S& settings) {
     if (!json.is_object()) throw_wrong_type(where, json, "an object with named fields");
     std::vector<std::string> known;
@@ -139,33 +142,42 @@ void read_value(const Json& json, const std::string& where, S& settings) {
     check_keys(json, where, known);
 }
 
-inline Json write_value(bool value) { return value; }
-inline Json write_value(int value) { return value; }
-inline Json write_value(std::uint64_t value) { return value; }
-inline Json write_value(double value) { return value; }
-inline Json write_value(const std::string& value) { return value; }
-inline Json write_value(const Vec3& value) { return {value.x(), value.y(), value.z()}; }
+inline Json write_value(bool value) {
+    return value;
+}
+inline Json write_value(int value) {
+    return value;
+}
+inline Json write_value(std::uint64_t value) {
+    return value;
+}
+inline Json write_value(double value) {
+    return value;
+}
+inline Json write_value(const std::string& value) {
+    return value;
+}
+inline Json write_value(const Vec3& value) {
+    return {value.x(), value.y(), value.z()};
+}
 
 template <class E>
-    requires std::is_enum_v<E>
-Json write_value(E value) {
+requires std::is_enum_v<E> Json write_value(E value) {
     return std::string(enum_name(value));
 }
 
 template <class S>
-    requires SettingsStruct<S>
-Json write_value(S settings);
+requires SettingsStruct<S> Json write_value(S settings);
 
 template <class T>
 Json write_value(const std::optional<T>& value);
 
 template <class List>
-    requires requires(const List& list) {
-        list.begin();
-        typename List::value_type;
-        requires !std::same_as<List, std::string>;
-    } && (!SettingsStruct<List>)
-Json write_value(const List& list) {
+requires requires(const List& list) {
+    list.begin();
+    typename List::value_type;
+    requires !std::same_as<List, std::string>;
+} &&(!SettingsStruct<List>)Json write_value(const List& list) {
     Json json = Json::array();
     for (const auto& item : list) json.push_back(write_value(item));
     return json;
@@ -178,8 +190,7 @@ Json write_value(const std::optional<T>& value) {
 
 /// All fields with their present values: the settings echo.
 template <class S>
-    requires SettingsStruct<S>
-Json write_value(S settings) {
+requires SettingsStruct<S> Json write_value(S settings) {
     Json json = Json::object();
     for_each_field(settings, [&](const char* name, auto& field, const char*) {
         json[name] = write_value(field);
@@ -220,7 +231,8 @@ std::vector<SettingHelp> settings_help(S defaults, const std::string& prefix = "
             const auto nested = settings_help(field, prefix + name + ".");
             lines.insert(lines.end(), nested.begin(), nested.end());
         } else {
-            lines.push_back({prefix + name, write_value(field).dump(), meaning + choices_of(field)});
+            lines.push_back(
+                {prefix + name, write_value(field).dump(), meaning + choices_of(field)});
         }
     });
     return lines;

@@ -9,7 +9,8 @@ namespace core {
 
 void validate(const TimeAxis& axis, const std::string& where) {
     if (axis.num_bins < 1) {
-        throw Error(where + ".num_bins", fmt::format("found {}", axis.num_bins), "must be at least 1");
+        throw Error(
+            where + ".num_bins", fmt::format("found {}", axis.num_bins), "must be at least 1");
     }
     if (!(axis.bin_width_m > 0.0) || !std::isfinite(axis.bin_width_m)) {
         throw Error(where + ".bin_width_m",

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <optional>
-
 #include "renderer/core/error.h"
+
+#include <optional>
 
 namespace core {
 

@@ -10,7 +10,7 @@ namespace core {
 /// Histograms of optical path length, one per measurement pair; stored [pair][bin], bin fastest.
 /// A bin holds the integral over the bin.
 class Transient {
-   public:
+ public:
     Transient() = default;
     Transient(std::size_t num_pairs, int num_bins)
         : num_pairs_(num_pairs),
@@ -30,7 +30,7 @@ class Transient {
     std::span<float> values() { return values_; }
     std::span<const float> values() const { return values_; }
 
-   private:
+ private:
     std::size_t num_pairs_ = 0;
     std::size_t num_bins_ = 0;
     std::vector<float> values_;

@@ -49,7 +49,7 @@ struct SortedTriangle {
         return mean() - a * b * (k2 + (a * (k1 - k2) + b * (k0 - k2)) / 3.0);
     }
 
-   private:
+ private:
     static void order(double& a, double& b, double& ka, double& kb) {
         const bool swapped = b < a;
         const double low = swapped ? b : a;

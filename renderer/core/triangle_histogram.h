@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "renderer/core/time_axis.h"
+
 #include <array>
 #include <span>
-
-#include "renderer/core/time_axis.h"
 
 namespace core {
 

@@ -20,7 +20,9 @@ inline constexpr double kSpeedOfLight = 299792458.0;
 inline constexpr double kPi = 3.14159265358979323846;
 
 /// Optical path length travelled during `seconds` [m].
-inline constexpr double opl_from_seconds(double seconds) { return seconds * kSpeedOfLight; }
+inline constexpr double opl_from_seconds(double seconds) {
+    return seconds * kSpeedOfLight;
+}
 
 /// An orthonormal basis whose third column is `normal` (unit) and whose first lies along the part
 /// of `tangent` across it; `tangent` must not be parallel to `normal`.

@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: MIT
 // The program as its users call it: outputs, exit codes, and one line for whatever is wrong.
+#include "nlos/formats/capture_file.h"
+#include "nlos/formats/volume_file.h"
+#include "renderer/core/settings.h"
+#include "renderer/gltf.h"
+#include "tests/support/file_bytes.h"
+#include "tests/support/temporary_folder.h"
+
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -8,13 +15,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-
-#include "nlos/formats/capture_file.h"
-#include "nlos/formats/volume_file.h"
-#include "renderer/core/settings.h"
-#include "renderer/gltf.h"
-#include "tests/support/file_bytes.h"
-#include "tests/support/temporary_folder.h"
 
 namespace {
 
@@ -29,7 +29,7 @@ struct Outcome {
 };
 
 class CommandLine : public testing::Test {
-   protected:
+ protected:
     std::string file(const std::string& name) const { return folder_.file(name); }
 
     // Runs the program in the source folder.
@@ -47,8 +47,8 @@ class CommandLine : public testing::Test {
         if (!output.empty()) write_file_bytes(output, "older result");
         const Outcome outcome = run(arguments);
         EXPECT_EQ(outcome.status, 2) << arguments << "\n" << outcome.err;
-        EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1)
-            << arguments << "\n" << outcome.err;
+        EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << arguments << "\n"
+                                                                               << outcome.err;
         EXPECT_NE(outcome.err.find(part), std::string::npos) << arguments << "\n" << outcome.err;
         if (output.empty()) return;
         EXPECT_EQ(file_bytes(output), "older result") << arguments;
@@ -82,9 +82,9 @@ TEST_F(CommandLine, SceneToScoredReconstruction) {
 
     for (const std::string method : {"lct", "bp"}) {
         const std::string volume = file(method + ".h5");
-        const Outcome reconstruct = run("reconstruct " + file("capture.h5") + " -o " + volume +
-                                        " --method " + method + " --ply " + file(method + ".ply") +
-                                        " --set volume.z_range_m=[0.5,0.9]");
+        const Outcome reconstruct =
+            run("reconstruct " + file("capture.h5") + " -o " + volume + " --method " + method +
+                " --ply " + file(method + ".ply") + " --set volume.z_range_m=[0.5,0.9]");
         EXPECT_EQ(reconstruct.status, 0) << reconstruct.err;
         EXPECT_TRUE(fs::exists(file(method + ".png")));
         EXPECT_TRUE(fs::exists(file(method + ".ply")));
@@ -171,7 +171,8 @@ TEST_F(CommandLine, BadScenesAreOneLineAndKeepOlderResults) {
     expect_bad_input("render scenes/letter/scene.json -o " + out + " --set time_axis.num_bin=3",
                      "known keys are",
                      out);
-    expect_bad_input("render scenes/letter/scene.json -o " + out + " --set time_axis", "--set", out);
+    expect_bad_input(
+        "render scenes/letter/scene.json -o " + out + " --set time_axis", "--set", out);
 }
 
 TEST_F(CommandLine, BadGeometryIsOneLineAndKeepsOlderResults) {
@@ -195,12 +196,14 @@ TEST_F(CommandLine, BadCapturesAreOneLineAndKeepOlderResults) {
     ASSERT_EQ(run("render " + scene + " -o " + file("capture.h5")).status, 0);
     const std::string bytes = file_bytes(file("capture.h5"));
     for (const double share : {0.0, 0.001, 0.2, 0.6, 0.999}) {
-        write_file_bytes(file("cut.h5"), bytes.substr(0, std::size_t(share * double(bytes.size()))));
+        write_file_bytes(file("cut.h5"),
+                         bytes.substr(0, std::size_t(share * double(bytes.size()))));
         expect_bad_input("reconstruct " + file("cut.h5") + " -o " + out, "cut.h5", out);
         expect_bad_input("info " + file("cut.h5"), "cut.h5");
     }
     expect_bad_input("reconstruct " + file("none.h5") + " -o " + out, "none.h5", out);
-    expect_bad_input("reconstruct " + file("capture.h5") + " -o " + out + " --method fish", "", out);
+    expect_bad_input(
+        "reconstruct " + file("capture.h5") + " -o " + out + " --method fish", "", out);
     expect_bad_input(
         "reconstruct " + file("capture.h5") + " -o " + out + " --set snr=-1", "snr", out);
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/core/output_file.h"
 
+#include "renderer/core/error.h"
+#include "tests/support/file_bytes.h"
+#include "tests/support/temporary_folder.h"
+
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <fstream>
-
-#include "renderer/core/error.h"
-#include "tests/support/file_bytes.h"
-#include "tests/support/temporary_folder.h"
 
 namespace {
 

@@ -42,8 +42,10 @@ TEST(Parallel, SumHasTheSameBitsForAnyNumberOfThreads) {
 }
 
 TEST(Parallel, ExceptionsReachTheCaller) {
-    EXPECT_THROW(core::parallel_for(
-                     100, [](std::size_t i) { if (i == 50) throw std::runtime_error("here"); }),
+    EXPECT_THROW(core::parallel_for(100,
+                                    [](std::size_t i) {
+                                        if (i == 50) throw std::runtime_error("here");
+                                    }),
                  std::runtime_error);
 }
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/core/random.h"
 
+#include "tests/support/statistics.h"
+
 #include <gtest/gtest.h>
 
 #include <set>
 #include <vector>
-
-#include "tests/support/statistics.h"
 
 namespace {
 
@@ -37,7 +37,8 @@ TEST(Rng, PairsWithinAndAcrossStreamsAreUniform) {
         core::Rng rng(test_support::seed_of("Rng.Pairs"), 0, 0);
         for (int i = 0; i < kDraws; ++i) {
             core::Rng other(test_support::seed_of("Rng.Pairs"), 0, static_cast<std::uint64_t>(i));
-            core::Rng next(test_support::seed_of("Rng.Pairs"), 0, static_cast<std::uint64_t>(i) + 1);
+            core::Rng next(
+                test_support::seed_of("Rng.Pairs"), 0, static_cast<std::uint64_t>(i) + 1);
             const double x = across ? other.uniform() : rng.uniform();
             const double y = across ? next.uniform() : rng.uniform();
             observed[static_cast<std::size_t>(x * kCells) * kCells +

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/core/sampling.h"
 
+#include "renderer/core/random.h"
+#include "tests/support/statistics.h"
+
 #include <gtest/gtest.h>
 
 #include <functional>
-
-#include "renderer/core/random.h"
-#include "tests/support/statistics.h"
 
 namespace {
 
@@ -50,8 +50,9 @@ TEST(Sampling, CosineHemisphereMatchesItsDensity) {
 }
 
 TEST(Sampling, SphereMatchesItsDensity) {
-    EXPECT_GT(direction_p_value(core::sample_sphere, [](const Vec3&) { return core::pdf_sphere(); }),
-              1e-4);
+    EXPECT_GT(
+        direction_p_value(core::sample_sphere, [](const Vec3&) { return core::pdf_sphere(); }),
+        1e-4);
 }
 
 TEST(Sampling, TrianglePointsAreUniformByArea) {

@@ -87,7 +87,8 @@ TEST(Settings, UnknownKeyListsKnownKeys) {
 TEST(Settings, WrongTypesNameKeyValueAndWhatIsAllowed) {
     EXPECT_EQ(message_of(R"({"count": "many"})"),
               "file.json: count: found \"many\"; must be a whole number");
-    EXPECT_EQ(message_of(R"({"count": 1.5})"), "file.json: count: found 1.5; must be a whole number");
+    EXPECT_EQ(message_of(R"({"count": 1.5})"),
+              "file.json: count: found 1.5; must be a whole number");
     EXPECT_EQ(message_of(R"({"on": 1})"), "file.json: on: found 1; must be true or false");
     EXPECT_EQ(message_of(R"({"colour": "blue"})"),
               "file.json: colour: found \"blue\"; must be one of red|green");

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/bsdf.h"
 
-#include <gtest/gtest.h>
-
-#include <vector>
-
 #include "renderer/core/random.h"
 #include "renderer/core/sampling.h"
 #include "tests/support/statistics.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
 
 namespace {
 
@@ -65,9 +65,10 @@ double sampler_p_value(const Bsdf& bsdf, const Vec3& incoming) {
 }
 
 TEST(Bsdf, SamplesMatchTheirDensity) {
-    const std::vector<Vec3> incomings{
-        direction_at(0.98, 0.3), direction_at(0.5, 2.0), direction_at(0.15, -1.0),
-        direction_at(-0.6, 1.0)};
+    const std::vector<Vec3> incomings{direction_at(0.98, 0.3),
+                                      direction_at(0.5, 2.0),
+                                      direction_at(0.15, -1.0),
+                                      direction_at(-0.6, 1.0)};
     const double level = test_support::sidak_level(1e-3, kSampled.size() * incomings.size());
     for (std::size_t model = 0; model < kSampled.size(); ++model) {
         for (const Vec3& incoming : incomings) {

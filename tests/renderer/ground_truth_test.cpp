@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/ground_truth.h"
 
-#include <gtest/gtest.h>
-
 #include "tests/support/test_scenes.h"
+
+#include <gtest/gtest.h>
 
 namespace {
 
 using core::Vec3;
 
-renderer::SceneDescription description_with(const Vec3& center, const Vec3& normal, const Vec3& up) {
+renderer::SceneDescription description_with(const Vec3& center,
+                                            const Vec3& normal,
+                                            const Vec3& up) {
     renderer::SceneDescription description;
     description.relay_wall.center_m = center;
     description.relay_wall.normal = normal;
@@ -43,11 +45,10 @@ TEST(GroundTruth, TiltedPlaneHasItsDepthNormalAndAlbedo) {
 
 TEST(GroundTruth, FollowsThePoseOfTheWall) {
     // A wall at x = 2 that looks along -x, with a plate 0.6 m in front of its upper part.
-    const auto description =
-        description_with(Vec3(2, 0, 5), Vec3(-1, 0, 0), Vec3::UnitY());
+    const auto description = description_with(Vec3(2, 0, 5), Vec3(-1, 0, 0), Vec3::UnitY());
     renderer::SceneGeometry geometry;
-    geometry.objects.push_back(test_support::parallelogram_object(
-        {Vec3(1.4, 0.0, 4.0), Vec3(0, 1, 0), Vec3(0, 0, 2)}));
+    geometry.objects.push_back(
+        test_support::parallelogram_object({Vec3(1.4, 0.0, 4.0), Vec3(0, 1, 0), Vec3(0, 0, 2)}));
     const core::Scan scan = renderer::make_scan(description);
     const renderer::Scene scene(std::move(geometry), scan, description.relay_wall);
     const core::DepthMap map = renderer::trace_ground_truth(scene, description);

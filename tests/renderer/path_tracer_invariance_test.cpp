@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // What must not change when a set-up is described in another way.
-#include <gtest/gtest.h>
-
 #include "renderer/render.h"
 #include "tests/support/statistics.h"
 #include "tests/support/test_scenes.h"
+
+#include <gtest/gtest.h>
 
 namespace {
 
@@ -82,9 +82,9 @@ TEST(PathTracer, DeviceOriginShiftsHistogramsByTheLegs) {
     core::TimeAxis shifted = kAxis;
     shifted.opl_start_m += scan.device_legs_m(0);
     const auto device_origin = render_plain(scan, shifted, settings_with(2000));
-    EXPECT_LT(test_support::relative_l2(device_origin.transient.values(),
-                                        wall_origin.transient.values()),
-              1e-3);
+    EXPECT_LT(
+        test_support::relative_l2(device_origin.transient.values(), wall_origin.transient.values()),
+        1e-3);
 }
 
 // Where pairs coincide, all patterns estimate the same histogram.
@@ -95,7 +95,9 @@ TEST(PathTracer, PatternsAgreeWherePairsCoincide) {
     const auto confocal = render_plain(test_support::confocal_scan(kPoints), kAxis, settings);
     const auto single =
         render_plain(test_support::single_scan(kPoints[1], kPoints), kAxis, settings);
-    const auto expect_same = [&](const core::Capture& a, std::size_t pair, std::size_t of_exhaustive) {
+    const auto expect_same = [&](const core::Capture& a,
+                                 std::size_t pair,
+                                 std::size_t of_exhaustive) {
         const std::size_t bins = a.transient.num_bins();
         const double level = test_support::sidak_level(1e-3, bins * 6);
         for (std::size_t bin = 0; bin < bins; ++bin) {
@@ -119,8 +121,10 @@ TEST(PathTracer, SwappingLightAndSensorGivesTheSameEnergyPerOrder) {
     renderer::RenderSettings settings = settings_with(400'000);
     settings.by_order = true;
     const core::TimeAxis axis{0.0, 20.0, 1};
-    const auto there = render_plain(test_support::single_scan(kPoints[0], {kPoints[2]}), axis, settings);
-    const auto back = render_plain(test_support::single_scan(kPoints[2], {kPoints[0]}), axis, settings);
+    const auto there =
+        render_plain(test_support::single_scan(kPoints[0], {kPoints[2]}), axis, settings);
+    const auto back =
+        render_plain(test_support::single_scan(kPoints[2], {kPoints[0]}), axis, settings);
     for (const std::size_t order : {3U, 4U, 5U}) {
         const double a = double{there.by_order[order - 1].values()[0]};
         const double b = double{back.by_order[order - 1].values()[0]};

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/ray_caster.h"
 
-#include <gtest/gtest.h>
-
 #include "renderer/core/random.h"
 #include "renderer/scene.h"
 #include "tests/support/statistics.h"
 #include "tests/support/test_scenes.h"
+
+#include <gtest/gtest.h>
 
 namespace {
 
@@ -14,7 +14,7 @@ using core::Vec3;
 
 // A closed sphere: seen from inside, every ray must hit, and no chord may be blocked.
 class RayCasterOnSphere : public testing::TestWithParam<std::pair<Vec3, double>> {
-   protected:
+ protected:
     RayCasterOnSphere() {
         const auto& [center, radius] = GetParam();
         const renderer::Object sphere = test_support::sphere_object(center, radius, 4, 1.0);
@@ -77,13 +77,13 @@ TEST_P(RayCasterOnSphere, ChordsAreFreeAndWallsBlock) {
     EXPECT_EQ(blocked, 0) << "of " << count;
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Scales,
-    RayCasterOnSphere,
-    testing::Values(std::pair{Vec3(0, 0, 0), 0.5},
-                    std::pair{Vec3(1000, -1000, 1000), 0.5},  // a node translated by a kilometre
-                    std::pair{Vec3(0, 0, 0), 5e-3},           // facets of about 0.1 mm
-                    std::pair{Vec3(1, 2, 3), 100.0}));
+INSTANTIATE_TEST_SUITE_P(Scales,
+                         RayCasterOnSphere,
+                         testing::Values(std::pair{Vec3(0, 0, 0), 0.5},
+                                         std::pair{Vec3(1000, -1000, 1000),
+                                                   0.5},  // a node translated by a kilometre
+                                         std::pair{Vec3(0, 0, 0), 5e-3},  // facets of about 0.1 mm
+                                         std::pair{Vec3(1, 2, 3), 100.0}));
 
 // Facets of 0.1 mm in a set-up of 1 m: seen from the wall, none hides another, all hide the back.
 TEST(RayCaster, TinyFacetsInALargeSceneHoldTight) {

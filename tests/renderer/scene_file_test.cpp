@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/scene_file.h"
 
-#include <gtest/gtest.h>
-
 #include "tests/support/error_message.h"
 #include "tests/support/file_bytes.h"
 #include "tests/support/temporary_folder.h"
+
+#include <gtest/gtest.h>
 
 namespace {
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 // Light inside a diffuse sphere has closed forms for every bounce (derived in REFERENCES.md,
 // "transient furnace"). They test the path tracer from end to end: geometry, densities, units.
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "renderer/core/sampling.h"
 #include "renderer/path_tracer.h"
 #include "renderer/render.h"
 #include "tests/support/statistics.h"
 #include "tests/support/test_scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
 
 namespace {
 
@@ -32,7 +32,7 @@ struct Moments {
 
 // Totals over independent passes give mean and standard error without trusting any bin's variance.
 class Furnace {
-   public:
+ public:
     Furnace(const renderer::Scene& scene, const renderer::PathEnds& ends, int max_bounces)
         : ends_(ends), axis_{0.0, 0.02, 600}, max_bounces_(max_bounces) {
         renderer::RenderSettings settings;
@@ -78,7 +78,7 @@ class Furnace {
     }
     const core::TimeAxis& axis() const { return axis_; }
 
-   private:
+ private:
     static constexpr std::uint64_t kPasses = 400;
     renderer::PathEnds ends_;
     core::TimeAxis axis_;
@@ -117,8 +117,9 @@ void expect_close(double measured, double expected, double sigma, const std::str
     EXPECT_NEAR(measured, expected, 4.5 * sigma + kFacetBias * expected) << what;
 }
 
-// Source and detector of fluence at the centre: bounce k carries rho^k Phi/(pi R^2) with mean length
-// 2R + (k-1) 4R/3; bounce 1 has length 2R, bounce 2 the density rho^2 Phi (tau-2R)/(2 pi R^4).
+// Source and detector of fluence at the centre: bounce k carries rho^k Phi/(pi R^2) with mean
+// length 2R + (k-1) 4R/3; bounce 1 has length 2R, bounce 2 the density rho^2 Phi (tau-2R)/(2 pi
+// R^4).
 TEST(TransientFurnace, IsotropicEndsAtTheCentre) {
     core::Scan scan;
     scan.sensing = test_support::wall_points({Vec3(10, 0, 0)});
@@ -168,8 +169,9 @@ TEST(TransientFurnace, SecondBounceIsALinearRamp) {
     }
 }
 
-// Laser and detector on the sphere itself: bounce k carries Phi rho^k/(4 pi^2 R^2). Confocal, bounce
-// 3 has density Phi rho^3 tau/(32 pi^2 R^4) on [0, 4R], and bounce k the mean length (k-1) 4R/3.
+// Laser and detector on the sphere itself: bounce k carries Phi rho^k/(4 pi^2 R^2). Confocal,
+// bounce 3 has density Phi rho^3 tau/(32 pi^2 R^4) on [0, 4R], and bounce k the mean length (k-1)
+// 4R/3.
 TEST(TransientFurnace, PointsOnTheSphere) {
     const core::WallPoints a = point_on_sphere(Vec3(0.3, 0.5, 0.8).normalized());
     const core::WallPoints b = point_on_sphere(Vec3(-0.6, 0.4, 0.1).normalized());
@@ -183,7 +185,8 @@ TEST(TransientFurnace, PointsOnTheSphere) {
         const Furnace furnace(scene, ends, 5);
         for (int order = 3; order <= 5; ++order) {
             const Moments m = furnace.moments(order);
-            const double expected = std::pow(kAlbedo, order) / (4.0 * kPi * kPi * kRadius * kRadius);
+            const double expected =
+                std::pow(kAlbedo, order) / (4.0 * kPi * kPi * kRadius * kRadius);
             expect_close(m.total, expected, m.sigma, "total of order " + std::to_string(order));
             if (!confocal) continue;
             const double mean = (order - 1) * 4.0 * kRadius / 3.0;

@@ -46,7 +46,9 @@ double chi_square_tail(double value, double degrees) {
     return upper_gamma(0.5 * degrees, 0.5 * value);
 }
 
-double normal_tail(double value) { return std::erfc(std::abs(value) / std::sqrt(2.0)); }
+double normal_tail(double value) {
+    return std::erfc(std::abs(value) / std::sqrt(2.0));
+}
 
 double sidak_level(double level, std::size_t num_tests) {
     return -std::expm1(std::log1p(-level) / static_cast<double>(num_tests));

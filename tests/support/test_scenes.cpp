@@ -113,10 +113,12 @@ std::vector<float> third_bounce_by_quadrature(const Parallelogram& hidden,
     const Vec3 area_vector = hidden.u.cross(hidden.v);
     const Vec3 normal = area_vector.normalized();
     const double cell_area = area_vector.norm() / (double(steps) * steps);
-    const double front = std::pow(wall_albedo / core::kPi, 2) * hidden.albedo / core::kPi * cell_area;
+    const double front =
+        std::pow(wall_albedo / core::kPi, 2) * hidden.albedo / core::kPi * cell_area;
     for (int i = 0; i < steps; ++i) {
         for (int j = 0; j < steps; ++j) {
-            const Vec3 p = hidden.corner + (i + 0.5) / steps * hidden.u + (j + 0.5) / steps * hidden.v;
+            const Vec3 p =
+                hidden.corner + (i + 0.5) / steps * hidden.u + (j + 0.5) / steps * hidden.v;
             for (std::size_t pair = 0; pair < scan.num_pairs(); ++pair) {
                 const Vec3& l = scan.illumination.positions[scan.illumination_index(pair)];
                 const Vec3& s = scan.sensing.positions[scan.sensing_index(pair)];
@@ -129,8 +131,8 @@ std::vector<float> third_bounce_by_quadrature(const Parallelogram& hidden,
                 const double cos_pl = normal.dot(to_l) / rl;
                 const double cos_ps = normal.dot(to_s) / rs;
                 if (cos_l <= 0.0 || cos_s <= 0.0 || cos_pl * cos_ps <= 0.0) continue;
-                const int bin = static_cast<int>(
-                    std::floor((rl + rs - axis.opl_start_m) / axis.bin_width_m));
+                const int bin =
+                    static_cast<int>(std::floor((rl + rs - axis.opl_start_m) / axis.bin_width_m));
                 if (bin < 0 || bin >= axis.num_bins) continue;
                 if (crosses(p, l, occluder) || crosses(p, s, occluder)) continue;
                 sums[pair * num_bins + static_cast<std::size_t>(bin)] +=

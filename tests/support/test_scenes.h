@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <vector>
-
 #include "renderer/render.h"
+
+#include <vector>
 
 namespace test_support {
 
@@ -32,8 +32,8 @@ core::Scan single_scan(const core::Vec3& illumination, const std::vector<core::V
 core::Scan exhaustive_scan(const std::vector<core::Vec3>& illumination,
                            const std::vector<core::Vec3>& sensing);
 
-/// Third bounce of a parallelogram behind an opaque one, by brute force: `steps` x `steps` midpoints
-/// with exact visibility. Written apart from the renderer, in plain double precision.
+/// Third bounce of a parallelogram behind an opaque one, by brute force: `steps` x `steps`
+/// midpoints with exact visibility. Written apart from the renderer, in plain double precision.
 ///
 /// occluder      may be degenerate (zero edges): then nothing is hidden
 /// wall_albedo   of both wall points

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+// How close the path tracer comes to the ray tracer's own speed: renders a scene on one thread,
+// records the rays by wrapping Embree's entry points at link time, and replays exactly these rays
+// with nothing in between.
+//   ray_rate SCENE.json [SAMPLES] [MAX_BOUNCES] [REPEATS]
+#include <embree3/rtcore.h>
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <vector>
+
+#include "renderer/core/parallel.h"
+#include "renderer/core/process.h"
+#include "renderer/render.h"
+#include "renderer/scene_file.h"
+
+namespace {
+
+struct RecordedPacket {
+    alignas(64) int valid[16];
+    RTCRay16 rays;
+};
+
+// Calls in the order in which the tracer made them, so that the replay meets the same caches.
+enum class Call : char { Packet, FirstHit, Segment };
+
+struct Recording {
+    RTCScene scene = nullptr;
+    std::vector<Call> calls;
+    std::vector<RecordedPacket> packets;
+    std::vector<RTCRayHit> first_hits;
+    std::vector<RTCRay> segments;
+    std::size_t num_rays = 0;
+};
+
+Recording* g_recording = nullptr;
+
+}  // namespace
+
+extern "C" {
+void __real_rtcOccluded16(const int*, RTCScene, RTCIntersectContext*, RTCRay16*);
+void __real_rtcIntersect1(RTCScene, RTCIntersectContext*, RTCRayHit*);
+void __real_rtcOccluded1(RTCScene, RTCIntersectContext*, RTCRay*);
+
+void __wrap_rtcOccluded16(const int* valid,
+                          RTCScene scene,
+                          RTCIntersectContext* context,
+                          RTCRay16* rays) {
+    if (g_recording != nullptr) {
+        g_recording->scene = scene;
+        g_recording->calls.push_back(Call::Packet);
+        RecordedPacket& packet = g_recording->packets.emplace_back();
+        std::copy(valid, valid + 16, packet.valid);
+        packet.rays = *rays;
+        g_recording->num_rays += static_cast<std::size_t>(std::count(valid, valid + 16, -1));
+    }
+    __real_rtcOccluded16(valid, scene, context, rays);
+}
+
+void __wrap_rtcIntersect1(RTCScene scene, RTCIntersectContext* context, RTCRayHit* ray) {
+    if (g_recording != nullptr) {
+        g_recording->calls.push_back(Call::FirstHit);
+        g_recording->first_hits.push_back(*ray);
+        ++g_recording->num_rays;
+    }
+    __real_rtcIntersect1(scene, context, ray);
+}
+
+void __wrap_rtcOccluded1(RTCScene scene, RTCIntersectContext* context, RTCRay* ray) {
+    if (g_recording != nullptr) {
+        g_recording->calls.push_back(Call::Segment);
+        g_recording->segments.push_back(*ray);
+        ++g_recording->num_rays;
+    }
+    __real_rtcOccluded1(scene, context, ray);
+}
+}
+
+namespace {
+
+// CPU seconds of tracing the recorded rays once. The rays are copies: tracing changes them.
+double replay(Recording recording) {
+    RTCIntersectContext coherent;
+    rtcInitIntersectContext(&coherent);
+    coherent.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    RTCIntersectContext incoherent;
+    rtcInitIntersectContext(&incoherent);
+    auto packet = recording.packets.begin();
+    auto first_hit = recording.first_hits.begin();
+    auto segment = recording.segments.begin();
+    const double start = core::cpu_seconds();
+    for (const Call call : recording.calls) {
+        switch (call) {
+            case Call::Packet:
+                __real_rtcOccluded16(packet->valid, recording.scene, &coherent, &packet->rays);
+                ++packet;
+                break;
+            case Call::FirstHit:
+                __real_rtcIntersect1(recording.scene, &incoherent, &*first_hit++);
+                break;
+            case Call::Segment:
+                __real_rtcOccluded1(recording.scene, &incoherent, &*segment++);
+                break;
+        }
+    }
+    return core::cpu_seconds() - start;
+}
+
+double median(std::vector<double> values) {
+    std::nth_element(values.begin(), values.begin() + std::ptrdiff_t(values.size() / 2), values.end());
+    return values[values.size() / 2];
+}
+
+int argument(int argc, char** argv, int index, int otherwise) {
+    return argc > index ? std::atoi(argv[index]) : otherwise;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    if (argc < 2) {
+        fmt::print(stderr, "usage: ray_rate SCENE.json [SAMPLES] [MAX_BOUNCES] [REPEATS]\n");
+        return 2;
+    }
+    const core::ThreadLimit one_thread(1);
+    auto description = renderer::read_scene_description(argv[1], {"render.method=path"});
+    description.render.samples = argument(argc, argv, 2, 256);
+    description.render.max_bounces = argument(argc, argv, 3, 3);
+    const core::Scan scan = renderer::make_scan(description);
+    const renderer::Scene scene = renderer::load_scene(description, scan);
+    const auto render = [&] {
+        return renderer::render(scene, scan, description.time_axis, description.render, {});
+    };
+
+    Recording recording;
+    g_recording = &recording;
+    render();
+    g_recording = nullptr;
+    std::vector<double> render_seconds;
+    std::vector<double> replay_seconds;
+    std::vector<double> ratios;
+    for (int i = 0; i < argument(argc, argv, 4, 5); ++i) {
+        const double start = core::cpu_seconds();
+        render();
+        render_seconds.push_back(core::cpu_seconds() - start);
+        replay_seconds.push_back(replay(recording));
+        ratios.push_back(replay_seconds.back() / render_seconds.back());
+    }
+    const double rays = static_cast<double>(recording.num_rays);
+    fmt::print("{} facets, {:.2f} M rays\n", scene.facets().size(), rays * 1e-6);
+    fmt::print("render   {:6.2f} M rays/s\n", rays / median(render_seconds) * 1e-6);
+    fmt::print("replay   {:6.2f} M rays/s\n", rays / median(replay_seconds) * 1e-6);
+    fmt::print("ratio    {:6.3f}  ({:.3f} to {:.3f})\n",
+               median(ratios),
+               *std::min_element(ratios.begin(), ratios.end()),
+               *std::max_element(ratios.begin(), ratios.end()));
+    return 0;
+}
