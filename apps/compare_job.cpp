@@ -2,6 +2,8 @@
 #include "apps/compare_job.h"
 
 #include "apps/arguments.h"
+#include "apps/file_kind.h"
+#include "apps/scene_truth.h"
 #include "nlos/formats/capture_file.h"
 #include "nlos/formats/picture.h"
 #include "nlos/formats/ply_file.h"
@@ -9,7 +11,6 @@
 #include "nlos/pictures.h"
 #include "renderer/core/output_file.h"
 #include "renderer/gltf.h"
-#include "renderer/ground_truth.h"
 
 #include <filesystem>
 #include <optional>
@@ -17,20 +18,8 @@
 namespace apps {
 namespace {
 
-enum class Kind { Scene, Volume, Mesh, Capture };
-
 constexpr std::size_t kSurfaceSamples = 100'000;
 constexpr std::uint64_t kSurfaceSeed = 0;
-
-Kind kind_of(const std::string& path) {
-    const std::string suffix = std::filesystem::path(path).extension().string();
-    if (!std::filesystem::exists(path)) {
-        throw core::Error(path, "does not exist", "must be a file to compare");
-    }
-    if (suffix == ".json") return Kind::Scene;
-    if (suffix == ".ply" || suffix == ".glb" || suffix == ".gltf") return Kind::Mesh;
-    return nlos::is_volume_file(path) ? Kind::Volume : Kind::Capture;
-}
 
 core::PointCloud surface_points(const std::string& path) {
     core::TriangleMesh mesh;
@@ -49,51 +38,42 @@ core::PointCloud surface_points(const std::string& path) {
     return core::sample_surface(mesh, kSurfaceSamples, kSurfaceSeed);
 }
 
-// A scene file and what is needed to look at it.
-struct Truth {
-    explicit Truth(const std::string& path)
-        : description(renderer::read_scene_description(path, {})),
-          scene(renderer::load_scene(description, renderer::make_scan(description))) {}
-
-    renderer::SceneDescription description;
-    renderer::Scene scene;
-};
-
 nlos::Metrics compare_volume_to_scene(const std::string& a,
                                       const std::string& b,
                                       const std::string& picture_path) {
     const nlos::Reconstruction result = nlos::read_volume(a);
-    const Truth truth(b);
     const nlos::VolumeAxes& axes = result.volume.axes;
-    const core::DepthMap map =
-        renderer::trace_depth_map(truth.scene, axes.world_from_wall, axes.x_m, axes.y_m);
+    const core::DepthMap truth = SceneTruth(b).depth_map(axes.world_from_wall, axes.x_m, axes.y_m);
     if (!picture_path.empty()) {
-        nlos::write_panels_png(picture_path, nlos::comparison_panels(result, map), 3);
+        nlos::write_panels_png(picture_path, nlos::comparison_panels(result, truth), 3);
     }
-    return nlos::compare_to_truth(result, map);
+    return nlos::compare_to_truth(result, truth);
+}
+
+bool is_surface(FileKind kind) {
+    return kind == FileKind::Geometry || kind == FileKind::PointCloud;
 }
 
 nlos::Metrics compare_kinds(const std::string& a,
                             const std::string& b,
                             const std::string& picture_path,
                             double threshold_m) {
-    const Kind kind_a = kind_of(a);
-    const Kind kind_b = kind_of(b);
-    if (kind_a == Kind::Volume && kind_b == Kind::Scene) {
+    const FileKind kind_a = kind_of_file(a);
+    const FileKind kind_b = kind_of_file(b);
+    if (kind_a == FileKind::Volume && kind_b == FileKind::Scene) {
         return compare_volume_to_scene(a, b, picture_path);
     }
-    if (kind_a == Kind::Mesh && kind_b == Kind::Scene) {
-        const Truth truth(b);
-        const auto map = renderer::trace_ground_truth(truth.scene, truth.description);
-        return nlos::compare_points(surface_points(a), renderer::visible_points(map), threshold_m);
+    if (is_surface(kind_a) && kind_b == FileKind::Scene) {
+        return nlos::compare_points(
+            surface_points(a), renderer::visible_points(SceneTruth(b).depth_map()), threshold_m);
     }
-    if (kind_a == Kind::Volume && kind_b == Kind::Volume) {
+    if (kind_a == FileKind::Volume && kind_b == FileKind::Volume) {
         return nlos::compare_volumes(nlos::read_volume(a), nlos::read_volume(b));
     }
-    if (kind_a == Kind::Mesh && kind_b == Kind::Mesh) {
+    if (is_surface(kind_a) && is_surface(kind_b)) {
         return nlos::compare_points(surface_points(a), surface_points(b), threshold_m);
     }
-    if (kind_a == Kind::Capture && kind_b == Kind::Capture) {
+    if (kind_a == FileKind::Capture && kind_b == FileKind::Capture) {
         return nlos::compare_captures(nlos::read_capture(a), nlos::read_capture(b));
     }
     throw core::Error(a,

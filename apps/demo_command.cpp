@@ -2,14 +2,12 @@
 #include "apps/arguments.h"
 #include "apps/commands.h"
 #include "apps/compare_job.h"
+#include "apps/file_picture.h"
 #include "apps/reconstruct_job.h"
 #include "apps/render_job.h"
 #include "apps/report.h"
 #include "apps/terminal.h"
-#include "nlos/formats/picture.h"
-#include "nlos/pictures.h"
-#include "renderer/core/output_file.h"
-#include "renderer/ground_truth.h"
+#include "renderer/core/error.h"
 
 #include <fmt/core.h>
 
@@ -31,13 +29,6 @@ std::string letter_scene() {
     return std::string(NLOS_SCENES_DIR) + "/letter/scene.json";
 }
 
-void write_truth_picture(const std::string& scene_path, const std::string& picture_path) {
-    const auto description = renderer::read_scene_description(scene_path, {});
-    const auto scene = renderer::load_scene(description, renderer::make_scan(description));
-    const auto truth = renderer::trace_ground_truth(scene, description);
-    nlos::write_panels_png(picture_path, nlos::truth_panels(truth), 3);
-}
-
 void stop_if_interrupted() {
     if (interrupt_requested()) throw core::Failure("demo", "interrupted");
 }
@@ -51,7 +42,7 @@ void run(const DemoArguments& arguments) {
 
     const std::string scene = letter_scene();
     fmt::print("scene        {}\n", scene);
-    write_truth_picture(scene, file("ground_truth.png"));
+    write_picture(scene, file("ground_truth.png"));
     const RenderJob render = render_to_file(scene, {}, file("capture.h5"));
     fmt::print("capture      {} ({:.2f} s)\n", file("capture.h5"), render.seconds);
     for (const std::string method : {"lct", "bp"}) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "apps/arguments.h"
 #include "apps/commands.h"
+#include "apps/file_kind.h"
+#include "apps/file_picture.h"
 #include "nlos/formats/capture_file.h"
 #include "nlos/formats/ply_file.h"
 #include "nlos/formats/volume_file.h"
@@ -9,7 +11,6 @@
 
 #include <fmt/core.h>
 
-#include <filesystem>
 #include <memory>
 
 namespace apps {
@@ -17,6 +18,7 @@ namespace {
 
 struct InfoArguments {
     std::string file;
+    std::string picture;
     std::vector<std::string> overrides;
 };
 
@@ -80,26 +82,41 @@ void describe_geometry(const std::string& path) {
     }
 }
 
-void run(const InfoArguments& arguments) {
-    const std::string& path = arguments.file;
-    if (!std::filesystem::exists(path)) {
-        throw core::Error(path, "does not exist", "must be a capture, volume, scene or mesh");
-    }
+void describe_point_cloud(const std::string& path) {
+    const core::TriangleMesh mesh = nlos::read_ply(path);
+    fmt::print(
+        "format: PLY\npoints: {}\ntriangles: {}\n", mesh.vertices.size(), mesh.triangles.size());
+}
+
+void describe_capture_file(const std::string& path, const std::vector<std::string>& overrides) {
     InfoOptions options;
-    for (const std::string& text : arguments.overrides) core::apply_override(options, text);
-    const std::string suffix = std::filesystem::path(path).extension().string();
-    if (suffix == ".json") return describe_scene(path);
-    if (suffix == ".glb" || suffix == ".gltf") return describe_geometry(path);
-    if (suffix == ".ply") {
-        const core::TriangleMesh mesh = nlos::read_ply(path);
-        fmt::print(
-            "format: PLY, {} points, {} triangles\n", mesh.vertices.size(), mesh.triangles.size());
-        return;
-    }
-    if (nlos::is_volume_file(path)) return describe_volume(path);
+    for (const std::string& text : overrides) core::apply_override(options, text);
     const core::Capture capture = nlos::read_capture(path, options.capture);
     fmt::print("format: {}\n", nlos::capture_format(path).value_or("unknown"));
     for (const std::string& line : nlos::describe_capture(capture)) fmt::print("{}\n", line);
+}
+
+void run(const InfoArguments& arguments) {
+    switch (kind_of_file(arguments.file)) {
+        case FileKind::Scene:
+            describe_scene(arguments.file);
+            break;
+        case FileKind::Geometry:
+            describe_geometry(arguments.file);
+            break;
+        case FileKind::PointCloud:
+            describe_point_cloud(arguments.file);
+            break;
+        case FileKind::Volume:
+            describe_volume(arguments.file);
+            break;
+        case FileKind::Capture:
+            describe_capture_file(arguments.file, arguments.overrides);
+            break;
+    }
+    if (arguments.picture.empty()) return;
+    write_picture(arguments.file, arguments.picture);
+    fmt::print("wrote {}\n", arguments.picture);
 }
 
 }  // namespace
@@ -109,6 +126,9 @@ void add_info_command(CLI::App& app) {
     const auto arguments = std::make_shared<InfoArguments>();
     command->add_option("FILE", arguments->file, "Capture, volume, scene.json, glTF or PLY")
         ->required();
+    command->add_option("--picture",
+                        arguments->picture,
+                        "Also draw it (.png): a scene as the wall sees it, a capture, a volume");
     add_set_option(*command, arguments->overrides);
     command->footer(
         settings_footer(core::settings_help(InfoOptions{}), "nlos info scenes/letter/scene.json"));

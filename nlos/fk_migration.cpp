@@ -62,8 +62,7 @@ Grids make_grids(const MethodInput& input) {
     grids.bin_m = 0.5 * axis.bin_width_m;
     grids.center_m = 0.5 * (begin + end);
     const auto covered = static_cast<std::size_t>(std::ceil((end - begin) / grids.bin_m - 1e-6));
-    grids.length =
-        2 * good_fft_size(std::max(covered, static_cast<std::size_t>(axis.num_bins)));
+    grids.length = 2 * good_fft_size(std::max(covered, static_cast<std::size_t>(axis.num_bins)));
     grids.num_z = input.axes.z_m.size();
     const double voxel_m =
         (input.z_range_m[1] - input.z_range_m[0]) / static_cast<double>(grids.num_z);
@@ -71,11 +70,10 @@ Grids make_grids(const MethodInput& input) {
     grids.step_m = voxel_m / static_cast<double>(grids.samples);
     grids.first_z_m = input.z_range_m[0] + 0.5 * grids.step_m;
     // Depths outside the volume must not be folded into it.
-    const double period =
-        std::max(grids.period_m(), end + input.z_range_m[1] - input.z_range_m[0]);
-    grids.depth_length = good_fft_size(
-        std::max(static_cast<std::size_t>(std::ceil(period / grids.step_m - 1e-6)),
-                 grids.num_z * grids.samples));
+    const double period = std::max(grids.period_m(), end + input.z_range_m[1] - input.z_range_m[0]);
+    grids.depth_length =
+        good_fft_size(std::max(static_cast<std::size_t>(std::ceil(period / grids.step_m - 1e-6)),
+                               grids.num_z * grids.samples));
     return grids;
 }
 
@@ -183,7 +181,7 @@ class StoltMap {
  private:
     /// Where in the spectrum each kz reads, and the factor of what is read there.
     struct Readings {
-        explicit Readings(std::size_t count) : below(count), late(count), re(count), im(count) {}
+        explicit Readings(std::size_t n) : below(n), late(n), re(n), im(n) {}
         std::size_t count = 0;  ///< larger kz lie beyond the highest frequency
         std::vector<int> below;
         std::vector<float> late, re, im;
@@ -299,26 +297,27 @@ Volume fk_migration(const MethodInput& input, Falloff falloff) {
 
     FftBuffer spectrum(2 * grids.num_frequencies() * num_columns);
     const RangeTransform transform(input, grids, falloff);
-    parallel_blocks_with_progress(
-        num_columns,
-        kColumnsPerBlock,
-        {input.progress, 0.0, 0.1, "range to frequency"},
-        [&](std::size_t begin, std::size_t end) { transform.fill(begin, end, spectrum.complex()); });
+    parallel_blocks_with_progress(num_columns,
+                                  kColumnsPerBlock,
+                                  {input.progress, 0.0, 0.1, "range to frequency"},
+                                  [&](std::size_t begin, std::size_t end) {
+                                      transform.fill(begin, end, spectrum.complex());
+                                  });
 
     FftBuffer field(2 * grids.num_slabs() * slab_size);
     const PaddedPlane plane({grids.nx, grids.ny}, {grids.px, grids.py});
-    parallel_blocks_with_progress(
-        grids.num_frequencies(),
-        kSlabsPerBlock,
-        {input.progress, 0.1, 0.4, "lateral transform"},
-        [&](std::size_t begin, std::size_t end) {
-            PaddedPlane::Workspace work = plane.make_workspace();
-            for (std::size_t f = begin; f < end; ++f) {
-                plane.load(spectrum.complex() + f * num_columns, work);
-                plane.forward(work);
-                plane.store_spectrum(work, field.complex() + f * slab_size);
-            }
-        });
+    parallel_blocks_with_progress(grids.num_frequencies(),
+                                  kSlabsPerBlock,
+                                  {input.progress, 0.1, 0.4, "lateral transform"},
+                                  [&](std::size_t begin, std::size_t end) {
+                                      PaddedPlane::Workspace work = plane.make_workspace();
+                                      for (std::size_t f = begin; f < end; ++f) {
+                                          plane.load(spectrum.complex() + f * num_columns, work);
+                                          plane.forward(work);
+                                          plane.store_spectrum(work,
+                                                               field.complex() + f * slab_size);
+                                      }
+                                  });
     spectrum = FftBuffer(0);
 
     const StoltMap map(*input.wall.grid, grids);
@@ -329,13 +328,13 @@ Volume fk_migration(const MethodInput& input, Falloff falloff) {
         [&](std::size_t begin, std::size_t) { map.apply(begin, field.complex()); });
 
     Volume volume{input.axes, std::vector<float>(num_columns * grids.num_z), {}};
-    parallel_blocks_with_progress(
-        grids.num_z,
-        kSlabsPerBlock,
-        {input.progress, 0.7, 1.0, "lateral transform"},
-        [&](std::size_t begin, std::size_t end) {
-            fill_voxels(grids, plane, field.complex(), begin, end, volume);
-        });
+    parallel_blocks_with_progress(grids.num_z,
+                                  kSlabsPerBlock,
+                                  {input.progress, 0.7, 1.0, "lateral transform"},
+                                  [&](std::size_t begin, std::size_t end) {
+                                      fill_voxels(
+                                          grids, plane, field.complex(), begin, end, volume);
+                                  });
     return volume;
 }
 

@@ -39,9 +39,9 @@ std::optional<MidpointGrid> find_midpoint_grid(const core::Scan& scan, const Wal
     for (int axis = 0; axis < 2; ++axis) {
         grid.pitch_m[axis] = 0.5 * wall.grid->pitch_m[axis];
         grid.first_m[axis] = low[axis];
-        grid.size[axis] = static_cast<std::size_t>(
-                              std::llround((high[axis] - low[axis]) / grid.pitch_m[axis])) +
-                          1;
+        grid.size[axis] =
+            static_cast<std::size_t>(std::llround((high[axis] - low[axis]) / grid.pitch_m[axis])) +
+            1;
     }
     grid.pairs.resize(grid.size[0] * grid.size[1]);
     for (std::size_t pair = 0; pair < midpoints.size(); ++pair) {
@@ -76,63 +76,57 @@ core::WallPoints wall_points(const MidpointGrid& grid, const WallFrame& wall) {
 }
 
 /// The confocal axis starts at 0 and ends where the last bin can land.
-core::TimeAxis confocal_axis(const core::Capture& capture) {
-    double shortest = capture.scan.device_legs_m(0);
-    for (std::size_t pair = 1; pair < capture.scan.num_pairs(); ++pair) {
-        shortest = std::min(shortest, capture.scan.device_legs_m(pair));
+core::TimeAxis confocal_axis(const core::Scan& scan, core::TimeAxis axis) {
+    double shortest = scan.device_legs_m(0);
+    for (std::size_t pair = 1; pair < scan.num_pairs(); ++pair) {
+        shortest = std::min(shortest, scan.device_legs_m(pair));
     }
-    core::TimeAxis axis = capture.time_axis;
     const double end = std::max(axis.bin_width_m, axis.opl_end_m() - shortest);
     axis.opl_start_m = 0.0;
     axis.num_bins = static_cast<int>(std::ceil(end / axis.bin_width_m - 1e-6));
     return axis;
 }
 
-/// Adds a pair's histogram, moved to confocal path lengths.
-void add_moved(const core::Capture& capture,
-               std::size_t pair,
-               const core::TimeAxis& axis,
-               std::span<float> sum) {
-    const core::Scan& scan = capture.scan;
+/// The bin edges of a pair as confocal path lengths.
+std::vector<double> moved_edges(const core::Scan& scan,
+                                const core::TimeAxis& axis,
+                                std::size_t pair) {
     const double offset = (scan.illumination.positions[scan.illumination_index(pair)] -
                            scan.sensing.positions[scan.sensing_index(pair)])
                               .norm();
-    const auto histogram = capture.transient.histogram(pair);
-    std::vector<double> edges(histogram.size() + 1);
+    std::vector<double> edges(static_cast<std::size_t>(axis.num_bins) + 1);
     for (std::size_t bin = 0; bin < edges.size(); ++bin) {
-        const double opl =
-            capture.time_axis.bin_begin_m(static_cast<double>(bin)) - scan.device_legs_m(pair);
+        const double opl = axis.bin_begin_m(static_cast<double>(bin)) - scan.device_legs_m(pair);
         edges[bin] = opl > offset ? std::sqrt(opl * opl - offset * offset) : 0.0;
     }
-    const auto count = static_cast<std::size_t>(axis.num_bins);
-    std::vector<float> moved(count);
-    ConservativeResampling(edges,
-                           even_edges(0.0, axis.opl_end_m(), count),
-                           std::vector<double>(histogram.size(), 1.0))
-        .apply(histogram.data(), moved.data());
-    for (std::size_t bin = 0; bin < count; ++bin) sum[bin] += moved[bin];
+    return edges;
 }
 
 }  // namespace
 
-std::optional<core::Capture> convert_to_confocal(const core::Capture& capture) {
-    const WallFrame wall = derive_wall_frame(capture.scan);
-    const std::optional<MidpointGrid> grid = find_midpoint_grid(capture.scan, wall);
+std::optional<ConfocalData> convert_to_confocal(const core::Scan& scan,
+                                                const core::TimeAxis& axis,
+                                                const core::Transient& transient) {
+    const WallFrame wall = derive_wall_frame(scan);
+    const std::optional<MidpointGrid> grid = find_midpoint_grid(scan, wall);
     if (!grid) return std::nullopt;
-    core::Capture confocal;
-    confocal.scan.pattern = core::ScanPattern::Confocal;
-    confocal.scan.sensing = wall_points(*grid, wall);
-    confocal.scan.illumination = confocal.scan.sensing;
-    confocal.unit = capture.unit;
-    confocal.time_axis = confocal_axis(capture);
+    ConfocalData confocal;
+    confocal.points = wall_points(*grid, wall);
+    confocal.time_axis = confocal_axis(scan, axis);
     confocal.transient = core::Transient(grid->pairs.size(), confocal.time_axis.num_bins);
+    const auto num_bins = static_cast<std::size_t>(confocal.time_axis.num_bins);
+    const std::vector<double> edges = even_edges(0.0, confocal.time_axis.opl_end_m(), num_bins);
     core::parallel_for(grid->pairs.size(), [&](std::size_t point) {
         const auto sum = confocal.transient.histogram(point);
-        for (const std::size_t pair : grid->pairs[point]) {
-            add_moved(capture, pair, confocal.time_axis, sum);
+        const std::vector<std::size_t>& pairs = grid->pairs[point];
+        const std::vector<double> shares(transient.num_bins(),
+                                         1.0 / static_cast<double>(pairs.size()));
+        std::vector<float> moved(num_bins);
+        for (const std::size_t pair : pairs) {
+            ConservativeResampling(moved_edges(scan, axis, pair), edges, shares)
+                .apply(transient.histogram(pair).data(), moved.data());
+            for (std::size_t bin = 0; bin < num_bins; ++bin) sum[bin] += moved[bin];
         }
-        const auto share = 1.0F / static_cast<float>(grid->pairs[point].size());
-        for (float& value : sum) value *= share;
     });
     return confocal;
 }

@@ -7,16 +7,25 @@
 
 namespace nlos {
 
-/// Turns a non-confocal capture into the confocal one it resembles (normal moveout): the path
+/// Histograms of a confocal scan, path lengths from and to the wall.
+struct ConfocalData {
+    core::WallPoints points;
+    core::TimeAxis time_axis;
+    core::Transient transient;
+};
+
+/// Turns a non-confocal scan into the confocal one it resembles (normal moveout): the path
 /// l -> p -> s of length tau becomes the path m -> p -> m of length sqrt(tau^2 - |l - s|^2) at the
 /// midpoint m = (l + s) / 2, exact for points p equally far from l and s. Device legs are taken
 /// off; pairs that share a midpoint are averaged.
 ///
-/// capture   single or exhaustive; a single-laser scan becomes one of half the pitch and aperture
-/// returns   a confocal capture on a grid, of mean histograms; nothing when the midpoints do not
-///           fill an even grid
+/// scan      single or exhaustive; a single-laser scan becomes one of half the pitch and aperture
+/// returns   points on a grid and mean histograms; nothing when the midpoints do not fill an even
+///           grid
 /// throws    nothing
 /// source    [Lindell2019], supplement
-std::optional<core::Capture> convert_to_confocal(const core::Capture& capture);
+std::optional<ConfocalData> convert_to_confocal(const core::Scan& scan,
+                                                const core::TimeAxis& axis,
+                                                const core::Transient& transient);
 
 }  // namespace nlos

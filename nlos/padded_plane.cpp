@@ -10,12 +10,9 @@ using Direction = Fft::Direction;
 PaddedPlane::PaddedPlane(std::array<std::size_t, 2> size, std::array<std::size_t, 2> padded)
     : size_(size),
       padded_(padded),
-      rows_forward_(
-          Fft::complex_batch({padded[1], size[0], 1, stride()}, Direction::Forward)),
-      rows_inverse_(
-          Fft::complex_batch({padded[1], size[0], 1, stride()}, Direction::Inverse)),
-      columns_forward_(
-          Fft::complex_batch({padded[0], padded[1], stride(), 1}, Direction::Forward)),
+      rows_forward_(Fft::complex_batch({padded[1], size[0], 1, stride()}, Direction::Forward)),
+      rows_inverse_(Fft::complex_batch({padded[1], size[0], 1, stride()}, Direction::Inverse)),
+      columns_forward_(Fft::complex_batch({padded[0], padded[1], stride(), 1}, Direction::Forward)),
       columns_inverse_(
           Fft::complex_batch({padded[0], padded[1], stride(), 1}, Direction::Inverse)) {}
 

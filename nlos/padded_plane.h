@@ -13,8 +13,8 @@ inline ComplexF multiply(ComplexF a, ComplexF b) {
     return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
 }
 
-/// Lateral transforms of complex values (nx, ny) padded by zeros to (px, py). Rows along y that hold
-/// no data, or whose result nobody asks for, are not transformed. Nothing is normalised.
+/// Lateral transforms of complex values (nx, ny) padded by zeros to (px, py). Rows along y that
+/// hold no data, or whose result nobody asks for, are not transformed. Nothing is normalised.
 class PaddedPlane {
  public:
     PaddedPlane(std::array<std::size_t, 2> size, std::array<std::size_t, 2> padded);

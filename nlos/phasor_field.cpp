@@ -43,8 +43,7 @@ std::vector<core::Vec3> illumination_of(const MethodInput& input) {
 
 /// Shortest and longest path length over wall points and voxels, from bounds of both.
 std::array<double, 2> path_lengths(const MethodInput& input) {
-    const auto [low_z, high_z] =
-        std::minmax_element(input.axes.z_m.begin(), input.axes.z_m.end());
+    const auto [low_z, high_z] = std::minmax_element(input.axes.z_m.begin(), input.axes.z_m.end());
     const double wide = std::max(input.wall.max_m[0], input.axes.x_m.back()) -
                         std::min(input.wall.min_m[0], input.axes.x_m.front());
     const double high = std::max(input.wall.max_m[1], input.axes.y_m.back()) -
@@ -166,8 +165,8 @@ class PlanePropagator {
             std::copy(kernel.values().begin(), kernel.values().end(), quadrant.complex());
             kernel_transform_.run(quadrant);
             for (std::size_t l = 0; l < illumination[1] - illumination[0]; ++l) {
-                plane_.load_spectrum(
-                    spectra.data() + (l * wave_.size() + f) * spectrum_size(), work);
+                plane_.load_spectrum(spectra.data() + (l * wave_.size() + f) * spectrum_size(),
+                                     work);
                 plane_.multiply_by_quadrant(quadrant.complex(), work);
                 if (is_confocal()) {
                     plane_.add_spectrum(work, sum.data());
@@ -247,8 +246,7 @@ Volume propagate(const MethodInput& input, const PhasorSettings& settings) {
     const std::size_t num_columns = propagator.num_columns();
     const std::size_t num_z = input.axes.z_m.size();
     const std::size_t num_illumination = illumination_count(input);
-    const std::size_t chunk =
-        illumination_per_chunk(input, band.wave, propagator.spectrum_size());
+    const std::size_t chunk = illumination_per_chunk(input, band.wave, propagator.spectrum_size());
 
     std::vector<ComplexF> field(num_columns * num_z);  // [z][x][y]
     for (std::size_t first = 0; first < num_illumination; first += chunk) {
@@ -275,8 +273,8 @@ Volume propagate(const MethodInput& input, const PhasorSettings& settings) {
     for (std::size_t column = 0; column < num_columns; ++column) {
         for (std::size_t iz = 0; iz < num_z; ++iz) {
             const ComplexF value = field[iz * num_columns + column];
-            volume.values[column * num_z + iz] = std::sqrt(value.real() * value.real() +
-                                                           value.imag() * value.imag());
+            volume.values[column * num_z + iz] =
+                std::sqrt(value.real() * value.real() + value.imag() * value.imag());
         }
     }
     return volume;
@@ -285,8 +283,7 @@ Volume propagate(const MethodInput& input, const PhasorSettings& settings) {
 }  // namespace
 
 Volume phasor_field(const MethodInput& input, const PhasorSettings& settings) {
-    return is_planar(input) ? propagate(input, settings)
-                            : phasor_backprojection(input, settings);
+    return is_planar(input) ? propagate(input, settings) : phasor_backprojection(input, settings);
 }
 
 double phasor_field_bytes(const MethodInput& input, const PhasorSettings& settings) {
@@ -297,8 +294,8 @@ double phasor_field_bytes(const MethodInput& input, const PhasorSettings& settin
     const auto chunk = static_cast<double>(illumination_per_chunk(input, band.wave, padded));
     const auto frequencies = static_cast<double>(band.wave.size());
     const double spectra = 8.0 * chunk * frequencies * static_cast<double>(padded + nx * ny);
-    const double per_thread = 8.0 * static_cast<double>(padded) * 4.0 +
-                              16.0 * chunk * static_cast<double>(nx * ny);
+    const double per_thread =
+        8.0 * static_cast<double>(padded) * 4.0 + 16.0 * chunk * static_cast<double>(nx * ny);
     return spectra + per_thread * core::thread_count() +
            12.0 * static_cast<double>(input.axes.num_voxels());
 }

@@ -2,10 +2,15 @@
 #include "nlos/reconstruct.h"
 
 #include "nlos/backprojection.h"
+#include "nlos/filtered_backprojection.h"
+#include "nlos/fk_migration.h"
 #include "nlos/histogram_preparation.h"
 #include "nlos/light_cone_transform.h"
+#include "nlos/measurement.h"
+#include "nlos/method_choice.h"
+#include "nlos/phasor_field.h"
 #include "nlos/surface.h"
-#include "nlos/wall_frame.h"
+#include "nlos/virtual_wave.h"
 #include "renderer/core/process.h"
 
 #include <fmt/format.h>
@@ -17,54 +22,10 @@ namespace nlos {
 namespace {
 
 constexpr int kMaxVoxelsPerAxis = 65536;
-constexpr int kFewestBins = 8;  // for lct, after merging and dropping
 constexpr std::size_t kDefaultColumns = 64;
 
 void require(bool holds, const char* key, const std::string& found, const std::string& allowed) {
     if (!holds) throw core::Error(key, found, allowed);
-}
-
-/// Empty when the light-cone transform can serve, else what the capture or settings have instead.
-std::string why_not_lct(const core::Capture& capture,
-                        const WallFrame& wall,
-                        const VolumeSettings& volume) {
-    if (capture.scan.pattern != core::ScanPattern::Confocal) {
-        return fmt::format(
-            "{} scan",
-            capture.scan.pattern == core::ScanPattern::Single ? "a single-laser" : "an exhaustive");
-    }
-    if (!wall.grid) return wall.why_no_grid;
-    if (capture.time_axis.num_bins < kFewestBins) {
-        return fmt::format("a time axis of {} bins", capture.time_axis.num_bins);
-    }
-    const auto [nx, ny] = wall.grid->size;
-    if (volume.voxels && (static_cast<std::size_t>((*volume.voxels)[0]) != nx ||
-                          static_cast<std::size_t>((*volume.voxels)[1]) != ny)) {
-        return fmt::format("volume.voxels of {} x {} for a scan of {} x {}",
-                           (*volume.voxels)[0],
-                           (*volume.voxels)[1],
-                           nx,
-                           ny);
-    }
-    return "";
-}
-
-void choose_method(const core::Capture& capture, const WallFrame& wall, Reconstruction& result) {
-    ReconstructSettings& settings = result.settings;
-    const std::string obstacle = why_not_lct(capture, wall, settings.volume);
-    if (settings.method == Method::Lct && !obstacle.empty()) {
-        throw core::Error("method=lct",
-                          "found " + obstacle,
-                          "lct needs a confocal scan on an even planar grid, voxel columns at its "
-                          "points and at least 8 bins; method=bp works for this capture");
-    }
-    if (settings.method == Method::Auto) {
-        settings.method = obstacle.empty() ? Method::Lct : Method::Bp;
-        result.reason = obstacle.empty() ? "confocal scan on an even planar grid" : obstacle;
-    } else {
-        result.reason = "as set";
-    }
-    result.method = core::enum_name(settings.method);
 }
 
 /// As many bins as keep the range they cover within a quarter of the wall points' distance: finer
@@ -79,24 +40,23 @@ int default_merge_bins(const core::TimeAxis& axis, const WallFrame& wall) {
 }
 
 /// Fills in merge_bins, ambient and snr, and says what becomes of the histograms.
-PreparationPlan choose_preparation(const core::Capture& capture,
-                                   const WallFrame& wall,
-                                   ReconstructSettings& settings) {
-    const bool is_counts = capture.unit == core::TransientUnit::Counts;
+PreparationPlan choose_preparation(const Measurement& measurement, ReconstructSettings& settings) {
+    const core::TimeAxis& axis = measurement.time_axis;
+    const bool is_counts = measurement.unit == core::TransientUnit::Counts;
     if (!settings.snr) settings.snr = is_counts ? 0.1 : 1.0;
     if (settings.ambient == Ambient::Auto) {
         settings.ambient = is_counts ? Ambient::Subtract : Ambient::Keep;
     }
-    if (!settings.merge_bins) settings.merge_bins = default_merge_bins(capture.time_axis, wall);
+    if (!settings.merge_bins) settings.merge_bins = default_merge_bins(axis, measurement.wall);
     PreparationPlan plan;
     plan.merge_bins = *settings.merge_bins;
-    require(plan.merge_bins <= capture.time_axis.num_bins,
+    require(plan.merge_bins <= axis.num_bins,
             "merge_bins",
             fmt::format("{}", plan.merge_bins),
-            fmt::format("must not exceed the capture's {} bins", capture.time_axis.num_bins));
-    plan.num_bins = capture.time_axis.num_bins / plan.merge_bins;
+            fmt::format("must not exceed the capture's {} bins", axis.num_bins));
+    plan.num_bins = axis.num_bins / plan.merge_bins;
     if (settings.ambient == Ambient::Subtract) {
-        if (auto signal = find_signal(capture.transient)) {
+        if (auto signal = find_signal(measurement.transient())) {
             plan.ambient_per_bin = std::move(signal->ambient_per_bin);
             const int end = (signal->end_bin + plan.merge_bins - 1) / plan.merge_bins;
             if (!settings.volume.z_range_m) {
@@ -106,6 +66,17 @@ PreparationPlan choose_preparation(const core::Capture& capture,
         }
     }
     return plan;
+}
+
+bool uses_wave(const ReconstructSettings& settings) {
+    return settings.method == Method::Phasor ||
+           (settings.method == Method::Fbp && settings.filter == FbpFilter::Phasor);
+}
+
+/// Distance of voxels along z unless set: a bin's range, or what the virtual wave resolves.
+double default_depth_step_m(const core::TimeAxis& axis, const ReconstructSettings& settings) {
+    const double bin = 0.5 * axis.bin_width_m;
+    return uses_wave(settings) ? std::max(bin, *settings.phasor.wavelength_m / 8.0) : bin;
 }
 
 /// Half the path lengths that the axis covers once device legs are taken off.
@@ -147,7 +118,7 @@ void choose_axes(const core::Scan& scan,
     if (!volume.voxels) {
         const std::array<std::size_t, 2> columns =
             wall.grid ? wall.grid->size : std::array{kDefaultColumns, kDefaultColumns};
-        const double step = 0.5 * axis.bin_width_m;
+        const double step = default_depth_step_m(axis, settings);
         volume.voxels = {
             static_cast<int>(columns[0]),
             static_cast<int>(columns[1]),
@@ -172,15 +143,42 @@ void check_memory(double needed_bytes) {
                     1e-9 * available));
 }
 
-double method_bytes(const MethodInput& input, Method method) {
-    return method == Method::Lct ? light_cone_transform_bytes(input) : backproject_bytes(input);
+double method_bytes(const MethodInput& input, const ReconstructSettings& settings) {
+    switch (settings.method) {
+        case Method::Lct:
+            return light_cone_transform_bytes(input);
+        case Method::Fk:
+            return fk_migration_bytes(input);
+        case Method::Phasor:
+            return phasor_field_bytes(input, settings.phasor);
+        case Method::Fbp:
+            return settings.filter == FbpFilter::Phasor
+                       ? phasor_backprojection_bytes(input, settings.phasor)
+                       : laplacian_backprojection_bytes(input);
+        case Method::Auto:
+        case Method::Bp:
+            break;
+    }
+    return backproject_bytes(input);
 }
 
 Volume run_method(const MethodInput& input, const ReconstructSettings& settings) {
-    if (settings.method == Method::Lct) {
-        return light_cone_transform(input, settings.falloff, *settings.snr);
+    switch (settings.method) {
+        case Method::Lct:
+            return light_cone_transform(input, settings.falloff, *settings.snr);
+        case Method::Fk:
+            return fk_migration(input, settings.falloff);
+        case Method::Phasor:
+            return phasor_field(input, settings.phasor);
+        case Method::Fbp:
+            return settings.filter == FbpFilter::Phasor
+                       ? phasor_backprojection(input, settings.phasor)
+                       : laplacian_backprojection(input, settings.compensation);
+        case Method::Auto:
+        case Method::Bp:
+            break;
     }
-    return backproject(input);
+    return backproject(input, settings.compensation);
 }
 
 }  // namespace
@@ -228,31 +226,43 @@ Reconstruction reconstruct(const core::Capture& capture,
 
     Reconstruction result;
     result.settings = settings;
-    const WallFrame wall = derive_wall_frame(capture.scan);
-    choose_method(capture, wall, result);
+    Measurement measurement = select_measurement(capture, settings.crop);
+    const MethodChoice choice = choose_method(settings, measurement);
+    result.settings.method = choice.method;
+    result.method = core::enum_name(choice.method);
+    result.reason = choice.reason;
 
-    const PreparationPlan plan = choose_preparation(capture, wall, result.settings);
-    core::TimeAxis axis = capture.time_axis;
+    const PreparationPlan plan = choose_preparation(measurement, result.settings);
+    core::TimeAxis axis = measurement.time_axis;
     axis.bin_width_m *= plan.merge_bins;
     axis.num_bins = plan.num_bins;
+    if (uses_wave(result.settings) && !result.settings.phasor.wavelength_m) {
+        result.settings.phasor.wavelength_m =
+            default_wavelength_m(measurement.scan, measurement.wall, axis);
+    }
     VolumeAxes axes;
-    choose_axes(capture.scan, axis, wall, result.settings, axes);
+    choose_axes(measurement.scan, axis, measurement.wall, result.settings, axes);
 
     const bool is_ready =
-        plan.num_bins == capture.time_axis.num_bins && plan.ambient_per_bin.empty();
+        plan.num_bins == measurement.time_axis.num_bins && plan.ambient_per_bin.empty();
     const auto input_with = [&](const core::Transient& transient) {
-        return MethodInput{
-            capture.scan, axis, transient, wall, axes, *result.settings.volume.z_range_m, progress};
+        return MethodInput{measurement.scan,
+                           axis,
+                           transient,
+                           measurement.wall,
+                           axes,
+                           *result.settings.volume.z_range_m,
+                           progress};
     };
     const double prepared_bytes =
-        is_ready ? 0.0 : 4.0 * static_cast<double>(capture.scan.num_pairs()) * axis.num_bins;
+        is_ready ? 0.0 : 4.0 * static_cast<double>(measurement.scan.num_pairs()) * axis.num_bins;
     check_memory(prepared_bytes +
-                 method_bytes(input_with(capture.transient), result.settings.method));
+                 method_bytes(input_with(measurement.transient()), result.settings));
     check_stop(progress);
     const core::Transient prepared =
-        is_ready ? core::Transient() : prepare_histograms(capture.transient, plan);
+        is_ready ? core::Transient() : prepare_histograms(measurement.transient(), plan);
     result.volume =
-        run_method(input_with(is_ready ? capture.transient : prepared), result.settings);
+        run_method(input_with(is_ready ? measurement.transient() : prepared), result.settings);
 
     result.depth = extract_depth_map(result.volume, settings.mask_threshold);
     result.points = surface_points(result.depth);

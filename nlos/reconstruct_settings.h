@@ -8,10 +8,16 @@
 
 namespace nlos {
 
-enum class Method { Auto, Lct, Bp };
+enum class Method { Auto, Lct, Bp, Fbp, Fk, Phasor };
 
 /// How hidden surfaces reflect: diffuse light falls off with r^4, retroreflected light with r^2.
 enum class Falloff { Diffuse, Retro };
+
+/// What backprojection multiplies each term by, to make up for the light lost on its way.
+enum class Compensation { None, Diffuse, Retro };
+
+/// How filtered backprojection sharpens: a filter on the volume, or one on the histograms.
+enum class FbpFilter { Laplacian, Phasor };
 
 /// What happens to constant background light.
 enum class Ambient { Auto, Keep, Subtract };
@@ -25,12 +31,29 @@ struct VolumeSettings {
     std::optional<std::array<double, 2>> z_range_m;
 };
 
+/// Which part of the capture to use. Empty fields: all of it.
+struct CropSettings {
+    std::optional<std::array<double, 2>> x_range_m;    ///< of wall points, in the wall's frame
+    std::optional<std::array<double, 2>> y_range_m;    ///< of wall points, in the wall's frame
+    std::optional<std::array<double, 2>> opl_range_m;  ///< of bins
+};
+
+/// The virtual wave of the phasor field.
+struct PhasorSettings {
+    std::optional<double> wavelength_m;  ///< in path length; empty: from the pitch of wall points
+    double cycles = 5.0;                 ///< in the envelope: sigma = cycles * wavelength / 6
+};
+
 /// How to reconstruct; adding a method: a name in Method, a case in reconstruct(), one .cpp.
 struct ReconstructSettings {
     Method method = Method::Auto;
     VolumeSettings volume;
     Falloff falloff = Falloff::Diffuse;
     Prior prior = Prior::None;
+    Compensation compensation = Compensation::None;
+    FbpFilter filter = FbpFilter::Laplacian;
+    PhasorSettings phasor;
+    CropSettings crop;
     std::optional<double> snr;  ///< Wiener filter of lct; empty: 0.1 for counts, else 1
     Ambient ambient = Ambient::Auto;
     std::optional<int> merge_bins;  ///< neighbouring bins added up first; empty: from the pitch
@@ -44,11 +67,32 @@ void for_each_field(VolumeSettings& s, Visitor&& visit) {
 }
 
 template <class Visitor>
+void for_each_field(CropSettings& s, Visitor&& visit) {
+    visit("x_range_m", s.x_range_m, "wall points to use along the wall's x axis [m]; null: all");
+    visit("y_range_m", s.y_range_m, "wall points to use along the wall's y axis [m]; null: all");
+    visit("opl_range_m", s.opl_range_m, "path lengths to use [m]; null: all");
+}
+
+template <class Visitor>
+void for_each_field(PhasorSettings& s, Visitor&& visit) {
+    visit("wavelength_m",
+          s.wavelength_m,
+          "wavelength in path length [m]; null: 4 distances of wall points, confocal 6");
+    visit("cycles", s.cycles, "wavelengths in the envelope, 6 standard deviations");
+}
+
+template <class Visitor>
 void for_each_field(ReconstructSettings& s, Visitor&& visit) {
     visit("method", s.method, "reconstruction method");
     visit("volume", s.volume, "where to reconstruct");
-    visit("falloff", s.falloff, "how the hidden surface reflects (lct)");
+    visit("falloff", s.falloff, "how the hidden surface reflects (lct, fk)");
     visit("prior", s.prior, "assumption about the hidden scene");
+    visit("compensation",
+          s.compensation,
+          "falloff that each term is multiplied by (bp, and fbp by laplacian)");
+    visit("filter", s.filter, "how fbp sharpens");
+    visit("phasor", s.phasor, "virtual wave (phasor, and fbp by phasor)");
+    visit("crop", s.crop, "part of the capture to use");
     visit("snr",
           s.snr,
           "signal to noise ratio of the Wiener filter (lct); null: 0.1 for counts, 1 for radiance");
@@ -66,8 +110,25 @@ void for_each_field(ReconstructSettings& s, Visitor&& visit) {
 
 template <>
 struct core::EnumNames<nlos::Method> {
-    static constexpr std::array<std::pair<nlos::Method, std::string_view>, 3> value{
-        {{nlos::Method::Auto, "auto"}, {nlos::Method::Lct, "lct"}, {nlos::Method::Bp, "bp"}}};
+    static constexpr std::array<std::pair<nlos::Method, std::string_view>, 6> value{
+        {{nlos::Method::Auto, "auto"},
+         {nlos::Method::Lct, "lct"},
+         {nlos::Method::Bp, "bp"},
+         {nlos::Method::Fbp, "fbp"},
+         {nlos::Method::Fk, "fk"},
+         {nlos::Method::Phasor, "phasor"}}};
+};
+template <>
+struct core::EnumNames<nlos::Compensation> {
+    static constexpr std::array<std::pair<nlos::Compensation, std::string_view>, 3> value{
+        {{nlos::Compensation::None, "none"},
+         {nlos::Compensation::Diffuse, "diffuse"},
+         {nlos::Compensation::Retro, "retro"}}};
+};
+template <>
+struct core::EnumNames<nlos::FbpFilter> {
+    static constexpr std::array<std::pair<nlos::FbpFilter, std::string_view>, 2> value{
+        {{nlos::FbpFilter::Laplacian, "laplacian"}, {nlos::FbpFilter::Phasor, "phasor"}}};
 };
 template <>
 struct core::EnumNames<nlos::Falloff> {

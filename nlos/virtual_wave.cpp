@@ -149,12 +149,10 @@ FilteredHistograms filter_histograms(const MethodInput& input, const PhasorSetti
                                     1)
                                  .transpose();
     const auto n = static_cast<Eigen::Index>(wave.size());
-    FilteredHistograms result{axis,
-                              core::Transient(num_pairs, axis.num_bins),
-                              core::Transient(num_pairs, axis.num_bins)};
+    FilteredHistograms result{
+        axis, core::Transient(num_pairs, axis.num_bins), core::Transient(num_pairs, axis.num_bins)};
     core::parallel_blocks(num_pairs, kPairsPerBlock, [&](std::size_t begin, std::size_t end) {
-        const Matrix block =
-            analysis * histograms_of(input.transient, begin, end - begin, bins);
+        const Matrix block = analysis * histograms_of(input.transient, begin, end - begin, bins);
         const auto cosines = synthesis.leftCols(n);
         const auto sines = synthesis.rightCols(n);
         const auto re = block.topRows(n);

@@ -19,6 +19,11 @@ void validate(const RenderSettings& settings, const std::string& where) {
         throw core::Error(
             where + ".seconds", fmt::format("found {}", *settings.seconds), "must be above 0");
     }
+    if (settings.target_error && !(*settings.target_error > 0.0)) {
+        throw core::Error(where + ".target_error",
+                          fmt::format("found {}", *settings.target_error),
+                          "must be above 0");
+    }
     if (!(settings.laser_spot_m2 > 0.0)) {
         throw core::Error(where + ".laser_spot_m2",
                           fmt::format("found {}", settings.laser_spot_m2),

@@ -24,6 +24,7 @@ struct RenderSettings {
     int max_bounces = 3;
     int samples = 256;
     std::optional<double> seconds;
+    std::optional<double> target_error;
     std::uint64_t seed = 0;
     GateShape gate = GateShape::Box;
     Exclusion exclude = Exclusion::Mis;
@@ -40,6 +41,9 @@ void for_each_field(RenderSettings& s, Visitor&& visit) {
     visit("max_bounces", s.max_bounces, "bounces counted, both on the relay wall included");
     visit("samples", s.samples, "candidate paths per measurement pair");
     visit("seconds", s.seconds, "render for this long instead of a number of samples [s]");
+    visit("target_error",
+          s.target_error,
+          "third_bounce: relative L2 error over all of H to stay below; null: 0.01");
     visit("seed", s.seed, "seed of the random numbers");
     visit("gate", s.gate, "shape of the gate of a one-bin axis");
     visit("exclude", s.exclude, "excluded surfaces in ellipsoidal connections; path has none");

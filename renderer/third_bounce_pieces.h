@@ -39,6 +39,7 @@ struct alignas(64) PieceBlock {
     Lanes area_m2;
     Lanes one_sided;                   ///< +-1: only this side of the normal is ever seen; 0: both
     std::array<Lanes, 6> reflectance;  ///< at the nodes; albedo/pi or albedo/spot area
+    Lanes mean_reflectance;
     std::array<Bsdf, kSize> glossy;    ///< set for glossy pieces only
     std::array<std::uint32_t, kSize> facet;
     PieceKind kind = PieceKind::Lambertian;

@@ -16,10 +16,13 @@ namespace {
 using core::ScanPattern;
 using core::Vec3;
 
+constexpr std::array kCompensations{Compensation::None, Compensation::Diffuse, Compensation::Retro};
+
 struct Problem {
     core::Scan scan;
     core::TimeAxis axis{0.35, 0.02, 60};
     VolumeAxes voxels;
+    Compensation compensation = Compensation::None;
 
     std::size_t num_values() const {
         return scan.num_pairs() * static_cast<std::size_t>(axis.num_bins);
@@ -61,7 +64,8 @@ PairList<double> pair_list(const Problem& problem, std::span<const double> histo
                           scan.illumination.positions,
                           scan.sensing.positions,
                           std::vector<double>(scan.illumination.size(), 0.0),
-                          std::vector<double>(scan.sensing.size(), 0.0)};
+                          std::vector<double>(scan.sensing.size(), 0.0),
+                          problem.compensation};
     if (scan.opl_origin == core::OplOrigin::Device) {
         for (std::size_t i = 0; i < scan.illumination.size(); ++i) {
             data.illumination_legs_m[i] =
@@ -84,8 +88,16 @@ std::vector<double> run_grid(const Problem& problem, std::span<const double> his
     const WallFrame wall = derive_wall_frame(problem.scan);
     std::vector<double> volume(problem.voxels.num_voxels(), 0.0);
     backproject_confocal_grid<double>(
-        {*wall.grid, problem.axis, histograms}, problem.voxels, volume, {});
+        {*wall.grid, problem.axis, histograms, {}, problem.compensation},
+        problem.voxels,
+        volume,
+        {});
     return volume;
+}
+
+double lost_light(Compensation compensation, double product_of_legs) {
+    if (compensation == Compensation::None) return 1.0;
+    return std::pow(product_of_legs, compensation == Compensation::Diffuse ? 2.0 : 1.0);
 }
 
 /// The forward model that backprojection transposes: each voxel's light enters the two bins whose
@@ -104,10 +116,13 @@ std::vector<double> project(const Problem& problem, std::span<const double> volu
                     const Vec3 p(x, y, z);
                     const double opl =
                         (l - p).norm() + (p - s).norm() + problem.scan.device_legs_m(pair);
+                    const double factor =
+                        lost_light(problem.compensation, (l - p).norm() * (p - s).norm());
                     const double position =
                         (opl - problem.axis.opl_start_m) / problem.axis.bin_width_m - 0.5;
                     for (int bin = 0; bin < num_bins; ++bin) {
-                        const double weight = std::max(0.0, 1.0 - std::abs(position - bin));
+                        const double weight =
+                            factor * std::max(0.0, 1.0 - std::abs(position - bin));
                         histograms[pair * static_cast<std::size_t>(num_bins) +
                                    static_cast<std::size_t>(bin)] += weight * volume[i];
                     }
@@ -140,18 +155,24 @@ TEST(Backprojection, OfPairsIsTheAdjointOfTheForwardModel) {
             problem.scan.opl_origin = origin;
             const auto x = random_values(problem.voxels.num_voxels(), 1);
             const auto y = random_values(problem.num_values(), 2);
-            const double forward = dot(project(problem, x), y);
-            EXPECT_NEAR(dot(x, run_pairs(problem, y)), forward, 1e-10 * std::abs(forward));
+            for (const Compensation compensation : kCompensations) {
+                problem.compensation = compensation;
+                const double forward = dot(project(problem, x), y);
+                EXPECT_NEAR(dot(x, run_pairs(problem, y)), forward, 1e-10 * std::abs(forward));
+            }
         }
     }
 }
 
 TEST(Backprojection, OfAConfocalGridIsTheAdjointOfTheForwardModel) {
-    const Problem problem = make_problem(ScanPattern::Confocal);
+    Problem problem = make_problem(ScanPattern::Confocal);
     const auto x = random_values(problem.voxels.num_voxels(), 3);
     const auto y = random_values(problem.num_values(), 4);
-    const double forward = dot(project(problem, x), y);
-    EXPECT_NEAR(dot(x, run_grid(problem, y)), forward, 1e-10 * std::abs(forward));
+    for (const Compensation compensation : kCompensations) {
+        problem.compensation = compensation;
+        const double forward = dot(project(problem, x), y);
+        EXPECT_NEAR(dot(x, run_grid(problem, y)), forward, 1e-10 * std::abs(forward));
+    }
 }
 
 TEST(Backprojection, OfAConfocalGridEqualsThatOfPairsOnAnyCommonLattice) {
@@ -204,7 +225,8 @@ TEST(Backprojection, OfAGridTakesDeviceLegsOffByFractionsOfABin) {
     const WallFrame wall = derive_wall_frame(capture.scan);
     const core::Progress progress;
     const Volume volume = backproject(
-        {capture.scan, capture.time_axis, capture.transient, wall, voxels, {0.4, 0.6}, progress});
+        {capture.scan, capture.time_axis, capture.transient, wall, voxels, {0.4, 0.6}, progress},
+        Compensation::None);
     const core::DepthMap depth = extract_depth_map(volume, 0.99);
     const core::PointCloud points_found = surface_points(depth);
     ASSERT_EQ(points_found.positions.size(), 1U);

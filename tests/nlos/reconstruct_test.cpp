@@ -14,6 +14,9 @@ namespace {
 
 using core::Vec3;
 
+constexpr std::array kMethods{
+    "method=lct", "method=bp", "method=fbp", "method=fk", "method=phasor"};
+
 core::Capture example() {
     core::Capture capture = nlos_test::confocal_capture(
         nlos_test::wall_grid({16, 16}, {0.05, 0.05}), {0.0, 0.016, 128});
@@ -35,7 +38,7 @@ TEST(Reconstruct, EveryMethodFindsAPointInWorldCoordinates) {
         nlos_test::wall_grid({16, 16}, {0.05, 0.05}, pose), {0.0, 0.016, 128});
     const Vec3 scatterer = pose * Vec3(0.075, -0.125, 0.5);
     nlos_test::add_scatterer(capture, scatterer, 4.0);
-    for (const char* method : {"method=lct", "method=bp"}) {
+    for (const char* method : kMethods) {
         const Reconstruction result = reconstruct(capture, with({method}), {});
         const std::vector<float> projection = max_projection(result.volume);
         const auto column = static_cast<std::size_t>(
@@ -55,21 +58,63 @@ TEST(Reconstruct, AutoTakesTheLightConeTransformForConfocalGrids) {
     EXPECT_GT(result.peak_bytes, 0U);
 }
 
-TEST(Reconstruct, AutoFallsBackToBackprojectionAndSaysWhy) {
+TEST(Reconstruct, AutoTakesThePhasorFieldForOtherScansAndSaysWhy) {
     core::Capture capture = example();
     capture.scan.pattern = core::ScanPattern::Single;
     capture.scan.illumination = nlos_test::wall_grid({1, 1}, {1.0, 1.0});
-    const Reconstruction result = reconstruct(capture, with({"volume.voxels=[4,4,8]"}), {});
-    EXPECT_EQ(result.method, "bp");
-    EXPECT_NE(result.reason.find("single-laser scan"), std::string::npos);
+    const Reconstruction single = reconstruct(capture, {}, {});
+    EXPECT_EQ(single.method, "phasor");
+    EXPECT_NE(single.reason.find("single-laser scan"), std::string::npos);
+    EXPECT_NEAR(*single.settings.phasor.wavelength_m, 0.2, 1e-9);
+    core::Capture list = example();
+    list.scan.sensing.grid.reset();
+    const Reconstruction listed = reconstruct(list, with({"volume.voxels=[4,4,8]"}), {});
+    EXPECT_EQ(listed.method, "phasor");
+    EXPECT_NE(listed.reason.find("list of wall points"), std::string::npos);
 }
 
-TEST(Reconstruct, LctRefusesNamingTheMethodThatWorks) {
+TEST(Reconstruct, AutoFallsBackToBackprojectionAndSaysWhy) {
+    core::Capture gated = example();
+    gated.time_axis = {1.0, 0.3, 1};
+    gated.transient = core::Transient(gated.scan.num_pairs(), 1);
+    const Reconstruction result = reconstruct(gated, {}, {});
+    EXPECT_EQ(result.method, "bp");
+    EXPECT_NE(result.reason.find("1 bins"), std::string::npos);
+}
+
+TEST(Reconstruct, RefusalsNameTheMethodThatWorks) {
+    core::Capture list = example();
+    list.scan.sensing.grid.reset();
+    core::Capture gated = example();
+    gated.time_axis = {1.0, 0.3, 1};
+    gated.transient = core::Transient(gated.scan.num_pairs(), 1);
+    for (const std::string name : {"lct", "fk"}) {
+        const std::string method = "method=" + name;
+        EXPECT_ERROR_WITH(reconstruct(list, with({method}), {}), "method=phasor works");
+        EXPECT_ERROR_WITH(reconstruct(example(), with({method, "volume.voxels=[8,8,8]"}), {}),
+                          "method=phasor works");
+        EXPECT_ERROR_WITH(reconstruct(gated, with({method}), {}), "method=bp works");
+    }
+    EXPECT_ERROR_WITH(reconstruct(gated, with({"method=phasor"}), {}), "method=bp works");
+}
+
+TEST(Reconstruct, ConfocalMethodsTakeASingleLaserScanByItsMidpoints) {
     core::Capture capture = example();
-    capture.scan.sensing.grid.reset();
-    EXPECT_ERROR_WITH(reconstruct(capture, with({"method=lct"}), {}), "method=bp works");
-    EXPECT_ERROR_WITH(reconstruct(example(), with({"method=lct", "volume.voxels=[8,8,8]"}), {}),
-                      "method=bp works");
+    capture.scan.pattern = core::ScanPattern::Single;
+    capture.scan.illumination = nlos_test::wall_grid({1, 1}, {1.0, 1.0});
+    std::fill(capture.transient.values().begin(), capture.transient.values().end(), 0.0F);
+    const Vec3 scatterer(0.0125, -0.0125, 0.5);
+    nlos_test::add_scatterer(capture, scatterer, 4.0);
+    for (const char* method : {"method=lct", "method=fk"}) {
+        const Reconstruction result = reconstruct(capture, with({method}), {});
+        EXPECT_NE(result.reason.find("converted"), std::string::npos);
+        EXPECT_NEAR(result.volume.axes.x_m[1] - result.volume.axes.x_m[0], 0.025, 1e-9);
+        const std::vector<float> projection = max_projection(result.volume);
+        const auto column = static_cast<std::size_t>(
+            std::max_element(projection.begin(), projection.end()) - projection.begin());
+        const Vec3 found = result.depth.point_world(column / 16, column % 16);
+        EXPECT_LT((found - scatterer).norm(), 0.01) << method;
+    }
 }
 
 TEST(Reconstruct, MergesBinsUpToAQuarterOfThePitch) {
@@ -110,7 +155,7 @@ TEST(Reconstruct, RefusesMoreMemoryThanThereIs) {
 }
 
 TEST(Reconstruct, EndsWhenAskedToStop) {
-    for (const char* method : {"method=lct", "method=bp"}) {
+    for (const char* method : kMethods) {
         int asked = 0;
         core::Progress progress;
         progress.stop_requested = [&] { return ++asked > 3; };
@@ -119,14 +164,16 @@ TEST(Reconstruct, EndsWhenAskedToStop) {
 }
 
 TEST(Reconstruct, ReportsProgressUpToTheEnd) {
-    double last = 0.0;
-    core::Progress progress;
-    progress.report = [&](double share, const std::string&) {
-        EXPECT_GE(share, last);
-        last = share;
-    };
-    reconstruct(example(), {}, progress);
-    EXPECT_DOUBLE_EQ(last, 1.0);
+    for (const char* method : kMethods) {
+        double last = 0.0;
+        core::Progress progress;
+        progress.report = [&](double share, const std::string&) {
+            EXPECT_GE(share, last);
+            last = share;
+        };
+        reconstruct(example(), with({method, "filter=phasor"}), progress);
+        EXPECT_NEAR(last, 1.0, 1e-9) << method;
+    }
 }
 
 TEST(Reconstruct, ServesASingleWallPoint) {

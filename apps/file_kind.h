@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+namespace apps {
+
+enum class FileKind { Scene, Volume, Geometry, PointCloud, Capture };
+
+/// What a file is, by suffix and content; anything unknown counts as a capture, whose readers then
+/// say what they expect. Throws core::Error when there is no such file.
+FileKind kind_of_file(const std::string& path);
+
+}  // namespace apps

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+#include "apps/file_picture.h"
+
+#include "apps/file_kind.h"
+#include "apps/scene_truth.h"
+#include "nlos/formats/capture_file.h"
+#include "nlos/formats/picture.h"
+#include "nlos/formats/volume_file.h"
+#include "nlos/pictures.h"
+
+namespace apps {
+
+void write_picture(const std::string& path, const std::string& png_path) {
+    switch (kind_of_file(path)) {
+        case FileKind::Scene:
+            nlos::write_panels_png(png_path, nlos::truth_panels(SceneTruth(path).depth_map()), 3);
+            return;
+        case FileKind::Volume:
+            nlos::write_panels_png(png_path, nlos::volume_panels(nlos::read_volume(path)), 2);
+            return;
+        case FileKind::Capture:
+            nlos::write_panels_png(png_path, nlos::capture_panels(nlos::read_capture(path)), 3);
+            return;
+        case FileKind::Geometry:
+        case FileKind::PointCloud:
+            break;
+    }
+    throw core::Error(path, "has no picture", "must be a scene.json, a capture or a volume");
+}
+
+}  // namespace apps

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+namespace apps {
+
+/// Draws a file: a scene.json as its wall sees it, a capture as streak image, integrated image and
+/// mean transient, a volume by its projections and depth map.
+///
+/// throws   core::Error for other kinds of files and bad targets
+void write_picture(const std::string& path, const std::string& png_path);
+
+}  // namespace apps

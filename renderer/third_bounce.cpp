@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/third_bounce.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "renderer/third_bounce_scan.h"
+
+namespace renderer {
+namespace {
+
+using core::Transient;
+
+constexpr double kDefaultTargetError = 0.01;
+
+// The pairs that are computed at several finenesses.
+constexpr std::size_t kTrialPoints = 32;        // confocal and single
+constexpr std::size_t kTrialPointsPerSide = 6;  // exhaustive
+
+// Fineness k has the tolerance target * 2^k.
+constexpr int kCoarsest = 5;
+constexpr int kFinest = -10;
+constexpr int kReferenceSteps = 2;  // a reference is at least this much finer
+
+// A reference has an error of its own, and the trial pairs are not all pairs.
+constexpr double kCaution = 1.2;
+
+// Pieces whose visibility may be wrong add up; each may err by this much of the whole.
+constexpr double kNegligibleShare = 0.1;
+
+// `count` indices below `size`, spread evenly and out of step with rows of a grid.
+std::vector<std::size_t> spread_indices(std::size_t size, std::size_t count) {
+    constexpr double kGolden = 0.6180339887498949;
+    std::vector<std::size_t> indices;
+    for (std::size_t i = 0; i < std::min(size, count); ++i) {
+        const double share = (static_cast<double>(i) + 0.5) * kGolden;
+        indices.push_back(count >= size ? i
+                                        : static_cast<std::size_t>(static_cast<double>(size) *
+                                                                   (share - std::floor(share))));
+    }
+    std::sort(indices.begin(), indices.end());
+    indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
+    return indices;
+}
+
+core::WallPoints subset(const core::WallPoints& points, std::size_t count) {
+    core::WallPoints chosen;
+    for (const std::size_t i : spread_indices(points.size(), count)) {
+        chosen.positions.push_back(points.positions[i]);
+        chosen.normals.push_back(points.normals[i]);
+    }
+    return chosen;
+}
+
+core::Scan trial_scan(const core::Scan& scan) {
+    core::Scan trial = scan;
+    const bool exhaustive = scan.pattern == core::ScanPattern::Exhaustive;
+    trial.sensing = subset(scan.sensing, exhaustive ? kTrialPointsPerSide : kTrialPoints);
+    if (exhaustive) trial.illumination = subset(scan.illumination, kTrialPointsPerSide);
+    if (scan.pattern == core::ScanPattern::Confocal) trial.illumination = trial.sensing;
+    return trial;
+}
+
+double squared_norm(const Transient& transient) {
+    double sum = 0.0;
+    for (const float value : transient.values()) sum += double{value} * double{value};
+    return sum;
+}
+
+double relative_difference(const Transient& a, const Transient& b) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < a.values().size(); ++i) {
+        const double difference = double{a.values()[i]} - double{b.values()[i]};
+        sum += difference * difference;
+    }
+    const double norm = squared_norm(b);
+    return norm > 0.0 ? std::sqrt(sum / norm) : 0.0;
+}
+
+// Finds the fineness that meets the target, and integrates with it.
+class Integrator {
+   public:
+    Integrator(const Scene& scene,
+               const core::Scan& scan,
+               const core::TimeAxis& axis,
+               const RenderSettings& settings)
+        : scene_(scene),
+          scan_(scan),
+          trial_scan_(trial_scan(scan)),
+          axis_(axis),
+          target_(settings.target_error.value_or(kDefaultTargetError)),
+          laser_spot_m2_(settings.laser_spot_m2) {}
+
+    ThirdBounce run(const core::Progress& progress);
+
+   private:
+    PieceSet cut(int fineness) const {
+        return cut_pieces(
+            scene_, scan_, axis_, {target_ * std::exp2(fineness), laser_spot_m2_});
+    }
+    double negligible_error(int fineness) const {
+        return kNegligibleShare * target_ * std::exp2(fineness) * norm_per_pair_;
+    }
+    void stop_if_asked(const core::Progress& progress) const;
+    const Transient& try_out(int fineness, const core::Progress& progress);
+    double error_of(int fineness, const core::Progress& progress);
+    int choose_fineness(const core::Progress& progress);
+
+    const Scene& scene_;
+    const core::Scan& scan_;
+    core::Scan trial_scan_;
+    core::TimeAxis axis_;
+    double target_;
+    double laser_spot_m2_;
+    double norm_per_pair_ = 0.0;
+    std::map<int, Transient> trials_;
+    std::map<int, double> errors_;
+    std::uint64_t num_rays_ = 0;
+};
+
+void Integrator::stop_if_asked(const core::Progress& progress) const {
+    if (progress.should_stop()) {
+        throw core::Failure("third_bounce", "interrupted before it was complete");
+    }
+}
+
+const Transient& Integrator::try_out(int fineness, const core::Progress& progress) {
+    if (const auto it = trials_.find(fineness); it != trials_.end()) return it->second;
+    stop_if_asked(progress);
+    const PieceSet pieces = cut(fineness);
+    ThirdBounceScan trial(scene_, trial_scan_, axis_, pieces, negligible_error(fineness));
+    const Transient& result =
+        trials_.emplace(fineness, trial.integrate([](double) {})).first->second;
+    num_rays_ += trial.num_rays();
+    if (norm_per_pair_ == 0.0) {
+        norm_per_pair_ =
+            std::sqrt(squared_norm(result) / static_cast<double>(trial_scan_.num_pairs()));
+    }
+    return result;
+}
+
+// Against the finest trial so far, which is at least kReferenceSteps finer.
+double Integrator::error_of(int fineness, const core::Progress& progress) {
+    try_out(fineness - kReferenceSteps, progress);
+    const Transient& trial = try_out(fineness, progress);
+    const double error = kCaution * relative_difference(trial, trials_.begin()->second);
+    errors_[fineness] = error;
+    return error;
+}
+
+int Integrator::choose_fineness(const core::Progress& progress) {
+    int fineness = 0;
+    if (error_of(fineness, progress) > target_) {
+        while (fineness > kFinest && error_of(--fineness, progress) > target_) {
+        }
+        return fineness;
+    }
+    while (fineness < kCoarsest && error_of(fineness + 1, progress) <= target_) ++fineness;
+    return fineness;
+}
+
+ThirdBounce Integrator::run(const core::Progress& progress) {
+    const int fineness = choose_fineness(progress);
+    const PieceSet pieces = cut(fineness);
+    ThirdBounceScan scan(scene_, scan_, axis_, pieces, negligible_error(fineness));
+    ThirdBounce result;
+    result.transient = scan.integrate([&](double share) {
+        progress.update(share, fmt::format("{} pieces", pieces.num_pieces));
+        if (share < 1.0) stop_if_asked(progress);
+    });
+    result.estimated_error = errors_.at(fineness);
+    result.num_pieces = pieces.num_pieces;
+    result.num_rays = num_rays_ + scan.num_rays();
+    const double wall = scene_.wall_albedo() / core::kPi;
+    for (float& value : result.transient.values()) value = static_cast<float>(value * wall * wall);
+    return result;
+}
+
+}  // namespace
+
+ThirdBounce integrate_third_bounce(const Scene& scene,
+                                   const core::Scan& scan,
+                                   const core::TimeAxis& axis,
+                                   const RenderSettings& settings,
+                                   const core::Progress& progress) {
+    return Integrator(scene, scan, axis, settings).run(progress);
+}
+
+}  // namespace renderer

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+
+#include "renderer/core/capture.h"
+#include "renderer/core/progress.h"
+#include "renderer/render_settings.h"
+#include "renderer/scene.h"
+
+namespace renderer {
+
+/// Third bounces, and how well they are known.
+struct ThirdBounce {
+    core::Transient transient;
+    double estimated_error = 0.0;  ///< relative L2 over all of H
+    std::size_t num_pieces = 0;    ///< that the surfaces were cut into
+    std::uint64_t num_rays = 0;
+};
+
+/// Integrates the third bounce of the scene's integrable surfaces, without random numbers.
+///
+/// Surfaces are cut into triangles small enough for the closed-form kernel of core/
+/// triangle_histogram.h. Every wall point finds once what it sees of each piece; every pair then
+/// only combines two tables. A few pairs, computed at several finenesses, tell how fine is fine
+/// enough for the target.
+///
+/// settings   target_error, laser_spot_m2; the gate is a box
+/// progress   asked now and then whether to stop
+/// returns    the radiance of order 3 that comes from surfaces with is_integrable() materials
+/// throws     core::Failure when memory does not suffice or the caller stops the work
+/// source     design by the authors; kernel and size rule in third_bounce_pieces.cpp
+ThirdBounce integrate_third_bounce(const Scene& scene,
+                                   const core::Scan& scan,
+                                   const core::TimeAxis& axis,
+                                   const RenderSettings& settings,
+                                   const core::Progress& progress);
+
+}  // namespace renderer

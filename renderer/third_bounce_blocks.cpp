@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/third_bounce_blocks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "renderer/piece_neighbours.h"
+
+namespace renderer {
+namespace {
+
+using core::Vec3;
+
+constexpr std::size_t kSize = PieceBlock::kSize;
+
+// A group spans at most this times sqrt(tolerance) times its distance, ...
+constexpr double kGroupSizePerDistance = 0.8;
+// ... and its normals differ by about 30 degrees at most.
+constexpr double kLeastGroupCosine = 0.85;
+
+double reflectance(const Bsdf& bsdf, PieceKind kind, double laser_spot_m2) {
+    const double albedo = albedo_of(bsdf);
+    return kind == PieceKind::Retroreflective ? albedo / laser_spot_m2 : albedo / core::kPi;
+}
+
+}  // namespace
+
+PieceArranger::PieceArranger(const Scene& scene,
+                             const core::Scan& scan,
+                             const PieceRules& rules,
+                             std::vector<double> visible_side)
+    : scene_(scene), rules_(rules), visible_side_(std::move(visible_side)) {
+    set_.origin = scene.rays().origin();
+    Vec3 sum = Vec3::Zero();
+    for (const Vec3& point : scan.sensing.positions) sum += point - set_.origin;
+    scan_center_ = sum / static_cast<double>(scan.sensing.size());
+}
+
+// Median splits along the longest side of the centres' box, at whole blocks where there are several.
+void PieceArranger::sort_into_blocks(std::vector<Piece>& pieces, Range range) const {
+    const std::size_t count = range.end - range.begin;
+    if (count < 2) return;
+    Eigen::AlignedBox3d box;
+    for (std::size_t i = range.begin; i < range.end; ++i) box.extend(pieces[i].center());
+    Eigen::Index axis = 0;
+    box.sizes().maxCoeff(&axis);
+    std::size_t half = (count + 1) / 2;
+    if (count > kSize) half = (half + kSize - 1) / kSize * kSize;
+    const auto at = [&](std::size_t i) { return pieces.begin() + static_cast<std::ptrdiff_t>(i); };
+    std::nth_element(at(range.begin),
+                     at(range.begin + half),
+                     at(range.end),
+                     [axis](const Piece& a, const Piece& b) {
+                         return a.center()[axis] < b.center()[axis];
+                     });
+    sort_into_blocks(pieces, {range.begin, range.begin + half});
+    sort_into_blocks(pieces, {range.begin + half, range.end});
+}
+
+void PieceArranger::fill_lane(PieceBlock& block, std::size_t lane, const Piece& piece) const {
+    for (std::size_t i = 0; i < 3; ++i) {
+        block.x[i][lane] = piece.corners[i].x();
+        block.y[i][lane] = piece.corners[i].y();
+        block.z[i][lane] = piece.corners[i].z();
+    }
+    const Facet& facet = scene_.facet(piece.facet);
+    block.normal_x[lane] = facet.normal.x();
+    block.normal_y[lane] = facet.normal.y();
+    block.normal_z[lane] = facet.normal.z();
+    const Vec3 center = piece.center();
+    block.center_x[lane] = center.x();
+    block.center_y[lane] = center.y();
+    block.center_z[lane] = center.z();
+    block.area_m2[lane] =
+        core::triangle_area_vector(piece.corners[0], piece.corners[1], piece.corners[2]).norm();
+    block.one_sided[lane] = visible_side_[facet.object];
+    block.facet[lane] = piece.facet;
+    block.mean_reflectance[lane] = 0.0;
+    for (std::size_t node = 0; node < 6; ++node) {
+        const Vec3 position = node < 3 ? piece.corners[node] : piece.midpoint(node - 3);
+        const Bsdf bsdf = scene_.bsdf_at({position + set_.origin, piece.facet});
+        block.reflectance[node][lane] = reflectance(bsdf, block.kind, rules_.laser_spot_m2);
+        block.mean_reflectance[lane] += block.reflectance[node][lane] / 6.0;
+        if (block.kind == PieceKind::Glossy) block.glossy[lane] = bsdf;
+    }
+}
+
+void PieceArranger::append_blocks(const std::vector<Piece>& pieces, PieceKind kind) {
+    for (std::size_t begin = 0; begin < pieces.size(); begin += kSize) {
+        PieceBlock& block = set_.blocks.emplace_back();
+        block.kind = kind;
+        block.count = std::min(kSize, pieces.size() - begin);
+        Eigen::AlignedBox3d box;
+        for (std::size_t lane = 0; lane < kSize; ++lane) {
+            const Piece& piece = pieces[begin + (lane < block.count ? lane : 0)];
+            fill_lane(block, lane, piece);
+            if (lane >= block.count) {
+                block.area_m2[lane] = 0.0;
+                continue;
+            }
+            piece_ids_.push_back(
+                static_cast<std::uint32_t>((set_.blocks.size() - 1) * kSize + lane));
+            pieces_.push_back(piece);
+            for (std::size_t i = 0; i < 3; ++i) {
+                box.extend(piece.corners[i]);
+                const double edge = (piece.corners[(i + 1) % 3] - piece.corners[i]).norm();
+                block.longest_edge_m = std::max(block.longest_edge_m, edge);
+            }
+        }
+        block.sphere_center = box.center();
+        block.sphere_radius_m = 0.5 * box.diagonal().norm();
+    }
+}
+
+void PieceArranger::add(std::vector<Piece> pieces, PieceKind kind) {
+    std::erase_if(pieces, [](const Piece& piece) {
+        const auto& [a, b, c] = piece.corners;
+        return !(core::triangle_area_vector(a, b, c).squaredNorm() > 0.0);
+    });
+    sort_into_blocks(pieces, {0, pieces.size()});
+    append_blocks(pieces, kind);
+}
+
+bool PieceArranger::may_be_one_group(const PieceBlock& block, Range lanes) const {
+    const auto normal = [&](std::size_t i) {
+        return Vec3(block.normal_x[i], block.normal_y[i], block.normal_z[i]);
+    };
+    Eigen::AlignedBox3d box;
+    for (std::size_t i = lanes.begin; i < lanes.end; ++i) {
+        if (std::abs(normal(i).dot(normal(lanes.begin))) < kLeastGroupCosine) return false;
+        if (scene_.facet(block.facet[i]).object != scene_.facet(block.facet[lanes.begin]).object) {
+            return false;
+        }
+        for (std::size_t c = 0; c < 3; ++c) {
+            box.extend(Vec3(block.x[c][i], block.y[c][i], block.z[c][i]));
+        }
+    }
+    const double distance = (box.center() - scan_center_).norm();
+    return box.diagonal().norm() <=
+           kGroupSizePerDistance * std::sqrt(rules_.tolerance) * distance;
+}
+
+// Splits lanes in halves, as sort_into_blocks() did, until each part may be one group. The parts'
+// pieces must also hang together: of two sheets, one may hide the other.
+void PieceArranger::form_groups(std::size_t block, Range lanes) {
+    const std::size_t count = lanes.end - lanes.begin;
+    bool is_group = count == 1 || may_be_one_group(set_.blocks[block], lanes);
+    if (is_group && count > 1) {
+        const auto base = static_cast<std::uint32_t>(block * kSize);
+        std::vector<std::uint32_t> reached{base + static_cast<std::uint32_t>(lanes.begin)};
+        std::array<bool, kSize> seen{};
+        seen[lanes.begin] = true;
+        for (std::size_t next = 0; next < reached.size(); ++next) {
+            const auto& lists = set_.piece_neighbours;
+            for (std::uint32_t i = lists.begin[reached[next]]; i < lists.begin[reached[next] + 1];
+                 ++i) {
+                const std::uint32_t lane = lists.items[i] - base;  // wraps for earlier blocks
+                if (lane < lanes.begin || lane >= lanes.end || seen[lane]) continue;
+                seen[lane] = true;
+                reached.push_back(lists.items[i]);
+            }
+        }
+        is_group = reached.size() == count;
+    }
+    if (is_group) {
+        set_.groups.push_back({static_cast<std::uint32_t>(block),
+                               static_cast<std::uint32_t>(lanes.begin),
+                               static_cast<std::uint32_t>(lanes.end)});
+        return;
+    }
+    const std::size_t middle = lanes.begin + (count + 1) / 2;
+    form_groups(block, {lanes.begin, middle});
+    form_groups(block, {middle, lanes.end});
+}
+
+void PieceArranger::find_group_neighbours() {
+    std::vector<std::uint32_t> group_of(set_.blocks.size() * kSize);
+    for (std::uint32_t g = 0; g < set_.groups.size(); ++g) {
+        const PieceGroup& group = set_.groups[g];
+        for (std::uint32_t lane = group.begin; lane < group.end; ++lane) {
+            group_of[group.block * kSize + lane] = g;
+        }
+    }
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+    const NeighbourLists& lists = set_.piece_neighbours;
+    for (const std::uint32_t piece : piece_ids_) {
+        for (std::uint32_t i = lists.begin[piece]; i < lists.begin[piece + 1]; ++i) {
+            const std::uint32_t other = group_of[lists.items[i]];
+            if (group_of[piece] < other) pairs.emplace_back(group_of[piece], other);
+        }
+    }
+    set_.group_neighbours = neighbour_lists(set_.groups.size(), std::move(pairs));
+}
+
+PieceSet PieceArranger::finish() {
+    set_.num_pieces = pieces_.size();
+    auto pairs = touching_pieces(pieces_);
+    for (auto& [a, b] : pairs) {
+        a = piece_ids_[a];
+        b = piece_ids_[b];
+    }
+    set_.piece_neighbours = neighbour_lists(set_.blocks.size() * kSize, std::move(pairs));
+    for (std::size_t block = 0; block < set_.blocks.size(); ++block) {
+        set_.first_group.push_back(static_cast<std::uint32_t>(set_.groups.size()));
+        form_groups(block, {0, set_.blocks[block].count});
+    }
+    set_.first_group.push_back(static_cast<std::uint32_t>(set_.groups.size()));
+    find_group_neighbours();
+    return std::move(set_);
+}
+
+}  // namespace renderer

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <vector>
+
+#include "renderer/third_bounce_pieces.h"
+
+namespace renderer {
+
+/// Arranges pieces into blocks of neighbours and groups within blocks.
+class PieceArranger {
+   public:
+    /// visible_side   per object, see closed_surface.h
+    PieceArranger(const Scene& scene,
+                  const core::Scan& scan,
+                  const PieceRules& rules,
+                  std::vector<double> visible_side);
+
+    /// Adds all pieces of one kind.
+    void add(std::vector<Piece> pieces, PieceKind kind);
+
+    /// Finds neighbours and returns the set; call once.
+    PieceSet finish();
+
+   private:
+    struct Range {
+        std::size_t begin;
+        std::size_t end;
+    };
+    void sort_into_blocks(std::vector<Piece>& pieces, Range range) const;
+    void append_blocks(const std::vector<Piece>& pieces, PieceKind kind);
+    void fill_lane(PieceBlock& block, std::size_t lane, const Piece& piece) const;
+    bool may_be_one_group(const PieceBlock& block, Range lanes) const;
+    void form_groups(std::size_t block, Range lanes);
+    void find_group_neighbours();
+
+    const Scene& scene_;
+    PieceRules rules_;
+    std::vector<double> visible_side_;
+    core::Vec3 scan_center_;
+    std::vector<std::uint32_t> piece_ids_;  ///< block * kSize + lane of every piece in `pieces_`
+    std::vector<Piece> pieces_;
+    PieceSet set_;
+};
+
+}  // namespace renderer

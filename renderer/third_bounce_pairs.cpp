@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/third_bounce_pairs.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "renderer/core/triangle_histogram.h"
+
+namespace renderer {
+namespace {
+
+using core::Vec3;
+
+constexpr std::size_t kSize = PieceBlock::kSize;
+
+// Lengths and weights of all pieces of a block, before and after fitting the knots.
+struct alignas(64) BlockKnots {
+    std::array<PieceBlock::Lanes, 3> opl_m;
+    std::array<PieceBlock::Lanes, 6> node_weight;
+    std::array<PieceBlock::Lanes, 3> weight;
+};
+
+Vec3 node_of(const PieceBlock& block, std::size_t node, std::size_t i) {
+    const auto corner = [&](std::size_t c) {
+        return Vec3(block.x[c][i], block.y[c][i], block.z[c][i]);
+    };
+    return node < 3 ? corner(node) : 0.5 * (corner(node - 3) + corner((node - 2) % 3));
+}
+
+// Replaces the nominal reflectance of one piece by its BSDF.
+void apply_bsdf(const PieceBlock& block,
+                std::size_t i,
+                const PairEnd& light,
+                const PairEnd& sensor,
+                BlockKnots& knots) {
+    const Vec3 normal(block.normal_x[i], block.normal_y[i], block.normal_z[i]);
+    const Vec3 edge = node_of(block, 1, i) - node_of(block, 0, i);
+    const core::Mat3 facet_from_world = core::frame_from_normal(normal, edge).transpose();
+    for (std::size_t node = 0; node < 6; ++node) {
+        const Vec3 position = node_of(block, node, i);
+        const Vec3 in = (light.point->position - position).normalized();
+        const Vec3 out = (sensor.point->position - position).normalized();
+        const double value =
+            evaluate_bsdf(block.glossy[i], facet_from_world * in, facet_from_world * out);
+        knots.node_weight[node][i] =
+            value * light.table->factor[node][i] * sensor.table->factor[node][i];
+    }
+}
+
+void weigh_nodes(const PieceBlock& block,
+                 const PairEnd& light,
+                 const PairEnd& sensor,
+                 BlockKnots& knots) {
+    for (std::size_t j = 0; j < 3; ++j) {
+        for (std::size_t i = 0; i < kSize; ++i) {
+            knots.opl_m[j][i] = light.table->leg_m[j][i] + sensor.table->leg_m[j][i];
+        }
+    }
+    if (block.kind == PieceKind::Glossy) {
+        for (std::size_t i = 0; i < block.count; ++i) {
+            if ((light.masks[i] & sensor.masks[i]) == 0) continue;
+            apply_bsdf(block, i, light, sensor, knots);
+        }
+        return;
+    }
+    const bool retro = block.kind == PieceKind::Retroreflective;
+    for (std::size_t node = 0; node < 6; ++node) {
+        const auto& towards_light = light.table->factor[node];
+        const auto& towards_sensor = sensor.table->factor[node];
+        for (std::size_t i = 0; i < kSize; ++i) {
+            knots.node_weight[node][i] = block.reflectance[node][i] * towards_light[i] *
+                                         (retro ? 1.0 : towards_sensor[i]);
+        }
+    }
+}
+
+// core::match_midpoints for the weights of all lanes.
+void fit_weights(BlockKnots& knots) {
+    const auto& k = knots.node_weight;
+    for (std::size_t i = 0; i < kSize; ++i) {
+        const double mean = (k[3][i] + k[4][i] + k[5][i]) * (1.0 / 3.0);
+        const double corner_mean = (k[0][i] + k[1][i] + k[2][i]) * (1.0 / 3.0);
+        const double lowest = std::min(k[0][i], std::min(k[1][i], k[2][i])) - corner_mean;
+        const double spread = lowest < -mean ? mean / -lowest : 1.0;
+        knots.weight[0][i] = mean + spread * (k[0][i] - corner_mean);
+        knots.weight[1][i] = mean + spread * (k[1][i] - corner_mean);
+        knots.weight[2][i] = mean + spread * (k[2][i] - corner_mean);
+    }
+}
+
+// Weights of the visible part: the product of two linear functions, made linear again with its
+// integral kept.
+std::array<double, 3> visible_weights(const std::array<double, 3>& weight, VisibilityMask mask) {
+    const std::array<double, 3> share = visible_share(mask);
+    std::array<double, 3> product{};
+    for (std::size_t j = 0; j < 3; ++j) product[j] = weight[j] * share[j];
+    const double sum = product[0] + product[1] + product[2];
+    if (!(sum > 0.0)) return {0.0, 0.0, 0.0};
+    const double integral = ((weight[0] + weight[1] + weight[2]) * (share[0] + share[1] + share[2]) +
+                             sum) /
+                            4.0;
+    for (double& value : product) value *= integral / sum;
+    return product;
+}
+
+}  // namespace
+
+void compute_table(const PieceBlock& block, const WallPoint& point, BlockTable& table) {
+    const Vec3 w = point.position;
+    const Vec3 n = point.normal;
+    alignas(64) std::array<PieceBlock::Lanes, 6> leg;
+    for (std::size_t i = 0; i < kSize; ++i) {
+        const double facing = (w.x() - block.x[0][i]) * block.normal_x[i] +
+                              (w.y() - block.y[0][i]) * block.normal_y[i] +
+                              (w.z() - block.z[0][i]) * block.normal_z[i];
+        table.side[i] = facing;
+    }
+    for (std::size_t node = 0; node < 6; ++node) {
+        // A midpoint is the mean of two corners, a corner of itself twice.
+        const std::size_t a = node % 3;
+        const std::size_t b = node < 3 ? a : (a + 1) % 3;
+        for (std::size_t i = 0; i < kSize; ++i) {
+            const double x = 0.5 * (block.x[a][i] + block.x[b][i]) - w.x();
+            const double y = 0.5 * (block.y[a][i] + block.y[b][i]) - w.y();
+            const double z = 0.5 * (block.z[a][i] + block.z[b][i]) - w.z();
+            const double d2 = std::max(x * x + y * y + z * z, 1e-200);
+            const double front = std::max(0.0, x * n.x() + y * n.y() + z * n.z());
+            leg[node][i] = std::sqrt(d2);
+            // All points of the piece have the same distance from w along its normal.
+            table.factor[node][i] = front * std::abs(table.side[i]) / (d2 * d2);
+        }
+    }
+    for (std::size_t i = 0; i < kSize; ++i) {
+        const double shift = (leg[3][i] + leg[4][i] + leg[5][i] - leg[0][i] - leg[1][i] - leg[2][i]) *
+                             (1.0 / 3.0);
+        for (std::size_t j = 0; j < 3; ++j) table.leg_m[j][i] = leg[j][i] + shift;
+    }
+}
+
+void add_pair(const PieceBlock& block,
+              const PairEnd& light,
+              const PairEnd& sensor,
+              const core::TimeAxis& axis,
+              std::span<double> histogram) {
+    const auto common_mask = [&](std::size_t i) {
+        const bool same_side = light.table->side[i] * sensor.table->side[i] > 0.0;
+        return static_cast<VisibilityMask>(same_side ? light.masks[i] & sensor.masks[i] : 0);
+    };
+    std::array<VisibilityMask, kSize> mask;
+    VisibilityMask any = 0;
+    for (std::size_t i = 0; i < kSize; ++i) {
+        mask[i] = common_mask(i);
+        any = static_cast<VisibilityMask>(any | mask[i]);
+    }
+    if (any == 0) return;
+    BlockKnots knots;
+    weigh_nodes(block, light, sensor, knots);
+    fit_weights(knots);
+    for (std::size_t i = 0; i < block.count; ++i) {
+        if (mask[i] == 0) continue;
+        core::TriangleKnots triangle{
+            {knots.opl_m[0][i], knots.opl_m[1][i], knots.opl_m[2][i]},
+            {knots.weight[0][i], knots.weight[1][i], knots.weight[2][i]}};
+        if (mask[i] != kAllVisible) triangle.weight = visible_weights(triangle.weight, mask[i]);
+        core::add_triangle(triangle, block.area_m2[i], axis, histogram);
+    }
+}
+
+}  // namespace renderer

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <span>
+
+#include "renderer/core/time_axis.h"
+#include "renderer/third_bounce_visibility.h"
+
+namespace renderer {
+
+/// What one wall point contributes to every path through the pieces of a block.
+struct alignas(64) BlockTable {
+    /// Length of the leg: values at the corners, shifted to the mean at the midpoints [m].
+    std::array<PieceBlock::Lanes, 3> leg_m;
+    /// (n_w.d) |n_x.d| / |d|^4 at the six nodes [1/m^2], 0 behind the wall point.
+    std::array<PieceBlock::Lanes, 6> factor;
+    PieceBlock::Lanes side;  ///< sign of the side of the piece that the wall point is on
+};
+
+/// Fills `table` for one wall point.
+void compute_table(const PieceBlock& block, const WallPoint& point, BlockTable& table);
+
+/// One end of the paths of a pair: the wall point, its table and its masks for one block.
+struct PairEnd {
+    const WallPoint* point;
+    const BlockTable* table;
+    const VisibilityMask* masks;  ///< PieceBlock::kSize of them
+};
+
+/// Adds the third bounce of one measurement pair by way of one block to its histogram, wall albedos
+/// left out.
+///
+/// light, sensor   the two ends; the same one twice for a confocal pair
+/// axis            of the histogram, its start reduced by the pair's device legs
+/// histogram       axis.num_bins values
+void add_pair(const PieceBlock& block,
+              const PairEnd& light,
+              const PairEnd& sensor,
+              const core::TimeAxis& axis,
+              std::span<double> histogram);
+
+}  // namespace renderer

@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/third_bounce_scan.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "renderer/core/parallel.h"
+#include "renderer/core/process.h"
+#include "renderer/third_bounce_pairs.h"
+
+namespace renderer {
+namespace {
+
+using core::Vec3;
+
+constexpr std::size_t kSize = PieceBlock::kSize;
+constexpr std::size_t kPointsPerBlock = 4;
+constexpr std::size_t kParts = 16;
+// A tile's histograms and tables fit the second-level cache.
+constexpr std::size_t kLightsPerTile = 8;
+constexpr std::size_t kSensorsPerTile = 16;
+
+bool is_empty(const VisibilityMask* masks) {
+    return std::all_of(masks, masks + kSize, [](VisibilityMask mask) { return mask == 0; });
+}
+
+std::size_t parts_of(std::size_t count, std::size_t size) { return (count + size - 1) / size; }
+
+// Tables of some wall points for one block, where they see anything of it.
+class TileTables {
+   public:
+    TileTables(std::vector<WallPoint> points, std::size_t first, std::span<const std::vector<VisibilityMask>> masks)
+        : points_(std::move(points)),
+          masks_(masks.subspan(first, points_.size())),
+          tables_(points_.size()),
+          ends_(points_.size()) {}
+
+    void compute(const PieceBlock& block, std::size_t block_index) {
+        for (std::size_t i = 0; i < points_.size(); ++i) {
+            const VisibilityMask* const masks = masks_[i].data() + block_index * kSize;
+            ends_[i] = {&points_[i], nullptr, masks};
+            if (is_empty(masks)) continue;
+            compute_table(block, points_[i], tables_[i]);
+            ends_[i].table = &tables_[i];
+        }
+    }
+
+    const std::vector<PairEnd>& ends() const { return ends_; }
+
+   private:
+    std::vector<WallPoint> points_;
+    std::span<const std::vector<VisibilityMask>> masks_;
+    std::vector<BlockTable> tables_;
+    std::vector<PairEnd> ends_;
+};
+
+// True when no path of the two points through the block has a length within the axis.
+bool misses_axis(const PieceBlock& block,
+                 const WallPoint& light,
+                 const WallPoint& sensor,
+                 const core::TimeAxis& axis) {
+    const double middle = (block.sphere_center - light.position).norm() +
+                          (block.sphere_center - sensor.position).norm();
+    const double reach = 2.0 * block.sphere_radius_m;
+    return middle + reach < axis.opl_start_m || middle - reach > axis.opl_end_m();
+}
+
+}  // namespace
+
+ThirdBounceScan::ThirdBounceScan(const Scene& scene,
+                                 const core::Scan& scan,
+                                 const core::TimeAxis& axis,
+                                 const PieceSet& pieces,
+                                 double negligible_error)
+    : scene_(scene),
+      scan_(scan),
+      axis_(axis),
+      pieces_(pieces),
+      negligible_error_(negligible_error),
+      result_(scan.num_pairs(), axis.num_bins) {}
+
+core::Transient ThirdBounceScan::integrate(const std::function<void(double share)>& after_part) {
+    if (scan_.pattern != core::ScanPattern::Confocal) {
+        integrate_pairs(after_part);
+        return std::move(result_);
+    }
+    const std::size_t count = scan_.num_pairs();
+    const std::size_t per_part = std::max<std::size_t>(1, parts_of(count, kParts));
+    for (std::size_t begin = 0; begin < count; begin += per_part) {
+        const std::size_t end = std::min(count, begin + per_part);
+        integrate_confocal(begin, end);
+        after_part(static_cast<double>(end) / static_cast<double>(count));
+    }
+    return std::move(result_);
+}
+
+WallPoint ThirdBounceScan::wall_point(const core::WallPoints& points, std::size_t index) const {
+    return {points.positions[index] - pieces_.origin, points.normals[index]};
+}
+
+core::TimeAxis ThirdBounceScan::axis_of_pair(std::size_t pair) const {
+    core::TimeAxis axis = axis_;
+    axis.opl_start_m -= scan_.device_legs_m(pair);
+    return axis;
+}
+
+void ThirdBounceScan::store(std::size_t pair, std::span<const double> histogram) {
+    std::transform(histogram.begin(),
+                   histogram.end(),
+                   result_.histogram(pair).begin(),
+                   [](double value) { return static_cast<float>(value); });
+}
+
+void ThirdBounceScan::integrate_confocal(std::size_t first, std::size_t last) {
+    core::parallel_blocks(
+        last - first, kPointsPerBlock, [&](std::size_t block_begin, std::size_t block_end) {
+            VisibilityTracer tracer(scene_, pieces_);
+            Masks masks;
+            BlockTable table;
+            std::vector<double> histogram(static_cast<std::size_t>(axis_.num_bins));
+            for (std::size_t pair = first + block_begin; pair < first + block_end; ++pair) {
+                const WallPoint point = wall_point(scan_.sensing, pair);
+                const core::TimeAxis axis = axis_of_pair(pair);
+                num_rays_ += tracer.trace(
+                    point,
+                    {axis.opl_start_m, axis.opl_end_m(), point, {}, negligible_error_},
+                    masks);
+                std::fill(histogram.begin(), histogram.end(), 0.0);
+                for (std::size_t b = 0; b < pieces_.blocks.size(); ++b) {
+                    const VisibilityMask* const seen = masks.data() + b * kSize;
+                    if (is_empty(seen)) continue;
+                    compute_table(pieces_.blocks[b], point, table);
+                    const PairEnd end{&point, &table, seen};
+                    add_pair(pieces_.blocks[b], end, end, axis, histogram);
+                }
+                store(pair, histogram);
+            }
+        });
+}
+
+std::vector<ThirdBounceScan::Masks> ThirdBounceScan::look_from(const core::WallPoints& points,
+                                                               const core::WallPoints& others) {
+    VisibilityRules rules;
+    rules.negligible_error = negligible_error_;
+    double least_legs = std::numeric_limits<double>::infinity();
+    double most_legs = 0.0;
+    for (std::size_t pair = 0; pair < scan_.num_pairs(); ++pair) {
+        least_legs = std::min(least_legs, scan_.device_legs_m(pair));
+        most_legs = std::max(most_legs, scan_.device_legs_m(pair));
+    }
+    rules.opl_begin_m = axis_.opl_start_m - most_legs;
+    rules.opl_end_m = axis_.opl_end_m() - least_legs;
+    rules.other_end = {Vec3::Zero(), Vec3::Zero()};
+    Eigen::AlignedBox3d box;
+    for (std::size_t i = 0; i < others.size(); ++i) {
+        const WallPoint other = wall_point(others, i);
+        box.extend(other.position);
+        rules.other_end.position += other.position / static_cast<double>(others.size());
+        rules.other_end.normal += other.normal / static_cast<double>(others.size());
+    }
+    if (others.size() > 1) {
+        for (const PieceBlock& block : pieces_.blocks) {
+            const Vec3 c = block.sphere_center;
+            const Vec3 farthest = (c - box.min()).cwiseAbs().cwiseMax((c - box.max()).cwiseAbs());
+            rules.other_legs.push_back({box.exteriorDistance(c) - block.sphere_radius_m,
+                                        farthest.norm() + block.sphere_radius_m});
+        }
+    }
+    std::vector<Masks> masks(points.size());
+    core::parallel_blocks(
+        points.size(), kPointsPerBlock, [&](std::size_t begin, std::size_t end) {
+            VisibilityTracer tracer(scene_, pieces_);
+            for (std::size_t i = begin; i < end; ++i) {
+                num_rays_ += tracer.trace(wall_point(points, i), rules, masks[i]);
+            }
+        });
+    return masks;
+}
+
+void ThirdBounceScan::integrate_pairs(const std::function<void(double share)>& after_part) {
+    const std::size_t num_lights =
+        scan_.pattern == core::ScanPattern::Single ? 1 : scan_.illumination.size();
+    const double needed = static_cast<double>(num_lights + scan_.sensing.size()) *
+                          static_cast<double>(pieces_.blocks.size() * kSize * sizeof(VisibilityMask));
+    const auto available = static_cast<double>(core::available_memory_bytes());
+    if (needed > available) {
+        throw core::Failure("third_bounce",
+                            fmt::format("visibility of {} pieces needs {:.1f} GB, {:.1f} GB are free",
+                                        pieces_.num_pieces,
+                                        needed * 1e-9,
+                                        available * 1e-9));
+    }
+    const std::vector<Masks> light_masks = look_from(scan_.illumination, scan_.sensing);
+    const std::vector<Masks> sensor_masks = look_from(scan_.sensing, scan_.illumination);
+    after_part(0.25);
+    const std::size_t light_tiles = parts_of(num_lights, kLightsPerTile);
+    const std::size_t sensor_tiles = parts_of(scan_.sensing.size(), kSensorsPerTile);
+    const std::size_t count = light_tiles * sensor_tiles;
+    const std::size_t per_part = std::max<std::size_t>(1, parts_of(count, kParts));
+    for (std::size_t begin = 0; begin < count; begin += per_part) {
+        const std::size_t end = std::min(count, begin + per_part);
+        core::parallel_for(end - begin, [&](std::size_t i) {
+            integrate_tile((begin + i) / sensor_tiles * kLightsPerTile,
+                           light_masks,
+                           (begin + i) % sensor_tiles * kSensorsPerTile,
+                           sensor_masks);
+        });
+        after_part(0.25 + 0.75 * static_cast<double>(end) / static_cast<double>(count));
+    }
+}
+
+void ThirdBounceScan::integrate_tile(std::size_t light_begin,
+                                     const std::vector<Masks>& light_masks,
+                                     std::size_t sensor_begin,
+                                     const std::vector<Masks>& sensor_masks) {
+    const auto points = [&](const core::WallPoints& all, std::size_t begin, std::size_t most) {
+        std::vector<WallPoint> tile;
+        for (std::size_t i = begin; i < std::min(all.size(), begin + most); ++i) {
+            tile.push_back(wall_point(all, i));
+        }
+        return tile;
+    };
+    TileTables lights(
+        points(scan_.illumination, light_begin, kLightsPerTile), light_begin, light_masks);
+    TileTables sensors(
+        points(scan_.sensing, sensor_begin, kSensorsPerTile), sensor_begin, sensor_masks);
+    const std::size_t num_sensors = sensors.ends().size();
+    const auto num_bins = static_cast<std::size_t>(axis_.num_bins);
+    std::vector<double> histograms(lights.ends().size() * num_sensors * num_bins);
+    const auto pair_of = [&](std::size_t l, std::size_t s) {
+        return (light_begin + l) * scan_.sensing.size() + sensor_begin + s;
+    };
+    for (std::size_t b = 0; b < pieces_.blocks.size(); ++b) {
+        const PieceBlock& block = pieces_.blocks[b];
+        lights.compute(block, b);
+        sensors.compute(block, b);
+        for (std::size_t l = 0; l < lights.ends().size(); ++l) {
+            const PairEnd& light = lights.ends()[l];
+            for (std::size_t s = 0; s < num_sensors; ++s) {
+                const PairEnd& sensor = sensors.ends()[s];
+                if (light.table == nullptr || sensor.table == nullptr) continue;
+                const core::TimeAxis axis = axis_of_pair(pair_of(l, s));
+                if (misses_axis(block, *light.point, *sensor.point, axis)) continue;
+                add_pair(block,
+                         light,
+                         sensor,
+                         axis,
+                         std::span(histograms).subspan((l * num_sensors + s) * num_bins, num_bins));
+            }
+        }
+    }
+    for (std::size_t i = 0; i < lights.ends().size() * num_sensors; ++i) {
+        store(pair_of(i / num_sensors, i % num_sensors),
+              std::span(histograms).subspan(i * num_bins, num_bins));
+    }
+}
+
+}  // namespace renderer

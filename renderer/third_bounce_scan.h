@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "renderer/core/capture.h"
+#include "renderer/third_bounce_visibility.h"
+
+namespace renderer {
+
+/// Integrates one cut of the surfaces for all pairs of a scan.
+class ThirdBounceScan {
+   public:
+    /// All arguments must outlive this; negligible_error as in VisibilityRules.
+    ThirdBounceScan(const Scene& scene,
+                    const core::Scan& scan,
+                    const core::TimeAxis& axis,
+                    const PieceSet& pieces,
+                    double negligible_error);
+
+    /// after_part   called from the calling thread with the share done, now and then
+    /// returns      H for wall albedos of pi
+    core::Transient integrate(const std::function<void(double share)>& after_part);
+
+    std::uint64_t num_rays() const { return num_rays_; }
+
+   private:
+    using Masks = std::vector<VisibilityMask>;
+
+    WallPoint wall_point(const core::WallPoints& points, std::size_t index) const;
+    core::TimeAxis axis_of_pair(std::size_t pair) const;
+    void integrate_confocal(std::size_t begin, std::size_t end);
+    void integrate_pairs(const std::function<void(double share)>& after_part);
+    std::vector<Masks> look_from(const core::WallPoints& points, const core::WallPoints& others);
+    void integrate_tile(std::size_t light_begin,
+                        const std::vector<Masks>& light_masks,
+                        std::size_t sensor_begin,
+                        const std::vector<Masks>& sensor_masks);
+    void store(std::size_t pair, std::span<const double> histogram);
+
+    const Scene& scene_;
+    const core::Scan& scan_;
+    const core::TimeAxis& axis_;
+    const PieceSet& pieces_;
+    double negligible_error_;
+    core::Transient result_;
+    std::atomic<std::uint64_t> num_rays_{0};
+};
+
+}  // namespace renderer
