@@ -6,6 +6,6 @@ cd "$(dirname "$0")/.."
 bash apps/setup.sh
 echo "Building (release)"
 cmake --preset release >/dev/null
-cmake --build --preset release
+cmake --build --preset release --target nlos_cli
 build/release/apps/nlos demo -o out/demo
 echo "Open $(pwd)/out/demo/report.html"

@@ -3,6 +3,7 @@
 #include "apps/commands.h"
 #include "apps/file_kind.h"
 #include "apps/file_picture.h"
+#include "nlos/capture_check.h"
 #include "nlos/formats/capture_file.h"
 #include "nlos/formats/ply_file.h"
 #include "nlos/formats/volume_file.h"
@@ -94,6 +95,9 @@ void describe_capture_file(const std::string& path, const std::vector<std::strin
     const core::Capture capture = nlos::read_capture(path, options.capture);
     fmt::print("format: {}\n", nlos::capture_format(path).value_or("unknown"));
     for (const std::string& line : nlos::describe_capture(capture)) fmt::print("{}\n", line);
+    for (const std::string& warning : nlos::timing_warnings(capture)) {
+        fmt::print("warning: {}\n", warning);
+    }
 }
 
 void run(const InfoArguments& arguments) {

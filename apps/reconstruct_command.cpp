@@ -16,6 +16,7 @@ struct ReconstructArguments {
     std::string output;
     std::string method;
     std::string ply;
+    std::string glb;
     std::vector<std::string> overrides;
     int threads = 0;
 };
@@ -24,14 +25,18 @@ void run(const ReconstructArguments& arguments) {
     const core::ThreadLimit threads(arguments.threads);
     std::vector<std::string> overrides = arguments.overrides;
     if (!arguments.method.empty()) overrides.push_back("method=" + arguments.method);
-    const nlos::Reconstruction result =
-        reconstruct_to_file(arguments.capture, overrides, arguments.output, arguments.ply);
+    const nlos::Reconstruction result = reconstruct_to_file(
+        arguments.capture, overrides, arguments.output, arguments.ply, arguments.glb);
+    for (const std::string& warning : result.warnings) {
+        fmt::print(stderr, "warning: {}\n", warning);
+    }
     const nlos::VolumeAxes& axes = result.volume.axes;
     if (!result.reason.empty()) fmt::print("{}: {}\n", result.method, result.reason);
-    fmt::print("wrote {}, {}{} ({}, {} x {} x {} voxels, {} surface points, {:.2f} s)\n",
+    fmt::print("wrote {}, {}{}{} ({}, {} x {} x {} voxels, {} surface points, {:.2f} s)\n",
                arguments.output,
                with_suffix(arguments.output, ".png"),
                arguments.ply.empty() ? "" : ", " + arguments.ply,
+               arguments.glb.empty() ? "" : ", " + arguments.glb,
                result.method,
                axes.x_m.size(),
                axes.y_m.size(),
@@ -52,8 +57,11 @@ void add_reconstruct_command(CLI::App& app) {
         ->add_option(
             "-o,--output", arguments->output, "Volume to write (.h5); a .png goes beside it")
         ->required();
-    command->add_option("--method", arguments->method, "Method: auto, lct or bp (default auto)");
+    command->add_option("--method",
+                        arguments->method,
+                        "Method: auto, lct, dlct, fk, phasor, bp or fbp (default auto)");
     command->add_option("--ply", arguments->ply, "Also write the surface points (.ply)");
+    command->add_option("--glb", arguments->glb, "Also write the surface as a mesh (.glb)");
     command->add_option("--threads", arguments->threads, "Threads; 0 takes all processors")
         ->capture_default_str()
         ->check(CLI::Range(0, 1024));

@@ -7,14 +7,29 @@
 #include "nlos/formats/ply_file.h"
 #include "nlos/formats/volume_file.h"
 #include "nlos/pictures.h"
+#include "nlos/surface_mesh.h"
 #include "renderer/core/output_file.h"
+#include "renderer/gltf.h"
 
 namespace apps {
+namespace {
+
+void write_surface(const std::string& glb_path, core::TriangleMesh mesh) {
+    if (mesh.triangles.empty()) throw core::Failure(glb_path, "no surface was found to write");
+    renderer::SceneGeometry geometry;
+    geometry.objects.emplace_back();
+    geometry.objects.back().name = "reconstruction";
+    geometry.objects.back().mesh = std::move(mesh);
+    renderer::write_gltf(glb_path, geometry);
+}
+
+}  // namespace
 
 nlos::Reconstruction reconstruct_to_file(const std::string& capture_path,
                                          const std::vector<std::string>& overrides,
                                          const std::string& volume_path,
-                                         const std::string& ply_path) {
+                                         const std::string& ply_path,
+                                         const std::string& glb_path) {
     // A target that cannot be written is found before the work, not after it.
     const core::OutputFile probe(volume_path);
     ReconstructOptions options;
@@ -26,6 +41,7 @@ nlos::Reconstruction reconstruct_to_file(const std::string& capture_path,
     nlos::write_volume(volume_path, result);
     nlos::write_panels_png(with_suffix(volume_path, ".png"), nlos::volume_panels(result), 2);
     if (!ply_path.empty()) nlos::write_ply(ply_path, result.points);
+    if (!glb_path.empty()) write_surface(glb_path, nlos::surface_mesh(result.depth));
     return result;
 }
 

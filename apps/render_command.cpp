@@ -47,13 +47,17 @@ void run(const RenderArguments& arguments) {
                                         arguments.output,
                                         job.samples_per_pair));
     }
-    fmt::print("wrote {} ({} pairs x {} bins, {} by {}, {} samples per pair, {:.2f} s)\n",
+    std::string effort;
+    if (job.estimated_error) effort += fmt::format("error about {:.1e}, ", *job.estimated_error);
+    if (job.samples_per_pair > 0)
+        effort += fmt::format("{} samples per pair, ", job.samples_per_pair);
+    fmt::print("wrote {} ({} pairs x {} bins, {} by {}, {}{:.2f} s)\n",
                arguments.output,
                job.num_pairs,
                job.num_bins,
                job.pattern,
                job.estimator,
-               job.samples_per_pair,
+               effort,
                job.seconds);
 }
 
@@ -69,6 +73,12 @@ void add_render_command(CLI::App& app) {
         *command, *arguments, "--samples", "render.samples", "N", "Candidate paths per pair");
     add_shorthand(
         *command, *arguments, "--seconds", "render.seconds", "S", "Render for this long instead");
+    add_shorthand(*command,
+                  *arguments,
+                  "--target-error",
+                  "render.target_error",
+                  "E",
+                  "Relative L2 error that third_bounce stays below");
     add_shorthand(*command,
                   *arguments,
                   "--max-bounces",

@@ -13,6 +13,16 @@
 namespace apps {
 namespace {
 
+// The estimators that ran, as in "third_bounce + path".
+std::string estimator_names(const renderer::RenderResult& result) {
+    std::string names;
+    for (const renderer::OrderSource& source : result.sources) {
+        const std::string name(core::enum_name(source.estimator));
+        if (names.find(name) == std::string::npos) names += (names.empty() ? "" : " + ") + name;
+    }
+    return names.empty() ? "closed form" : names;
+}
+
 core::Json provenance(const std::string& scene_path,
                       const renderer::SceneDescription& description,
                       const renderer::RenderResult& result) {
@@ -20,7 +30,14 @@ core::Json provenance(const std::string& scene_path,
     info["program"] = version_text();
     info["command"] = command_line();
     info["scene"] = std::filesystem::absolute(scene_path).lexically_normal().string();
-    info["estimator"] = std::string(core::enum_name(result.estimator));
+    info["estimator"] = estimator_names(result);
+    for (const renderer::OrderSource& source : result.sources) {
+        info["orders"].push_back({{"first", source.first_order},
+                                  {"last", source.last_order},
+                                  {"estimator", std::string(core::enum_name(source.estimator))},
+                                  {"surfaces", source.surfaces}});
+    }
+    if (result.estimated_error) info["estimated_error"] = *result.estimated_error;
     info["samples_per_pair"] = result.samples_per_pair;
     info["seconds"] = result.seconds;
     info["interrupted"] = result.interrupted;
@@ -50,7 +67,8 @@ RenderJob render_to_file(const std::string& scene_path,
     job.num_pairs = scan.num_pairs();
     job.num_bins = description.time_axis.num_bins;
     job.pattern = core::enum_name(scan.pattern);
-    job.estimator = core::enum_name(result.estimator);
+    job.estimator = estimator_names(result);
+    job.estimated_error = result.estimated_error;
     job.samples_per_pair = result.samples_per_pair;
     job.seconds = result.seconds;
     job.interrupted = result.interrupted;

@@ -4,6 +4,7 @@
 #include "renderer/scene_file.h"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,8 @@ struct RenderJob {
     int num_bins = 0;
     std::string pattern;
     std::string estimator;
-    std::uint64_t samples_per_pair = 0;
+    std::uint64_t samples_per_pair = 0;     ///< 0 when no paths were traced
+    std::optional<double> estimated_error;  ///< of the deterministic part
     double seconds = 0.0;
     bool interrupted = false;
 };

@@ -109,6 +109,20 @@ Fft Fft::complex_batch(const Layout& layout, Direction direction) {
                                     FFTW_ESTIMATE)));
 }
 
+Fft Fft::real_3d(const std::array<std::size_t, 3>& size, Direction direction) {
+    FftBuffer buffer(size[0] * size[1] * (size[2] + 2));
+    const int n[3] = {to_int(size[0]), to_int(size[1]), to_int(size[2])};
+    const std::lock_guard lock(planner_mutex);
+    if (direction == Direction::Forward) {
+        return Fft(Kind::RealToComplex,
+                   checked(fftwf_plan_dft_r2c(
+                       3, n, buffer.data(), as_fftw(buffer.data()), FFTW_ESTIMATE)));
+    }
+    return Fft(
+        Kind::ComplexToReal,
+        checked(fftwf_plan_dft_c2r(3, n, as_fftw(buffer.data()), buffer.data(), FFTW_ESTIMATE)));
+}
+
 Fft Fft::even_2d(std::size_t nx, std::size_t ny) {
     FftBuffer buffer(2 * nx * ny);
     const int n[2] = {to_int(nx), to_int(ny)};

@@ -267,6 +267,7 @@ void fill_voxels(const Grids& grids,
                  Volume& volume) {
     PaddedPlane::Workspace work = plane.make_workspace();
     const std::size_t count = end - begin;
+    const float share = 1.0F / static_cast<float>(grids.samples);
     std::vector<float> sums(grids.nx * grids.ny * count, 0.0F);
     for (std::size_t iz = begin; iz < end; ++iz) {
         for (std::size_t i = 0; i < grids.samples; ++i) {
@@ -276,7 +277,7 @@ void fill_voxels(const Grids& grids,
                 const ComplexF* row = plane.row(work, ix);
                 for (std::size_t iy = 0; iy < grids.ny; ++iy) {
                     sums[(ix * grids.ny + iy) * count + iz - begin] +=
-                        row[iy].real() * row[iy].real() + row[iy].imag() * row[iy].imag();
+                        share * (row[iy].real() * row[iy].real() + row[iy].imag() * row[iy].imag());
                 }
             }
         }

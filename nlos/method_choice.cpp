@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t kFewestPhasorPoints = 4;
 
 bool is_confocal_method(Method method) {
-    return method == Method::Lct || method == Method::Fk;
+    return method == Method::Lct || method == Method::Fk || method == Method::Dlct;
 }
 
 std::string name_of(core::ScanPattern pattern) {

@@ -126,6 +126,7 @@ class PlanePropagator {
                                   std::size_t num_illumination) const {
         const std::size_t num_pairs = num_illumination * num_columns();
         std::vector<ComplexF> result(num_illumination * wave_.size() * spectrum_size());
+        const auto scale = 1.0F / static_cast<float>(spectrum_size());  // of the transforms
         core::parallel_blocks(
             num_illumination * wave_.size(), 4, [&](std::size_t begin, std::size_t end) {
                 PaddedPlane::Workspace work = plane_.make_workspace();
@@ -135,7 +136,7 @@ class PlanePropagator {
                                              i / wave_.size() * num_columns();
                     for (std::size_t column = 0; column < slab.size(); ++column) {
                         slab[column] =
-                            values[grid_.point(column / grid_.size[1], column % grid_.size[1])];
+                            scale * values[grid_.point(column / grid_.size[1], column % grid_.size[1])];
                     }
                     plane_.load(slab.data(), work);
                     plane_.forward(work);

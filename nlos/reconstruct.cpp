@@ -2,6 +2,8 @@
 #include "nlos/reconstruct.h"
 
 #include "nlos/backprojection.h"
+#include "nlos/capture_check.h"
+#include "nlos/directional_light_cone_transform.h"
 #include "nlos/filtered_backprojection.h"
 #include "nlos/fk_migration.h"
 #include "nlos/histogram_preparation.h"
@@ -10,6 +12,7 @@
 #include "nlos/method_choice.h"
 #include "nlos/phasor_field.h"
 #include "nlos/surface.h"
+#include "nlos/total_variation.h"
 #include "nlos/virtual_wave.h"
 #include "renderer/core/process.h"
 
@@ -21,12 +24,7 @@
 namespace nlos {
 namespace {
 
-constexpr int kMaxVoxelsPerAxis = 65536;
 constexpr std::size_t kDefaultColumns = 64;
-
-void require(bool holds, const char* key, const std::string& found, const std::string& allowed) {
-    if (!holds) throw core::Error(key, found, allowed);
-}
 
 /// As many bins as keep the range they cover within a quarter of the wall points' distance: finer
 /// depth than that no aperture of this sampling resolves, and noise and work shrink with the bins.
@@ -50,10 +48,11 @@ PreparationPlan choose_preparation(const Measurement& measurement, ReconstructSe
     if (!settings.merge_bins) settings.merge_bins = default_merge_bins(axis, measurement.wall);
     PreparationPlan plan;
     plan.merge_bins = *settings.merge_bins;
-    require(plan.merge_bins <= axis.num_bins,
-            "merge_bins",
-            fmt::format("{}", plan.merge_bins),
-            fmt::format("must not exceed the capture's {} bins", axis.num_bins));
+    if (plan.merge_bins > axis.num_bins) {
+        throw core::Error("merge_bins",
+                          fmt::format("{}", plan.merge_bins),
+                          fmt::format("must not exceed the capture's {} bins", axis.num_bins));
+    }
     plan.num_bins = axis.num_bins / plan.merge_bins;
     if (settings.ambient == Ambient::Subtract) {
         if (auto signal = find_signal(measurement.transient())) {
@@ -90,10 +89,11 @@ std::array<double, 2> default_z_range(const core::Scan& scan, const core::TimeAx
     }
     const double begin = std::max(0.0, 0.5 * (axis.opl_start_m - longest_leg));
     const double end = 0.5 * (axis.opl_end_m() - shortest_leg);
-    require(end > begin,
-            "capture",
-            fmt::format("the time axis ends at a range of {:.4g} m", end),
-            "it must reach beyond the wall");
+    if (!(end > begin)) {
+        throw core::Error("capture",
+                          fmt::format("the time axis ends at a range of {:.4g} m", end),
+                          "it must reach beyond the wall");
+    }
     return {begin, end};
 }
 
@@ -108,6 +108,10 @@ void choose_axes(const core::Scan& scan,
     const double depth = (*volume.z_range_m)[1] - (*volume.z_range_m)[0];
     std::array<double, 2> low = wall.min_m;
     std::array<double, 2> high = wall.max_m;
+    for (int i = 0; i < 2 && wall.grid; ++i) {  // other points may lie outside the grid
+        low[i] = wall.grid->first_m[i] - 0.5 * wall.grid->pitch_m[i];
+        high[i] = low[i] + static_cast<double>(wall.grid->size[i]) * wall.grid->pitch_m[i];
+    }
     const double size = std::max(high[0] - low[0], high[1] - low[1]);
     for (int i = 0; i < 2; ++i) {  // points on a line, or one point: a square, or as wide as deep
         if (high[i] - low[i] > 1e-3 * size && size > 0.0) continue;
@@ -132,6 +136,14 @@ void choose_axes(const core::Scan& scan,
     axes.world_from_wall = wall.world_from_wall;
 }
 
+/// A method that knows normals knows them better than a plane through neighbouring columns does.
+void take_normals(const Volume& volume, core::DepthMap& depth) {
+    for (std::size_t i = 0; i < volume.normals.size(); ++i) {
+        if (!depth.is_foreground(i)) continue;
+        depth.normals[i] = depth.world_from_wall.linear() * volume.normals[i].cast<double>();
+    }
+}
+
 void check_memory(double needed_bytes) {
     const auto available = static_cast<double>(core::available_memory_bytes());
     if (needed_bytes <= available) return;
@@ -146,7 +158,10 @@ void check_memory(double needed_bytes) {
 double method_bytes(const MethodInput& input, const ReconstructSettings& settings) {
     switch (settings.method) {
         case Method::Lct:
-            return light_cone_transform_bytes(input);
+            return settings.prior == Prior::Tv ? total_variation_bytes(input)
+                                               : light_cone_transform_bytes(input);
+        case Method::Dlct:
+            return directional_light_cone_transform_bytes(input);
         case Method::Fk:
             return fk_migration_bytes(input);
         case Method::Phasor:
@@ -165,7 +180,11 @@ double method_bytes(const MethodInput& input, const ReconstructSettings& setting
 Volume run_method(const MethodInput& input, const ReconstructSettings& settings) {
     switch (settings.method) {
         case Method::Lct:
-            return light_cone_transform(input, settings.falloff, *settings.snr);
+            return settings.prior == Prior::Tv
+                       ? total_variation_light_cone_transform(input, settings.falloff, settings.tv)
+                       : light_cone_transform(input, settings.falloff, *settings.snr);
+        case Method::Dlct:
+            return directional_light_cone_transform(input, settings.falloff, *settings.snr);
         case Method::Fk:
             return fk_migration(input, settings.falloff);
         case Method::Phasor:
@@ -183,40 +202,6 @@ Volume run_method(const MethodInput& input, const ReconstructSettings& settings)
 
 }  // namespace
 
-void validate(const ReconstructSettings& settings) {
-    if (settings.snr) {
-        require(*settings.snr > 0.0 && std::isfinite(*settings.snr),
-                "snr",
-                fmt::format("{}", *settings.snr),
-                "must be positive");
-    }
-    require(settings.mask_threshold > 0.0 && settings.mask_threshold < 1.0,
-            "mask_threshold",
-            fmt::format("{}", settings.mask_threshold),
-            "must lie between 0 and 1");
-    if (settings.merge_bins) {
-        require(*settings.merge_bins >= 1,
-                "merge_bins",
-                fmt::format("{}", *settings.merge_bins),
-                "must be at least 1");
-    }
-    if (settings.volume.voxels) {
-        for (const int count : *settings.volume.voxels) {
-            require(count >= 1 && count <= kMaxVoxelsPerAxis,
-                    "volume.voxels",
-                    fmt::format("{}", count),
-                    "each number must lie between 1 and 65536");
-        }
-    }
-    if (settings.volume.z_range_m) {
-        const auto [begin, end] = *settings.volume.z_range_m;
-        require(begin >= 0.0 && end > begin && std::isfinite(end),
-                "volume.z_range_m",
-                fmt::format("[{}, {}]", begin, end),
-                "must be two depths, ascending and not below 0");
-    }
-}
-
 Reconstruction reconstruct(const core::Capture& capture,
                            const ReconstructSettings& settings,
                            const core::Progress& progress) {
@@ -226,6 +211,7 @@ Reconstruction reconstruct(const core::Capture& capture,
 
     Reconstruction result;
     result.settings = settings;
+    result.warnings = timing_warnings(capture);
     Measurement measurement = select_measurement(capture, settings.crop);
     const MethodChoice choice = choose_method(settings, measurement);
     result.settings.method = choice.method;
@@ -265,6 +251,7 @@ Reconstruction reconstruct(const core::Capture& capture,
         run_method(input_with(is_ready ? measurement.transient() : prepared), result.settings);
 
     result.depth = extract_depth_map(result.volume, settings.mask_threshold);
+    take_normals(result.volume, result.depth);
     result.points = surface_points(result.depth);
     result.seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

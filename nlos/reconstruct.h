@@ -10,6 +10,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace nlos {
 
@@ -19,13 +20,11 @@ struct Reconstruction {
     core::PointCloud points;  ///< foreground of `depth` in world coordinates, normals to the wall
     std::string method;       ///< the one that ran
     std::string reason;       ///< why `auto` took it
-    ReconstructSettings settings;  ///< with every choice filled in
+    ReconstructSettings settings;       ///< with every choice filled in
+    std::vector<std::string> warnings;  ///< what looks wrong about the capture
     double seconds = 0.0;
     std::uint64_t peak_bytes = 0;
 };
-
-/// Throws core::Error naming the first setting that is out of range.
-void validate(const ReconstructSettings& settings);
 
 /// Reconstructs the hidden scene from a capture.
 ///

@@ -8,7 +8,7 @@
 
 namespace nlos {
 
-enum class Method { Auto, Lct, Bp, Fbp, Fk, Phasor };
+enum class Method { Auto, Lct, Bp, Fbp, Fk, Phasor, Dlct };
 
 /// How hidden surfaces reflect: diffuse light falls off with r^4, retroreflected light with r^2.
 enum class Falloff { Diffuse, Retro };
@@ -23,7 +23,7 @@ enum class FbpFilter { Laplacian, Phasor };
 enum class Ambient { Auto, Keep, Subtract };
 
 /// What a reconstruction assumes about the hidden scene beyond the data.
-enum class Prior { None };
+enum class Prior { None, Tv };
 
 /// Where to reconstruct. Empty fields are chosen from the capture.
 struct VolumeSettings {
@@ -44,6 +44,14 @@ struct PhasorSettings {
     double cycles = 5.0;                 ///< in the envelope: sigma = cycles * wavelength / 6
 };
 
+/// The prior of few edges and few bright places, on data of maximum 1.
+struct TvSettings {
+    std::optional<double> weight;    ///< of total variation; empty: the data's noise
+    std::optional<double> sparsity;  ///< of the sum; empty: a tenth of `weight`
+    double penalty = 0.3;            ///< of the splitting: changes speed, not the result
+    int iterations = 60;
+};
+
 /// How to reconstruct; adding a method: a name in Method, a case in reconstruct(), one .cpp.
 struct ReconstructSettings {
     Method method = Method::Auto;
@@ -53,6 +61,7 @@ struct ReconstructSettings {
     Compensation compensation = Compensation::None;
     FbpFilter filter = FbpFilter::Laplacian;
     PhasorSettings phasor;
+    TvSettings tv;
     CropSettings crop;
     std::optional<double> snr;  ///< Wiener filter of lct; empty: 0.1 for counts, else 1
     Ambient ambient = Ambient::Auto;
@@ -82,11 +91,20 @@ void for_each_field(PhasorSettings& s, Visitor&& visit) {
 }
 
 template <class Visitor>
+void for_each_field(TvSettings& s, Visitor&& visit) {
+    visit("weight", s.weight, "weight of total variation; null: standard deviation of the data");
+    visit("sparsity", s.sparsity, "weight of the sum of all voxels; null: a tenth of tv.weight");
+    visit("penalty", s.penalty, "of the splitting: changes speed, not the result");
+    visit("iterations", s.iterations, "how many");
+}
+
+template <class Visitor>
 void for_each_field(ReconstructSettings& s, Visitor&& visit) {
     visit("method", s.method, "reconstruction method");
     visit("volume", s.volume, "where to reconstruct");
-    visit("falloff", s.falloff, "how the hidden surface reflects (lct, fk)");
-    visit("prior", s.prior, "assumption about the hidden scene");
+    visit("falloff", s.falloff, "how the hidden surface reflects (lct, dlct, fk)");
+    visit("prior", s.prior, "assumption about the hidden scene (lct)");
+    visit("tv", s.tv, "the prior tv");
     visit("compensation",
           s.compensation,
           "falloff that each term is multiplied by (bp, and fbp by laplacian)");
@@ -95,7 +113,8 @@ void for_each_field(ReconstructSettings& s, Visitor&& visit) {
     visit("crop", s.crop, "part of the capture to use");
     visit("snr",
           s.snr,
-          "signal to noise ratio of the Wiener filter (lct); null: 0.1 for counts, 1 for radiance");
+          "signal to noise ratio of the Wiener filter (lct, dlct); null: 0.1 for counts, 1 for "
+          "radiance");
     visit("ambient",
           s.ambient,
           "constant background light, and bins behind the signal's end; auto: taken off counts");
@@ -106,17 +125,23 @@ void for_each_field(ReconstructSettings& s, Visitor&& visit) {
     visit("mask_threshold", s.mask_threshold, "share of the maximum that counts as foreground");
 }
 
+inline constexpr int kMaxVoxelsPerAxis = 65536;
+
+/// Throws core::Error naming the first setting that is out of range.
+void validate(const ReconstructSettings& settings);
+
 }  // namespace nlos
 
 template <>
 struct core::EnumNames<nlos::Method> {
-    static constexpr std::array<std::pair<nlos::Method, std::string_view>, 6> value{
+    static constexpr std::array<std::pair<nlos::Method, std::string_view>, 7> value{
         {{nlos::Method::Auto, "auto"},
          {nlos::Method::Lct, "lct"},
          {nlos::Method::Bp, "bp"},
          {nlos::Method::Fbp, "fbp"},
          {nlos::Method::Fk, "fk"},
-         {nlos::Method::Phasor, "phasor"}}};
+         {nlos::Method::Phasor, "phasor"},
+         {nlos::Method::Dlct, "dlct"}}};
 };
 template <>
 struct core::EnumNames<nlos::Compensation> {
@@ -144,6 +169,6 @@ struct core::EnumNames<nlos::Ambient> {
 };
 template <>
 struct core::EnumNames<nlos::Prior> {
-    static constexpr std::array<std::pair<nlos::Prior, std::string_view>, 1> value{
-        {{nlos::Prior::None, "none"}}};
+    static constexpr std::array<std::pair<nlos::Prior, std::string_view>, 2> value{
+        {{nlos::Prior::None, "none"}, {nlos::Prior::Tv, "tv"}}};
 };

@@ -11,7 +11,7 @@ struct UnitPhasor {
     float im = 0.0F;
 };
 
-/// exp(2 pi i turns) within 3e-7, free of branches so that loops over it become vector code.
+/// exp(2 pi i turns) within 1e-6, free of branches so that loops over it become vector code.
 ///
 /// turns   phase in full turns, of any size; double keeps its fraction exact enough
 /// source  Taylor series of half the angle, |angle / 2| <= pi / 2, then the double-angle formulas

@@ -2,6 +2,7 @@
 #include "renderer/path_tracer.h"
 
 #include "renderer/core/sampling.h"
+#include "renderer/third_bounce_pieces.h"
 
 #include <algorithm>
 #include <cmath>
@@ -79,12 +80,19 @@ class PathTracer::Walk {
     std::uint64_t num_rays_ = 0;
 };
 
-PathTracer::PathTracer(const Scene& scene, const RenderSettings& settings)
+PathTracer::PathTracer(const Scene& scene, const RenderSettings& settings, ThirdBounceScope scope)
     : scene_(&scene),
       area_sampler_(scene),
       max_order_(settings.max_bounces),
       by_order_(settings.by_order),
-      laser_spot_m2_(settings.laser_spot_m2) {}
+      laser_spot_m2_(settings.laser_spot_m2) {
+    for (const Object& object : scene.objects()) {
+        // At the third bounce the relay wall only passes light on; see formats of scenes.
+        adds_third_bounce_.push_back(
+            object.role != Role::RelayWall &&
+            (scope == ThirdBounceScope::All || !is_integrable(object.material)));
+    }
+}
 
 std::uint64_t PathTracer::trace(const PathEnds& ends,
                                 int num_samples,
@@ -230,8 +238,8 @@ double PathTracer::Walk::evaluate(const PathVertex& vertex, const Vec3& outgoing
 
 // What the path carries when it goes from `vertex` straight to the light, unless blocked.
 double PathTracer::Walk::connection_value(const PathVertex& vertex) const {
-    // At the third bounce the relay wall only passes light on; see formats of scenes.
-    if (vertex.order == 3 && !scene_.is_hidden(vertex.point.facet)) return 0.0;
+    const std::uint32_t object = scene_.facet(vertex.point.facet).object;
+    if (vertex.order == 3 && !tracer_.adds_third_bounce_[object]) return 0.0;
     if (const auto* retro = std::get_if<Retroreflective>(&vertex.bsdf)) {
         if (!ends_.coincide || vertex.order != 3) return 0.0;
         return vertex.throughput * retro->albedo / tracer_.laser_spot_m2_ * ends_.light.strength;

@@ -6,7 +6,12 @@
 #include "renderer/light_path.h"
 #include "renderer/pass_histogram.h"
 
+#include <vector>
+
 namespace renderer {
+
+/// Which surfaces' third bounce a path tracer adds; all add to higher orders.
+enum class ThirdBounceScope { All, NotIntegrable };
 
 /// Transient path tracing from the sensing point.
 ///
@@ -17,7 +22,9 @@ namespace renderer {
 class PathTracer {
  public:
     /// scene   must outlive the tracer
-    PathTracer(const Scene& scene, const RenderSettings& settings);
+    PathTracer(const Scene& scene,
+               const RenderSettings& settings,
+               ThirdBounceScope scope = ThirdBounceScope::All);
 
     /// Adds the contributions of `num_samples` paths to `histogram`, so that their sum estimates H.
     ///
@@ -36,6 +43,7 @@ class PathTracer {
     int max_order_;
     bool by_order_;
     double laser_spot_m2_;
+    std::vector<bool> adds_third_bounce_;  ///< per object
 };
 
 }  // namespace renderer

@@ -21,37 +21,29 @@ std::uint64_t key_of(const Vec3& p) {
     return mix(mix(mix(bits(p.x())) + bits(p.y())) + bits(p.z()));
 }
 
+using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+
+// A whole edge or half of one, known by its midpoint.
 struct Mark {
     std::uint64_t key;
     std::uint32_t piece;
-    bool of_half;  // of half an edge: touches whole edges only
+    std::uint16_t edge;
+    bool of_half;
 
     bool operator<(const Mark& other) const {
         return key != other.key ? key < other.key : piece < other.piece;
     }
 };
 
-}  // namespace
-
-std::vector<std::pair<std::uint32_t, std::uint32_t>> touching_pieces(
-    std::span<const Piece> pieces) {
-    std::vector<Mark> marks;
-    marks.reserve(9 * pieces.size());
-    for (std::uint32_t p = 0; p < pieces.size(); ++p) {
-        for (std::size_t i = 0; i < 3; ++i) {
-            const Vec3 middle = pieces[p].midpoint(i);
-            const Vec3& a = pieces[p].corners[i];
-            const Vec3& b = pieces[p].corners[(i + 1) % 3];
-            marks.push_back({key_of(middle), p, false});
-            marks.push_back({key_of(0.5 * (a + middle)), p, true});
-            marks.push_back({key_of(0.5 * (middle + b)), p, true});
-        }
-    }
+// Pairs up marks with equal keys; halves match whole edges only. Returns the whole edges that found
+// no partner.
+std::vector<Mark> pair_up(std::vector<Mark>& marks, Pairs& pairs) {
     std::sort(marks.begin(), marks.end());
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+    std::vector<Mark> alone;
     for (auto begin = marks.begin(); begin != marks.end();) {
         auto end = begin;
         while (end != marks.end() && end->key == begin->key) ++end;
+        if (end - begin == 1 && !begin->of_half) alone.push_back(*begin);
         for (auto a = begin; a != end; ++a) {
             for (auto b = a + 1; b != end; ++b) {
                 if (a->piece != b->piece && !(a->of_half && b->of_half)) {
@@ -61,11 +53,35 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> touching_pieces(
         }
         begin = end;
     }
+    return alone;
+}
+
+}  // namespace
+
+Pairs touching_pieces(std::span<const Piece> pieces) {
+    Pairs pairs;
+    std::vector<Mark> marks;
+    marks.reserve(3 * pieces.size());
+    for (std::uint32_t p = 0; p < pieces.size(); ++p) {
+        for (std::uint16_t i = 0; i < 3; ++i) {
+            marks.push_back({key_of(pieces[p].midpoint(i)), p, i, false});
+        }
+    }
+    // What is left borders on nothing or on pieces of half the length.
+    marks = pair_up(marks, pairs);
+    const std::size_t num_alone = marks.size();
+    for (std::size_t m = 0; m < num_alone; ++m) {
+        const auto [key, p, edge, of_half] = marks[m];
+        const Vec3 middle = pieces[p].midpoint(edge);
+        for (const Vec3& end : {pieces[p].corners[edge], pieces[p].corners[(edge + 1U) % 3U]}) {
+            marks.push_back({key_of(0.5 * (middle + end)), p, edge, true});
+        }
+    }
+    pair_up(marks, pairs);
     return pairs;
 }
 
-NeighbourLists neighbour_lists(std::size_t num_items,
-                               std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs) {
+NeighbourLists neighbour_lists(std::size_t num_items, Pairs pairs) {
     const std::size_t count = pairs.size();
     for (std::size_t i = 0; i < count; ++i) pairs.emplace_back(pairs[i].second, pairs[i].first);
     std::sort(pairs.begin(), pairs.end());

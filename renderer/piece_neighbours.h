@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "renderer/third_bounce_pieces.h"
+
 #include <cstdint>
 #include <span>
 #include <utility>
 #include <vector>
-
-#include "renderer/third_bounce_pieces.h"
 
 namespace renderer {
 

@@ -7,13 +7,25 @@
 #include "renderer/scene.h"
 
 #include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
 
 namespace renderer {
+
+/// Which estimator computed which bounce orders, of which surfaces.
+struct OrderSource {
+    int first_order = 3;
+    int last_order = 3;
+    Estimator estimator = Estimator::Path;
+    std::string surfaces = "all";
+};
 
 /// What render() computed and what it took.
 struct RenderResult {
     core::Capture capture;
-    Estimator estimator = Estimator::Path;  ///< the one that ran
+    std::vector<OrderSource> sources;       ///< orders 1 and 2 need no estimator
+    std::optional<double> estimated_error;  ///< of third_bounce: relative L2 of its part of H
     std::uint64_t samples_per_pair = 0;     ///< candidate paths used, whole passes
     std::uint64_t num_rays = 0;
     double seconds = 0.0;
@@ -24,11 +36,14 @@ struct RenderResult {
 ///
 /// scan       wall points; unit normals
 /// axis       bins of optical path length
-/// settings   validated; `samples` is rounded up to whole passes
+/// settings   validated; `samples` is rounded up to whole passes; method `auto` integrates third
+///            bounces where it can and traces paths for what is left
 /// progress   asked after every pass whether to stop
 /// returns    radiance leaving the sensing points for 1 W on the illumination point, per bin
-///            (the bin's integral); its variance on request, given more than one pass
-/// throws     core::Failure when memory does not suffice or a contribution is not finite
+///            (the bin's integral); the variance of the part from paths on request, given more than
+///            one pass
+/// throws     core::Error when the method cannot do what is asked; core::Failure when memory does
+///            not suffice, a contribution is not finite, or third_bounce is stopped
 RenderResult render(const Scene& scene,
                     const core::Scan& scan,
                     const core::TimeAxis& axis,

@@ -11,6 +11,17 @@ void validate(const RenderSettings& settings, const std::string& where) {
                           fmt::format("found {}", settings.max_bounces),
                           "must be at least 1");
     }
+    if (settings.method == Estimator::ThirdBounce && settings.max_bounces > 3) {
+        throw core::Error(where + ".max_bounces",
+                          fmt::format("found {} for method third_bounce", settings.max_bounces),
+                          "must be at most 3; method auto adds paths for higher orders");
+    }
+    if (settings.method == Estimator::ThirdBounce && settings.gate != GateShape::Box) {
+        throw core::Error(
+            where + ".gate",
+            fmt::format("found {} for method third_bounce", core::enum_name(settings.gate)),
+            "must be box; methods auto and path know the others");
+    }
     if (settings.samples < 1) {
         throw core::Error(
             where + ".samples", fmt::format("found {}", settings.samples), "must be at least 1");

@@ -10,7 +10,7 @@
 namespace renderer {
 
 /// Which estimator computes the transient. Adding one: a name here, a case in render(), one .cpp.
-enum class Estimator { Auto, Path };
+enum class Estimator { Auto, Path, ThirdBounce };
 
 /// Shape of the time gate of a one-bin axis; peak 1.
 enum class GateShape { Box, Tent, Gaussian };
@@ -67,8 +67,10 @@ void validate(const RenderSettings& settings, const std::string& where);
 
 template <>
 struct core::EnumNames<renderer::Estimator> {
-    static constexpr std::array<std::pair<renderer::Estimator, std::string_view>, 2> value{
-        {{renderer::Estimator::Auto, "auto"}, {renderer::Estimator::Path, "path"}}};
+    static constexpr std::array<std::pair<renderer::Estimator, std::string_view>, 3> value{
+        {{renderer::Estimator::Auto, "auto"},
+         {renderer::Estimator::Path, "path"},
+         {renderer::Estimator::ThirdBounce, "third_bounce"}}};
 };
 template <>
 struct core::EnumNames<renderer::GateShape> {

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/third_bounce.h"
 
+#include "renderer/third_bounce_scan.h"
+
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <map>
 #include <optional>
-
-#include "renderer/third_bounce_scan.h"
 
 namespace renderer {
 namespace {
@@ -18,8 +19,12 @@ using core::Transient;
 constexpr double kDefaultTargetError = 0.01;
 
 // The pairs that are computed at several finenesses.
-constexpr std::size_t kTrialPoints = 32;        // confocal and single
-constexpr std::size_t kTrialPointsPerSide = 6;  // exhaustive
+constexpr std::size_t kTrialPoints = 32;         // confocal and single
+constexpr std::size_t kTrialPointsPerSide = 12;  // exhaustive
+// With few bins there is less to compare per pair.
+constexpr int kFewBins = 16;
+constexpr std::size_t kTrialPointsForFewBins = 128;
+constexpr std::size_t kTrialPointsPerSideForFewBins = 16;
 
 // Fineness k has the tolerance target * 2^k.
 constexpr int kCoarsest = 5;
@@ -27,7 +32,7 @@ constexpr int kFinest = -10;
 constexpr int kReferenceSteps = 2;  // a reference is at least this much finer
 
 // A reference has an error of its own, and the trial pairs are not all pairs.
-constexpr double kCaution = 1.2;
+constexpr double kCaution = 1.3;
 
 // Pieces whose visibility may be wrong add up; each may err by this much of the whole.
 constexpr double kNegligibleShare = 0.1;
@@ -56,11 +61,14 @@ core::WallPoints subset(const core::WallPoints& points, std::size_t count) {
     return chosen;
 }
 
-core::Scan trial_scan(const core::Scan& scan) {
+core::Scan trial_scan(const core::Scan& scan, int num_bins) {
     core::Scan trial = scan;
     const bool exhaustive = scan.pattern == core::ScanPattern::Exhaustive;
-    trial.sensing = subset(scan.sensing, exhaustive ? kTrialPointsPerSide : kTrialPoints);
-    if (exhaustive) trial.illumination = subset(scan.illumination, kTrialPointsPerSide);
+    const bool few_bins = num_bins < kFewBins;
+    const std::size_t num_points = few_bins ? kTrialPointsForFewBins : kTrialPoints;
+    const std::size_t per_side = few_bins ? kTrialPointsPerSideForFewBins : kTrialPointsPerSide;
+    trial.sensing = subset(scan.sensing, exhaustive ? per_side : num_points);
+    if (exhaustive) trial.illumination = subset(scan.illumination, per_side);
     if (scan.pattern == core::ScanPattern::Confocal) trial.illumination = trial.sensing;
     return trial;
 }
@@ -83,25 +91,22 @@ double relative_difference(const Transient& a, const Transient& b) {
 
 // Finds the fineness that meets the target, and integrates with it.
 class Integrator {
-   public:
+ public:
     Integrator(const Scene& scene,
                const core::Scan& scan,
                const core::TimeAxis& axis,
                const RenderSettings& settings)
         : scene_(scene),
           scan_(scan),
-          trial_scan_(trial_scan(scan)),
+          trial_scan_(trial_scan(scan, axis.num_bins)),
           axis_(axis),
           target_(settings.target_error.value_or(kDefaultTargetError)),
-          laser_spot_m2_(settings.laser_spot_m2) {}
+          cutter_(scene, scan, axis, settings.laser_spot_m2) {}
 
     ThirdBounce run(const core::Progress& progress);
 
-   private:
-    PieceSet cut(int fineness) const {
-        return cut_pieces(
-            scene_, scan_, axis_, {target_ * std::exp2(fineness), laser_spot_m2_});
-    }
+ private:
+    PieceSet cut(int fineness) const { return cutter_.cut(target_ * std::exp2(fineness)); }
     double negligible_error(int fineness) const {
         return kNegligibleShare * target_ * std::exp2(fineness) * norm_per_pair_;
     }
@@ -115,9 +120,10 @@ class Integrator {
     core::Scan trial_scan_;
     core::TimeAxis axis_;
     double target_;
-    double laser_spot_m2_;
+    PieceCutter cutter_;
     double norm_per_pair_ = 0.0;
     std::map<int, Transient> trials_;
+    std::map<int, double> shadow_errors_;  // expected ones, absolute
     std::map<int, double> errors_;
     std::uint64_t num_rays_ = 0;
 };
@@ -135,6 +141,7 @@ const Transient& Integrator::try_out(int fineness, const core::Progress& progres
     ThirdBounceScan trial(scene_, trial_scan_, axis_, pieces, negligible_error(fineness));
     const Transient& result =
         trials_.emplace(fineness, trial.integrate([](double) {})).first->second;
+    shadow_errors_[fineness] = std::sqrt(trial.squared_shadow_error());
     num_rays_ += trial.num_rays();
     if (norm_per_pair_ == 0.0) {
         norm_per_pair_ =
@@ -147,7 +154,11 @@ const Transient& Integrator::try_out(int fineness, const core::Progress& progres
 double Integrator::error_of(int fineness, const core::Progress& progress) {
     try_out(fineness - kReferenceSteps, progress);
     const Transient& trial = try_out(fineness, progress);
-    const double error = kCaution * relative_difference(trial, trials_.begin()->second);
+    const Transient& reference = trials_.begin()->second;
+    const double norm = std::sqrt(squared_norm(reference));
+    // Shadow edges that both trials leave uncertain do not show in their difference.
+    const double shadows = norm > 0.0 ? shadow_errors_[fineness] / norm : 0.0;
+    const double error = kCaution * std::hypot(relative_difference(trial, reference), shadows);
     errors_[fineness] = error;
     return error;
 }
@@ -187,7 +198,11 @@ ThirdBounce integrate_third_bounce(const Scene& scene,
                                    const core::TimeAxis& axis,
                                    const RenderSettings& settings,
                                    const core::Progress& progress) {
-    return Integrator(scene, scan, axis, settings).run(progress);
+    const auto start = std::chrono::steady_clock::now();
+    ThirdBounce result = Integrator(scene, scan, axis, settings).run(progress);
+    result.seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return result;
 }
 
 }  // namespace renderer

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <cstdint>
-
 #include "renderer/core/capture.h"
 #include "renderer/core/progress.h"
 #include "renderer/render_settings.h"
 #include "renderer/scene.h"
+
+#include <cstdint>
 
 namespace renderer {
 
@@ -16,6 +16,7 @@ struct ThirdBounce {
     double estimated_error = 0.0;  ///< relative L2 over all of H
     std::size_t num_pieces = 0;    ///< that the surfaces were cut into
     std::uint64_t num_rays = 0;
+    double seconds = 0.0;
 };
 
 /// Integrates the third bounce of the scene's integrable surfaces, without random numbers.

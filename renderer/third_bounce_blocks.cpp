@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/third_bounce_blocks.h"
 
+#include "renderer/piece_neighbours.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
-
-#include "renderer/piece_neighbours.h"
 
 namespace renderer {
 namespace {
@@ -29,7 +29,7 @@ double reflectance(const Bsdf& bsdf, PieceKind kind, double laser_spot_m2) {
 PieceArranger::PieceArranger(const Scene& scene,
                              const core::Scan& scan,
                              const PieceRules& rules,
-                             std::vector<double> visible_side)
+                             std::vector<int> visible_side)
     : scene_(scene), rules_(rules), visible_side_(std::move(visible_side)) {
     set_.origin = scene.rays().origin();
     Vec3 sum = Vec3::Zero();
@@ -37,7 +37,8 @@ PieceArranger::PieceArranger(const Scene& scene,
     scan_center_ = sum / static_cast<double>(scan.sensing.size());
 }
 
-// Median splits along the longest side of the centres' box, at whole blocks where there are several.
+// Median splits along the longest side of the centres' box, at whole blocks where there are
+// several.
 void PieceArranger::sort_into_blocks(std::vector<Piece>& pieces, Range range) const {
     const std::size_t count = range.end - range.begin;
     if (count < 2) return;
@@ -48,12 +49,11 @@ void PieceArranger::sort_into_blocks(std::vector<Piece>& pieces, Range range) co
     std::size_t half = (count + 1) / 2;
     if (count > kSize) half = (half + kSize - 1) / kSize * kSize;
     const auto at = [&](std::size_t i) { return pieces.begin() + static_cast<std::ptrdiff_t>(i); };
-    std::nth_element(at(range.begin),
-                     at(range.begin + half),
-                     at(range.end),
-                     [axis](const Piece& a, const Piece& b) {
-                         return a.center()[axis] < b.center()[axis];
-                     });
+    std::nth_element(
+        at(range.begin),
+        at(range.begin + half),
+        at(range.end),
+        [axis](const Piece& a, const Piece& b) { return a.center()[axis] < b.center()[axis]; });
     sort_into_blocks(pieces, {range.begin, range.begin + half});
     sort_into_blocks(pieces, {range.begin + half, range.end});
 }
@@ -137,8 +137,7 @@ bool PieceArranger::may_be_one_group(const PieceBlock& block, Range lanes) const
         }
     }
     const double distance = (box.center() - scan_center_).norm();
-    return box.diagonal().norm() <=
-           kGroupSizePerDistance * std::sqrt(rules_.tolerance) * distance;
+    return box.diagonal().norm() <= kGroupSizePerDistance * std::sqrt(rules_.tolerance) * distance;
 }
 
 // Splits lanes in halves, as sort_into_blocks() did, until each part may be one group. The parts'

@@ -1,20 +1,26 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <vector>
-
 #include "renderer/third_bounce_pieces.h"
+
+#include <vector>
 
 namespace renderer {
 
+/// What arranging depends on.
+struct PieceRules {
+    double tolerance = 0.01;  ///< relative L2 error aimed at
+    double laser_spot_m2 = 1e-4;
+};
+
 /// Arranges pieces into blocks of neighbours and groups within blocks.
 class PieceArranger {
-   public:
+ public:
     /// visible_side   per object, see closed_surface.h
     PieceArranger(const Scene& scene,
                   const core::Scan& scan,
                   const PieceRules& rules,
-                  std::vector<double> visible_side);
+                  std::vector<int> visible_side);
 
     /// Adds all pieces of one kind.
     void add(std::vector<Piece> pieces, PieceKind kind);
@@ -22,7 +28,7 @@ class PieceArranger {
     /// Finds neighbours and returns the set; call once.
     PieceSet finish();
 
-   private:
+ private:
     struct Range {
         std::size_t begin;
         std::size_t end;
@@ -36,7 +42,7 @@ class PieceArranger {
 
     const Scene& scene_;
     PieceRules rules_;
-    std::vector<double> visible_side_;
+    std::vector<int> visible_side_;
     core::Vec3 scan_center_;
     std::vector<std::uint32_t> piece_ids_;  ///< block * kSize + lane of every piece in `pieces_`
     std::vector<Piece> pieces_;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/third_bounce_pairs.h"
 
+#include "renderer/core/triangle_histogram.h"
+
 #include <algorithm>
 #include <cmath>
-
-#include "renderer/core/triangle_histogram.h"
 
 namespace renderer {
 namespace {
@@ -68,8 +68,8 @@ void weigh_nodes(const PieceBlock& block,
         const auto& towards_light = light.table->factor[node];
         const auto& towards_sensor = sensor.table->factor[node];
         for (std::size_t i = 0; i < kSize; ++i) {
-            knots.node_weight[node][i] = block.reflectance[node][i] * towards_light[i] *
-                                         (retro ? 1.0 : towards_sensor[i]);
+            knots.node_weight[node][i] =
+                block.reflectance[node][i] * towards_light[i] * (retro ? 1.0 : towards_sensor[i]);
         }
     }
 }
@@ -96,9 +96,8 @@ std::array<double, 3> visible_weights(const std::array<double, 3>& weight, Visib
     for (std::size_t j = 0; j < 3; ++j) product[j] = weight[j] * share[j];
     const double sum = product[0] + product[1] + product[2];
     if (!(sum > 0.0)) return {0.0, 0.0, 0.0};
-    const double integral = ((weight[0] + weight[1] + weight[2]) * (share[0] + share[1] + share[2]) +
-                             sum) /
-                            4.0;
+    const double integral =
+        ((weight[0] + weight[1] + weight[2]) * (share[0] + share[1] + share[2]) + sum) / 4.0;
     for (double& value : product) value *= integral / sum;
     return product;
 }
@@ -131,8 +130,8 @@ void compute_table(const PieceBlock& block, const WallPoint& point, BlockTable& 
         }
     }
     for (std::size_t i = 0; i < kSize; ++i) {
-        const double shift = (leg[3][i] + leg[4][i] + leg[5][i] - leg[0][i] - leg[1][i] - leg[2][i]) *
-                             (1.0 / 3.0);
+        const double shift =
+            (leg[3][i] + leg[4][i] + leg[5][i] - leg[0][i] - leg[1][i] - leg[2][i]) * (1.0 / 3.0);
         for (std::size_t j = 0; j < 3; ++j) table.leg_m[j][i] = leg[j][i] + shift;
     }
 }
@@ -158,9 +157,8 @@ void add_pair(const PieceBlock& block,
     fit_weights(knots);
     for (std::size_t i = 0; i < block.count; ++i) {
         if (mask[i] == 0) continue;
-        core::TriangleKnots triangle{
-            {knots.opl_m[0][i], knots.opl_m[1][i], knots.opl_m[2][i]},
-            {knots.weight[0][i], knots.weight[1][i], knots.weight[2][i]}};
+        core::TriangleKnots triangle{{knots.opl_m[0][i], knots.opl_m[1][i], knots.opl_m[2][i]},
+                                     {knots.weight[0][i], knots.weight[1][i], knots.weight[2][i]}};
         if (mask[i] != kAllVisible) triangle.weight = visible_weights(triangle.weight, mask[i]);
         core::add_triangle(triangle, block.area_m2[i], axis, histogram);
     }

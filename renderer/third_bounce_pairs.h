@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <span>
-
 #include "renderer/core/time_axis.h"
 #include "renderer/third_bounce_visibility.h"
+
+#include <span>
 
 namespace renderer {
 

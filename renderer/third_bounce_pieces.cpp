@@ -4,7 +4,6 @@
 #include "renderer/closed_surface.h"
 #include "renderer/core/error.h"
 #include "renderer/third_bounce_blocks.h"
-#include "renderer/wall_boxes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,6 +21,13 @@ constexpr double kSmallestGlossyAlpha = 0.03;
 constexpr double kKappaPerTolerance = 10.0;
 constexpr double kSquaredSizePerTolerance = 6.0;
 
+// Shadow edges are known to a share of a piece: a bin of n pieces, sqrt(n) of them at an edge, errs
+// by n^-3/4 of itself, so that pieces shrink with the 2/3rd power of the tolerance.
+double squared_size_for_shadows(double tolerance) {
+    constexpr double kSizeAtOnePercent = 0.1;
+    return kSizeAtOnePercent * kSizeAtOnePercent * std::pow(100.0 * tolerance, 4.0 / 3.0);
+}
+
 // A facet is bisected at most this often, even where it touches a wall point.
 constexpr int kMostBisections = 28;
 constexpr std::size_t kMostPieces = 8'000'000;
@@ -38,6 +44,11 @@ LongestEdge longest_edge(const Piece& piece) {
         if (squared > longest.squared) longest = {i, squared};
     }
     return longest;
+}
+
+// All of a triangle lies within this distance from its centroid: two thirds of its longest median.
+double reach_of(double squared_edge) {
+    return std::sqrt(squared_edge) * 2.0 / 3.0;
 }
 
 // The part of a triangle in front of a plane, as up to two triangles. Cuts are computed from the
@@ -65,32 +76,6 @@ std::vector<Piece> clip(const Piece& piece, const std::pair<Vec3, double>& plane
     return parts;
 }
 
-// Cuts facets of one kind into pieces.
-class Cutter {
- public:
-    Cutter(const Scene& scene,
-           const core::Scan& scan,
-           const core::TimeAxis& axis,
-           const PieceRules& rules)
-        : scene_(scene),
-          axis_(axis),
-          tolerance_(rules.tolerance),
-          origin_(scene.rays().origin()),
-          boxes_(scan, origin_) {}
-
-    std::vector<Piece> cut(PieceKind kind, bool confocal);
-
- private:
-    bool is_small_enough(const Vec3& center, double radius, double edge2, double lobe) const;
-    void bisect(const Piece& facet, double lobe, std::vector<Piece>& pieces) const;
-
-    const Scene& scene_;
-    core::TimeAxis axis_;
-    double tolerance_;
-    Vec3 origin_;
-    WallBoxes boxes_;
-};
-
 PieceKind kind_of(const Material& material) {
     switch (material.model) {
         case SurfaceModel::Ggx:
@@ -103,41 +88,72 @@ PieceKind kind_of(const Material& material) {
     return PieceKind::Lambertian;
 }
 
-// Length scale of the BSDF's lobe relative to a cosine's, squared.
+// Squared width of the BSDF's lobe relative to a cosine's.
 double lobe_scale(const Material& material) {
     if (material.model != SurfaceModel::Ggx) return 1.0;
     const double alpha = material.roughness * material.roughness;
     return std::min(1.0, 4.0 * alpha * alpha);
 }
 
-bool Cutter::is_small_enough(const Vec3& center, double radius, double edge2, double lobe) const {
-    const auto holds = [&](double light, double sensor) {
-        const double nearest = std::min(light, sensor);
-        if (edge2 > kSquaredSizePerTolerance * tolerance_ * lobe * nearest * nearest) return false;
-        const double kappa = edge2 * (1.0 / light + 1.0 / sensor) / (8.0 * axis_.bin_width_m);
-        return kappa <= kKappaPerTolerance * tolerance_;
-    };
-    if (holds(boxes_.light_legs(center, radius).least_m,
-              boxes_.sensor_legs(center, radius).least_m)) {
-        return true;
-    }
-    const auto [light, sensor] = boxes_.nearest_m(center, radius);
-    return holds(light, sensor);
+}  // namespace
+
+bool is_integrable(const Material& material) {
+    return material.model != SurfaceModel::Ggx ||
+           material.roughness * material.roughness >= kSmallestGlossyAlpha;
 }
 
-void Cutter::bisect(const Piece& facet, double lobe, std::vector<Piece>& pieces) const {
+PieceCutter::PieceCutter(const Scene& scene,
+                         const core::Scan& scan,
+                         const core::TimeAxis& axis,
+                         double laser_spot_m2)
+    : scene_(scene),
+      scan_(scan),
+      axis_(axis),
+      laser_spot_m2_(laser_spot_m2),
+      origin_(scene.rays().origin()),
+      boxes_(scan, origin_) {
+    for (const Object& object : scene.objects()) {
+        visible_sides_.push_back(visible_side(object, scan));
+    }
+}
+
+bool PieceCutter::is_small_enough(const LegBounds& legs,
+                                  const Vec3& center,
+                                  double squared_edge,
+                                  double tolerance) const {
+    const double relative =
+        std::min(kSquaredSizePerTolerance * tolerance, squared_size_for_shadows(tolerance));
+    const auto holds = [&](double light, double sensor) {
+        const double nearest = std::min(light, sensor);
+        if (squared_edge > relative * nearest * nearest) return false;
+        const double kappa =
+            squared_edge * (1.0 / light + 1.0 / sensor) / (8.0 * axis_.bin_width_m);
+        return kappa <= kKappaPerTolerance * tolerance;
+    };
+    const double light = legs.light.least_m;
+    const double sensor = legs.sensor.least_m;
+    if (holds(light, sensor)) return true;
+    if (!holds(light + boxes_.slack_m(), sensor + boxes_.slack_m())) return false;
+    const auto [exact_light, exact_sensor] =
+        boxes_.nearest_light_and_sensor_m(center, reach_of(squared_edge));
+    return holds(exact_light, exact_sensor);
+}
+
+void PieceCutter::bisect(const Piece& facet, double tolerance, std::vector<Piece>& pieces) const {
+    const double begin = axis_.opl_start_m - boxes_.device_legs().most_m;
+    const double end = axis_.opl_end_m() - boxes_.device_legs().least_m;
     std::vector<std::pair<Piece, int>> stack{{facet, 0}};
     while (!stack.empty()) {
         const auto [piece, depth] = stack.back();
         stack.pop_back();
         const LongestEdge longest = longest_edge(piece);
         const Vec3 center = piece.center();
-        const double radius = std::sqrt(longest.squared / 3.0);  // Jung's theorem, about the middle
-        const double reach = 2.0 * radius;                       // and about the centroid
-        const LengthBounds lengths = boxes_.path_lengths(center, reach);
-        if (lengths.most_m < axis_.opl_start_m || lengths.least_m > axis_.opl_end_m()) continue;
+        const double reach = reach_of(longest.squared);
+        const LegBounds legs = boxes_.legs(center, reach);
+        if (legs.light.most_m + legs.sensor.most_m < begin) continue;
+        if (legs.light.least_m + legs.sensor.least_m > end) continue;
         if (boxes_.is_behind(center, reach)) continue;
-        if (depth == kMostBisections || is_small_enough(center, radius, longest.squared, lobe)) {
+        if (depth == kMostBisections || is_small_enough(legs, center, longest.squared, tolerance)) {
             pieces.push_back(piece);
             if (pieces.size() > kMostPieces) {
                 throw core::Failure("third_bounce", "needs more than 8 million pieces of surface");
@@ -153,9 +169,8 @@ void Cutter::bisect(const Piece& facet, double lobe, std::vector<Piece>& pieces)
     }
 }
 
-std::vector<Piece> Cutter::cut(PieceKind kind, bool confocal) {
+std::vector<Piece> PieceCutter::cut_kind(PieceKind kind, double tolerance) const {
     std::vector<Piece> pieces;
-    if (kind == PieceKind::Retroreflective && !confocal) return pieces;
     for (std::uint32_t i = 0; i < scene_.facets().size(); ++i) {
         const Object& object = scene_.object_of(i);
         const Material& material = object.material;
@@ -167,39 +182,24 @@ std::vector<Piece> Cutter::cut(PieceKind kind, bool confocal) {
         for (std::size_t c = 0; c < 3; ++c) {
             whole.corners[c] = object.mesh.vertices[triangle[c]] - origin_;
         }
+        const double facet_tolerance = tolerance * lobe_scale(material);
         if (!boxes_.common_plane()) {
-            bisect(whole, lobe_scale(material), pieces);
+            bisect(whole, facet_tolerance, pieces);
             continue;
         }
         for (const Piece& part : clip(whole, *boxes_.common_plane())) {
-            bisect(part, lobe_scale(material), pieces);
+            bisect(part, facet_tolerance, pieces);
         }
     }
     return pieces;
 }
 
-std::vector<double> visible_sides(const Scene& scene, const core::Scan& scan) {
-    std::vector<double> sides;
-    for (const Object& object : scene.objects()) sides.push_back(visible_side(object, scan));
-    return sides;
-}
-
-}  // namespace
-
-bool is_integrable(const Material& material) {
-    return material.model != SurfaceModel::Ggx ||
-           material.roughness * material.roughness >= kSmallestGlossyAlpha;
-}
-
-PieceSet cut_pieces(const Scene& scene,
-                    const core::Scan& scan,
-                    const core::TimeAxis& axis,
-                    const PieceRules& rules) {
-    Cutter cutter(scene, scan, axis, rules);
-    PieceArranger arranger(scene, scan, rules, visible_sides(scene, scan));
-    for (const PieceKind kind :
-         {PieceKind::Lambertian, PieceKind::Retroreflective, PieceKind::Glossy}) {
-        arranger.add(cutter.cut(kind, scan.pattern == core::ScanPattern::Confocal), kind);
+PieceSet PieceCutter::cut(double tolerance) const {
+    PieceArranger arranger(scene_, scan_, {tolerance, laser_spot_m2_}, visible_sides_);
+    arranger.add(cut_kind(PieceKind::Lambertian, tolerance), PieceKind::Lambertian);
+    arranger.add(cut_kind(PieceKind::Glossy, tolerance), PieceKind::Glossy);
+    if (scan_.pattern == core::ScanPattern::Confocal) {
+        arranger.add(cut_kind(PieceKind::Retroreflective, tolerance), PieceKind::Retroreflective);
     }
     return arranger.finish();
 }

@@ -3,10 +3,10 @@
 
 #include "renderer/core/capture.h"
 #include "renderer/scene.h"
+#include "renderer/wall_boxes.h"
 
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 namespace renderer {
@@ -40,7 +40,7 @@ struct alignas(64) PieceBlock {
     Lanes one_sided;                   ///< +-1: only this side of the normal is ever seen; 0: both
     std::array<Lanes, 6> reflectance;  ///< at the nodes; albedo/pi or albedo/spot area
     Lanes mean_reflectance;
-    std::array<Bsdf, kSize> glossy;    ///< set for glossy pieces only
+    std::array<Bsdf, kSize> glossy;  ///< set for glossy pieces only
     std::array<std::uint32_t, kSize> facet;
     PieceKind kind = PieceKind::Lambertian;
     std::size_t count = 0;  ///< lanes beyond it repeat lane 0 with area 0
@@ -73,20 +73,37 @@ struct PieceSet {
     std::size_t num_pieces = 0;
 };
 
-/// How finely to cut.
-struct PieceRules {
-    double tolerance = 0.01;  ///< relative L2 error that the size rule aims at
-    double laser_spot_m2 = 1e-4;
-};
+/// Cuts the integrable hidden facets in front of a scan's points into pieces.
+class PieceCutter {
+ public:
+    /// scene, scan   must outlive the cutter
+    PieceCutter(const Scene& scene,
+                const core::Scan& scan,
+                const core::TimeAxis& axis,
+                double laser_spot_m2);
 
-/// Cuts the integrable hidden facets in front of the scan's points into pieces.
-///
-/// Facets are clipped at the wall's plane and bisected along their longest edge until length,
-/// falloff and cosines are linear enough over each piece, as seen from the nearest wall point;
-/// what no pair can see within the axis is left out.
-PieceSet cut_pieces(const Scene& scene,
-                    const core::Scan& scan,
-                    const core::TimeAxis& axis,
-                    const PieceRules& rules);
+    /// Clips facets at the wall's plane and bisects them along their longest edge until length,
+    /// falloff and cosines are linear enough over each piece, as seen from the nearest wall point;
+    /// leaves out what no pair can see within the axis.
+    ///
+    /// tolerance   relative L2 error that the size rule aims at
+    PieceSet cut(double tolerance) const;
+
+ private:
+    bool is_small_enough(const LegBounds& legs,
+                         const core::Vec3& center,
+                         double squared_edge,
+                         double tolerance) const;
+    void bisect(const Piece& facet, double tolerance, std::vector<Piece>& pieces) const;
+    std::vector<Piece> cut_kind(PieceKind kind, double tolerance) const;
+
+    const Scene& scene_;
+    const core::Scan& scan_;
+    core::TimeAxis axis_;
+    double laser_spot_m2_;
+    core::Vec3 origin_;
+    WallBoxes boxes_;
+    std::vector<int> visible_sides_;  ///< per object, see closed_surface.h
+};
 
 }  // namespace renderer

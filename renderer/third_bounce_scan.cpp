@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/third_bounce_scan.h"
 
+#include "renderer/core/parallel.h"
+#include "renderer/core/process.h"
+#include "renderer/third_bounce_pairs.h"
+
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-
-#include "renderer/core/parallel.h"
-#include "renderer/core/process.h"
-#include "renderer/third_bounce_pairs.h"
+#include <numeric>
 
 namespace renderer {
 namespace {
@@ -27,12 +28,16 @@ bool is_empty(const VisibilityMask* masks) {
     return std::all_of(masks, masks + kSize, [](VisibilityMask mask) { return mask == 0; });
 }
 
-std::size_t parts_of(std::size_t count, std::size_t size) { return (count + size - 1) / size; }
+std::size_t parts_of(std::size_t count, std::size_t size) {
+    return (count + size - 1) / size;
+}
 
 // Tables of some wall points for one block, where they see anything of it.
 class TileTables {
-   public:
-    TileTables(std::vector<WallPoint> points, std::size_t first, std::span<const std::vector<VisibilityMask>> masks)
+ public:
+    TileTables(std::vector<WallPoint> points,
+               std::size_t first,
+               std::span<const std::vector<VisibilityMask>> masks)
         : points_(std::move(points)),
           masks_(masks.subspan(first, points_.size())),
           tables_(points_.size()),
@@ -50,7 +55,7 @@ class TileTables {
 
     const std::vector<PairEnd>& ends() const { return ends_; }
 
-   private:
+ private:
     std::vector<WallPoint> points_;
     std::span<const std::vector<VisibilityMask>> masks_;
     std::vector<BlockTable> tables_;
@@ -80,7 +85,18 @@ ThirdBounceScan::ThirdBounceScan(const Scene& scene,
       axis_(axis),
       pieces_(pieces),
       negligible_error_(negligible_error),
-      result_(scan.num_pairs(), axis.num_bins) {}
+      result_(scan.num_pairs(), axis.num_bins),
+      light_errors_(scan.illumination.size()),
+      sensor_errors_(scan.sensing.size()) {}
+
+double ThirdBounceScan::squared_shadow_error() const {
+    const double pairs_per_sensor =
+        static_cast<double>(scan_.num_pairs()) / static_cast<double>(sensor_errors_.size());
+    const double pairs_per_light =
+        static_cast<double>(scan_.num_pairs()) / static_cast<double>(light_errors_.size());
+    return pairs_per_sensor * std::accumulate(sensor_errors_.begin(), sensor_errors_.end(), 0.0) +
+           pairs_per_light * std::accumulate(light_errors_.begin(), light_errors_.end(), 0.0);
+}
 
 core::Transient ThirdBounceScan::integrate(const std::function<void(double share)>& after_part) {
     if (scan_.pattern != core::ScanPattern::Confocal) {
@@ -108,10 +124,10 @@ core::TimeAxis ThirdBounceScan::axis_of_pair(std::size_t pair) const {
 }
 
 void ThirdBounceScan::store(std::size_t pair, std::span<const double> histogram) {
-    std::transform(histogram.begin(),
-                   histogram.end(),
-                   result_.histogram(pair).begin(),
-                   [](double value) { return static_cast<float>(value); });
+    std::transform(
+        histogram.begin(), histogram.end(), result_.histogram(pair).begin(), [](double value) {
+            return static_cast<float>(value);
+        });
 }
 
 void ThirdBounceScan::integrate_confocal(std::size_t first, std::size_t last) {
@@ -124,10 +140,12 @@ void ThirdBounceScan::integrate_confocal(std::size_t first, std::size_t last) {
             for (std::size_t pair = first + block_begin; pair < first + block_end; ++pair) {
                 const WallPoint point = wall_point(scan_.sensing, pair);
                 const core::TimeAxis axis = axis_of_pair(pair);
-                num_rays_ += tracer.trace(
-                    point,
-                    {axis.opl_start_m, axis.opl_end_m(), point, {}, negligible_error_},
-                    masks);
+                const VisibilityCost cost =
+                    tracer.trace(point,
+                                 {axis.opl_start_m, axis.opl_end_m(), point, {}, negligible_error_},
+                                 masks);
+                num_rays_ += cost.num_rays;
+                sensor_errors_[pair] = cost.squared_error;
                 std::fill(histogram.begin(), histogram.end(), 0.0);
                 for (std::size_t b = 0; b < pieces_.blocks.size(); ++b) {
                     const VisibilityMask* const seen = masks.data() + b * kSize;
@@ -141,8 +159,10 @@ void ThirdBounceScan::integrate_confocal(std::size_t first, std::size_t last) {
         });
 }
 
-std::vector<ThirdBounceScan::Masks> ThirdBounceScan::look_from(const core::WallPoints& points,
-                                                               const core::WallPoints& others) {
+std::vector<ThirdBounceScan::Masks> ThirdBounceScan::look_from(
+    const core::WallPoints& points,
+    const core::WallPoints& others,
+    std::vector<double>& squared_errors) {
     VisibilityRules rules;
     rules.negligible_error = negligible_error_;
     double least_legs = std::numeric_limits<double>::infinity();
@@ -170,31 +190,36 @@ std::vector<ThirdBounceScan::Masks> ThirdBounceScan::look_from(const core::WallP
         }
     }
     std::vector<Masks> masks(points.size());
-    core::parallel_blocks(
-        points.size(), kPointsPerBlock, [&](std::size_t begin, std::size_t end) {
-            VisibilityTracer tracer(scene_, pieces_);
-            for (std::size_t i = begin; i < end; ++i) {
-                num_rays_ += tracer.trace(wall_point(points, i), rules, masks[i]);
-            }
-        });
+    core::parallel_blocks(points.size(), kPointsPerBlock, [&](std::size_t begin, std::size_t end) {
+        VisibilityTracer tracer(scene_, pieces_);
+        for (std::size_t i = begin; i < end; ++i) {
+            const VisibilityCost cost = tracer.trace(wall_point(points, i), rules, masks[i]);
+            num_rays_ += cost.num_rays;
+            squared_errors[i] = cost.squared_error;
+        }
+    });
     return masks;
 }
 
 void ThirdBounceScan::integrate_pairs(const std::function<void(double share)>& after_part) {
     const std::size_t num_lights =
         scan_.pattern == core::ScanPattern::Single ? 1 : scan_.illumination.size();
-    const double needed = static_cast<double>(num_lights + scan_.sensing.size()) *
-                          static_cast<double>(pieces_.blocks.size() * kSize * sizeof(VisibilityMask));
+    const double needed =
+        static_cast<double>(num_lights + scan_.sensing.size()) *
+        static_cast<double>(pieces_.blocks.size() * kSize * sizeof(VisibilityMask));
     const auto available = static_cast<double>(core::available_memory_bytes());
     if (needed > available) {
-        throw core::Failure("third_bounce",
-                            fmt::format("visibility of {} pieces needs {:.1f} GB, {:.1f} GB are free",
-                                        pieces_.num_pieces,
-                                        needed * 1e-9,
-                                        available * 1e-9));
+        throw core::Failure(
+            "third_bounce",
+            fmt::format("visibility of {} pieces needs {:.1f} GB, {:.1f} GB are free",
+                        pieces_.num_pieces,
+                        needed * 1e-9,
+                        available * 1e-9));
     }
-    const std::vector<Masks> light_masks = look_from(scan_.illumination, scan_.sensing);
-    const std::vector<Masks> sensor_masks = look_from(scan_.sensing, scan_.illumination);
+    const std::vector<Masks> light_masks =
+        look_from(scan_.illumination, scan_.sensing, light_errors_);
+    const std::vector<Masks> sensor_masks =
+        look_from(scan_.sensing, scan_.illumination, sensor_errors_);
     after_part(0.25);
     const std::size_t light_tiles = parts_of(num_lights, kLightsPerTile);
     const std::size_t sensor_tiles = parts_of(scan_.sensing.size(), kSensorsPerTile);

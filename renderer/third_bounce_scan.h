@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "renderer/core/capture.h"
+#include "renderer/third_bounce_visibility.h"
+
 #include <atomic>
 #include <cstdint>
 #include <functional>
 #include <span>
 #include <vector>
 
-#include "renderer/core/capture.h"
-#include "renderer/third_bounce_visibility.h"
-
 namespace renderer {
 
 /// Integrates one cut of the surfaces for all pairs of a scan.
 class ThirdBounceScan {
-   public:
+ public:
     /// All arguments must outlive this; negligible_error as in VisibilityRules.
     ThirdBounceScan(const Scene& scene,
                     const core::Scan& scan,
@@ -27,15 +27,20 @@ class ThirdBounceScan {
     core::Transient integrate(const std::function<void(double share)>& after_part);
 
     std::uint64_t num_rays() const { return num_rays_; }
+    /// Expected squared error of all of H at shadow edges, as far as pieces are too coarse for
+    /// them.
+    double squared_shadow_error() const;
 
-   private:
+ private:
     using Masks = std::vector<VisibilityMask>;
 
     WallPoint wall_point(const core::WallPoints& points, std::size_t index) const;
     core::TimeAxis axis_of_pair(std::size_t pair) const;
     void integrate_confocal(std::size_t begin, std::size_t end);
     void integrate_pairs(const std::function<void(double share)>& after_part);
-    std::vector<Masks> look_from(const core::WallPoints& points, const core::WallPoints& others);
+    std::vector<Masks> look_from(const core::WallPoints& points,
+                                 const core::WallPoints& others,
+                                 std::vector<double>& squared_errors);
     void integrate_tile(std::size_t light_begin,
                         const std::vector<Masks>& light_masks,
                         std::size_t sensor_begin,
@@ -48,6 +53,8 @@ class ThirdBounceScan {
     const PieceSet& pieces_;
     double negligible_error_;
     core::Transient result_;
+    std::vector<double> light_errors_;  ///< squared, per illumination point and pair
+    std::vector<double> sensor_errors_;
     std::atomic<std::uint64_t> num_rays_{0};
 };
 

@@ -2,7 +2,9 @@
 #include "renderer/third_bounce_visibility.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <limits>
 
 namespace renderer {
 namespace {
@@ -11,10 +13,11 @@ using core::Vec3;
 
 constexpr std::size_t kSize = PieceBlock::kSize;
 
-// Standard deviation of the visible share of a piece at the edge of a shadow, known from its
-// centre, from 4 points.
-constexpr double kErrorFromCenter = 0.3;
-constexpr double kErrorFromQuarters = 0.12;
+// Standard deviation of the visible share of a piece that a shadow's straight edge crosses, known
+// from its centre, from 4 and from 16 points [found by simulation].
+constexpr double kErrorFromCenter = 0.24;
+constexpr double kErrorFromQuarters = 0.083;
+constexpr double kErrorFromSixteenths = 0.03;
 
 }  // namespace
 
@@ -26,11 +29,11 @@ VisibilityTracer::VisibilityTracer(const Scene& scene, const PieceSet& pieces)
       piece_mass_(pieces.blocks.size() * kSize),
       representative_(pieces.groups.size()) {}
 
-std::uint64_t VisibilityTracer::trace(const WallPoint& point,
-                                      const VisibilityRules& rules,
-                                      std::vector<VisibilityMask>& masks) {
+VisibilityCost VisibilityTracer::trace(const WallPoint& point,
+                                       const VisibilityRules& rules,
+                                       std::vector<VisibilityMask>& masks) {
     point_ = point;
-    num_rays_ = 0;
+    cost_ = {};
     classify(rules);
     trace_groups();
     trace_pieces_of_mixed_groups(rules.negligible_error);
@@ -41,7 +44,7 @@ std::uint64_t VisibilityTracer::trace(const WallPoint& point,
         }
     }
     refine_mixed_pieces(rules.negligible_error, masks);
-    return num_rays_;
+    return cost_;
 }
 
 void VisibilityTracer::classify(const VisibilityRules& rules) {
@@ -54,94 +57,120 @@ void VisibilityTracer::classify(const VisibilityRules& rules) {
     active_blocks_.clear();
     opened_pieces_.clear();
     for (std::uint32_t b = 0; b < set_.blocks.size(); ++b) {
-        if (is_out_of_reach(b, rules)) continue;
-        active_blocks_.push_back(b);
         classify_block(b, rules);
-        choose_representatives(b);
     }
 }
 
-bool VisibilityTracer::is_out_of_reach(std::uint32_t b, const VisibilityRules& rules) const {
+// Lengths of the paths from the point by way of a block to the other end, device legs left out.
+LengthBounds VisibilityTracer::path_lengths(std::uint32_t b, const VisibilityRules& rules) const {
     const PieceBlock& block = set_.blocks[b];
-    const Vec3 offset = block.sphere_center - point_.position;
-    if (point_.normal.dot(offset) < -block.sphere_radius_m) return true;
-    const double leg = offset.norm();
-    // Pieces just outside the axis still tell their neighbours about shadows.
-    const double radius = block.sphere_radius_m + block.longest_edge_m;
+    const double leg = (block.sphere_center - point_.position).norm();
     LengthBounds other;
     if (rules.other_legs.empty()) {
         const double distance = (block.sphere_center - rules.other_end.position).norm();
-        other = {distance - radius, distance + radius};
+        other = {distance - block.sphere_radius_m, distance + block.sphere_radius_m};
     } else {
-        other = {rules.other_legs[b].least_m - block.longest_edge_m,
-                 rules.other_legs[b].most_m + block.longest_edge_m};
+        other = rules.other_legs[b];
     }
-    return leg + radius + other.most_m < rules.opl_begin_m ||
-           leg - radius + other.least_m > rules.opl_end_m;
+    return {leg - block.sphere_radius_m + other.least_m,
+            leg + block.sphere_radius_m + other.most_m};
 }
 
-// A piece is relevant when its distances overlap the interval and its lit side can be seen.
 void VisibilityTracer::classify_block(std::uint32_t b, const VisibilityRules& rules) {
     const PieceBlock& block = set_.blocks[b];
-    const Vec3 w = point_.position;
-    const Vec3 n = point_.normal;
-    const Vec3 o = rules.other_end.position;
-    const Vec3 m = rules.other_end.normal;
-    // Pieces just outside the axis still tell their neighbours about shadows.
-    const double least = rules.opl_begin_m - 2.0 * block.longest_edge_m;
-    const double most = rules.opl_end_m + 2.0 * block.longest_edge_m;
-    const bool exact = rules.other_legs.empty();
-    const double other_least = exact ? 0.0 : rules.other_legs[b].least_m;
-    const double other_most = exact ? 0.0 : rules.other_legs[b].most_m;
-    const bool retro = block.kind == PieceKind::Retroreflective;
-    double* const mass = piece_mass_.data() + b * kSize;
-    alignas(64) PieceBlock::Lanes relevant;
-    for (std::size_t i = 0; i < kSize; ++i) {
-        const double x = block.center_x[i] - w.x();
-        const double y = block.center_y[i] - w.y();
-        const double z = block.center_z[i] - w.z();
-        const double d2 = x * x + y * y + z * z;
-        const double facing =
-            -(x * block.normal_x[i] + y * block.normal_y[i] + z * block.normal_z[i]);
-        const double front = x * n.x() + y * n.y() + z * n.z() + block.longest_edge_m;
-        const double g = std::max(0.0, front) * std::abs(facing) / (d2 * d2);
-        const double ox = block.center_x[i] - o.x();
-        const double oy = block.center_y[i] - o.y();
-        const double oz = block.center_z[i] - o.z();
-        const double o2 = ox * ox + oy * oy + oz * oz;
-        const double o_facing =
-            std::abs(ox * block.normal_x[i] + oy * block.normal_y[i] + oz * block.normal_z[i]);
-        const double o_front = ox * m.x() + oy * m.y() + oz * m.z() + block.longest_edge_m;
-        const double o_g = std::max(0.0, o_front) * o_facing / (o2 * o2);
-        mass[i] = block.area_m2[i] * block.mean_reflectance[i] * g * (retro ? 1.0 : o_g);
-        const double leg = std::sqrt(d2);
-        const double other_leg = exact ? std::sqrt(o2) : 0.0;
-        const double longest = leg + other_leg + other_most;
-        const double shortest = leg + other_leg + other_least;
-        const double seen = block.one_sided[i] * facing + (block.one_sided[i] == 0.0 ? 1.0 : 0.0);
-        relevant[i] = longest >= least && shortest <= most && seen > 0.0 ? mass[i] : 0.0;
+    if (point_.normal.dot(block.sphere_center - point_.position) < -block.sphere_radius_m) return;
+    const LengthBounds lengths = path_lengths(b, rules);
+    if (lengths.most_m < rules.opl_begin_m || lengths.least_m > rules.opl_end_m) return;
+    std::uint64_t relevant = lanes_seen(b, rules.other_end);
+    if (lengths.least_m < rules.opl_begin_m || lengths.most_m > rules.opl_end_m) {
+        relevant &= lanes_within_axis(b, rules);
     }
+    if (relevant == 0) return;
+    active_blocks_.push_back(b);
     for (std::size_t i = 0; i < block.count; ++i) {
-        piece_states_[b * kSize + i] = relevant[i] > 0.0 ? kBlocked : kIrrelevant;
+        piece_states_[b * kSize + i] = (relevant >> i & 1U) != 0 ? kBlocked : kIrrelevant;
     }
+    choose_representatives(b, relevant);
 }
 
-// The relevant piece nearest to the middle of each group's lanes gets its ray.
-void VisibilityTracer::choose_representatives(std::uint32_t block) {
+// Pieces that show the point a side which reflects; computes their masses on the way.
+std::uint64_t VisibilityTracer::lanes_seen(std::uint32_t b, const WallPoint& other) {
+    const PieceBlock& block = set_.blocks[b];
+    const bool retro = block.kind == PieceKind::Retroreflective;
+    double* const mass = piece_mass_.data() + b * kSize;
+    // Terms (n_w.d) (n_x.d) / |d|^4 of both ends; a piece may reach in front of the wall point when
+    // its centre does not.
+    const auto term = [&](const WallPoint& point, std::size_t i, double& facing) {
+        const double x = block.center_x[i] - point.position.x();
+        const double y = block.center_y[i] - point.position.y();
+        const double z = block.center_z[i] - point.position.z();
+        const double d2 = x * x + y * y + z * z;
+        const double front = x * point.normal.x() + y * point.normal.y() + z * point.normal.z();
+        facing = -(x * block.normal_x[i] + y * block.normal_y[i] + z * block.normal_z[i]);
+        return std::max(0.0, front + block.longest_edge_m) * std::abs(facing) / (d2 * d2);
+    };
+    alignas(64) PieceBlock::Lanes seen;
+    for (std::size_t i = 0; i < kSize; ++i) {
+        double facing = 0.0;
+        double other_facing = 0.0;
+        const double g = term(point_, i, facing);
+        const double other_g = term(other, i, other_facing);
+        mass[i] = block.area_m2[i] * block.mean_reflectance[i] * g * (retro ? 1.0 : other_g);
+        const bool hidden_side = block.one_sided[i] * facing < 0.0;
+        seen[i] = hidden_side ? 0.0 : mass[i];
+    }
+    std::uint64_t lanes = 0;
+    for (std::size_t i = 0; i < block.count; ++i) lanes |= std::uint64_t{seen[i] > 0.0} << i;
+    return lanes;
+}
+
+// Pieces of which some path has a length within the axis.
+std::uint64_t VisibilityTracer::lanes_within_axis(std::uint32_t b,
+                                                  const VisibilityRules& rules) const {
+    const PieceBlock& block = set_.blocks[b];
+    const bool exact = rules.other_legs.empty();
+    const LengthBounds others = exact ? LengthBounds{} : rules.other_legs[b];
+    alignas(64) PieceBlock::Lanes shortest;
+    alignas(64) PieceBlock::Lanes longest;
+    shortest.fill(std::numeric_limits<double>::infinity());
+    longest.fill(0.0);
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+        const auto distance = [&](const Vec3& from, std::size_t i) {
+            const double x = block.x[corner][i] - from.x();
+            const double y = block.y[corner][i] - from.y();
+            const double z = block.z[corner][i] - from.z();
+            return std::sqrt(x * x + y * y + z * z);
+        };
+        for (std::size_t i = 0; i < kSize; ++i) {
+            const double other = exact ? distance(rules.other_end.position, i) : 0.0;
+            const double length = distance(point_.position, i) + other;
+            shortest[i] = std::min(shortest[i], length);
+            longest[i] = std::max(longest[i], length);
+        }
+    }
+    // Lengths bend by at most edge^2/(8 d) per leg between corners.
+    const double edge2 = block.longest_edge_m * block.longest_edge_m;
+    std::uint64_t lanes = 0;
+    for (std::size_t i = 0; i < block.count; ++i) {
+        const double least = shortest[i] + others.least_m - edge2 / shortest[i];
+        const double most = longest[i] + others.most_m;
+        lanes |= std::uint64_t{most >= rules.opl_begin_m && least <= rules.opl_end_m} << i;
+    }
+    return lanes;
+}
+
+// In each group, the relevant piece next to the middle gets the ray.
+void VisibilityTracer::choose_representatives(std::uint32_t block, std::uint64_t relevant) {
     for (std::uint32_t g = set_.first_group[block]; g < set_.first_group[block + 1]; ++g) {
         const PieceGroup& group = set_.groups[g];
-        const std::uint32_t base = static_cast<std::uint32_t>(block * kSize);
-        const std::uint32_t middle = (group.begin + group.end) / 2;
-        std::uint32_t best = PieceBlock::kSize;
-        std::uint32_t best_offset = PieceBlock::kSize;
-        for (std::uint32_t lane = group.begin; lane < group.end; ++lane) {
-            const std::uint32_t offset = lane < middle ? middle - lane : lane - middle;
-            if (piece_states_[base + lane] == kIrrelevant || offset >= best_offset) continue;
-            best = lane;
-            best_offset = offset;
-        }
-        if (best == PieceBlock::kSize) continue;
-        representative_[g] = base + best;
+        const std::uint32_t count = group.end - group.begin;
+        const std::uint64_t lanes = relevant >> group.begin & (~std::uint64_t{0} >> (64 - count));
+        if (lanes == 0) continue;
+        const std::uint64_t upper = lanes >> (count / 2);
+        const int lane = upper != 0 ? static_cast<int>(count / 2) + std::countr_zero(upper)
+                                    : 63 - std::countl_zero(lanes);
+        representative_[g] = static_cast<std::uint32_t>(block * kSize + group.begin) +
+                             static_cast<std::uint32_t>(lane);
         group_states_[g] = kBlocked;
         active_groups_.push_back(g);
     }
@@ -149,7 +178,8 @@ void VisibilityTracer::choose_representatives(std::uint32_t block) {
 
 void VisibilityTracer::trace_groups() {
     targets_.clear();
-    for (const std::uint32_t g : active_groups_) targets_.push_back({representative_[g], kCenterBit});
+    for (const std::uint32_t g : active_groups_)
+        targets_.push_back({representative_[g], kCenterBit});
     shoot();
     for (std::size_t i = 0; i < active_groups_.size(); ++i) {
         group_states_[active_groups_[i]] = results_[i] ? kVisible : kBlocked;
@@ -159,12 +189,15 @@ void VisibilityTracer::trace_groups() {
 bool VisibilityTracer::is_mixed(const NeighbourLists& lists,
                                 const std::vector<State>& states,
                                 std::uint32_t item) const {
+    int num_asked = 0;
     for (std::uint32_t i = lists.begin[item]; i < lists.begin[item + 1]; ++i) {
         const State other = states[lists.items[i]];
-        if (other != kIrrelevant && other != states[item]) return true;
+        if (other == kIrrelevant) continue;
+        if (other != states[item]) return true;
+        ++num_asked;
     }
-    // Without neighbours to ask, the piece has to be looked at closely.
-    return lists.begin[item + 1] - lists.begin[item] < 2;
+    // Without neighbours to ask, the item has to be looked at closely.
+    return num_asked < 2;
 }
 
 void VisibilityTracer::trace_pieces_of_mixed_groups(double negligible_error) {
@@ -222,6 +255,8 @@ void VisibilityTracer::refine_mixed_pieces(double negligible_error,
 
     targets_.clear();
     for (const std::uint32_t piece : mixed_) {
+        const double error = kErrorFromSixteenths * piece_mass_[piece];
+        cost_.squared_error += error * error;
         for (std::uint32_t bit = 0; bit < 16; ++bit) {
             if (bit % 4 != 3) targets_.push_back({piece, bit});
         }
@@ -256,7 +291,7 @@ void VisibilityTracer::shoot() {
             results_[t] = packet.blocked[t - begin] ? 0 : 1;
         }
     }
-    num_rays_ += targets_.size();
+    cost_.num_rays += targets_.size();
 }
 
 }  // namespace renderer

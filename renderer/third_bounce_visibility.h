@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <cstdint>
-#include <vector>
-
 #include "renderer/third_bounce_pieces.h"
 #include "renderer/visibility_mask.h"
 #include "renderer/wall_boxes.h"
+
+#include <cstdint>
+#include <vector>
 
 namespace renderer {
 
@@ -26,23 +26,28 @@ struct VisibilityRules {
     double negligible_error = 0.0;  ///< errors of a value of H that need no more rays
 };
 
+/// What a look around took, and how good it is.
+struct VisibilityCost {
+    std::uint64_t num_rays = 0;
+    double squared_error = 0.0;  ///< expected, of H: of shadow edges that 16 rays leave uncertain
+};
+
 /// Finds what wall points see of the pieces.
 ///
 /// One ray goes to each group. Where neighbouring groups disagree, each piece of theirs gets a ray,
 /// where neighbouring pieces disagree, 4 and then 16: each step only if what the piece could add
 /// wrongly to H is not negligible.
 class VisibilityTracer {
-   public:
+ public:
     /// scene, pieces   must outlive the tracer
     VisibilityTracer(const Scene& scene, const PieceSet& pieces);
 
     /// Sets masks[block * kSize + lane] for all pieces; 0 for what cannot matter.
-    /// returns   the number of rays traced
-    std::uint64_t trace(const WallPoint& point,
-                        const VisibilityRules& rules,
-                        std::vector<VisibilityMask>& masks);
+    VisibilityCost trace(const WallPoint& point,
+                         const VisibilityRules& rules,
+                         std::vector<VisibilityMask>& masks);
 
-   private:
+ private:
     enum State : std::uint8_t { kIrrelevant, kBlocked, kVisible };
     struct Target {
         std::uint32_t piece;
@@ -50,9 +55,11 @@ class VisibilityTracer {
     };
 
     void classify(const VisibilityRules& rules);
-    bool is_out_of_reach(std::uint32_t block, const VisibilityRules& rules) const;
     void classify_block(std::uint32_t block, const VisibilityRules& rules);
-    void choose_representatives(std::uint32_t block);
+    LengthBounds path_lengths(std::uint32_t block, const VisibilityRules& rules) const;
+    std::uint64_t lanes_seen(std::uint32_t block, const WallPoint& other);
+    std::uint64_t lanes_within_axis(std::uint32_t block, const VisibilityRules& rules) const;
+    void choose_representatives(std::uint32_t block, std::uint64_t relevant);
     void trace_groups();
     void trace_pieces_of_mixed_groups(double negligible_error);
     void refine_mixed_pieces(double negligible_error, std::vector<VisibilityMask>& masks);
@@ -75,7 +82,7 @@ class VisibilityTracer {
     std::vector<std::uint32_t> mixed_;
     std::vector<Target> targets_;
     std::vector<std::uint8_t> results_;
-    std::uint64_t num_rays_ = 0;
+    VisibilityCost cost_;
 };
 
 }  // namespace renderer

@@ -60,7 +60,9 @@ constexpr NibbleTable kTable = make_table();
 
 }  // namespace
 
-const Barycentric& center_of_bit(std::uint32_t bit) { return kCenters[bit]; }
+const Barycentric& center_of_bit(std::uint32_t bit) {
+    return kCenters[bit];
+}
 
 Barycentric visible_share(VisibilityMask mask) {
     Barycentric share{};

@@ -15,42 +15,51 @@ struct LengthBounds {
     double most_m = 0.0;
 };
 
+/// Distances of a sphere's points from all illumination and from all sensing points.
+struct LegBounds {
+    LengthBounds light;
+    LengthBounds sensor;
+};
+
 /// The points of a scan in a few boxes, to bound their distances from a part of the scene.
 class WallBoxes {
  public:
     /// origin   what positions are relative to [m, world]
     WallBoxes(const core::Scan& scan, const core::Vec3& origin);
 
-    /// Bounds of the distances from illumination points to points of a sphere.
-    LengthBounds light_legs(const core::Vec3& center, double radius) const;
-    /// Bounds of the distances from sensing points to points of a sphere.
-    LengthBounds sensor_legs(const core::Vec3& center, double radius) const;
-    /// Distances from the nearest illumination point and the nearest sensing point to a sphere, exact
-    /// where *_legs() only bounds them.
-    std::pair<double, double> nearest_m(const core::Vec3& center, double radius) const;
-    /// Bounds of the optical path lengths over the sphere, device legs included.
-    LengthBounds path_lengths(const core::Vec3& center, double radius) const;
+    LegBounds legs(const core::Vec3& center, double radius) const;
+    /// The exact least distances from points to a sphere, which legs() only bounds.
+    std::pair<double, double> nearest_light_and_sensor_m(const core::Vec3& center,
+                                                         double radius) const;
+    /// No point is farther than this from the nearest corner of its box [m].
+    double slack_m() const { return slack_m_; }
 
-    /// True when a point lies behind all wall points' tangent planes by more than `radius`.
+    /// Bounds of the lengths of the device legs of all pairs.
+    const LengthBounds& device_legs() const { return device_legs_; }
+
+    /// True when a sphere lies behind all wall points' tangent planes.
     bool is_behind(const core::Vec3& center, double radius) const;
 
-    /// The plane that holds all points with their normal: (n, n.x). Nothing on curved walls.
+    /// The plane that holds all points, with their normal: (n, n.x). Nothing on curved walls.
     const std::optional<std::pair<core::Vec3, double>>& common_plane() const { return plane_; }
 
  private:
-    /// Consecutive points, and the box around them.
-    struct Run {
-        Eigen::AlignedBox3d box;
+    struct Box {
+        Eigen::AlignedBox3d bounds;
         std::vector<core::Vec3> points;
     };
-    using Runs = std::vector<Run>;
-    static Runs make_runs(const core::WallPoints& points, const core::Vec3& origin);
-    static LengthBounds legs(const Runs& runs, const core::Vec3& center, double radius);
-    static double nearest(const Runs& runs, const core::Vec3& center, double radius);
+    using Boxes = std::vector<Box>;
+
+    void find_planes(const core::WallPoints& points, const core::Vec3& origin);
+    static void split(std::vector<core::Vec3> points, std::size_t most_per_box, Boxes& boxes);
+    static Boxes make_boxes(const core::WallPoints& points, const core::Vec3& origin);
+    static LengthBounds bounds(const Boxes& boxes, const core::Vec3& center, double radius);
+    static double nearest(const Boxes& boxes, const core::Vec3& center, double radius);
 
     bool confocal_;
-    Runs light_;
-    Runs sensor_;
+    Boxes light_;
+    Boxes sensor_;
+    double slack_m_ = 0.0;
     LengthBounds device_legs_;
     std::vector<std::pair<core::Vec3, double>> planes_;  ///< distinct tangent planes
     std::optional<std::pair<core::Vec3, double>> plane_;

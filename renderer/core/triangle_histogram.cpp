@@ -22,6 +22,7 @@ namespace {
 struct SortedTriangle {
     double p0, p1, p2;
     double k0, k1, k2;
+    double per_01, per_02, per_12;  // reciprocal lengths; infinite ones are never used
 
     SortedTriangle(const std::array<double, 3>& position, const std::array<double, 3>& weight)
         : p0(position[0]),
@@ -33,6 +34,9 @@ struct SortedTriangle {
         order(p0, p1, k0, k1);
         order(p1, p2, k1, k2);
         order(p0, p1, k0, k1);
+        per_01 = 1.0 / (p1 - p0);
+        per_02 = 1.0 / (p2 - p0);
+        per_12 = 1.0 / (p2 - p1);
     }
 
     double mean() const { return (k0 + k1 + k2) / 3.0; }
@@ -40,12 +44,12 @@ struct SortedTriangle {
     // For p0 < e < p2.
     double below(double e) const {
         if (e < p1) {
-            const double a = (e - p0) / (p1 - p0);
-            const double b = (e - p0) / (p2 - p0);
+            const double a = (e - p0) * per_01;
+            const double b = (e - p0) * per_02;
             return a * b * (k0 + (a * (k1 - k0) + b * (k2 - k0)) / 3.0);
         }
-        const double a = (p2 - e) / (p2 - p1);
-        const double b = (p2 - e) / (p2 - p0);
+        const double a = (p2 - e) * per_12;
+        const double b = (p2 - e) * per_02;
         return mean() - a * b * (k2 + (a * (k1 - k2) + b * (k0 - k2)) / 3.0);
     }
 

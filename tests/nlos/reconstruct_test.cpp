@@ -15,7 +15,7 @@ namespace {
 using core::Vec3;
 
 constexpr std::array kMethods{
-    "method=lct", "method=bp", "method=fbp", "method=fk", "method=phasor"};
+    "method=lct", "method=dlct", "method=bp", "method=fbp", "method=fk", "method=phasor"};
 
 core::Capture example() {
     core::Capture capture = nlos_test::confocal_capture(
@@ -88,7 +88,7 @@ TEST(Reconstruct, RefusalsNameTheMethodThatWorks) {
     core::Capture gated = example();
     gated.time_axis = {1.0, 0.3, 1};
     gated.transient = core::Transient(gated.scan.num_pairs(), 1);
-    for (const std::string name : {"lct", "fk"}) {
+    for (const std::string name : {"lct", "dlct", "fk"}) {
         const std::string method = "method=" + name;
         EXPECT_ERROR_WITH(reconstruct(list, with({method}), {}), "method=phasor works");
         EXPECT_ERROR_WITH(reconstruct(example(), with({method, "volume.voxels=[8,8,8]"}), {}),
@@ -141,7 +141,7 @@ TEST(Reconstruct, NamesSettingsOutOfRange) {
     EXPECT_ERROR_WITH(reconstruct(example(), with({"volume.voxels=[0,4,4]"}), {}), "volume.voxels");
     EXPECT_ERROR_WITH(reconstruct(example(), with({"volume.z_range_m=[0.5,0.4]"}), {}),
                       "volume.z_range_m");
-    EXPECT_ERROR_WITH(with({"prior=tv"}), "none");
+    EXPECT_ERROR_WITH(with({"prior=tw"}), "none");
     EXPECT_ERROR_WITH(with({"metod=bp"}), "method");
 }
 

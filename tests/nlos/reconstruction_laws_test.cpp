@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/reconstruct.h"
+#include "renderer/core/parallel.h"
 #include "tests/nlos/confocal_scene.h"
 #include "tests/support/statistics.h"
 
@@ -74,7 +75,9 @@ class ReconstructionLaw : public testing::TestWithParam<LawCase> {
     static void expect_finite(const Reconstruction& result, const char* what) {
         for (const float value : result.volume.values) {
             ASSERT_TRUE(std::isfinite(value)) << what;
-            if (GetParam().is_non_negative) ASSERT_GE(value, 0.0F) << what;
+            if (GetParam().is_non_negative) {
+                ASSERT_GE(value, 0.0F) << what;
+            }
         }
     }
 };
@@ -174,6 +177,7 @@ std::vector<LawCase> law_cases() {
     const std::string voxels = "volume.voxels=[24,24,75]";
     std::vector<LawCase> cases{
         {"LctConfocal", ScanPattern::Confocal, {"method=lct", voxels, "snr=10"}, true},
+        {"DlctConfocal", ScanPattern::Confocal, {"method=dlct", voxels, "snr=10"}, true},
         {"FkConfocal", ScanPattern::Confocal, {"method=fk", voxels}, true}};
     const std::vector<std::pair<std::string, ScanPattern>> patterns{
         {"Confocal", ScanPattern::Confocal},
@@ -192,7 +196,7 @@ std::vector<LawCase> law_cases() {
 INSTANTIATE_TEST_SUITE_P(Methods,
                          ReconstructionLaw,
                          testing::ValuesIn(law_cases()),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& law) { return law.param.name; });
 
 }  // namespace
 }  // namespace nlos

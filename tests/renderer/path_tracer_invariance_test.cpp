@@ -20,6 +20,7 @@ const core::TimeAxis kAxis{1.0, 0.02, 60};
 
 renderer::RenderSettings settings_with(int samples) {
     renderer::RenderSettings settings;
+    settings.method = renderer::Estimator::Path;
     settings.samples = samples;
     settings.max_bounces = 5;
     settings.variance = true;

@@ -16,6 +16,7 @@ using test_support::Parallelogram;
 
 renderer::RenderSettings settings_for(const std::string& test, int samples) {
     renderer::RenderSettings settings;
+    settings.method = renderer::Estimator::Path;
     settings.samples = samples;
     settings.seed = test_support::seed_of(test);
     settings.variance = true;

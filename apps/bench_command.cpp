@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+#include "apps/arguments.h"
+#include "apps/bench_render.h"
+#include "apps/commands.h"
+#include "apps/gnuplot.h"
+#include "apps/terminal.h"
+#include "apps/version.h"
+#include "renderer/core/output_file.h"
+
+#include <fmt/core.h>
+
+#include <filesystem>
+#include <memory>
+
+namespace apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct BenchArguments {
+    std::string folder;
+    std::string scene = "scenes/bars/scene.json";
+    int repeats = 3;
+};
+
+std::string table_of(const RenderBench& bench) {
+    std::string text = fmt::format("{}\nreference: {}, relative L2 error {:.2e}\n\n",
+                                   bench.scene,
+                                   bench.reference,
+                                   bench.reference_error);
+    text += fmt::format("{:<14} {:<20} {:>10} {:>10}\n", "method", "effort", "CPU s", "rel. L2");
+    for (const BenchCurve& curve : bench.curves) {
+        for (const BenchPoint& point : curve.points) {
+            text += fmt::format("{:<14} {:<20} {:>10.3f} {:>10.2e}\n",
+                                curve.method,
+                                point.effort,
+                                point.cpu_seconds,
+                                point.rel_l2);
+        }
+        text += fmt::format(
+            "{:<14} error = {:.3g} seconds^{:.3f}\n", curve.method, curve.coefficient, curve.slope);
+    }
+    return text;
+}
+
+LogPlot plot_of(const RenderBench& bench) {
+    LogPlot plot{"Error against time, " + bench.scene, "CPU time [s]", "relative L2 error", {}};
+    for (const BenchCurve& curve : bench.curves) {
+        PlotLine& line = plot.lines.emplace_back();
+        line.title = curve.method;
+        for (const BenchPoint& point : curve.points) {
+            line.x.push_back(point.cpu_seconds);
+            line.y.push_back(point.rel_l2);
+        }
+    }
+    return plot;
+}
+
+void run_render(const BenchArguments& arguments) {
+    std::error_code error;
+    fs::create_directories(arguments.folder, error);
+    if (error) throw core::Error(arguments.folder, "cannot be made", "must be a writable folder");
+    ProgressBar bar("bench render");
+    const RenderBench bench = bench_render(arguments.scene, arguments.repeats, bar.progress());
+
+    const std::string stem = (fs::path(arguments.folder) / "bench_render").string();
+    core::Json json = core::write_value(bench);
+    json["program"] = version_text();
+    core::write_text_file(stem + ".json", json.dump(2) + "\n");
+    core::write_text_file(stem + ".txt", table_of(bench));
+    fmt::print("{}", table_of(bench));
+    if (!draw_plot(plot_of(bench), stem)) {
+        fmt::print(stderr, "bench: gnuplot is not there, so no plot was drawn\n");
+    }
+    fmt::print("wrote {}\n", stem + ".json");
+}
+
+}  // namespace
+
+void add_bench_command(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("bench", "Measure speed against error");
+    command->require_subcommand(1);
+    command->footer(settings_footer({}, "nlos bench render -o out/bench"));
+    const auto arguments = std::make_shared<BenchArguments>();
+    CLI::App* render = command->add_subcommand("render", "Every estimator on one scene");
+    render->add_option("-o,--output", arguments->folder, "Folder for JSON, table and plots")
+        ->required();
+    render->add_option("--scene", arguments->scene, "Scene description")->capture_default_str();
+    render->add_option("--repeats", arguments->repeats, "Runs per point")
+        ->capture_default_str()
+        ->check(CLI::Range(1, 1000));
+    render->footer(settings_footer({}, "nlos bench render -o out/bench"));
+    render->callback([arguments] { run_render(*arguments); });
+}
+
+}  // namespace apps

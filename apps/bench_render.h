@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/core/progress.h"
+#include "renderer/core/settings.h"
+
+#include <string>
+#include <vector>
+
+namespace apps {
+
+/// One run of an estimator.
+struct BenchPoint {
+    std::string effort;        ///< "samples=64", "target_error=0.01"
+    double cpu_seconds = 0.0;  ///< median over repeats
+    double cpu_spread = 0.0;   ///< largest minus smallest
+    double rel_l2 = 0.0;       ///< against the reference
+};
+
+template <class Visitor>
+void for_each_field(BenchPoint& point, Visitor&& visit) {
+    visit("effort", point.effort, "setting that was varied");
+    visit("cpu_seconds", point.cpu_seconds, "CPU time, median over repeats [s]");
+    visit("cpu_spread", point.cpu_spread, "largest minus smallest CPU time [s]");
+    visit("rel_l2", point.rel_l2, "relative L2 error over all of H");
+}
+
+/// Error against time of one estimator and the line error = coefficient * seconds^slope.
+struct BenchCurve {
+    std::string method;
+    std::vector<BenchPoint> points;
+    double slope = 0.0;
+    double coefficient = 0.0;
+};
+
+template <class Visitor>
+void for_each_field(BenchCurve& curve, Visitor&& visit) {
+    visit("method", curve.method, "estimator");
+    visit("points", curve.points, "runs");
+    visit("slope", curve.slope, "of log error against log time; Monte Carlo has -0.5");
+    visit("coefficient", curve.coefficient, "error after one CPU second on the fitted line");
+}
+
+/// What `nlos bench render` measured.
+struct RenderBench {
+    std::string scene;
+    std::string reference;         ///< how the reference was made
+    double reference_error = 0.0;  ///< its own relative L2 error, from two independent halves
+    int repeats = 0;
+    std::vector<BenchCurve> curves;
+};
+
+template <class Visitor>
+void for_each_field(RenderBench& bench, Visitor&& visit) {
+    visit("scene", bench.scene, "scene file");
+    visit("reference", bench.reference, "how the reference was made");
+    visit("reference_error", bench.reference_error, "its own relative L2 error");
+    visit("repeats", bench.repeats, "runs per point");
+    visit("curves", bench.curves, "error against time");
+}
+
+/// Measures every estimator on a scene at several efforts, on one thread.
+RenderBench bench_render(const std::string& scene_path,
+                         int repeats,
+                         const core::Progress& progress);
+
+}  // namespace apps

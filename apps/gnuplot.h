@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace apps {
+
+/// Points of one line of a plot.
+struct PlotLine {
+    std::string title;
+    std::vector<double> x;
+    std::vector<double> y;
+};
+
+/// A plot with logarithmic axes.
+struct LogPlot {
+    std::string title;
+    std::string x_label;
+    std::string y_label;
+    std::vector<PlotLine> lines;
+};
+
+/// Draws `plot` as path.svg and path.png by gnuplot.
+/// returns   false when gnuplot is not installed or fails; nothing is written then
+bool draw_plot(const LogPlot& plot, const std::string& path);
+
+}  // namespace apps

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/path_render.h"
+
+#include "renderer/core/parallel.h"
+#include "renderer/core/process.h"
+#include "renderer/transient_accumulator.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <limits>
+
+namespace renderer {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+// Passes are long enough to keep shadow rays coherent and short enough to give a variance.
+constexpr int kPasses = 8;
+constexpr int kMostSamplesPerPass = 256;
+constexpr int kSamplesPerTimedPass = 32;
+constexpr std::size_t kPairsPerBlock = 16;
+
+struct PassPlan {
+    int samples_per_pass = 1;
+    int num_passes = 1;
+};
+
+PassPlan plan_passes(const RenderSettings& settings, PathShare share) {
+    if (share == PathShare::Nothing) return {0, 1};
+    if (settings.seconds) return {kSamplesPerTimedPass, std::numeric_limits<int>::max()};
+    int per_pass = std::clamp(settings.samples / kPasses, 1, kMostSamplesPerPass);
+    // Multiples of 4 split into the path tracer's two kinds of samples without rounding noise.
+    if (per_pass > 4) per_pass -= per_pass % 4;
+    return {per_pass, (settings.samples + per_pass - 1) / per_pass};
+}
+
+PathEnd wall_end(const core::WallPoints& points, std::size_t index, double albedo) {
+    PathEnd end;
+    end.position = points.positions[index];
+    end.normal = points.normals[index];
+    end.strength = albedo / core::kPi;
+    return end;
+}
+
+PathEnds ends_of_pair(const core::Scan& scan, std::size_t pair, double wall_albedo) {
+    PathEnds ends;
+    ends.sensor = wall_end(scan.sensing, scan.sensing_index(pair), wall_albedo);
+    ends.light = wall_end(scan.illumination, scan.illumination_index(pair), wall_albedo);
+    ends.device_legs_m = scan.device_legs_m(pair);
+    ends.coincide =
+        ends.sensor.position == ends.light.position && ends.sensor.normal == ends.light.normal;
+    return ends;
+}
+
+// Orders 1 and 2, which need no sampling.
+void add_short_paths(const Scene& scene,
+                     const PathEnds& ends,
+                     const RenderSettings& settings,
+                     PassHistogram& histogram) {
+    const auto channel = [&](int order) { return settings.by_order ? order - 1 : 0; };
+    if (ends.coincide) {
+        if (settings.direct_return) {
+            histogram.add(
+                channel(1), ends.device_legs_m, ends.light.strength / settings.laser_spot_m2);
+        }
+        return;
+    }
+    if (settings.max_bounces < 2 || scene.has_relay_wall()) return;
+    const core::Vec3 offset = ends.light.position - ends.sensor.position;
+    const double distance = offset.norm();
+    const core::Vec3 direction = offset / distance;
+    const double value =
+        ends.sensor.factor(direction) * ends.light.factor(-direction) / (distance * distance);
+    if (value > 0.0 &&
+        !scene.rays().is_blocked(
+            ends.sensor.position, ends.sensor.normal, ends.light.position, ends.light.normal)) {
+        histogram.add(channel(2), distance + ends.device_legs_m, value);
+    }
+}
+
+int channel_count(const RenderSettings& settings) {
+    return settings.by_order ? settings.max_bounces : 1;
+}
+
+void require_memory(const core::Scan& scan,
+                    const core::TimeAxis& axis,
+                    const RenderSettings& settings) {
+    // Sums and what is made of them: one array per channel, the total, and the variance.
+    const double arrays = channel_count(settings) + (settings.variance ? 1.0 : 0.0);
+    const double needed = static_cast<double>(scan.num_pairs()) * axis.num_bins *
+                          (arrays * sizeof(double) + (arrays + 1.0) * sizeof(float));
+    const double available = static_cast<double>(core::available_memory_bytes());
+    if (needed > available) {
+        throw core::Failure("render",
+                            fmt::format("{} pairs x {} bins need {:.1f} GB, {:.1f} GB are free",
+                                        scan.num_pairs(),
+                                        axis.num_bins,
+                                        needed * 1e-9,
+                                        available * 1e-9));
+    }
+}
+
+// Runs passes over all pairs until the plan, the clock or the caller ends them.
+class PassLoop {
+ public:
+    PassLoop(const Scene& scene,
+             const core::Scan& scan,
+             const core::TimeAxis& axis,
+             const RenderSettings& settings,
+             PathShare share)
+        : scene_(scene),
+          scan_(scan),
+          axis_(axis),
+          settings_(settings),
+          share_(share),
+          num_channels_(channel_count(settings)),
+          wall_albedo_(scene.wall_albedo()),
+          tracer_(scene,
+                  settings,
+                  share == PathShare::NotIntegrable ? ThirdBounceScope::NotIntegrable
+                                                    : ThirdBounceScope::All),
+          sums_(scan.num_pairs(), axis.num_bins, num_channels_, settings.variance) {}
+
+    RenderResult run(const core::Progress& progress);
+
+ private:
+    void run_pass(int pass, int samples);
+    void fill_capture(int passes, core::Capture& capture) const;
+
+    const Scene& scene_;
+    const core::Scan& scan_;
+    const core::TimeAxis& axis_;
+    const RenderSettings& settings_;
+    PathShare share_;
+    int num_channels_;
+    double wall_albedo_;
+    PathTracer tracer_;
+    TransientAccumulator sums_;
+    std::atomic<std::uint64_t> num_rays_{0};
+};
+
+void PassLoop::run_pass(int pass, int samples) {
+    constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+    std::atomic<std::size_t> bad_pair{kNone};
+    core::parallel_blocks(
+        scan_.num_pairs(), kPairsPerBlock, [&](std::size_t begin, std::size_t end) {
+            PassHistogram histogram(axis_, settings_.gate, num_channels_);
+            for (std::size_t pair = begin; pair < end; ++pair) {
+                const PathEnds ends = ends_of_pair(scan_, pair, wall_albedo_);
+                core::Rng rng(settings_.seed, pair, static_cast<std::uint64_t>(pass));
+                if (settings_.max_bounces >= 3 && samples > 0) {
+                    num_rays_ += tracer_.trace(ends, samples, rng, histogram);
+                }
+                add_short_paths(scene_, ends, settings_, histogram);
+                sums_.add_pass(pair, histogram);
+                if (histogram.num_non_finite() > 0) bad_pair = std::min(bad_pair.load(), pair);
+                if (bad_pair != kNone) return;
+            }
+        });
+    if (bad_pair != kNone) {
+        throw core::Failure("path tracer",
+                            fmt::format("a contribution is not finite (pair {}, pass {}, seed {})",
+                                        bad_pair.load(),
+                                        pass,
+                                        settings_.seed));
+    }
+}
+
+void PassLoop::fill_capture(int passes, core::Capture& capture) const {
+    capture.scan = scan_;
+    capture.time_axis = axis_;
+    capture.transient = sums_.mean_of_all(passes);
+    if (settings_.variance && passes > 1) capture.variance = sums_.variance(passes);
+    if (!settings_.by_order) return;
+    for (int order = 1; order <= num_channels_; ++order) {
+        capture.orders.push_back(order);
+        capture.by_order.push_back(sums_.mean(order - 1, passes));
+    }
+}
+
+RenderResult PassLoop::run(const core::Progress& progress) {
+    const auto start = Clock::now();
+    const PassPlan plan = plan_passes(settings_, share_);
+    RenderResult result;
+    int pass = 0;
+    while (pass < plan.num_passes) {
+        run_pass(pass, plan.samples_per_pass);
+        ++pass;
+        const double elapsed = seconds_since(start);
+        const double share = settings_.seconds ? elapsed / *settings_.seconds
+                                               : static_cast<double>(pass) / plan.num_passes;
+        const double paths = static_cast<double>(scan_.num_pairs()) * plan.samples_per_pass * pass;
+        progress.update(std::min(1.0, share),
+                        fmt::format("{:.2f} M paths/s", paths / elapsed * 1e-6));
+        if (settings_.seconds && elapsed >= *settings_.seconds) break;
+        if (pass < plan.num_passes && progress.should_stop()) {
+            result.interrupted = true;
+            break;
+        }
+    }
+    fill_capture(pass, result.capture);
+    result.samples_per_pair =
+        static_cast<std::uint64_t>(plan.samples_per_pass) * static_cast<std::uint64_t>(pass);
+    result.num_rays = num_rays_;
+    result.seconds = seconds_since(start);
+    return result;
+}
+
+}  // namespace
+
+RenderResult render_paths(const Scene& scene,
+                          const core::Scan& scan,
+                          const core::TimeAxis& axis,
+                          const RenderSettings& settings,
+                          PathShare share,
+                          const core::Progress& progress) {
+    require_memory(scan, axis, settings);
+    return PassLoop(scene, scan, axis, settings, share).run(progress);
+}
+
+}  // namespace renderer

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+#include "nlos/directional_light_cone_transform.h"
+
+#include "nlos/reconstruct.h"
+#include "tests/nlos/confocal_scene.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace nlos {
+namespace {
+
+using core::Vec3;
+
+/// A tilted plate, z = 0.6 + slope . (x, y), whose light carries one cosine: (n . d) / r^4.
+core::Capture plate_capture(const Eigen::Vector2d& slope) {
+    core::Capture capture =
+        nlos_test::confocal_capture(nlos_test::wall_grid({32, 32}, {0.03, 0.03}), {0.7, 0.01, 150});
+    const Vec3 away = Vec3(-slope.x(), -slope.y(), 1.0).normalized();
+    const core::TimeAxis& axis = capture.time_axis;
+    for (int ix = -26; ix <= 26; ++ix) {
+        for (int iy = -26; iy <= 26; ++iy) {
+            const Vec3 p(0.01 * ix, 0.01 * iy, 0.6 + 0.01 * (slope.x() * ix + slope.y() * iy));
+            for (std::size_t pair = 0; pair < capture.scan.num_pairs(); ++pair) {
+                const Vec3 d = p - capture.scan.sensing.positions[pair];
+                const double bin = (2.0 * d.norm() - axis.opl_start_m) / axis.bin_width_m - 0.5;
+                const auto first = static_cast<std::size_t>(bin);
+                if (bin < 0.0 || first + 1 >= capture.transient.num_bins()) continue;
+                const double value = away.dot(d) / std::pow(d.norm(), 4);
+                const double late = bin - static_cast<double>(first);
+                capture.transient.histogram(pair)[first] += static_cast<float>(value * (1 - late));
+                capture.transient.histogram(pair)[first + 1] += static_cast<float>(value * late);
+            }
+        }
+    }
+    return capture;
+}
+
+TEST(DirectionalLightConeTransform, FindsNormalsOfTiltedPlates) {
+    for (const Eigen::Vector2d& slope :
+         {Eigen::Vector2d(0.0, 0.0), Eigen::Vector2d(0.5, 0.0), Eigen::Vector2d(-0.2, 0.4)}) {
+        ReconstructSettings settings;
+        settings.method = Method::Dlct;
+        settings.volume.z_range_m = {0.35, 0.9};
+        settings.snr = 100.0;
+        const Reconstruction result = reconstruct(plate_capture(slope), settings, {});
+        const Vec3 expected = Vec3(slope.x(), slope.y(), -1.0).normalized();
+        std::vector<double> angles;
+        for (std::size_t ix = 10; ix < 22; ++ix) {
+            for (std::size_t iy = 10; iy < 22; ++iy) {
+                const std::size_t i = result.depth.index(ix, iy);
+                if (!result.depth.is_foreground(i)) continue;
+                angles.push_back(std::acos(std::min(1.0, result.depth.normals[i].dot(expected))) *
+                                 180.0 / core::kPi);
+            }
+        }
+        ASSERT_GT(angles.size(), 100U);
+        std::nth_element(angles.begin(), angles.begin() + 60, angles.end());
+        EXPECT_LT(angles[60], 10.0) << slope.transpose();
+    }
+}
+
+}  // namespace
+}  // namespace nlos
