@@ -24,10 +24,12 @@ struct BenchArguments {
 };
 
 std::string table_of(const RenderBench& bench) {
-    std::string text = fmt::format("{}\nreference: {}, relative L2 error {:.2e}\n\n",
-                                   bench.scene,
-                                   bench.reference,
-                                   bench.reference_error);
+    std::string text = fmt::format(
+        "{}\nreference: {}; a long run of path is {:.2e} away, its own noise {:.2e}\n\n",
+        bench.scene,
+        bench.reference,
+        bench.check_distance,
+        bench.check_noise);
     text += fmt::format("{:<14} {:<20} {:>10} {:>10}\n", "method", "effort", "CPU s", "rel. L2");
     for (const BenchCurve& curve : bench.curves) {
         for (const BenchPoint& point : curve.points) {

@@ -15,8 +15,15 @@
 namespace apps {
 namespace {
 
-constexpr int kReferenceSamples = 16384;  ///< of each of its two halves
-constexpr std::uint64_t kReferenceSeed = 1'000'000;
+constexpr double kReferenceTarget = 0.002;
+constexpr int kCheckSamples = 32768;  ///< of each of two halves
+constexpr std::uint64_t kCheckSeed = 1'000'000;
+
+// One setting of an estimator's effort.
+struct Effort {
+    std::string name;
+    renderer::RenderSettings settings;
+};
 
 // A scene that can be rendered again and again with other settings.
 class Workbench {
@@ -42,22 +49,30 @@ double relative_l2(const core::Capture& a, const core::Capture& b) {
     return nlos::compare_captures(a, b).rel_l2.value_or(0.0);
 }
 
-// Two independent halves; their mean is the reference, half their distance its error.
-core::Capture make_reference(const Workbench& bench, double& error) {
+// The integrator far below every error to be measured. Path tracing shares no code with it beyond
+// the rays; how far a long run of it lies from the reference bounds the reference's own error,
+// together with that run's own noise (half the distance of its two independent halves).
+core::Capture make_reference(const Workbench& bench, RenderBench& result) {
     renderer::RenderSettings settings = bench.settings();
+    settings.method = renderer::Estimator::ThirdBounce;
+    settings.target_error = kReferenceTarget;
+    const core::Capture reference = bench.render(settings);
+
     settings.method = renderer::Estimator::Path;
-    settings.samples = kReferenceSamples;
-    settings.seed = kReferenceSeed;
-    core::Capture reference = bench.render(settings);
+    settings.samples = kCheckSamples;
+    settings.seed = kCheckSeed;
+    core::Capture check = bench.render(settings);
     ++settings.seed;
     const core::Capture other = bench.render(settings);
-    error = 0.5 * relative_l2(reference, other);
-    const auto sums = reference.transient.values();
+    result.check_noise = 0.5 * relative_l2(check, other);
+    const auto sums = check.transient.values();
     std::transform(sums.begin(),
                    sums.end(),
                    other.transient.values().begin(),
                    sums.begin(),
                    [](float a, float b) { return 0.5F * (a + b); });
+    result.check_distance = relative_l2(check, reference);
+    result.reference = fmt::format("third_bounce to {}", kReferenceTarget);
     return reference;
 }
 
@@ -101,24 +116,43 @@ void fit_line(BenchCurve& curve) {
     curve.coefficient = std::exp(y - curve.slope * x);
 }
 
-BenchCurve path_curve(const Workbench& bench,
-                      const core::Capture& reference,
-                      int repeats,
-                      const core::Progress& progress) {
+// Runs one estimator at rising effort.
+BenchCurve measure_curve(const Workbench& bench,
+                         const std::string& method,
+                         const std::vector<Effort>& efforts,
+                         const core::Capture& reference,
+                         int repeats,
+                         const core::Progress& progress) {
     BenchCurve curve;
-    curve.method = "path";
-    const std::vector<int> efforts{128, 512, 2048, 8192};
+    curve.method = method;
     for (std::size_t i = 0; i < efforts.size(); ++i) {
         if (progress.should_stop()) throw core::Failure("bench", "interrupted");
-        progress.update(double(i) / double(efforts.size()), "path");
-        renderer::RenderSettings settings = bench.settings();
-        settings.method = renderer::Estimator::Path;
-        settings.samples = efforts[i];
-        curve.points.push_back(measure(bench, settings, reference, repeats));
-        curve.points.back().effort = fmt::format("samples={}", efforts[i]);
+        progress.update(double(i) / double(efforts.size()), method);
+        curve.points.push_back(measure(bench, efforts[i].settings, reference, repeats));
+        curve.points.back().effort = efforts[i].name;
     }
     fit_line(curve);
     return curve;
+}
+
+std::vector<Effort> path_efforts(renderer::RenderSettings settings) {
+    settings.method = renderer::Estimator::Path;
+    std::vector<Effort> efforts;
+    for (const int samples : {128, 512, 2048, 8192}) {
+        settings.samples = samples;
+        efforts.push_back({fmt::format("samples={}", samples), settings});
+    }
+    return efforts;
+}
+
+std::vector<Effort> third_bounce_efforts(renderer::RenderSettings settings) {
+    settings.method = renderer::Estimator::ThirdBounce;
+    std::vector<Effort> efforts;
+    for (const double target : {0.2, 0.1, 0.05, 0.02, 0.01}) {
+        settings.target_error = target;
+        efforts.push_back({fmt::format("target_error={}", target), settings});
+    }
+    return efforts;
 }
 
 }  // namespace
@@ -130,11 +164,14 @@ RenderBench bench_render(const std::string& scene_path,
     RenderBench result;
     result.scene = scene_path;
     result.repeats = repeats;
-    result.reference =
-        fmt::format("path, mean of two runs of {} samples per pair", kReferenceSamples);
-    const core::Capture reference = make_reference(bench, result.reference_error);
+    const core::Capture reference = make_reference(bench, result);
     const core::ThreadLimit one_thread(1);
-    result.curves.push_back(path_curve(bench, reference, repeats, progress));
+    for (const auto& [method, efforts] :
+         {std::pair{"third_bounce", third_bounce_efforts(bench.settings())},
+          std::pair{"path", path_efforts(bench.settings())}}) {
+        result.curves.push_back(
+            measure_curve(bench, method, efforts, reference, repeats, progress));
+    }
     return result;
 }
 

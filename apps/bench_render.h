@@ -44,8 +44,9 @@ void for_each_field(BenchCurve& curve, Visitor&& visit) {
 /// What `nlos bench render` measured.
 struct RenderBench {
     std::string scene;
-    std::string reference;         ///< how the reference was made
-    double reference_error = 0.0;  ///< its own relative L2 error, from two independent halves
+    std::string reference;        ///< how the reference was made
+    double check_distance = 0.0;  ///< relative L2 distance of a long run of path from it
+    double check_noise = 0.0;     ///< the noise of that run
     int repeats = 0;
     std::vector<BenchCurve> curves;
 };
@@ -54,7 +55,8 @@ template <class Visitor>
 void for_each_field(RenderBench& bench, Visitor&& visit) {
     visit("scene", bench.scene, "scene file");
     visit("reference", bench.reference, "how the reference was made");
-    visit("reference_error", bench.reference_error, "its own relative L2 error");
+    visit("check_distance", bench.check_distance, "distance of a long run of path from it");
+    visit("check_noise", bench.check_noise, "noise of that run");
     visit("repeats", bench.repeats, "runs per point");
     visit("curves", bench.curves, "error against time");
 }

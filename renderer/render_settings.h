@@ -2,6 +2,7 @@
 #pragma once
 
 #include "renderer/core/settings.h"
+#include "renderer/restir_settings.h"
 
 #include <cstdint>
 #include <optional>
@@ -33,6 +34,7 @@ struct RenderSettings {
     bool by_order = false;
     bool direct_return = false;
     double laser_spot_m2 = 1e-4;
+    RestirSettings restir;
 };
 
 template <class Visitor>
@@ -58,6 +60,7 @@ void for_each_field(RenderSettings& s, Visitor&& visit) {
     visit("laser_spot_m2",
           s.laser_spot_m2,
           "area of the laser spot on the wall: direct return and retroreflectors [m^2]");
+    visit("restir", s.restir, "reservoir reuse");
 }
 
 /// Throws core::Error naming the setting that is out of range.

@@ -18,8 +18,7 @@ namespace core {
 /// axis          bins of optical path length
 /// returns       per bin, the integral over the triangle of (n_w.d)^2 (n.d)^2 / |d|^8, d from the
 ///               wall point to the surface: H for albedo and BSDF constants left out
-/// source        circles of equal range in the facet's plane as in [Iseringhausen2020]; derived in
-///               exact_arcs.cpp
+/// source        derived in exact_arcs.cpp
 std::vector<double> confocal_arcs(const std::array<Vec3, 3>& corners,
                                   const Vec3& wall_point,
                                   const Vec3& wall_normal,

@@ -234,7 +234,7 @@ TEST_F(CommandLine, FilesThatDoNotFitTogetherAreRefused) {
     ASSERT_EQ(run("render scenes/curved/scene.json -o " + file("curved.h5")).status, 0);
     expect_bad_input("compare " + file("curved.h5") + " " + scene, "cannot be compared");
     expect_bad_input("reconstruct " + file("curved.h5") + " -o " + file("v.h5") + " --method lct",
-                     "bp",
+                     "phasor",
                      file("v.h5"));
     expect_bad_input("report " + file("nowhere") + " -o " + file("r.html"), "nowhere");
 }

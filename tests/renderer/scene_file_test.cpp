@@ -27,6 +27,26 @@ TEST(SceneFile, DefaultsAreThoseOfTheFormat) {
     EXPECT_EQ(scene.ground_truth.depth_resolution, (std::array<int, 2>{256, 256}));
 }
 
+// Every key of the format, as a user would copy them from its description.
+TEST(SceneFile, AllKeysOfTheFormatAreRead) {
+    const auto scene = read_text(R"({
+        "geometry": "scene.glb",
+        "relay_wall": { "center_m": [0,0,0], "normal": [0,0,1], "up": [0,1,0], "size_m": [1,1],
+                        "albedo": 1.0 },
+        "scan": { "pattern": "confocal", "sensing_points": [64, 64], "illumination_m": [0,0,0],
+                  "illumination_points": [16, 16], "opl_origin": "relay_wall",
+                  "laser_m": [-0.5,0,0.25], "detector_m": [-0.5,0,0.25] },
+        "time_axis": { "opl_start_m": 0.0, "bin_width_m": 0.008, "num_bins": 512 },
+        "render": { "method": "auto", "max_bounces": 3, "samples": 256, "seed": 0,
+                    "exclude": "mis", "exclude_area_above_m2": null, "gate": "box",
+                    "by_order": false, "direct_return": false,
+                    "restir": { "reuse": "path_length", "chart": "adaptive", "gauge": "average",
+                                "rounds": 1, "neighbours": 3, "confidence_cap": 20,
+                                "shrink_fraction": 0 } },
+        "ground_truth": { "depth_resolution": [256, 256] } })");
+    EXPECT_EQ(core::write_value(scene.render), core::write_value(renderer::RenderSettings{}));
+}
+
 TEST(SceneFile, GridPointsAreCellCentresXFirst) {
     const auto scene = read_text(
         R"({"geometry": "a.glb", "relay_wall": {"size_m": [2, 1]}, "scan": {"sensing_points": [4, 2]}})");
