@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 struct BenchArguments {
     std::string folder;
     std::string scene = "scenes/bars/scene.json";
-    int repeats = 3;
+    int repeats = 1;
 };
 
 std::string table_of(const RenderBench& bench) {
@@ -41,6 +41,14 @@ std::string table_of(const RenderBench& bench) {
         }
         text += fmt::format(
             "{:<14} error = {:.3g} seconds^{:.3f}\n", curve.method, curve.coefficient, curve.slope);
+    }
+    for (const EqualError& equal : bench.equal_error) {
+        text += fmt::format(
+            "at {} third_bounce is {:.0f} times faster than path ({:.3g} s, {:.3g} s)\n",
+            equal.rel_l2,
+            equal.ratio,
+            equal.third_bounce_seconds,
+            equal.path_seconds);
     }
     return text;
 }

@@ -138,7 +138,7 @@ BenchCurve measure_curve(const Workbench& bench,
 std::vector<Effort> path_efforts(renderer::RenderSettings settings) {
     settings.method = renderer::Estimator::Path;
     std::vector<Effort> efforts;
-    for (const int samples : {128, 512, 2048, 8192}) {
+    for (const int samples : {512, 4096, 32768, 131072}) {
         settings.samples = samples;
         efforts.push_back({fmt::format("samples={}", samples), settings});
     }
@@ -153,6 +153,22 @@ std::vector<Effort> third_bounce_efforts(renderer::RenderSettings settings) {
         efforts.push_back({fmt::format("target_error={}", target), settings});
     }
     return efforts;
+}
+
+std::vector<EqualError> equal_errors(const BenchCurve& third_bounce, const BenchCurve& path) {
+    std::vector<EqualError> result;
+    for (const double error : {0.05, 0.02, 0.01}) {
+        EqualError equal{error, std::pow(error / path.coefficient, 1.0 / path.slope), 0.0, 0.0};
+        for (const BenchPoint& point : third_bounce.points) {
+            const bool cheaper =
+                equal.third_bounce_seconds == 0.0 || point.cpu_seconds < equal.third_bounce_seconds;
+            if (point.rel_l2 <= error && cheaper) equal.third_bounce_seconds = point.cpu_seconds;
+        }
+        if (equal.third_bounce_seconds == 0.0) continue;
+        equal.ratio = equal.path_seconds / equal.third_bounce_seconds;
+        result.push_back(equal);
+    }
+    return result;
 }
 
 }  // namespace
@@ -172,6 +188,7 @@ RenderBench bench_render(const std::string& scene_path,
         result.curves.push_back(
             measure_curve(bench, method, efforts, reference, repeats, progress));
     }
+    result.equal_error = equal_errors(result.curves[0], result.curves[1]);
     return result;
 }
 

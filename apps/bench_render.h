@@ -41,6 +41,22 @@ void for_each_field(BenchCurve& curve, Visitor&& visit) {
     visit("coefficient", curve.coefficient, "error after one CPU second on the fitted line");
 }
 
+/// How much longer one estimator takes than the other for the same error.
+struct EqualError {
+    double rel_l2 = 0.0;
+    double path_seconds = 0.0;          ///< from its fitted line
+    double third_bounce_seconds = 0.0;  ///< of its cheapest run below the error
+    double ratio = 0.0;
+};
+
+template <class Visitor>
+void for_each_field(EqualError& equal, Visitor&& visit) {
+    visit("rel_l2", equal.rel_l2, "relative L2 error");
+    visit("path_seconds", equal.path_seconds, "CPU time of path, on its fitted line [s]");
+    visit("third_bounce_seconds", equal.third_bounce_seconds, "cheapest run below the error [s]");
+    visit("ratio", equal.ratio, "the first over the second");
+}
+
 /// What `nlos bench render` measured.
 struct RenderBench {
     std::string scene;
@@ -49,6 +65,7 @@ struct RenderBench {
     double check_noise = 0.0;     ///< the noise of that run
     int repeats = 0;
     std::vector<BenchCurve> curves;
+    std::vector<EqualError> equal_error;
 };
 
 template <class Visitor>
@@ -59,6 +76,7 @@ void for_each_field(RenderBench& bench, Visitor&& visit) {
     visit("check_noise", bench.check_noise, "noise of that run");
     visit("repeats", bench.repeats, "runs per point");
     visit("curves", bench.curves, "error against time");
+    visit("equal_error", bench.equal_error, "speed-up of third_bounce over path");
 }
 
 /// Measures every estimator on a scene at several efforts, on one thread.

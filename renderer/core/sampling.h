@@ -9,8 +9,8 @@
 
 namespace core {
 
-/// Warps of the unit square, each with its density and its inverse (source [Shirley1997] for the
-/// disk, [Osada2002] for the triangle; the others follow from their cumulative distributions).
+/// Warps of the unit square, each with its density and its inverse (source [Osada2002] for the
+/// triangle; the others follow from their cumulative distributions).
 
 /// Barycentric coordinates (b1, b2) of a point uniform by area on a triangle; b0 = 1 - b1 - b2.
 Vec2 sample_triangle(const Vec2& u);
