@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <limits>
 
 namespace renderer {
@@ -89,13 +90,31 @@ int channel_count(const RenderSettings& settings) {
     return settings.by_order ? settings.max_bounces : 1;
 }
 
+// Running sums per pair: one array per channel, and the squares.
+double sums_bytes_per_pair(const core::TimeAxis& axis, const RenderSettings& settings) {
+    return (channel_count(settings) + (settings.variance ? 1.0 : 0.0)) * axis.num_bins *
+           sizeof(double);
+}
+
+std::size_t pairs_per_tile(const core::Scan& scan,
+                           const core::TimeAxis& axis,
+                           const RenderSettings& settings,
+                           double most_sums_bytes) {
+    if (settings.seconds) return scan.num_pairs();  // every pair must get the same time
+    const double pairs = std::floor(most_sums_bytes / sums_bytes_per_pair(axis, settings));
+    return static_cast<std::size_t>(std::clamp(pairs, 1.0, static_cast<double>(scan.num_pairs())));
+}
+
 void require_memory(const core::Scan& scan,
                     const core::TimeAxis& axis,
-                    const RenderSettings& settings) {
-    // Sums and what is made of them: one array per channel, the total, and the variance.
-    const double arrays = channel_count(settings) + (settings.variance ? 1.0 : 0.0);
-    const double needed = static_cast<double>(scan.num_pairs()) * axis.num_bins *
-                          (arrays * sizeof(double) + (arrays + 1.0) * sizeof(float));
+                    const RenderSettings& settings,
+                    std::size_t tile_pairs) {
+    // The capture's arrays, and for one tile the sums and what is made of them.
+    const double arrays = channel_count(settings) + (settings.variance ? 2.0 : 1.0);
+    const double needed =
+        arrays * sizeof(float) * axis.num_bins *
+            (static_cast<double>(scan.num_pairs()) + static_cast<double>(tile_pairs)) +
+        sums_bytes_per_pair(axis, settings) * static_cast<double>(tile_pairs);
     const double available = static_cast<double>(core::available_memory_bytes());
     if (needed > available) {
         throw core::Failure("render",
@@ -107,7 +126,13 @@ void require_memory(const core::Scan& scan,
     }
 }
 
-// Runs passes over all pairs until the plan, the clock or the caller ends them.
+// Pairs [begin, begin + count) of a scan.
+struct Tile {
+    std::size_t begin = 0;
+    std::size_t count = 0;
+};
+
+// Runs passes over the pairs of a tile until the plan, the clock or the caller ends them.
 class PassLoop {
  public:
     PassLoop(const Scene& scene,
@@ -125,14 +150,17 @@ class PassLoop {
           tracer_(scene,
                   settings,
                   share == PathShare::NotIntegrable ? ThirdBounceScope::NotIntegrable
-                                                    : ThirdBounceScope::All),
-          sums_(scan.num_pairs(), axis.num_bins, num_channels_, settings.variance) {}
+                                                    : ThirdBounceScope::All) {}
 
-    RenderResult run(const core::Progress& progress);
+    /// Adds the tile's histograms, samples and rays to `result`.
+    void run(const Tile& tile, const core::Progress& progress, RenderResult& result);
 
  private:
-    void run_pass(int pass, int samples);
-    void fill_capture(int passes, core::Capture& capture) const;
+    void run_pass(const Tile& tile, int pass, int samples, TransientAccumulator& sums);
+    void fill_capture(const Tile& tile,
+                      const TransientAccumulator& sums,
+                      int passes,
+                      core::Capture& capture) const;
 
     const Scene& scene_;
     const core::Scan& scan_;
@@ -142,28 +170,27 @@ class PassLoop {
     int num_channels_;
     double wall_albedo_;
     PathTracer tracer_;
-    TransientAccumulator sums_;
     std::atomic<std::uint64_t> num_rays_{0};
 };
 
-void PassLoop::run_pass(int pass, int samples) {
+void PassLoop::run_pass(const Tile& tile, int pass, int samples, TransientAccumulator& sums) {
     constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
     std::atomic<std::size_t> bad_pair{kNone};
-    core::parallel_blocks(
-        scan_.num_pairs(), kPairsPerBlock, [&](std::size_t begin, std::size_t end) {
-            PassHistogram histogram(axis_, settings_.gate, num_channels_);
-            for (std::size_t pair = begin; pair < end; ++pair) {
-                const PathEnds ends = ends_of_pair(scan_, pair, wall_albedo_);
-                core::Rng rng(settings_.seed, pair, static_cast<std::uint64_t>(pass));
-                if (settings_.max_bounces >= 3 && samples > 0) {
-                    num_rays_ += tracer_.trace(ends, samples, rng, histogram);
-                }
-                add_short_paths(scene_, ends, settings_, histogram);
-                sums_.add_pass(pair, histogram);
-                if (histogram.num_non_finite() > 0) bad_pair = std::min(bad_pair.load(), pair);
-                if (bad_pair != kNone) return;
+    core::parallel_blocks(tile.count, kPairsPerBlock, [&](std::size_t begin, std::size_t end) {
+        PassHistogram histogram(axis_, settings_.gate, num_channels_);
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::size_t pair = tile.begin + i;
+            const PathEnds ends = ends_of_pair(scan_, pair, wall_albedo_);
+            core::Rng rng(settings_.seed, pair, static_cast<std::uint64_t>(pass));
+            if (settings_.max_bounces >= 3 && samples > 0) {
+                num_rays_ += tracer_.trace(ends, samples, rng, histogram);
             }
-        });
+            add_short_paths(scene_, ends, settings_, histogram);
+            sums.add_pass(i, histogram);
+            if (histogram.num_non_finite() > 0) bad_pair = std::min(bad_pair.load(), pair);
+            if (bad_pair != kNone) return;
+        }
+    });
     if (bad_pair != kNone) {
         throw core::Failure("path tracer",
                             fmt::format("a contribution is not finite (pair {}, pass {}, seed {})",
@@ -173,30 +200,36 @@ void PassLoop::run_pass(int pass, int samples) {
     }
 }
 
-void PassLoop::fill_capture(int passes, core::Capture& capture) const {
-    capture.scan = scan_;
-    capture.time_axis = axis_;
-    capture.transient = sums_.mean_of_all(passes);
-    if (settings_.variance && passes > 1) capture.variance = sums_.variance(passes);
-    if (!settings_.by_order) return;
-    for (int order = 1; order <= num_channels_; ++order) {
-        capture.orders.push_back(order);
-        capture.by_order.push_back(sums_.mean(order - 1, passes));
+void copy_tile(const core::Transient& from, const Tile& tile, core::Transient& to) {
+    std::copy(from.values().begin(), from.values().end(), to.histogram(tile.begin).begin());
+}
+
+void PassLoop::fill_capture(const Tile& tile,
+                            const TransientAccumulator& sums,
+                            int passes,
+                            core::Capture& capture) const {
+    copy_tile(sums.mean_of_all(passes), tile, capture.transient);
+    if (settings_.variance && passes > 1) {
+        if (!capture.variance) capture.variance.emplace(scan_.num_pairs(), axis_.num_bins);
+        copy_tile(sums.variance(passes), tile, *capture.variance);
+    }
+    for (std::size_t i = 0; i < capture.orders.size(); ++i) {
+        copy_tile(sums.mean(capture.orders[i] - 1, passes), tile, capture.by_order[i]);
     }
 }
 
-RenderResult PassLoop::run(const core::Progress& progress) {
+void PassLoop::run(const Tile& tile, const core::Progress& progress, RenderResult& result) {
     const auto start = Clock::now();
     const PassPlan plan = plan_passes(settings_, share_);
-    RenderResult result;
+    TransientAccumulator sums(tile.count, axis_.num_bins, num_channels_, settings_.variance);
     int pass = 0;
     while (pass < plan.num_passes) {
-        run_pass(pass, plan.samples_per_pass);
+        run_pass(tile, pass, plan.samples_per_pass, sums);
         ++pass;
         const double elapsed = seconds_since(start);
         const double share = settings_.seconds ? elapsed / *settings_.seconds
                                                : static_cast<double>(pass) / plan.num_passes;
-        const double paths = static_cast<double>(scan_.num_pairs()) * plan.samples_per_pass * pass;
+        const double paths = static_cast<double>(tile.count) * plan.samples_per_pass * pass;
         progress.update(std::min(1.0, share),
                         fmt::format("{:.2f} M paths/s", paths / elapsed * 1e-6));
         if (settings_.seconds && elapsed >= *settings_.seconds) break;
@@ -205,12 +238,25 @@ RenderResult PassLoop::run(const core::Progress& progress) {
             break;
         }
     }
-    fill_capture(pass, result.capture);
+    fill_capture(tile, sums, pass, result.capture);
     result.samples_per_pair =
         static_cast<std::uint64_t>(plan.samples_per_pass) * static_cast<std::uint64_t>(pass);
-    result.num_rays = num_rays_;
-    result.seconds = seconds_since(start);
-    return result;
+    result.num_rays += num_rays_.exchange(0);
+}
+
+core::Capture empty_capture(const core::Scan& scan,
+                            const core::TimeAxis& axis,
+                            const RenderSettings& settings) {
+    core::Capture capture;
+    capture.scan = scan;
+    capture.time_axis = axis;
+    capture.transient = core::Transient(scan.num_pairs(), axis.num_bins);
+    if (!settings.by_order) return capture;
+    for (int order = 1; order <= channel_count(settings); ++order) {
+        capture.orders.push_back(order);
+        capture.by_order.emplace_back(scan.num_pairs(), axis.num_bins);
+    }
+    return capture;
 }
 
 }  // namespace
@@ -219,10 +265,30 @@ RenderResult render_paths(const Scene& scene,
                           const core::Scan& scan,
                           const core::TimeAxis& axis,
                           const RenderSettings& settings,
-                          PathShare share,
+                          const PathWork& work,
                           const core::Progress& progress) {
-    require_memory(scan, axis, settings);
-    return PassLoop(scene, scan, axis, settings, share).run(progress);
+    const auto start = Clock::now();
+    const std::size_t num_pairs = scan.num_pairs();
+    const std::size_t tile_pairs = pairs_per_tile(scan, axis, settings, work.most_sums_bytes);
+    require_memory(scan, axis, settings, tile_pairs);
+    RenderResult result;
+    result.capture = empty_capture(scan, axis, settings);
+    PassLoop loop(scene, scan, axis, settings, work.share);
+    for (std::size_t begin = 0; begin < num_pairs; begin += tile_pairs) {
+        const Tile tile{begin, std::min(tile_pairs, num_pairs - begin)};
+        core::Progress part = progress;
+        part.report = [&](double share, const std::string& detail) {
+            const double pairs =
+                static_cast<double>(begin) + share * static_cast<double>(tile.count);
+            progress.update(pairs / static_cast<double>(num_pairs), detail);
+        };
+        loop.run(tile, part, result);
+        if (result.interrupted && tile.count < num_pairs) {
+            throw core::Failure("render", "interrupted before every part of the scan was traced");
+        }
+    }
+    result.seconds = seconds_since(start);
+    return result;
 }
 
 }  // namespace renderer

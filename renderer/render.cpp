@@ -80,7 +80,7 @@ RenderResult render(const Scene& scene,
                             settings.gate == GateShape::Box && surfaces.integrable;
     if (!integrates) {
         RenderResult result =
-            render_paths(scene, scan, axis, settings, PathShare::Everything, progress);
+            render_paths(scene, scan, axis, settings, {PathShare::Everything}, progress);
         list_path_orders(settings, PathShare::Everything, result);
         return result;
     }
@@ -89,7 +89,7 @@ RenderResult render(const Scene& scene,
     const ThirdBounce third =
         integrate_third_bounce(scene, scan, axis, settings, part_of(progress, 0.0, done));
     RenderResult result =
-        render_paths(scene, scan, axis, settings, share, part_of(progress, done, 1.0));
+        render_paths(scene, scan, axis, settings, {share}, part_of(progress, done, 1.0));
     add(third.transient, result.capture.transient);
     if (settings.by_order) add(third.transient, result.capture.by_order[2]);
     OrderSource integrated{3, 3, Estimator::ThirdBounce, "all"};

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 // What must not change when a set-up is described in another way.
-#include "renderer/render.h"
+#include "renderer/path_render.h"
 #include "tests/support/statistics.h"
 #include "tests/support/test_scenes.h"
 
 #include <gtest/gtest.h>
+
+#include <algorithm>
 
 namespace {
 
@@ -115,6 +117,31 @@ TEST(PathTracer, PatternsAgreeWherePairsCoincide) {
         expect_same(confocal, i, i * kPoints.size() + i);
         expect_same(single, i, kPoints.size() + i);
     }
+}
+
+// Scans whose sums do not fit are traced in tiles; that changes no bit.
+TEST(PathTracer, TilesGiveTheSameBitsAsTheWholeScan) {
+    renderer::SceneGeometry geometry;
+    geometry.objects.push_back(test_support::parallelogram_object(kHidden));
+    const core::Scan scan = test_support::exhaustive_scan(kPoints, kPoints);
+    const renderer::Scene scene(std::move(geometry), scan, renderer::RelayWall{});
+    renderer::RenderSettings settings = settings_with(100);
+    settings.by_order = true;
+    const auto whole = renderer::render_paths(scene, scan, kAxis, settings, {}, {});
+    // Room for two pairs of five orders and squares.
+    renderer::PathWork work;
+    work.most_sums_bytes = 2.5 * 6 * 60 * sizeof(double);
+    const auto tiled = renderer::render_paths(scene, scan, kAxis, settings, work, {});
+    EXPECT_TRUE(
+        std::ranges::equal(tiled.capture.transient.values(), whole.capture.transient.values()));
+    EXPECT_TRUE(
+        std::ranges::equal(tiled.capture.variance->values(), whole.capture.variance->values()));
+    EXPECT_TRUE(
+        std::ranges::equal(tiled.capture.by_order[4].values(), whole.capture.by_order[4].values()));
+    EXPECT_EQ(tiled.num_rays, whole.num_rays);
+    core::Progress stop;
+    stop.stop_requested = [] { return true; };
+    EXPECT_THROW(renderer::render_paths(scene, scan, kAxis, settings, work, stop), core::Failure);
 }
 
 // Swapping light and sensor is the same path walked backwards.
