@@ -54,8 +54,8 @@ bool draw_as(const LogPlot& plot, const std::string& terminal, const std::string
 }  // namespace
 
 bool draw_plot(const LogPlot& plot, const std::string& path) {
-    return draw_as(plot, "svg size 800,500 dynamic", path + ".svg") &&
-           draw_as(plot, "pngcairo size 1200,750 fontscale 1.3", path + ".png");
+    return draw_as(plot, "svg size 800,500 dynamic noenhanced", path + ".svg") &&
+           draw_as(plot, "pngcairo size 1200,750 fontscale 1.3 noenhanced", path + ".png");
 }
 
 }  // namespace apps
