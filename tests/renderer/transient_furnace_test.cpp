@@ -94,13 +94,25 @@ renderer::Scene sphere_scene(const core::Scan& scan) {
     return {std::move(geometry), scan, renderer::RelayWall{}};
 }
 
+// A scan that has nothing to do with the sphere, for scenes that are traced from other ends.
+core::Scan far_scan() {
+    return test_support::confocal_scan({Vec3(10, 0, 0)});
+}
+
+// A source of 1 W and a detector of fluence, both at the centre.
+renderer::PathEnds isotropic_ends() {
+    renderer::PathEnds ends;
+    ends.sensor.isotropic = ends.light.isotropic = true;
+    ends.sensor.strength = 1.0;
+    ends.light.strength = 1.0 / (4.0 * kPi);
+    ends.coincide = true;
+    return ends;
+}
+
 // The centroid of the facet that a ray from the centre meets: close to an edge, the wedge with the
 // next facet would be seen as a strong reflection that a sphere does not have.
 core::WallPoints point_on_sphere(const Vec3& direction) {
-    core::Scan none;
-    none.sensing = test_support::wall_points({Vec3(10, 0, 0)});
-    none.illumination = none.sensing;
-    const renderer::Scene scene = sphere_scene(none);
+    const renderer::Scene scene = sphere_scene(far_scan());
     const renderer::Facet& facet =
         scene.facet(scene.first_hit(Vec3::Zero(), direction, direction)->facet);
     core::WallPoints points;
@@ -121,15 +133,8 @@ void expect_close(double measured, double expected, double sigma, const std::str
 // length 2R + (k-1) 4R/3; bounce 1 has length 2R, bounce 2 the density rho^2 Phi (tau-2R)/(2 pi
 // R^4).
 TEST(TransientFurnace, IsotropicEndsAtTheCentre) {
-    core::Scan scan;
-    scan.sensing = test_support::wall_points({Vec3(10, 0, 0)});
-    scan.illumination = scan.sensing;
-    renderer::PathEnds ends;
-    ends.sensor.isotropic = ends.light.isotropic = true;
-    ends.sensor.strength = 1.0;
-    ends.light.strength = 1.0 / (4.0 * kPi);
-    ends.coincide = true;
-    const renderer::Scene scene = sphere_scene(scan);
+    const renderer::PathEnds ends = isotropic_ends();
+    const renderer::Scene scene = sphere_scene(far_scan());
     const Furnace furnace(scene, ends, 6);
 
     for (int bounce = 1; bounce <= 4; ++bounce) {
@@ -146,15 +151,8 @@ TEST(TransientFurnace, IsotropicEndsAtTheCentre) {
 }
 
 TEST(TransientFurnace, SecondBounceIsALinearRamp) {
-    core::Scan scan;
-    scan.sensing = test_support::wall_points({Vec3(10, 0, 0)});
-    scan.illumination = scan.sensing;
-    renderer::PathEnds ends;
-    ends.sensor.isotropic = ends.light.isotropic = true;
-    ends.sensor.strength = 1.0;
-    ends.light.strength = 1.0 / (4.0 * kPi);
-    ends.coincide = true;
-    const renderer::Scene scene = sphere_scene(scan);
+    const renderer::PathEnds ends = isotropic_ends();
+    const renderer::Scene scene = sphere_scene(far_scan());
     const Furnace furnace(scene, ends, 4);
     const auto values = furnace.histogram(4);
     const core::TimeAxis& axis = furnace.axis();
