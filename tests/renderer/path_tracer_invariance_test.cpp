@@ -144,6 +144,25 @@ TEST(PathTracer, TilesGiveTheSameBitsAsTheWholeScan) {
     EXPECT_THROW(renderer::render_paths(scene, scan, kAxis, settings, work, stop), core::Failure);
 }
 
+// The direct return: radiance of the lit spot itself, after the device legs, confocal pairs only.
+TEST(PathTracer, DirectReturnIsTheLitSpotAfterTheDeviceLegs) {
+    renderer::RenderSettings settings = settings_with(16);
+    settings.by_order = true;
+    settings.direct_return = true;
+    settings.laser_spot_m2 = 2e-4;
+    core::Scan scan = test_support::confocal_scan({kPoints[0]});
+    scan.opl_origin = core::OplOrigin::Device;
+    scan.laser_position = scan.detector_position = Vec3(0.0, 0.0, 1.0);
+    const core::TimeAxis axis{0.0, 0.02, 200};
+    const auto capture = render_plain(scan, axis, settings);
+    const auto direct = capture.by_order[0].histogram(0);
+    const int bin = *axis.bin_of(2.0 * (kPoints[0] - scan.laser_position).norm());
+    for (int i = 0; i < axis.num_bins; ++i) {
+        const double expected = i == bin ? 1.0 / (core::kPi * settings.laser_spot_m2) : 0.0;
+        EXPECT_NEAR(direct[static_cast<std::size_t>(i)], expected, 1e-6 * (1.0 + expected)) << i;
+    }
+}
+
 // Swapping light and sensor is the same path walked backwards.
 TEST(PathTracer, SwappingLightAndSensorGivesTheSameEnergyPerOrder) {
     renderer::RenderSettings settings = settings_with(400'000);
