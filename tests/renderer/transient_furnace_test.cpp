@@ -213,6 +213,55 @@ TEST(TransientFurnace, ThirdBounceOfAConfocalPointIsALinearRamp) {
     }
 }
 
+// Through the front door, independent seeds: totals and mean lengths of orders 3 to 5 by t-test.
+TEST(TransientFurnace, FrontDoorGivesTotalsAndMeansOfEveryOrder) {
+    constexpr int kSeeds = 20;
+    core::Scan scan;
+    scan.pattern = core::ScanPattern::Single;
+    scan.sensing = point_on_sphere(Vec3(0.3, 0.5, 0.8).normalized());
+    scan.illumination = point_on_sphere(Vec3(-0.6, 0.4, 0.1).normalized());
+    renderer::SceneGeometry geometry;
+    geometry.objects.push_back(
+        test_support::sphere_object(Vec3::Zero(), kRadius, kSubdivisions, kAlbedo));
+    renderer::RelayWall wall;
+    wall.albedo = kAlbedo;
+    const renderer::Scene scene(std::move(geometry), scan, wall);
+    renderer::RenderSettings settings;
+    settings.method = renderer::Estimator::Path;
+    settings.by_order = true;
+    settings.max_bounces = 5;
+    settings.samples = 20'000;
+    const core::TimeAxis axis{0.0, 0.02, 600};
+    for (std::size_t order = 3; order <= 5; ++order) {
+        std::vector<double> totals;
+        std::vector<double> means;
+        for (int seed = 0; seed < kSeeds; ++seed) {
+            settings.seed = test_support::seed_of("FrontDoor") + static_cast<std::uint64_t>(seed);
+            const auto result = renderer::render(scene, scan, axis, settings, {});
+            const auto values = result.capture.by_order[order - 1].histogram(0);
+            double total = 0.0;
+            double weighted = 0.0;
+            for (std::size_t i = 0; i < values.size(); ++i) {
+                total += double{values[i]};
+                weighted += double{values[i]} * axis.bin_center_m(double(i));
+            }
+            totals.push_back(total);
+            means.push_back(weighted / total);
+        }
+        const auto expect_mean =
+            [&](const std::vector<double>& x, double expected, const char* of) {
+                double mean = 0.0;
+                double spread = 0.0;
+                for (const double value : x) mean += value / kSeeds;
+                for (const double value : x) spread += std::pow(value - mean, 2);
+                expect_close(mean, expected, std::sqrt(spread / (kSeeds * (kSeeds - 1.0))), of);
+            };
+        expect_mean(
+            totals, std::pow(kAlbedo, order) / (4.0 * kPi * kPi * kRadius * kRadius), "total");
+        expect_mean(means, (double(order) - 1.0) * 4.0 * kRadius / 3.0, "mean length");
+    }
+}
+
 // Through the front door: order 2 is the straight way from point to point.
 TEST(TransientFurnace, FrontDoorAddsTheStraightWay) {
     core::Scan scan;
