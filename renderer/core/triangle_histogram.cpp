@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/core/triangle_histogram.h"
 
+#include "renderer/core/triangle_splines.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -71,6 +73,41 @@ double mean_of(const std::array<double, 3>& values) {
     return (values[0] + values[1] + values[2]) / 3.0;
 }
 
+// The Gaussian response is cut off this many standard deviations away: beyond, it holds 1e-15.
+constexpr double kReach = 8.0;
+
+using Slots = std::array<double, TriangleBins::kSlots>;
+
+// The cumulative histogram and its slopes from the splines, edge_m from the first knot; the mean
+// over a triangle is twice the integral over the barycentric coordinates.
+Slots cumulative_of(const TriangleSplines<double>::Values& values,
+                    const TriangleKnots& knots,
+                    double edge_m,
+                    double per_m,
+                    Slopes slopes) {
+    Slots cumulative{};
+    for (std::size_t j = 0; j < 3; ++j) {
+        cumulative[0] += 2.0 * values.share[j] * knots.weight[j];
+    }
+    if (slopes == Slopes::Without) return cumulative;
+    const auto& s = values.slope;
+    const auto& k = knots.weight;
+    cumulative[1] = 2.0 * per_m * (2.0 * s[0] * k[0] + s[1] * k[1] + s[2] * k[2]);
+    cumulative[2] = 2.0 * per_m * (s[1] * k[0] + 2.0 * s[3] * k[1] + s[4] * k[2]);
+    cumulative[3] = 2.0 * per_m * (s[2] * k[0] + s[4] * k[1] + 2.0 * s[5] * k[2]);
+    for (std::size_t j = 0; j < 3; ++j) {
+        cumulative[4 + j] = 2.0 * values.share[j];
+        // Shares depend on (edge, knots) / sigma only, and on differences of these.
+        cumulative[7] += (edge_m - (knots.opl_m[j] - knots.opl_m[0])) * cumulative[1 + j];
+    }
+    return cumulative;
+}
+
+// What is reached once the whole triangle lies below the edge.
+Slots whole_triangle(const TriangleKnots& knots) {
+    return {mean_of(knots.weight), 0.0, 0.0, 0.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0, 0.0};
+}
+
 }  // namespace
 
 TriangleKnots match_midpoints(const TriangleKnots& at_corners, const TriangleKnots& at_midpoints) {
@@ -118,6 +155,42 @@ void add_triangle(const TriangleKnots& knots,
         below = next;
     }
     if (last < num_bins) histogram[bin] += area_m2 * (triangle.mean() - below);
+}
+
+void evaluate_triangle(const TriangleKnots& knots,
+                       double sigma_m,
+                       const TimeAxis& axis,
+                       Slopes slopes,
+                       TriangleBins& bins) {
+    const auto [least, most] = std::minmax_element(knots.opl_m.begin(), knots.opl_m.end());
+    const double reach = kReach * sigma_m;
+    const double begin = (*least - reach - axis.opl_start_m) / axis.bin_width_m;
+    const double end = (*most + reach - axis.opl_start_m) / axis.bin_width_m;
+    bins.bins.clear();
+    bins.first_bin = 0;
+    if (!(end > 0.0) || !(begin < axis.num_bins)) return;
+    bins.first_bin = static_cast<int>(std::max(0.0, std::floor(begin)));
+    const int last_bin = static_cast<int>(std::min(axis.num_bins - 1.0, std::floor(end)));
+
+    const double per_m = 1.0 / (sigma_m > 0.0 ? sigma_m : axis.bin_width_m);
+    const TriangleSplines<double> splines(
+        {0.0, (knots.opl_m[1] - knots.opl_m[0]) * per_m, (knots.opl_m[2] - knots.opl_m[0]) * per_m},
+        sigma_m > 0.0 ? Smear::Gaussian : Smear::None);
+    TriangleSplines<double>::Values values;
+    const auto cumulative_at = [&](int edge) {
+        if (edge <= begin) return Slots{};
+        if (edge >= end) return whole_triangle(knots);
+        const double edge_m = axis.bin_begin_m(edge) - knots.opl_m[0];
+        splines.evaluate(edge_m * per_m, slopes == Slopes::With, values);
+        return cumulative_of(values, knots, edge_m, per_m, slopes);
+    };
+    Slots below = cumulative_at(bins.first_bin);
+    for (int bin = bins.first_bin; bin <= last_bin; ++bin) {
+        const Slots next = cumulative_at(bin + 1);
+        TriangleBins::Bin& target = bins.bins.emplace_back();
+        for (std::size_t i = 0; i < below.size(); ++i) target.slots[i] = next[i] - below[i];
+        below = next;
+    }
 }
 
 }  // namespace core

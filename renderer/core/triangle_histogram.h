@@ -5,6 +5,7 @@
 
 #include <array>
 #include <span>
+#include <vector>
 
 namespace core {
 
@@ -41,5 +42,33 @@ void add_triangle(const TriangleKnots& knots,
                   double area_m2,
                   const TimeAxis& axis,
                   std::span<double> histogram);
+
+/// The bins that a triangle of unit area reaches, and how they change with its knots.
+struct TriangleBins {
+    /// Value; derivatives by the three lengths, by the three weights, and by the logarithm of the
+    /// response's width.
+    static constexpr std::size_t kSlots = 8;
+    struct Bin {
+        std::array<double, kSlots> slots;
+    };
+
+    int first_bin = 0;
+    std::vector<Bin> bins;
+};
+
+/// Whether derivatives are wanted.
+enum class Slopes { Without, With };
+
+/// The histogram of add_triangle() seen through a Gaussian response, in closed form.
+///
+/// sigma_m   standard deviation of the response in path length [m]; 0: none
+/// slopes    without them only slot 0 of each bin is set
+/// bins      overwritten; memory is kept from call to call
+/// source    [deBoor1978]; derived in triangle_splines.h
+void evaluate_triangle(const TriangleKnots& knots,
+                       double sigma_m,
+                       const TimeAxis& axis,
+                       Slopes slopes,
+                       TriangleBins& bins);
 
 }  // namespace core
