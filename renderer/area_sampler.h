@@ -18,7 +18,13 @@ class AreaSampler {
     explicit AreaSampler(const Scene& scene);
 
     /// A surface point; `hint` is updated so that calls with rising u1 are quick (start with 0).
-    SurfacePoint sample(double u1, double u2, std::size_t& hint) const;
+    SurfacePoint sample(double u1, double u2, std::size_t& hint) const {
+        double remapped = 0.0;
+        hint = by_area_.sample_from(hint, u1, remapped);
+        const core::Vec2 b = core::sample_triangle({remapped, u2});
+        const std::uint32_t facet = facets_[hint];
+        return {scene_->facet(facet).point(b.x(), b.y()), facet};
+    }
 
     /// Density of sample() on hidden facets, pdf_area [1/m^2].
     double pdf_area() const { return 1.0 / by_area_.sum(); }

@@ -2,6 +2,7 @@
 #include "renderer/pass_histogram.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace renderer {
@@ -9,8 +10,8 @@ namespace renderer {
 PassHistogram::PassHistogram(const core::TimeAxis& axis, GateShape gate, int num_channels)
     : axis_(axis),
       gate_(gate),
-      values_(static_cast<std::size_t>(num_channels) * static_cast<std::size_t>(axis.num_bins)),
-      is_touched_(static_cast<std::size_t>(axis.num_bins)) {}
+      values_(static_cast<std::size_t>(num_channels) * static_cast<std::size_t>(axis.num_bins) + 1),
+      first_touched_(axis.num_bins) {}
 
 void PassHistogram::add(int channel, double opl_m, double value) {
     if (!std::isfinite(value) || !std::isfinite(opl_m)) {
@@ -20,12 +21,39 @@ void PassHistogram::add(int channel, double opl_m, double value) {
     int bin = 0;
     const double weighted = value * gate_weight(opl_m, bin);
     if (weighted == 0.0) return;
-    const auto index = static_cast<std::size_t>(bin);
-    if (!is_touched_[index]) {
-        is_touched_[index] = true;
-        touched_.push_back(static_cast<std::uint32_t>(bin));
+    first_touched_ = std::min(first_touched_, bin);
+    last_touched_ = std::max(last_touched_, bin);
+    values_[static_cast<std::size_t>(channel * axis_.num_bins + bin)] += weighted;
+}
+
+void PassHistogram::add(int channel,
+                        std::span<const double> opl_m,
+                        std::span<const double> values) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < values.size(); ++i) sum += values[i] + opl_m[i];
+    if (gate_ != GateShape::Box || !std::isfinite(sum)) {
+        for (std::size_t i = 0; i < values.size(); ++i) add(channel, opl_m[i], values[i]);
+        return;
     }
-    values_[static_cast<std::size_t>(channel * axis_.num_bins) + index] += weighted;
+    // As TimeAxis::bin_of(), all at once; what lies outside the axis goes to one place.
+    std::array<int, kMostAtOnce> places;
+    const int first = channel * axis_.num_bins;
+    const int outside = static_cast<int>(values_.size()) - 1;
+    int lowest = first_touched_;
+    int highest = last_touched_;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const double position = (opl_m[i] - axis_.opl_start_m) / axis_.bin_width_m;
+        const bool counts = position >= 0.0 && position < axis_.num_bins && values[i] != 0.0;
+        const int bin = counts ? static_cast<int>(position) : 0;
+        lowest = std::min(lowest, counts ? bin : lowest);
+        highest = std::max(highest, counts ? bin : highest);
+        places[i] = counts ? first + bin : outside;
+    }
+    first_touched_ = lowest;
+    last_touched_ = highest;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        values_[static_cast<std::size_t>(places[i])] += values[i];
+    }
 }
 
 double PassHistogram::gate_weight(double opl_m, int& bin) const {

@@ -5,6 +5,7 @@
 #include "renderer/render_settings.h"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace renderer {
@@ -18,23 +19,34 @@ class PassHistogram {
 
     /// Adds a contribution of a path of length `opl_m`, weighted by the gate.
     void add(int channel, double opl_m, double value);
+    /// Adds many contributions, those of 0 left out.
+    ///
+    /// opl_m, values   one entry per path, at most kMostAtOnce
+    void add(int channel, std::span<const double> opl_m, std::span<const double> values);
+    static constexpr std::size_t kMostAtOnce = 64;
 
     /// Hands over what was collected and clears it: first `visit_value(channel * num_bins + bin,
-    /// value)` for every channel of every touched bin, then `visit_total(bin, sum over channels)`.
+    /// value)` for every channel of a range that holds all touched bins, then `visit_total(bin, sum
+    /// over channels)`.
     template <class VisitValue, class VisitTotal>
     void drain(VisitValue&& visit_value, VisitTotal&& visit_total) {
         const auto num_bins = static_cast<std::size_t>(axis_.num_bins);
-        for (const std::uint32_t bin : touched_) {
-            double total = 0.0;
-            for (std::size_t i = bin; i < values_.size(); i += num_bins) {
-                visit_value(i, values_[i]);
-                total += values_[i];
-                values_[i] = 0.0;
+        const auto end = static_cast<std::size_t>(last_touched_ + 1);
+        for (std::size_t begin = 0; begin + num_bins < values_.size(); begin += num_bins) {
+            for (auto bin = static_cast<std::size_t>(first_touched_); bin < end; ++bin) {
+                visit_value(begin + bin, values_[begin + bin]);
             }
-            visit_total(std::size_t{bin}, total);
-            is_touched_[bin] = false;
         }
-        touched_.clear();
+        for (auto bin = static_cast<std::size_t>(first_touched_); bin < end; ++bin) {
+            double total = 0.0;
+            for (std::size_t begin = 0; begin + num_bins < values_.size(); begin += num_bins) {
+                total += values_[begin + bin];
+                values_[begin + bin] = 0.0;
+            }
+            visit_total(bin, total);
+        }
+        first_touched_ = axis_.num_bins;
+        last_touched_ = -1;
     }
 
     /// Contributions so far that were not finite numbers; they are left out of the bins.
@@ -46,9 +58,9 @@ class PassHistogram {
 
     core::TimeAxis axis_;
     GateShape gate_;
-    std::vector<double> values_;  ///< [channel][bin]
-    std::vector<std::uint32_t> touched_;
-    std::vector<bool> is_touched_;
+    std::vector<double> values_;  ///< [channel][bin], and one for what lies outside the axis
+    int first_touched_;
+    int last_touched_ = -1;
     std::uint64_t num_non_finite_ = 0;
 };
 

@@ -23,9 +23,15 @@ constexpr double kAreaShareBetweenSurfaces = 0.25;
 constexpr int kFirstRouletteOrder = 5;
 constexpr double kLeastSurvival = 0.1;
 
-double pdf_direction(const PathEnd& end, const Vec3& direction) {
-    if (end.isotropic) return core::pdf_sphere();
-    return std::max(0.0, end.normal.dot(direction)) / kPi;
+// Per object, whether first vertices on it may reflect straight to the light. At the third bounce
+// the relay wall only passes light on; see formats of scenes.
+std::vector<bool> objects_that_add(const Scene& scene, ThirdBounceScope scope) {
+    std::vector<bool> adds;
+    for (const Object& object : scene.objects()) {
+        adds.push_back(object.role != Role::RelayWall &&
+                       (scope == ThirdBounceScope::All || !is_integrable(object.material)));
+    }
+    return adds;
 }
 
 }  // namespace
@@ -43,24 +49,15 @@ class PathTracer::Walk {
           ends_(ends),
           rng_(rng),
           histogram_(histogram),
-          weight_(1.0 / num_samples) {}
+          weight_(1.0 / num_samples),
+          first_(*tracer.scene_, tracer.facet_traits_) {}
 
     void trace_area_samples(int count);
     void trace_bsdf_samples(int count);
     std::uint64_t num_rays() const { return num_rays_; }
 
  private:
-    // A first vertex and what its connection to the light carries if nothing is in the way.
-    struct Candidate {
-        PathVertex vertex;
-        double value = 0.0;
-    };
-
-    bool make_candidate(const SurfacePoint& point, Candidate& candidate) const;
-    void trace_packet();
-    void keep_seen_from_sensor();
-    void finish_candidates();
-    Vec3 sample_sensor_direction(const Vec2& u) const;
+    void finish_first_vertices(bool may_be_hidden);
     double evaluate(const PathVertex& vertex, const Vec3& outgoing) const;
     double connection_value(const PathVertex& vertex) const;
     void deposit(const PathVertex& vertex, double value);
@@ -74,9 +71,7 @@ class PathTracer::Walk {
     PassHistogram& histogram_;
     double weight_;  ///< of one path: 1 / number of samples
 
-    std::array<Candidate, SegmentPacket::kSize> candidates_;
-    int num_candidates_ = 0;
-    SegmentPacket packet_;
+    FirstVertices first_;
     std::uint64_t num_rays_ = 0;
 };
 
@@ -85,14 +80,9 @@ PathTracer::PathTracer(const Scene& scene, const RenderSettings& settings, Third
       area_sampler_(scene),
       max_order_(settings.max_bounces),
       by_order_(settings.by_order),
-      laser_spot_m2_(settings.laser_spot_m2) {
-    for (const Object& object : scene.objects()) {
-        // At the third bounce the relay wall only passes light on; see formats of scenes.
-        adds_third_bounce_.push_back(
-            object.role != Role::RelayWall &&
-            (scope == ThirdBounceScope::All || !is_integrable(object.material)));
-    }
-}
+      laser_spot_m2_(settings.laser_spot_m2),
+      adds_third_bounce_(objects_that_add(scene, scope)),
+      facet_traits_(scene, adds_third_bounce_) {}
 
 std::uint64_t PathTracer::trace(const PathEnds& ends,
                                 int num_samples,
@@ -109,119 +99,69 @@ std::uint64_t PathTracer::trace(const PathEnds& ends,
 }
 
 void PathTracer::Walk::trace_area_samples(int count) {
+    std::array<double, FirstVertices::kCapacity> u1;
+    std::array<double, FirstVertices::kCapacity> u2;
     std::size_t hint = 0;
-    for (int i = 0; i < count; ++i) {
-        const double u1 = (i + rng_.uniform()) / count;
-        const SurfacePoint point = tracer_.area_sampler_.sample(u1, rng_.uniform(), hint);
-        if (!make_candidate(point, candidates_[static_cast<std::size_t>(num_candidates_)]))
-            continue;
-        if (++num_candidates_ < SegmentPacket::kSize) continue;
-        keep_seen_from_sensor();
-        finish_candidates();
+    for (int begin = 0; begin < count; begin += FirstVertices::kCapacity) {
+        const int size = std::min(count - begin, FirstVertices::kCapacity);
+        rng_.fill_uniform({u1.data(), static_cast<std::size_t>(size)});
+        rng_.fill_uniform({u2.data(), static_cast<std::size_t>(size)});
+        const double strata = 1.0 / count;
+        for (std::size_t i = 0; i < static_cast<std::size_t>(size); ++i) {
+            const double stratified = (begin + static_cast<double>(i) + u1[i]) * strata;
+            const SurfacePoint point = tracer_.area_sampler_.sample(stratified, u2[i], hint);
+            first_.add(point.position, point.facet);
+        }
+        finish_first_vertices(true);
     }
-    keep_seen_from_sensor();
-    finish_candidates();
 }
 
 void PathTracer::Walk::trace_bsdf_samples(int count) {
     const PathEnd& sensor = ends_.sensor;
+    const core::Mat3 world_from_end =
+        core::frame_from_normal(sensor.normal, scene_.tangent_hint(sensor.normal));
     for (int i = 0; i < count; ++i) {
-        const double u1 = (i + rng_.uniform()) / count;
-        const Vec3 direction = sample_sensor_direction({u1, rng_.uniform()});
+        const Vec2 u{(i + rng_.uniform()) / count, rng_.uniform()};
+        const Vec3 direction = sensor.isotropic
+                                   ? core::sample_sphere(u)
+                                   : Vec3(world_from_end * core::sample_cosine_hemisphere(u));
         const auto point = scene_.first_hit(sensor.position, sensor.normal, direction);
         ++num_rays_;
         if (!point) continue;
-        if (!make_candidate(*point, candidates_[static_cast<std::size_t>(num_candidates_)]))
-            continue;
-        if (++num_candidates_ == SegmentPacket::kSize) finish_candidates();
+        first_.add(point->position, point->facet);
+        if (first_.full()) finish_first_vertices(false);
     }
-    finish_candidates();
+    finish_first_vertices(false);
 }
 
-// False when the vertex can add nothing to any order asked for.
-bool PathTracer::Walk::make_candidate(const SurfacePoint& point, Candidate& candidate) const {
-    PathVertex& vertex = candidate.vertex;
-    vertex.point = point;
-    vertex.normal = scene_.facet(point.facet).normal;
-    const Vec3 offset = point.position - ends_.sensor.position;
-    const double distance2 = offset.squaredNorm();
-    vertex.opl_m = std::sqrt(distance2);
-    const Vec3 direction = offset / vertex.opl_m;
-    vertex.to_previous = -direction;
-    vertex.order = 3;
-
-    const double per_area = std::abs(vertex.normal.dot(direction)) / distance2;
-    const double area_pdf = scene_.is_hidden(point.facet) ? tracer_.area_sampler_.pdf_area() : 0.0;
-    const double pdf = kAreaShareFromWall * area_pdf + (1.0 - kAreaShareFromWall) *
-                                                           pdf_direction(ends_.sensor, direction) *
-                                                           per_area;
-    vertex.throughput = weight_ * ends_.sensor.factor(direction) * per_area / pdf;
-    if (!(vertex.throughput > 0.0)) return false;
-    vertex.bsdf = scene_.bsdf_at(point);
-    candidate.value = connection_value(vertex);
-    return candidate.value > 0.0 || tracer_.max_order_ > 3;
-}
-
-void PathTracer::Walk::trace_packet() {
-    if (packet_.count == 0) return;
-    scene_.rays().trace(packet_);
-    num_rays_ += static_cast<std::uint64_t>(packet_.count);
-}
-
-void PathTracer::Walk::keep_seen_from_sensor() {
-    packet_.count = 0;
-    for (int i = 0; i < num_candidates_; ++i) {
-        const PathVertex& vertex = candidates_[static_cast<std::size_t>(i)].vertex;
-        scene_.rays().add_segment(packet_,
-                                  ends_.sensor.position,
-                                  ends_.sensor.normal,
-                                  vertex.point.position,
-                                  vertex.normal);
-    }
-    trace_packet();
-    int kept = 0;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(num_candidates_); ++i) {
-        if (!packet_.blocked[i]) candidates_[static_cast<std::size_t>(kept++)] = candidates_[i];
-    }
-    num_candidates_ = kept;
-}
-
-// Connects first vertices that the sensor sees to the light, and continues their paths.
-void PathTracer::Walk::finish_candidates() {
-    packet_.count = 0;
-    std::array<std::size_t, SegmentPacket::kSize> lane_owner{};
-    for (std::size_t i = 0; i < static_cast<std::size_t>(num_candidates_); ++i) {
-        const Candidate& candidate = candidates_[i];
-        if (!(candidate.value > 0.0)) continue;
-        if (ends_.coincide) {
-            deposit(candidate.vertex, candidate.value);
-            continue;
-        }
-        lane_owner[static_cast<std::size_t>(packet_.count)] = i;
-        scene_.rays().add_segment(packet_,
-                                  ends_.light.position,
-                                  ends_.light.normal,
-                                  candidate.vertex.point.position,
-                                  candidate.vertex.normal);
-    }
-    trace_packet();
-    for (std::size_t lane = 0; lane < static_cast<std::size_t>(packet_.count); ++lane) {
-        const Candidate& candidate = candidates_[lane_owner[lane]];
-        if (!packet_.blocked[lane]) deposit(candidate.vertex, candidate.value);
-    }
-    if (tracer_.max_order_ > 3) {
-        for (std::size_t i = 0; i < static_cast<std::size_t>(num_candidates_); ++i) {
-            extend(candidates_[i].vertex);
+// Connects first vertices to the light and continues their paths. `may_be_hidden`: whether the
+// sensor may not see them.
+void PathTracer::Walk::finish_first_vertices(bool may_be_hidden) {
+    first_.evaluate(ends_, {weight_, kAreaShareFromWall, tracer_.area_sampler_.pdf_area()});
+    if (tracer_.facet_traits_.any_varies()) {
+        for (int i = 0; i < first_.size(); ++i) {
+            if (!tracer_.facet_traits_.varies(first_.facet(i))) continue;
+            first_.set_contribution(i, connection_value(first_.vertex(i, ends_.sensor)));
         }
     }
-    num_candidates_ = 0;
-}
-
-Vec3 PathTracer::Walk::sample_sensor_direction(const Vec2& u) const {
-    if (ends_.sensor.isotropic) return core::sample_sphere(u);
-    const Vec3& normal = ends_.sensor.normal;
-    return core::frame_from_normal(normal, scene_.tangent_hint(normal)) *
-           core::sample_cosine_hemisphere(u);
+    const bool goes_on = tracer_.max_order_ > 3;
+    first_.keep_useful(!goes_on);
+    if (may_be_hidden) {
+        num_rays_ += first_.trace_from(ends_.sensor);
+        if (goes_on || !ends_.coincide) first_.keep_seen();
+    }
+    std::array<PathVertex, FirstVertices::kCapacity> vertices;
+    const int num_vertices = goes_on ? first_.size() : 0;
+    for (int i = 0; i < num_vertices; ++i) {
+        vertices[static_cast<std::size_t>(i)] = first_.vertex(i, ends_.sensor);
+    }
+    if (!ends_.coincide) {
+        if (goes_on) first_.keep_useful(true);
+        num_rays_ += first_.trace_from(ends_.light);
+    }
+    histogram_.add(tracer_.by_order_ ? 2 : 0, first_.opl_m(), first_.contributions());
+    first_.clear();
+    for (int i = 0; i < num_vertices; ++i) extend(vertices[static_cast<std::size_t>(i)]);
 }
 
 double PathTracer::Walk::evaluate(const PathVertex& vertex, const Vec3& outgoing) const {

@@ -3,6 +3,7 @@
 
 #include "renderer/area_sampler.h"
 #include "renderer/core/random.h"
+#include "renderer/first_vertices.h"
 #include "renderer/light_path.h"
 #include "renderer/pass_histogram.h"
 
@@ -44,6 +45,7 @@ class PathTracer {
     bool by_order_;
     double laser_spot_m2_;
     std::vector<bool> adds_third_bounce_;  ///< per object
+    FacetTraits facet_traits_;
 };
 
 }  // namespace renderer

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 
 namespace core {
 
@@ -17,7 +19,16 @@ class Rng {
     std::uint64_t next_bits() { return mix(state_ += kStep); }
 
     /// Uniform in [0, 1), all 53 bits random.
-    double uniform() { return static_cast<double>(next_bits() >> 11) * 0x1.0p-53; }
+    double uniform() { return to_unit(next_bits()); }
+
+    /// The next `numbers.size()` results of uniform(), in vector units.
+    void fill_uniform(std::span<double> numbers) {
+        const std::uint64_t start = state_;
+        for (std::size_t i = 0; i < numbers.size(); ++i) {
+            numbers[i] = to_unit(mix(start + (i + 1) * kStep));
+        }
+        state_ = start + numbers.size() * kStep;
+    }
 
  private:
     static constexpr std::uint64_t kStep = 0x9e3779b97f4a7c15ULL;
@@ -28,6 +39,10 @@ class Rng {
         bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9ULL;
         bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebULL;
         return bits ^ (bits >> 31);
+    }
+
+    static constexpr double to_unit(std::uint64_t bits) {
+        return static_cast<double>(bits >> 11) * 0x1.0p-53;
     }
 
     std::uint64_t state_;

@@ -17,12 +17,6 @@ double azimuth_share(double x, double y) {
 
 }  // namespace
 
-Vec2 sample_triangle(const Vec2& u) {
-    // b0 has density 2 b0 on [0, 1]; given it, b1 / (1 - b0) is uniform.
-    const double root = std::sqrt(u.x());
-    return {root * (1.0 - u.y()), root * u.y()};
-}
-
 Vec2 invert_triangle(const Vec2& barycentric) {
     const double root = barycentric.sum();
     return {root * root, root > 0.0 ? barycentric.y() / root : 0.0};
@@ -77,7 +71,7 @@ std::size_t DiscreteDistribution::sample(double u, double& remapped) const {
     return index;
 }
 
-std::size_t DiscreteDistribution::sample_from(std::size_t hint, double u, double& remapped) const {
+std::size_t DiscreteDistribution::next_index(std::size_t hint, double u) const {
     // Gallop: shares are usually narrower than the steps of u only by a small factor.
     std::size_t step = 1;
     std::size_t low = hint;
@@ -88,10 +82,7 @@ std::size_t DiscreteDistribution::sample_from(std::size_t hint, double u, double
     const auto first = cumulative_.begin() + static_cast<std::ptrdiff_t>(low);
     const auto last =
         cumulative_.begin() + static_cast<std::ptrdiff_t>(std::min(low + step, cumulative_.size()));
-    const auto it = std::upper_bound(first, last, u);
-    const auto index = static_cast<std::size_t>(it - cumulative_.begin());
-    remapped = remap(index, u);
-    return index;
+    return static_cast<std::size_t>(std::upper_bound(first, last, u) - cumulative_.begin());
 }
 
 double DiscreteDistribution::probability(std::size_t index) const {
@@ -100,10 +91,6 @@ double DiscreteDistribution::probability(std::size_t index) const {
 
 double DiscreteDistribution::invert(std::size_t index, double remapped) const {
     return begin_of(index) + remapped * probability(index);
-}
-
-double DiscreteDistribution::remap(std::size_t index, double u) const {
-    return std::clamp((u - begin_of(index)) / probability(index), 0.0, kBelowOne);
 }
 
 }  // namespace core

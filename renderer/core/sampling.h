@@ -3,6 +3,8 @@
 
 #include "renderer/core/types.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -13,7 +15,11 @@ namespace core {
 /// triangle; the others follow from their cumulative distributions).
 
 /// Barycentric coordinates (b1, b2) of a point uniform by area on a triangle; b0 = 1 - b1 - b2.
-Vec2 sample_triangle(const Vec2& u);
+inline Vec2 sample_triangle(const Vec2& u) {
+    // b0 has density 2 b0 on [0, 1]; given it, b1 / (1 - b0) is uniform.
+    const double root = std::sqrt(u.x());
+    return {root * (1.0 - u.y()), root * u.y()};
+}
 /// The u that sample_triangle maps to `barycentric`.
 Vec2 invert_triangle(const Vec2& barycentric);
 
@@ -43,14 +49,24 @@ class DiscreteDistribution {
     /// index.
     std::size_t sample(double u, double& remapped) const;
     /// Like sample(), when u does not decrease from call to call: continues from index `hint`.
-    std::size_t sample_from(std::size_t hint, double u, double& remapped) const;
+    std::size_t sample_from(std::size_t hint, double u, double& remapped) const {
+        if (cumulative_[hint] <= u) hint = next_index(hint, u);
+        remapped = remap(hint, u);
+        return hint;
+    }
     double probability(std::size_t index) const;
     /// The u for which sample() gives `index` and `remapped`.
     double invert(std::size_t index, double remapped) const;
 
  private:
     double begin_of(std::size_t index) const { return index == 0 ? 0.0 : cumulative_[index - 1]; }
-    double remap(std::size_t index, double u) const;
+    double remap(std::size_t index, double u) const {
+        const double begin = begin_of(index);
+        return std::clamp((u - begin) / (cumulative_[index] - begin), 0.0, kBelowOne);
+    }
+    std::size_t next_index(std::size_t hint, double u) const;
+
+    static constexpr double kBelowOne = 1.0 - 0x1.0p-53;
 
     std::vector<double> cumulative_;  ///< upper end of each index's share, last is 1
     double sum_ = 0.0;

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/first_vertices.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace renderer {
+namespace {
+
+using core::kPi;
+using core::Vec3;
+
+// A path end as plain numbers, its factor towards a direction as a maximum of two products.
+struct End {
+    explicit End(const PathEnd& end)
+        : x(end.position.x()),
+          y(end.position.y()),
+          z(end.position.z()),
+          normal_x(end.normal.x()),
+          normal_y(end.normal.y()),
+          normal_z(end.normal.z()),
+          constant(end.isotropic ? 1.0 : 0.0),
+          strength(end.strength) {}
+
+    double cosine(double dx, double dy, double dz) const {
+        return normal_x * dx + normal_y * dy + normal_z * dz;
+    }
+    // What PathEnd::factor() is without its strength: 1 for isotropic ends.
+    double shape(double cosine) const { return std::max(constant, (1.0 - constant) * cosine); }
+
+    double x, y, z, normal_x, normal_y, normal_z, constant, strength;
+};
+
+}  // namespace
+
+FacetTraits::FacetTraits(const Scene& scene, const std::vector<bool>& adds_third_bounce)
+    : is_hidden_(scene.facets().size()),
+      constant_(scene.facets().size()),
+      varies_(scene.facets().size()) {
+    for (std::uint32_t i = 0; i < scene.facets().size(); ++i) {
+        is_hidden_[i] = scene.is_hidden(i) ? 1.0 : 0.0;
+        if (!adds_third_bounce[scene.facet(i).object]) continue;
+        const Material& material = scene.object_of(i).material;
+        if (material.model == SurfaceModel::Lambertian && !material.albedo_texture) {
+            constant_[i] = material.albedo / kPi;
+        } else {
+            varies_[i] = 1;
+            any_varies_ = true;
+        }
+    }
+}
+
+void FirstVertices::evaluate(const PathEnds& ends, const Draw& draw) {
+    const End sensor(ends.sensor);
+    const End light(ends.light);
+    const double pdf_by_area = draw.area_share * draw.hidden_pdf_area;
+    // Cosine-weighted directions from a wall, uniform ones from an isotropic end.
+    const double pdf_by_direction =
+        (1.0 - draw.area_share) / (ends.sensor.isotropic ? 4.0 * kPi : kPi);
+    const double sensor_strength = draw.weight * sensor.strength;
+    const double legs = ends.device_legs_m;
+    const int count = count_;
+    for (int i = 0; i < count; ++i) {
+        const double dx = x_[i] - sensor.x;
+        const double dy = y_[i] - sensor.y;
+        const double dz = z_[i] - sensor.z;
+        const double distance2 = dx * dx + dy * dy + dz * dz;
+        const double distance = std::sqrt(distance2);
+        const double inverse = 1.0 / distance;
+        const double shape = sensor.shape(sensor.cosine(dx, dy, dz) * inverse);
+        const double cosine =
+            std::abs(normal_x_[i] * dx + normal_y_[i] * dy + normal_z_[i] * dz) * inverse;
+        const double per_area = cosine * inverse * inverse;
+        const double pdf = pdf_by_area * is_hidden_[i] + pdf_by_direction * shape * per_area;
+        const double carried = sensor_strength * shape * per_area;
+        throughput_[i] = carried > 0.0 ? carried / pdf : 0.0;
+
+        const double lx = light.x - x_[i];
+        const double ly = light.y - y_[i];
+        const double lz = light.z - z_[i];
+        const double light_distance2 = lx * lx + ly * ly + lz * lz;
+        const double light_distance = std::sqrt(light_distance2);
+        const double light_inverse = 1.0 / light_distance;
+        const double light_shape = light.shape(-light.cosine(lx, ly, lz) * light_inverse);
+        const double out =
+            (normal_x_[i] * lx + normal_y_[i] * ly + normal_z_[i] * lz) * light_inverse;
+        const double in = normal_x_[i] * dx + normal_y_[i] * dy + normal_z_[i] * dz;
+        // Facets reflect on both sides: the legs must lie on the same one.
+        const double reflected = in * out < 0.0 ? constant_bsdf_[i] * std::abs(out) : 0.0;
+        opl_m_[i] = distance + light_distance + legs;
+        contribution_[i] = throughput_[i] * reflected * light.strength * light_shape *
+                           light_inverse * light_inverse;
+    }
+}
+
+std::uint64_t FirstVertices::trace_from(const PathEnd& path_end) {
+    const End end(path_end);
+    const double offset = scene_.rays().offset_m();
+    const Vec3& origin = scene_.rays().origin();
+    SegmentPacket packet;
+    for (int begin = 0; begin < count_; begin += SegmentPacket::kSize) {
+        packet.count = std::min(count_ - begin, SegmentPacket::kSize);
+        for (int lane = 0; lane < SegmentPacket::kSize; ++lane) {
+            const int i = begin + lane;  // lanes beyond the count hold old numbers and are ignored
+            const double dx = x_[i] - end.x;
+            const double dy = y_[i] - end.y;
+            const double dz = z_[i] - end.z;
+            const double off_end = std::copysign(offset, end.cosine(dx, dy, dz));
+            const double facing = normal_x_[i] * dx + normal_y_[i] * dy + normal_z_[i] * dz;
+            const double off_vertex = std::copysign(offset, -facing);
+            const double from_x = end.x + off_end * end.normal_x - origin.x();
+            const double from_y = end.y + off_end * end.normal_y - origin.y();
+            const double from_z = end.z + off_end * end.normal_z - origin.z();
+            packet.from_x[lane] = static_cast<float>(from_x);
+            packet.from_y[lane] = static_cast<float>(from_y);
+            packet.from_z[lane] = static_cast<float>(from_z);
+            packet.along_x[lane] =
+                static_cast<float>(x_[i] + off_vertex * normal_x_[i] - origin.x() - from_x);
+            packet.along_y[lane] =
+                static_cast<float>(y_[i] + off_vertex * normal_y_[i] - origin.y() - from_y);
+            packet.along_z[lane] =
+                static_cast<float>(z_[i] + off_vertex * normal_z_[i] - origin.z() - from_z);
+        }
+        scene_.rays().trace(packet);
+        for (int lane = 0; lane < packet.count; ++lane) {
+            seen_[begin + lane] = !packet.blocked[lane];
+            if (packet.blocked[lane]) contribution_[begin + lane] = 0.0;
+        }
+    }
+    return static_cast<std::uint64_t>(count_);
+}
+
+template <class Predicate>
+void FirstVertices::keep_if(const Predicate& keep) {
+    int kept = 0;
+    for (int i = 0; i < count_; ++i) {
+        if (!keep(i)) continue;
+        if (kept != i) {
+            facet_[kept] = facet_[i];
+            for (double* array : {x_,
+                                  y_,
+                                  z_,
+                                  normal_x_,
+                                  normal_y_,
+                                  normal_z_,
+                                  is_hidden_,
+                                  constant_bsdf_,
+                                  throughput_,
+                                  opl_m_,
+                                  contribution_}) {
+                array[kept] = array[i];
+            }
+        }
+        ++kept;
+    }
+    count_ = kept;
+}
+
+void FirstVertices::keep_seen() {
+    keep_if([this](int i) { return seen_[i]; });
+}
+
+void FirstVertices::keep_useful(bool by_contribution) {
+    if (by_contribution) {
+        keep_if([this](int i) { return !(contribution_[i] <= 0.0); });
+    } else {
+        keep_if([this](int i) { return throughput_[i] > 0.0; });
+    }
+}
+
+PathVertex FirstVertices::vertex(int i, const PathEnd& sensor) const {
+    PathVertex vertex;
+    vertex.point = {{x_[i], y_[i], z_[i]}, facet_[i]};
+    vertex.normal = {normal_x_[i], normal_y_[i], normal_z_[i]};
+    vertex.bsdf = scene_.bsdf_at(vertex.point);
+    const Vec3 to_sensor = sensor.position - vertex.point.position;
+    vertex.opl_m = to_sensor.norm();
+    vertex.to_previous = to_sensor / vertex.opl_m;
+    vertex.throughput = throughput_[i];
+    return vertex;
+}
+
+}  // namespace renderer

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/light_path.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace renderer {
+
+/// What first vertices need to know of their facets.
+class FacetTraits {
+ public:
+    /// adds_third_bounce   per object: whether its surface may reflect straight to the light
+    FacetTraits(const Scene& scene, const std::vector<bool>& adds_third_bounce);
+
+    /// 1 where draws by hidden area reach, 0 on the relay wall.
+    double is_hidden(std::uint32_t facet) const { return is_hidden_[facet]; }
+    /// BSDF value [1/sr] towards the light where it is the same for all directions and points, else
+    /// 0.
+    double constant(std::uint32_t facet) const { return constant_[facet]; }
+    /// Whether the BSDF depends on directions or place; then constant() is 0.
+    bool varies(std::uint32_t facet) const { return varies_[facet] != 0; }
+    bool any_varies() const { return any_varies_; }
+
+ private:
+    std::vector<double> is_hidden_;
+    std::vector<double> constant_;
+    std::vector<char> varies_;
+    bool any_varies_ = false;
+};
+
+/// The first vertices after the sensor of many paths of one pair, evaluated together: plain arrays
+/// with one entry per vertex, so that the compiler fills vector units.
+class FirstVertices {
+ public:
+    static constexpr int kCapacity = 64;  // a few packets of rays; the arrays stay in the L1 cache
+
+    /// How the vertices were drawn.
+    struct Draw {
+        double weight = 1.0;           ///< of one path
+        double area_share = 1.0;       ///< share drawn by hidden area; the others by direction
+        double hidden_pdf_area = 0.0;  ///< density of the former [1/m^2]
+    };
+
+    FirstVertices(const Scene& scene, const FacetTraits& traits) : scene_(scene), traits_(traits) {}
+
+    int size() const { return count_; }
+    bool full() const { return count_ == kCapacity; }
+    void clear() { count_ = 0; }
+
+    /// Appends a point; not to be called when full().
+    void add(const core::Vec3& position, std::uint32_t facet) {
+        const int i = count_++;
+        const core::Vec3& normal = scene_.facet(facet).normal;
+        facet_[i] = facet;
+        x_[i] = position.x();
+        y_[i] = position.y();
+        z_[i] = position.z();
+        normal_x_[i] = normal.x();
+        normal_y_[i] = normal.y();
+        normal_z_[i] = normal.z();
+        is_hidden_[i] = traits_.is_hidden(facet);
+        constant_bsdf_[i] = traits_.constant(facet);
+    }
+
+    /// Computes throughputs, path lengths and what the connections to the light carry if nothing is
+    /// in the way; for facets that vary() the caller sets these.
+    void evaluate(const PathEnds& ends, const Draw& draw);
+    /// Sets to 0 the contributions of vertices that `end` does not see, and remembers who is seen.
+    /// returns   the number of rays
+    std::uint64_t trace_from(const PathEnd& end);
+    /// Drops vertices that the last trace_from() did not see.
+    void keep_seen();
+    /// Drops vertices that can carry nothing: by throughput, or by their own contribution.
+    void keep_useful(bool by_contribution);
+
+    /// The vertex of a path that starts at `sensor`.
+    PathVertex vertex(int index, const PathEnd& sensor) const;
+    std::uint32_t facet(int index) const { return facet_[index]; }
+    void set_contribution(int index, double value) { contribution_[index] = value; }
+    /// Sensor to light by way of each vertex, devices included [m].
+    std::span<const double> opl_m() const { return {opl_m_, size_t_count()}; }
+    std::span<const double> contributions() const { return {contribution_, size_t_count()}; }
+
+ private:
+    std::size_t size_t_count() const { return static_cast<std::size_t>(count_); }
+    template <class Predicate>
+    void keep_if(const Predicate& keep);
+
+    const Scene& scene_;
+    const FacetTraits& traits_;
+    int count_ = 0;
+    std::uint32_t facet_[kCapacity];
+    bool seen_[kCapacity];
+    alignas(64) double x_[kCapacity];
+    alignas(64) double y_[kCapacity];
+    alignas(64) double z_[kCapacity];
+    alignas(64) double normal_x_[kCapacity];
+    alignas(64) double normal_y_[kCapacity];
+    alignas(64) double normal_z_[kCapacity];
+    alignas(64) double constant_bsdf_[kCapacity];
+    alignas(64) double is_hidden_[kCapacity];  ///< 1 where draws by area reach, 0 on the wall
+    alignas(64) double throughput_[kCapacity];
+    alignas(64) double opl_m_[kCapacity];
+    alignas(64) double contribution_[kCapacity];
+};
+
+}  // namespace renderer
