@@ -41,16 +41,17 @@ void run(const RenderArguments& arguments) {
     std::vector<std::string> overrides = arguments.overrides;
     overrides.insert(overrides.end(), arguments.shorthands.begin(), arguments.shorthands.end());
     const RenderJob job = render_to_file(arguments.scene, overrides, arguments.output);
-    if (job.interrupted) {
-        throw core::Failure("render",
-                            fmt::format("interrupted; {} holds {} samples per pair",
-                                        arguments.output,
-                                        job.samples_per_pair));
-    }
     std::string effort;
     if (job.estimated_error) effort += fmt::format("error about {:.1e}, ", *job.estimated_error);
     if (job.samples_per_pair > 0)
         effort += fmt::format("{} samples per pair, ", job.samples_per_pair);
+    if (job.interrupted) {
+        throw core::Failure("render",
+                            fmt::format("interrupted; {} holds what was computed ({}{:.2f} s)",
+                                        arguments.output,
+                                        effort,
+                                        job.seconds));
+    }
     fmt::print("wrote {} ({} pairs x {} bins, {} by {}, {}{:.2f} s)\n",
                arguments.output,
                job.num_pairs,

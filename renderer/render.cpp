@@ -102,6 +102,7 @@ RenderResult render(const Scene& scene,
     result.estimated_error = third.estimated_error;
     result.num_rays += third.num_rays;
     result.seconds += third.seconds;
+    result.interrupted = result.interrupted || third.interrupted;
     return result;
 }
 

@@ -29,7 +29,7 @@ struct RenderResult {
     std::uint64_t samples_per_pair = 0;     ///< candidate paths used, whole passes
     std::uint64_t num_rays = 0;
     double seconds = 0.0;
-    bool interrupted = false;  ///< stopped early; the capture is even over all pairs
+    bool interrupted = false;  ///< stopped early; every pair has a result
 };
 
 /// Renders the transients that a scan records of a scene.
@@ -38,12 +38,12 @@ struct RenderResult {
 /// axis       bins of optical path length
 /// settings   validated; `samples` is rounded up to whole passes; method `auto` integrates third
 ///            bounces where it can and traces paths for what is left
-/// progress   asked after every pass whether to stop
+/// progress   asked after every pass or part whether to stop
 /// returns    radiance leaving the sensing points for 1 W on the illumination point, per bin
 ///            (the bin's integral); the variance of the part from paths on request, given more than
 ///            one pass
 /// throws     core::Error when the method cannot do what is asked; core::Failure when memory does
-///            not suffice, a contribution is not finite, or third_bounce is stopped
+///            not suffice or a contribution is not finite
 RenderResult render(const Scene& scene,
                     const core::Scan& scan,
                     const core::TimeAxis& axis,

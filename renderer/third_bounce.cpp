@@ -110,10 +110,13 @@ class Integrator {
     double negligible_error(int fineness) const {
         return kNegligibleShare * target_ * std::exp2(fineness) * norm_per_pair_;
     }
-    void stop_if_asked(const core::Progress& progress) const;
-    const Transient& try_out(int fineness, const core::Progress& progress);
-    double error_of(int fineness, const core::Progress& progress);
+    const Transient& try_out(int fineness);
+    double error_of(int fineness);
     int choose_fineness(const core::Progress& progress);
+    int integrate(int fineness,
+                  int first_part,
+                  const core::Progress& progress,
+                  ThirdBounce& result);
 
     const Scene& scene_;
     const core::Scan& scan_;
@@ -128,19 +131,14 @@ class Integrator {
     std::uint64_t num_rays_ = 0;
 };
 
-void Integrator::stop_if_asked(const core::Progress& progress) const {
-    if (progress.should_stop()) {
-        throw core::Failure("third_bounce", "interrupted before it was complete");
-    }
-}
-
-const Transient& Integrator::try_out(int fineness, const core::Progress& progress) {
+const Transient& Integrator::try_out(int fineness) {
     if (const auto it = trials_.find(fineness); it != trials_.end()) return it->second;
-    stop_if_asked(progress);
     const PieceSet pieces = cut(fineness);
     ThirdBounceScan trial(scene_, trial_scan_, axis_, pieces, negligible_error(fineness));
-    const Transient& result =
-        trials_.emplace(fineness, trial.integrate([](double) {})).first->second;
+    Transient& result =
+        trials_.try_emplace(fineness, trial_scan_.num_pairs(), axis_.num_bins).first->second;
+    trial.integrate(
+        0, [](double) { return true; }, result);
     shadow_errors_[fineness] = std::sqrt(trial.squared_shadow_error());
     num_rays_ += trial.num_rays();
     if (norm_per_pair_ == 0.0) {
@@ -151,9 +149,9 @@ const Transient& Integrator::try_out(int fineness, const core::Progress& progres
 }
 
 // Against the finest trial so far, which is at least kReferenceSteps finer.
-double Integrator::error_of(int fineness, const core::Progress& progress) {
-    try_out(fineness - kReferenceSteps, progress);
-    const Transient& trial = try_out(fineness, progress);
+double Integrator::error_of(int fineness) {
+    try_out(fineness - kReferenceSteps);
+    const Transient& trial = try_out(fineness);
     const Transient& reference = trials_.begin()->second;
     const double norm = std::sqrt(squared_norm(reference));
     // Shadow edges that both trials leave uncertain do not show in their difference.
@@ -163,29 +161,50 @@ double Integrator::error_of(int fineness, const core::Progress& progress) {
     return error;
 }
 
+// The coarsest fineness that meets the target, or simply the coarsest when the caller will not
+// wait.
 int Integrator::choose_fineness(const core::Progress& progress) {
     int fineness = 0;
-    if (error_of(fineness, progress) > target_) {
-        while (fineness > kFinest && error_of(--fineness, progress) > target_) {
+    if (error_of(fineness) > target_) {
+        while (fineness > kFinest && error_of(--fineness) > target_) {
+            if (progress.should_stop()) return kCoarsest;
         }
         return fineness;
     }
-    while (fineness < kCoarsest && error_of(fineness + 1, progress) <= target_) ++fineness;
+    while (fineness < kCoarsest && error_of(fineness + 1) <= target_) ++fineness;
     return fineness;
 }
 
-ThirdBounce Integrator::run(const core::Progress& progress) {
-    const int fineness = choose_fineness(progress);
+// Integrates parts from `first_part` on; returns the first part that is left.
+int Integrator::integrate(int fineness,
+                          int first_part,
+                          const core::Progress& progress,
+                          ThirdBounce& result) {
     const PieceSet pieces = cut(fineness);
     ThirdBounceScan scan(scene_, scan_, axis_, pieces, negligible_error(fineness));
-    ThirdBounce result;
-    result.transient = scan.integrate([&](double share) {
+    const auto go_on = [&](double share) {
         progress.update(share, fmt::format("{} pieces", pieces.num_pieces));
-        if (share < 1.0) stop_if_asked(progress);
-    });
-    result.estimated_error = errors_.at(fineness);
-    result.num_pieces = pieces.num_pieces;
-    result.num_rays = num_rays_ + scan.num_rays();
+        return !progress.should_stop();
+    };
+    const int part = scan.integrate(first_part, go_on, result.transient);
+    if (!errors_.contains(fineness)) error_of(fineness);
+    result.estimated_error = std::max(result.estimated_error, errors_.at(fineness));
+    result.num_pieces = std::max(result.num_pieces, pieces.num_pieces);
+    num_rays_ += scan.num_rays();
+    return part;
+}
+
+ThirdBounce Integrator::run(const core::Progress& progress) {
+    ThirdBounce result;
+    result.transient = Transient(scan_.num_pairs(), axis_.num_bins);
+    const int part = integrate(choose_fineness(progress), 0, progress, result);
+    result.interrupted = part < ThirdBounceScan::kParts;
+    if (part < ThirdBounceScan::kParts) {
+        core::Progress to_the_end;
+        to_the_end.report = progress.report;
+        integrate(kCoarsest, part, to_the_end, result);
+    }
+    result.num_rays = num_rays_;
     const double wall = scene_.wall_albedo() / core::kPi;
     for (float& value : result.transient.values()) value = static_cast<float>(value * wall * wall);
     return result;

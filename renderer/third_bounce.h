@@ -17,6 +17,7 @@ struct ThirdBounce {
     std::size_t num_pieces = 0;    ///< that the surfaces were cut into
     std::uint64_t num_rays = 0;
     double seconds = 0.0;
+    bool interrupted = false;  ///< pairs that were left got the coarsest cut, see estimated_error
 };
 
 /// Integrates the third bounce of the scene's integrable surfaces, without random numbers.
@@ -27,9 +28,10 @@ struct ThirdBounce {
 /// enough for the target.
 ///
 /// settings   target_error, laser_spot_m2; the gate is a box
-/// progress   asked now and then whether to stop
+/// progress   asked now and then whether to stop; then pairs that are left are integrated in the
+///            coarsest way, so that every pair has a result
 /// returns    the radiance of order 3 that comes from surfaces with is_integrable() materials
-/// throws     core::Failure when memory does not suffice or the caller stops the work
+/// throws     core::Failure when memory does not suffice
 /// source     design by the authors; kernel and size rule in third_bounce_pieces.cpp
 ThirdBounce integrate_third_bounce(const Scene& scene,
                                    const core::Scan& scan,

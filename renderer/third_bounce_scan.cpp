@@ -19,7 +19,6 @@ using core::Vec3;
 
 constexpr std::size_t kSize = PieceBlock::kSize;
 constexpr std::size_t kPointsPerBlock = 4;
-constexpr std::size_t kParts = 16;
 // A tile's histograms and tables fit the second-level cache.
 constexpr std::size_t kLightsPerTile = 8;
 constexpr std::size_t kSensorsPerTile = 16;
@@ -30,6 +29,11 @@ bool is_empty(const VisibilityMask* masks) {
 
 std::size_t parts_of(std::size_t count, std::size_t size) {
     return (count + size - 1) / size;
+}
+
+// Where part `part` of `count` items begins.
+std::size_t begin_of_part(int part, std::size_t count) {
+    return static_cast<std::size_t>(part) * count / ThirdBounceScan::kParts;
 }
 
 // Tables of some wall points for one block, where they see anything of it.
@@ -85,7 +89,6 @@ ThirdBounceScan::ThirdBounceScan(const Scene& scene,
       axis_(axis),
       pieces_(pieces),
       negligible_error_(negligible_error),
-      result_(scan.num_pairs(), axis.num_bins),
       light_errors_(scan.illumination.size()),
       sensor_errors_(scan.sensing.size()) {}
 
@@ -98,19 +101,17 @@ double ThirdBounceScan::squared_shadow_error() const {
            pairs_per_light * std::accumulate(light_errors_.begin(), light_errors_.end(), 0.0);
 }
 
-core::Transient ThirdBounceScan::integrate(const std::function<void(double share)>& after_part) {
-    if (scan_.pattern != core::ScanPattern::Confocal) {
-        integrate_pairs(after_part);
-        return std::move(result_);
+int ThirdBounceScan::integrate(int first_part,
+                               const std::function<bool(double share)>& go_on,
+                               core::Transient& result) {
+    result_ = &result;
+    if (scan_.pattern != core::ScanPattern::Confocal) return integrate_pairs(first_part, go_on);
+    for (int part = first_part; part < kParts; ++part) {
+        integrate_confocal(begin_of_part(part, scan_.num_pairs()),
+                           begin_of_part(part + 1, scan_.num_pairs()));
+        if (!go_on((part + 1.0) / kParts)) return part + 1;
     }
-    const std::size_t count = scan_.num_pairs();
-    const std::size_t per_part = std::max<std::size_t>(1, parts_of(count, kParts));
-    for (std::size_t begin = 0; begin < count; begin += per_part) {
-        const std::size_t end = std::min(count, begin + per_part);
-        integrate_confocal(begin, end);
-        after_part(static_cast<double>(end) / static_cast<double>(count));
-    }
-    return std::move(result_);
+    return kParts;
 }
 
 WallPoint ThirdBounceScan::wall_point(const core::WallPoints& points, std::size_t index) const {
@@ -125,7 +126,7 @@ core::TimeAxis ThirdBounceScan::axis_of_pair(std::size_t pair) const {
 
 void ThirdBounceScan::store(std::size_t pair, std::span<const double> histogram) {
     std::transform(
-        histogram.begin(), histogram.end(), result_.histogram(pair).begin(), [](double value) {
+        histogram.begin(), histogram.end(), result_->histogram(pair).begin(), [](double value) {
             return static_cast<float>(value);
         });
 }
@@ -201,7 +202,8 @@ std::vector<ThirdBounceScan::Masks> ThirdBounceScan::look_from(
     return masks;
 }
 
-void ThirdBounceScan::integrate_pairs(const std::function<void(double share)>& after_part) {
+int ThirdBounceScan::integrate_pairs(int first_part,
+                                     const std::function<bool(double share)>& go_on) {
     const std::size_t num_lights =
         scan_.pattern == core::ScanPattern::Single ? 1 : scan_.illumination.size();
     const double needed =
@@ -220,21 +222,24 @@ void ThirdBounceScan::integrate_pairs(const std::function<void(double share)>& a
         look_from(scan_.illumination, scan_.sensing, light_errors_);
     const std::vector<Masks> sensor_masks =
         look_from(scan_.sensing, scan_.illumination, sensor_errors_);
-    after_part(0.25);
+    constexpr double kShareOfLooking = 0.25;
+    if (!go_on(kShareOfLooking)) return first_part;
     const std::size_t light_tiles = parts_of(num_lights, kLightsPerTile);
     const std::size_t sensor_tiles = parts_of(scan_.sensing.size(), kSensorsPerTile);
     const std::size_t count = light_tiles * sensor_tiles;
-    const std::size_t per_part = std::max<std::size_t>(1, parts_of(count, kParts));
-    for (std::size_t begin = 0; begin < count; begin += per_part) {
-        const std::size_t end = std::min(count, begin + per_part);
-        core::parallel_for(end - begin, [&](std::size_t i) {
+    for (int part = first_part; part < kParts; ++part) {
+        const std::size_t begin = begin_of_part(part, count);
+        core::parallel_for(begin_of_part(part + 1, count) - begin, [&](std::size_t i) {
             integrate_tile((begin + i) / sensor_tiles * kLightsPerTile,
                            light_masks,
                            (begin + i) % sensor_tiles * kSensorsPerTile,
                            sensor_masks);
         });
-        after_part(0.25 + 0.75 * static_cast<double>(end) / static_cast<double>(count));
+        if (!go_on(kShareOfLooking + (1.0 - kShareOfLooking) * (part + 1.0) / kParts)) {
+            return part + 1;
+        }
     }
+    return kParts;
 }
 
 void ThirdBounceScan::integrate_tile(std::size_t light_begin,

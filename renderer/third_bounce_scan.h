@@ -22,9 +22,16 @@ class ThirdBounceScan {
                     const PieceSet& pieces,
                     double negligible_error);
 
-    /// after_part   called from the calling thread with the share done, now and then
-    /// returns      H for wall albedos of pi
-    core::Transient integrate(const std::function<void(double share)>& after_part);
+    /// The pairs are integrated in this many parts.
+    static constexpr int kParts = 16;
+
+    /// Fills the pairs of parts [first_part, kParts) of `result` with H for wall albedos of pi.
+    ///
+    /// go_on     called from the calling thread with the share done after every part; false stops
+    /// returns   the number of the first part not integrated; kParts: none is left
+    int integrate(int first_part,
+                  const std::function<bool(double share)>& go_on,
+                  core::Transient& result);
 
     std::uint64_t num_rays() const { return num_rays_; }
     /// Expected squared error of all of H at shadow edges, as far as pieces are too coarse for
@@ -37,7 +44,7 @@ class ThirdBounceScan {
     WallPoint wall_point(const core::WallPoints& points, std::size_t index) const;
     core::TimeAxis axis_of_pair(std::size_t pair) const;
     void integrate_confocal(std::size_t begin, std::size_t end);
-    void integrate_pairs(const std::function<void(double share)>& after_part);
+    int integrate_pairs(int first_part, const std::function<bool(double share)>& go_on);
     std::vector<Masks> look_from(const core::WallPoints& points,
                                  const core::WallPoints& others,
                                  std::vector<double>& squared_errors);
@@ -52,8 +59,8 @@ class ThirdBounceScan {
     const core::TimeAxis& axis_;
     const PieceSet& pieces_;
     double negligible_error_;
-    core::Transient result_;
-    std::vector<double> light_errors_;  ///< squared, per illumination point and pair
+    core::Transient* result_ = nullptr;  ///< while integrate() runs
+    std::vector<double> light_errors_;   ///< squared, per illumination point and pair
     std::vector<double> sensor_errors_;
     std::atomic<std::uint64_t> num_rays_{0};
 };

@@ -297,6 +297,31 @@ TEST(ThirdBounceScenes, PatternsAgreeOnTheSamePairs) {
     EXPECT_LT(test_support::relative_l2(confocal, diagonal), 2e-3);
 }
 
+TEST(ThirdBounceScenes, InterruptedRenderIsCompleteButCoarser) {
+    std::vector<Vec3> points;
+    for (int i = 0; i < 64; ++i) {
+        points.emplace_back(-0.4 + 0.1 * (i % 8), -0.4 + 0.1 * (i / 8), 0.0);
+    }
+    const std::vector<Vec3> lights(points.begin(), points.begin() + 32);
+    for (const core::Scan& scan :
+         {test_support::confocal_scan(points), test_support::exhaustive_scan(lights, points)}) {
+        const renderer::Scene scene = scene_of(geometry_of({kHidden, kOccluder}), scan);
+        const auto whole = renderer::render(scene, scan, kAxis, settings_for(1e-3), {});
+        for (const int patience : {1, 4}) {
+            core::Progress progress;
+            int asked = 0;
+            progress.stop_requested = [&] { return ++asked > patience; };
+            const auto early = renderer::render(scene, scan, kAxis, settings_for(1e-3), progress);
+            EXPECT_TRUE(early.interrupted);
+            EXPECT_GT(*early.estimated_error, *whole.estimated_error);
+            const double error = test_support::relative_l2(early.capture.transient.values(),
+                                                           whole.capture.transient.values());
+            EXPECT_GT(error, 0.0);
+            EXPECT_LT(error, *early.estimated_error + *whole.estimated_error);
+        }
+    }
+}
+
 TEST(ThirdBounceScenes, MethodNamesWhatItCannotDo) {
     renderer::RenderSettings settings = settings_for(0.01);
     settings.max_bounces = 4;
