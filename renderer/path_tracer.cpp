@@ -14,14 +14,9 @@ using core::kPi;
 using core::Vec2;
 using core::Vec3;
 
-// Share of vertices drawn from the hidden area. Seen from the wall, hidden objects are small and
-// most BSDF samples miss; between surfaces BSDF samples follow the lobes and nearby surfaces.
-constexpr double kAreaShareFromWall = 0.75;
-constexpr double kAreaShareBetweenSurfaces = 0.25;
-
-// Paths are always continued up to this order; above it Russian roulette may end them.
-constexpr int kFirstRouletteOrder = 5;
-constexpr double kLeastSurvival = 0.1;
+// Share of first vertices drawn from the hidden area: seen from the wall, hidden objects are small
+// and most directions miss.
+constexpr double kAreaShare = 0.75;
 
 // Per object, whether first vertices on it may reflect straight to the light. At the third bounce
 // the relay wall only passes light on; see formats of scenes.
@@ -58,11 +53,8 @@ class PathTracer::Walk {
 
  private:
     void finish_first_vertices(bool may_be_hidden);
-    double evaluate(const PathVertex& vertex, const Vec3& outgoing) const;
-    double connection_value(const PathVertex& vertex) const;
     void deposit(const PathVertex& vertex, double value);
     void extend(PathVertex vertex);
-    bool draw_next(PathVertex& vertex);
 
     const PathTracer& tracer_;
     const Scene& scene_;
@@ -77,12 +69,10 @@ class PathTracer::Walk {
 
 PathTracer::PathTracer(const Scene& scene, const RenderSettings& settings, ThirdBounceScope scope)
     : scene_(&scene),
-      area_sampler_(scene),
       max_order_(settings.max_bounces),
       by_order_(settings.by_order),
-      laser_spot_m2_(settings.laser_spot_m2),
-      adds_third_bounce_(objects_that_add(scene, scope)),
-      facet_traits_(scene, adds_third_bounce_) {}
+      surface_walk_(scene, settings.laser_spot_m2),
+      facet_traits_(scene, objects_that_add(scene, scope)) {}
 
 std::uint64_t PathTracer::trace(const PathEnds& ends,
                                 int num_samples,
@@ -90,7 +80,7 @@ std::uint64_t PathTracer::trace(const PathEnds& ends,
                                 PassHistogram& histogram) const {
     // The number of each kind is rounded at random, so that its mean is the share that the weights
     // assume.
-    const double expected = num_samples * kAreaShareFromWall;
+    const double expected = num_samples * kAreaShare;
     const int num_area = std::min(num_samples, static_cast<int>(expected + rng.uniform()));
     Walk walk(*this, ends, num_samples, rng, histogram);
     walk.trace_area_samples(num_area);
@@ -109,7 +99,8 @@ void PathTracer::Walk::trace_area_samples(int count) {
         const double strata = 1.0 / count;
         for (std::size_t i = 0; i < static_cast<std::size_t>(size); ++i) {
             const double stratified = (begin + static_cast<double>(i) + u1[i]) * strata;
-            const SurfacePoint point = tracer_.area_sampler_.sample(stratified, u2[i], hint);
+            const SurfacePoint point =
+                tracer_.surface_walk_.area_sampler().sample(stratified, u2[i], hint);
             first_.add(point.position, point.facet);
         }
         finish_first_vertices(true);
@@ -137,11 +128,12 @@ void PathTracer::Walk::trace_bsdf_samples(int count) {
 // Connects first vertices to the light and continues their paths. `may_be_hidden`: whether the
 // sensor may not see them.
 void PathTracer::Walk::finish_first_vertices(bool may_be_hidden) {
-    first_.evaluate(ends_, {weight_, kAreaShareFromWall, tracer_.area_sampler_.pdf_area()});
+    first_.evaluate(ends_, {weight_, kAreaShare, tracer_.surface_walk_.area_sampler().pdf_area()});
     if (tracer_.facet_traits_.any_varies()) {
         for (int i = 0; i < first_.size(); ++i) {
             if (!tracer_.facet_traits_.varies(first_.facet(i))) continue;
-            first_.set_contribution(i, connection_value(first_.vertex(i, ends_.sensor)));
+            first_.set_contribution(
+                i, tracer_.surface_walk_.connection_value(first_.vertex(i, ends_.sensor), ends_));
         }
     }
     const bool goes_on = tracer_.max_order_ > 3;
@@ -164,33 +156,6 @@ void PathTracer::Walk::finish_first_vertices(bool may_be_hidden) {
     for (int i = 0; i < num_vertices; ++i) extend(vertices[static_cast<std::size_t>(i)]);
 }
 
-double PathTracer::Walk::evaluate(const PathVertex& vertex, const Vec3& outgoing) const {
-    if (const auto* lambertian = std::get_if<Lambertian>(&vertex.bsdf)) {
-        const bool same_side =
-            vertex.normal.dot(vertex.to_previous) * vertex.normal.dot(outgoing) > 0.0;
-        return same_side ? lambertian->albedo / kPi : 0.0;
-    }
-    const core::Mat3 facet_from_world =
-        scene_.facet(vertex.point.facet).world_from_facet().transpose();
-    return evaluate_bsdf(
-        vertex.bsdf, facet_from_world * vertex.to_previous, facet_from_world * outgoing);
-}
-
-// What the path carries when it goes from `vertex` straight to the light, unless blocked.
-double PathTracer::Walk::connection_value(const PathVertex& vertex) const {
-    const std::uint32_t object = scene_.facet(vertex.point.facet).object;
-    if (vertex.order == 3 && !tracer_.adds_third_bounce_[object]) return 0.0;
-    if (const auto* retro = std::get_if<Retroreflective>(&vertex.bsdf)) {
-        if (!ends_.coincide || vertex.order != 3) return 0.0;
-        return vertex.throughput * retro->albedo / tracer_.laser_spot_m2_ * ends_.light.strength;
-    }
-    const Vec3 offset = ends_.light.position - vertex.point.position;
-    const double distance2 = offset.squaredNorm();
-    const Vec3 direction = offset / std::sqrt(distance2);
-    return vertex.throughput * evaluate(vertex, direction) *
-           std::abs(vertex.normal.dot(direction)) * ends_.light.factor(-direction) / distance2;
-}
-
 void PathTracer::Walk::deposit(const PathVertex& vertex, double value) {
     const double to_light = (ends_.light.position - vertex.point.position).norm();
     const int channel = tracer_.by_order_ ? vertex.order - 1 : 0;
@@ -198,74 +163,15 @@ void PathTracer::Walk::deposit(const PathVertex& vertex, double value) {
 }
 
 void PathTracer::Walk::extend(PathVertex vertex) {
+    const SurfaceWalk& walk = tracer_.surface_walk_;
     while (vertex.order < tracer_.max_order_) {
-        if (vertex.order >= kFirstRouletteOrder) {
-            const double survival = std::clamp(albedo_of(vertex.bsdf), kLeastSurvival, 1.0);
-            if (rng_.uniform() >= survival) return;
-            vertex.throughput /= survival;
-        }
-        if (!draw_next(vertex)) return;
-        const double value = connection_value(vertex);
+        if (!walk.survives(vertex, rng_)) return;
+        if (!walk.draw_next(vertex, rng_, num_rays_)) return;
+        const double value = walk.connection_value(vertex, ends_);
         if (!(value > 0.0)) continue;
         ++num_rays_;
-        if (!scene_.rays().is_blocked(
-                vertex.point.position, vertex.normal, ends_.light.position, ends_.light.normal)) {
-            deposit(vertex, value);
-        }
+        if (!walk.light_is_hidden(vertex, ends_)) deposit(vertex, value);
     }
-}
-
-// Replaces `vertex` by the next one of the path; false when the path ends.
-bool PathTracer::Walk::draw_next(PathVertex& vertex) {
-    const core::Mat3 world_from_facet = scene_.facet(vertex.point.facet).world_from_facet();
-    const Vec3 incoming = world_from_facet.transpose() * vertex.to_previous;
-    const bool on_wall = !scene_.is_hidden(vertex.point.facet);
-    const double area_share = on_wall ? kAreaShareFromWall : kAreaShareBetweenSurfaces;
-
-    SurfacePoint next;
-    const bool from_area = rng_.uniform() < area_share;
-    if (from_area) {
-        std::size_t hint = 0;
-        const double u1 = rng_.uniform();
-        next = tracer_.area_sampler_.sample(u1, rng_.uniform(), hint);
-    } else {
-        const double u1 = rng_.uniform();
-        const auto local = sample_bsdf(vertex.bsdf, incoming, {u1, rng_.uniform()});
-        if (!local) return false;
-        ++num_rays_;
-        const auto hit =
-            scene_.first_hit(vertex.point.position, vertex.normal, world_from_facet * *local);
-        if (!hit) return false;
-        next = *hit;
-    }
-    const Vec3 offset = next.position - vertex.point.position;
-    const double distance2 = offset.squaredNorm();
-    if (!(distance2 > 0.0)) return false;
-    const double distance = std::sqrt(distance2);
-    const Vec3 direction = offset / distance;
-    const Vec3 outgoing = world_from_facet.transpose() * direction;
-    const Vec3& next_normal = scene_.facet(next.facet).normal;
-    const double per_area = std::abs(next_normal.dot(direction)) / distance2;
-    const double area_pdf = scene_.is_hidden(next.facet) ? tracer_.area_sampler_.pdf_area() : 0.0;
-    const double pdf = area_share * area_pdf +
-                       (1.0 - area_share) * pdf_bsdf(vertex.bsdf, incoming, outgoing) * per_area;
-    const double transport = evaluate(vertex, direction) * std::abs(outgoing.z()) * per_area;
-    if (!(transport > 0.0)) return false;
-    if (from_area) {
-        ++num_rays_;
-        if (scene_.rays().is_blocked(
-                vertex.point.position, vertex.normal, next.position, next_normal)) {
-            return false;
-        }
-    }
-    vertex.throughput *= transport / pdf;
-    vertex.opl_m += distance;
-    vertex.point = next;
-    vertex.normal = next_normal;
-    vertex.to_previous = -direction;
-    vertex.bsdf = scene_.bsdf_at(next);
-    ++vertex.order;
-    return true;
 }
 
 }  // namespace renderer

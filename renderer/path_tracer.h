@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/area_sampler.h"
 #include "renderer/core/random.h"
 #include "renderer/first_vertices.h"
 #include "renderer/light_path.h"
 #include "renderer/pass_histogram.h"
-
-#include <vector>
+#include "renderer/surface_walk.h"
 
 namespace renderer {
 
@@ -40,11 +38,9 @@ class PathTracer {
     class Walk;
 
     const Scene* scene_;
-    AreaSampler area_sampler_;
     int max_order_;
     bool by_order_;
-    double laser_spot_m2_;
-    std::vector<bool> adds_third_bounce_;  ///< per object
+    SurfaceWalk surface_walk_;
     FacetTraits facet_traits_;
 };
 

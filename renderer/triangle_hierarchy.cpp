@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/triangle_hierarchy.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace renderer {
+namespace {
+
+using core::Vec3;
+
+// Relative to the size of the set: above the rounding of coordinates and of lengths.
+constexpr double kMargin = 4e-6;
+// Added to the spread of normals: above the rounding of cosines.
+constexpr float kSpreadMargin = 1e-3F;
+
+Eigen::AlignedBox3d box_of(const Facet& facet) {
+    Eigen::AlignedBox3d box(facet.corner);
+    box.extend(Vec3(facet.corner + facet.edge1));
+    box.extend(Vec3(facet.corner + facet.edge2));
+    return box;
+}
+
+Vec3 centroid_of(const Facet& facet) {
+    return facet.corner + (facet.edge1 + facet.edge2) / 3.0;
+}
+
+}  // namespace
+
+// Splits facets at the median of the longest axis of their centroids, three times per node.
+struct TriangleHierarchy::Builder {
+    using Range = std::span<std::uint32_t>;
+
+    TriangleHierarchy& tree;
+    std::span<const Facet> facets;
+
+    std::int32_t add_node(Range range, Place parent, std::uint32_t first) {
+        const auto index = static_cast<std::int32_t>(tree.nodes_.size());
+        tree.nodes_.emplace_back();
+        tree.parents_.push_back(parent);
+        tree.first_leaf_.push_back(first);
+        std::vector<Range> parts;
+        split(range, 3, parts);
+        std::uint32_t position = first;
+        for (std::int32_t slot = 0; slot < kWidth; ++slot) {
+            const auto part_index = static_cast<std::size_t>(slot);
+            const bool used = part_index < parts.size();
+            fill_slot(tree.nodes_[static_cast<std::size_t>(index)],
+                      slot,
+                      used ? parts[part_index] : Range());
+            if (!used) continue;
+            const Range part = parts[part_index];
+            std::int32_t child = 0;
+            if (part.size() == 1) {
+                child = ~static_cast<std::int32_t>(position);
+                tree.order_.push_back(part[0]);
+                tree.places_[part[0]] = {index, slot};
+                tree.positions_[part[0]] = position;
+            } else {
+                child = add_node(part, {index, slot}, position);
+            }
+            tree.nodes_[static_cast<std::size_t>(index)].child[part_index] = child;
+            position += static_cast<std::uint32_t>(part.size());
+        }
+        return index;
+    }
+
+    void split(Range range, int levels, std::vector<Range>& parts) {
+        if (range.size() < 2 || levels == 0) {
+            if (!range.empty()) parts.push_back(range);
+            return;
+        }
+        Eigen::AlignedBox3d box;
+        for (const std::uint32_t f : range) box.extend(centroid_of(facets[f]));
+        Eigen::Index axis = 0;
+        box.sizes().maxCoeff(&axis);
+        const std::size_t middle = range.size() / 2;
+        std::nth_element(range.begin(),
+                         range.begin() + static_cast<std::ptrdiff_t>(middle),
+                         range.end(),
+                         [&](std::uint32_t i, std::uint32_t j) {
+                             const double x = centroid_of(facets[i])[axis];
+                             const double y = centroid_of(facets[j])[axis];
+                             return x < y || (x == y && i < j);
+                         });
+        split(range.first(middle), levels - 1, parts);
+        split(range.subspan(middle), levels - 1, parts);
+    }
+
+    // Facets that may be lit on either side count with the normal that agrees with the first.
+    void fill_slot(Node& node, std::int32_t slot, Range range) const {
+        Eigen::AlignedBox3d box;
+        double area = 0.0;
+        bool two_sided = false;
+        Vec3 sum = Vec3::Zero();
+        for (const std::uint32_t f : range) {
+            box.extend(box_of(facets[f]));
+            area += facets[f].area_m2;
+            two_sided = two_sided || tree.sides_[f] == 0.0F;
+            sum += facets[f].area_m2 * lit_normal(f, sum);
+        }
+        Vec3 axis = Vec3::UnitZ();
+        if (sum.norm() > 1e-6 * area) axis = sum.normalized();
+        double spread = 0.0;
+        for (const std::uint32_t f : range) {
+            spread = std::max(spread, (lit_normal(f, axis) - axis).norm());
+        }
+        const Vec3 center = range.empty() ? Vec3::Zero() : Vec3(box.center() - tree.origin_);
+        const Vec3 half = range.empty() ? Vec3::Zero() : Vec3(0.5 * box.sizes());
+        for (std::size_t k = 0; k < 3; ++k) {
+            const auto i = static_cast<Eigen::Index>(k);
+            node.center[k][slot] = static_cast<float>(center[i]);
+            node.half_size[k][slot] = static_cast<float>(half[i]) + tree.margin_m_;
+            node.axis[k][slot] = static_cast<float>(axis[i]);
+        }
+        node.spread[slot] = static_cast<float>(spread) + kSpreadMargin;
+        node.two_sided[slot] = two_sided ? 1.0F : 0.0F;
+        node.area[slot] = static_cast<float>(area);
+        node.radius[slot] = static_cast<float>(half.norm()) + 2.0F * tree.margin_m_;
+        node.child[static_cast<std::size_t>(slot)] = 0;
+    }
+
+    Vec3 lit_normal(std::uint32_t facet, const Vec3& like) const {
+        const Vec3& normal = facets[facet].normal;
+        const float side = tree.sides_[facet];
+        if (side != 0.0F) return side * normal;
+        return normal.dot(like) < 0.0 ? Vec3(-normal) : normal;
+    }
+};
+
+TriangleHierarchy::TriangleHierarchy(const Scene& scene,
+                                     std::span<const std::uint32_t> facets,
+                                     std::span<const int> sides)
+    : scene_(&scene), places_(scene.facets().size()), positions_(scene.facets().size()) {
+    for (const Facet& facet : scene.facets()) {
+        sides_.push_back(static_cast<float>(sides[facet.object]));
+    }
+    if (facets.empty()) return;
+    Eigen::AlignedBox3d box;
+    for (const std::uint32_t f : facets) box.extend(box_of(scene.facet(f)));
+    // The ends lie in the scene, if not in the set.
+    Eigen::AlignedBox3d all = box;
+    for (const Facet& facet : scene.facets()) all.extend(box_of(facet));
+    origin_ = box.center();
+    margin_m_ = static_cast<float>(kMargin * all.sizes().norm());
+    order_.reserve(facets.size());
+    std::vector<std::uint32_t> ids(facets.begin(), facets.end());
+    Builder builder{*this, scene.facets()};
+    builder.add_node(ids, {}, 0);
+}
+
+// Bounds over a box: centre c, half diagonal r, d = focus - c. Lengths lie between the sums of the
+// least and of the largest distances. A normal n within the chord `spread` of the axis m has
+// n.(focus - x) >= ... <= m.d + r + spread |d|, so its cosine can be positive only when
+// m.d/|d| + r/|d| + spread is; likewise at the ends.
+TriangleHierarchy::Lanes TriangleHierarchy::importance(const Node& node, const Query& q) const {
+    struct End {
+        Lanes nearest2 = Lanes::Zero();
+        Lanes farthest2 = Lanes::Zero();
+        Lanes distance2 = Lanes::Zero();
+        Lanes along_axis = Lanes::Zero();
+        Lanes above_end = Lanes::Zero();
+    };
+    const auto bound = [&](const Eigen::Vector3f& focus, const Eigen::Vector3f& normal) {
+        End end;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const auto i = static_cast<Eigen::Index>(k);
+            const Lanes d = focus[i] - node.center[k];
+            const Lanes size = d.abs();
+            end.nearest2 += (size - node.half_size[k]).max(0.0F).square();
+            end.farthest2 += (size + node.half_size[k]).square();
+            end.distance2 += d.square();
+            end.along_axis += node.axis[k] * d;
+            end.above_end -= normal[i] * d;
+        }
+        return end;
+    };
+    const End a = bound(q.a, q.normal_a);
+    const End b = q.coincide ? a : bound(q.b, q.normal_b);
+
+    const Lanes low = (a.nearest2.sqrt() + b.nearest2.sqrt()).max(q.apart) - margin_m_;
+    const Lanes high = a.farthest2.sqrt() + b.farthest2.sqrt() + margin_m_;
+    const Lanes asked = high.min(q.to) - low.max(q.from);
+
+    const Lanes radius2 = node.radius.square();
+    const Lanes inverse_a = a.distance2.max(radius2).rsqrt();
+    const Lanes inverse_b = b.distance2.max(radius2).rsqrt();
+    const Lanes slack_a = node.spread + node.radius * inverse_a;
+    const Lanes slack_b = node.spread + node.radius * inverse_b;
+    const Lanes cosine_a = a.along_axis * inverse_a;
+    const Lanes cosine_b = b.along_axis * inverse_b;
+    const auto cosine_bound = [](const Lanes& value) -> Lanes { return value.max(0.0F).min(1.0F); };
+    const Lanes front = cosine_bound(cosine_a + slack_a) * cosine_bound(cosine_b + slack_b);
+    const Lanes back =
+        node.two_sided * cosine_bound(slack_a - cosine_a) * cosine_bound(slack_b - cosine_b);
+    const Lanes at_a = cosine_bound((a.above_end + node.radius) * inverse_a + q.base_a);
+    const Lanes at_b = cosine_bound((b.above_end + node.radius) * inverse_b + q.base_b);
+    const Lanes falloff = (inverse_a * inverse_b).square();
+    return node.area * (asked.max(0.0F) / (high - low)) * front.max(back) * at_a * at_b * falloff;
+}
+
+TriangleHierarchy::Query TriangleHierarchy::make_query(const ConnectionEnds& ends,
+                                                       const OplBand& lengths) const {
+    Query query;
+    query.a = (ends.foci.a - origin_).cast<float>();
+    query.b = (ends.foci.b - origin_).cast<float>();
+    query.normal_a = ends.normal_a.cast<float>();
+    query.normal_b = ends.normal_b.cast<float>();
+    query.base_a = ends.normal_a.isZero(0.0) ? 1.0F : 0.0F;
+    query.base_b = ends.normal_b.isZero(0.0) ? 1.0F : 0.0F;
+    query.apart = static_cast<float>((ends.foci.a - ends.foci.b).norm());
+    query.from = static_cast<float>(lengths.low_m) - margin_m_;
+    query.to = static_cast<float>(lengths.high_m) + margin_m_;
+    query.coincide = ends.foci.a == ends.foci.b && ends.normal_a == ends.normal_b;
+    return query;
+}
+
+std::optional<std::uint32_t> TriangleHierarchy::descend(std::int32_t node,
+                                                        const Query& query,
+                                                        double u,
+                                                        double& probability) const {
+    while (node >= 0) {
+        const Node& at = nodes_[static_cast<std::size_t>(node)];
+        alignas(32) std::array<float, kWidth> weights;
+        Eigen::Map<Lanes, Eigen::Aligned32>(weights.data()) = importance(at, query);
+        float sum = 0.0F;
+        for (const float weight : weights) sum += weight;
+        if (!(sum > 0.0F)) return std::nullopt;
+        double rest = u * double{sum};
+        std::size_t chosen = kWidth;
+        for (std::size_t i = 0; i < kWidth; ++i) {
+            if (!(weights[i] > 0.0F)) continue;
+            chosen = i;
+            if (rest < double{weights[i]}) break;
+            rest -= double{weights[i]};
+        }
+        const double weight = double{weights[chosen]};
+        u = std::min(rest / weight, 1.0 - 0x1.0p-53);
+        probability *= weight / double{sum};
+        node = at.child[chosen];
+    }
+    return static_cast<std::uint32_t>(~node);
+}
+
+double TriangleHierarchy::descent_probability(std::int32_t top,
+                                              const Query& query,
+                                              std::uint32_t facet) const {
+    double probability = 1.0;
+    Place place = places_[facet];
+    while (true) {
+        if (place.node < 0) return 0.0;
+        const Lanes weights = importance(nodes_[static_cast<std::size_t>(place.node)], query);
+        const float weight = weights[place.slot];
+        if (!(weight > 0.0F)) return 0.0;
+        float sum = 0.0F;
+        for (int i = 0; i < kWidth; ++i) sum += weights[i];
+        probability *= double{weight} / double{sum};
+        if (place.node == top) return probability;
+        place = parents_[static_cast<std::size_t>(place.node)];
+    }
+}
+
+OplBand TriangleHierarchy::part_of(const OplBand& lengths,
+                                   const FocusPair& foci,
+                                   std::uint32_t facet) const {
+    const OplBand band = opl_band(foci, scene_->facet(facet));
+    const double low = std::max(band.low_m, lengths.low_m);
+    return {low, std::max(low, std::min(band.high_m, lengths.high_m))};
+}
+
+std::optional<FacetChoice> TriangleHierarchy::sample(const ConnectionEnds& ends,
+                                                     const OplBand& lengths,
+                                                     double u) const {
+    if (empty()) return std::nullopt;
+    FacetChoice choice;
+    choice.probability = 1.0;
+    const auto position = descend(0, make_query(ends, lengths), u, choice.probability);
+    if (!position) return std::nullopt;
+    choice.facet = order_[*position];
+    choice.lengths = part_of(lengths, ends.foci, choice.facet);
+    if (!(choice.lengths.width_m() > 0.0)) return std::nullopt;
+    return choice;
+}
+
+FacetChoice TriangleHierarchy::evaluate(const ConnectionEnds& ends,
+                                        const OplBand& lengths,
+                                        std::uint32_t facet) const {
+    if (places_[facet].node < 0) return {facet, 0.0, {}};
+    FacetChoice choice{facet, 0.0, part_of(lengths, ends.foci, facet)};
+    if (!(choice.lengths.width_m() > 0.0)) return choice;
+    choice.probability = descent_probability(0, make_query(ends, lengths), facet);
+    return choice;
+}
+
+}  // namespace renderer
