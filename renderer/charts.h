@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/core/types.h"
+#include "renderer/scene.h"
+
+#include <concepts>
+#include <cstdint>
+#include <optional>
+
+namespace renderer {
+
+/// A surface around one of its points, as a chart X(xi), xi in R^2, sees it to second order.
+struct ChartPoint {
+    core::Vec3 position;  ///< X [m], relative to the chart's origin
+    core::Vec3 tangent1;  ///< dX/dxi_1
+    core::Vec3 tangent2;
+    core::Vec3 second11 =
+        core::Vec3::Zero();  ///< d2X/dxi_1 dxi_1; not looked at where the chart is affine
+    core::Vec3 second12 = core::Vec3::Zero();
+    core::Vec3 second22 = core::Vec3::Zero();
+    core::Vec3 velocity;      ///< of the surface [m/s]
+    std::uint32_t facet = 0;  ///< where the surface is a mesh
+};
+
+/// Coordinates on a surface. To add a chart: a type with these members, then `shift_on_charts`
+/// (shift_solver.h) takes it for either end of a shift; tests/support/sdf_chart.h is an example
+/// on an implicit surface. Charts with a name in the settings have a route in shift_mapping.cpp.
+template <class C>
+concept SurfaceChart = requires(const C& chart, const core::Vec2& xi) {
+    { chart.at(xi) } -> std::same_as<std::optional<ChartPoint>>;  // nullopt outside the chart
+    { C::kAffine } -> std::convertible_to<bool>;                  // no second derivatives
+    { C::kPeriodic } -> std::convertible_to<bool>;                // xi_2 repeats with period 1
+};
+
+/// Plane and barycentric charts: X = origin + xi_1 tangent1 + xi_2 tangent2. The surface goes on
+/// beyond the facet; whether a point lies on it is asked afterwards.
+struct AffineChart {
+    static constexpr bool kAffine = true;
+    static constexpr bool kPeriodic = false;
+
+    core::Vec3 origin;
+    core::Vec3 tangent1;
+    core::Vec3 tangent2;
+    core::Vec3 velocity;
+    std::uint32_t facet = 0;
+
+    std::optional<ChartPoint> at(const core::Vec2& xi) const {
+        ChartPoint point;
+        point.position = origin + xi.x() * tangent1 + xi.y() * tangent2;
+        point.tangent1 = tangent1;
+        point.tangent2 = tangent2;
+        point.velocity = velocity;
+        point.facet = facet;
+        return point;
+    }
+};
+
+/// The surface as a point y sees it: mu = cosine to the normal at y, psi = azimuth/(2 pi) from an
+/// axis fixed in the world, the point by a ray. An element dmu dpsi covers 2 pi dmu dpsi
+/// steradians. Near the pole (mu > 1 - 1e-4) and near the horizon the coordinates are no use.
+class HemisphereChart {
+ public:
+    static constexpr bool kAffine = false;
+    static constexpr bool kPeriodic = true;
+
+    /// y        where rays start [m, world]
+    /// normal   at y, unit; its side is chosen so that `seen` lies above the horizon
+    /// seen     a point of the surface [m, world]; also the origin of the chart's positions
+    /// origin   of the positions [m, world]
+    HemisphereChart(const Scene& scene,
+                    const core::Vec3& y,
+                    const core::Vec3& normal,
+                    const core::Vec3& seen,
+                    const core::Vec3& origin);
+
+    /// The first surface along the direction of xi.
+    std::optional<ChartPoint> at(const core::Vec2& xi) const;
+
+    /// The plane of `facet` along the direction of xi; no ray.
+    std::optional<ChartPoint> on_facet(const core::Vec2& xi, std::uint32_t facet) const;
+
+    /// Coordinates of a world point; nullopt near pole and horizon.
+    std::optional<core::Vec2> coordinates_of(const core::Vec3& position) const;
+
+ private:
+    const Scene* scene_;
+    core::Vec3 y_;
+    core::Vec3 origin_;
+    core::Mat3 world_from_local_;
+};
+
+}  // namespace renderer

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/core/types.h"
+
+namespace renderer {
+
+/// What a path keeps, up to a given change, while its reconnection vertex p moves between the
+/// neighbours a and y ("foci"). A functional gives `expand(p, velocity of the surface at p)`, an
+/// expansion with `value`, `gradient`, `hessian_times(t)`, and two sizes to measure errors by:
+/// `gradient_size`, which the gradient's norm cannot exceed by much, and `distance_m`.
+///
+/// Points are relative to one origin near p, so that foci far from the world's origin lose nothing.
+///
+/// To add one: a struct with `expand`; instantiate the routes of shift_mapping.cpp with it.
+/// With r = focus - p, d = |r|, u = r/d:  du/dp = -(I - u u^T)/d, and everything below follows.
+
+/// Optical path length |a - p| + |y - p| [m] (source [Kim2026], equation 3).
+struct OpticalLength {
+    core::Vec3 focus_a;
+    core::Vec3 focus_y;
+
+    struct Expansion {
+        double value;
+        core::Vec3 gradient;  ///< -(u_a + u_y)
+        core::Vec3 to_a;      ///< u_a, unit
+        core::Vec3 to_y;
+        double inverse_a;  ///< 1/d_a
+        double inverse_y;
+        double gradient_size;
+        double distance_m;
+
+        /// H t = sum (t - u (u.t))/d.
+        core::Vec3 hessian_times(const core::Vec3& t) const {
+            return (inverse_a + inverse_y) * t - (inverse_a * to_a.dot(t)) * to_a -
+                   (inverse_y * to_y.dot(t)) * to_y;
+        }
+    };
+
+    Expansion expand(const core::Vec3& p, const core::Vec3& /*surface_velocity*/) const {
+        const core::Vec3 r_a = focus_a - p;
+        const core::Vec3 r_y = focus_y - p;
+        const double d_a = r_a.norm();
+        const double d_y = r_y.norm();
+        const double inverse_a = 1.0 / d_a;
+        const double inverse_y = 1.0 / d_y;
+        const core::Vec3 to_a = inverse_a * r_a;
+        const core::Vec3 to_y = inverse_y * r_y;
+        return {d_a + d_y, -(to_a + to_y), to_a, to_y, inverse_a, inverse_y, 1.0, d_a + d_y};
+    }
+};
+
+/// Path velocity d/dt (|a - p| + |y - p|) = u_a.w_a + u_y.w_y [m/s], w = velocity of the focus
+/// minus that of the surface at p.
+///
+/// The supplement's equations (10) and (11) are misprinted: (10) puts the velocity, which is not a
+/// unit vector, where the direction belongs and loses the factor w; (11) has -2c u u^T - c I where
+/// the derivative gives c I - 3c u u^T. Correct, from the derivative of u above, c = u.w:
+///     gradient = -sum (w - c u)/d
+///     Hessian  = -sum (u w^T + w u^T + c I - 3 c u u^T)/d^2
+/// (source [Kim2026], section 2, corrected).
+struct PathVelocity {
+    core::Vec3 focus_a;
+    core::Vec3 focus_y;
+    core::Vec3 velocity_a;
+    core::Vec3 velocity_y;
+
+    struct Expansion {
+        double value;
+        core::Vec3 gradient;
+        core::Vec3 to_a;
+        core::Vec3 to_y;
+        core::Vec3 relative_a;  ///< w_a
+        core::Vec3 relative_y;
+        double inverse_a;
+        double inverse_y;
+        double gradient_size;
+        double distance_m;
+
+        core::Vec3 hessian_times(const core::Vec3& t) const {
+            return leg(to_a, relative_a, inverse_a, t) + leg(to_y, relative_y, inverse_y, t);
+        }
+
+     private:
+        static core::Vec3 leg(const core::Vec3& u,
+                              const core::Vec3& w,
+                              double inverse,
+                              const core::Vec3& t) {
+            const double c = u.dot(w);
+            const double u_t = u.dot(t);
+            return (-inverse * inverse) * ((w.dot(t) - 3.0 * c * u_t) * u + u_t * w + c * t);
+        }
+    };
+
+    Expansion expand(const core::Vec3& p, const core::Vec3& surface_velocity) const {
+        const core::Vec3 r_a = focus_a - p;
+        const core::Vec3 r_y = focus_y - p;
+        const double d_a = r_a.norm();
+        const double d_y = r_y.norm();
+        Expansion e;
+        e.inverse_a = 1.0 / d_a;
+        e.inverse_y = 1.0 / d_y;
+        e.to_a = e.inverse_a * r_a;
+        e.to_y = e.inverse_y * r_y;
+        e.relative_a = velocity_a - surface_velocity;
+        e.relative_y = velocity_y - surface_velocity;
+        const double c_a = e.to_a.dot(e.relative_a);
+        const double c_y = e.to_y.dot(e.relative_y);
+        e.value = c_a + c_y;
+        e.gradient = -e.inverse_a * (e.relative_a - c_a * e.to_a) -
+                     e.inverse_y * (e.relative_y - c_y * e.to_y);
+        e.gradient_size = e.inverse_a * e.relative_a.norm() + e.inverse_y * e.relative_y.norm();
+        e.distance_m = d_a + d_y;
+        return e;
+    }
+};
+
+}  // namespace renderer

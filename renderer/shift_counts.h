@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace renderer {
+
+/// Whether a solved shift is solved backwards as well.
+enum class ReverseCheck { On, Off };
+
+/// Why a shift has no result. Occlusion of the new legs is no matter of the shift.
+enum class ShiftRejection {
+    BelowMinimum,   ///< no point of the surface's plane, or of space, has a path this short
+    Degenerate,     ///< a determinant is zero: near the tangent point or the foci's segment
+    Folded,         ///< the map turns its orientation
+    NotConverged,   ///< Newton's method, or the residuals after a closed form
+    LeftChart,      ///< outside the coordinates, or the ray met nothing
+    LeftSurface,    ///< the plane's point lies on no facet of the surface
+    SecondRoot,     ///< another branch of the curve
+    NotReversible,  ///< the reverse solve ends elsewhere
+    OtherRoute,     ///< the adaptive chart takes another route from the far end
+    JacobianBound,  ///< stretches or squeezes area too much
+};
+
+inline constexpr std::array<std::string_view, 10> kShiftRejectionNames{"below_minimum",
+                                                                       "degenerate",
+                                                                       "folded",
+                                                                       "not_converged",
+                                                                       "left_chart",
+                                                                       "left_surface",
+                                                                       "second_root",
+                                                                       "not_reversible",
+                                                                       "other_route",
+                                                                       "jacobian_bound"};
+
+/// What happened in one shift.
+struct ShiftTrace {
+    ShiftRejection rejection = ShiftRejection::NotConverged;  ///< when there is no result
+    int iterations = 0;                                       ///< Newton steps, reverse included
+
+    std::nullopt_t reject(ShiftRejection reason) {
+        rejection = reason;
+        return std::nullopt;
+    }
+};
+
+/// Sums over many shifts.
+struct ShiftCounts {
+    std::uint64_t accepted = 0;
+    std::array<std::uint64_t, kShiftRejectionNames.size()> rejected{};
+    std::uint64_t iterations = 0;
+    std::uint64_t by_ray = 0;  ///< accepted on the hemisphere
+
+    std::uint64_t tried() const {
+        std::uint64_t sum = accepted;
+        for (const std::uint64_t count : rejected) sum += count;
+        return sum;
+    }
+    std::uint64_t count_of(ShiftRejection reason) const {
+        return rejected[static_cast<std::size_t>(reason)];
+    }
+    ShiftCounts& operator+=(const ShiftCounts& other) {
+        accepted += other.accepted;
+        for (std::size_t i = 0; i < rejected.size(); ++i) rejected[i] += other.rejected[i];
+        iterations += other.iterations;
+        by_ray += other.by_ray;
+        return *this;
+    }
+};
+
+}  // namespace renderer

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/charts.h"
+#include "renderer/core/types.h"
+
+#include <cstdint>
+#include <optional>
+
+namespace renderer {
+
+/// A path functional in a chart, to second order: f(xi) = factor * functional(X(xi)).
+struct ChartExpansion {
+    double value = 0.0;
+    core::Vec2 slope;  ///< df/dxi
+    double h11 = 0.0;  ///< second derivatives of f
+    double h12 = 0.0;
+    double h22 = 0.0;
+    double area_density = 0.0;  ///< |dX/dxi_1 x dX/dxi_2|
+    double slope_size = 0.0;    ///< what the slope per metre of movement cannot exceed by much
+    double distance_m = 0.0;    ///< size of the two legs
+    core::Vec3 position;        ///< relative to the chart's origin
+    core::Vec3 tangent1;
+    core::Vec3 tangent2;
+    std::uint32_t facet = 0;
+
+    core::Vec2 hessian_times(const core::Vec2& v) const {
+        return {h11 * v.x() + h12 * v.y(), h12 * v.x() + h22 * v.y()};
+    }
+};
+
+/// A chart with the functional that one end of a shift keeps: the source's, times the ratio of the
+/// gate widths S, or the target's, times 1.
+template <SurfaceChart Chart, class Functional>
+struct ShiftSide {
+    using ChartType = Chart;
+
+    Chart chart;
+    Functional functional;
+    double factor = 1.0;
+
+    std::optional<ChartExpansion> at(const core::Vec2& xi) const {
+        const auto point = chart.at(xi);
+        if (!point) return std::nullopt;
+        return expand(*point);
+    }
+
+    ChartExpansion expand(const ChartPoint& point) const {
+        const auto f = functional.expand(point.position, point.velocity);
+        const core::Vec3 h1 = f.hessian_times(point.tangent1);
+        ChartExpansion e;
+        e.value = factor * f.value;
+        e.slope =
+            factor * core::Vec2(f.gradient.dot(point.tangent1), f.gradient.dot(point.tangent2));
+        e.h11 = h1.dot(point.tangent1);
+        e.h12 = h1.dot(point.tangent2);
+        e.h22 = f.hessian_times(point.tangent2).dot(point.tangent2);
+        if constexpr (!Chart::kAffine) {
+            // The chart's own curvature. The supplement's (13) leaves it out, which makes both
+            // Newton steps and determinant wrong on the hemisphere.
+            e.h11 += f.gradient.dot(point.second11);
+            e.h12 += f.gradient.dot(point.second12);
+            e.h22 += f.gradient.dot(point.second22);
+        }
+        e.h11 *= factor;
+        e.h12 *= factor;
+        e.h22 *= factor;
+        e.area_density = point.tangent1.cross(point.tangent2).norm();
+        e.slope_size = factor * f.gradient_size;
+        e.distance_m = f.distance_m;
+        e.position = point.position;
+        e.tangent1 = point.tangent1;
+        e.tangent2 = point.tangent2;
+        e.facet = point.facet;
+        return e;
+    }
+};
+
+/// The two sides of a shift and by how much their functionals shall differ:
+/// f_target(xi') - f_source(xi) = change. Swapped sides with the negative change are its inverse.
+template <class Source, class Target>
+struct ShiftProblem {
+    const Source& source;
+    const Target& target;
+    double change = 0.0;
+
+    ShiftProblem<Target, Source> inverse() const { return {target, source, -change}; }
+};
+
+/// R v, a quarter turn.
+inline core::Vec2 turned(const core::Vec2& v) {
+    return {-v.y(), v.x()};
+}
+
+inline double cross(const core::Vec2& a, const core::Vec2& b) {
+    return a.x() * b.y() - a.y() * b.x();
+}
+
+}  // namespace renderer
