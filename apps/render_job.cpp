@@ -66,7 +66,7 @@ RenderJob render_to_file(const std::string& scene_path,
     RenderJob job;
     job.num_pairs = scan.num_pairs();
     job.num_bins = description.time_axis.num_bins;
-    job.pattern = core::enum_name(scan.pattern);
+    job.pattern = scan.camera ? "camera" : core::enum_name(scan.pattern);
     job.estimator = estimator_names(result);
     job.estimated_error = result.estimated_error;
     job.samples_per_pair = result.samples_per_pair;

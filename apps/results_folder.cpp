@@ -46,28 +46,43 @@ std::string points_text(const core::WallPoints& points) {
     return fmt::format("{} x {}", (*points.grid)[0], (*points.grid)[1]);
 }
 
+std::vector<Fact> scan_facts(const core::Scan& scan) {
+    if (scan.camera) {
+        return {
+            {"Camera", fmt::format("{} x {} pixels", scan.camera->width(), scan.camera->height())},
+            {"Angle of view", short_number(scan.camera->fov_y_deg) + " degrees high"},
+            {"Light", scan.camera->light_spot_m ? "spot on a surface" : "point"}};
+    }
+    const nlos::WallFrame frame = nlos::derive_wall_frame(scan);
+    std::vector<Fact> facts{{"Scan", std::string(core::enum_name(scan.pattern))},
+                            {"Sensing points", points_text(scan.sensing)}};
+    if (scan.pattern != core::ScanPattern::Confocal) {
+        facts.emplace_back("Illumination points", points_text(scan.illumination));
+    }
+    facts.emplace_back("Wall covered",
+                       fmt::format("{} x {} m",
+                                   short_number(frame.max_m[0] - frame.min_m[0]),
+                                   short_number(frame.max_m[1] - frame.min_m[1])));
+    return facts;
+}
+
+std::string path_origin(const core::Scan& scan) {
+    if (scan.camera) return "the light";
+    return scan.opl_origin == core::OplOrigin::Device ? "the device" : "the relay wall";
+}
+
 std::vector<Fact> capture_facts(const core::Capture& capture) {
     const core::TimeAxis& axis = capture.time_axis;
-    const nlos::WallFrame frame = nlos::derive_wall_frame(capture.scan);
     const auto values = capture.transient.values();
     double total = 0.0;
     for (const float value : values) total += value;
-    std::vector<Fact> facts{{"Scan", std::string(core::enum_name(capture.scan.pattern))},
-                            {"Sensing points", points_text(capture.scan.sensing)}};
-    if (capture.scan.pattern != core::ScanPattern::Confocal) {
-        facts.emplace_back("Illumination points", points_text(capture.scan.illumination));
-    }
+    std::vector<Fact> facts = scan_facts(capture.scan);
     facts.insert(
         facts.end(),
-        {{"Wall covered",
-          fmt::format("{} x {} m",
-                      short_number(frame.max_m[0] - frame.min_m[0]),
-                      short_number(frame.max_m[1] - frame.min_m[1]))},
-         {"Bins",
+        {{"Bins",
           fmt::format("{} of {} mm of path", axis.num_bins, short_number(1e3 * axis.bin_width_m))},
          {"Path length", range_text(axis.opl_start_m, axis.opl_end_m(), "m")},
-         {"Path begins at",
-          capture.scan.opl_origin == core::OplOrigin::Device ? "the device" : "the relay wall"},
+         {"Path begins at", path_origin(capture.scan)},
          {"Unit", std::string(core::enum_name(capture.unit))},
          {"Largest value", short_number(*std::max_element(values.begin(), values.end()))},
          {"Sum of all values", short_number(total)}});

@@ -10,9 +10,15 @@ namespace apps {
 /// A scene file, loaded to be looked at.
 class SceneTruth {
  public:
+    /// throws   core::Error as reading does, and when the scene has a camera and no relay wall
     explicit SceneTruth(const std::string& scene_path)
         : description_(renderer::read_scene_description(scene_path, {})),
-          scene_(renderer::load_scene(description_, renderer::make_scan(description_))) {}
+          scene_(renderer::load_scene(description_, renderer::make_scan(description_))) {
+        if (!description_.camera) return;
+        throw core::Error(scene_path,
+                          "found a camera in place of a relay wall",
+                          "must have a relay wall, from which depth is seen");
+    }
 
     /// What the whole wall sees, at the scene's own resolution.
     core::DepthMap depth_map() const { return renderer::trace_ground_truth(scene_, description_); }

@@ -119,6 +119,7 @@ std::optional<std::string> fast_onset(const core::Capture& capture,
 }  // namespace
 
 std::vector<std::string> timing_warnings(const core::Capture& capture) {
+    if (capture.scan.camera) return {};
     const std::vector<double> ambient = ambient_of(capture);
     std::vector<std::string> warnings;
     if (auto warning = early_light(capture, ambient)) warnings.push_back(*warning);

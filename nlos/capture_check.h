@@ -15,7 +15,7 @@ namespace nlos {
 /// - first light that moves along the wall faster than any path length can change (1 m per metre of
 ///   sensing point, 2 if confocal): bins are narrower than stated.
 ///
-/// returns   empty when nothing does; never for captures too small or dark to tell
+/// returns   empty when nothing does; never for captures too small or dark to tell, nor for images
 /// throws    nothing
 std::vector<std::string> timing_warnings(const core::Capture& capture);
 

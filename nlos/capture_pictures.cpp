@@ -2,8 +2,11 @@
 #include "nlos/pictures.h"
 #include "nlos/wall_frame.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace nlos {
 namespace {
@@ -11,6 +14,8 @@ namespace {
 constexpr double kQuietShare = 0.002;       // of all light, left out at either end of the axis
 constexpr double kShownMargin = 0.02;       // of the axis, kept around what is shown
 constexpr double kBrightestShare = 0.0005;  // of a streak's values, drawn in the last colour
+
+constexpr std::size_t kMostGates = 4;  // of an image's histogram, drawn one by one
 
 using Range = std::array<double, 2>;
 
@@ -125,7 +130,8 @@ CurvePanel curve_panel(const core::Capture& capture,
                        const std::vector<double>& mean,
                        const std::array<std::size_t, 2>& bins) {
     CurvePanel panel;
-    panel.title = "Mean transient of all points";
+    panel.title =
+        capture.scan.camera ? "Mean transient of all pixels" : "Mean transient of all points";
     for (std::size_t bin = bins[0]; bin < bins[1]; ++bin) {
         panel.x.push_back(capture.time_axis.bin_center_m(static_cast<double>(bin)));
         panel.y.push_back(mean[bin]);
@@ -135,9 +141,62 @@ CurvePanel curve_panel(const core::Capture& capture,
     return panel;
 }
 
+/// Bins [first, last) of every pixel, summed, as the camera sees them.
+ImagePanel gated_panel(const core::PinholeCamera& camera,
+                       const core::Transient& transient,
+                       const std::array<std::size_t, 2>& bins) {
+    ImagePanel panel;
+    panel.width = camera.width();
+    panel.height = camera.height();
+    for (std::size_t y = 0; y < panel.height; ++y) {
+        for (std::size_t x = 0; x < panel.width; ++x) {
+            const auto histogram = transient.histogram(x * panel.height + y);
+            const auto gate = histogram.subspan(bins[0], bins[1] - bins[0]);
+            panel.values.push_back(std::accumulate(gate.begin(), gate.end(), 0.0F));
+        }
+    }
+    panel.x_range = {0.0, static_cast<double>(panel.width)};
+    panel.y_range = {0.0, static_cast<double>(panel.height)};
+    panel.x_label = "x [pixel]";
+    panel.y_label = "y [pixel]";
+    panel.y_direction = AxisDirection::Reversed;
+    panel.value_range = light_range(panel.values);
+    return panel;
+}
+
+/// The image of all light, the mean transient, and the image in a few gates that share the time
+/// in which there is light.
+std::vector<Panel> image_panels(const core::Capture& capture) {
+    const core::PinholeCamera& camera = *capture.scan.camera;
+    const std::size_t num_bins = capture.transient.num_bins();
+    const auto gated = [&](const std::string& title, const std::array<std::size_t, 2>& bins) {
+        ImagePanel panel = gated_panel(camera, capture.transient, bins);
+        panel.title = title;
+        panel.value_label = unit_of(capture);
+        return panel;
+    };
+    std::vector<Panel> panels{gated("Light of all bins", {0, num_bins})};
+    if (num_bins == 1) return panels;
+    const std::vector<double> mean = mean_transient(capture);
+    const std::array<std::size_t, 2> shown = shown_bins(mean);
+    panels.emplace_back(curve_panel(capture, mean, shown));
+    const std::size_t num_gates = std::min(kMostGates, shown[1] - shown[0]);
+    for (std::size_t i = 0; i < num_gates; ++i) {
+        const std::size_t first = shown[0] + i * (shown[1] - shown[0]) / num_gates;
+        const std::size_t last = shown[0] + (i + 1) * (shown[1] - shown[0]) / num_gates;
+        panels.emplace_back(
+            gated(fmt::format("Path length {:.3g} to {:.3g} m",
+                              capture.time_axis.bin_begin_m(static_cast<double>(first)),
+                              capture.time_axis.bin_begin_m(static_cast<double>(last))),
+                  {first, last}));
+    }
+    return panels;
+}
+
 }  // namespace
 
 std::vector<Panel> capture_panels(const core::Capture& capture) {
+    if (capture.scan.camera) return image_panels(capture);
     const std::optional<WallGrid> grid = derive_wall_frame(capture.scan).grid;
     const std::vector<double> mean = mean_transient(capture);
     const std::array<std::size_t, 2> bins = shown_bins(mean);

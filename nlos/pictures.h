@@ -18,7 +18,8 @@ std::vector<Panel> volume_panels(const Reconstruction& reconstruction);
 
 /// Streak image of the middle row of wall points, light over the wall, and mean transient.
 ///
-/// Point lists have no picture of the wall; a single time gate has nothing but that.
+/// Point lists have no picture of the wall; a single time gate has nothing but that. Of a camera:
+/// the image of all light, the mean transient, and images in a few gates.
 std::vector<Panel> capture_panels(const core::Capture& capture);
 
 /// True depth, reconstructed depth on the same scale, and their signed difference.

@@ -208,6 +208,10 @@ Reconstruction reconstruct(const core::Capture& capture,
     const auto start = std::chrono::steady_clock::now();
     validate(settings);
     core::validate(capture, "capture");
+    if (capture.scan.camera) {
+        throw core::Error(
+            "capture", "found the image of a camera", "must be a scan of points on a relay wall");
+    }
 
     Reconstruction result;
     result.settings = settings;

@@ -8,7 +8,8 @@
 
 namespace renderer {
 
-/// One end of all light paths: a point of the relay wall, or an isotropic point in space.
+/// One end of all light paths: a point of the relay wall, a lit spot, or an isotropic point in
+/// space.
 ///
 /// The factor towards a unit direction w is `strength` * max(0, normal . w) for a Lambertian wall
 /// (strength albedo/pi) and `strength` for an isotropic end (1/(4 pi) for a source of 1 W, 1 for a

@@ -42,24 +42,6 @@ PassPlan plan_passes(const RenderSettings& settings, PathShare share) {
     return {per_pass, (settings.samples + per_pass - 1) / per_pass};
 }
 
-PathEnd wall_end(const core::WallPoints& points, std::size_t index, double albedo) {
-    PathEnd end;
-    end.position = points.positions[index];
-    end.normal = points.normals[index];
-    end.strength = albedo / core::kPi;
-    return end;
-}
-
-PathEnds ends_of_pair(const core::Scan& scan, std::size_t pair, double wall_albedo) {
-    PathEnds ends;
-    ends.sensor = wall_end(scan.sensing, scan.sensing_index(pair), wall_albedo);
-    ends.light = wall_end(scan.illumination, scan.illumination_index(pair), wall_albedo);
-    ends.device_legs_m = scan.device_legs_m(pair);
-    ends.coincide =
-        ends.sensor.position == ends.light.position && ends.sensor.normal == ends.light.normal;
-    return ends;
-}
-
 // Orders 1 and 2, which need no sampling.
 void add_short_paths(const Scene& scene,
                      const PathEnds& ends,
@@ -146,7 +128,7 @@ class PassLoop {
           settings_(settings),
           share_(share),
           num_channels_(channel_count(settings)),
-          wall_albedo_(scene.wall_albedo()),
+          measurement_(scene, scan),
           tracer_(scene,
                   settings,
                   share == PathShare::NotIntegrable ? ThirdBounceScope::NotIntegrable
@@ -156,6 +138,10 @@ class PassLoop {
     void run(const Tile& tile, const core::Progress& progress, RenderResult& result);
 
  private:
+    std::uint64_t trace_pair(std::size_t pair,
+                             int samples,
+                             core::Rng& rng,
+                             PassHistogram& histogram) const;
     void run_pass(const Tile& tile, int pass, int samples, TransientAccumulator& sums);
     void fill_capture(const Tile& tile,
                       const TransientAccumulator& sums,
@@ -168,10 +154,26 @@ class PassLoop {
     const RenderSettings& settings_;
     PathShare share_;
     int num_channels_;
-    double wall_albedo_;
+    Measurement measurement_;
     PathTracer tracer_;
     std::atomic<std::uint64_t> num_rays_{0};
 };
+
+std::uint64_t PassLoop::trace_pair(std::size_t pair,
+                                   int samples,
+                                   core::Rng& rng,
+                                   PassHistogram& histogram) const {
+    if (measurement_.is_image()) {
+        return tracer_.trace_pixel(measurement_, pair, samples, rng, histogram);
+    }
+    const PathEnds ends = measurement_.ends(pair);
+    std::uint64_t num_rays = 0;
+    if (settings_.max_bounces >= 3 && samples > 0) {
+        num_rays = tracer_.trace(ends, samples, rng, histogram);
+    }
+    add_short_paths(scene_, ends, settings_, histogram);
+    return num_rays;
+}
 
 void PassLoop::run_pass(const Tile& tile, int pass, int samples, TransientAccumulator& sums) {
     constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
@@ -180,12 +182,8 @@ void PassLoop::run_pass(const Tile& tile, int pass, int samples, TransientAccumu
         PassHistogram histogram(axis_, settings_.gate, num_channels_);
         for (std::size_t i = begin; i < end; ++i) {
             const std::size_t pair = tile.begin + i;
-            const PathEnds ends = ends_of_pair(scan_, pair, wall_albedo_);
             core::Rng rng(settings_.seed, pair, static_cast<std::uint64_t>(pass));
-            if (settings_.max_bounces >= 3 && samples > 0) {
-                num_rays_ += tracer_.trace(ends, samples, rng, histogram);
-            }
-            add_short_paths(scene_, ends, settings_, histogram);
+            num_rays_ += trace_pair(pair, samples, rng, histogram);
             sums.add_pass(i, histogram);
             if (histogram.num_non_finite() > 0) bad_pair = std::min(bad_pair.load(), pair);
             if (bad_pair != kNone) return;

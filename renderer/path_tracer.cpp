@@ -49,11 +49,13 @@ class PathTracer::Walk {
 
     void trace_area_samples(int count);
     void trace_bsdf_samples(int count);
+    void trace_pixel_samples(const Measurement& measurement, std::size_t pixel, int count);
     std::uint64_t num_rays() const { return num_rays_; }
 
  private:
     void finish_first_vertices(bool may_be_hidden);
     void deposit(const PathVertex& vertex, double value);
+    void connect_to_light(const PathVertex& vertex);
     void extend(PathVertex vertex);
 
     const PathTracer& tracer_;
@@ -85,6 +87,17 @@ std::uint64_t PathTracer::trace(const PathEnds& ends,
     Walk walk(*this, ends, num_samples, rng, histogram);
     walk.trace_area_samples(num_area);
     walk.trace_bsdf_samples(num_samples - num_area);
+    return walk.num_rays();
+}
+
+std::uint64_t PathTracer::trace_pixel(const Measurement& measurement,
+                                      std::size_t pixel,
+                                      int num_samples,
+                                      core::Rng& rng,
+                                      PassHistogram& histogram) const {
+    const PathEnds ends = measurement.ends(pixel);
+    Walk walk(*this, ends, num_samples, rng, histogram);
+    walk.trace_pixel_samples(measurement, pixel, num_samples);
     return walk.num_rays();
 }
 
@@ -125,6 +138,21 @@ void PathTracer::Walk::trace_bsdf_samples(int count) {
     finish_first_vertices(false);
 }
 
+void PathTracer::Walk::trace_pixel_samples(const Measurement& measurement,
+                                           std::size_t pixel,
+                                           int count) {
+    for (int i = 0; i < count; ++i) {
+        const double u1 = (i + rng_.uniform()) / count;
+        auto vertex = measurement.first_vertex(pixel, {u1, rng_.uniform()});
+        ++num_rays_;
+        if (!vertex) continue;
+        vertex->throughput *= weight_;
+        if (vertex->order > tracer_.max_order_) continue;
+        connect_to_light(*vertex);
+        extend(*vertex);
+    }
+}
+
 // Connects first vertices to the light and continues their paths. `may_be_hidden`: whether the
 // sensor may not see them.
 void PathTracer::Walk::finish_first_vertices(bool may_be_hidden) {
@@ -162,15 +190,19 @@ void PathTracer::Walk::deposit(const PathVertex& vertex, double value) {
     histogram_.add(channel, vertex.opl_m + to_light + ends_.device_legs_m, value);
 }
 
+void PathTracer::Walk::connect_to_light(const PathVertex& vertex) {
+    const double value = tracer_.surface_walk_.connection_value(vertex, ends_);
+    if (!(value > 0.0)) return;
+    ++num_rays_;
+    if (!tracer_.surface_walk_.light_is_hidden(vertex, ends_)) deposit(vertex, value);
+}
+
 void PathTracer::Walk::extend(PathVertex vertex) {
     const SurfaceWalk& walk = tracer_.surface_walk_;
     while (vertex.order < tracer_.max_order_) {
         if (!walk.survives(vertex, rng_)) return;
         if (!walk.draw_next(vertex, rng_, num_rays_)) return;
-        const double value = walk.connection_value(vertex, ends_);
-        if (!(value > 0.0)) continue;
-        ++num_rays_;
-        if (!walk.light_is_hidden(vertex, ends_)) deposit(vertex, value);
+        connect_to_light(vertex);
     }
 }
 

@@ -4,6 +4,7 @@
 #include "renderer/core/random.h"
 #include "renderer/first_vertices.h"
 #include "renderer/light_path.h"
+#include "renderer/measurement.h"
 #include "renderer/pass_histogram.h"
 #include "renderer/surface_walk.h"
 
@@ -33,6 +34,13 @@ class PathTracer {
                         int num_samples,
                         core::Rng& rng,
                         PassHistogram& histogram) const;
+
+    /// The same for a pixel, whose paths begin with the surface point seen through it.
+    std::uint64_t trace_pixel(const Measurement& measurement,
+                              std::size_t pixel,
+                              int num_samples,
+                              core::Rng& rng,
+                              PassHistogram& histogram) const;
 
  private:
     class Walk;

@@ -32,6 +32,13 @@ void require_integrable(const Surfaces& surfaces) {
                       "must be auto or path for such surfaces");
 }
 
+void require_wall(const core::Scan& scan) {
+    if (!scan.camera) return;
+    throw core::Error("render.method",
+                      "found third_bounce for a camera",
+                      "must be auto or path: there are no wall points");
+}
+
 // What is left for path tracing when third_bounce does its part.
 PathShare share_of_paths(const RenderSettings& settings, const Surfaces& surfaces) {
     if (settings.method == Estimator::ThirdBounce) return PathShare::Nothing;
@@ -47,7 +54,15 @@ void add(const core::Transient& part, core::Transient& sum) {
                    [](float a, float b) { return a + b; });
 }
 
-void list_path_orders(const RenderSettings& settings, PathShare share, RenderResult& result) {
+void list_path_orders(const core::Scan& scan,
+                      const RenderSettings& settings,
+                      PathShare share,
+                      RenderResult& result) {
+    if (scan.camera) {
+        const int first = scan.camera->light_spot_m ? 2 : 1;
+        result.sources.push_back({first, settings.max_bounces, Estimator::Path, "all"});
+        return;
+    }
     if (share == PathShare::Nothing || settings.max_bounces < 3) return;
     if (share == PathShare::Everything) {
         result.sources.push_back({3, settings.max_bounces, Estimator::Path, "all"});
@@ -75,13 +90,17 @@ RenderResult render(const Scene& scene,
                     const RenderSettings& settings,
                     const core::Progress& progress) {
     const Surfaces surfaces = surfaces_of(scene);
-    if (settings.method == Estimator::ThirdBounce) require_integrable(surfaces);
-    const bool integrates = settings.method != Estimator::Path && settings.max_bounces >= 3 &&
-                            settings.gate == GateShape::Box && surfaces.integrable;
+    if (settings.method == Estimator::ThirdBounce) {
+        require_wall(scan);
+        require_integrable(surfaces);
+    }
+    const bool integrates = settings.method != Estimator::Path && !scan.camera &&
+                            settings.max_bounces >= 3 && settings.gate == GateShape::Box &&
+                            surfaces.integrable;
     if (!integrates) {
         RenderResult result =
             render_paths(scene, scan, axis, settings, {PathShare::Everything}, progress);
-        list_path_orders(settings, PathShare::Everything, result);
+        list_path_orders(scan, settings, PathShare::Everything, result);
         return result;
     }
     const PathShare share = share_of_paths(settings, surfaces);
@@ -98,7 +117,7 @@ RenderResult render(const Scene& scene,
     if (surfaces.others) {
         result.sources.push_back({3, 3, Estimator::Path, "narrow glossy lobes"});
     }
-    list_path_orders(settings, share, result);
+    list_path_orders(scan, settings, share, result);
     result.estimated_error = third.estimated_error;
     result.num_rays += third.num_rays;
     result.seconds += third.seconds;

@@ -32,15 +32,16 @@ struct RenderResult {
     bool interrupted = false;  ///< stopped early; every pair has a result
 };
 
-/// Renders the transients that a scan records of a scene.
+/// Renders the transients that a scan, or a camera, records of a scene.
 ///
-/// scan       wall points; unit normals
+/// scan       wall points with unit normals, or a camera
 /// axis       bins of optical path length
 /// settings   validated; `samples` is rounded up to whole passes; method `auto` integrates third
 ///            bounces where it can and traces paths for what is left
 /// progress   asked after every pass or part whether to stop
-/// returns    radiance leaving the sensing points for 1 W on the illumination point, per bin
-///            (the bin's integral); the variance of the part from paths on request, given more than
+/// returns    radiance leaving the sensing points for 1 W on the illumination point, or reaching
+///            the camera, averaged over each pixel, for a light of 1 W [W/(m^2 sr)], per bin (the
+///            bin's integral); the variance of the part from paths on request, given more than
 ///            one pass
 /// throws     core::Error when the method cannot do what is asked; core::Failure when memory does
 ///            not suffice or a contribution is not finite

@@ -36,6 +36,13 @@ const Object* relay_wall_mesh(const SceneGeometry& geometry) {
 }
 
 SceneGeometry with_wall(SceneGeometry geometry, const core::Scan& scan, const RelayWall& wall) {
+    if (scan.camera) {
+        // What relays light in a scan is a surface like any other to a camera.
+        for (Object& object : geometry.objects) {
+            if (object.role == Role::RelayWall) object.role = Role::Hidden;
+        }
+        return geometry;
+    }
     if (relay_wall_mesh(geometry) == nullptr && rectangle_carries_scan(wall, scan)) {
         geometry.objects.push_back(rectangle_object(wall));
     }
@@ -72,6 +79,7 @@ std::vector<std::array<Vec3, 3>> corners_of(std::span<const Facet> facets) {
 }
 
 std::vector<Vec3> scan_points(const core::Scan& scan) {
+    if (scan.camera) return {scan.camera->position_m, scan.camera->light_position()};
     std::vector<Vec3> points = scan.sensing.positions;
     points.insert(
         points.end(), scan.illumination.positions.begin(), scan.illumination.positions.end());
@@ -160,7 +168,7 @@ Scene load_scene(const SceneDescription& description, const core::Scan& scan) {
         }
         return false;
     };
-    if (std::none_of(geometry.objects.begin(), geometry.objects.end(), in_front)) {
+    if (!scan.camera && std::none_of(geometry.objects.begin(), geometry.objects.end(), in_front)) {
         throw core::Error(description.geometry,
                           "found no hidden surface in front of the relay wall",
                           "must have one on the side that the wall's normal points to");

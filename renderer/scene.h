@@ -40,7 +40,8 @@ class Scene {
  public:
     /// geometry     objects in world coordinates
     /// scan         points that rays will start from
-    /// wall         becomes a surface unless a mesh has that role or the scan lies elsewhere
+    /// wall         becomes a surface unless a mesh has that role or the scan lies elsewhere;
+    ///              images have none, and meshes of that role are hidden surfaces to them
     Scene(SceneGeometry geometry, const core::Scan& scan, const RelayWall& wall);
 
     const std::vector<Object>& objects() const { return geometry_.objects; }

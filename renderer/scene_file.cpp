@@ -2,6 +2,7 @@
 #include "renderer/scene_file.h"
 
 #include "renderer/core/process.h"
+#include "renderer/gltf.h"
 
 #include <fmt/core.h>
 
@@ -82,12 +83,15 @@ void validate_size(const SceneDescription& scene, const std::string& where) {
                               : static_cast<double>(points.size());
     };
     double values = count(scan.sensing_points_m, scan.sensing_points) * scene.time_axis.num_bins;
-    if (scan.pattern == core::ScanPattern::Exhaustive) {
+    if (scene.camera) {
+        values = static_cast<double>(scene.camera->num_pixels()) * scene.time_axis.num_bins;
+    } else if (scan.pattern == core::ScanPattern::Exhaustive) {
         values *= count(scan.illumination_points_m, scan.illumination_points);
     }
     const double available = static_cast<double>(core::available_memory_bytes());
     if (values * sizeof(float) > available) {
-        throw Error(where + "scan.sensing_points and time_axis.num_bins",
+        throw Error(where + (scene.camera ? "camera.resolution" : "scan.sensing_points") +
+                        " and time_axis.num_bins",
                     fmt::format("found {:.3g} values in all", values),
                     fmt::format("must fit into {:.1f} GB of memory", available * 1e-9));
     }
@@ -133,7 +137,54 @@ core::WallPoints illumination_points(const SceneDescription& scene,
     return spot;
 }
 
+core::Scan image_of(const core::PinholeCamera& camera) {
+    core::Scan scan;
+    scan.pattern = core::ScanPattern::Single;
+    scan.opl_origin = core::OplOrigin::Device;
+    scan.laser_position = camera.light_position();
+    scan.detector_position = camera.position_m;
+    scan.camera = camera;
+    return scan;
+}
+
+// Takes pose and angle of view from the glTF camera of the given name.
+void look_up_camera(const std::string& geometry, const std::string& where, CameraSettings& camera) {
+    std::string known;
+    for (const Camera& candidate : load_gltf(geometry).cameras) {
+        known += (known.empty() ? "" : ", ") + candidate.name;
+        if (candidate.name != camera.name) continue;
+        camera.position_m = candidate.position;
+        camera.look_at_m = candidate.position + candidate.forward;
+        camera.up = candidate.up;
+        camera.fov_y_deg = candidate.fov_y_rad * 180.0 / core::kPi;
+        return;
+    }
+    throw Error(
+        where,
+        fmt::format("found \"{}\"", camera.name),
+        known.empty() ? geometry + " must have perspective cameras" : "must be one of " + known);
+}
+
+// A camera measures instead of wall and scan; a file that names both means something else.
+void refuse_two_setups(const core::Json& keys, const std::string& where) {
+    if (!keys.contains("camera") || keys["camera"].is_null()) return;
+    for (const char* other : {"relay_wall", "scan"}) {
+        if (!keys.contains(other)) continue;
+        throw Error(where + "camera",
+                    fmt::format("found together with {}", other),
+                    "must stand instead of relay_wall and scan");
+    }
+}
+
 }  // namespace
+
+void read_value(const core::Json& json, const std::string& where, CameraSettings& camera) {
+    if (json.is_string()) {
+        camera.name = json.get<std::string>();
+    } else {
+        core::read_value<CameraSettings>(json, where, camera);
+    }
+}
 
 core::Transform RelayWall::world_from_wall() const {
     const Vec3 z = normal.normalized();
@@ -149,19 +200,36 @@ core::Transform RelayWall::world_from_wall() const {
 SceneDescription read_scene_description(const std::string& path,
                                         const std::vector<std::string>& overrides) {
     SceneDescription scene;
-    core::read_value(core::read_json_file(path), path + ": ", scene);
-    for (const std::string& text : overrides) core::apply_override(scene, text);
+    core::Json keys = core::read_json_file(path);
+    core::read_value(keys, path + ": ", scene);
+    for (const std::string& text : overrides) {
+        core::apply_override(scene, text);
+        keys.update(core::parse_override(text));
+    }
+    refuse_two_setups(keys, path + ": ");
     if (scene.geometry.empty()) {
         throw Error(path + ": geometry", "found nothing", "must name a .glb or .gltf file");
     }
     scene.geometry = (std::filesystem::path(path).parent_path() / scene.geometry).string();
+    if (scene.camera && !scene.camera->name.empty()) {
+        look_up_camera(scene.geometry, path + ": camera", *scene.camera);
+    }
     validate(scene, path + ": ");
     return scene;
 }
 
 void validate(const SceneDescription& scene, const std::string& where) {
-    validate_wall(scene.relay_wall, where + "relay_wall");
-    validate_scan(scene.scan, where + "scan");
+    if (scene.camera) {
+        core::validate(*scene.camera, where + "camera");
+        if (scene.camera->light_spot_m && scene.render.max_bounces < 2) {
+            throw Error(where + "render.max_bounces",
+                        fmt::format("found {} with camera.light_spot_m", scene.render.max_bounces),
+                        "must be at least 2: the lit spot counts as a bounce");
+        }
+    } else {
+        validate_wall(scene.relay_wall, where + "relay_wall");
+        validate_scan(scene.scan, where + "scan");
+    }
     core::validate(scene.time_axis, where + "time_axis");
     validate(scene.render, where + "render");
     validate_grid(scene.ground_truth.depth_resolution, where + "ground_truth.depth_resolution");
@@ -176,6 +244,7 @@ void validate(const SceneDescription& scene, const std::string& where) {
 }
 
 core::Scan make_scan(const SceneDescription& scene) {
+    if (scene.camera) return image_of(*scene.camera);
     core::Scan scan;
     scan.pattern = scene.scan.pattern;
     scan.sensing = scene.scan.sensing_points_m.empty()

@@ -38,6 +38,11 @@ struct ScanSettings {
     std::vector<core::Vec3> illumination_normals;
 };
 
+/// The camera that takes the place of relay wall and scan: an object, or as text the name alone.
+struct CameraSettings : core::PinholeCamera {
+    std::string name;  ///< of a glTF camera, which then gives pose and angle of view; or empty
+};
+
 struct GroundTruthSettings {
     std::array<int, 2> depth_resolution{256, 256};
 };
@@ -47,6 +52,7 @@ struct SceneDescription {
     std::string geometry;  ///< glTF file, path relative to scene.json
     RelayWall relay_wall;
     ScanSettings scan;
+    std::optional<CameraSettings> camera;  ///< replaces relay_wall and scan
     core::TimeAxis time_axis;
     RenderSettings render;
     GroundTruthSettings ground_truth;
@@ -77,6 +83,15 @@ void for_each_field(ScanSettings& scan, Visitor&& visit) {
 }
 
 template <class Visitor>
+void for_each_field(CameraSettings& camera, Visitor&& visit) {
+    visit("name", camera.name, "glTF camera that gives position, view and fov_y_deg");
+    for_each_field(static_cast<core::PinholeCamera&>(camera), visit);
+}
+
+/// A camera is an object with fields or the name of a glTF camera.
+void read_value(const core::Json& json, const std::string& where, CameraSettings& camera);
+
+template <class Visitor>
 void for_each_field(GroundTruthSettings& truth, Visitor&& visit) {
     visit("depth_resolution", truth.depth_resolution, "columns of the true depth map, x by y");
 }
@@ -86,12 +101,17 @@ void for_each_field(SceneDescription& scene, Visitor&& visit) {
     visit("geometry", scene.geometry, "glTF 2.0 file (.glb or .gltf), beside this file");
     visit("relay_wall", scene.relay_wall, "the wall that laser and detector see");
     visit("scan", scene.scan, "points on the wall");
+    visit("camera",
+          scene.camera,
+          "instead of relay_wall and scan: an image; position_m, look_at_m, up, fov_y_deg, "
+          "resolution, light_m, light_spot_m, or the name of a glTF camera");
     visit("time_axis", scene.time_axis, "bins of optical path length");
     visit("render", scene.render, "estimator and effort");
     visit("ground_truth", scene.ground_truth, "what compare uses as truth");
 }
 
-/// Reads scene.json and applies `--set key.path=value` texts to it.
+/// Reads scene.json and applies `--set key.path=value` texts to it. A camera that is named gets its
+/// pose from the glTF file.
 /// throws   core::Error naming file, key, what was found and what is allowed
 SceneDescription read_scene_description(const std::string& path,
                                         const std::vector<std::string>& overrides);
@@ -99,7 +119,7 @@ SceneDescription read_scene_description(const std::string& path,
 /// Throws core::Error naming the key that is out of range.
 void validate(const SceneDescription& scene, const std::string& where);
 
-/// The wall points that the description asks for, with unit normals.
+/// The wall points, with unit normals, or the camera that the description asks for.
 /// scene   a validated description
 core::Scan make_scan(const SceneDescription& scene);
 

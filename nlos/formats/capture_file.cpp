@@ -68,6 +68,38 @@ core::Vec3 extents_of(const core::WallPoints& points) {
     return high - low;
 }
 
+std::vector<std::string> describe_points(const core::Scan& scan) {
+    const core::Vec3 sensed = extents_of(scan.sensing);
+    const core::Vec3 lit = extents_of(scan.illumination);
+    return {fmt::format("scan: {}, {} sensing points over {:.4g} x {:.4g} x {:.4g} m",
+                        enum_name(scan.pattern),
+                        point_count(scan.sensing),
+                        sensed.x(),
+                        sensed.y(),
+                        sensed.z()),
+            fmt::format("illumination: {} points over {:.4g} x {:.4g} x {:.4g} m",
+                        point_count(scan.illumination),
+                        lit.x(),
+                        lit.y(),
+                        lit.z())};
+}
+
+std::string point_text(const core::Vec3& point) {
+    return fmt::format("({:.4g}, {:.4g}, {:.4g}) m", point.x(), point.y(), point.z());
+}
+
+std::vector<std::string> describe_camera(const core::PinholeCamera& camera) {
+    return {fmt::format("camera: {} x {} pixels, {:.4g} degrees high, at {}, looking at {}",
+                        camera.width(),
+                        camera.height(),
+                        camera.fov_y_deg,
+                        point_text(camera.position_m),
+                        point_text(camera.look_at_m)),
+            fmt::format("light: {} at {}; path lengths run from it to the camera",
+                        camera.light_spot_m ? "spot on a surface" : "point",
+                        point_text(camera.light_position()))};
+}
+
 }  // namespace
 
 core::Capture read_capture(const std::string& path, const CaptureReadSettings& settings) {
@@ -99,8 +131,6 @@ std::optional<std::string> capture_format(const std::string& path) {
 std::vector<std::string> describe_capture(const core::Capture& capture) {
     const core::Scan& scan = capture.scan;
     const core::TimeAxis& axis = capture.time_axis;
-    const core::Vec3 sensed = extents_of(scan.sensing);
-    const core::Vec3 lit = extents_of(scan.illumination);
     double sum = 0.0;
     float low = capture.transient.values()[0];
     float high = low;
@@ -109,32 +139,25 @@ std::vector<std::string> describe_capture(const core::Capture& capture) {
         low = std::min(low, value);
         high = std::max(high, value);
     }
-    const bool device = scan.opl_origin == core::OplOrigin::Device;
-    std::vector<std::string> lines{
-        fmt::format("scan: {}, {} sensing points over {:.4g} x {:.4g} x {:.4g} m",
-                    enum_name(scan.pattern),
-                    point_count(scan.sensing),
-                    sensed.x(),
-                    sensed.y(),
-                    sensed.z()),
-        fmt::format("illumination: {} points over {:.4g} x {:.4g} x {:.4g} m",
-                    point_count(scan.illumination),
-                    lit.x(),
-                    lit.y(),
-                    lit.z()),
+    std::vector<std::string> lines =
+        scan.camera ? describe_camera(*scan.camera) : describe_points(scan);
+    lines.push_back(
         fmt::format("time axis: {} bins of {:.6g} m of path length, from {:.6g} to {:.6g} m",
                     axis.num_bins,
                     axis.bin_width_m,
                     axis.opl_start_m,
-                    axis.opl_end_m()),
-        fmt::format("path lengths {} the legs to laser and detector",
-                    device ? "include" : "exclude"),
-        fmt::format("histograms: {}, from {:.6g} to {:.6g}, sum {:.6g}",
-                    enum_name(capture.unit),
-                    low,
-                    high,
-                    sum)};
-    if (!device) {
+                    axis.opl_end_m()));
+    if (!scan.camera) {
+        lines.push_back(
+            fmt::format("path lengths {} the legs to laser and detector",
+                        scan.opl_origin == core::OplOrigin::Device ? "include" : "exclude"));
+    }
+    lines.push_back(fmt::format("histograms: {}, from {:.6g} to {:.6g}, sum {:.6g}",
+                                enum_name(capture.unit),
+                                low,
+                                high,
+                                sum));
+    if (scan.opl_origin == core::OplOrigin::RelayWall) {
         // Seen at right angles from a confocal point, depth is half the path length.
         lines.push_back(fmt::format("depth range: {:.4g} to {:.4g} m",
                                     0.5 * std::max(0.0, axis.opl_start_m),

@@ -113,6 +113,19 @@ void Hdf5Writer::write_text(const std::string& name, const std::string& text) {
     write_dataset(name, type.id(), create_space({}), &characters);
 }
 
+void Hdf5Writer::write_null(const std::string& name) {
+    const Hdf5Handle space(H5Screate(H5S_NULL), H5Sclose);
+    const Hdf5Handle dataset(H5Dcreate2(file_.id(),
+                                        name.c_str(),
+                                        H5T_NATIVE_FLOAT,
+                                        space.id(),
+                                        H5P_DEFAULT,
+                                        H5P_DEFAULT,
+                                        H5P_DEFAULT),
+                             H5Dclose);
+    check(dataset.id() >= 0);
+}
+
 Hdf5Handle Hdf5Writer::create_float_dataset(const std::string& name, const Shape& shape) {
     const Hdf5Handle space = create_space(shape);
     Hdf5Handle dataset(H5Dcreate2(file_.id(),

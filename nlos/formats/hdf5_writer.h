@@ -29,6 +29,8 @@ class Hdf5Writer {
     void write_bool(const std::string& name, bool value);               ///< as h5py writes a bool
     void write_text(const std::string& name, const std::string& text);  ///< UTF-8, any length
 
+    void write_null(const std::string& name);  ///< what h5py calls Empty and y-tal None
+
     /// A named value as h5py writes an enumeration: shape (1,), on 32-bit integers.
     void write_enum(const std::string& name,
                     const std::vector<std::pair<const char*, int>>& members,

@@ -39,6 +39,10 @@ inline EnumMembers volume_format_members() {
     return {{"N_3", 1}, {"UNKNOWN", 0}, {"X_Y_3", 3}, {"X_Y_Z_3", 2}};
 }
 
+/// The key of scene_info that holds the camera of an image, whose grids are null: y-tal's layout
+/// has no place for it.
+inline constexpr const char* kCameraKey = "camera";
+
 /// A dictionary as text that both JSON and YAML 1.1 readers understand.
 ///
 /// A dictionary whose only key is "yaml" stands for a YAML text that is no JSON; it gives that

@@ -148,6 +148,27 @@ HFormat read_h_format(const Hdf5Reader& file, bool lists) {
     return static_cast<HFormat>(format);
 }
 
+/// The camera of an image: it stands in scene_info and both grids are null. False for scans.
+bool read_camera(const Hdf5Reader& file, Capture& capture) {
+    const bool has_points = file.has("sensor_grid_xyz") || file.has("laser_grid_xyz");
+    if (has_points || !capture.scene_info.contains(kCameraKey)) return false;
+    core::Scan& scan = capture.scan;
+    scan.pattern = core::ScanPattern::Single;
+    core::read_value(
+        capture.scene_info[kCameraKey], file.where("scene_info: camera"), scan.camera.emplace());
+    core::validate(*scan.camera, file.where("scene_info: camera"));
+    const Shape shape = file.shape("H");
+    if (shape.size() != 3 || shape[1] != scan.camera->width() ||
+        shape[2] != scan.camera->height()) {
+        throw Error(file.where("H"),
+                    "has shape " + shape_text(shape),
+                    fmt::format("must have shape (T, {}, {}) as the camera's resolution says",
+                                scan.camera->width(),
+                                scan.camera->height()));
+    }
+    return true;
+}
+
 /// Finds out how points pair up and checks that H has one histogram per pair.
 void read_scan(const Hdf5Reader& file, Capture& capture) {
     core::Scan& scan = capture.scan;
@@ -225,7 +246,10 @@ void read_axis(const Hdf5Reader& file, const CaptureReadSettings& settings, Capt
 }
 
 /// Copies rows with time slowest to bins [first, first + count) of [pair][bin].
-void copy_bins(const float* rows, std::size_t first, std::size_t count, core::Transient& transient) {
+void copy_bins(const float* rows,
+               std::size_t first,
+               std::size_t count,
+               core::Transient& transient) {
     constexpr std::size_t kPairsAtOnce = 16;  // one cache line of every row at a time
     const std::size_t pairs = transient.num_pairs();
     for (std::size_t begin = 0; begin < pairs; begin += kPairsAtOnce) {
@@ -309,12 +333,12 @@ bool recognise(const std::string& path) {
 Capture read(const std::string& path, const CaptureReadSettings& settings) {
     const Hdf5Reader file(path);
     Capture capture;
-    read_scan(file, capture);
+    if (file.has("scene_info")) capture.scene_info = parse_scene_info(file.read_text("scene_info"));
+    if (!read_camera(file, capture)) read_scan(file, capture);
     read_devices(file, capture);
     read_axis(file, settings, capture);
     capture.transient = read_transient(file, "H", capture);
     read_own_group(file, capture);
-    if (file.has("scene_info")) capture.scene_info = parse_scene_info(file.read_text("scene_info"));
     return capture;
 }
 

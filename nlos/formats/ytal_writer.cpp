@@ -13,7 +13,7 @@ using core::WallPoints;
 /// How the points of a capture stand in the file.
 struct Layout {
     bool exhaustive;
-    bool grids;  ///< points as (X, Y, 3) and not as (N, 3)
+    bool grids;  ///< points as (X, Y, 3) and not as (N, 3), or an image
 
     HFormat h_format() const {
         if (exhaustive) return grids ? HFormat::TLxLySxSy : HFormat::TLiSi;
@@ -22,6 +22,7 @@ struct Layout {
 };
 
 Layout layout_of(const core::Scan& scan) {
+    if (scan.camera) return {false, true};
     const bool exhaustive = scan.pattern == core::ScanPattern::Exhaustive;
     // A single illumination point is a grid of one by one as well.
     const bool illumination_is_grid = scan.illumination.grid || scan.illumination.size() == 1;
@@ -44,6 +45,13 @@ std::vector<float> to_floats(const std::vector<Vec3>& vectors) {
     return values;
 }
 
+void write_no_points(Hdf5Writer& file, const std::string& device) {
+    file.write_null(device + "_grid_xyz");
+    file.write_null(device + "_grid_normals");
+    file.write_enum(
+        device + "_grid_format", grid_format_members(), static_cast<int>(GridFormat::Unknown));
+}
+
 void write_points(Hdf5Writer& file,
                   const std::string& device,
                   const WallPoints& points,
@@ -58,7 +66,10 @@ void write_points(Hdf5Writer& file,
 }
 
 /// Copies bins [first, first + count) of [pair][bin] to rows with time slowest.
-void copy_rows(const core::Transient& transient, std::size_t first, std::size_t count, float* rows) {
+void copy_rows(const core::Transient& transient,
+               std::size_t first,
+               std::size_t count,
+               float* rows) {
     constexpr std::size_t kPairsAtOnce = 16;  // one cache line of every row at a time
     const std::size_t pairs = transient.num_pairs();
     for (std::size_t begin = 0; begin < pairs; begin += kPairsAtOnce) {
@@ -109,33 +120,52 @@ void write_own_group(Hdf5Writer& file, const Shape& h_shape, const Capture& capt
     if (!capture.orders.empty()) write_orders(file, h_shape, capture);
 }
 
+/// (T, pairs...) of H.
+Shape h_shape_of(const Capture& capture, const Layout& layout) {
+    const core::Scan& scan = capture.scan;
+    Shape shape{static_cast<std::size_t>(capture.time_axis.num_bins)};
+    if (scan.camera) {
+        shape.push_back(scan.camera->width());
+        shape.push_back(scan.camera->height());
+        return shape;
+    }
+    const auto add_extents = [&](const WallPoints& points) {
+        const Shape extents = extents_of(points, layout);
+        shape.insert(shape.end(), extents.begin(), extents.end());
+    };
+    if (layout.exhaustive) add_extents(scan.illumination);
+    add_extents(scan.sensing);
+    return shape;
+}
+
 }  // namespace
 
 void write_capture(const std::string& path, const Capture& capture) {
     validate(capture, path);
     const core::Scan& scan = capture.scan;
     const Layout layout = layout_of(scan);
-    Shape h_shape{static_cast<std::size_t>(capture.time_axis.num_bins)};
-    const auto add_extents = [&](const WallPoints& points) {
-        const Shape extents = extents_of(points, layout);
-        h_shape.insert(h_shape.end(), extents.begin(), extents.end());
-    };
-    if (layout.exhaustive) add_extents(scan.illumination);
-    add_extents(scan.sensing);
+    const Shape h_shape = h_shape_of(capture, layout);
+    core::Json scene_info = capture.scene_info;
+    if (scan.camera) scene_info[kCameraKey] = core::write_value(*scan.camera);
 
     Hdf5Writer file(path);
     write_transient(file, "H", h_shape, capture.transient);
     file.write_enum("H_format", h_format_members(), static_cast<int>(layout.h_format()));
     file.write("sensor_xyz", {3}, to_floats({scan.detector_position}));
-    write_points(file, "sensor", scan.sensing, layout);
     file.write("laser_xyz", {3}, to_floats({scan.laser_position}));
-    write_points(file, "laser", scan.illumination, layout);
+    if (scan.camera) {
+        write_no_points(file, "sensor");
+        write_no_points(file, "laser");
+    } else {
+        write_points(file, "sensor", scan.sensing, layout);
+        write_points(file, "laser", scan.illumination, layout);
+    }
     file.write_enum("volume_format", volume_format_members(), kVolumeFormatXYZ3);
     file.write_real("delta_t", capture.time_axis.bin_width_m);
     file.write_real("t_start", capture.time_axis.opl_start_m);
     file.write_bool("t_accounts_first_and_last_bounces",
                     scan.opl_origin == core::OplOrigin::Device);
-    file.write_text("scene_info", scene_info_text(capture.scene_info));
+    file.write_text("scene_info", scene_info_text(scene_info));
     write_own_group(file, h_shape, capture);
     file.finish();
 }

@@ -36,8 +36,12 @@ void validate_points(const WallPoints& points, const std::string& where) {
 
 void validate(const Capture& capture, const std::string& where) {
     validate(capture.time_axis, where + ": time axis");
-    validate_points(capture.scan.sensing, where + ": sensing points");
-    validate_points(capture.scan.illumination, where + ": illumination points");
+    if (capture.scan.camera) {
+        validate(*capture.scan.camera, where + ": camera");
+    } else {
+        validate_points(capture.scan.sensing, where + ": sensing points");
+        validate_points(capture.scan.illumination, where + ": illumination points");
+    }
     const bool confocal = capture.scan.pattern == ScanPattern::Confocal;
     if (confocal && capture.scan.illumination.size() != capture.scan.sensing.size()) {
         throw Error(where + ": illumination points",

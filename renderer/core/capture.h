@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "renderer/core/pinhole_camera.h"
 #include "renderer/core/settings.h"
 #include "renderer/core/time_axis.h"
 #include "renderer/core/transient.h"
@@ -50,9 +51,10 @@ struct WallPoints {
     std::size_t size() const { return positions.size(); }
 };
 
-/// The relay-wall points of a measurement and how they pair up.
+/// What is measured: relay-wall points and how they pair up, or the pixels of a camera.
 ///
-/// Pairs are numbered s for single and confocal scans and l * num_sensing + s for exhaustive ones.
+/// Pairs are numbered s for single and confocal scans, l * num_sensing + s for exhaustive ones, and
+/// as PinholeCamera says for an image.
 struct Scan {
     ScanPattern pattern = ScanPattern::Confocal;
     WallPoints illumination;  ///< confocal: the same points as `sensing`; single: one point
@@ -61,7 +63,12 @@ struct Scan {
     Vec3 laser_position = Vec3::Zero();     ///< [m, world]; counts only with OplOrigin::Device
     Vec3 detector_position = Vec3::Zero();  ///< [m, world]; counts only with OplOrigin::Device
 
+    /// When set, its pixels and its light are what is measured; both lists of points are empty,
+    /// `pattern` is Single, and the devices are the camera and its light.
+    std::optional<PinholeCamera> camera;
+
     std::size_t num_pairs() const {
+        if (camera) return camera->num_pixels();
         return pattern == ScanPattern::Exhaustive ? illumination.size() * sensing.size()
                                                   : sensing.size();
     }
@@ -71,9 +78,10 @@ struct Scan {
     }
     std::size_t sensing_index(std::size_t pair) const { return pair % sensing.size(); }
 
-    /// Length of laser -> wall and wall -> detector that the axis includes for a pair [m].
+    /// Length of laser -> wall and wall -> detector that the axis includes for a pair [m]; 0 for
+    /// images, where these are ordinary parts of a path.
     double device_legs_m(std::size_t pair) const {
-        if (opl_origin == OplOrigin::RelayWall) return 0.0;
+        if (camera || opl_origin == OplOrigin::RelayWall) return 0.0;
         return (illumination.positions[illumination_index(pair)] - laser_position).norm() +
                (sensing.positions[sensing_index(pair)] - detector_position).norm();
     }

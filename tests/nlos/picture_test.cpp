@@ -14,6 +14,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <numeric>
 #include <sstream>
 
 namespace nlos {
@@ -232,6 +233,27 @@ TEST(Pictures, EveryKindOfCaptureCanBeDrawn) {
     gate.transient = core::Transient(gate.scan.num_pairs(), 1);
     EXPECT_EQ(capture_panels(gate).size(), 1U);  // only the wall
     EXPECT_FALSE(encode_panels_png(capture_panels(gate), 3).empty());
+}
+
+TEST(Pictures, ImagesAreDrawnFromTheTop) {
+    const core::Capture capture = test_support::example_image();
+    const std::vector<Panel> panels = capture_panels(capture);
+    ASSERT_EQ(panels.size(), 6U);
+    const ImagePanel& all = image(panels[0]);
+    ASSERT_EQ(all.width, 3U);
+    ASSERT_EQ(all.height, 2U);
+    EXPECT_EQ(all.y_direction, AxisDirection::Reversed);
+    const auto light_of = [&](std::size_t pixel) {
+        const auto histogram = capture.transient.histogram(pixel);
+        return std::accumulate(histogram.begin(), histogram.end(), 0.0F);
+    };
+    // Pixel x * height + y stands at [y][x].
+    EXPECT_EQ(all.values[1], light_of(2));
+    EXPECT_EQ(all.values[3], light_of(1));
+    float gated = 0.0F;
+    for (std::size_t i = 2; i < panels.size(); ++i) gated += image(panels[i]).values[4];
+    EXPECT_FLOAT_EQ(gated, light_of(3)) << "gates share the bins";
+    EXPECT_FALSE(encode_panels_png(panels, 3).empty());
 }
 
 }  // namespace

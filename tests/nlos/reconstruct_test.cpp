@@ -3,6 +3,7 @@
 
 #include "tests/nlos/confocal_scene.h"
 #include "tests/support/error_message.h"
+#include "tests/support/example_capture.h"
 
 #include <gtest/gtest.h>
 
@@ -183,6 +184,10 @@ TEST(Reconstruct, ServesASingleWallPoint) {
     const Reconstruction result = reconstruct(capture, with({"volume.voxels=[8,8,8]"}), {});
     EXPECT_EQ(result.method, "bp");
     for (const float value : result.volume.values) EXPECT_TRUE(std::isfinite(value));
+}
+
+TEST(Reconstruct, ImagesOfACameraAreRefused) {
+    EXPECT_ERROR_WITH(reconstruct(test_support::example_image(), {}, {}), "image of a camera");
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/formats/capture_file.h"
+#include "nlos/formats/hdf5_reader.h"
 #include "nlos/formats/hdf5_writer.h"
 #include "nlos/formats/ytal_layout.h"
 #include "tests/nlos/ytal_capture_file.h"
@@ -58,6 +59,28 @@ TEST(YtalCapture, PointListsSurviveTheRoundTrip) {
         capture.scan.sensing = test_support::as_list(capture.scan.sensing);
         capture.scan.illumination = test_support::as_list(capture.scan.illumination);
         expect_same(CaptureFile(capture).read(), capture);
+    }
+}
+
+TEST(YtalCapture, ImagesSurviveTheRoundTrip) {
+    const Capture capture = test_support::example_image();
+    const CaptureFile file(capture);
+    const Capture read = file.read();
+    ASSERT_TRUE(read.scan.camera.has_value());
+    EXPECT_EQ(core::write_value(*read.scan.camera), core::write_value(*capture.scan.camera));
+    EXPECT_TRUE(std::ranges::equal(read.transient.values(), capture.transient.values()));
+    EXPECT_EQ(read.scan.num_pairs(), 6U);
+    EXPECT_EQ(read.scan.opl_origin, core::OplOrigin::Device);
+    EXPECT_EQ(read.scan.detector_position, capture.scan.detector_position);
+}
+
+TEST(YtalCapture, ImagesHaveNullGrids) {
+    const CaptureFile file(test_support::example_image());
+    const Hdf5Reader reader(file.path());
+    EXPECT_EQ(reader.shape("H"), (Shape{5, 3, 2}));
+    for (const char* name : {"sensor_grid_xyz", "laser_grid_normals"}) {
+        EXPECT_TRUE(reader.has_object(name)) << name;
+        EXPECT_FALSE(reader.has(name)) << name;
     }
 }
 

@@ -18,6 +18,16 @@ renderer::SceneDescription read_text(const std::string& json,
     return renderer::read_scene_description(folder.file("scene.json"), overrides);
 }
 
+// One triangle, and a camera of 0.5 rad at (1, 2, 3) that looks along -z.
+const std::string kTriangleAndCamera = R"({"asset": {"version": "2.0"},
+    "nodes": [{"mesh": 0}, {"name": "eye", "camera": 0, "translation": [1, 2, 3]}],
+    "cameras": [{"type": "perspective", "perspective": {"yfov": 0.5, "znear": 0.1}}],
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+                   "min": [0, 0, 0], "max": [1, 1, 0]}],
+    "bufferViews": [{"buffer": 0, "byteLength": 36}],
+    "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})";
+
 TEST(SceneFile, DefaultsAreThoseOfTheFormat) {
     const auto scene = read_text(R"({"geometry": "a.glb"})");
     EXPECT_EQ(scene.relay_wall.size_m, (std::array<double, 2>{1.0, 1.0}));
@@ -114,6 +124,65 @@ TEST(SceneFile, WhatIsOutOfRangeIsNamed) {
     expect_error(R"("render": {"gate": "tent"})", "render.gate");
     expect_error(R"("time_axis": {"num_bins": 2000000000})", "memory");
     EXPECT_ERROR_WITH(read_text("{}"), "geometry");
+}
+
+TEST(SceneFile, CameraTakesThePlaceOfTheScan) {
+    const auto scene = read_text(R"({"geometry": "a.glb", "camera": { "position_m": [0, 1, -2],
+        "look_at_m": [0, 0, 1], "up": [0, 1, 0], "fov_y_deg": 50, "resolution": [20, 10],
+        "light_spot_m": [0.5, 0, 1] }})");
+    const core::Scan scan = renderer::make_scan(scene);
+    ASSERT_TRUE(scan.camera.has_value());
+    EXPECT_EQ(scan.num_pairs(), 200U);
+    EXPECT_EQ(scan.detector_position, Vec3(0, 1, -2));
+    EXPECT_EQ(scan.laser_position, Vec3(0.5, 0, 1));
+    EXPECT_EQ(scan.camera->fov_y_deg, 50.0);
+}
+
+TEST(SceneFile, CameraLightIsAtTheCameraUnlessSet) {
+    const auto scene = read_text(
+        R"({"geometry": "a.glb", "camera": { "position_m": [0, 1, -2], "look_at_m": [0, 0, 1] }})");
+    EXPECT_EQ(scene.camera->light_position(), Vec3(0, 1, -2));
+}
+
+TEST(SceneFile, CameraMayBeNamedInTheGeometryFile) {
+    const test_support::TemporaryFolder folder;
+    test_support::write_file_bytes(folder.file("a.gltf"), kTriangleAndCamera);
+    test_support::write_file_bytes(folder.file("scene.json"),
+                                   R"({"geometry": "a.gltf", "camera": "eye"})");
+    const auto scene =
+        renderer::read_scene_description(folder.file("scene.json"), {"camera.resolution=[5, 4]"});
+    EXPECT_LT((scene.camera->position_m - Vec3(1, 2, 3)).norm(), 1e-12);
+    EXPECT_LT((scene.camera->look_at_m - Vec3(1, 2, 2)).norm(), 1e-12);
+    EXPECT_NEAR(scene.camera->fov_y_deg, 0.5 * 180.0 / core::kPi, 1e-9);
+    EXPECT_EQ(renderer::make_scan(scene).num_pairs(), 20U);
+    EXPECT_ERROR_WITH(renderer::read_scene_description(folder.file("scene.json"), {"camera=nose"}),
+                      "camera: found \"nose\"; must be one of eye");
+}
+
+TEST(SceneFile, BadCamerasAreNamed) {
+    const auto read_camera = [](const std::string& fields) {
+        return read_text(R"({"geometry": "a.glb", "camera": {"position_m": [0, 0, 1], )" + fields +
+                         "}}");
+    };
+    EXPECT_ERROR_WITH(read_camera(R"("look_at_m": [0, 0, 1])"), "camera.look_at_m");
+    EXPECT_ERROR_WITH(read_camera(R"("up": [0, 0, 2])"), "camera.up");
+    EXPECT_ERROR_WITH(read_camera(R"("up": [0, 0, 0])"), "camera.up");
+    EXPECT_ERROR_WITH(read_camera(R"("fov_y_deg": 180)"), "camera.fov_y_deg: found 180");
+    EXPECT_ERROR_WITH(read_camera(R"("fov_y_deg": 0)"), "camera.fov_y_deg");
+    EXPECT_ERROR_WITH(read_camera(R"("resolution": [4, 0])"), "camera.resolution: found 0");
+    EXPECT_ERROR_WITH(read_camera(R"("resolution": [400000, 400000])"), "camera.resolution");
+    EXPECT_ERROR_WITH(read_camera(R"("light_m": [0, 0, 0], "light_spot_m": [0, 0, 0])"),
+                      "camera.light_spot_m");
+    EXPECT_ERROR_WITH(read_camera(R"("lens": 1)"), "camera.lens");
+    EXPECT_ERROR_WITH(read_text(R"({"geometry": "a.glb", "camera": 3})"), "camera");
+    EXPECT_ERROR_WITH(read_text(R"({"geometry": "a.glb", "scan": {}, "camera": "eye"})"),
+                      "camera: found together with scan");
+    EXPECT_ERROR_WITH(
+        read_text(R"({"geometry": "a.glb", "relay_wall": {}})", {"camera.position_m=[0, 0, 1]"}),
+        "camera: found together with relay_wall");
+    EXPECT_ERROR_WITH(read_text(R"({"geometry": "a.glb", "camera": {"position_m": [0, 0, 1],
+                      "light_spot_m": [0, 0, 0]}, "render": {"max_bounces": 1}})"),
+                      "render.max_bounces: found 1 with camera.light_spot_m");
 }
 
 }  // namespace

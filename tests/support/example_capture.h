@@ -42,4 +42,22 @@ inline core::Capture example_capture(core::ScanPattern pattern) {
     return capture;
 }
 
+/// The image of a camera of 3 x 2 pixels, every value different.
+inline core::Capture example_image() {
+    core::Capture capture = example_capture(core::ScanPattern::Single);
+    core::PinholeCamera camera;
+    camera.position_m = core::Vec3(0.5, 1.0, -2.0);
+    camera.look_at_m = core::Vec3(0.0, 0.25, 1.0);
+    camera.fov_y_deg = 40.0;
+    camera.resolution = {3, 2};
+    camera.light_m = core::Vec3(0.0, 2.0, 0.0);
+    capture.scan = core::Scan();
+    capture.scan.pattern = core::ScanPattern::Single;
+    capture.scan.opl_origin = core::OplOrigin::Device;
+    capture.scan.laser_position = camera.light_position();
+    capture.scan.detector_position = camera.position_m;
+    capture.scan.camera = camera;
+    return capture;
+}
+
 }  // namespace test_support

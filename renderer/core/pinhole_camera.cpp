@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/core/pinhole_camera.h"
+
+#include <fmt/core.h>
+
+#include <cmath>
+
+namespace core {
+
+Mat3 PinholeCamera::world_from_image() const {
+    const Vec3 forward = (look_at_m - position_m).normalized();
+    const Vec3 right = forward.cross(up).normalized();
+    const Vec3 downwards = forward.cross(right);
+    const double pixel_size = 2.0 * std::tan(0.5 * fov_y_deg * kPi / 180.0) / resolution[1];
+    Mat3 map;
+    map.col(0) = pixel_size * right;
+    map.col(1) = pixel_size * downwards;
+    map.col(2) = forward - 0.5 * resolution[0] * map.col(0) - 0.5 * resolution[1] * map.col(1);
+    return map;
+}
+
+void validate(const PinholeCamera& camera, const std::string& where) {
+    const Vec3 view = camera.look_at_m - camera.position_m;
+    if (!(view.norm() > 1e-9)) {
+        throw Error(where + ".look_at_m",
+                    fmt::format("found ({}, {}, {}), the camera's own position",
+                                camera.look_at_m.x(),
+                                camera.look_at_m.y(),
+                                camera.look_at_m.z()),
+                    "must be another point");
+    }
+    if (!(camera.up.cross(view.normalized()).norm() > 1e-9 * (1.0 + camera.up.norm()))) {
+        throw Error(
+            where + ".up",
+            fmt::format(
+                "found ({}, {}, {}), along the view", camera.up.x(), camera.up.y(), camera.up.z()),
+            "must point across it");
+    }
+    if (!(camera.fov_y_deg > 0.0 && camera.fov_y_deg < 180.0)) {
+        throw Error(where + ".fov_y_deg",
+                    fmt::format("found {}", camera.fov_y_deg),
+                    "must be above 0 and below 180");
+    }
+    for (const int count : camera.resolution) {
+        if (count < 1) {
+            throw Error(where + ".resolution",
+                        fmt::format("found {}", count),
+                        "must be at least 1 in both directions");
+        }
+    }
+    if (camera.light_m && camera.light_spot_m) {
+        throw Error(where + ".light_spot_m",
+                    "found together with light_m",
+                    "must stand alone: there is one light");
+    }
+}
+
+}  // namespace core
