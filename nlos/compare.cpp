@@ -2,7 +2,7 @@
 #include "nlos/compare.h"
 
 #include "nlos/compare_image.h"
-#include "nlos/nearest_neighbours.h"
+#include "renderer/core/nearest_neighbours.h"
 
 #include <fmt/core.h>
 
@@ -203,7 +203,7 @@ Metrics compare_to_truth(const Reconstruction& result, const core::DepthMap& tru
     const auto peak = peak_world(result.volume);
     if (peak && !true_points.positions.empty()) {
         metrics.peak_distance_m =
-            nearest_neighbours({*peak}, true_points.positions).distances_m.front();
+            core::nearest_neighbours({*peak}, true_points.positions).distances_m.front();
     }
     record_cost(result, metrics);
     return metrics;

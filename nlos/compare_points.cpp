@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/compare.h"
-#include "nlos/nearest_neighbours.h"
+#include "renderer/core/nearest_neighbours.h"
 
 #include <algorithm>
 #include <cmath>
@@ -32,8 +32,10 @@ Metrics compare_points(const core::PointCloud& result,
     Metrics metrics;
     if (result.positions.empty() || truth.positions.empty()) return metrics;
 
-    const NearestNeighbours to_truth = nearest_neighbours(result.positions, truth.positions);
-    const NearestNeighbours to_result = nearest_neighbours(truth.positions, result.positions);
+    const core::NearestNeighbours to_truth =
+        core::nearest_neighbours(result.positions, truth.positions);
+    const core::NearestNeighbours to_result =
+        core::nearest_neighbours(truth.positions, result.positions);
     metrics.chamfer_m = 0.5 * (mean(to_truth.distances_m) + mean(to_result.distances_m));
 
     const double precision = share_within(to_truth.distances_m, threshold_m);

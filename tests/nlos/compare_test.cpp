@@ -2,7 +2,7 @@
 #include "nlos/compare.h"
 
 #include "nlos/compare_image.h"
-#include "nlos/nearest_neighbours.h"
+#include "renderer/core/nearest_neighbours.h"
 #include "renderer/core/random.h"
 #include "tests/support/error_message.h"
 #include "tests/support/example_capture.h"
@@ -101,7 +101,7 @@ TEST(Compare, BestMaskIouIsTheBestOfAllThresholds) {
 TEST(Compare, NearestNeighboursAreThoseOfABruteForceSearch) {
     const auto queries = random_points(300, 1);
     const auto points = random_points(500, 2);
-    const NearestNeighbours found = nearest_neighbours(queries, points);
+    const core::NearestNeighbours found = core::nearest_neighbours(queries, points);
     ASSERT_EQ(found.distances_m.size(), queries.size());
     for (std::size_t i = 0; i < queries.size(); ++i) {
         double nearest = INFINITY;
