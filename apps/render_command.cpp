@@ -41,6 +41,9 @@ void run(const RenderArguments& arguments) {
     std::vector<std::string> overrides = arguments.overrides;
     overrides.insert(overrides.end(), arguments.shorthands.begin(), arguments.shorthands.end());
     const RenderJob job = render_to_file(arguments.scene, overrides, arguments.output);
+    for (const std::string& warning : job.warnings) {
+        fmt::print(stderr, "warning: {}\n", warning);
+    }
     std::string effort;
     if (job.estimated_error) effort += fmt::format("error about {:.1e}, ", *job.estimated_error);
     if (job.samples_per_pair > 0)

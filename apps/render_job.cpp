@@ -30,7 +30,8 @@ core::Json provenance(const std::string& scene_path,
     info["program"] = version_text();
     info["command"] = command_line();
     info["scene"] = std::filesystem::absolute(scene_path).lexically_normal().string();
-    info["estimator"] = estimator_names(result);
+    const std::string names = estimator_names(result);
+    info["estimator"] = names;
     for (const renderer::OrderSource& source : result.sources) {
         info["orders"].push_back({{"first", source.first_order},
                                   {"last", source.last_order},
@@ -38,6 +39,11 @@ core::Json provenance(const std::string& scene_path,
                                   {"surfaces", source.surfaces}});
     }
     if (result.estimated_error) info["estimated_error"] = *result.estimated_error;
+    if (names.find("ellipsoidal") != std::string::npos) {
+        info["excluded"] = {{"mode", std::string(core::enum_name(description.render.exclude))},
+                            {"objects", result.excluded_objects}};
+    }
+    if (!result.warnings.empty()) info["warnings"] = result.warnings;
     info["samples_per_pair"] = result.samples_per_pair;
     info["seconds"] = result.seconds;
     info["interrupted"] = result.interrupted;
@@ -72,6 +78,7 @@ RenderJob render_to_file(const std::string& scene_path,
     job.samples_per_pair = result.samples_per_pair;
     job.seconds = result.seconds;
     job.interrupted = result.interrupted;
+    job.warnings = result.warnings;
     return job;
 }
 

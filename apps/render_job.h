@@ -20,6 +20,7 @@ struct RenderJob {
     std::optional<double> estimated_error;  ///< of the deterministic part
     double seconds = 0.0;
     bool interrupted = false;
+    std::vector<std::string> warnings;
 };
 
 /// Renders a scene file into a capture file that carries settings, seed, version and command line.

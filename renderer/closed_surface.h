@@ -8,8 +8,8 @@ namespace renderer {
 
 /// Which side of an object's facets can ever be seen.
 ///
-/// scan      wall points
-/// returns   +1 when the mesh is closed, consistently wound, and all wall points lie outside its
+/// scan      wall points, or camera and light
+/// returns   +1 when the mesh is closed, consistently wound, and all these lie outside its
 ///           bounding box, and its facets' normals point outwards; -1 when they point inwards;
 ///           0 when both sides may be seen
 int visible_side(const Object& object, const core::Scan& scan);

@@ -72,6 +72,7 @@ void FirstVertices::evaluate(const PathEnds& ends, const Draw& draw) {
             std::abs(normal_x_[i] * dx + normal_y_[i] * dy + normal_z_[i] * dz) * inverse;
         const double per_area = cosine * inverse * inverse;
         const double pdf = pdf_by_area * is_hidden_[i] + pdf_by_direction * shape * per_area;
+        pdf_area_[i] = pdf;
         const double carried = sensor_strength * shape * per_area;
         throughput_[i] = carried > 0.0 ? carried / pdf : 0.0;
 
@@ -145,6 +146,7 @@ void FirstVertices::keep_if(const Predicate& keep) {
                                   normal_z_,
                                   is_hidden_,
                                   constant_bsdf_,
+                                  pdf_area_,
                                   throughput_,
                                   opl_m_,
                                   contribution_}) {

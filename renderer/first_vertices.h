@@ -79,6 +79,11 @@ class FirstVertices {
     /// The vertex of a path that starts at `sensor`.
     PathVertex vertex(int index, const PathEnd& sensor) const;
     std::uint32_t facet(int index) const { return facet_[index]; }
+    SurfacePoint point(int index) const {
+        return {{x_[index], y_[index], z_[index]}, facet_[index]};
+    }
+    /// Density of the draw [1/m^2], known after evaluate().
+    double pdf_area(int index) const { return pdf_area_[index]; }
     void set_contribution(int index, double value) { contribution_[index] = value; }
     /// Sensor to light by way of each vertex, devices included [m].
     std::span<const double> opl_m() const { return {opl_m_, size_t_count()}; }
@@ -102,6 +107,7 @@ class FirstVertices {
     alignas(64) double normal_z_[kCapacity];
     alignas(64) double constant_bsdf_[kCapacity];
     alignas(64) double is_hidden_[kCapacity];  ///< 1 where draws by area reach, 0 on the wall
+    alignas(64) double pdf_area_[kCapacity];
     alignas(64) double throughput_[kCapacity];
     alignas(64) double opl_m_[kCapacity];
     alignas(64) double contribution_[kCapacity];

@@ -17,6 +17,7 @@ class HierarchyCut {
     void rebuild(const ConnectionEnds& ends, const OplBand& lengths, std::size_t most_entries);
 
     bool empty() const { return entries_.empty(); }
+    const FocusPair& foci() const { return ends_.foci; }
 
     /// As TriangleHierarchy::sample() for the ends of rebuild(). `hint` is updated so that calls
     /// with rising u are quick (start with 0).

@@ -56,6 +56,11 @@ void PassHistogram::add(int channel,
     }
 }
 
+bool PassHistogram::lets_through(double opl_m) const {
+    int bin = 0;
+    return gate_weight(opl_m, bin) > 1e-17;  // a Gaussian never ends, sums of doubles do
+}
+
 double PassHistogram::gate_weight(double opl_m, int& bin) const {
     if (gate_ == GateShape::Box) {
         const std::optional<int> found = axis_.bin_of(opl_m);

@@ -24,6 +24,8 @@ class PassHistogram {
     /// opl_m, values   one entry per path, at most kMostAtOnce
     void add(int channel, std::span<const double> opl_m, std::span<const double> values);
     static constexpr std::size_t kMostAtOnce = 64;
+    /// Whether a path of this length may count.
+    bool lets_through(double opl_m) const;
 
     /// Hands over what was collected and clears it: first `visit_value(channel * num_bins + bin,
     /// value)` for every channel of a range that holds all touched bins, then `visit_total(bin, sum

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/render.h"
 
-#include "renderer/path_render.h"
+#include "renderer/ellipsoidal_render.h"
+#include "renderer/pass_render.h"
 #include "renderer/third_bounce.h"
 #include "renderer/third_bounce_pieces.h"
 
@@ -39,7 +40,10 @@ void require_wall(const core::Scan& scan) {
                       "must be auto or path: there are no wall points");
 }
 
-// What is left for path tracing when third_bounce does its part.
+// Which part of the third bounce path tracing computes; it computes all higher orders.
+enum class PathShare { Everything, NotIntegrable, Nothing };
+
+// What is left for path tracing when third_bounce does its part. Nothing: no higher orders either.
 PathShare share_of_paths(const RenderSettings& settings, const Surfaces& surfaces) {
     if (settings.method == Estimator::ThirdBounce) return PathShare::Nothing;
     return surfaces.others || settings.max_bounces > 3 ? PathShare::NotIntegrable
@@ -73,6 +77,24 @@ void list_path_orders(const core::Scan& scan,
     }
 }
 
+RenderResult trace_paths(const Scene& scene,
+                         const core::Scan& scan,
+                         const core::TimeAxis& axis,
+                         const RenderSettings& settings,
+                         PathShare share,
+                         const core::Progress& progress) {
+    PassWork work;
+    if (share != PathShare::Nothing && (scan.camera || settings.max_bounces >= 3)) {
+        work.estimate =
+            path_estimator(scene,
+                           scan,
+                           settings,
+                           share == PathShare::NotIntegrable ? ThirdBounceScope::NotIntegrable
+                                                             : ThirdBounceScope::All);
+    }
+    return render_passes(scene, scan, axis, settings, work, progress);
+}
+
 // `share` of the progress bar begins where another part of the work ended.
 core::Progress part_of(const core::Progress& progress, double begin, double end) {
     core::Progress part = progress;
@@ -89,6 +111,9 @@ RenderResult render(const Scene& scene,
                     const core::TimeAxis& axis,
                     const RenderSettings& settings,
                     const core::Progress& progress) {
+    if (settings.method == Estimator::Ellipsoidal) {
+        return render_ellipsoidal(scene, scan, axis, settings, progress);
+    }
     const Surfaces surfaces = surfaces_of(scene);
     if (settings.method == Estimator::ThirdBounce) {
         require_wall(scan);
@@ -99,7 +124,7 @@ RenderResult render(const Scene& scene,
                             surfaces.integrable;
     if (!integrates) {
         RenderResult result =
-            render_paths(scene, scan, axis, settings, {PathShare::Everything}, progress);
+            trace_paths(scene, scan, axis, settings, PathShare::Everything, progress);
         list_path_orders(scan, settings, PathShare::Everything, result);
         return result;
     }
@@ -108,7 +133,7 @@ RenderResult render(const Scene& scene,
     const ThirdBounce third =
         integrate_third_bounce(scene, scan, axis, settings, part_of(progress, 0.0, done));
     RenderResult result =
-        render_paths(scene, scan, axis, settings, {share}, part_of(progress, done, 1.0));
+        trace_paths(scene, scan, axis, settings, share, part_of(progress, done, 1.0));
     add(third.transient, result.capture.transient);
     if (settings.by_order) add(third.transient, result.capture.by_order[2]);
     OrderSource integrated{3, 3, Estimator::ThirdBounce, "all"};

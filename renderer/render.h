@@ -29,6 +29,9 @@ struct RenderResult {
     std::uint64_t samples_per_pair = 0;     ///< candidate paths used, whole passes
     std::uint64_t num_rays = 0;
     double seconds = 0.0;
+    std::vector<std::string>
+        excluded_objects;  ///< from ellipsoidal connections, when there are any
+    std::vector<std::string> warnings;
     bool interrupted = false;  ///< stopped early; every pair has a result
 };
 

@@ -35,6 +35,11 @@ void validate(const RenderSettings& settings, const std::string& where) {
                           fmt::format("found {}", *settings.target_error),
                           "must be above 0");
     }
+    if (settings.exclude_area_above_m2 && !(*settings.exclude_area_above_m2 >= 0.0)) {
+        throw core::Error(where + ".exclude_area_above_m2",
+                          fmt::format("found {}", *settings.exclude_area_above_m2),
+                          "must be at least 0");
+    }
     if (!(settings.laser_spot_m2 > 0.0)) {
         throw core::Error(where + ".laser_spot_m2",
                           fmt::format("found {}", settings.laser_spot_m2),

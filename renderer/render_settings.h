@@ -11,7 +11,7 @@
 namespace renderer {
 
 /// Which estimator computes the transient. Adding one: a name here, a case in render(), one .cpp.
-enum class Estimator { Auto, Path, ThirdBounce };
+enum class Estimator { Auto, Path, ThirdBounce, Ellipsoidal };
 
 /// Shape of the time gate of a one-bin axis; peak 1.
 enum class GateShape { Box, Tent, Gaussian };
@@ -48,7 +48,7 @@ void for_each_field(RenderSettings& s, Visitor&& visit) {
           "third_bounce: relative L2 error over all of H to stay below; null: 0.01");
     visit("seed", s.seed, "seed of the random numbers");
     visit("gate", s.gate, "shape of the gate of a one-bin axis");
-    visit("exclude", s.exclude, "excluded surfaces in ellipsoidal connections; path has none");
+    visit("exclude", s.exclude, "excluded surfaces: mis leaves them to paths, drop ignores them, none excludes nothing");
     visit("exclude_area_above_m2",
           s.exclude_area_above_m2,
           "exclude triangles above this area from ellipsoidal connections [m^2]");
@@ -70,10 +70,11 @@ void validate(const RenderSettings& settings, const std::string& where);
 
 template <>
 struct core::EnumNames<renderer::Estimator> {
-    static constexpr std::array<std::pair<renderer::Estimator, std::string_view>, 3> value{
+    static constexpr std::array<std::pair<renderer::Estimator, std::string_view>, 4> value{
         {{renderer::Estimator::Auto, "auto"},
          {renderer::Estimator::Path, "path"},
-         {renderer::Estimator::ThirdBounce, "third_bounce"}}};
+         {renderer::Estimator::ThirdBounce, "third_bounce"},
+         {renderer::Estimator::Ellipsoidal, "ellipsoidal"}}};
 };
 template <>
 struct core::EnumNames<renderer::GateShape> {

@@ -216,28 +216,40 @@ TriangleHierarchy::Query TriangleHierarchy::make_query(const ConnectionEnds& end
     return query;
 }
 
+// Ends of the children's shares of the sum, the first 0; rounding keeps their order. Shares are
+// differences of these rounded numbers, so that what a descent does is exactly what it says.
+std::array<float, TriangleHierarchy::kWidth + 1> TriangleHierarchy::cumulate(const Lanes& w) {
+    const float first2 = w[0] + w[1];
+    const float first4 = first2 + (w[2] + w[3]);
+    const float first6 = first4 + (w[4] + w[5]);
+    return {0.0F,
+            w[0],
+            first2,
+            first2 + w[2],
+            first4,
+            first4 + w[4],
+            first6,
+            first6 + w[6],
+            first6 + w[6] + w[7]};
+}
+
 std::optional<std::uint32_t> TriangleHierarchy::descend(std::int32_t node,
                                                         const Query& query,
                                                         double u,
                                                         double& probability) const {
     while (node >= 0) {
         const Node& at = nodes_[static_cast<std::size_t>(node)];
-        alignas(32) std::array<float, kWidth> weights;
-        Eigen::Map<Lanes, Eigen::Aligned32>(weights.data()) = importance(at, query);
-        float sum = 0.0F;
-        for (const float weight : weights) sum += weight;
+        const std::array<float, kWidth + 1> ends = cumulate(importance(at, query));
+        const float sum = ends[kWidth];
         if (!(sum > 0.0F)) return std::nullopt;
-        double rest = u * double{sum};
-        std::size_t chosen = kWidth;
-        for (std::size_t i = 0; i < kWidth; ++i) {
-            if (!(weights[i] > 0.0F)) continue;
-            chosen = i;
-            if (rest < double{weights[i]}) break;
-            rest -= double{weights[i]};
-        }
-        const double weight = double{weights[chosen]};
-        u = std::min(rest / weight, 1.0 - 0x1.0p-53);
-        probability *= weight / double{sum};
+        // The last share that begins at or before the target; shares of 0 are never the last.
+        const double target = u * double{sum};
+        const float below = std::min(static_cast<float>(target), std::nextafter(sum, 0.0F));
+        std::size_t chosen = 0;
+        for (std::size_t i = 1; i < kWidth; ++i) chosen += ends[i] <= below ? 1 : 0;
+        const double share = double{ends[chosen + 1]} - double{ends[chosen]};
+        u = std::clamp((target - double{ends[chosen]}) / share, 0.0, 1.0 - 0x1.0p-53);
+        probability *= share / double{sum};
         node = at.child[chosen];
     }
     return static_cast<std::uint32_t>(~node);
@@ -250,12 +262,12 @@ double TriangleHierarchy::descent_probability(std::int32_t top,
     Place place = places_[facet];
     while (true) {
         if (place.node < 0) return 0.0;
-        const Lanes weights = importance(nodes_[static_cast<std::size_t>(place.node)], query);
-        const float weight = weights[place.slot];
-        if (!(weight > 0.0F)) return 0.0;
-        float sum = 0.0F;
-        for (int i = 0; i < kWidth; ++i) sum += weights[i];
-        probability *= double{weight} / double{sum};
+        const Node& at = nodes_[static_cast<std::size_t>(place.node)];
+        const std::array<float, kWidth + 1> ends = cumulate(importance(at, query));
+        const auto slot = static_cast<std::size_t>(place.slot);
+        const double share = double{ends[slot + 1]} - double{ends[slot]};
+        if (!(share > 0.0)) return 0.0;
+        probability *= share / double{ends[kWidth]};
         if (place.node == top) return probability;
         place = parents_[static_cast<std::size_t>(place.node)];
     }

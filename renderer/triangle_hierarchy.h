@@ -93,6 +93,7 @@ class TriangleHierarchy {
     Query make_query(const ConnectionEnds& ends, const OplBand& lengths) const;
 
     Lanes importance(const Node& node, const Query& query) const;
+    static std::array<float, kWidth + 1> cumulate(const Lanes& weights);
     /// From `node` down to a leaf: multiplies the probability, returns the facet's position.
     std::optional<std::uint32_t> descend(std::int32_t node,
                                          const Query& query,

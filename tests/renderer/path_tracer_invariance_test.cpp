@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What must not change when a set-up is described in another way.
-#include "renderer/path_render.h"
+#include "renderer/pass_render.h"
 #include "tests/support/statistics.h"
 #include "tests/support/test_scenes.h"
 
@@ -126,11 +126,13 @@ TEST(PathTracer, TilesGiveTheSameBitsAsTheWholeScan) {
     const renderer::Scene scene(std::move(geometry), scan, renderer::RelayWall{});
     renderer::RenderSettings settings = settings_with(100);
     settings.by_order = true;
-    const auto whole = renderer::render_paths(scene, scan, kAxis, settings, {}, {});
+    renderer::PassWork work;
+    work.estimate =
+        renderer::path_estimator(scene, scan, settings, renderer::ThirdBounceScope::All);
+    const auto whole = renderer::render_passes(scene, scan, kAxis, settings, work, {});
     // Room for two pairs of five orders and squares.
-    renderer::PathWork work;
     work.most_sums_bytes = 2.5 * 6 * 60 * sizeof(double);
-    const auto tiled = renderer::render_paths(scene, scan, kAxis, settings, work, {});
+    const auto tiled = renderer::render_passes(scene, scan, kAxis, settings, work, {});
     EXPECT_TRUE(
         std::ranges::equal(tiled.capture.transient.values(), whole.capture.transient.values()));
     EXPECT_TRUE(
@@ -140,7 +142,7 @@ TEST(PathTracer, TilesGiveTheSameBitsAsTheWholeScan) {
     EXPECT_EQ(tiled.num_rays, whole.num_rays);
     core::Progress stop;
     stop.stop_requested = [] { return true; };
-    EXPECT_THROW(renderer::render_paths(scene, scan, kAxis, settings, work, stop), core::Failure);
+    EXPECT_THROW(renderer::render_passes(scene, scan, kAxis, settings, work, stop), core::Failure);
 }
 
 // The direct return: radiance of the lit spot itself, after the device legs, confocal pairs only.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/path_render.h"
+#include "renderer/pass_render.h"
 
 #include "renderer/core/parallel.h"
 #include "renderer/core/process.h"
@@ -33,8 +33,8 @@ struct PassPlan {
     int num_passes = 1;
 };
 
-PassPlan plan_passes(const RenderSettings& settings, PathShare share) {
-    if (share == PathShare::Nothing) return {0, 1};
+PassPlan plan_passes(const RenderSettings& settings, const PassWork& work) {
+    if (!work.estimate) return {0, 1};
     if (settings.seconds) return {kSamplesPerTimedPass, std::numeric_limits<int>::max()};
     int per_pass = std::clamp(settings.samples / kPasses, 1, kMostSamplesPerPass);
     // Multiples of 4 split into the path tracer's two kinds of samples without rounding noise.
@@ -121,18 +121,14 @@ class PassLoop {
              const core::Scan& scan,
              const core::TimeAxis& axis,
              const RenderSettings& settings,
-             PathShare share)
+             const PassWork& work)
         : scene_(scene),
           scan_(scan),
           axis_(axis),
           settings_(settings),
-          share_(share),
+          work_(work),
           num_channels_(channel_count(settings)),
-          measurement_(scene, scan),
-          tracer_(scene,
-                  settings,
-                  share == PathShare::NotIntegrable ? ThirdBounceScope::NotIntegrable
-                                                    : ThirdBounceScope::All) {}
+          measurement_(scene, scan) {}
 
     /// Adds the tile's histograms, samples and rays to `result`.
     void run(const Tile& tile, const core::Progress& progress, RenderResult& result);
@@ -152,10 +148,9 @@ class PassLoop {
     const core::Scan& scan_;
     const core::TimeAxis& axis_;
     const RenderSettings& settings_;
-    PathShare share_;
+    const PassWork& work_;
     int num_channels_;
     Measurement measurement_;
-    PathTracer tracer_;
     std::atomic<std::uint64_t> num_rays_{0};
 };
 
@@ -163,15 +158,11 @@ std::uint64_t PassLoop::trace_pair(std::size_t pair,
                                    int samples,
                                    core::Rng& rng,
                                    PassHistogram& histogram) const {
-    if (measurement_.is_image()) {
-        return tracer_.trace_pixel(measurement_, pair, samples, rng, histogram);
-    }
-    const PathEnds ends = measurement_.ends(pair);
     std::uint64_t num_rays = 0;
-    if (settings_.max_bounces >= 3 && samples > 0) {
-        num_rays = tracer_.trace(ends, samples, rng, histogram);
+    if (work_.estimate) num_rays = work_.estimate(pair, samples, rng, histogram);
+    if (!measurement_.is_image()) {
+        add_short_paths(scene_, measurement_.ends(pair), settings_, histogram);
     }
-    add_short_paths(scene_, ends, settings_, histogram);
     return num_rays;
 }
 
@@ -190,7 +181,7 @@ void PassLoop::run_pass(const Tile& tile, int pass, int samples, TransientAccumu
         }
     });
     if (bad_pair != kNone) {
-        throw core::Failure("path tracer",
+        throw core::Failure("render",
                             fmt::format("a contribution is not finite (pair {}, pass {}, seed {})",
                                         bad_pair.load(),
                                         pass,
@@ -218,7 +209,7 @@ void PassLoop::fill_capture(const Tile& tile,
 
 void PassLoop::run(const Tile& tile, const core::Progress& progress, RenderResult& result) {
     const auto start = Clock::now();
-    const PassPlan plan = plan_passes(settings_, share_);
+    const PassPlan plan = plan_passes(settings_, work_);
     TransientAccumulator sums(tile.count, axis_.num_bins, num_channels_, settings_.variance);
     int pass = 0;
     while (pass < plan.num_passes) {
@@ -259,19 +250,19 @@ core::Capture empty_capture(const core::Scan& scan,
 
 }  // namespace
 
-RenderResult render_paths(const Scene& scene,
-                          const core::Scan& scan,
-                          const core::TimeAxis& axis,
-                          const RenderSettings& settings,
-                          const PathWork& work,
-                          const core::Progress& progress) {
+RenderResult render_passes(const Scene& scene,
+                           const core::Scan& scan,
+                           const core::TimeAxis& axis,
+                           const RenderSettings& settings,
+                           const PassWork& work,
+                           const core::Progress& progress) {
     const auto start = Clock::now();
     const std::size_t num_pairs = scan.num_pairs();
     const std::size_t tile_pairs = pairs_per_tile(scan, axis, settings, work.most_sums_bytes);
     require_memory(scan, axis, settings, tile_pairs);
     RenderResult result;
     result.capture = empty_capture(scan, axis, settings);
-    PassLoop loop(scene, scan, axis, settings, work.share);
+    PassLoop loop(scene, scan, axis, settings, work);
     for (std::size_t begin = 0; begin < num_pairs; begin += tile_pairs) {
         const Tile tile{begin, std::min(tile_pairs, num_pairs - begin)};
         core::Progress part = progress;

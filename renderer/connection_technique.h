@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/core/capture.h"
+#include "renderer/core/random.h"
+#include "renderer/hierarchy_cut.h"
+#include "renderer/light_path.h"
+#include "renderer/render_settings.h"
+
+#include <string>
+#include <vector>
+
+namespace renderer {
+
+/// A surface point drawn as the vertex between two fixed ones, and its density.
+struct ConnectionDraw {
+    SurfacePoint point;
+    double pdf_area = 0.0;  ///< [1/m^2]
+};
+
+/// Which facets ellipsoidal connections leave out, and why that is known.
+///
+/// Excluded are, unless the mode is `none`, objects with the role of a wall, objects that say so,
+/// and facets above an area. There the technique has density 0.
+struct ExcludedFacets {
+    std::vector<bool> facets;          ///< per facet of the scene
+    std::vector<std::string> objects;  ///< names of objects of which some facet is excluded
+
+    static ExcludedFacets of(const Scene& scene, const RenderSettings& settings);
+};
+
+/// The ends of the connections from a path's vertex to its light.
+ConnectionEnds connection_ends(const PathVertex& vertex, const PathEnd& light);
+/// The ends of the third bounces of a measurement.
+ConnectionEnds connection_ends(const PathEnds& ends);
+
+/// Draws the vertex between two others so that the path has a wanted length (source
+/// [Pediredla2019]): a facet from the hierarchy, a length within what the interval and the facet
+/// allow, a point where the ellipsoid of that length cuts the facet.
+class ConnectionTechnique {
+ public:
+    /// scene      must outlive the technique
+    /// excluded   facets that it never draws
+    /// scan       all its points lie where sensor or light may be: see visible_side()
+    ConnectionTechnique(const Scene& scene, const ExcludedFacets& excluded, const core::Scan& scan);
+
+    const TriangleHierarchy& hierarchy() const { return hierarchy_; }
+
+    /// ends      neighbours of the vertex
+    /// lengths   interval of the length of its two legs [m]
+    /// returns   nothing where the draw finds no point; that happens with the probability that
+    ///           pdf_area() lacks to 1
+    std::optional<ConnectionDraw> sample(const ConnectionEnds& ends,
+                                         const OplBand& lengths,
+                                         core::Rng& rng) const;
+    /// Density of sample() at a point [1/m^2].
+    double pdf_area(const ConnectionEnds& ends,
+                    const OplBand& lengths,
+                    const SurfacePoint& point) const;
+
+    /// The same for ends whose cut is known; `u` and `hint` as in HierarchyCut::sample().
+    std::optional<ConnectionDraw> sample(const HierarchyCut& cut,
+                                         double u,
+                                         std::size_t& hint,
+                                         core::Rng& rng) const;
+    double pdf_area(const HierarchyCut& cut, const SurfacePoint& point) const;
+
+ private:
+    std::optional<ConnectionDraw> place(const FocusPair& foci,
+                                        const std::optional<FacetChoice>& choice,
+                                        core::Rng& rng) const;
+    double pdf_of(const FocusPair& foci,
+                  const FacetChoice& choice,
+                  const SurfacePoint& point) const;
+
+    const Scene* scene_;
+    TriangleHierarchy hierarchy_;
+};
+
+}  // namespace renderer

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/ellipsoidal_render.h"
+
+#include "renderer/core/parallel.h"
+#include "renderer/pass_render.h"
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace renderer {
+namespace {
+
+constexpr std::size_t kMeasuredPairs = 128;
+constexpr int kMeasuringPasses = 16;  ///< which give the deviation
+constexpr int kMeasuringSamples = 64;
+constexpr std::uint64_t kMeasuringItem = 1ULL << 40;  ///< keeps its random numbers apart
+
+double sum_of(PassHistogram& histogram) {
+    double sum = 0.0;
+    histogram.drain([](std::size_t, double) {}, [&](std::size_t, double total) { sum += total; });
+    return sum;
+}
+
+double kept_signal(const core::Capture& capture, const std::vector<std::size_t>& pairs) {
+    double sum = 0.0;
+    for (const std::size_t pair : pairs) {
+        for (const float value : capture.transient.histogram(pair)) sum += double{value};
+    }
+    return sum;
+}
+
+std::string drop_warning(const DroppedSignal& dropped,
+                         double kept,
+                         const std::vector<std::string>& objects) {
+    const double all = dropped.lost + kept;
+    if (!(all > 0.0)) return "exclude=drop: what it loses is not known, no signal was seen";
+    return fmt::format("exclude=drop loses {:.3g} % +- {:.2g} % of the signal ({})",
+                       100.0 * dropped.lost / all,
+                       100.0 * dropped.sigma / all,
+                       fmt::join(objects, ", "));
+}
+
+}  // namespace
+
+DroppedSignal measure_dropped_signal(const Scene& scene,
+                                     const core::Scan& scan,
+                                     const core::TimeAxis& axis,
+                                     const RenderSettings& settings,
+                                     std::size_t most_pairs) {
+    DroppedSignal dropped;
+    const std::size_t count = std::min(most_pairs, scan.num_pairs());
+    for (std::size_t i = 0; i < count; ++i) {
+        dropped.pairs.push_back((2 * i + 1) * scan.num_pairs() / (2 * count));
+    }
+    const PairEstimator estimate =
+        ellipsoidal_estimator(scene, scan, axis, settings, ConnectionScope::Excluded);
+    struct Moments {
+        double sum = 0.0;
+        double squares = 0.0;
+        Moments& operator+=(const Moments& other) {
+            sum += other.sum;
+            squares += other.squares;
+            return *this;
+        }
+    };
+    // One term per pass: its sum over the pairs.
+    const Moments moments = core::parallel_sum<Moments>(
+        static_cast<std::size_t>(kMeasuringPasses), {}, [&](std::size_t pass) {
+            PassHistogram histogram(
+                axis, settings.gate, settings.by_order ? settings.max_bounces : 1);
+            double sum = 0.0;
+            for (const std::size_t pair : dropped.pairs) {
+                core::Rng rng(settings.seed, kMeasuringItem + pair, pass);
+                estimate(pair, kMeasuringSamples, rng, histogram);
+                sum += sum_of(histogram);
+            }
+            return Moments{sum, sum * sum};
+        });
+    dropped.lost = moments.sum / kMeasuringPasses;
+    const double variance = moments.squares / kMeasuringPasses - dropped.lost * dropped.lost;
+    dropped.sigma = std::sqrt(std::max(0.0, variance) / (kMeasuringPasses - 1));
+    return dropped;
+}
+
+RenderResult render_ellipsoidal(const Scene& scene,
+                                const core::Scan& scan,
+                                const core::TimeAxis& axis,
+                                const RenderSettings& settings,
+                                const core::Progress& progress) {
+    const bool drops = settings.exclude == Exclusion::Drop;
+    const int first_order = Measurement(scene, scan).first_order();
+    PassWork work;
+    if (settings.max_bounces >= first_order) {
+        work.estimate = ellipsoidal_estimator(
+            scene, scan, axis, settings, drops ? ConnectionScope::Kept : ConnectionScope::All);
+    }
+    RenderResult result = render_passes(scene, scan, axis, settings, work, progress);
+    if (!work.estimate) return result;
+    result.excluded_objects = ExcludedFacets::of(scene, settings).objects;
+    std::string surfaces = "all";
+    if (drops && !result.excluded_objects.empty()) {
+        surfaces = "all but the excluded ones";
+        const DroppedSignal dropped =
+            measure_dropped_signal(scene, scan, axis, settings, kMeasuredPairs);
+        const double kept = kept_signal(result.capture, dropped.pairs);
+        result.warnings.push_back(drop_warning(dropped, kept, result.excluded_objects));
+    }
+    result.sources.push_back({first_order, settings.max_bounces, Estimator::Ellipsoidal, surfaces});
+    return result;
+}
+
+}  // namespace renderer

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/render.h"
+
+namespace renderer {
+
+/// Renders with ellipsoidal connections; arguments and results are those of render().
+///
+/// With excluded surfaces dropped, the result's warnings say what share of the signal that lost, as
+/// measured on some of the pairs.
+RenderResult render_ellipsoidal(const Scene& scene,
+                                const core::Scan& scan,
+                                const core::TimeAxis& axis,
+                                const RenderSettings& settings,
+                                const core::Progress& progress);
+
+/// What dropping the excluded surfaces loses, by path tracing them alone.
+struct DroppedSignal {
+    double lost = 0.0;   ///< sum over the pairs looked at and all bins
+    double sigma = 0.0;  ///< standard deviation of `lost`
+    std::vector<std::size_t> pairs;
+};
+
+/// Measures it on at most `most_pairs` pairs, spread over the scan.
+DroppedSignal measure_dropped_signal(const Scene& scene,
+                                     const core::Scan& scan,
+                                     const core::TimeAxis& axis,
+                                     const RenderSettings& settings,
+                                     std::size_t most_pairs);
+
+}  // namespace renderer

@@ -1,0 +1,338 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/ellipsoidal_tracer.h"
+
+#include "renderer/core/sampling.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace renderer {
+namespace {
+
+using core::Vec2;
+using core::Vec3;
+
+// Of all samples: those that choose the length first. Of the others: those drawn from the hidden
+// area rather than by direction.
+constexpr double kEllipsoidalShare = 0.75;
+constexpr double kAreaShare = 0.75;
+
+// A Gaussian gate lets through e^-10 of its peak this many widths from its centre; what lies beyond
+// is left to the walk.
+constexpr double kGaussianReach = 4.5;
+
+// Entries of a pair's cut: enough to single out facets, few against the samples they serve.
+constexpr std::size_t kFewestEntries = 32;
+
+OplBand lengths_of_gate(const core::TimeAxis& axis, GateShape gate) {
+    OplBand lengths{axis.opl_start_m, axis.opl_end_m()};
+    if (gate != GateShape::Box) {
+        const double reach =
+            gate == GateShape::Tent ? axis.bin_width_m : kGaussianReach * axis.bin_width_m;
+        lengths = {axis.bin_center_m(0) - reach, axis.bin_center_m(0) + reach};
+    }
+    lengths.low_m = std::max(0.0, lengths.low_m);
+    lengths.high_m = std::max(lengths.low_m, lengths.high_m);
+    return lengths;
+}
+
+// The relay wall passes third bounces on; see formats of scenes.
+std::vector<bool> hidden_objects(const Scene& scene) {
+    std::vector<bool> hidden;
+    for (const Object& object : scene.objects()) hidden.push_back(object.role != Role::RelayWall);
+    return hidden;
+}
+
+}  // namespace
+
+// One call of trace(): what is fixed for the pair, and the paths under way.
+class EllipsoidalTracer::Walk {
+ public:
+    /// walk_weight   of one walk: 1 / their expected number
+    Walk(const EllipsoidalTracer& tracer,
+         const PathEnds& ends,
+         double walk_weight,
+         core::Rng& rng,
+         PassHistogram& histogram)
+        : tracer_(tracer),
+          scene_(*tracer.scene_),
+          ends_(ends),
+          rng_(rng),
+          histogram_(histogram),
+          walk_weight_(walk_weight),
+          cut_(tracer.technique_.hierarchy()),
+          first_(*tracer.scene_, tracer.facet_traits_) {}
+
+    void cut_hierarchy(int num_samples);
+    void trace_connections(int count);
+    void trace_area_samples(int count);
+    void trace_directions(int count);
+    void trace_pixel_samples(const Measurement& measurement, std::size_t pixel, int count);
+    std::uint64_t num_rays() const { return num_rays_; }
+
+ private:
+    void finish_connections();
+    void finish_first_vertices(bool may_be_hidden);
+    void evaluate();
+    void weigh(int index, double ellipsoidal_pdf);
+    void connect_seen();
+    void extend(PathVertex vertex);
+    void connect(const PathVertex& vertex, const ConnectionEnds& ends, const OplBand& lengths);
+    void deposit(const PathVertex& vertex, double value);
+    OplBand lengths_left(const PathVertex& vertex) const;
+    double opl_to_light(const PathVertex& vertex) const;
+
+    const EllipsoidalTracer& tracer_;
+    const Scene& scene_;
+    const PathEnds& ends_;
+    core::Rng& rng_;
+    PassHistogram& histogram_;
+    double walk_weight_;
+    HierarchyCut cut_;  ///< for third bounces
+    FirstVertices first_;
+    std::array<double, FirstVertices::kCapacity> ellipsoidal_pdf_;
+    std::uint64_t num_rays_ = 0;
+};
+
+EllipsoidalTracer::EllipsoidalTracer(const Scene& scene,
+                                     const core::Scan& scan,
+                                     const core::TimeAxis& axis,
+                                     const RenderSettings& settings,
+                                     ConnectionScope scope)
+    : scene_(&scene),
+      max_order_(settings.max_bounces),
+      by_order_(settings.by_order),
+      scope_(scope),
+      lengths_(lengths_of_gate(axis, settings.gate)),
+      surface_walk_(scene, settings.laser_spot_m2),
+      facet_traits_(scene, hidden_objects(scene)),
+      excluded_(ExcludedFacets::of(scene, settings)),
+      technique_(scene, excluded_, scan) {}
+
+std::uint64_t EllipsoidalTracer::trace(const PathEnds& ends,
+                                       int num_samples,
+                                       core::Rng& rng,
+                                       PassHistogram& histogram) const {
+    // Numbers of each kind are rounded at random, so that their means are the shares that the
+    // weights assume.
+    const auto rounded = [&](double expected, int most) {
+        return std::min(most, static_cast<int>(expected + rng.uniform()));
+    };
+    const int num_connections = rounded(num_samples * kEllipsoidalShare, num_samples);
+    const double area_share = (1.0 - kEllipsoidalShare) * kAreaShare;
+    const int num_area = rounded(num_samples * area_share, num_samples - num_connections);
+    Walk walk(*this, ends, 1.0 / (num_samples * (1.0 - kEllipsoidalShare)), rng, histogram);
+    walk.cut_hierarchy(num_samples);
+    walk.trace_connections(num_connections);
+    walk.trace_area_samples(num_area);
+    walk.trace_directions(num_samples - num_connections - num_area);
+    return walk.num_rays();
+}
+
+std::uint64_t EllipsoidalTracer::trace_pixel(const Measurement& measurement,
+                                             std::size_t pixel,
+                                             int num_samples,
+                                             core::Rng& rng,
+                                             PassHistogram& histogram) const {
+    const PathEnds ends = measurement.ends(pixel);
+    Walk walk(*this, ends, 1.0 / num_samples, rng, histogram);
+    walk.trace_pixel_samples(measurement, pixel, num_samples);
+    return walk.num_rays();
+}
+
+void EllipsoidalTracer::Walk::cut_hierarchy(int num_samples) {
+    const OplBand lengths{tracer_.lengths_.low_m - ends_.device_legs_m,
+                          tracer_.lengths_.high_m - ends_.device_legs_m};
+    cut_.rebuild(connection_ends(ends_),
+                 lengths,
+                 std::max(kFewestEntries, static_cast<std::size_t>(num_samples)));
+}
+
+void EllipsoidalTracer::Walk::trace_connections(int count) {
+    if (cut_.empty()) return;
+    std::size_t hint = 0;
+    for (int i = 0; i < count; ++i) {
+        const double u = (i + rng_.uniform()) / count;
+        const auto draw = tracer_.technique_.sample(cut_, u, hint, rng_);
+        if (!draw) continue;
+        ellipsoidal_pdf_[static_cast<std::size_t>(first_.size())] = draw->pdf_area;
+        first_.add(draw->point.position, draw->point.facet);
+        if (first_.full()) finish_connections();
+    }
+    finish_connections();
+}
+
+void EllipsoidalTracer::Walk::finish_connections() {
+    evaluate();
+    for (int i = 0; i < first_.size(); ++i) {
+        weigh(i, ellipsoidal_pdf_[static_cast<std::size_t>(i)]);
+    }
+    first_.keep_useful(true);
+    num_rays_ += first_.trace_from(ends_.sensor);
+    if (!ends_.coincide) first_.keep_useful(true);
+    connect_seen();
+}
+
+void EllipsoidalTracer::Walk::trace_area_samples(int count) {
+    std::size_t hint = 0;
+    for (int i = 0; i < count; ++i) {
+        const double u1 = (i + rng_.uniform()) / count;
+        const SurfacePoint point =
+            tracer_.surface_walk_.area_sampler().sample(u1, rng_.uniform(), hint);
+        first_.add(point.position, point.facet);
+        if (first_.full()) finish_first_vertices(true);
+    }
+    finish_first_vertices(true);
+}
+
+void EllipsoidalTracer::Walk::trace_directions(int count) {
+    const PathEnd& sensor = ends_.sensor;
+    const core::Mat3 world_from_end =
+        core::frame_from_normal(sensor.normal, scene_.tangent_hint(sensor.normal));
+    for (int i = 0; i < count; ++i) {
+        const Vec2 u{(i + rng_.uniform()) / count, rng_.uniform()};
+        const Vec3 direction = sensor.isotropic
+                                   ? core::sample_sphere(u)
+                                   : Vec3(world_from_end * core::sample_cosine_hemisphere(u));
+        const auto point = scene_.first_hit(sensor.position, sensor.normal, direction);
+        ++num_rays_;
+        if (!point) continue;
+        first_.add(point->position, point->facet);
+        if (first_.full()) finish_first_vertices(false);
+    }
+    finish_first_vertices(false);
+}
+
+// The first vertex is what the pixel shows: only later ones can be chosen.
+void EllipsoidalTracer::Walk::trace_pixel_samples(const Measurement& measurement,
+                                                  std::size_t pixel,
+                                                  int count) {
+    const SurfaceWalk& walk = tracer_.surface_walk_;
+    for (int i = 0; i < count; ++i) {
+        const double u1 = (i + rng_.uniform()) / count;
+        auto vertex = measurement.first_vertex(pixel, {u1, rng_.uniform()});
+        ++num_rays_;
+        if (!vertex || vertex->order > tracer_.max_order_) continue;
+        vertex->throughput *= walk_weight_;
+        const double value = walk.connection_value(*vertex, ends_);
+        if (value > 0.0 && tracer_.scope_ != ConnectionScope::Excluded &&
+            histogram_.lets_through(opl_to_light(*vertex))) {
+            ++num_rays_;
+            if (!walk.light_is_hidden(*vertex, ends_)) deposit(*vertex, value);
+        }
+        extend(*vertex);
+    }
+}
+
+// Connects first vertices of walks to the light and continues them. `may_be_hidden`: whether the
+// sensor may not see them.
+void EllipsoidalTracer::Walk::finish_first_vertices(bool may_be_hidden) {
+    evaluate();
+    for (int i = 0; i < first_.size(); ++i) {
+        const double opl_m = first_.opl_m()[static_cast<std::size_t>(i)];
+        if (first_.contributions()[static_cast<std::size_t>(i)] == 0.0) continue;
+        const bool asked = opl_m >= tracer_.lengths_.low_m && opl_m <= tracer_.lengths_.high_m;
+        weigh(i, asked ? tracer_.technique_.pdf_area(cut_, first_.point(i)) : 0.0);
+    }
+    const bool goes_on = tracer_.max_order_ > 3;
+    first_.keep_useful(!goes_on);
+    if (may_be_hidden) {
+        num_rays_ += first_.trace_from(ends_.sensor);
+        if (goes_on || !ends_.coincide) first_.keep_seen();
+    }
+    std::array<PathVertex, FirstVertices::kCapacity> vertices;
+    const int num_vertices = goes_on ? first_.size() : 0;
+    for (int i = 0; i < num_vertices; ++i) {
+        vertices[static_cast<std::size_t>(i)] = first_.vertex(i, ends_.sensor);
+    }
+    if (goes_on && !ends_.coincide) first_.keep_useful(true);
+    connect_seen();
+    for (int i = 0; i < num_vertices; ++i) extend(vertices[static_cast<std::size_t>(i)]);
+}
+
+// What the first vertices carry over the density of the walk alone, as if the walk drew them all.
+void EllipsoidalTracer::Walk::evaluate() {
+    const SurfaceWalk& walk = tracer_.surface_walk_;
+    first_.evaluate(ends_, {walk_weight_, kAreaShare, walk.area_sampler().pdf_area()});
+    for (int i = 0; i < first_.size() && tracer_.facet_traits_.any_varies(); ++i) {
+        if (!tracer_.facet_traits_.varies(first_.facet(i))) continue;
+        first_.set_contribution(i, walk.connection_value(first_.vertex(i, ends_.sensor), ends_));
+    }
+}
+
+// Turns it into what it carries over the density of both techniques together. Nothing outside the
+// lengths asked for goes on to rays, nor on facets out of scope.
+void EllipsoidalTracer::Walk::weigh(int index, double ellipsoidal_pdf) {
+    const auto i = static_cast<std::size_t>(index);
+    const double by_walk = (1.0 - kEllipsoidalShare) * first_.pdf_area(index);
+    const double both = by_walk + kEllipsoidalShare * ellipsoidal_pdf;
+    const bool keeps = histogram_.lets_through(first_.opl_m()[i]) &&
+                       tracer_.in_scope(first_.facet(index)) && both > 0.0;
+    first_.set_contribution(index, keeps ? first_.contributions()[i] * by_walk / both : 0.0);
+}
+
+void EllipsoidalTracer::Walk::connect_seen() {
+    if (!ends_.coincide) num_rays_ += first_.trace_from(ends_.light);
+    histogram_.add(tracer_.by_order_ ? 2 : 0, first_.opl_m(), first_.contributions());
+    first_.clear();
+}
+
+// What is left of the wanted lengths after the path up to a vertex, for the two legs to the light.
+OplBand EllipsoidalTracer::Walk::lengths_left(const PathVertex& vertex) const {
+    const double before = vertex.opl_m + ends_.device_legs_m;
+    return {tracer_.lengths_.low_m - before, tracer_.lengths_.high_m - before};
+}
+
+void EllipsoidalTracer::Walk::extend(PathVertex vertex) {
+    const SurfaceWalk& walk = tracer_.surface_walk_;
+    while (vertex.order < tracer_.max_order_) {
+        if (!walk.survives(vertex, rng_)) return;
+        const ConnectionEnds ends = connection_ends(vertex, ends_.light);
+        const OplBand lengths = lengths_left(vertex);
+        // Every longer path from here takes at least the way straight to the light.
+        if (lengths.high_m < (ends.foci.a - ends.foci.b).norm()) return;
+        connect(vertex, ends, lengths);
+        const auto pdf = walk.draw_next(vertex, rng_, num_rays_);
+        if (!pdf) return;
+        if (!tracer_.in_scope(vertex.point.facet)) continue;
+        const double value = walk.connection_value(vertex, ends_);
+        if (!(value > 0.0) || !histogram_.lets_through(opl_to_light(vertex))) continue;
+        const double other = tracer_.technique_.pdf_area(ends, lengths, vertex.point);
+        ++num_rays_;
+        if (!walk.light_is_hidden(vertex, ends_)) deposit(vertex, value * *pdf / (*pdf + other));
+    }
+}
+
+// Draws the vertex between `vertex` and the light on an ellipsoid.
+void EllipsoidalTracer::Walk::connect(const PathVertex& vertex,
+                                      const ConnectionEnds& ends,
+                                      const OplBand& lengths) {
+    const SurfaceWalk& walk = tracer_.surface_walk_;
+    const auto draw = tracer_.technique_.sample(ends, lengths, rng_);
+    if (!draw || !tracer_.in_scope(draw->point.facet)) return;
+    const auto step = walk.step_to(vertex, draw->point);
+    if (!step) return;
+    const PathVertex next =
+        walk.advance(vertex, draw->point, *step, step->pdf_area + draw->pdf_area);
+    const double value = walk.connection_value(next, ends_);
+    if (!(value > 0.0) || !histogram_.lets_through(opl_to_light(next))) return;
+    ++num_rays_;
+    if (walk.light_is_hidden(next, ends_)) return;
+    ++num_rays_;
+    if (scene_.rays().is_blocked(
+            vertex.point.position, vertex.normal, next.point.position, next.normal)) {
+        return;
+    }
+    deposit(next, value);
+}
+
+double EllipsoidalTracer::Walk::opl_to_light(const PathVertex& vertex) const {
+    return vertex.opl_m + (ends_.light.position - vertex.point.position).norm() +
+           ends_.device_legs_m;
+}
+
+void EllipsoidalTracer::Walk::deposit(const PathVertex& vertex, double value) {
+    histogram_.add(tracer_.by_order_ ? vertex.order - 1 : 0, opl_to_light(vertex), value);
+}
+
+}  // namespace renderer

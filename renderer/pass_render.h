@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/pair_estimator.h"
+#include "renderer/render.h"
+
+namespace renderer {
+
+/// What render_passes() is asked for beside the settings.
+struct PassWork {
+    PairEstimator estimate;  ///< empty: no paths are traced
+
+    /// Memory for running sums [bytes]. Passes go over all pairs at once when their sums fit;
+    /// larger scans are traced tile by tile, with the same result.
+    double most_sums_bytes = 1e9;
+};
+
+/// Renders by Monte Carlo, in passes over all pairs of a tile, and adds orders 1 and 2 of scans,
+/// which need no sampling. Arguments and results are those of render().
+///
+/// throws   core::Failure as render() does, also when a scan of more than one tile is interrupted:
+///          the tiles are not even then
+RenderResult render_passes(const Scene& scene,
+                           const core::Scan& scan,
+                           const core::TimeAxis& axis,
+                           const RenderSettings& settings,
+                           const PassWork& work,
+                           const core::Progress& progress);
+
+}  // namespace renderer
