@@ -157,6 +157,10 @@ std::vector<std::string> describe_capture(const core::Capture& capture) {
                                 low,
                                 high,
                                 sum));
+    if (capture.counts_per_radiance) {
+        lines.push_back(
+            fmt::format("counts per unit of radiance: {:.6g}", *capture.counts_per_radiance));
+    }
     if (scan.opl_origin == core::OplOrigin::RelayWall) {
         // Seen at right angles from a confocal point, depth is half the path length.
         lines.push_back(fmt::format("depth range: {:.4g} to {:.4g} m",

@@ -313,6 +313,14 @@ void read_own_group(const Hdf5Reader& file, Capture& capture) {
     if (const auto unit = file.text_attribute("nlos", "unit")) {
         core::read_value(core::Json(*unit), file.where("nlos attribute unit"), capture.unit);
     }
+    const auto scale = file.real_attribute("nlos", "counts_per_radiance");
+    if (scale && scale->size() == 1 && std::isfinite((*scale)[0]) && (*scale)[0] > 0.0) {
+        capture.counts_per_radiance = (*scale)[0];
+    } else if (scale) {
+        throw Error(file.where("nlos attribute counts_per_radiance"),
+                    "is no positive number",
+                    "must be one positive number");
+    }
     if (file.has("nlos/H_by_order")) read_orders(file, capture);
     if (!file.has("nlos/variance")) return;
     require_shape(file, "nlos/variance", file.shape("H"));

@@ -116,6 +116,9 @@ void write_own_group(Hdf5Writer& file, const Shape& h_shape, const Capture& capt
     if (!capture.variance && capture.orders.empty() && radiance) return;
     file.create_group("nlos");
     file.write_attribute("nlos", "unit", std::string(enum_name(capture.unit)));
+    if (capture.counts_per_radiance) {
+        file.write_attribute("nlos", "counts_per_radiance", {}, {&*capture.counts_per_radiance, 1});
+    }
     if (capture.variance) write_transient(file, "nlos/variance", h_shape, *capture.variance);
     if (!capture.orders.empty()) write_orders(file, h_shape, capture);
 }

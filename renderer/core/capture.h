@@ -94,6 +94,7 @@ struct Capture {
     Transient transient;                ///< (num_pairs, num_bins)
     std::optional<Transient> variance;  ///< of each value of `transient`, when known
     TransientUnit unit = TransientUnit::Radiance;
+    std::optional<double> counts_per_radiance;  ///< when counts stem from known radiance
     std::vector<int> orders;          ///< bounce orders of `by_order`; empty when not resolved
     std::vector<Transient> by_order;  ///< one per entry of `orders`; they sum to `transient`
 

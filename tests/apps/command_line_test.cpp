@@ -135,7 +135,14 @@ TEST_F(CommandLine, CaptureRemembersHowItWasMade) {
 TEST_F(CommandLine, HelpOnEveryLevelEndsWithAnExample) {
     EXPECT_NE(run("--help").out.find("Example:"), std::string::npos);
     EXPECT_NE(run("--version").out.find("nlos 0."), std::string::npos);
-    for (const std::string name : {"render", "reconstruct", "compare", "info", "report", "bench", "demo"}) {
+    for (const std::string name : {"render",
+                                   "reconstruct",
+                                   "compare",
+                                   "info",
+                                   "report",
+                                   "bench",
+                                   "demo",
+                                   "simulate-noise"}) {
         const Outcome outcome = run(name + " --help");
         EXPECT_EQ(outcome.status, 0) << name;
         EXPECT_NE(outcome.out.find("Example:\n  nlos " + name), std::string::npos) << name;

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+#include "nlos/dead_time.h"
+
+#include "nlos/count_sampling.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace nlos {
+namespace {
+
+/// Follows detectors through the last of several pulses.
+///
+/// history   detections in each bin of whole periods; those of the last period are filled in
+/// detect    (detectors that can see, probability to detect) -> detections
+template <class Detect>
+void follow_pulse(const std::vector<double>& probabilities,
+                  const PulseTrain& train,
+                  double detectors,
+                  std::vector<double>& history,
+                  Detect&& detect) {
+    const std::size_t period = probabilities.size();
+    const std::size_t begin = history.size() - period;
+    const std::size_t blind = train.blind_bins;
+    double recent = 0.0;   // detections of the last `blind` bins
+    double blocked = 0.0;  // earlier ones of this pulse that nothing may follow
+    for (std::size_t i = begin - blind; i < begin; ++i) recent += history[i];
+    for (std::size_t i = begin; i < history.size(); ++i) {
+        const double seeing = std::max(0.0, detectors - recent - blocked);
+        history[i] = detect(seeing, probabilities[i - begin]);
+        const std::size_t expired = i - blind;
+        recent += history[i] - history[expired];
+        if (train.first_photon_only && expired >= begin) blocked += history[expired];
+    }
+}
+
+/// Detections of one detector, per pulse, once its start is forgotten: a fixed point. Mixing each
+/// step with the one before damps the swing of detectors that are blind in step.
+std::vector<double> find_steady_state(const std::vector<double>& probabilities,
+                                      const PulseTrain& train,
+                                      std::size_t history_periods) {
+    constexpr int kMostSteps = 1000;
+    constexpr double kTolerance = 1e-9;  // of all detections
+    const auto period = static_cast<std::ptrdiff_t>(probabilities.size());
+    std::vector<double> history((history_periods + 1) * probabilities.size(), 0.0);
+    const auto keep_probability = [](double seeing, double p) { return seeing * p; };
+    for (int step = 0; step < kMostSteps; ++step) {
+        if (step > 0) std::rotate(history.begin(), history.begin() + period, history.end());
+        follow_pulse(probabilities, train, 1.0, history, keep_probability);
+        if (train.blind_bins == 0) break;
+        double change = 0.0;
+        double sum = 0.0;
+        for (auto now = history.end() - period; now != history.end(); ++now) {
+            const double before = *(now - period);
+            change += std::abs(*now - before);
+            sum += *now;
+            *now = 0.5 * (*now + before);
+        }
+        if (change <= kTolerance * sum) break;
+    }
+    return history;
+}
+
+}  // namespace
+
+std::vector<double> count_with_dead_time(std::span<const double> rates,
+                                         const PulseTrain& train,
+                                         core::Rng* rng) {
+    std::vector<double> probabilities;
+    for (const double rate : rates) probabilities.push_back(-std::expm1(-rate));
+    probabilities.resize(rates.size() + train.gap_bins, -std::expm1(-train.gap_rate));
+    const std::size_t period = probabilities.size();
+    const std::size_t history_periods = (train.blind_bins + period - 1) / period;
+    const auto bins = static_cast<std::ptrdiff_t>(rates.size());
+    const auto pulses = static_cast<double>(train.pulses);
+
+    std::vector<double> history = find_steady_state(probabilities, train, history_periods);
+    const auto pulse_begin = history.end() - static_cast<std::ptrdiff_t>(period);
+    if (rng == nullptr) {
+        std::vector<double> counts(pulse_begin, pulse_begin + bins);
+        for (double& count : counts) count *= pulses;
+        return counts;
+    }
+    const auto draw = [&](double detectors, double probability) {
+        return static_cast<double>(sample_binomial(
+            *rng, static_cast<std::int64_t>(detectors), std::clamp(probability, 0.0, 1.0)));
+    };
+    // A detector that is blind when the pulse begins has detected once in the last `blind_bins`
+    // bins: a draw of one of them, or of none. History ends one period before the drawn pulse.
+    std::rotate(history.begin(),
+                history.begin() + static_cast<std::ptrdiff_t>(history_periods > 0 ? period : 0),
+                history.end());
+    double undecided = pulses;
+    double left = 1.0;
+    for (auto before = pulse_begin - static_cast<std::ptrdiff_t>(train.blind_bins);
+         before != pulse_begin;
+         ++before) {
+        const double share = *before;
+        *before = left > 0.0 ? draw(undecided, share / left) : 0.0;
+        undecided -= *before;
+        left -= share;
+    }
+    follow_pulse(probabilities, train, pulses, history, draw);
+    return {pulse_begin, pulse_begin + bins};
+}
+
+}  // namespace nlos
