@@ -87,6 +87,7 @@ std::optional<ChartPoint> HemisphereChart::on_facet(const Vec2& xi, std::uint32_
     point.second12 =
         world(dir.by_mu_psi - a * dir.by_psi - b * dir.by_mu + (2.0 * a * b - a_b) * dir.d);
     point.second22 = world(dir.by_psi_psi - 2.0 * b * dir.by_psi + (2.0 * b * b - b_b) * dir.d);
+    point.area_density = point.tangent1.cross(point.tangent2).norm();
     point.velocity = scene_->object_of(facet).velocity_m_per_s;
     point.facet = facet;
     return point;

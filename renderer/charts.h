@@ -19,8 +19,9 @@ struct ChartPoint {
         core::Vec3::Zero();  ///< d2X/dxi_1 dxi_1; not looked at where the chart is affine
     core::Vec3 second12 = core::Vec3::Zero();
     core::Vec3 second22 = core::Vec3::Zero();
-    core::Vec3 velocity;      ///< of the surface [m/s]
-    std::uint32_t facet = 0;  ///< where the surface is a mesh
+    double area_density = 0.0;  ///< |dX/dxi_1 x dX/dxi_2|
+    core::Vec3 velocity;        ///< of the surface [m/s]
+    std::uint32_t facet = 0;    ///< where the surface is a mesh
 };
 
 /// Coordinates on a surface. To add a chart: a type with these members, then `shift_on_charts`
@@ -35,25 +36,30 @@ concept SurfaceChart = requires(const C& chart, const core::Vec2& xi) {
 
 /// Plane and barycentric charts: X = origin + xi_1 tangent1 + xi_2 tangent2. The surface goes on
 /// beyond the facet; whether a point lies on it is asked afterwards.
-struct AffineChart {
+class AffineChart {
+ public:
     static constexpr bool kAffine = true;
     static constexpr bool kPeriodic = false;
 
-    core::Vec3 origin;
-    core::Vec3 tangent1;
-    core::Vec3 tangent2;
-    core::Vec3 velocity;
-    std::uint32_t facet = 0;
+    AffineChart(const core::Vec3& origin,
+                const core::Vec3& tangent1,
+                const core::Vec3& tangent2,
+                const core::Vec3& velocity) {
+        at_origin_.position = origin;
+        at_origin_.tangent1 = tangent1;
+        at_origin_.tangent2 = tangent2;
+        at_origin_.area_density = tangent1.cross(tangent2).norm();
+        at_origin_.velocity = velocity;
+    }
 
     std::optional<ChartPoint> at(const core::Vec2& xi) const {
-        ChartPoint point;
-        point.position = origin + xi.x() * tangent1 + xi.y() * tangent2;
-        point.tangent1 = tangent1;
-        point.tangent2 = tangent2;
-        point.velocity = velocity;
-        point.facet = facet;
+        ChartPoint point = at_origin_;
+        point.position += xi.x() * point.tangent1 + xi.y() * point.tangent2;
         return point;
     }
+
+ private:
+    ChartPoint at_origin_;
 };
 
 /// The surface as a point y sees it: mu = cosine to the normal at y, psi = azimuth/(2 pi) from an

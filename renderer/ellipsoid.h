@@ -44,6 +44,8 @@ class EllipsoidSection {
                                                double opl_m,
                                                const Facet& plane);
 
+    /// Of the circle on the unit sphere; 0 where the ellipsoid touches the plane.
+    double circle_radius() const { return radius_; }
     /// Point at an angle given as (cos theta, sin theta).
     core::Vec3 point(const core::Vec2& angle) const;
     /// (cos theta, sin theta) of a point of the curve.

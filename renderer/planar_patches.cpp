@@ -22,7 +22,8 @@ std::array<Vec3, 3> corners_of(const Facet& facet) {
 
 // Which facets of the same object share an edge. Corners at the same place count as one: meshes
 // repeat vertices where texture coordinates jump.
-std::vector<std::vector<std::uint32_t>> neighbours_of(std::span<const Facet> facets) {
+std::vector<std::vector<std::uint32_t>> neighbours_of(const Scene& scene) {
+    const std::span<const Facet> facets = scene.facets();
     struct Edge {
         std::array<double, 6> ends;  ///< both end points, the smaller first
         std::uint32_t object;
@@ -34,10 +35,12 @@ std::vector<std::vector<std::uint32_t>> neighbours_of(std::span<const Facet> fac
     std::vector<Edge> edges;
     edges.reserve(3 * facets.size());
     for (std::uint32_t f = 0; f < facets.size(); ++f) {
-        const auto corners = corners_of(facets[f]);
+        // The mesh's own vertices: a facet's corner plus edge may be a bit off.
+        const core::TriangleMesh& mesh = scene.object_of(f).mesh;
+        const auto& vertices = mesh.triangles[facets[f].triangle];
         for (std::size_t i = 0; i < 3; ++i) {
-            const Vec3& p = corners[i];
-            const Vec3& q = corners[(i + 1) % 3];
+            const Vec3& p = mesh.vertices[vertices[i]];
+            const Vec3& q = mesh.vertices[vertices[(i + 1) % 3]];
             std::array<double, 3> first{p.x(), p.y(), p.z()};
             std::array<double, 3> second{q.x(), q.y(), q.z()};
             if (second < first) std::swap(first, second);
@@ -82,11 +85,12 @@ Vec2 barycentric_of(const Facet& facet, const Vec3& position) {
             inverse * facet.normal.dot(facet.edge1.cross(offset))};
 }
 
-PlanarPatches::PlanarPatches(std::span<const Facet> facets)
-    : facets_(facets),
-      patch_of_facet_(facets.size(), std::numeric_limits<std::uint32_t>::max()),
+PlanarPatches::PlanarPatches(const Scene& scene)
+    : facets_(scene.facets()),
+      patch_of_facet_(facets_.size(), std::numeric_limits<std::uint32_t>::max()),
       cell_begin_{0} {
-    const auto neighbours = neighbours_of(facets);
+    const std::span<const Facet> facets = facets_;
+    const auto neighbours = neighbours_of(scene);
     const auto distances = coplanar_distances(facets);
     // From the largest facet outwards, every corner against that facet's plane: nothing drifts.
     std::vector<std::uint32_t> order(facets.size());
@@ -123,8 +127,9 @@ void PlanarPatches::add_patch(const std::vector<std::uint32_t>& members) {
     const Facet& seed = facets_[members.front()];
     Patch patch;
     const core::Mat3 frame = seed.world_from_facet();
-    patch.frame = {frame.col(0), frame.col(1), frame.col(2)};
-    patch.origin = seed.corner;
+    patch.plane = seed;
+    patch.plane.edge1 = frame.col(0);
+    patch.plane.edge2 = frame.col(1);
     patch.num_facets = static_cast<std::uint32_t>(members.size());
     for (const std::uint32_t facet : members) patch.area_m2 += facets_[facet].area_m2;
     if (members.size() > 1) add_grid(patch, members);
@@ -133,8 +138,8 @@ void PlanarPatches::add_patch(const std::vector<std::uint32_t>& members) {
 
 void PlanarPatches::add_grid(Patch& patch, const std::vector<std::uint32_t>& members) {
     const auto in_plane = [&](const Vec3& p) {
-        return Vec2(patch.frame.tangent1.dot(p - patch.origin),
-                    patch.frame.tangent2.dot(p - patch.origin));
+        return Vec2(patch.plane.edge1.dot(p - patch.plane.corner),
+                    patch.plane.edge2.dot(p - patch.plane.corner));
     };
     const auto box_of = [&](std::uint32_t facet) {
         Eigen::AlignedBox2d box;
@@ -184,8 +189,8 @@ std::optional<std::uint32_t> PlanarPatches::locate(std::uint32_t patch,
     if (is_in_triangle(barycentric_of(facets_[likely], position))) return likely;
     const Patch& p = patches_[patch];
     if (p.num_facets == 1) return std::nullopt;
-    const Vec3 offset = position - p.origin;
-    const Vec2 cell = (Vec2(p.frame.tangent1.dot(offset), p.frame.tangent2.dot(offset)) - p.low)
+    const Vec3 offset = position - p.plane.corner;
+    const Vec2 cell = (Vec2(p.plane.edge1.dot(offset), p.plane.edge2.dot(offset)) - p.low)
                           .cwiseProduct(p.cells_per_m);
     if (!(cell.x() >= 0.0 && cell.y() >= 0.0 && cell.x() <= p.columns && cell.y() <= p.rows)) {
         return std::nullopt;

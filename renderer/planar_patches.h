@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/plane_shift.h"
 #include "renderer/scene.h"
 
 #include <cstdint>
@@ -17,12 +16,13 @@ namespace renderer {
 /// of the patch's largest facet; with less care path lengths on the patch would not be exact.
 class PlanarPatches {
  public:
-    explicit PlanarPatches(std::span<const Facet> facets);
+    /// scene   must outlive the patches
+    explicit PlanarPatches(const Scene& scene);
 
     std::size_t size() const { return patches_.size(); }
     std::uint32_t patch_of(std::uint32_t facet) const { return patch_of_facet_[facet]; }
-    /// Frame of the patch's plane; the same from all its facets.
-    const PlaneFrame& frame(std::uint32_t patch) const { return patches_[patch].frame; }
+    /// The patch's plane as a facet with orthonormal edges; the same from all its facets.
+    const Facet& plane(std::uint32_t patch) const { return patches_[patch].plane; }
     double area_m2(std::uint32_t patch) const { return patches_[patch].area_m2; }
 
     /// The facet of a patch that holds a point of its plane; `likely` is tried first.
@@ -33,9 +33,8 @@ class PlanarPatches {
  private:
     // A grid over the patch; cell (i, j) lists the facets whose boxes touch it.
     struct Patch {
-        PlaneFrame frame;
+        Facet plane;
         double area_m2 = 0.0;
-        core::Vec3 origin;
         core::Vec2 low = core::Vec2::Zero();
         core::Vec2 cells_per_m = core::Vec2::Zero();
         std::uint32_t columns = 0;

@@ -2,24 +2,12 @@
 #pragma once
 
 #include "renderer/core/types.h"
+#include "renderer/ellipsoid.h"
 #include "renderer/shift_counts.h"
 
 #include <optional>
 
 namespace renderer {
-
-/// An orthonormal frame of a plane.
-struct PlaneFrame {
-    core::Vec3 tangent1;
-    core::Vec3 tangent2;
-    core::Vec3 normal;
-};
-
-/// The two neighbours of a vertex, relative to one point near it [m].
-struct Foci {
-    core::Vec3 a;
-    core::Vec3 y;
-};
 
 /// How the path length of a vertex changes: l' = ratio * l + offset_m.
 struct LengthChange {
@@ -37,17 +25,17 @@ struct PlaneShift {
 
 /// Moves a point within its plane so that its path length changes as asked, in closed form.
 ///
-/// The points of a plane with path length tau form an ellipse; its affine image is a circle, and
-/// the point keeps its angle on it, counted from the image of tangent1. The map is one-to-one,
-/// defined wherever the target's ellipse exists, and needs no search.
+/// The point keeps its angle theta on the closed curve of its length (EllipsoidSection), which
+/// makes the map one-to-one, defined wherever the target's curve exists, and free of any search.
+/// With dA = K dtau dtheta on either side and dtau' = S dtau: dA'/dA = S K'/K.
 ///
-/// source, target   foci relative to the point that moves
+/// plane            through the point: normal, and edge1 as the direction of theta = 0
+/// source, target   foci relative to the point
 /// returns          nullopt with the reason in `trace`
 /// throws           nothing
-/// source           derived in plane_shift.cpp; the measure is that of [Pediredla2019]
-std::optional<PlaneShift> shift_on_plane(const PlaneFrame& plane,
-                                         const Foci& source,
-                                         const Foci& target,
+std::optional<PlaneShift> shift_on_plane(const Facet& plane,
+                                         const FocusPair& source,
+                                         const FocusPair& target,
                                          const LengthChange& change,
                                          ShiftTrace& trace);
 

@@ -53,7 +53,9 @@ std::optional<ShiftSolution> follow_flow(const Problem& problem,
     const auto target = problem.target.at(here);
     if (!target) return trace.reject(ShiftRejection::LeftChart);
     return ShiftSolution{
-        here, std::exp(log_determinant) * target->area_density / at_source.area_density, *target};
+        here,
+        std::exp(log_determinant) * target->metric.area_density / at_source.metric.area_density,
+        *target};
 }
 
 /// Doubles the number of steps until neither the end nor the determinant moves any more and the

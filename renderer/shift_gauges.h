@@ -50,6 +50,40 @@ struct AverageGauge {
     }
 };
 
+/// The average gauge with gradients of the surface instead of the coordinates: D parallel to
+/// M^-1 g, M the chart's metric, which does not depend on how the surface is parameterized.
+///
+/// R M^-1 = M R/det M; with the factor sqrt(det M) lengths keep their size: F2 = (N g).D,
+/// N = M R/sqrt(det M), averaged over the ends. Along coordinate k,
+/// N_k = (M_k - tr(M^-1 M_k) M/2) R/sqrt(det M). On a plane's orthonormal chart N = R.
+struct MetricAverageGauge {
+    template <class Problem>
+    std::optional<GaugeTerms> operator()(const Problem&, const ShiftState& s) const {
+        const core::Vec2 d = s.step();
+        const core::Vec2 across = 0.5 * (across_of(s.at_source) + across_of(s.at_target));
+        return GaugeTerms{across.dot(d),
+                          across + 0.5 * bend_of(s.at_target, d),
+                          -across + 0.5 * bend_of(s.at_source, d)};
+    }
+
+ private:
+    static core::Vec2 across_of(const ChartExpansion& e) {
+        return e.metric.m * turned(e.slope) / e.metric.area_density;
+    }
+    // Gradient of (N g).d at fixed d.
+    static core::Vec2 bend_of(const ChartExpansion& e, const core::Vec2& d) {
+        const double inverse = 1.0 / e.metric.area_density;
+        const Eigen::Matrix2d m_inverse = e.metric.m.inverse();
+        core::Vec2 bend = -inverse * e.hessian_times(turned(e.metric.m * d));
+        for (int k = 0; k < 2; ++k) {
+            const Eigen::Matrix2d& m_k = e.metric.by[static_cast<std::size_t>(k)];
+            const Eigen::Matrix2d n_k = m_k - 0.5 * (m_inverse * m_k).trace() * e.metric.m;
+            bend[k] += inverse * (n_k * turned(e.slope)).dot(d);
+        }
+        return bend;
+    }
+};
+
 /// m = gradient at the start: explicit Euler, here to show that it is not reversible.
 struct StartGauge {
     template <class Problem>
@@ -175,7 +209,12 @@ struct SymmetricGauge {
 /// The gradient flow itself, followed in small steps (shift_flow.h).
 struct FlowGauge {};
 
-using AnyGauge =
-    std::variant<AverageGauge, StartGauge, FixedGauge, MidpointGauge, SymmetricGauge, FlowGauge>;
+using AnyGauge = std::variant<AverageGauge,
+                              MetricAverageGauge,
+                              StartGauge,
+                              FixedGauge,
+                              MidpointGauge,
+                              SymmetricGauge,
+                              FlowGauge>;
 
 }  // namespace renderer

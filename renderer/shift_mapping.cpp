@@ -17,8 +17,8 @@ namespace {
 using core::Vec2;
 using core::Vec3;
 
-AnyGauge make_gauge(Gauge gauge) {
-    switch (gauge) {
+AnyGauge make_gauge(const ShiftSettings& settings) {
+    switch (settings.gauge) {
         case Gauge::Start:
             return StartGauge{};
         case Gauge::Fixed:
@@ -32,6 +32,8 @@ AnyGauge make_gauge(Gauge gauge) {
         case Gauge::Average:
             break;
     }
+    // On planes both are the same, and the plain one is cheaper.
+    if (settings.metric_gauge && settings.chart != Chart::Plane) return MetricAverageGauge{};
     return AverageGauge{};
 }
 
@@ -52,8 +54,9 @@ struct ShiftMapping::Task {
     const ShiftEnd& target;
     const LengthChange& change;
 
-    Foci source_foci() const { return {source.a - x.position, source.y - x.position}; }
-    Foci target_foci() const { return {target.a - x.position, target.y - x.position}; }
+    FocusPair foci_of(const ShiftEnd& end) const {
+        return {end.a - x.position, end.y - x.position};
+    }
 };
 
 ShiftMapping::ShiftMapping(const Scene& scene,
@@ -62,8 +65,8 @@ ShiftMapping::ShiftMapping(const Scene& scene,
     : scene_(&scene),
       settings_(settings),
       quantity_(quantity),
-      gauge_(make_gauge(settings.gauge)),
-      patches_(scene.facets()) {
+      gauge_(make_gauge(settings)),
+      patches_(scene) {
     if (settings.chart == Chart::Custom) {
         throw core::Error("chart",
                           "custom",
@@ -139,8 +142,11 @@ ShiftMapping::Result ShiftMapping::shift_adaptively(const Task& task,
 
 ShiftMapping::Result ShiftMapping::shift_in_closed_form(const Task& task, ShiftTrace& trace) const {
     const std::uint32_t patch = patches_.patch_of(task.x.facet);
-    const auto shift = shift_on_plane(
-        patches_.frame(patch), task.source_foci(), task.target_foci(), task.change, trace);
+    const auto shift = shift_on_plane(patches_.plane(patch),
+                                      task.foci_of(task.source),
+                                      task.foci_of(task.target),
+                                      task.change,
+                                      trace);
     if (!shift) return std::nullopt;
     const Vec3 position = task.x.position + shift->displacement;
     const auto facet = patches_.locate(patch, position, task.x.facet);
@@ -157,12 +163,9 @@ ShiftMapping::Result ShiftMapping::shift_by_plane(const Task& task, ShiftTrace& 
         return shift_in_closed_form(task, trace);
     }
     const std::uint32_t patch = patches_.patch_of(task.x.facet);
-    const PlaneFrame& frame = patches_.frame(patch);
-    const AffineChart chart{Vec3::Zero(),
-                            frame.tangent1,
-                            frame.tangent2,
-                            scene_->object_of(task.x.facet).velocity_m_per_s,
-                            task.x.facet};
+    const Facet& plane = patches_.plane(patch);
+    const AffineChart chart{
+        Vec3::Zero(), plane.edge1, plane.edge2, scene_->object_of(task.x.facet).velocity_m_per_s};
     const auto at_x = chart.at(Vec2::Zero());
     const auto solution = solve<AffineChart>(task, {chart, chart}, Vec2::Zero(), *at_x, trace);
     if (!solution) return std::nullopt;
@@ -178,8 +181,7 @@ ShiftMapping::Result ShiftMapping::shift_in_facet(const Task& task, ShiftTrace& 
     const AffineChart chart{facet.corner - task.x.position,
                             facet.edge1,
                             facet.edge2,
-                            scene_->object_of(task.x.facet).velocity_m_per_s,
-                            task.x.facet};
+                            scene_->object_of(task.x.facet).velocity_m_per_s};
     const auto at_x = chart.at(xi);
     const auto solution = solve<AffineChart>(task, {chart, chart}, xi, *at_x, trace);
     if (!solution) return std::nullopt;

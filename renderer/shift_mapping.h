@@ -25,6 +25,8 @@ struct ShiftSettings {
     /// On planes, with the average gauge and path lengths: keep the angle on the ellipse instead,
     /// in closed form. Off: Newton's method there too.
     bool closed_form_on_planes = true;
+    /// Average gauge: gradients of the surface instead of the coordinates. The same on planes.
+    bool metric_gauge = true;
     bool reverse_check = true;
     double jacobian_bound = 20.0;         ///< c: J/S must lie in [1/c, c]
     double smallest_plane_area_m2 = 0.0;  ///< adaptive: smaller flat pieces go by ray at once
@@ -35,6 +37,7 @@ void for_each_field(ShiftSettings& s, Visitor&& visit) {
     visit("chart", s.chart, "coordinates in which a vertex moves");
     visit("gauge", s.gauge, "what fixes the second coordinate");
     visit("closed_form_on_planes", s.closed_form_on_planes, "closed form instead of Newton");
+    visit("metric_gauge", s.metric_gauge, "average gauge by the surface's metric");
     visit("reverse_check", s.reverse_check, "solve every shift backwards too");
     visit("jacobian_bound", s.jacobian_bound, "largest change of area, either way");
     visit("smallest_plane_area_m2", s.smallest_plane_area_m2, "adaptive: below it by ray [m^2]");

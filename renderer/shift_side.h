@@ -4,10 +4,36 @@
 #include "renderer/charts.h"
 #include "renderer/core/types.h"
 
+#include <array>
 #include <cstdint>
 #include <optional>
 
 namespace renderer {
+
+/// The metric of a chart, M_ij = X_i.X_j, with its derivatives.
+struct ChartMetric {
+    double area_density = 0.0;  ///< sqrt(det M) = |X_1 x X_2|
+    Eigen::Matrix2d m;
+    std::array<Eigen::Matrix2d, 2> by{Eigen::Matrix2d::Zero(), Eigen::Matrix2d::Zero()};
+
+    template <bool is_affine>
+    static ChartMetric of(const ChartPoint& p) {
+        ChartMetric metric;
+        const double m12 = p.tangent1.dot(p.tangent2);
+        metric.m << p.tangent1.squaredNorm(), m12, m12, p.tangent2.squaredNorm();
+        metric.area_density = p.area_density;
+        if constexpr (!is_affine) {
+            const auto derivative = [&](const core::Vec3& second1, const core::Vec3& second2) {
+                const double d12 = second1.dot(p.tangent2) + p.tangent1.dot(second2);
+                Eigen::Matrix2d d;
+                d << 2.0 * second1.dot(p.tangent1), d12, d12, 2.0 * second2.dot(p.tangent2);
+                return d;
+            };
+            metric.by = {derivative(p.second11, p.second12), derivative(p.second12, p.second22)};
+        }
+        return metric;
+    }
+};
 
 /// A path functional in a chart, to second order: f(xi) = factor * functional(X(xi)).
 struct ChartExpansion {
@@ -16,12 +42,10 @@ struct ChartExpansion {
     double h11 = 0.0;  ///< second derivatives of f
     double h12 = 0.0;
     double h22 = 0.0;
-    double area_density = 0.0;  ///< |dX/dxi_1 x dX/dxi_2|
-    double slope_size = 0.0;    ///< what the slope per metre of movement cannot exceed by much
-    double distance_m = 0.0;    ///< size of the two legs
-    core::Vec3 position;        ///< relative to the chart's origin
-    core::Vec3 tangent1;
-    core::Vec3 tangent2;
+    double slope_size = 0.0;  ///< what the slope per metre of movement cannot exceed by much
+    double distance_m = 0.0;  ///< size of the two legs
+    core::Vec3 position;      ///< relative to the chart's origin
+    ChartMetric metric;
     std::uint32_t facet = 0;
 
     core::Vec2 hessian_times(const core::Vec2& v) const {
@@ -65,12 +89,10 @@ struct ShiftSide {
         e.h11 *= factor;
         e.h12 *= factor;
         e.h22 *= factor;
-        e.area_density = point.tangent1.cross(point.tangent2).norm();
+        e.metric = ChartMetric::of<Chart::kAffine>(point);
         e.slope_size = factor * f.gradient_size;
         e.distance_m = f.distance_m;
         e.position = point.position;
-        e.tangent1 = point.tangent1;
-        e.tangent2 = point.tangent2;
         e.facet = point.facet;
         return e;
     }

@@ -23,8 +23,8 @@ inline constexpr double kLastStep = 1e-7;
 inline constexpr double kTinyDeterminant = 1e-8;
 /// The reverse solve must come back to within this share of the legs.
 inline constexpr double kReturnTolerance = 1e-7;
-inline constexpr int kMaxIterations = 12;
-inline constexpr int kMaxHalvings = 6;
+inline constexpr int kMaxIterations = 10;
+inline constexpr int kMaxHalvings = 4;
 
 /// A solved shift in chart coordinates.
 struct ShiftSolution {
@@ -87,7 +87,7 @@ std::optional<ShiftSolution> newton_shift(const Gauge& gauge,
                 next_f1 * next_f1 + next_terms->residual * next_terms->residual;
             // Once both are small the merit is rounding, and the full step the best there is.
             if (!(next_merit < merit || is_small)) continue;
-            last_step = share * (step.x() * target->tangent1 + step.y() * target->tangent2).norm();
+            last_step = (target->position - state.at_target.position).norm();
             state = next;
             terms = *next_terms;
             is_better = true;
@@ -99,16 +99,17 @@ std::optional<ShiftSolution> newton_shift(const Gauge& gauge,
     const double by_source = cross(at_source.slope, -terms.by_source);
     const auto is_tiny = [](double determinant, const ChartExpansion& e) {
         return !(std::abs(determinant) >
-                 kTinyDeterminant * e.slope_size * e.slope_size * e.area_density);
+                 kTinyDeterminant * e.slope_size * e.slope_size * e.metric.area_density);
     };
     if (is_tiny(by_target, state.at_target) || is_tiny(by_source, at_source)) {
         return trace.reject(ShiftRejection::Degenerate);
     }
     const double ratio = by_source / by_target;
     if (!(ratio > 0.0)) return trace.reject(ShiftRejection::Folded);
-    return ShiftSolution{state.xi_new,
-                         ratio * state.at_target.area_density / at_source.area_density,
-                         state.at_target};
+    return ShiftSolution{
+        state.xi_new,
+        ratio * state.at_target.metric.area_density / at_source.metric.area_density,
+        state.at_target};
 }
 
 /// The equations can have a second root, on another branch of the curve. On the right one the

@@ -60,6 +60,28 @@ renderer::Object tilted_quad(const Vec3& centre, double scale_m) {
     return parallelogram_object({middle - 0.5 * (u + v), u, v});
 }
 
+renderer::Object wavy_sheet(const Vec3& centre, double scale_m, int cells, double height_m) {
+    renderer::Object object;
+    for (int j = 0; j <= cells; ++j) {
+        for (int i = 0; i <= cells; ++i) {
+            const double x = 2.0 * i / cells - 1.0;
+            const double y = 2.0 * j / cells - 1.0;
+            const double z = 1.0 + height_m / scale_m * std::sin(5.0 * x + 1.0) * std::cos(4.0 * y);
+            object.mesh.vertices.push_back(centre + scale_m * Vec3(x, y, z));
+        }
+    }
+    const auto index = [&](int i, int j) {
+        return static_cast<std::uint32_t>(j * (cells + 1) + i);
+    };
+    for (int j = 0; j < cells; ++j) {
+        for (int i = 0; i < cells; ++i) {
+            object.mesh.triangles.push_back({index(i, j), index(i + 1, j), index(i + 1, j + 1)});
+            object.mesh.triangles.push_back({index(i, j), index(i + 1, j + 1), index(i, j + 1)});
+        }
+    }
+    return object;
+}
+
 std::optional<double> jacobian_by_differences(const renderer::Scene& scene,
                                               const renderer::ShiftMapping& mapping,
                                               const ShiftCase& c,

@@ -53,6 +53,9 @@ renderer::Scene scene_of(std::vector<renderer::Object> objects);
 /// One large quad of two facets behind the wall's centre, tilted.
 renderer::Object tilted_quad(const core::Vec3& centre, double scale_m);
 
+/// A sheet of 2 cells^2 facets over the same place, wavy: bumps of `height_m`.
+renderer::Object wavy_sheet(const core::Vec3& centre, double scale_m, int cells, double height_m);
+
 /// Central differences of the mapping on the surfaces at both ends, dA'/dA; nullopt where a
 /// neighbouring shift fails or lands on another plane.
 ///
