@@ -11,7 +11,7 @@ using core::Vec3;
 
 constexpr double kPole = 1.0 - 1e-4;
 constexpr double kHorizon = 1e-4;
-constexpr double kEdgeOn = 1e-6;  ///< smallest cosine of a ray to a facet's normal
+constexpr double kEdgeOn = 1e-4;  ///< smallest cosine of a ray to a facet's normal
 
 bool is_inside(double mu) {
     return mu > kHorizon && mu < kPole;
@@ -39,8 +39,8 @@ struct Direction {
 }  // namespace
 
 HemisphereChart::HemisphereChart(
-    const Scene& scene, const Vec3& y, const Vec3& normal, const Vec3& seen, const Vec3& origin)
-    : scene_(&scene), y_(y), origin_(origin) {
+    const Scene& scene, const Vec3& y, const Vec3& normal, const Vec3& seen, double resolution_m)
+    : scene_(&scene), y_(y), origin_(seen), resolution_m_(resolution_m) {
     const Vec3 up = std::copysign(1.0, normal.dot(seen - y)) * normal;
     world_from_local_ = core::frame_from_normal(up, scene.tangent_hint(normal));
 }
@@ -71,7 +71,7 @@ std::optional<ChartPoint> HemisphereChart::on_facet(const Vec2& xi, std::uint32_
     const double s = normal.dot(dir.d);
     if (std::abs(s) < kEdgeOn) return std::nullopt;
     const double rho = plane.normal.dot(plane.corner - y_) / s;
-    if (!(rho > 0.0)) return std::nullopt;
+    if (!(rho > 0.0) || !(rho * std::abs(s) > resolution_m_)) return std::nullopt;
     const double a = normal.dot(dir.by_mu) / s;
     const double b = normal.dot(dir.by_psi) / s;
     const double a_a = normal.dot(dir.by_mu_mu) / s;

@@ -73,18 +73,23 @@ class HemisphereChart {
     /// y        where rays start [m, world]
     /// normal   at y, unit; its side is chosen so that `seen` lies above the horizon
     /// seen     a point of the surface [m, world]; also the origin of the chart's positions
-    /// origin   of the positions [m, world]
+    /// resolution_m   facets seen so much edge-on that they come closer than this to y are left out
     HemisphereChart(const Scene& scene,
                     const core::Vec3& y,
                     const core::Vec3& normal,
                     const core::Vec3& seen,
-                    const core::Vec3& origin);
+                    double resolution_m);
 
     /// The first surface along the direction of xi.
     std::optional<ChartPoint> at(const core::Vec2& xi) const;
 
     /// The plane of `facet` along the direction of xi; no ray.
     std::optional<ChartPoint> on_facet(const core::Vec2& xi, std::uint32_t facet) const;
+
+    /// Whether a world point lies on the side of y that the chart shows.
+    bool is_above(const core::Vec3& position) const {
+        return world_from_local_.col(2).dot(position - y_) > 0.0;
+    }
 
     /// Coordinates of a world point; nullopt near pole and horizon.
     std::optional<core::Vec2> coordinates_of(const core::Vec3& position) const;
@@ -93,6 +98,7 @@ class HemisphereChart {
     const Scene* scene_;
     core::Vec3 y_;
     core::Vec3 origin_;
+    double resolution_m_;
     core::Mat3 world_from_local_;
 };
 

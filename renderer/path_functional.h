@@ -8,7 +8,7 @@ namespace renderer {
 /// What a path keeps, up to a given change, while its reconnection vertex p moves between the
 /// neighbours a and y ("foci"). A functional gives `expand(p, velocity of the surface at p)`, an
 /// expansion with `value`, `gradient`, `hessian_times(t)`, and two sizes to measure errors by:
-/// `gradient_size`, which the gradient's norm cannot exceed by much, and `distance_m`.
+/// `gradient_size`, which the gradient's norm cannot exceed by much, and the shorter of the legs.
 ///
 /// Points are relative to one origin near p, so that foci far from the world's origin lose nothing.
 ///
@@ -28,7 +28,6 @@ struct OpticalLength {
         double inverse_a;  ///< 1/d_a
         double inverse_y;
         double gradient_size;
-        double distance_m;
 
         /// H t = sum (t - u (u.t))/d.
         core::Vec3 hessian_times(const core::Vec3& t) const {
@@ -46,7 +45,7 @@ struct OpticalLength {
         const double inverse_y = 1.0 / d_y;
         const core::Vec3 to_a = inverse_a * r_a;
         const core::Vec3 to_y = inverse_y * r_y;
-        return {d_a + d_y, -(to_a + to_y), to_a, to_y, inverse_a, inverse_y, 1.0, d_a + d_y};
+        return {d_a + d_y, -(to_a + to_y), to_a, to_y, inverse_a, inverse_y, 1.0};
     }
 };
 
@@ -75,7 +74,6 @@ struct PathVelocity {
         double inverse_a;
         double inverse_y;
         double gradient_size;
-        double distance_m;
 
         core::Vec3 hessian_times(const core::Vec3& t) const {
             return leg(to_a, relative_a, inverse_a, t) + leg(to_y, relative_y, inverse_y, t);
@@ -110,7 +108,6 @@ struct PathVelocity {
         e.gradient = -e.inverse_a * (e.relative_a - c_a * e.to_a) -
                      e.inverse_y * (e.relative_y - c_y * e.to_y);
         e.gradient_size = e.inverse_a * e.relative_a.norm() + e.inverse_y * e.relative_y.norm();
-        e.distance_m = d_a + d_y;
         return e;
     }
 };

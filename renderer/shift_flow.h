@@ -13,6 +13,8 @@ inline constexpr int kMostFlowSteps = 512;
 /// Doubling the steps divides the error by 16: what is left is a sixteenth of these.
 inline constexpr double kFlowChange = 1e-10;  ///< share of the legs
 inline constexpr double kFlowJacobianChange = 1e-8;
+/// The way back must end this close, as a share of the shorter leg.
+inline constexpr double kFlowReturnTolerance = 1e-7;
 
 /// Where the gradient flow leads from xi, in `steps` steps of the classical Runge-Kutta rule.
 ///
@@ -65,7 +67,11 @@ std::optional<ShiftSolution> follow_flow(const Problem& problem,
                                          const core::Vec2& xi,
                                          const ChartExpansion& at_source,
                                          ShiftTrace& trace) {
-    const double legs = at_source.distance_m;
+    // The flow crosses the level curves at right angles.
+    if (!is_resolved(at_source, turned(at_source.slope), problem.resolution_m)) {
+        return trace.reject(ShiftRejection::Degenerate);
+    }
+    const double legs = at_source.legs_m;
     auto coarse = follow_flow(problem, xi, at_source, kFewestFlowSteps, trace);
     for (int steps = 2 * kFewestFlowSteps; coarse && steps <= kMostFlowSteps; steps *= 2) {
         auto fine = follow_flow(problem, xi, at_source, steps, trace);
@@ -75,7 +81,10 @@ std::optional<ShiftSolution> follow_flow(const Problem& problem,
         const double allowed = kShiftTolerance * std::min(1.0, legs) * fine->at_target.slope_size;
         if (moved <= kFlowChange * legs && std::abs(residual) <= allowed &&
             std::abs(fine->jacobian - coarse->jacobian) <= kFlowJacobianChange * fine->jacobian) {
-            return fine;
+            if (is_resolved(fine->at_target, turned(fine->at_target.slope), problem.resolution_m)) {
+                return fine;
+            }
+            return trace.reject(ShiftRejection::Degenerate);
         }
         coarse = fine;
     }
@@ -93,7 +102,7 @@ std::optional<ShiftSolution> shift_on_charts(const FlowGauge&,
     auto solution = follow_flow(problem, xi, at_source, trace);
     if (!solution || reverse_check == ReverseCheck::Off) return solution;
     const auto back = follow_flow(problem.inverse(), solution->xi, solution->at_target, trace);
-    const double allowed = kReturnTolerance * at_source.distance_m;
+    const double allowed = kFlowReturnTolerance * at_source.shorter_leg_m;
     if (!back || !((back->at_target.position - at_source.position).norm() <= allowed)) {
         return trace.reject(ShiftRejection::NotReversible);
     }

@@ -31,6 +31,10 @@ struct ShiftState {
     core::Vec2 step() const { return xi_new - xi; }
 };
 
+/// The solver's last step may not have been longer than `kLastStep` of the reach: the next one,
+/// quadratically smaller, is below rounding.
+inline constexpr double kUsualLastStep = 1e-6;
+
 /// F2 = (R m).D with a fixed m; R^T = -R gives (R v).D = -v.(R D), so that a change H dxi of m
 /// changes F2 by -(H R D).dxi.
 inline GaugeTerms gauge_across(const core::Vec2& m, const core::Vec2& d) {
@@ -40,6 +44,8 @@ inline GaugeTerms gauge_across(const core::Vec2& m, const core::Vec2& d) {
 
 /// m = mean of the gradients at both ends; trapezoidal rule (default).
 struct AverageGauge {
+    static constexpr double kLastStep = kUsualLastStep;
+
     template <class Problem>
     std::optional<GaugeTerms> operator()(const Problem&, const ShiftState& s) const {
         const core::Vec2 d = s.step();
@@ -57,6 +63,8 @@ struct AverageGauge {
 /// N = M R/sqrt(det M), averaged over the ends. Along coordinate k,
 /// N_k = (M_k - tr(M^-1 M_k) M/2) R/sqrt(det M). On a plane's orthonormal chart N = R.
 struct MetricAverageGauge {
+    static constexpr double kLastStep = kUsualLastStep;
+
     template <class Problem>
     std::optional<GaugeTerms> operator()(const Problem&, const ShiftState& s) const {
         const core::Vec2 d = s.step();
@@ -86,6 +94,8 @@ struct MetricAverageGauge {
 
 /// m = gradient at the start: explicit Euler, here to show that it is not reversible.
 struct StartGauge {
+    static constexpr double kLastStep = kUsualLastStep;
+
     template <class Problem>
     std::optional<GaugeTerms> operator()(const Problem&, const ShiftState& s) const {
         GaugeTerms terms = gauge_across(s.at_source.slope, s.step());
@@ -96,6 +106,8 @@ struct StartGauge {
 
 /// The vertex moves along one direction of the chart.
 struct FixedGauge {
+    static constexpr double kLastStep = kUsualLastStep;
+
     core::Vec2 axis{1.0, 0.0};
 
     template <class Problem>
@@ -107,6 +119,8 @@ struct FixedGauge {
 
 /// m = mean of both functionals' gradients half way; implicit midpoint rule.
 struct MidpointGauge {
+    static constexpr double kLastStep = kUsualLastStep;
+
     template <class Problem>
     std::optional<GaugeTerms> operator()(const Problem& problem, const ShiftState& s) const {
         const core::Vec2 middle = 0.5 * (s.xi + s.xi_new);
@@ -169,6 +183,9 @@ struct FlowVelocity {
 ///
 /// It needs no third derivatives: v holds first ones. Four further evaluations per iteration.
 struct SymmetricGauge {
+    // v changes over the length of D, which may be far below the reach.
+    static constexpr double kLastStep = 1e-9;
+
     template <class Problem>
     std::optional<GaugeTerms> operator()(const Problem& problem, const ShiftState& s) const {
         const auto target_at_start = problem.target.at(s.xi);

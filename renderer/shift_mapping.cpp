@@ -8,6 +8,8 @@
 #include "renderer/shift_side.h"
 #include "renderer/shift_solver.h"
 
+#include <algorithm>
+#include <limits>
 #include <type_traits>
 #include <variant>
 
@@ -16,6 +18,17 @@ namespace {
 
 using core::Vec2;
 using core::Vec3;
+
+// What is felt of the rounding of coordinates: legs and slopes come out right to e/reach where
+// coordinates are right to e.
+double felt_rounding(const Scene& scene) {
+    constexpr double kFelt = 1e8;
+    double largest = 0.0;
+    for (const Facet& facet : scene.facets()) {
+        largest = std::max(largest, facet.corner.cwiseAbs().maxCoeff());
+    }
+    return kFelt * std::numeric_limits<double>::epsilon() * largest;
+}
 
 AnyGauge make_gauge(const ShiftSettings& settings) {
     switch (settings.gauge) {
@@ -66,6 +79,7 @@ ShiftMapping::ShiftMapping(const Scene& scene,
       settings_(settings),
       quantity_(quantity),
       gauge_(make_gauge(settings)),
+      resolution_m_(felt_rounding(scene)),
       patches_(scene) {
     if (settings.chart == Chart::Custom) {
         throw core::Error("chart",
@@ -146,6 +160,7 @@ ShiftMapping::Result ShiftMapping::shift_in_closed_form(const Task& task, ShiftT
                                       task.foci_of(task.source),
                                       task.foci_of(task.target),
                                       task.change,
+                                      resolution_m_,
                                       trace);
     if (!shift) return std::nullopt;
     const Vec3 position = task.x.position + shift->displacement;
@@ -193,17 +208,26 @@ ShiftMapping::Result ShiftMapping::shift_in_facet(const Task& task, ShiftTrace& 
 ShiftMapping::Result ShiftMapping::shift_by_ray(const Task& task, ShiftTrace& trace) const {
     const Vec3& x = task.x.position;
     const auto chart_of = [&](const ShiftEnd& end) {
-        return HemisphereChart(*scene_, end.y, end.normal_y, x, x);
+        return HemisphereChart(*scene_, end.y, end.normal_y, x, resolution_m_);
     };
     const std::array charts{chart_of(task.source), chart_of(task.target)};
     const auto xi = charts[0].coordinates_of(x);
     if (!xi) return trace.reject(ShiftRejection::LeftChart);
-    const auto at_x = charts[0].on_facet(*xi, task.x.facet);
+    auto at_x = charts[0].on_facet(*xi, task.x.facet);
     if (!at_x) return trace.reject(ShiftRejection::LeftChart);
+    at_x->position.setZero();  // exactly, whatever the coordinates' rounding
     const auto solution = solve(task, charts, *xi, *at_x, trace);
     if (!solution) return std::nullopt;
-    return ShiftedPath{{x + solution->at_target.position, solution->at_target.facet},
-                       solution->jacobian};
+    // From the far end the source's chart must show the same side of y.
+    if (!charts[0].is_above(x + solution->at_target.position)) {
+        return trace.reject(ShiftRejection::LeftChart);
+    }
+    const SurfacePoint point{x + solution->at_target.position, solution->at_target.facet};
+    // Rays are traced in single precision; near its edge a facet may be met just outside.
+    if (!is_in_triangle(barycentric_of(scene_->facet(point.facet), point.position))) {
+        return trace.reject(ShiftRejection::LeftSurface);
+    }
+    return ShiftedPath{point, solution->jacobian};
 }
 
 template <class Chart>
@@ -218,7 +242,7 @@ std::optional<ShiftSolution> ShiftMapping::solve(const Task& task,
         const ShiftSide<Chart, Functional> source{
             charts[0], functional_of(task.source), task.change.ratio};
         const ShiftSide<Chart, Functional> target{charts[1], functional_of(task.target), 1.0};
-        const ShiftProblem problem{source, target, task.change.offset_m};
+        const ShiftProblem problem{source, target, task.change.offset_m, resolution_m_};
         const ChartExpansion at_source = source.expand(at_x);
         return std::visit(
             [&](const auto& gauge) {

@@ -116,6 +116,7 @@ class ShiftMapping {
     ShiftSettings settings_;
     ShiftQuantity quantity_;
     AnyGauge gauge_;
+    double resolution_m_;  ///< shorter reaches are lost in the rounding of the coordinates
     PlanarPatches patches_;
 };
 

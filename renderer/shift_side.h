@@ -4,11 +4,22 @@
 #include "renderer/charts.h"
 #include "renderer/core/types.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 
 namespace renderer {
+
+/// R v, a quarter turn.
+inline core::Vec2 turned(const core::Vec2& v) {
+    return {-v.y(), v.x()};
+}
+
+inline double cross(const core::Vec2& a, const core::Vec2& b) {
+    return a.x() * b.y() - a.y() * b.x();
+}
 
 /// The metric of a chart, M_ij = X_i.X_j, with its derivatives.
 struct ChartMetric {
@@ -43,13 +54,29 @@ struct ChartExpansion {
     double h12 = 0.0;
     double h22 = 0.0;
     double slope_size = 0.0;  ///< what the slope per metre of movement cannot exceed by much
-    double distance_m = 0.0;  ///< size of the two legs
-    core::Vec3 position;      ///< relative to the chart's origin
+    double legs_m = 0.0;      ///< length of the two legs
+    double shorter_leg_m = 0.0;
+    core::Vec3 position;  ///< relative to the chart's origin
     ChartMetric metric;
     std::uint32_t facet = 0;
 
     core::Vec2 hessian_times(const core::Vec2& v) const {
         return {h11 * v.x() + h12 * v.y(), h12 * v.x() + h22 * v.y()};
+    }
+
+    /// |v| of a covector, as a length on the surface.
+    double norm_of(const core::Vec2& v) const {
+        // v^T M^-1 v = (R v)^T M (R v)/det M
+        const core::Vec2 across = turned(v);
+        return std::sqrt(across.dot(metric.m * across)) / metric.area_density;
+    }
+
+    /// How far the conditions f = const and the gauge's, with slope `gauge`, stay well apart: the
+    /// shorter leg, less where the slope is small (next to nothing near a tangent point) or where
+    /// the two run alongside [m].
+    double reach_m(const core::Vec2& gauge) const {
+        return shorter_leg_m * std::abs(cross(slope, gauge)) /
+               (metric.area_density * slope_size * norm_of(gauge));
     }
 };
 
@@ -91,7 +118,8 @@ struct ShiftSide {
         e.h22 *= factor;
         e.metric = ChartMetric::of<Chart::kAffine>(point);
         e.slope_size = factor * f.gradient_size;
-        e.distance_m = f.distance_m;
+        e.legs_m = 1.0 / f.inverse_a + 1.0 / f.inverse_y;
+        e.shorter_leg_m = 1.0 / std::max(f.inverse_a, f.inverse_y);
         e.position = point.position;
         e.facet = point.facet;
         return e;
@@ -105,17 +133,11 @@ struct ShiftProblem {
     const Source& source;
     const Target& target;
     double change = 0.0;
+    /// Rounding of the coordinates, times what makes it felt: ends with a shorter reach have no
+    /// meaningful shift [m].
+    double resolution_m = 0.0;
 
-    ShiftProblem<Target, Source> inverse() const { return {target, source, -change}; }
+    ShiftProblem<Target, Source> inverse() const { return {target, source, -change, resolution_m}; }
 };
-
-/// R v, a quarter turn.
-inline core::Vec2 turned(const core::Vec2& v) {
-    return {-v.y(), v.x()};
-}
-
-inline double cross(const core::Vec2& a, const core::Vec2& b) {
-    return a.x() * b.y() - a.y() * b.x();
-}
 
 }  // namespace renderer

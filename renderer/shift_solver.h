@@ -16,13 +16,13 @@ namespace renderer {
 
 /// Both residuals end below this [m], and below this share of the legs where they are shorter.
 inline constexpr double kShiftTolerance = 1e-9;
-/// The last step may not have been longer than this share of the legs: the next one, quadratically
-/// smaller, is below rounding.
-inline constexpr double kLastStep = 1e-7;
+
 /// Determinants below this share of what the gradients' sizes allow count as zero.
-inline constexpr double kTinyDeterminant = 1e-8;
-/// The reverse solve must come back to within this share of the legs.
-inline constexpr double kReturnTolerance = 1e-7;
+inline constexpr double kTinyDeterminant = 1e-6;
+/// Shorter legs, as a share of both, count as none.
+inline constexpr double kShortestLeg = 1e-6;
+/// The reverse solve must come back to within this share of the shorter leg.
+inline constexpr double kReturnTolerance = 1e-8;
 inline constexpr int kMaxIterations = 10;
 inline constexpr int kMaxHalvings = 4;
 
@@ -32,6 +32,11 @@ struct ShiftSolution {
     double jacobian = 0.0;  ///< of areas on the surface, dA'/dA
     ChartExpansion at_target;
 };
+
+/// Whether an end is far enough from its foci and from tangent points for a shift to mean anything.
+inline bool is_resolved(const ChartExpansion& e, const core::Vec2& gauge, double resolution_m) {
+    return e.shorter_leg_m > kShortestLeg * e.legs_m && e.reach_m(gauge) > resolution_m;
+}
 
 /// Newton's method with line search on F1 = f_t(xi') - f_s(xi) - change and the gauge's F2.
 ///
@@ -52,14 +57,15 @@ std::optional<ShiftSolution> newton_shift(const Gauge& gauge,
     const auto first_terms = gauge(problem, state);
     if (!first_terms) return trace.reject(ShiftRejection::LeftChart);
     GaugeTerms terms = *first_terms;
-    const double legs = at_source.distance_m;
+    const double legs = at_source.legs_m;
     const double goal = at_source.value + problem.change;
     double last_step = std::numeric_limits<double>::infinity();
     for (int iteration = 0;; ++iteration) {
         const double f1 = state.at_target.value - goal;
         const double tolerance = kShiftTolerance * std::min(1.0, legs) * state.at_target.slope_size;
         const bool is_small = std::abs(f1) <= tolerance && std::abs(terms.residual) <= tolerance;
-        if (is_small && last_step <= kLastStep * legs) break;
+        if (is_small && last_step <= Gauge::kLastStep * state.at_target.reach_m(terms.by_target))
+            break;
         if (f1 == 0.0 && terms.residual == 0.0) break;
         if (iteration == kMaxIterations) return trace.reject(ShiftRejection::NotConverged);
         ++trace.iterations;
@@ -87,7 +93,9 @@ std::optional<ShiftSolution> newton_shift(const Gauge& gauge,
                 next_f1 * next_f1 + next_terms->residual * next_terms->residual;
             // Once both are small the merit is rounding, and the full step the best there is.
             if (!(next_merit < merit || is_small)) continue;
-            last_step = (target->position - state.at_target.position).norm();
+            // A halved step says nothing about the next one.
+            last_step = halving == 0 ? (target->position - state.at_target.position).norm()
+                                     : std::numeric_limits<double>::infinity();
             state = next;
             terms = *next_terms;
             is_better = true;
@@ -98,10 +106,12 @@ std::optional<ShiftSolution> newton_shift(const Gauge& gauge,
     const double by_target = cross(state.at_target.slope, terms.by_target);
     const double by_source = cross(at_source.slope, -terms.by_source);
     const auto is_tiny = [](double determinant, const ChartExpansion& e) {
-        return !(std::abs(determinant) >
-                 kTinyDeterminant * e.slope_size * e.slope_size * e.metric.area_density);
+        return !(std::abs(determinant) > kTinyDeterminant * e.slope_size * e.slope_size *
+                                             e.metric.area_density * e.legs_m / e.shorter_leg_m);
     };
-    if (is_tiny(by_target, state.at_target) || is_tiny(by_source, at_source)) {
+    if (is_tiny(by_target, state.at_target) || is_tiny(by_source, at_source) ||
+        !is_resolved(state.at_target, terms.by_target, problem.resolution_m) ||
+        !is_resolved(at_source, terms.by_source, problem.resolution_m)) {
         return trace.reject(ShiftRejection::Degenerate);
     }
     const double ratio = by_source / by_target;
@@ -157,7 +167,7 @@ std::optional<ShiftSolution> shift_on_charts(const Gauge& gauge,
 
     const auto back = newton_shift(
         gauge, problem.inverse(), solution->xi, solution->at_target, *source_at_end, trace);
-    const double allowed = kReturnTolerance * at_source.distance_m;
+    const double allowed = kReturnTolerance * at_source.shorter_leg_m;
     if (!back || !((back->at_target.position - at_source.position).norm() <= allowed)) {
         return trace.reject(ShiftRejection::NotReversible);
     }

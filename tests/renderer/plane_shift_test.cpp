@@ -44,6 +44,7 @@ TEST(PlaneShift, ConfocalJacobianIsTheRatioOfRadii) {
                                           {focus, focus},
                                           {moved, moved},
                                           {ratio, 2.0 * (new_radius - ratio * radius)},
+                                          0.0,
                                           trace);
         ASSERT_TRUE(shift);
         EXPECT_NEAR((moved - shift->displacement).norm(), new_radius, 1e-12);
@@ -76,7 +77,7 @@ TYPED_TEST(PlaneShiftOracle, EveryGaugeMovesLikeTheClosedFormAroundOneFocus) {
                                       (1.0 - ratio) * length + 0.1 * (2.0 * rng.uniform() - 1.0)};
             ShiftTrace trace;
             const auto expected =
-                shift_on_plane(plane_z0(), {focus, focus}, {focus, focus}, change, trace);
+                shift_on_plane(plane_z0(), {focus, focus}, {focus, focus}, change, 0.0, trace);
             const renderer::OpticalLength functional{focus, focus};
             const renderer::ShiftSide source{chart, functional, ratio};
             const renderer::ShiftSide target{chart, functional, 1.0};
@@ -101,9 +102,11 @@ TEST(PlaneShift, RejectsLengthsBelowTheMirroredPath) {
     const double shortest = (foci.a - Vec3(0.4, 0.0, -0.9)).norm();
     const double length = foci.a.norm() + foci.b.norm();
     ShiftTrace trace;
-    EXPECT_FALSE(shift_on_plane(plane_z0(), foci, foci, {1.0, shortest - 1e-6 - length}, trace));
+    EXPECT_FALSE(
+        shift_on_plane(plane_z0(), foci, foci, {1.0, shortest - 1e-6 - length}, 0.0, trace));
     EXPECT_EQ(trace.rejection, renderer::ShiftRejection::BelowMinimum);
-    EXPECT_TRUE(shift_on_plane(plane_z0(), foci, foci, {1.0, shortest + 1e-6 - length}, trace));
+    EXPECT_TRUE(
+        shift_on_plane(plane_z0(), foci, foci, {1.0, shortest + 1e-6 - length}, 0.0, trace));
 }
 
 }  // namespace

@@ -48,9 +48,11 @@ ShiftCase random_shift_case(const renderer::Scene& scene,
     return c;
 }
 
-renderer::Scene scene_of(std::vector<renderer::Object> objects) {
-    // A scan point off the default wall, so that none is added.
-    return {{std::move(objects), {}}, confocal_scan({Vec3(0.0, 0.0, 1e-2)}), {}};
+renderer::Scene scene_of(std::vector<renderer::Object> objects, const Vec3& centre) {
+    // A wall that does not carry the scan's points is not added.
+    renderer::RelayWall elsewhere;
+    elsewhere.center_m = centre + Vec3(0.0, 0.0, -10.0);
+    return {{std::move(objects), {}}, confocal_scan({centre}), elsewhere};
 }
 
 renderer::Object tilted_quad(const Vec3& centre, double scale_m) {

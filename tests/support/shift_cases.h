@@ -47,8 +47,9 @@ ShiftCase random_shift_case(const renderer::Scene& scene,
                             const ShiftCaseSettings& settings,
                             core::Rng& rng);
 
-/// A scene without relay wall.
-renderer::Scene scene_of(std::vector<renderer::Object> objects);
+/// A scene without relay wall, rays around `centre`.
+renderer::Scene scene_of(std::vector<renderer::Object> objects,
+                         const core::Vec3& centre = core::Vec3::Zero());
 
 /// One large quad of two facets behind the wall's centre, tilted.
 renderer::Object tilted_quad(const core::Vec3& centre, double scale_m);
