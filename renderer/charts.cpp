@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/charts.h"
 
+#include "renderer/planar_patches.h"
+
 #include <cmath>
+#include <limits>
 
 namespace renderer {
 namespace {
@@ -39,8 +42,8 @@ struct Direction {
 }  // namespace
 
 HemisphereChart::HemisphereChart(
-    const Scene& scene, const Vec3& y, const Vec3& normal, const Vec3& seen, double resolution_m)
-    : scene_(&scene), y_(y), origin_(seen), resolution_m_(resolution_m) {
+    const Scene& scene, const Vec3& y, const Vec3& normal, const Vec3& seen, double rounding_m)
+    : scene_(&scene), y_(y), origin_(seen), rounding_m_(rounding_m) {
     const Vec3 up = std::copysign(1.0, normal.dot(seen - y)) * normal;
     world_from_local_ = core::frame_from_normal(up, scene.tangent_hint(normal));
 }
@@ -56,7 +59,13 @@ std::optional<ChartPoint> HemisphereChart::at(const Vec2& xi) const {
     const Vec3 direction = world_from_local_ * Direction(xi).d;
     const auto hit = scene_->rays().first_hit(y_, world_from_local_.col(2), direction);
     if (!hit) return std::nullopt;
-    return on_facet(xi, hit->triangle);
+    auto point = on_facet(xi, hit->triangle);
+    // Rays are traced in single precision; near its edge a facet may be met just outside.
+    if (point &&
+        !is_in_triangle(barycentric_of(scene_->facet(hit->triangle), point->position + origin_))) {
+        return std::nullopt;
+    }
+    return point;
 }
 
 // On the plane n.(X - corner) = 0 the point is X = y + k d/(n.d) with k = n.(corner - y). With
@@ -71,7 +80,7 @@ std::optional<ChartPoint> HemisphereChart::on_facet(const Vec2& xi, std::uint32_
     const double s = normal.dot(dir.d);
     if (std::abs(s) < kEdgeOn) return std::nullopt;
     const double rho = plane.normal.dot(plane.corner - y_) / s;
-    if (!(rho > 0.0) || !(rho * std::abs(s) > resolution_m_)) return std::nullopt;
+    if (!(rho > 0.0)) return std::nullopt;
     const double a = normal.dot(dir.by_mu) / s;
     const double b = normal.dot(dir.by_psi) / s;
     const double a_a = normal.dot(dir.by_mu_mu) / s;
@@ -87,6 +96,10 @@ std::optional<ChartPoint> HemisphereChart::on_facet(const Vec2& xi, std::uint32_
     point.second12 =
         world(dir.by_mu_psi - a * dir.by_psi - b * dir.by_mu + (2.0 * a * b - a_b) * dir.d);
     point.second22 = world(dir.by_psi_psi - 2.0 * b * dir.by_psi + (2.0 * b * b - b_b) * dir.d);
+    // Both y and the angle are rounded; seen edge-on, the point moves by more.
+    const double sine = std::sqrt(1.0 - xi.x() * xi.x());
+    point.rounding_m =
+        (rounding_m_ + rho * std::numeric_limits<double>::epsilon() / sine) / std::abs(s);
     point.area_density = point.tangent1.cross(point.tangent2).norm();
     point.velocity = scene_->object_of(facet).velocity_m_per_s;
     point.facet = facet;

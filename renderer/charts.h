@@ -20,6 +20,7 @@ struct ChartPoint {
     core::Vec3 second12 = core::Vec3::Zero();
     core::Vec3 second22 = core::Vec3::Zero();
     double area_density = 0.0;  ///< |dX/dxi_1 x dX/dxi_2|
+    double rounding_m = 0.0;    ///< how far off the position may be
     core::Vec3 velocity;        ///< of the surface [m/s]
     std::uint32_t facet = 0;    ///< where the surface is a mesh
 };
@@ -44,12 +45,14 @@ class AffineChart {
     AffineChart(const core::Vec3& origin,
                 const core::Vec3& tangent1,
                 const core::Vec3& tangent2,
-                const core::Vec3& velocity) {
+                const core::Vec3& velocity,
+                double rounding_m) {
         at_origin_.position = origin;
         at_origin_.tangent1 = tangent1;
         at_origin_.tangent2 = tangent2;
         at_origin_.area_density = tangent1.cross(tangent2).norm();
         at_origin_.velocity = velocity;
+        at_origin_.rounding_m = rounding_m;
     }
 
     std::optional<ChartPoint> at(const core::Vec2& xi) const {
@@ -73,12 +76,12 @@ class HemisphereChart {
     /// y        where rays start [m, world]
     /// normal   at y, unit; its side is chosen so that `seen` lies above the horizon
     /// seen     a point of the surface [m, world]; also the origin of the chart's positions
-    /// resolution_m   facets seen so much edge-on that they come closer than this to y are left out
+    /// rounding_m   of world coordinates
     HemisphereChart(const Scene& scene,
                     const core::Vec3& y,
                     const core::Vec3& normal,
                     const core::Vec3& seen,
-                    double resolution_m);
+                    double rounding_m);
 
     /// The first surface along the direction of xi.
     std::optional<ChartPoint> at(const core::Vec2& xi) const;
@@ -98,7 +101,7 @@ class HemisphereChart {
     const Scene* scene_;
     core::Vec3 y_;
     core::Vec3 origin_;
-    double resolution_m_;
+    double rounding_m_;
     core::Mat3 world_from_local_;
 };
 

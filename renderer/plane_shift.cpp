@@ -23,12 +23,12 @@ struct PlaneEnd {
     // The flatness, and the circle's radius where the ellipsoid touches the plane, are roots of
     // differences; where either is small its rounding shows in the Jacobian. Such ends are left
     // out, like those that the solver cannot resolve, and on both sides of a shift.
-    bool is_resolved(double leg_a, double leg_b, double resolution_m) const {
+    bool is_resolved(double leg_a, double leg_b, double rounding_m) const {
         const double radius = section->circle_radius();
         const double shorter = std::min(leg_a, leg_b);
         return radius * radius * std::sqrt(flatness) > kTinyDeterminant &&
                flatness > kTinyDeterminant && shorter > kShortestLeg * length &&
-               shorter * radius > resolution_m;
+               shorter * radius > kFeltRoundings * rounding_m;
     }
 };
 
@@ -38,14 +38,14 @@ std::optional<PlaneShift> shift_on_plane(const Facet& plane,
                                          const FocusPair& source,
                                          const FocusPair& target,
                                          const LengthChange& change,
-                                         double resolution_m,
+                                         double rounding_m,
                                          ShiftTrace& trace) {
     Facet local = plane;
     local.corner.setZero();
     const double leg_a = source.a.norm();
     const double leg_b = source.b.norm();
     const PlaneEnd from(source, leg_a + leg_b, local);
-    if (!from.section || !from.is_resolved(leg_a, leg_b, resolution_m)) {
+    if (!from.section || !from.is_resolved(leg_a, leg_b, rounding_m)) {
         return trace.reject(ShiftRejection::Degenerate);
     }
     const PlaneEnd to(target, change.ratio * from.length + change.offset_m, local);
@@ -56,7 +56,7 @@ std::optional<PlaneShift> shift_on_plane(const Facet& plane,
     shift.displacement = to.section->point(angle);
     const double new_leg_a = (target.a - shift.displacement).norm();
     const double new_leg_b = (target.b - shift.displacement).norm();
-    if (!to.is_resolved(new_leg_a, new_leg_b, resolution_m)) {
+    if (!to.is_resolved(new_leg_a, new_leg_b, rounding_m)) {
         return trace.reject(ShiftRejection::Degenerate);
     }
     const double residual = new_leg_a + new_leg_b - to.length;

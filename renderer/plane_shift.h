@@ -31,14 +31,14 @@ struct PlaneShift {
 ///
 /// plane            through the point: normal, and edge1 as the direction of theta = 0
 /// source, target   foci relative to the point
-/// resolution_m     what is felt of the coordinates' rounding; see ShiftProblem
+/// rounding_m       of the coordinates [m]
 /// returns          nullopt with the reason in `trace`
 /// throws           nothing
 std::optional<PlaneShift> shift_on_plane(const Facet& plane,
                                          const FocusPair& source,
                                          const FocusPair& target,
                                          const LengthChange& change,
-                                         double resolution_m,
+                                         double rounding_m,
                                          ShiftTrace& trace);
 
 }  // namespace renderer

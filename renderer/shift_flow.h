@@ -68,7 +68,7 @@ std::optional<ShiftSolution> follow_flow(const Problem& problem,
                                          const ChartExpansion& at_source,
                                          ShiftTrace& trace) {
     // The flow crosses the level curves at right angles.
-    if (!is_resolved(at_source, turned(at_source.slope), problem.resolution_m)) {
+    if (!is_resolved(at_source, turned(at_source.slope))) {
         return trace.reject(ShiftRejection::Degenerate);
     }
     const double legs = at_source.legs_m;
@@ -81,7 +81,7 @@ std::optional<ShiftSolution> follow_flow(const Problem& problem,
         const double allowed = kShiftTolerance * std::min(1.0, legs) * fine->at_target.slope_size;
         if (moved <= kFlowChange * legs && std::abs(residual) <= allowed &&
             std::abs(fine->jacobian - coarse->jacobian) <= kFlowJacobianChange * fine->jacobian) {
-            if (is_resolved(fine->at_target, turned(fine->at_target.slope), problem.resolution_m)) {
+            if (is_resolved(fine->at_target, turned(fine->at_target.slope))) {
                 return fine;
             }
             return trace.reject(ShiftRejection::Degenerate);

@@ -19,15 +19,13 @@ namespace {
 using core::Vec2;
 using core::Vec3;
 
-// What is felt of the rounding of coordinates: legs and slopes come out right to e/reach where
-// coordinates are right to e.
-double felt_rounding(const Scene& scene) {
-    constexpr double kFelt = 1e8;
+// Rounding of the scene's coordinates [m].
+double rounding_of(const Scene& scene) {
     double largest = 0.0;
     for (const Facet& facet : scene.facets()) {
         largest = std::max(largest, facet.corner.cwiseAbs().maxCoeff());
     }
-    return kFelt * std::numeric_limits<double>::epsilon() * largest;
+    return std::numeric_limits<double>::epsilon() * largest;
 }
 
 AnyGauge make_gauge(const ShiftSettings& settings) {
@@ -79,7 +77,7 @@ ShiftMapping::ShiftMapping(const Scene& scene,
       settings_(settings),
       quantity_(quantity),
       gauge_(make_gauge(settings)),
-      resolution_m_(felt_rounding(scene)),
+      rounding_m_(rounding_of(scene)),
       patches_(scene) {
     if (settings.chart == Chart::Custom) {
         throw core::Error("chart",
@@ -160,7 +158,7 @@ ShiftMapping::Result ShiftMapping::shift_in_closed_form(const Task& task, ShiftT
                                       task.foci_of(task.source),
                                       task.foci_of(task.target),
                                       task.change,
-                                      resolution_m_,
+                                      rounding_m_,
                                       trace);
     if (!shift) return std::nullopt;
     const Vec3 position = task.x.position + shift->displacement;
@@ -179,8 +177,11 @@ ShiftMapping::Result ShiftMapping::shift_by_plane(const Task& task, ShiftTrace& 
     }
     const std::uint32_t patch = patches_.patch_of(task.x.facet);
     const Facet& plane = patches_.plane(patch);
-    const AffineChart chart{
-        Vec3::Zero(), plane.edge1, plane.edge2, scene_->object_of(task.x.facet).velocity_m_per_s};
+    const AffineChart chart{Vec3::Zero(),
+                            plane.edge1,
+                            plane.edge2,
+                            scene_->object_of(task.x.facet).velocity_m_per_s,
+                            rounding_m_};
     const auto at_x = chart.at(Vec2::Zero());
     const auto solution = solve<AffineChart>(task, {chart, chart}, Vec2::Zero(), *at_x, trace);
     if (!solution) return std::nullopt;
@@ -196,7 +197,8 @@ ShiftMapping::Result ShiftMapping::shift_in_facet(const Task& task, ShiftTrace& 
     const AffineChart chart{facet.corner - task.x.position,
                             facet.edge1,
                             facet.edge2,
-                            scene_->object_of(task.x.facet).velocity_m_per_s};
+                            scene_->object_of(task.x.facet).velocity_m_per_s,
+                            rounding_m_};
     const auto at_x = chart.at(xi);
     const auto solution = solve<AffineChart>(task, {chart, chart}, xi, *at_x, trace);
     if (!solution) return std::nullopt;
@@ -208,7 +210,7 @@ ShiftMapping::Result ShiftMapping::shift_in_facet(const Task& task, ShiftTrace& 
 ShiftMapping::Result ShiftMapping::shift_by_ray(const Task& task, ShiftTrace& trace) const {
     const Vec3& x = task.x.position;
     const auto chart_of = [&](const ShiftEnd& end) {
-        return HemisphereChart(*scene_, end.y, end.normal_y, x, resolution_m_);
+        return HemisphereChart(*scene_, end.y, end.normal_y, x, rounding_m_);
     };
     const std::array charts{chart_of(task.source), chart_of(task.target)};
     const auto xi = charts[0].coordinates_of(x);
@@ -222,12 +224,8 @@ ShiftMapping::Result ShiftMapping::shift_by_ray(const Task& task, ShiftTrace& tr
     if (!charts[0].is_above(x + solution->at_target.position)) {
         return trace.reject(ShiftRejection::LeftChart);
     }
-    const SurfacePoint point{x + solution->at_target.position, solution->at_target.facet};
-    // Rays are traced in single precision; near its edge a facet may be met just outside.
-    if (!is_in_triangle(barycentric_of(scene_->facet(point.facet), point.position))) {
-        return trace.reject(ShiftRejection::LeftSurface);
-    }
-    return ShiftedPath{point, solution->jacobian};
+    return ShiftedPath{{x + solution->at_target.position, solution->at_target.facet},
+                       solution->jacobian};
 }
 
 template <class Chart>
@@ -242,7 +240,7 @@ std::optional<ShiftSolution> ShiftMapping::solve(const Task& task,
         const ShiftSide<Chart, Functional> source{
             charts[0], functional_of(task.source), task.change.ratio};
         const ShiftSide<Chart, Functional> target{charts[1], functional_of(task.target), 1.0};
-        const ShiftProblem problem{source, target, task.change.offset_m, resolution_m_};
+        const ShiftProblem problem{source, target, task.change.offset_m};
         const ChartExpansion at_source = source.expand(at_x);
         return std::visit(
             [&](const auto& gauge) {

@@ -116,7 +116,7 @@ class ShiftMapping {
     ShiftSettings settings_;
     ShiftQuantity quantity_;
     AnyGauge gauge_;
-    double resolution_m_;  ///< shorter reaches are lost in the rounding of the coordinates
+    double rounding_m_;  ///< of the scene's coordinates
     PlanarPatches patches_;
 };
 

@@ -56,7 +56,8 @@ struct ChartExpansion {
     double slope_size = 0.0;  ///< what the slope per metre of movement cannot exceed by much
     double legs_m = 0.0;      ///< length of the two legs
     double shorter_leg_m = 0.0;
-    core::Vec3 position;  ///< relative to the chart's origin
+    double rounding_m = 0.0;  ///< of the position
+    core::Vec3 position;      ///< relative to the chart's origin
     ChartMetric metric;
     std::uint32_t facet = 0;
 
@@ -120,6 +121,7 @@ struct ShiftSide {
         e.slope_size = factor * f.gradient_size;
         e.legs_m = 1.0 / f.inverse_a + 1.0 / f.inverse_y;
         e.shorter_leg_m = 1.0 / std::max(f.inverse_a, f.inverse_y);
+        e.rounding_m = point.rounding_m;
         e.position = point.position;
         e.facet = point.facet;
         return e;
@@ -133,11 +135,8 @@ struct ShiftProblem {
     const Source& source;
     const Target& target;
     double change = 0.0;
-    /// Rounding of the coordinates, times what makes it felt: ends with a shorter reach have no
-    /// meaningful shift [m].
-    double resolution_m = 0.0;
 
-    ShiftProblem<Target, Source> inverse() const { return {target, source, -change, resolution_m}; }
+    ShiftProblem<Target, Source> inverse() const { return {target, source, -change}; }
 };
 
 }  // namespace renderer

@@ -21,6 +21,9 @@ inline constexpr double kShiftTolerance = 1e-9;
 inline constexpr double kTinyDeterminant = 1e-6;
 /// Shorter legs, as a share of both, count as none.
 inline constexpr double kShortestLeg = 1e-6;
+/// Slopes come out right to e/reach where positions are right to e; a reach shorter than this many
+/// roundings is lost.
+inline constexpr double kFeltRoundings = 1e8;
 /// The reverse solve must come back to within this share of the shorter leg.
 inline constexpr double kReturnTolerance = 1e-8;
 inline constexpr int kMaxIterations = 10;
@@ -34,8 +37,9 @@ struct ShiftSolution {
 };
 
 /// Whether an end is far enough from its foci and from tangent points for a shift to mean anything.
-inline bool is_resolved(const ChartExpansion& e, const core::Vec2& gauge, double resolution_m) {
-    return e.shorter_leg_m > kShortestLeg * e.legs_m && e.reach_m(gauge) > resolution_m;
+inline bool is_resolved(const ChartExpansion& e, const core::Vec2& gauge) {
+    return e.shorter_leg_m > kShortestLeg * e.legs_m &&
+           e.reach_m(gauge) > kFeltRoundings * e.rounding_m;
 }
 
 /// Newton's method with line search on F1 = f_t(xi') - f_s(xi) - change and the gauge's F2.
@@ -110,8 +114,8 @@ std::optional<ShiftSolution> newton_shift(const Gauge& gauge,
                                              e.metric.area_density * e.legs_m / e.shorter_leg_m);
     };
     if (is_tiny(by_target, state.at_target) || is_tiny(by_source, at_source) ||
-        !is_resolved(state.at_target, terms.by_target, problem.resolution_m) ||
-        !is_resolved(at_source, terms.by_source, problem.resolution_m)) {
+        !is_resolved(state.at_target, terms.by_target) ||
+        !is_resolved(at_source, terms.by_source)) {
         return trace.reject(ShiftRejection::Degenerate);
     }
     const double ratio = by_source / by_target;

@@ -67,7 +67,8 @@ TYPED_TEST_SUITE(PlaneShiftOracle, Gauges);
 TYPED_TEST(PlaneShiftOracle, EveryGaugeMovesLikeTheClosedFormAroundOneFocus) {
     // The start gauge moves like the others here, but its determinant is its own.
     const bool compares_jacobian = !std::is_same_v<TypeParam, renderer::StartGauge>;
-    const renderer::AffineChart chart(Vec3::Zero(), Vec3::UnitX(), Vec3::UnitY(), Vec3::Zero());
+    const renderer::AffineChart chart(
+        Vec3::Zero(), Vec3::UnitX(), Vec3::UnitY(), Vec3::Zero(), 0.0);
     for (std::uint64_t i = 0; i < 50; ++i) {
         core::Rng rng(test_support::seed_of("OneFocus"), i, 0);
         const Vec3 focus(0.5 + rng.uniform(), rng.uniform(), 0.3 + rng.uniform());

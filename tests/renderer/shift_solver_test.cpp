@@ -144,7 +144,8 @@ using PlaneSetup = Setup<renderer::AffineChart, renderer::OpticalLength>;
 
 // The plane z = 0 below two pairs of foci.
 PlaneSetup plane_setup(core::Rng& rng, double moved_m, double offset_m) {
-    const renderer::AffineChart chart(Vec3::Zero(), Vec3::UnitX(), Vec3::UnitY(), Vec3::Zero());
+    const renderer::AffineChart chart(
+        Vec3::Zero(), Vec3::UnitX(), Vec3::UnitY(), Vec3::Zero(), 0.0);
     const auto above = [&] {
         const double x = rng.uniform() - 0.5;
         const double y = rng.uniform() - 0.5;
@@ -261,7 +262,7 @@ TEST(ShiftSolver, BarycentricWithItsMetricMovesLikeThePlane) {
         core::Rng rng(test_support::seed_of("BarycentricMetric"), i, 0);
         const PlaneSetup plane = plane_setup(rng, 0.02, 0.02);
         const renderer::AffineChart skew(
-            Vec3::Zero(), Vec3(0.7, 0.2, 0.0), Vec3(0.3, 1.9, 0.0), Vec3::Zero());
+            Vec3::Zero(), Vec3(0.7, 0.2, 0.0), Vec3(0.3, 1.9, 0.0), Vec3::Zero(), 0.0);
         Eigen::Matrix2d plane_from_skew;
         plane_from_skew << 0.7, 0.3, 0.2, 1.9;
         const PlaneSetup skewed{{skew, plane.source.functional, 1.0},

@@ -61,8 +61,8 @@ FocusPair draw_foci(HardShift kind, const renderer::Facet& facet, double size, R
             foci.a *= any_smallness(rng);
             return foci;
         case HardShift::FociFarAway:
-            foci.a *= 1000.0;
-            if (rng.uniform() < 0.7) foci.b *= 1000.0;
+            foci.a *= std::min(1000.0, 1000.0 / size);  // to 1 km
+            if (rng.uniform() < 0.7) foci.b *= std::min(1000.0, 1000.0 / size);
             return foci;
         case HardShift::Generic:
         case HardShift::LargeMove:
@@ -141,13 +141,18 @@ std::string fault_of(const renderer::Scene& scene,
 
     renderer::ShiftCounts counts;
     const auto back = shift(mapping, c.inverse(there.point), counts);
-    if (!back) return "no way back";
+    if (!back) {
+        const auto reason = std::find(counts.rejected.begin(), counts.rejected.end(), 1U);
+        return fmt::format(
+            "no way back: {}",
+            renderer::kShiftRejectionNames[std::size_t(reason - counts.rejected.begin())]);
+    }
     const double distance = (back->point.position - c.x.position).norm();
     if (!(distance <= 1e-6 * legs)) return fmt::format("comes back {} away", distance);
-    // A shift moves the rounding of x by its own stretch; where legs are tiny against coordinates
-    // that alone changes the Jacobian.
     const double product = there.jacobian * back->jacobian;
-    if (!(std::abs(product - 1.0) <= 1e-6)) return fmt::format("J_f J_r = {}", product);
+    const double leg = std::min((c.target.a - x).norm(), (c.target.y - x).norm());
+    if (!(std::abs(product - 1.0) <= 1e-6 + 200.0 * rounding / leg))
+        return fmt::format("J_f J_r = {}", product);
     return "";
 }
 

@@ -23,7 +23,7 @@ enum class HardShift {
     LargeMove,         ///< foci and length change by a good part of the legs: second roots
     EdgeOn,            ///< foci next to or in the facet's plane
     FocusOnSurface,    ///< x next to a focus
-    FociFarAway,       ///< legs of a thousand scene sizes
+    FociFarAway,       ///< legs of a thousand scene sizes, or a kilometre
     ShortestLength,    ///< the new length within rounding of the shortest possible
 };
 inline constexpr std::array<std::string_view, 9> kHardShiftNames{"generic",
