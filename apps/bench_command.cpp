@@ -20,8 +20,56 @@ namespace fs = std::filesystem;
 struct BenchArguments {
     std::string folder;
     std::string scene = "scenes/bars/scene.json";
+    std::string exclusion_scene = "scenes/corner/scene.json";
     int repeats = 1;
 };
+
+std::string gate_name(double gate_mm) {
+    return gate_mm > 0.0 ? fmt::format("{:g} mm", gate_mm) : "histogram";
+}
+
+std::string gates_text(const GateTable& table) {
+    std::string text =
+        fmt::format("\n{}, gates about {:.3f} m: relative MSE after one CPU second\n",
+                    table.scene,
+                    table.center_m);
+    text += fmt::format("{:<12} {:>11} {:>12} {:>9}\n", "gate", "path", "ellipsoidal", "ratio");
+    for (const GateBench& gate : table.gates) {
+        text += fmt::format("{:<12} {:>11.2e} {:>12.2e} {:>9.3g} +- {:.2g}\n",
+                            gate_name(gate.gate_mm),
+                            gate.path_rel_mse,
+                            gate.ellipsoidal_rel_mse,
+                            gate.ratio,
+                            gate.ratio_sigma);
+    }
+    if (table.crossing_mm > 0.0) {
+        text += fmt::format("they cross at {:.3g} mm\n", table.crossing_mm);
+    } else {
+        text += "they do not cross between these gates\n";
+    }
+    return text;
+}
+
+std::string exclusion_text(const std::vector<ExclusionBench>& benches) {
+    std::string text = "\nellipsoidal, excluded surfaces: relative variance after one CPU second\n";
+    text += fmt::format("{:<28} {:>7} {:<10} {:>5} {:>10} {:>7}\n",
+                        "scene",
+                        "bounces",
+                        "gate",
+                        "mode",
+                        "variance",
+                        "gain");
+    for (const ExclusionBench& bench : benches) {
+        text += fmt::format("{:<28} {:>7} {:<10} {:>5} {:>10.2e} {:>7.2f}\n",
+                            bench.scene,
+                            bench.max_bounces,
+                            gate_name(bench.gate_mm),
+                            bench.mode,
+                            bench.variance_seconds,
+                            bench.gain);
+    }
+    return text;
+}
 
 std::string table_of(const RenderBench& bench) {
     std::string text = fmt::format(
@@ -50,7 +98,22 @@ std::string table_of(const RenderBench& bench) {
             equal.third_bounce_seconds,
             equal.path_seconds);
     }
-    return text;
+    return text + gates_text(bench.gates) + exclusion_text(bench.exclusion);
+}
+
+LogPlot gate_plot(const GateTable& table) {
+    LogPlot plot{"Equal time, " + table.scene, "gate width [mm]", "relative MSE after 1 s", {}};
+    PlotLine path{"path", {}, {}};
+    PlotLine ellipsoidal{"ellipsoidal", {}, {}};
+    for (const GateBench& gate : table.gates) {
+        if (gate.gate_mm == 0.0) continue;
+        path.x.push_back(gate.gate_mm);
+        path.y.push_back(gate.path_rel_mse);
+        ellipsoidal.x.push_back(gate.gate_mm);
+        ellipsoidal.y.push_back(gate.ellipsoidal_rel_mse);
+    }
+    plot.lines = {path, ellipsoidal};
+    return plot;
 }
 
 LogPlot plot_of(const RenderBench& bench) {
@@ -71,7 +134,8 @@ void run_render(const BenchArguments& arguments) {
     fs::create_directories(arguments.folder, error);
     if (error) throw core::Error(arguments.folder, "cannot be made", "must be a writable folder");
     ProgressBar bar("bench render");
-    const RenderBench bench = bench_render(arguments.scene, arguments.repeats, bar.progress());
+    const RenderBench bench =
+        bench_render(arguments.scene, arguments.exclusion_scene, arguments.repeats, bar.progress());
 
     const std::string stem = (fs::path(arguments.folder) / "bench_render").string();
     core::Json json = core::write_value(bench);
@@ -79,7 +143,7 @@ void run_render(const BenchArguments& arguments) {
     core::write_text_file(stem + ".json", json.dump(2) + "\n");
     core::write_text_file(stem + ".txt", table_of(bench));
     fmt::print("{}", table_of(bench));
-    if (!draw_plot(plot_of(bench), stem)) {
+    if (!draw_plot(plot_of(bench), stem) || !draw_plot(gate_plot(bench.gates), stem + "_gates")) {
         fmt::print(stderr, "bench: gnuplot is not there, so no plot was drawn\n");
     }
     fmt::print("wrote {}\n", stem + ".json");
@@ -96,6 +160,11 @@ void add_bench_command(CLI::App& app) {
     render->add_option("-o,--output", arguments->folder, "Folder for JSON, table and plots")
         ->required();
     render->add_option("--scene", arguments->scene, "Scene description")->capture_default_str();
+    render
+        ->add_option("--exclusion-scene",
+                     arguments->exclusion_scene,
+                     "Scene with surfaces to exclude from ellipsoidal connections")
+        ->capture_default_str();
     render->add_option("--repeats", arguments->repeats, "Runs per point")
         ->capture_default_str()
         ->check(CLI::Range(1, 1000));

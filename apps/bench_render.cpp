@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "apps/bench_render.h"
 
+#include "apps/bench_scene.h"
 #include "nlos/compare.h"
 #include "renderer/core/parallel.h"
 #include "renderer/core/process.h"
-#include "renderer/render.h"
-#include "renderer/scene_file.h"
 
 #include <fmt/core.h>
 
@@ -18,31 +17,12 @@ namespace {
 constexpr double kReferenceTarget = 0.002;
 constexpr int kCheckSamples = 32768;  ///< of each of two halves
 constexpr std::uint64_t kCheckSeed = 1'000'000;
+constexpr int kFewestGateRuns = 3;  ///< for a standard deviation
 
 // One setting of an estimator's effort.
 struct Effort {
     std::string name;
     renderer::RenderSettings settings;
-};
-
-// A scene that can be rendered again and again with other settings.
-class Workbench {
- public:
-    explicit Workbench(const std::string& scene_path)
-        : description_(renderer::read_scene_description(scene_path, {})),
-          scan_(renderer::make_scan(description_)),
-          scene_(renderer::load_scene(description_, scan_)) {}
-
-    const renderer::RenderSettings& settings() const { return description_.render; }
-
-    core::Capture render(const renderer::RenderSettings& settings) const {
-        return renderer::render(scene_, scan_, description_.time_axis, settings, {}).capture;
-    }
-
- private:
-    renderer::SceneDescription description_;
-    core::Scan scan_;
-    renderer::Scene scene_;
 };
 
 double relative_l2(const core::Capture& a, const core::Capture& b) {
@@ -52,7 +32,7 @@ double relative_l2(const core::Capture& a, const core::Capture& b) {
 // The integrator far below every error to be measured. Path tracing shares no code with it beyond
 // the rays; how far a long run of it lies from the reference bounds the reference's own error,
 // together with that run's own noise (half the distance of its two independent halves).
-core::Capture make_reference(const Workbench& bench, RenderBench& result) {
+core::Capture make_reference(const BenchScene& bench, RenderBench& result) {
     renderer::RenderSettings settings = bench.settings();
     settings.method = renderer::Estimator::ThirdBounce;
     settings.target_error = kReferenceTarget;
@@ -76,7 +56,7 @@ core::Capture make_reference(const Workbench& bench, RenderBench& result) {
     return reference;
 }
 
-BenchPoint measure(const Workbench& bench,
+BenchPoint measure(const BenchScene& bench,
                    renderer::RenderSettings settings,
                    const core::Capture& reference,
                    int repeats) {
@@ -117,7 +97,7 @@ void fit_line(BenchCurve& curve) {
 }
 
 // Runs one estimator at rising effort.
-BenchCurve measure_curve(const Workbench& bench,
+BenchCurve measure_curve(const BenchScene& bench,
                          const std::string& method,
                          const std::vector<Effort>& efforts,
                          const core::Capture& reference,
@@ -174,9 +154,10 @@ std::vector<EqualError> equal_errors(const BenchCurve& third_bounce, const Bench
 }  // namespace
 
 RenderBench bench_render(const std::string& scene_path,
+                         const std::string& exclusion_scene,
                          int repeats,
                          const core::Progress& progress) {
-    const Workbench bench(scene_path);
+    const BenchScene bench(scene_path);
     RenderBench result;
     result.scene = scene_path;
     result.repeats = repeats;
@@ -189,6 +170,11 @@ RenderBench bench_render(const std::string& scene_path,
             measure_curve(bench, method, efforts, reference, repeats, progress));
     }
     result.equal_error = equal_errors(result.curves[0], result.curves[1]);
+    result.gates = bench_gates(scene_path, std::max(kFewestGateRuns, repeats), progress);
+    for (const std::string& path : {scene_path, exclusion_scene}) {
+        const auto part = bench_exclusion(path, std::max(kFewestGateRuns, repeats));
+        result.exclusion.insert(result.exclusion.end(), part.begin(), part.end());
+    }
     return result;
 }
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/core/progress.h"
-#include "renderer/core/settings.h"
+#include "apps/bench_gates.h"
 
 #include <string>
 #include <vector>
@@ -66,6 +65,8 @@ struct RenderBench {
     int repeats = 0;
     std::vector<BenchCurve> curves;
     std::vector<EqualError> equal_error;
+    GateTable gates;
+    std::vector<ExclusionBench> exclusion;
 };
 
 template <class Visitor>
@@ -77,10 +78,16 @@ void for_each_field(RenderBench& bench, Visitor&& visit) {
     visit("repeats", bench.repeats, "runs per point");
     visit("curves", bench.curves, "error against time");
     visit("equal_error", bench.equal_error, "speed-up of third_bounce over path");
+    visit("gates", bench.gates, "path and ellipsoidal in equal time");
+    visit("exclusion", bench.exclusion, "ellipsoidal with and without excluded surfaces");
 }
 
 /// Measures every estimator on a scene at several efforts, on one thread.
+///
+/// exclusion_scene   where excluding a back wall from ellipsoidal connections is tried; excluding
+///                   the relay wall is tried on the first
 RenderBench bench_render(const std::string& scene_path,
+                         const std::string& exclusion_scene,
                          int repeats,
                          const core::Progress& progress);
 

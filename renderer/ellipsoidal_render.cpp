@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kMeasuredPairs = 128;
 constexpr int kMeasuringPasses = 16;  ///< which give the deviation
-constexpr int kMeasuringSamples = 64;
+constexpr int kMeasuringSamples = 32;
 constexpr std::uint64_t kMeasuringItem = 1ULL << 40;  ///< keeps its random numbers apart
 
 double sum_of(PassHistogram& histogram) {

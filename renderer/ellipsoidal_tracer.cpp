@@ -12,10 +12,19 @@ namespace {
 using core::Vec2;
 using core::Vec3;
 
-// Of all samples: those that choose the length first. Of the others: those drawn from the hidden
-// area rather than by direction.
-constexpr double kEllipsoidalShare = 0.75;
+// Of the samples that do not choose the length first, those drawn from the hidden area rather than
+// by direction.
 constexpr double kAreaShare = 0.75;
+
+// Share of samples that choose the length first. They cost several times more than the others, of
+// which only the share `asked` has a length that counts (constants by trial on scenes/bars and
+// scenes/letter).
+double ellipsoidal_share(double asked) {
+    constexpr double kMost = 0.85;
+    constexpr double kLeast = 0.05;
+    constexpr double kHalved = 0.3;
+    return std::max(kLeast, kMost / (1.0 + asked / kHalved));
+}
 
 // A Gaussian gate lets through e^-10 of its peak this many widths from its centre; what lies beyond
 // is left to the walk.
@@ -48,10 +57,8 @@ std::vector<bool> hidden_objects(const Scene& scene) {
 // One call of trace(): what is fixed for the pair, and the paths under way.
 class EllipsoidalTracer::Walk {
  public:
-    /// walk_weight   of one walk: 1 / their expected number
     Walk(const EllipsoidalTracer& tracer,
          const PathEnds& ends,
-         double walk_weight,
          core::Rng& rng,
          PassHistogram& histogram)
         : tracer_(tracer),
@@ -59,11 +66,11 @@ class EllipsoidalTracer::Walk {
           ends_(ends),
           rng_(rng),
           histogram_(histogram),
-          walk_weight_(walk_weight),
           cut_(tracer.technique_.hierarchy()),
           first_(*tracer.scene_, tracer.facet_traits_) {}
 
-    void cut_hierarchy(int num_samples);
+    /// For third bounces, before all others; returns the share of trace_connections().
+    double cut_hierarchy(int num_samples);
     void trace_connections(int count);
     void trace_area_samples(int count);
     void trace_directions(int count);
@@ -87,8 +94,9 @@ class EllipsoidalTracer::Walk {
     const PathEnds& ends_;
     core::Rng& rng_;
     PassHistogram& histogram_;
-    double walk_weight_;
-    HierarchyCut cut_;  ///< for third bounces
+    HierarchyCut cut_;                ///< for third bounces
+    double ellipsoidal_share_ = 0.0;  ///< of third bounces
+    double walk_weight_ = 0.0;        ///< of one walk: 1 / their expected number
     FirstVertices first_;
     std::array<double, FirstVertices::kCapacity> ellipsoidal_pdf_;
     std::uint64_t num_rays_ = 0;
@@ -118,11 +126,11 @@ std::uint64_t EllipsoidalTracer::trace(const PathEnds& ends,
     const auto rounded = [&](double expected, int most) {
         return std::min(most, static_cast<int>(expected + rng.uniform()));
     };
-    const int num_connections = rounded(num_samples * kEllipsoidalShare, num_samples);
-    const double area_share = (1.0 - kEllipsoidalShare) * kAreaShare;
+    Walk walk(*this, ends, rng, histogram);
+    const double share = walk.cut_hierarchy(num_samples);
+    const int num_connections = rounded(num_samples * share, num_samples);
+    const double area_share = (1.0 - share) * kAreaShare;
     const int num_area = rounded(num_samples * area_share, num_samples - num_connections);
-    Walk walk(*this, ends, 1.0 / (num_samples * (1.0 - kEllipsoidalShare)), rng, histogram);
-    walk.cut_hierarchy(num_samples);
     walk.trace_connections(num_connections);
     walk.trace_area_samples(num_area);
     walk.trace_directions(num_samples - num_connections - num_area);
@@ -135,17 +143,20 @@ std::uint64_t EllipsoidalTracer::trace_pixel(const Measurement& measurement,
                                              core::Rng& rng,
                                              PassHistogram& histogram) const {
     const PathEnds ends = measurement.ends(pixel);
-    Walk walk(*this, ends, 1.0 / num_samples, rng, histogram);
+    Walk walk(*this, ends, rng, histogram);
     walk.trace_pixel_samples(measurement, pixel, num_samples);
     return walk.num_rays();
 }
 
-void EllipsoidalTracer::Walk::cut_hierarchy(int num_samples) {
+double EllipsoidalTracer::Walk::cut_hierarchy(int num_samples) {
     const OplBand lengths{tracer_.lengths_.low_m - ends_.device_legs_m,
                           tracer_.lengths_.high_m - ends_.device_legs_m};
     cut_.rebuild(connection_ends(ends_),
                  lengths,
                  std::max(kFewestEntries, static_cast<std::size_t>(num_samples)));
+    if (!cut_.empty()) ellipsoidal_share_ = ellipsoidal_share(cut_.share_asked());
+    walk_weight_ = 1.0 / (num_samples * (1.0 - ellipsoidal_share_));
+    return ellipsoidal_share_;
 }
 
 void EllipsoidalTracer::Walk::trace_connections(int count) {
@@ -213,7 +224,7 @@ void EllipsoidalTracer::Walk::trace_pixel_samples(const Measurement& measurement
         auto vertex = measurement.first_vertex(pixel, {u1, rng_.uniform()});
         ++num_rays_;
         if (!vertex || vertex->order > tracer_.max_order_) continue;
-        vertex->throughput *= walk_weight_;
+        vertex->throughput /= count;
         const double value = walk.connection_value(*vertex, ends_);
         if (value > 0.0 && tracer_.scope_ != ConnectionScope::Excluded &&
             histogram_.lets_through(opl_to_light(*vertex))) {
@@ -264,8 +275,8 @@ void EllipsoidalTracer::Walk::evaluate() {
 // lengths asked for goes on to rays, nor on facets out of scope.
 void EllipsoidalTracer::Walk::weigh(int index, double ellipsoidal_pdf) {
     const auto i = static_cast<std::size_t>(index);
-    const double by_walk = (1.0 - kEllipsoidalShare) * first_.pdf_area(index);
-    const double both = by_walk + kEllipsoidalShare * ellipsoidal_pdf;
+    const double by_walk = (1.0 - ellipsoidal_share_) * first_.pdf_area(index);
+    const double both = by_walk + ellipsoidal_share_ * ellipsoidal_pdf;
     const bool keeps = histogram_.lets_through(first_.opl_m()[i]) &&
                        tracer_.in_scope(first_.facet(index)) && both > 0.0;
     first_.set_contribution(index, keeps ? first_.contributions()[i] * by_walk / both : 0.0);

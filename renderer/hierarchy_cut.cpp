@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace renderer {
 
@@ -16,6 +17,12 @@ void HierarchyCut::rebuild(const ConnectionEnds& ends,
     entries_.clear();
     if (hierarchy_->empty() || !(lengths.width_m() > 0.0)) return;
     query_ = hierarchy_->make_query(ends, lengths);
+    TriangleHierarchy::Query everything = query_;
+    everything.from = 0.0F;
+    everything.to = std::numeric_limits<float>::max();
+    const TriangleHierarchy::Node& root = hierarchy_->nodes_.front();
+    const float all = hierarchy_->importance(root, everything).sum();
+    share_asked_ = all > 0.0F ? double{hierarchy_->importance(root, query_).sum() / all} : 0.0;
     entries_.push_back({0, 0, 1.0, 0.0, {}});
     while (expand(most_entries)) {
     }

@@ -17,6 +17,8 @@ class HierarchyCut {
     void rebuild(const ConnectionEnds& ends, const OplBand& lengths, std::size_t most_entries);
 
     bool empty() const { return entries_.empty(); }
+    /// Of what all lengths carry, about, the share within the interval.
+    double share_asked() const { return share_asked_; }
     const FocusPair& foci() const { return ends_.foci; }
 
     /// As TriangleHierarchy::sample() for the ends of rebuild(). `hint` is updated so that calls
@@ -42,6 +44,7 @@ class HierarchyCut {
     ConnectionEnds ends_;
     OplBand lengths_;
     TriangleHierarchy::Query query_;
+    double share_asked_ = 0.0;
     std::vector<Entry> entries_;
     std::vector<Entry> next_;
 };

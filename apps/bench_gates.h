@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/core/progress.h"
+#include "renderer/core/settings.h"
+
+#include <string>
+#include <vector>
+
+namespace apps {
+
+/// How `path` and `ellipsoidal` do at one gate, or over the histogram, in equal time.
+struct GateBench {
+    double gate_mm = 0.0;  ///< 0: the whole histogram
+    double path_rel_mse = 0.0;
+    double ellipsoidal_rel_mse = 0.0;
+    double ratio = 0.0;
+    double ratio_sigma = 0.0;
+};
+
+template <class Visitor>
+void for_each_field(GateBench& bench, Visitor&& visit) {
+    visit("gate_mm", bench.gate_mm, "width of the gate in path length [mm]; 0: the histogram");
+    visit("path_rel_mse", bench.path_rel_mse, "relative MSE of path after one CPU second");
+    visit("ellipsoidal_rel_mse", bench.ellipsoidal_rel_mse, "that of ellipsoidal");
+    visit("ratio", bench.ratio, "the first over the second: how much better ellipsoidal is");
+    visit("ratio_sigma", bench.ratio_sigma, "standard deviation of the ratio");
+}
+
+/// All gates of a scene, the histogram first, then by falling width.
+struct GateTable {
+    std::string scene;
+    double center_m = 0.0;
+    std::vector<GateBench> gates;
+    /// Width at which both do equally well, on straight lines between the logarithms; 0 when one
+    /// does better at all widths.
+    double crossing_mm = 0.0;
+};
+
+template <class Visitor>
+void for_each_field(GateTable& table, Visitor&& visit) {
+    visit("scene", table.scene, "scene file");
+    visit("center_m", table.center_m, "centre of the gates: half of the signal arrives before [m]");
+    visit("gates", table.gates, "relative MSE in equal time");
+    visit("crossing_mm", table.crossing_mm, "width at which both do equally well; 0: none [mm]");
+}
+
+/// What exclusion does to the noise of `ellipsoidal`.
+struct ExclusionBench {
+    std::string scene;
+    std::string mode;
+    int max_bounces = 3;
+    double gate_mm = 0.0;
+    double variance_seconds = 0.0;  ///< relative to the squared signal
+    double gain = 0.0;
+};
+
+template <class Visitor>
+void for_each_field(ExclusionBench& bench, Visitor&& visit) {
+    visit("scene", bench.scene, "scene file");
+    visit("mode", bench.mode, "what becomes of excluded surfaces");
+    visit("max_bounces", bench.max_bounces, "bounces");
+    visit("gate_mm", bench.gate_mm, "width of the gate in path length [mm]; 0: the histogram");
+    visit("variance_seconds", bench.variance_seconds, "relative variance after one CPU second");
+    visit("gain", bench.gain, "that of mode none over it");
+}
+
+/// Relative MSE of `path` and `ellipsoidal` in equal time at gates around the middle of the signal,
+/// on one thread. Errors are against two independent long runs of `ellipsoidal` (their product
+/// has no bias from the references' noise).
+///
+/// repeats   seeds per figure
+GateTable bench_gates(const std::string& scene_path, int repeats, const core::Progress& progress);
+
+/// Variance per second of `ellipsoidal` with each mode of exclusion, for 3 and 5 bounces, on one
+/// thread. Each mode is measured against its own expectation: that of `drop` lacks a part.
+std::vector<ExclusionBench> bench_exclusion(const std::string& scene_path, int repeats);
+
+}  // namespace apps

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/render.h"
+#include "renderer/scene_file.h"
+
+#include <string>
+
+namespace apps {
+
+/// A scene that benchmarks render again and again with other settings.
+class BenchScene {
+ public:
+    explicit BenchScene(const std::string& scene_path)
+        : description_(renderer::read_scene_description(scene_path, {})),
+          scan_(renderer::make_scan(description_)),
+          scene_(renderer::load_scene(description_, scan_)) {}
+
+    const renderer::RenderSettings& settings() const { return description_.render; }
+    const core::TimeAxis& axis() const { return description_.time_axis; }
+    bool is_image() const { return scan_.camera.has_value(); }
+
+    core::Capture render(const core::TimeAxis& axis,
+                         const renderer::RenderSettings& settings) const {
+        return renderer::render(scene_, scan_, axis, settings, {}).capture;
+    }
+    core::Capture render(const renderer::RenderSettings& settings) const {
+        return render(axis(), settings);
+    }
+
+ private:
+    renderer::SceneDescription description_;
+    core::Scan scan_;
+    renderer::Scene scene_;
+};
+
+}  // namespace apps

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: MIT
+// The ellipsoidal estimator against the others, bin by bin, on every scene of the repository.
+#include "renderer/core/parallel.h"
+#include "renderer/ellipsoidal_render.h"
+#include "renderer/scene_file.h"
+#include "tests/support/statistics.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace {
+
+using renderer::Estimator;
+using renderer::Exclusion;
+using renderer::RenderSettings;
+
+// A scene of the repository with four of its wall points.
+struct FewPairs {
+    explicit FewPairs(const std::string& name)
+        : description(renderer::read_scene_description(
+              std::string(NLOS_SOURCE_DIR) + "/scenes/" + name + "/scene.json", {})),
+          scan(four_points(renderer::make_scan(description))),
+          scene(renderer::load_scene(description, scan)),
+          axis{0.4, 0.1, 40} {}
+
+    static core::Scan four_points(core::Scan scan) {
+        core::WallPoints few;
+        for (int i = 0; i < 4; ++i) {
+            const std::size_t index =
+                (2 * static_cast<std::size_t>(i) + 1) * scan.sensing.size() / 8 + 3;
+            few.positions.push_back(scan.sensing.positions[index]);
+            few.normals.push_back(scan.sensing.normals[index]);
+        }
+        scan.sensing = few;
+        scan.illumination = few;
+        return scan;
+    }
+
+    RenderSettings settings(Estimator method, int max_bounces, int samples) const {
+        RenderSettings settings;
+        settings.method = method;
+        settings.max_bounces = max_bounces;
+        settings.samples = samples;
+        settings.variance = true;
+        settings.seed = test_support::seed_of(description.geometry) + samples;
+        return settings;
+    }
+    core::Capture render(const RenderSettings& settings) const {
+        return renderer::render(scene, scan, axis, settings, {}).capture;
+    }
+
+    renderer::SceneDescription description;
+    core::Scan scan;
+    renderer::Scene scene;
+    core::TimeAxis axis;
+};
+
+double variance_of(const core::Capture& capture, std::size_t i) {
+    return capture.variance ? double{capture.variance->values()[i]} : 0.0;
+}
+
+// Bins that both know to 15 %, so that their noise is about normal, and the sums of all. `bias` is
+// the error allowed to b, relative to its largest bin.
+void expect_agreement(const core::Capture& a, const core::Capture& b, double bias = 0.0) {
+    constexpr double kLargestRelativeSigma = 0.15;
+    const auto values = b.transient.values();
+    const double allowed = bias * double{*std::max_element(values.begin(), values.end())};
+    std::vector<double> z;
+    double sum = 0.0;
+    double total = 0.0;
+    double sum_variance = 0.0;
+    for (std::size_t i = 0; i < a.transient.values().size(); ++i) {
+        const double x = double{a.transient.values()[i]};
+        const double y = double{b.transient.values()[i]};
+        const double variance = variance_of(a, i) + variance_of(b, i);
+        sum += x - y;
+        total += y;
+        sum_variance += variance;
+        const double sigma = std::sqrt(variance);
+        if (!(sigma > 0.0) || sigma > kLargestRelativeSigma * std::min(x, y)) continue;
+        z.push_back(std::max(0.0, std::abs(x - y) - allowed) / sigma);
+    }
+    ASSERT_GT(z.size(), 3U);
+    const double level = test_support::sidak_level(1e-3, z.size() + 1);
+    for (const double value : z) EXPECT_GT(test_support::normal_tail(value), level) << value;
+    const double z_sum = std::max(0.0, std::abs(sum) - bias * total) / std::sqrt(sum_variance);
+    EXPECT_GT(test_support::normal_tail(z_sum), level) << sum / total;
+}
+
+class EllipsoidalScenes : public testing::TestWithParam<const char*> {};
+
+TEST_P(EllipsoidalScenes, AgreeWithPathsWithAndWithoutExclusion) {
+    const FewPairs few(GetParam());
+    const core::Capture paths = few.render(few.settings(Estimator::Path, 5, 80'000));
+    for (const Exclusion mode : {Exclusion::Mis, Exclusion::None}) {
+        RenderSettings settings = few.settings(Estimator::Ellipsoidal, 5, 60'000);
+        settings.exclude = mode;
+        expect_agreement(few.render(settings), paths);
+    }
+}
+
+TEST_P(EllipsoidalScenes, AgreeWithTheIntegratorOnTheThirdBounce) {
+    const FewPairs few(GetParam());
+    RenderSettings settings = few.settings(Estimator::ThirdBounce, 3, 1);
+    settings.target_error = 4e-3;
+    const core::Capture integrated = few.render(settings);
+    expect_agreement(few.render(few.settings(Estimator::Ellipsoidal, 3, 60'000)), integrated, 4e-3);
+}
+
+INSTANTIATE_TEST_SUITE_P(All,
+                         EllipsoidalScenes,
+                         testing::Values("bars", "corner", "curved", "glossy", "letter"),
+                         [](const auto& scene) { return std::string(scene.param); });
+
+// A narrow gate of every shape, where most samples choose their length.
+TEST(EllipsoidalTracer, GatesOfAllShapesAgreeWithPaths) {
+    FewPairs few("corner");
+    few.axis = {2.0, 0.05, 1};
+    for (const auto gate :
+         {renderer::GateShape::Box, renderer::GateShape::Tent, renderer::GateShape::Gaussian}) {
+        RenderSettings path = few.settings(Estimator::Path, 4, 400'000);
+        path.gate = gate;
+        RenderSettings ellipsoidal = few.settings(Estimator::Ellipsoidal, 4, 50'000);
+        ellipsoidal.gate = gate;
+        ellipsoidal.exclude = Exclusion::None;
+        expect_agreement(few.render(ellipsoidal), few.render(path));
+    }
+}
+
+// At the third bounce, dropping surfaces is the same as painting them black; what that takes from
+// the signal is what the warning says.
+TEST(EllipsoidalTracer, DropLosesExactlyTheSignalOfTheExcludedSurfaces) {
+    const FewPairs few("corner");
+    RenderSettings settings = few.settings(Estimator::Ellipsoidal, 3, 60'000);
+    settings.exclude = Exclusion::Drop;
+    const auto dropped = renderer::render(few.scene, few.scan, few.axis, settings, {});
+    ASSERT_EQ(dropped.warnings.size(), 1U);
+    EXPECT_NE(dropped.warnings[0].find("back_wall"), std::string::npos) << dropped.warnings[0];
+    EXPECT_EQ(dropped.excluded_objects.size(), 4U);
+
+    renderer::SceneGeometry painted{few.scene.objects(), {}};
+    for (renderer::Object& object : painted.objects) {
+        if (object.ellipsoidal_exclude || object.role == renderer::Role::BackWall) {
+            object.material.albedo = 0.0;
+        }
+    }
+    const renderer::Scene black(std::move(painted), few.scan, few.description.relay_wall);
+    const RenderSettings paths = few.settings(Estimator::Path, 3, 200'000);
+    const auto kept = renderer::render(black, few.scan, few.axis, paths, {}).capture;
+    expect_agreement(dropped.capture, kept);
+
+    const core::Capture all = few.render(paths);
+    double expected = 0.0;
+    double variance = 0.0;
+    for (std::size_t i = 0; i < all.transient.values().size(); ++i) {
+        expected += double{all.transient.values()[i]} - double{kept.transient.values()[i]};
+        variance += variance_of(all, i) + variance_of(kept, i);
+    }
+    const auto measured =
+        renderer::measure_dropped_signal(few.scene, few.scan, few.axis, settings, 4);
+    const double sigma = std::hypot(measured.sigma, std::sqrt(variance));
+    EXPECT_GT(test_support::normal_tail((measured.lost - expected) / sigma), 1e-4)
+        << measured.lost << " +- " << measured.sigma << " expected " << expected;
+    EXPECT_LT(measured.sigma, 0.2 * expected);
+}
+
+TEST(EllipsoidalTracer, SameBitsForAnyNumberOfThreads) {
+    const FewPairs few("glossy");
+    const RenderSettings settings = few.settings(Estimator::Ellipsoidal, 5, 400);
+    std::vector<std::vector<float>> results;
+    for (const int threads : {1, 7}) {
+        const core::ThreadLimit limit(threads);
+        const core::Capture capture = few.render(settings);
+        const auto values = capture.transient.values();
+        results.emplace_back(values.begin(), values.end());
+    }
+    EXPECT_EQ(results[0], results[1]);
+}
+
+}  // namespace

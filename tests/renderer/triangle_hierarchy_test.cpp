@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: MIT
+// The hierarchy's draws against their probabilities, its bounds, and the technique as a whole.
+#include "renderer/connection_technique.h"
+#include "renderer/core/sampling.h"
+#include "tests/support/random_geometry.h"
+#include "tests/support/statistics.h"
+#include "tests/support/test_scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace {
+
+using core::Vec2;
+using core::Vec3;
+using renderer::ConnectionEnds;
+using renderer::OplBand;
+using renderer::Scene;
+
+// Small random triangles above the wall z = 0; the second object has a closed surface. No wall
+// surface: the points lie apart from it.
+Scene random_scene(core::Rng& rng, int num_triangles) {
+    renderer::SceneGeometry geometry;
+    renderer::Object& soup = geometry.objects.emplace_back();
+    soup.name = "soup";
+    for (int i = 0; i < num_triangles; ++i) {
+        const Vec3 center = test_support::random_point(rng) + Vec3(0.0, 0.0, 1.6);
+        const auto first = static_cast<std::uint32_t>(soup.mesh.vertices.size());
+        for (int k = 0; k < 3; ++k) {
+            soup.mesh.vertices.push_back(center + 0.1 * test_support::random_point(rng));
+        }
+        soup.mesh.triangles.push_back({first, first + 1, first + 2});
+    }
+    geometry.objects.push_back(test_support::sphere_object(Vec3(0.3, 0.2, 1.2), 0.25, 1, 1.0));
+    geometry.objects.back().name = "ball";
+    return {
+        std::move(geometry), test_support::confocal_scan({Vec3(9, 9, 0)}), renderer::RelayWall{}};
+}
+
+struct Question {
+    ConnectionEnds ends;
+    OplBand lengths;
+};
+
+// Ends on the wall, one of them coincident, and in space; intervals from narrow to everything.
+std::vector<Question> questions(core::Rng& rng) {
+    std::vector<Question> all;
+    for (int i = 0; i < 6; ++i) {
+        Vec3 a = test_support::random_point(rng);
+        Vec3 b = i % 2 == 0 ? a : test_support::random_point(rng);
+        Question q;
+        q.ends = {{a, b}, Vec3::UnitZ(), Vec3::UnitZ()};
+        q.ends.foci.a.z() = q.ends.foci.b.z() = 0.0;
+        if (i == 3) q.ends.normal_a = Vec3(0.0, 0.8, 0.6);
+        if (i == 5) q.ends.normal_a = q.ends.normal_b = Vec3::Zero();
+        const double width = i < 2 ? 10.0 : 0.02 * (i - 1);
+        q.lengths = {i < 2 ? 0.0 : 3.0, (i < 2 ? 0.0 : 3.0) + width};
+        all.push_back(q);
+    }
+    return all;
+}
+
+renderer::ConnectionTechnique technique_of(const Scene& scene) {
+    renderer::RenderSettings settings;
+    return {scene,
+            renderer::ExcludedFacets::of(scene, settings),
+            test_support::confocal_scan({Vec3(9, 9, 0)})};
+}
+
+// Chi-square of drawn facets, and of draws that find none, against the probabilities.
+template <class Sample, class Probability>
+double facet_p_value(const Scene& scene, const Sample& sample, const Probability& probability) {
+    constexpr int kDraws = 20'000;
+    const std::size_t num_facets = scene.facets().size();
+    std::vector<double> observed(num_facets + 1);
+    std::vector<double> expected(num_facets + 1);
+    for (int i = 0; i < kDraws; ++i) {
+        const auto choice = sample((i + 0.5) / kDraws);
+        ++observed[choice ? choice->facet : num_facets];
+    }
+    double sum = 0.0;
+    for (std::uint32_t f = 0; f < num_facets; ++f) {
+        const double p = probability(f);
+        expected[f] = kDraws * p;
+        sum += p;
+    }
+    EXPECT_LT(sum, 1.0 + 1e-9);
+    expected[num_facets] = kDraws * std::max(0.0, 1.0 - sum);
+    return test_support::chi_square_p_value(observed, expected);
+}
+
+TEST(TriangleHierarchy, DrawsMatchTheirProbabilities) {
+    core::Rng rng(test_support::seed_of("DrawsMatchTheirProbabilities"), 0, 0);
+    const Scene scene = random_scene(rng, 500);
+    const auto technique = technique_of(scene);
+    const auto& hierarchy = technique.hierarchy();
+    for (const Question& q : questions(rng)) {
+        const double p = facet_p_value(
+            scene,
+            [&](double) { return hierarchy.sample(q.ends, q.lengths, rng.uniform()); },
+            [&](std::uint32_t f) { return hierarchy.evaluate(q.ends, q.lengths, f).probability; });
+        EXPECT_GT(p, 1e-4);
+        for (const std::size_t entries : {1, 20, 100'000}) {
+            renderer::HierarchyCut cut(hierarchy);
+            cut.rebuild(q.ends, q.lengths, entries);
+            std::size_t hint = 0;
+            const double p_cut = facet_p_value(
+                scene,
+                [&](double u) { return cut.sample(u, hint); },
+                [&](std::uint32_t f) { return cut.evaluate(f).probability; });
+            EXPECT_GT(p_cut, 1e-4) << entries;
+        }
+    }
+}
+
+// Cosines at both ends and both cosines at the point over the squared distances; 0 where a side is
+// not lit.
+double carried(const ConnectionEnds& ends, const renderer::Facet& facet, const Vec3& x) {
+    const auto factor = [&](const Vec3& focus, const Vec3& normal, double& side) {
+        const Vec3 offset = x - focus;
+        const double distance = offset.norm();
+        side = -facet.normal.dot(offset) / distance;
+        const double at_end = normal.isZero(0.0) ? 1.0 : normal.dot(offset) / distance;
+        return std::max(0.0, at_end) / (distance * distance);
+    };
+    double side_a = 0.0;
+    double side_b = 0.0;
+    const double a = factor(ends.foci.a, ends.normal_a, side_a);
+    const double b = factor(ends.foci.b, ends.normal_b, side_b);
+    return side_a * side_b > 0.0 ? a * b * side_a * side_b : 0.0;
+}
+
+// The ball is closed: its inside is never lit, and the hierarchy may leave it out.
+bool is_inside_of_ball(const Scene& scene, std::uint32_t facet, const ConnectionEnds& ends) {
+    const renderer::Facet& f = scene.facet(facet);
+    if (scene.object_of(facet).name != "ball") return false;
+    const Vec3 outward = f.corner - Vec3(0.3, 0.2, 1.2);
+    const double side = f.normal.dot(outward) > 0.0 ? 1.0 : -1.0;
+    return side * f.normal.dot(ends.foci.a - f.corner) <= 0.0;
+}
+
+TEST(TriangleHierarchy, EveryPointThatCarriesSomethingCanBeDrawn) {
+    core::Rng rng(test_support::seed_of("EveryPointThatCarries"), 0, 0);
+    const Scene scene = random_scene(rng, 500);
+    const auto technique = technique_of(scene);
+    int checked = 0;
+    for (const Question& q : questions(rng)) {
+        renderer::HierarchyCut cut(technique.hierarchy());
+        cut.rebuild(q.ends, q.lengths, 1000);
+        for (std::uint32_t f = 0; f < scene.facets().size(); ++f) {
+            if (is_inside_of_ball(scene, f, q.ends)) continue;
+            for (int i = 0; i < 50; ++i) {
+                const double u1 = rng.uniform();
+                const Vec2 b = core::sample_triangle({u1, rng.uniform()});
+                const Vec3 x = scene.facet(f).point(b.x(), b.y());
+                const double length = q.ends.foci.opl_m(x);
+                if (length < q.lengths.low_m || length > q.lengths.high_m) continue;
+                if (!(carried(q.ends, scene.facet(f), x) > 0.0)) continue;
+                ++checked;
+                EXPECT_GT(technique.pdf_area(q.ends, q.lengths, {x, f}), 0.0);
+                EXPECT_GT(technique.pdf_area(cut, {x, f}), 0.0);
+            }
+        }
+    }
+    EXPECT_GT(checked, 10'000);
+}
+
+// E[carried / pdf] over draws against the integral over all facets by stratified points.
+TEST(ConnectionTechnique, EstimatesTheIntegralOverAllFacets) {
+    core::Rng rng(test_support::seed_of("EstimatesTheIntegral"), 0, 0);
+    const Scene scene = random_scene(rng, 60);
+    const auto technique = technique_of(scene);
+    for (const Question& q : questions(rng)) {
+        const auto value = [&](const renderer::SurfacePoint& point) {
+            if (is_inside_of_ball(scene, point.facet, q.ends)) return 0.0;
+            return carried(q.ends, scene.facet(point.facet), point.position);
+        };
+        double integral = 0.0;
+        constexpr int kSide = 200;
+        for (std::uint32_t f = 0; f < scene.facets().size(); ++f) {
+            for (int i = 0; i < kSide * kSide; ++i) {
+                const Vec2 b = core::sample_triangle(
+                    {(i / kSide + rng.uniform()) / kSide, (i % kSide + rng.uniform()) / kSide});
+                const Vec3 x = scene.facet(f).point(b.x(), b.y());
+                const double length = q.ends.foci.opl_m(x);
+                if (length < q.lengths.low_m || length > q.lengths.high_m) continue;
+                integral += value({x, f}) * scene.facet(f).area_m2 / (kSide * kSide);
+            }
+        }
+        renderer::HierarchyCut cut(technique.hierarchy());
+        cut.rebuild(q.ends, q.lengths, 50);
+        constexpr int kDraws = 100'000;
+        for (const bool from_cut : {false, true}) {
+            double sum = 0.0;
+            double squares = 0.0;
+            for (int i = 0; i < kDraws; ++i) {
+                std::size_t hint = 0;
+                const auto draw = from_cut ? technique.sample(cut, rng.uniform(), hint, rng)
+                                           : technique.sample(q.ends, q.lengths, rng);
+                if (!draw) continue;
+                const double estimate = value(draw->point) / draw->pdf_area;
+                sum += estimate;
+                squares += estimate * estimate;
+            }
+            const double mean = sum / kDraws;
+            const double sigma = std::sqrt((squares / kDraws - mean * mean) / kDraws);
+            const double tolerance = std::hypot(sigma, 2e-3 * integral);
+            EXPECT_GT(test_support::normal_tail((mean - integral) / (tolerance + 1e-300)), 1e-4)
+                << "mean " << mean << " integral " << integral << " cut " << from_cut;
+        }
+    }
+}
+
+TEST(ExcludedFacets, AreThoseOfWallsFlaggedObjectsAndLargeFacets) {
+    renderer::SceneGeometry geometry;
+    const auto add = [&](const std::string& name, double size) -> renderer::Object& {
+        geometry.objects.push_back(test_support::parallelogram_object(
+            {Vec3(0, 0, 1), Vec3(size, 0, 0), Vec3(0, size, 0)}));
+        geometry.objects.back().name = name;
+        return geometry.objects.back();
+    };
+    add("small", 0.1);
+    add("large", 1.0);
+    add("back", 0.1).role = renderer::Role::BackWall;
+    add("flagged", 0.1).ellipsoidal_exclude = true;
+    const core::Scan scan = test_support::confocal_scan({Vec3::Zero()});
+    const Scene scene(std::move(geometry), scan, renderer::RelayWall{});
+    renderer::RenderSettings settings;
+    using Names = std::vector<std::string>;
+    EXPECT_EQ(renderer::ExcludedFacets::of(scene, settings).objects,
+              (Names{"back", "flagged", "relay_wall"}));
+    settings.exclude_area_above_m2 = 0.1;
+    settings.exclude = renderer::Exclusion::Drop;
+    const auto excluded = renderer::ExcludedFacets::of(scene, settings);
+    EXPECT_EQ(excluded.objects, (Names{"large", "back", "flagged", "relay_wall"}));
+    settings.exclude = renderer::Exclusion::None;
+    EXPECT_TRUE(renderer::ExcludedFacets::of(scene, settings).objects.empty());
+
+    const renderer::ConnectionTechnique technique(scene, excluded, scan);
+    const ConnectionEnds ends{{Vec3::Zero(), Vec3::Zero()}, Vec3::UnitZ(), Vec3::UnitZ()};
+    for (std::uint32_t f = 0; f < scene.facets().size(); ++f) {
+        const double p = technique.hierarchy().evaluate(ends, {0.0, 10.0}, f).probability;
+        EXPECT_EQ(p > 0.0, scene.object_of(f).name == "small") << scene.object_of(f).name;
+    }
+}
+
+}  // namespace
