@@ -11,6 +11,7 @@ namespace apps {
 // One function per subcommand, in the file of its name. Each declares its arguments and a callback
 // that reads, calls one front door, writes, and prints what was written.
 void add_render_command(CLI::App& app);
+void add_convert_command(CLI::App& app);
 void add_simulate_noise_command(CLI::App& app);
 void add_reconstruct_command(CLI::App& app);
 void add_compare_command(CLI::App& app);

@@ -40,6 +40,7 @@ int run(const std::vector<std::string>& arguments) {
     app.require_subcommand(1);
     app.footer("Example:\n  nlos demo -o out/demo");
     apps::add_render_command(app);
+    apps::add_convert_command(app);
     apps::add_simulate_noise_command(app);
     apps::add_reconstruct_command(app);
     apps::add_compare_command(app);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/formats/capture_file.h"
 
-#include "nlos/formats/capture_reader.h"
+#include "nlos/formats/capture_format.h"
 #include "renderer/core/error.h"
 
 #include <fmt/core.h>
@@ -14,14 +14,25 @@
 namespace nlos {
 namespace {
 
-const std::array<const CaptureReader*, 3> kReaders{
-    &kYtalReader, &kStanfordReader, &kPointListReader};
-
-const CaptureReader* find_reader(const std::string& path) {
-    for (const CaptureReader* reader : kReaders) {
-        if (reader->recognise(path)) return reader;
+const CaptureFormat* find_format(const std::string& path) {
+    for (const CaptureFormat& format : capture_formats()) {
+        if (format.recognise(path)) return &format;
     }
     return nullptr;
+}
+
+/// The format to write by the suffix of `path`.
+const CaptureFormat& format_to_write(const std::string& path) {
+    const std::string suffix = std::filesystem::path(path).extension().string();
+    std::string known;
+    for (const CaptureFormat& format : capture_formats()) {
+        for (const char* candidate : format.suffixes) {
+            if (candidate == nullptr) continue;
+            if (suffix == candidate) return format;
+            known += (known.empty() ? "" : ", ") + std::string(candidate);
+        }
+    }
+    throw core::Error(path, "has the suffix '" + suffix + "'", "must be one of " + known);
 }
 
 void check_settings(const CaptureReadSettings& settings) {
@@ -107,25 +118,38 @@ core::Capture read_capture(const std::string& path, const CaptureReadSettings& s
     if (!std::filesystem::exists(path)) {
         throw core::Error(path, "does not exist", "must be a capture file");
     }
-    const CaptureReader* reader = find_reader(path);
-    if (reader == nullptr) {
+    const CaptureFormat* format = find_format(path);
+    if (format == nullptr) {
         std::string known;
-        for (const CaptureReader* row : kReaders) {
-            known += (known.empty() ? "" : ", or ") + std::string(row->content);
+        for (const CaptureFormat& row : capture_formats()) {
+            known += (known.empty() ? "" : ", or ") + std::string(row.content);
         }
         throw core::Error(path, "is no capture in a known format", "must be " + known);
     }
-    core::Capture capture = reader->read(path, settings);
-    zero_leading_bins(settings.zero_bins.value_or(reader->default_zero_bins), capture);
+    core::Capture capture = format->read(path, settings);
+    const int zero_bins = format->default_zero_bins ? format->default_zero_bins(capture) : 0;
+    zero_leading_bins(settings.zero_bins.value_or(zero_bins), capture);
     capture.time_axis.opl_start_m += settings.opl_shift_m.value_or(0.0);
     validate(capture, path);
     return capture;
 }
 
 std::optional<std::string> capture_format(const std::string& path) {
-    const CaptureReader* reader = find_reader(path);
-    if (reader == nullptr) return std::nullopt;
-    return reader->name;
+    const CaptureFormat* format = find_format(path);
+    if (format == nullptr) return std::nullopt;
+    return format->name;
+}
+
+std::vector<std::string> write_capture(const std::string& path,
+                                       const core::Capture& capture,
+                                       const CaptureWriteSettings& settings) {
+    const CaptureFormat& format = format_to_write(path);
+    validate(capture, path);
+    return format.write(path, capture, settings);
+}
+
+void check_capture_suffix(const std::string& path) {
+    format_to_write(path);
 }
 
 std::vector<std::string> describe_capture(const core::Capture& capture) {

@@ -37,12 +37,27 @@ std::optional<std::string> capture_format(const std::string& path);
 /// A capture in a few lines for people: wall, points, bins, depth range, unit.
 std::vector<std::string> describe_capture(const core::Capture& capture);
 
-/// Writes a capture as HDF5 in the y-tal layout; whole or not at all.
+/// How a capture is written where a format leaves a choice.
+struct CaptureWriteSettings {
+    /// HDF5: leave out the group /nlos, with which y-tal refuses a file; the unit stands in
+    /// scene_info then.
+    bool for_ytal = false;
+};
+
+/// Writes a capture in the format that the suffix names; whole or not at all: .h5 and .hdf5 the
+/// y-tal layout, .exr a streak image, .mat the Stanford 2018 layout.
 ///
 /// y-tal refuses files with any name of its root that it does not know, so the group /nlos (unit,
 /// variance) is written only for captures with a variance or in another unit than radiance.
 ///
-/// throws    core::Error for a bad target, core::Failure when writing fails
-void write_capture(const std::string& path, const core::Capture& capture);
+/// returns   what the format does not keep, a sentence each
+/// throws    core::Error for a bad target, an unknown suffix or a capture that the format cannot
+///           hold, core::Failure when writing fails
+std::vector<std::string> write_capture(const std::string& path,
+                                       const core::Capture& capture,
+                                       const CaptureWriteSettings& settings = {});
+
+/// Throws core::Error unless write_capture() knows the suffix of `path`.
+void check_capture_suffix(const std::string& path);
 
 }  // namespace nlos

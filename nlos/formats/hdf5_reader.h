@@ -2,26 +2,29 @@
 #pragma once
 
 #include "nlos/formats/hdf5_handle.h"
+#include "renderer/core/settings.h"
 
 #include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace nlos {
 
-/// What the elements of a dataset are. Enumerations and truth values count as integers.
-enum class Hdf5Kind { Integer, Real, Text, Other };
+class ContainedProcess;
 
 /// An HDF5 file open for reading.
 ///
-/// Every failure is a core::Error that names file and dataset. Sizes are checked against the file's
-/// own size before anything is allocated; what would not fit in memory is a core::Failure.
+/// The library (1.10) crashes on some files with damaged headers of the older kind, which have no
+/// checksums, whatever is asked of it. It therefore runs in a process of its own, which answers
+/// these questions by an Hdf5Session. Every failure is a core::Error that names file and dataset;
+/// what would not fit in memory is a core::Failure.
 class Hdf5Reader {
  public:
     explicit Hdf5Reader(std::string path);
+    ~Hdf5Reader();
 
     const std::string& path() const { return path_; }
 
@@ -50,11 +53,10 @@ class Hdf5Reader {
     void read_rows(const std::string& name, Take&& take) const {
         const std::size_t rows = shape(name).at(0);
         const std::size_t step = rows_per_read(name);
-        std::vector<float> values;
         for (std::size_t first = 0; first < rows; first += step) {
             const std::size_t count = std::min(step, rows - first);
-            read_row_range(name, first, count, values);
-            take(first, count, std::as_const(values));
+            const std::vector<float> values = read_row_range(name, first, count);
+            take(first, count, values);
         }
     }
 
@@ -65,25 +67,14 @@ class Hdf5Reader {
                                                       const std::string& name) const;
 
  private:
-    Hdf5Handle open_dataset(const std::string& name) const;
-    Hdf5Handle open_attribute(const std::string& object, const std::string& name) const;
-    void require_numeric(const std::string& name) const;
-    void check_size(const std::string& name) const;
-    void check_texts() const;
-    template <class T>
-    std::vector<T> read_all(const std::string& name, const Shape& wanted) const;
-    template <class T>
-    T read_one(const std::string& name) const;
+    std::string ask(const core::Json& question) const;
     std::size_t rows_per_read(const std::string& name) const;
-    void read_row_range(const std::string& name,
-                        std::size_t first,
-                        std::size_t count,
-                        std::vector<float>& values) const;
+    std::vector<float> read_row_range(const std::string& name,
+                                      std::size_t first,
+                                      std::size_t count) const;
 
     std::string path_;
-    std::uint64_t file_bytes_ = 0;
-    mutable bool texts_checked_ = false;  ///< once, when a text is first asked for
-    Hdf5Handle file_;
+    std::unique_ptr<ContainedProcess> process_;
 };
 
 }  // namespace nlos

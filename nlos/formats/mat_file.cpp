@@ -1,23 +1,27 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/formats/mat_file.h"
 
+#include "nlos/formats/contained_process.h"
 #include "nlos/formats/file_memory.h"
 #include "renderer/core/error.h"
+#include "renderer/core/output_file.h"
 
 #include <fmt/core.h>
 #include <matio.h>
 
 #include <array>
 #include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <type_traits>
 
 namespace nlos {
 namespace {
 
 using MatFile = std::unique_ptr<mat_t, int (*)(mat_t*)>;
-using MatVariable = std::unique_ptr<matvar_t, void (*)(matvar_t*)>;
+using MatPointer = std::unique_ptr<matvar_t, void (*)(matvar_t*)>;
 
 // Layout of a v5 file: a text header, then elements of an 8-byte tag (type, size) and a body.
 constexpr std::uint64_t kHeaderBytes = 128;
@@ -122,31 +126,20 @@ bool is_number_class(const matvar_t& variable) {
            variable.class_type <= MAT_C_UINT32;
 }
 
-}  // namespace
-
-bool is_mat5_file(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    std::array<char, kHeaderBytes> header{};
-    if (!file.read(header.data(), header.size())) return false;
-    const std::string_view mark(header.data() + kHeaderBytes - 4, 4);
-    using namespace std::string_view_literals;
-    return mark == "\x00\x01IM"sv || mark == "\x01\x00MI"sv;
-}
-
-std::vector<std::string> mat_variable_names(const std::string& path) {
+std::vector<std::string> names_of_variables(const std::string& path) {
     const MatFile file = open_mat(path);
     std::vector<std::string> names;
     while (true) {
-        const MatVariable variable(Mat_VarReadNextInfo(file.get()), Mat_VarFree);
+        const MatPointer variable(Mat_VarReadNextInfo(file.get()), Mat_VarFree);
         if (!variable) return names;
         if (variable->name != nullptr) names.emplace_back(variable->name);
     }
 }
 
 template <class T>
-MatArray<T> read_mat_array(const std::string& path, const std::string& variable) {
+MatArray<T> read_with_library(const std::string& path, const std::string& variable) {
     const MatFile file = open_mat(path);
-    const MatVariable info(Mat_VarReadInfo(file.get(), variable.c_str()), Mat_VarFree);
+    const MatPointer info(Mat_VarReadInfo(file.get(), variable.c_str()), Mat_VarFree);
     if (!info) {
         throw core::Error(
             path + ": " + variable, "is missing or damaged", "must be a number array");
@@ -165,7 +158,93 @@ MatArray<T> read_mat_array(const std::string& path, const std::string& variable)
     return array;
 }
 
+}  // namespace
+
+bool is_mat5_file(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::array<char, kHeaderBytes> header{};
+    if (!file.read(header.data(), header.size())) return false;
+    const std::string_view mark(header.data() + kHeaderBytes - 4, 4);
+    using namespace std::string_view_literals;
+    return mark == "\x00\x01IM"sv || mark == "\x01\x00MI"sv;
+}
+
+std::vector<std::string> mat_variable_names(const std::string& path) {
+    // Names end with a zero each.
+    const std::string answer = run_contained(path, [&] {
+        std::string text;
+        for (const std::string& name : names_of_variables(path))
+            text += std::string(name.c_str()) + '\0';
+        return text;
+    });
+    std::vector<std::string> names;
+    for (std::size_t begin = 0; begin < answer.size();) {
+        names.emplace_back(answer.c_str() + begin);
+        begin += names.back().size() + 1;
+    }
+    return names;
+}
+
+template <class T>
+MatArray<T> read_mat_array(const std::string& path, const std::string& variable) {
+    // The number of extents, these, and the values.
+    const std::string answer = run_contained(path, [&] {
+        const MatArray<T> array = read_with_library<T>(path, variable);
+        const std::size_t rank = array.shape.size();
+        std::string bytes(reinterpret_cast<const char*>(&rank), sizeof(rank));
+        bytes.append(reinterpret_cast<const char*>(array.shape.data()), rank * sizeof(rank));
+        bytes.append(reinterpret_cast<const char*>(array.values.data()),
+                     array.values.size() * sizeof(T));
+        return bytes;
+    });
+    MatArray<T> array;
+    std::size_t rank = 0;
+    std::memcpy(&rank, answer.data(), sizeof(rank));
+    const std::size_t begin = (rank + 1) * sizeof(rank);
+    array.shape.resize(rank);
+    std::memcpy(array.shape.data(), answer.data() + sizeof(rank), rank * sizeof(rank));
+    array.values.resize((answer.size() - begin) / sizeof(T));
+    std::memcpy(array.values.data(), answer.data() + begin, array.values.size() * sizeof(T));
+    return array;
+}
+
 template MatArray<float> read_mat_array<float>(const std::string&, const std::string&);
 template MatArray<double> read_mat_array<double>(const std::string&, const std::string&);
+
+void write_mat_file(const std::string& path, const std::vector<MatVariable>& variables) {
+    core::OutputFile output(path);
+    const auto check = [&](bool ok) {
+        if (!ok) throw core::Failure(path, "cannot be written (disk full?)");
+    };
+    MatFile file(Mat_CreateVer(output.temporary().c_str(), nullptr, MAT_FT_MAT5), Mat_Close);
+    check(file != nullptr);
+    for (const MatVariable& variable : variables) {
+        Shape shape = variable.shape;
+        const MatPointer array(
+            std::visit(
+                [&](const auto& values) {
+                    using T = typename std::decay_t<decltype(values)>::value_type;
+                    constexpr matio_classes kClass = std::is_same_v<T, double>  ? MAT_C_DOUBLE
+                                                     : std::is_same_v<T, float> ? MAT_C_SINGLE
+                                                                                : MAT_C_UINT16;
+                    constexpr matio_types kType = std::is_same_v<T, double>  ? MAT_T_DOUBLE
+                                                  : std::is_same_v<T, float> ? MAT_T_SINGLE
+                                                                             : MAT_T_UINT16;
+                    return Mat_VarCreate(variable.name.c_str(),
+                                         kClass,
+                                         kType,
+                                         static_cast<int>(shape.size()),
+                                         shape.data(),
+                                         const_cast<T*>(values.data()),  // only read
+                                         MAT_F_DONT_COPY_DATA);
+                },
+                variable.values),
+            Mat_VarFree);
+        check(array != nullptr);
+        check(Mat_VarWrite(file.get(), array.get(), MAT_COMPRESSION_ZLIB) == 0);
+    }
+    check(Mat_Close(file.release()) == 0);
+    output.commit();
+}
 
 }  // namespace nlos

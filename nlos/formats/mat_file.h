@@ -3,7 +3,9 @@
 
 #include "nlos/formats/hdf5_handle.h"
 
+#include <cstdint>
 #include <string>
+#include <variant>
 #include <vector>
 
 namespace nlos {
@@ -28,5 +30,17 @@ struct MatArray {
 ///          core::Failure when it would not fit in memory
 template <class T>
 MatArray<T> read_mat_array(const std::string& path, const std::string& variable);
+
+/// A real array to write, first index fastest.
+struct MatVariable {
+    std::string name;
+    Shape shape;
+    std::variant<std::vector<std::uint16_t>, std::vector<float>, std::vector<double>> values;
+};
+
+/// Writes a MATLAB v5 file, compressed; whole or not at all.
+///
+/// throws   core::Error for a bad target, core::Failure when writing fails
+void write_mat_file(const std::string& path, const std::vector<MatVariable>& variables);
 
 }  // namespace nlos

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/formats/capture_reader.h"
+#include "nlos/formats/capture_format.h"
 #include "nlos/formats/mat_file.h"
 #include "renderer/core/error.h"
 
@@ -196,9 +196,11 @@ Capture read(const std::string& path, const CaptureReadSettings& settings) {
 
 }  // namespace
 
-const CaptureReader kPointListReader{"general-NLOS point lists .mat",
-                                     "a folder or MATLAB v5 file with sub_Sig, C_i and C_d",
-                                     recognise,
-                                     read};
+CaptureFormat point_list_format() {
+    return {"general-NLOS point lists .mat",
+            "a folder or MATLAB v5 file with sub_Sig, C_i and C_d",
+            recognise,
+            read};
+}
 
 }  // namespace nlos

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "nlos/formats/capture_file.h"
 #include "renderer/core/settings.h"
 
 #include <string>
@@ -42,6 +43,14 @@ inline EnumMembers volume_format_members() {
 /// The key of scene_info that holds the camera of an image, whose grids are null: y-tal's layout
 /// has no place for it.
 inline constexpr const char* kCameraKey = "camera";
+
+/// The key of scene_info that holds the unit where the group /nlos is left out.
+inline constexpr const char* kUnitKey = "nlos_unit";
+
+/// Writes a capture in this layout, see write_capture().
+std::vector<std::string> write_ytal_capture(const std::string& path,
+                                            const core::Capture& capture,
+                                            const CaptureWriteSettings& settings);
 
 /// A dictionary as text that both JSON and YAML 1.1 readers understand.
 ///

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/formats/capture_reader.h"
+#include "nlos/formats/capture_format.h"
 #include "nlos/formats/file_memory.h"
 #include "nlos/formats/hdf5_reader.h"
 #include "nlos/formats/ytal_layout.h"
@@ -312,6 +312,9 @@ void read_orders(const Hdf5Reader& file, Capture& capture) {
 void read_own_group(const Hdf5Reader& file, Capture& capture) {
     if (const auto unit = file.text_attribute("nlos", "unit")) {
         core::read_value(core::Json(*unit), file.where("nlos attribute unit"), capture.unit);
+    } else if (capture.scene_info.contains(kUnitKey)) {
+        core::read_value(
+            capture.scene_info[kUnitKey], file.where("scene_info: unit"), capture.unit);
     }
     const auto scale = file.real_attribute("nlos", "counts_per_radiance");
     if (scale && scale->size() == 1 && std::isfinite((*scale)[0]) && (*scale)[0] > 0.0) {
@@ -352,6 +355,13 @@ Capture read(const std::string& path, const CaptureReadSettings& settings) {
 
 }  // namespace
 
-const CaptureReader kYtalReader{"y-tal HDF5", "HDF5 with a dataset H", recognise, read};
+CaptureFormat ytal_format() {
+    return {"y-tal HDF5",
+            "HDF5 with a dataset H",
+            recognise,
+            read,
+            {".h5", ".hdf5"},
+            write_ytal_capture};
+}
 
 }  // namespace nlos

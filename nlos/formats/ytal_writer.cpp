@@ -110,10 +110,15 @@ void write_orders(Hdf5Writer& file, const Shape& h_shape, const Capture& capture
     file.write("nlos/orders", {capture.orders.size()}, capture.orders);
 }
 
-/// What y-tal has no name for.
-void write_own_group(Hdf5Writer& file, const Shape& h_shape, const Capture& capture) {
+/// What y-tal has no name for, if there is any and y-tal need not read the file.
+/// returns   whether there is any beside the unit
+bool write_own_group(Hdf5Writer& file,
+                     const Shape& h_shape,
+                     const Capture& capture,
+                     const CaptureWriteSettings& settings) {
     const bool radiance = capture.unit == core::TransientUnit::Radiance;
-    if (!capture.variance && capture.orders.empty() && radiance) return;
+    const bool has_own = capture.variance || !capture.orders.empty();
+    if ((!has_own && radiance) || settings.for_ytal) return has_own;
     file.create_group("nlos");
     file.write_attribute("nlos", "unit", std::string(enum_name(capture.unit)));
     if (capture.counts_per_radiance) {
@@ -121,6 +126,7 @@ void write_own_group(Hdf5Writer& file, const Shape& h_shape, const Capture& capt
     }
     if (capture.variance) write_transient(file, "nlos/variance", h_shape, *capture.variance);
     if (!capture.orders.empty()) write_orders(file, h_shape, capture);
+    return has_own;
 }
 
 /// (T, pairs...) of H.
@@ -143,13 +149,15 @@ Shape h_shape_of(const Capture& capture, const Layout& layout) {
 
 }  // namespace
 
-void write_capture(const std::string& path, const Capture& capture) {
-    validate(capture, path);
+std::vector<std::string> write_ytal_capture(const std::string& path,
+                                            const Capture& capture,
+                                            const CaptureWriteSettings& settings) {
     const core::Scan& scan = capture.scan;
     const Layout layout = layout_of(scan);
     const Shape h_shape = h_shape_of(capture, layout);
     core::Json scene_info = capture.scene_info;
     if (scan.camera) scene_info[kCameraKey] = core::write_value(*scan.camera);
+    if (settings.for_ytal) scene_info[kUnitKey] = enum_name(capture.unit);
 
     Hdf5Writer file(path);
     write_transient(file, "H", h_shape, capture.transient);
@@ -169,8 +177,12 @@ void write_capture(const std::string& path, const Capture& capture) {
     file.write_bool("t_accounts_first_and_last_bounces",
                     scan.opl_origin == core::OplOrigin::Device);
     file.write_text("scene_info", scene_info_text(scene_info));
-    write_own_group(file, h_shape, capture);
+    const bool has_own = write_own_group(file, h_shape, capture, settings);
     file.finish();
+    if (settings.for_ytal && has_own) {
+        return {"the group /nlos (variance, orders of bounces, frames) is left out"};
+    }
+    return {};
 }
 
 }  // namespace nlos

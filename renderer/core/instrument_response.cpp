@@ -22,6 +22,8 @@ template <class... Cases>
 struct Overloaded : Cases... {
     using Cases::operator()...;
 };
+template <class... Cases>
+Overloaded(Cases...) -> Overloaded<Cases...>;
 
 double opl_from_ps(double ps) {
     return opl_from_seconds(ps * 1e-12);

@@ -142,7 +142,8 @@ TEST_F(CommandLine, HelpOnEveryLevelEndsWithAnExample) {
                                    "report",
                                    "bench",
                                    "demo",
-                                   "simulate-noise"}) {
+                                   "simulate-noise",
+                                   "convert"}) {
         const Outcome outcome = run(name + " --help");
         EXPECT_EQ(outcome.status, 0) << name;
         EXPECT_NE(outcome.out.find("Example:\n  nlos " + name), std::string::npos) << name;

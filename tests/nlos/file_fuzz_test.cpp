@@ -3,8 +3,10 @@
 #include "nlos/formats/ply_file.h"
 #include "nlos/formats/volume_file.h"
 #include "renderer/core/error.h"
+#include "renderer/core/instrument_response.h"
 #include "renderer/core/random.h"
 #include "tests/nlos/mat_writing.h"
+#include "tests/nlos/old_hdf5_file.h"
 #include "tests/support/example_capture.h"
 #include "tests/support/example_reconstruction.h"
 #include "tests/support/file_bytes.h"
@@ -14,12 +16,6 @@
 
 #include <cstdlib>
 #include <functional>
-
-// The HDF5 library does not free everything when it refuses a damaged header; only sanitizer
-// builds call this.
-extern "C" const char* __lsan_default_suppressions() {
-    return "leak:libhdf5";
-}
 
 namespace nlos {
 namespace {
@@ -79,6 +75,29 @@ TEST(FileFuzz, MutatedCapturesAreReadOrRefused) {
         write_capture(path, capture);
         fuzz(path, [&] { read_capture(path); });
     }
+}
+
+TEST(FileFuzz, MutatedStreakImagesAreReadOrRefused) {
+    const TemporaryFolder folder;
+    const std::string path = folder.file("capture.exr");
+    core::Capture capture = test_support::example_capture(core::ScanPattern::Single);
+    capture.variance = capture.transient;
+    write_capture(path, capture);
+    fuzz(path, [&] { read_capture(path); });
+}
+
+TEST(FileFuzz, MutatedOldHdf5FilesAreReadOrRefused) {
+    const TemporaryFolder folder;
+    const std::string path = folder.file("capture.h5");
+    write_old_hdf5(path, test_support::example_capture(core::ScanPattern::Exhaustive));
+    fuzz(path, [&] { read_capture(path); });
+}
+
+TEST(FileFuzz, MutatedResponseCurvesAreReadOrRefused) {
+    const TemporaryFolder folder;
+    const std::string path = folder.file("curve.txt");
+    test_support::write_file_bytes(path, "# ps weight\n-10 1\n0 6.5\n2e1 3\n");
+    fuzz(path, [&] { core::make_response({0.0, 0.0, path}, "response"); });
 }
 
 TEST(FileFuzz, MutatedVolumesAreReadOrRefused) {

@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: MIT
+#include "nlos/formats/capture_format.h"
+#include "nlos/formats/exr_table.h"
+#include "renderer/core/error.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+namespace nlos {
+namespace {
+
+using core::Capture;
+using core::Error;
+using core::Vec3;
+using core::WallPoints;
+
+// A scan as an OpenEXR image that any viewer shows: one row per measurement pair, one column per
+// bin (a streak image), or, for a scan of a grid with a single bin, the wall as an eye in front of
+// it sees it: x from right to left, y upwards. Channel Y holds H as float, `variance` its variance,
+// `order.N` the light of N bounces. Header attributes:
+//
+//   nlosFormat                        text: capture 1
+//   nlosLayout                        text: pairs | wall
+//   nlosPattern                       text: confocal | single | exhaustive
+//   nlosUnit                          text: radiance | counts
+//   nlosCountsPerRadiance             double, when known
+//   nlosOplStartM, nlosBinWidthM      double: start of bin 0 and width of a bin [m of path length]
+//   nlosOplOrigin                     text: relay_wall | device
+//   nlosLaserM, nlosDetectorM         3 floats: device positions [m, world]
+//   nlosSensingGrid, nlosIlluminationGrid            2 floats: points along x and y; none: a list
+//   nlosSensingPointsM, nlosIlluminationPointsM      3 floats per point [m, world], x index first
+//   nlosSensingNormals, nlosIlluminationNormals      3 floats per point, unit
+//   nlosSceneInfo                     text: JSON, where the capture came from
+//
+// A confocal scan holds its points once, as the sensing ones. Pairs are numbered as in core::Scan.
+
+constexpr const char* kFormatKey = "nlosFormat";
+constexpr const char* kFormat = "capture 1";
+constexpr const char* kValues = "Y";
+constexpr const char* kVariance = "variance";
+constexpr const char* kOrder = "order.";
+
+std::vector<float> to_floats(const std::vector<Vec3>& vectors) {
+    std::vector<float> values;
+    values.reserve(3 * vectors.size());
+    for (const Vec3& vector : vectors) {
+        for (const double coordinate : vector) values.push_back(static_cast<float>(coordinate));
+    }
+    return values;
+}
+
+void put_points(ExrTable& table, const std::string& device, const WallPoints& points) {
+    table.lists["nlos" + device + "PointsM"] = to_floats(points.positions);
+    table.lists["nlos" + device + "Normals"] = to_floats(points.normals);
+    if (points.grid) {
+        table.lists["nlos" + device + "Grid"] = {static_cast<float>((*points.grid)[0]),
+                                                 static_cast<float>((*points.grid)[1])};
+    }
+}
+
+/// A table of named values whose absence or shape is an error of the file.
+class Attributes {
+ public:
+    Attributes(const std::string& path, const ExrTable& table) : path_(path), table_(table) {}
+
+    double number(const std::string& name) const {
+        const auto found = table_.numbers.find(name);
+        if (found == table_.numbers.end()) throw_missing(name, "a double");
+        return found->second;
+    }
+    const std::string& text(const std::string& name) const {
+        const auto found = table_.texts.find(name);
+        if (found == table_.texts.end()) throw_missing(name, "a text");
+        return found->second;
+    }
+    template <class E>
+    E choice(const std::string& name) const {
+        E value{};
+        core::read_value(core::Json(text(name)), path_ + ": " + name, value);
+        return value;
+    }
+    std::vector<Vec3> vectors(const std::string& name) const {
+        const auto found = table_.lists.find(name);
+        if (found == table_.lists.end() || found->second.empty() || found->second.size() % 3 != 0) {
+            throw_missing(name, "3 floats per point");
+        }
+        std::vector<Vec3> result;
+        for (std::size_t i = 0; i < found->second.size(); i += 3) {
+            result.emplace_back(found->second[i], found->second[i + 1], found->second[i + 2]);
+        }
+        return result;
+    }
+    Vec3 vector(const std::string& name) const {
+        const std::vector<Vec3> found = vectors(name);
+        if (found.size() != 1) throw_missing(name, "3 floats");
+        return found[0];
+    }
+    WallPoints points(const std::string& device) const {
+        WallPoints points;
+        points.positions = vectors("nlos" + device + "PointsM");
+        points.normals = vectors("nlos" + device + "Normals");
+        for (Vec3& normal : points.normals) {
+            if (normal.norm() > 0.0) normal.normalize();  // floats leave them slightly off
+        }
+        const auto grid = table_.lists.find("nlos" + device + "Grid");
+        if (grid == table_.lists.end()) return points;
+        const auto is_count = [](float value) {
+            return value >= 1.0F && value <= 1e7F && value == std::trunc(value);
+        };
+        if (grid->second.size() != 2 || !std::ranges::all_of(grid->second, is_count)) {
+            throw_missing(grid->first, "2 whole numbers");
+        }
+        points.grid = {static_cast<std::size_t>(grid->second[0]),
+                       static_cast<std::size_t>(grid->second[1])};
+        return points;
+    }
+
+ private:
+    [[noreturn]] void throw_missing(const std::string& name, const std::string& wanted) const {
+        throw Error(path_ + ": " + name, "is missing or of another kind", "must be " + wanted);
+    }
+
+    const std::string& path_;
+    const ExrTable& table_;
+};
+
+bool shows_wall(const Capture& capture) {
+    return capture.time_axis.num_bins == 1 && capture.scan.sensing.grid &&
+           capture.scan.pattern != core::ScanPattern::Exhaustive;
+}
+
+/// Where in the table a pair's first bin stands: rows of bins, or the wall from its front.
+std::size_t place_of(std::size_t pair, const Capture& capture, bool is_wall) {
+    if (!is_wall) return pair * static_cast<std::size_t>(capture.time_axis.num_bins);
+    const auto [nx, ny] = *capture.scan.sensing.grid;
+    return (ny - 1 - pair % ny) * nx + (nx - 1 - pair / ny);
+}
+
+std::vector<float> to_channel(const core::Transient& transient,
+                              const Capture& capture,
+                              bool is_wall) {
+    std::vector<float> channel(transient.values().size());
+    for (std::size_t pair = 0; pair < transient.num_pairs(); ++pair) {
+        std::ranges::copy(
+            transient.histogram(pair),
+            channel.begin() + static_cast<std::ptrdiff_t>(place_of(pair, capture, is_wall)));
+    }
+    return channel;
+}
+
+core::Transient to_transient(const std::vector<float>& channel,
+                             const Capture& capture,
+                             bool is_wall) {
+    core::Transient transient(capture.scan.num_pairs(), capture.time_axis.num_bins);
+    for (std::size_t pair = 0; pair < transient.num_pairs(); ++pair) {
+        std::copy_n(channel.begin() + static_cast<std::ptrdiff_t>(place_of(pair, capture, is_wall)),
+                    transient.num_bins(),
+                    transient.histogram(pair).begin());
+    }
+    return transient;
+}
+
+/// N of a channel `order.N`, or nothing.
+std::optional<int> order_of(const std::string& channel) {
+    const std::string prefix = kOrder;
+    if (!channel.starts_with(prefix)) return std::nullopt;
+    int order = 0;
+    const char* end = channel.data() + channel.size();
+    const auto [stop, error] = std::from_chars(channel.data() + prefix.size(), end, order);
+    if (error != std::errc() || stop != end) return std::nullopt;
+    return order;
+}
+
+void check_size(const std::string& path, const ExrTable& table, const Capture& capture) {
+    const auto bins = static_cast<std::size_t>(capture.time_axis.num_bins);
+    const auto expect = [&](std::size_t width, std::size_t height) {
+        if (table.width == width && table.height == height) return;
+        throw Error(path,
+                    fmt::format("is {} x {} pixels", table.width, table.height),
+                    fmt::format("must be {} x {} as its points say", width, height));
+    };
+    if (shows_wall(capture)) {
+        expect((*capture.scan.sensing.grid)[0], (*capture.scan.sensing.grid)[1]);
+    } else {
+        expect(bins, capture.scan.num_pairs());
+    }
+}
+
+void read_scan(const Attributes& attributes, core::Scan& scan) {
+    scan.pattern = attributes.choice<core::ScanPattern>("nlosPattern");
+    scan.sensing = attributes.points("Sensing");
+    scan.illumination = scan.pattern == core::ScanPattern::Confocal
+                            ? scan.sensing
+                            : attributes.points("Illumination");
+    scan.opl_origin = attributes.choice<core::OplOrigin>("nlosOplOrigin");
+    scan.laser_position = attributes.vector("nlosLaserM");
+    scan.detector_position = attributes.vector("nlosDetectorM");
+}
+
+bool recognise(const std::string& path) {
+    return is_exr_file(path);
+}
+
+Capture read(const std::string& path, const CaptureReadSettings& settings) {
+    const ExrTable table = read_exr_table(path);
+    if (!table.texts.contains(kFormatKey) || table.texts.at(kFormatKey) != kFormat) {
+        throw Error(path,
+                    fmt::format("is an image without the header attribute {}", kFormatKey),
+                    "must be a capture written as OpenEXR");
+    }
+    const Attributes attributes(path, table);
+    Capture capture;
+    read_scan(attributes, capture.scan);
+    const bool is_wall = attributes.text("nlosLayout") == "wall";
+    if (table.width > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
+        throw Error(path, fmt::format("has {} columns", table.width), "must have fewer than 2^31");
+    }
+    capture.time_axis = {attributes.number("nlosOplStartM"),
+                         settings.bin_width_m.value_or(attributes.number("nlosBinWidthM")),
+                         is_wall ? 1 : static_cast<int>(table.width)};
+    capture.unit = attributes.choice<core::TransientUnit>("nlosUnit");
+    if (const auto scale = table.numbers.find("nlosCountsPerRadiance");
+        scale != table.numbers.end()) {
+        capture.counts_per_radiance = scale->second;
+    }
+    if (is_wall && !shows_wall(capture)) {
+        throw Error(path + ": nlosLayout", "is wall for a list of points", "must be pairs");
+    }
+    check_size(path, table, capture);
+    if (!table.channels.contains(kValues)) {
+        throw Error(path, "has no channel Y", "must hold the histograms there");
+    }
+    for (const auto& [name, channel] : table.channels) {
+        const std::optional<int> order = order_of(name);
+        if (name == kValues) capture.transient = to_transient(channel, capture, is_wall);
+        if (name == kVariance) capture.variance = to_transient(channel, capture, is_wall);
+        if (!order) continue;
+        capture.orders.push_back(*order);
+        capture.by_order.push_back(to_transient(channel, capture, is_wall));
+    }
+    capture.scene_info = core::Json::parse(attributes.text("nlosSceneInfo"), nullptr, false);
+    if (!capture.scene_info.is_object()) capture.scene_info = core::Json::object();
+    return capture;
+}
+
+std::vector<std::string> write(const std::string& path,
+                               const Capture& capture,
+                               const CaptureWriteSettings&) {
+    if (capture.scan.camera) {
+        throw Error(path, "is to hold the image of a camera", "must hold a scan of wall points");
+    }
+    const core::Scan& scan = capture.scan;
+    const bool is_wall = shows_wall(capture);
+    ExrTable table;
+    table.width = is_wall ? (*scan.sensing.grid)[0] : capture.transient.num_bins();
+    table.height = is_wall ? (*scan.sensing.grid)[1] : scan.num_pairs();
+    table.texts[kFormatKey] = kFormat;
+    table.texts["nlosLayout"] = is_wall ? "wall" : "pairs";
+    table.texts["nlosPattern"] = enum_name(scan.pattern);
+    table.texts["nlosUnit"] = enum_name(capture.unit);
+    table.texts["nlosOplOrigin"] = enum_name(scan.opl_origin);
+    table.texts["nlosSceneInfo"] =
+        capture.scene_info.dump(-1, ' ', false, core::Json::error_handler_t::replace);
+    table.numbers["nlosOplStartM"] = capture.time_axis.opl_start_m;
+    table.numbers["nlosBinWidthM"] = capture.time_axis.bin_width_m;
+    if (capture.counts_per_radiance) {
+        table.numbers["nlosCountsPerRadiance"] = *capture.counts_per_radiance;
+    }
+    table.lists["nlosLaserM"] = to_floats({scan.laser_position});
+    table.lists["nlosDetectorM"] = to_floats({scan.detector_position});
+    put_points(table, "Sensing", scan.sensing);
+    if (scan.pattern != core::ScanPattern::Confocal) {
+        put_points(table, "Illumination", scan.illumination);
+    }
+    table.channels[kValues] = to_channel(capture.transient, capture, is_wall);
+    if (capture.variance) {
+        table.channels[kVariance] = to_channel(*capture.variance, capture, is_wall);
+    }
+    for (std::size_t i = 0; i < capture.orders.size(); ++i) {
+        // Two digits keep the channels, which are sorted by name, in the order of their numbers.
+        table.channels[fmt::format("{}{:02}", kOrder, capture.orders[i])] =
+            to_channel(capture.by_order[i], capture, is_wall);
+    }
+    write_exr_table(path, table);
+    return {};
+}
+
+}  // namespace
+
+CaptureFormat exr_format() {
+    return {"OpenEXR streak image",
+            "OpenEXR with the header attribute nlosFormat",
+            recognise,
+            read,
+            {".exr"},
+            write};
+}
+
+}  // namespace nlos

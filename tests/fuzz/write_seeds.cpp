@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+// Writes the files that fuzzing starts from: one folder per fuzzer.
+#include "nlos/formats/capture_file.h"
+#include "nlos/formats/ply_file.h"
+#include "nlos/formats/volume_file.h"
+#include "tests/nlos/mat_writing.h"
+#include "tests/nlos/old_hdf5_file.h"
+#include "tests/support/example_capture.h"
+#include "tests/support/example_reconstruction.h"
+#include "tests/support/file_bytes.h"
+
+#include <filesystem>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+void write_captures(const std::string& folder) {
+    int number = 0;
+    for (const auto pattern :
+         {core::ScanPattern::Confocal, core::ScanPattern::Single, core::ScanPattern::Exhaustive}) {
+        core::Capture capture = test_support::example_capture(pattern);
+        if (number == 0) capture.variance = capture.transient;
+        if (number == 1) capture.unit = core::TransientUnit::Counts;
+        if (number == 2) {
+            capture.orders = {3};
+            capture.by_order = {capture.transient};
+        }
+        for (const std::string suffix : {".h5", ".exr"}) {
+            nlos::write_capture(folder + "/" + std::to_string(number) + suffix, capture);
+        }
+        nlos::write_old_hdf5(folder + "/old" + std::to_string(number) + ".h5", capture);
+        ++number;
+    }
+}
+
+void write_mats(const std::string& folder, matio_compression compression) {
+    const std::vector<std::uint16_t> data(3 * 3 * 20, 7);
+    const std::vector<double> width{0.4};
+    const std::string name = compression == MAT_COMPRESSION_NONE ? "/plain.mat" : "/zlib.mat";
+    nlos::write_mat(folder + "/capture" + name,
+                    {nlos::mat_variable("rect_data", {3, 3, 20}, data),
+                     nlos::mat_variable("width", {1, 1}, width)},
+                    compression);
+    const std::vector<std::uint16_t> signal(3 * 5, 7);
+    const std::vector<std::uint8_t> lit{0, 0, 0, 1, 2, 3, 5, 5, 5};
+    const std::vector<std::uint8_t> seen{0, 0, 0, 4, 4, 4, 4, 4, 4};
+    nlos::write_mat(folder + "/point_list" + name,
+                    {nlos::mat_variable("sub_Sig", {3, 5}, signal),
+                     nlos::mat_variable("C_i", {3, 3}, lit),
+                     nlos::mat_variable("C_d", {3, 3}, seen)},
+                    compression);
+}
+
+void write_meshes(const std::string& folder) {
+    core::TriangleMesh mesh;
+    mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    mesh.triangles = {{0, 1, 2}};
+    nlos::write_ply(folder + "/binary.ply", mesh);
+    test_support::write_file_bytes(
+        folder + "/ascii.ply",
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty "
+        "float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+        "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+}
+
+void write_scenes(const std::string& folder) {
+    for (const auto& scene : fs::directory_iterator(NLOS_SOURCE_DIR "/scenes")) {
+        const std::string name = "/" + scene.path().filename().string();
+        if (!fs::exists(scene.path() / "scene.json")) continue;
+        fs::copy_file(scene.path() / "scene.json", folder + "/scene" + name + ".json");
+        constexpr std::uintmax_t kLargestSeed = 100'000;
+        if (fs::exists(scene.path() / "scene.glb") &&
+            fs::file_size(scene.path() / "scene.glb") < kLargestSeed) {
+            fs::copy_file(scene.path() / "scene.glb", folder + "/glb" + name + ".glb");
+        }
+    }
+    test_support::write_file_bytes(
+        folder + "/gltf/triangle.gltf",
+        R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"scene":0,"nodes":[{"mesh":0}],)"
+        R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],)"
+        R"("accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3",)"
+        R"("min":[0,0,0],"max":[1,1,0]}],"bufferViews":[{"buffer":0,"byteLength":36}],)"
+        R"("buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,)"
+        R"(AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    if (argc != 2) return 2;
+    const std::string folder = argv[1];
+    for (const char* name :
+         {"capture", "volume", "point_list", "ply", "glb", "gltf", "scene", "response"}) {
+        fs::create_directories(folder + "/" + name);
+    }
+    write_captures(folder + "/capture");
+    write_mats(folder, MAT_COMPRESSION_NONE);
+    write_mats(folder, MAT_COMPRESSION_ZLIB);
+    nlos::write_volume(folder + "/volume/volume.h5", test_support::example_reconstruction());
+    write_meshes(folder + "/ply");
+    write_scenes(folder);
+    test_support::write_file_bytes(folder + "/response/curve.txt",
+                                   "# ps weight\n-10 1\n0 6.5\n2e1 3\n");
+    return 0;
+}
