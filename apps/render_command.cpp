@@ -55,8 +55,11 @@ void run(const RenderArguments& arguments) {
                                         effort,
                                         job.seconds));
     }
-    fmt::print("wrote {} ({} pairs x {} bins, {} by {}, {}{:.2f} s)\n",
+    const std::string frames =
+        job.num_frames > 0 ? fmt::format("{} frames x ", job.num_frames) : "";
+    fmt::print("wrote {} ({}{} pairs x {} bins, {} by {}, {}{:.2f} s)\n",
                arguments.output,
+               frames,
                job.num_pairs,
                job.num_bins,
                job.pattern,

@@ -5,8 +5,9 @@
 #include "apps/terminal.h"
 #include "apps/version.h"
 #include "nlos/formats/capture_file.h"
+#include "nlos/pictures.h"
 #include "renderer/core/output_file.h"
-#include "renderer/render.h"
+#include "renderer/frame_sequence.h"
 
 #include <filesystem>
 
@@ -51,6 +52,18 @@ core::Json provenance(const std::string& scene_path,
     return info;
 }
 
+renderer::RenderResult run(const renderer::SceneDescription& description,
+                           const core::Scan& scan,
+                           const core::Progress& progress) {
+    const auto scene =
+        std::make_shared<const renderer::Scene>(renderer::load_scene(description, scan));
+    if (description.frames) {
+        return renderer::render_frames(
+            scene, scan, description, renderer::make_frame_renderer(), progress);
+    }
+    return renderer::render(*scene, scan, description.time_axis, description.render, progress);
+}
+
 }  // namespace
 
 RenderJob render_to_file(const std::string& scene_path,
@@ -61,16 +74,18 @@ RenderJob render_to_file(const std::string& scene_path,
     const renderer::SceneDescription description =
         renderer::read_scene_description(scene_path, overrides);
     const core::Scan scan = renderer::make_scan(description);
-    const renderer::Scene scene = renderer::load_scene(description, scan);
-
     ProgressBar bar("render");
-    renderer::RenderResult result =
-        renderer::render(scene, scan, description.time_axis, description.render, bar.progress());
+    renderer::RenderResult result = run(description, scan, bar.progress());
     result.capture.scene_info = provenance(scene_path, description, result);
     nlos::write_capture(capture_path, result.capture);
+    if (scan.camera) {
+        core::write_text_file(with_suffix(capture_path, ".png"),
+                              nlos::encode_preview_png(result.capture));
+    }
 
     RenderJob job;
     job.num_pairs = scan.num_pairs();
+    if (result.capture.sequence) job.num_frames = result.capture.sequence->frames.size();
     job.num_bins = description.time_axis.num_bins;
     job.pattern = scan.camera ? "camera" : core::enum_name(scan.pattern);
     job.estimator = estimator_names(result);

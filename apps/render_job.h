@@ -14,6 +14,7 @@ namespace apps {
 struct RenderJob {
     std::size_t num_pairs = 0;
     int num_bins = 0;
+    std::size_t num_frames = 0;  ///< 0: no sequence
     std::string pattern;
     std::string estimator;
     std::uint64_t samples_per_pair = 0;     ///< 0 when no paths were traced
@@ -23,7 +24,8 @@ struct RenderJob {
     std::vector<std::string> warnings;
 };
 
-/// Renders a scene file into a capture file that carries settings, seed, version and command line.
+/// Renders a scene file into a capture file that carries settings, seed, version and command line;
+/// beside the image of a camera goes a preview (.png).
 /// throws   core::Error, core::Failure as the front doors do
 RenderJob render_to_file(const std::string& scene_path,
                          const std::vector<std::string>& overrides,

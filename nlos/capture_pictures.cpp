@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "nlos/formats/canvas.h"
 #include "nlos/pictures.h"
 #include "nlos/wall_frame.h"
 
@@ -15,7 +16,11 @@ constexpr double kQuietShare = 0.002;       // of all light, left out at either 
 constexpr double kShownMargin = 0.02;       // of the axis, kept around what is shown
 constexpr double kBrightestShare = 0.0005;  // of a streak's values, drawn in the last colour
 
-constexpr std::size_t kMostGates = 4;  // of an image's histogram, drawn one by one
+constexpr double kBrightestPixels = 0.01;  // of an image's values: highlights, fireflies
+constexpr double kScreenGamma = 2.2;
+constexpr int kPreviewWidth = 640;       // [pixels] that small images are enlarged to
+constexpr std::size_t kMostFrames = 12;  // of a sequence, drawn one by one
+constexpr std::size_t kMostGates = 4;    // of an image's histogram, drawn one by one
 
 using Range = std::array<double, 2>;
 
@@ -64,9 +69,9 @@ std::size_t pair_of(const core::Scan& scan, std::size_t sensing) {
     return scan.illumination.size() / 2 * scan.sensing.size() + sensing;
 }
 
-/// The range from 0 to all but the brightest values, so that a few cannot darken the rest.
-Range light_range(std::vector<float> values) {
-    const double share = 1.0 - kBrightestShare;
+/// The range from 0 to all but a share of brightest values, so that a few cannot darken the rest.
+Range light_range(std::vector<float> values, double brightest_share) {
+    const double share = 1.0 - brightest_share;
     const auto rank = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
     std::nth_element(values.begin(), values.begin() + rank, values.end());
     return {0.0, static_cast<double>(values[static_cast<std::size_t>(rank)])};
@@ -97,16 +102,18 @@ ImagePanel streak_panel(const core::Capture& capture,
     panel.y_direction = AxisDirection::Reversed;
     panel.value_label = unit_of(capture) + " per bin";
     panel.scale = AxisScale::Free;
-    panel.value_range = light_range(panel.values);
+    panel.value_range = light_range(panel.values, kBrightestShare);
     return panel;
 }
 
 /// All light of every sensing point, the wall seen like every front view.
-ImagePanel wall_panel(const core::Capture& capture, const WallGrid& grid) {
+ImagePanel wall_panel(const core::Capture& capture,
+                      const core::Transient& transient,
+                      const WallGrid& grid) {
     std::vector<double> light(capture.scan.sensing.size(), 0.0);
     for (std::size_t pair = 0; pair < capture.scan.num_pairs(); ++pair) {
         double& sum = light[capture.scan.sensing_index(pair)];
-        for (const float value : capture.transient.histogram(pair)) sum += value;
+        for (const float value : transient.histogram(pair)) sum += value;
     }
     ImagePanel panel;
     panel.title = "Light over the wall, all bins";
@@ -160,8 +167,12 @@ ImagePanel gated_panel(const core::PinholeCamera& camera,
     panel.x_label = "x [pixel]";
     panel.y_label = "y [pixel]";
     panel.y_direction = AxisDirection::Reversed;
-    panel.value_range = light_range(panel.values);
+    panel.value_range = light_range(panel.values, kBrightestPixels);
     return panel;
+}
+
+std::string axis_text(const core::TimeAxis& axis) {
+    return fmt::format("{:.4g} to {:.4g} m", axis.opl_start_m, axis.opl_end_m());
 }
 
 /// The image of all light, the mean transient, and the image in a few gates that share the time
@@ -175,8 +186,8 @@ std::vector<Panel> image_panels(const core::Capture& capture) {
         panel.value_label = unit_of(capture);
         return panel;
     };
+    if (num_bins == 1) return {gated("Path length " + axis_text(capture.time_axis), {0, 1})};
     std::vector<Panel> panels{gated("Light of all bins", {0, num_bins})};
-    if (num_bins == 1) return panels;
     const std::vector<double> mean = mean_transient(capture);
     const std::array<std::size_t, 2> shown = shown_bins(mean);
     panels.emplace_back(curve_panel(capture, mean, shown));
@@ -184,18 +195,70 @@ std::vector<Panel> image_panels(const core::Capture& capture) {
     for (std::size_t i = 0; i < num_gates; ++i) {
         const std::size_t first = shown[0] + i * (shown[1] - shown[0]) / num_gates;
         const std::size_t last = shown[0] + (i + 1) * (shown[1] - shown[0]) / num_gates;
-        panels.emplace_back(
-            gated(fmt::format("Path length {:.3g} to {:.3g} m",
-                              capture.time_axis.bin_begin_m(static_cast<double>(first)),
-                              capture.time_axis.bin_begin_m(static_cast<double>(last))),
-                  {first, last}));
+        core::TimeAxis gate = capture.time_axis;
+        gate.opl_start_m = gate.bin_begin_m(static_cast<double>(first));
+        gate.num_bins = static_cast<int>(last - first);
+        panels.emplace_back(gated("Path length " + axis_text(gate), {first, last}));
+    }
+    return panels;
+}
+
+/// A few frames of a sequence, all on one scale; nothing for point lists, which make no image.
+std::vector<Panel> film_strip(const core::Capture& capture) {
+    const core::FrameSequence& sequence = *capture.sequence;
+    const std::optional<WallGrid> grid =
+        capture.scan.camera ? std::nullopt : derive_wall_frame(capture.scan).grid;
+    if (!capture.scan.camera && !grid) return {};
+    const std::size_t count = sequence.frames.size();
+    const std::size_t num_shown = std::min(kMostFrames, count);
+    std::vector<ImagePanel> images;
+    std::vector<float> values;
+    for (std::size_t i = 0; i < num_shown; ++i) {
+        const std::size_t frame = num_shown > 1 ? i * (count - 1) / (num_shown - 1) : 0;
+        const core::Transient& transient = sequence.frames[frame];
+        ImagePanel image =
+            grid ? wall_panel(capture, transient, *grid)
+                 : gated_panel(*capture.scan.camera, transient, {0, transient.num_bins()});
+        core::TimeAxis axis = capture.time_axis;
+        axis.opl_start_m -= static_cast<double>(count - 1 - frame) * sequence.gate_step_m;
+        image.title = fmt::format("Frame {}: {}", frame, axis_text(axis));
+        image.value_label = unit_of(capture);
+        values.insert(values.end(), image.values.begin(), image.values.end());
+        images.push_back(std::move(image));
+    }
+    const Range range = light_range(values, kBrightestPixels);
+    std::vector<Panel> panels;
+    for (ImagePanel& image : images) {
+        image.value_range = range;
+        panels.emplace_back(std::move(image));
     }
     return panels;
 }
 
 }  // namespace
 
+std::string encode_preview_png(const core::Capture& capture) {
+    const core::PinholeCamera& camera = *capture.scan.camera;
+    const ImagePanel panel =
+        gated_panel(camera, capture.transient, {0, capture.transient.num_bins()});
+    const double white = (*panel.value_range)[1];
+    std::vector<Colour> colours;
+    for (const float value : panel.values) {
+        const double share = white > 0.0 ? std::clamp(double{value} / white, 0.0, 1.0) : 0.0;
+        colours.push_back(colour_at(ColourMap::Grey, std::pow(share, 1.0 / kScreenGamma)));
+    }
+    const auto& [width, height] = camera.resolution;
+    const int zoom = std::max(1, kPreviewWidth / width);
+    Canvas canvas(zoom * width, zoom * height, {});
+    canvas.image({0, 0, zoom * width, zoom * height}, width, height, colours);
+    return canvas.encode_png();
+}
+
 std::vector<Panel> capture_panels(const core::Capture& capture) {
+    if (capture.sequence) {
+        std::vector<Panel> strip = film_strip(capture);
+        if (!strip.empty()) return strip;
+    }
     if (capture.scan.camera) return image_panels(capture);
     const std::optional<WallGrid> grid = derive_wall_frame(capture.scan).grid;
     const std::vector<double> mean = mean_transient(capture);
@@ -203,7 +266,7 @@ std::vector<Panel> capture_panels(const core::Capture& capture) {
     const bool has_time = capture.transient.num_bins() > 1;
     std::vector<Panel> panels;
     if (has_time || !grid) panels.emplace_back(streak_panel(capture, grid, bins));
-    if (grid) panels.emplace_back(wall_panel(capture, *grid));
+    if (grid) panels.emplace_back(wall_panel(capture, capture.transient, *grid));
     if (has_time) panels.emplace_back(curve_panel(capture, mean, bins));
     return panels;
 }

@@ -19,8 +19,14 @@ std::vector<Panel> volume_panels(const Reconstruction& reconstruction);
 /// Streak image of the middle row of wall points, light over the wall, and mean transient.
 ///
 /// Point lists have no picture of the wall; a single time gate has nothing but that. Of a camera:
-/// the image of all light, the mean transient, and images in a few gates.
+/// the image of all light, the mean transient, and images in a few gates. Of a sequence: some of
+/// its frames on one scale.
 std::vector<Panel> capture_panels(const core::Capture& capture);
+
+/// The image of a camera, all bins together, as a screen shows it: grey, gamma 2.2, one pixel in a
+/// hundred white, small images enlarged.
+/// returns   the bytes of a PNG file
+std::string encode_preview_png(const core::Capture& capture);
 
 /// True depth, reconstructed depth on the same scale, and their signed difference.
 /// throws    core::Error when the two have different columns

@@ -95,15 +95,6 @@ RenderResult trace_paths(const Scene& scene,
     return render_passes(scene, scan, axis, settings, work, progress);
 }
 
-// `share` of the progress bar begins where another part of the work ended.
-core::Progress part_of(const core::Progress& progress, double begin, double end) {
-    core::Progress part = progress;
-    part.report = [&progress, begin, end](double share, const std::string& detail) {
-        progress.update(begin + (end - begin) * share, detail);
-    };
-    return part;
-}
-
 }  // namespace
 
 RenderResult render(const Scene& scene,
@@ -131,9 +122,8 @@ RenderResult render(const Scene& scene,
     const PathShare share = share_of_paths(settings, surfaces);
     const double done = share == PathShare::Nothing ? 1.0 : 0.1;
     const ThirdBounce third =
-        integrate_third_bounce(scene, scan, axis, settings, part_of(progress, 0.0, done));
-    RenderResult result =
-        trace_paths(scene, scan, axis, settings, share, part_of(progress, done, 1.0));
+        integrate_third_bounce(scene, scan, axis, settings, progress.part(0.0, done));
+    RenderResult result = trace_paths(scene, scan, axis, settings, share, progress.part(done, 1.0));
     add(third.transient, result.capture.transient);
     if (settings.by_order) add(third.transient, result.capture.by_order[2]);
     OrderSource integrated{3, 3, Estimator::ThirdBounce, "all"};

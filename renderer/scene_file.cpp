@@ -75,6 +75,11 @@ void validate_scan(const ScanSettings& scan, const std::string& where) {
     }
 }
 
+void validate_frames(const FrameSettings& frames, const std::string& where) {
+    require(frames.count >= 1, where + ".count", frames.count, "at least 1");
+    require(frames.frame_s >= 0.0, where + ".frame_s", frames.frame_s, "at least 0");
+}
+
 // Refuses scans whose histograms alone could not be held, before anything is allocated.
 void validate_size(const SceneDescription& scene, const std::string& where) {
     const ScanSettings& scan = scene.scan;
@@ -88,6 +93,7 @@ void validate_size(const SceneDescription& scene, const std::string& where) {
     } else if (scan.pattern == core::ScanPattern::Exhaustive) {
         values *= count(scan.illumination_points_m, scan.illumination_points);
     }
+    if (scene.frames) values *= scene.frames->count;
     const double available = static_cast<double>(core::available_memory_bytes());
     if (values * sizeof(float) > available) {
         throw Error(where + (scene.camera ? "camera.resolution" : "scan.sensing_points") +
@@ -231,6 +237,7 @@ void validate(const SceneDescription& scene, const std::string& where) {
         validate_scan(scene.scan, where + "scan");
     }
     core::validate(scene.time_axis, where + "time_axis");
+    if (scene.frames) validate_frames(*scene.frames, where + "frames");
     validate(scene.render, where + "render");
     validate_grid(scene.ground_truth.depth_resolution, where + "ground_truth.depth_resolution");
     validate_size(scene, where);

@@ -43,6 +43,13 @@ struct CameraSettings : core::PinholeCamera {
     std::string name;  ///< of a glTF camera, which then gives pose and angle of view; or empty
 };
 
+/// A sequence: the gate moves by a step and the objects by their velocities from frame to frame.
+struct FrameSettings {
+    int count = 1;
+    double gate_step_m = 0.0;
+    double frame_s = 0.0;
+};
+
 struct GroundTruthSettings {
     std::array<int, 2> depth_resolution{256, 256};
 };
@@ -54,6 +61,7 @@ struct SceneDescription {
     ScanSettings scan;
     std::optional<CameraSettings> camera;  ///< replaces relay_wall and scan
     core::TimeAxis time_axis;
+    std::optional<FrameSettings> frames;  ///< nothing: one frame
     RenderSettings render;
     GroundTruthSettings ground_truth;
 };
@@ -92,6 +100,13 @@ void for_each_field(CameraSettings& camera, Visitor&& visit) {
 void read_value(const core::Json& json, const std::string& where, CameraSettings& camera);
 
 template <class Visitor>
+void for_each_field(FrameSettings& frames, Visitor&& visit) {
+    visit("count", frames.count, "number of frames");
+    visit("gate_step_m", frames.gate_step_m, "by which the time axis moves per frame [m]");
+    visit("frame_s", frames.frame_s, "in which objects move on per frame [s]");
+}
+
+template <class Visitor>
 void for_each_field(GroundTruthSettings& truth, Visitor&& visit) {
     visit("depth_resolution", truth.depth_resolution, "columns of the true depth map, x by y");
 }
@@ -106,6 +121,7 @@ void for_each_field(SceneDescription& scene, Visitor&& visit) {
           "instead of relay_wall and scan: an image; position_m, look_at_m, up, fov_y_deg, "
           "resolution, light_m, light_spot_m, or the name of a glTF camera");
     visit("time_axis", scene.time_axis, "bins of optical path length");
+    visit("frames", scene.frames, "a sequence: count, gate_step_m, frame_s; seconds are per frame");
     visit("render", scene.render, "estimator and effort");
     visit("ground_truth", scene.ground_truth, "what compare uses as truth");
 }

@@ -7,7 +7,8 @@
 namespace scenes {
 
 std::vector<GeneratedScene> generated_scenes() {
-    return {make_letter(), make_bars(), make_corner(), make_glossy(), make_curved()};
+    return {
+        make_letter(), make_bars(), make_corner(), make_glossy(), make_curved(), make_box_room()};
 }
 
 void write_scene(const GeneratedScene& scene, const std::string& folder) {

@@ -176,6 +176,14 @@ std::vector<std::string> describe_capture(const core::Capture& capture) {
             fmt::format("path lengths {} the legs to laser and detector",
                         scan.opl_origin == core::OplOrigin::Device ? "include" : "exclude"));
     }
+    if (capture.sequence) {
+        lines.push_back(
+            fmt::format("frames: {}, {:.6g} s apart, the axis moves by {:.6g} m per frame; what "
+                        "else is said here is of the last one",
+                        capture.sequence->frames.size(),
+                        capture.sequence->frame_s,
+                        capture.sequence->gate_step_m));
+    }
     lines.push_back(fmt::format("histograms: {}, from {:.6g} to {:.6g}, sum {:.6g}",
                                 enum_name(capture.unit),
                                 low,

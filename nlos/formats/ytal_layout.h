@@ -44,6 +44,10 @@ inline EnumMembers volume_format_members() {
 /// has no place for it.
 inline constexpr const char* kCameraKey = "camera";
 
+/// Attributes of /nlos/frames: how far gate and objects move on per frame.
+inline constexpr const char* kGateStep = "gate_step_m";
+inline constexpr const char* kFrameTime = "frame_s";
+
 /// The key of scene_info that holds the unit where the group /nlos is left out.
 inline constexpr const char* kUnitKey = "nlos_unit";
 

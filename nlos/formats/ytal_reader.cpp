@@ -289,24 +289,43 @@ void require_shape(const Hdf5Reader& file, const std::string& name, const Shape&
                 "must have shape " + shape_text(wanted) + ", as H");
 }
 
-void read_orders(const Hdf5Reader& file, Capture& capture) {
-    const Shape shape = file.shape("nlos/H_by_order");
+/// Reads several transients stored as one array, each of them as H.
+std::vector<core::Transient> read_stack(const Hdf5Reader& file,
+                                        const std::string& name,
+                                        const Capture& capture) {
+    const Shape shape = file.shape(name);
     Shape wanted = file.shape("H");
     wanted.insert(wanted.begin(), shape.empty() ? 0 : shape[0]);
-    require_shape(file, "nlos/H_by_order", wanted);
-    for (const double order : file.read_doubles("nlos/orders", {wanted[0]})) {
-        capture.orders.push_back(static_cast<int>(order));
-        capture.by_order.push_back(make_transient(file, "nlos/H_by_order", capture));
+    require_shape(file, name, wanted);
+    std::vector<core::Transient> stack;
+    for (std::size_t i = 0; i < wanted[0]; ++i) {
+        stack.push_back(make_transient(file, name, capture));
     }
-    file.read_rows("nlos/H_by_order",
-                   [&](std::size_t first, std::size_t count, const std::vector<float>& rows) {
-                       for (std::size_t i = 0; i < count; ++i) {
-                           copy_bins(rows.data() + i * (rows.size() / count),
-                                     0,
-                                     wanted[1],
-                                     capture.by_order[first + i]);
-                       }
-                   });
+    file.read_rows(name, [&](std::size_t first, std::size_t count, const std::vector<float>& rows) {
+        for (std::size_t i = 0; i < count; ++i) {
+            copy_bins(rows.data() + i * (rows.size() / count), 0, wanted[1], stack[first + i]);
+        }
+    });
+    return stack;
+}
+
+void read_orders(const Hdf5Reader& file, Capture& capture) {
+    capture.by_order = read_stack(file, "nlos/H_by_order", capture);
+    for (const double order : file.read_doubles("nlos/orders", {capture.by_order.size()})) {
+        capture.orders.push_back(static_cast<int>(order));
+    }
+}
+
+void read_frames(const Hdf5Reader& file, Capture& capture) {
+    core::FrameSequence sequence;
+    const auto read_step = [&](const char* name, double& value) {
+        const auto found = file.real_attribute("nlos/frames", name);
+        if (found && found->size() == 1) value = found->front();
+    };
+    read_step(kGateStep, sequence.gate_step_m);
+    read_step(kFrameTime, sequence.frame_s);
+    sequence.frames = read_stack(file, "nlos/frames", capture);
+    capture.sequence = std::move(sequence);
 }
 
 void read_own_group(const Hdf5Reader& file, Capture& capture) {
@@ -325,6 +344,7 @@ void read_own_group(const Hdf5Reader& file, Capture& capture) {
                     "must be one positive number");
     }
     if (file.has("nlos/H_by_order")) read_orders(file, capture);
+    if (file.has("nlos/frames")) read_frames(file, capture);
     if (!file.has("nlos/variance")) return;
     require_shape(file, "nlos/variance", file.shape("H"));
     capture.variance = read_transient(file, "nlos/variance", capture);

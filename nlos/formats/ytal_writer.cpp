@@ -94,20 +94,19 @@ void write_transient(Hdf5Writer& file,
         });
 }
 
-void write_orders(Hdf5Writer& file, const Shape& h_shape, const Capture& capture) {
+/// Several transients as one array, each of them as H.
+void write_stack(Hdf5Writer& file,
+                 const std::string& name,
+                 const Shape& h_shape,
+                 const std::vector<core::Transient>& stack) {
     Shape shape = h_shape;
-    shape.insert(shape.begin(), capture.orders.size());
-    file.write_rows("nlos/H_by_order",
-                    shape,
-                    [&](std::size_t first, std::size_t count, std::vector<float>& rows) {
-                        for (std::size_t i = 0; i < count; ++i) {
-                            copy_rows(capture.by_order[first + i],
-                                      0,
-                                      h_shape[0],
-                                      rows.data() + i * (rows.size() / count));
-                        }
-                    });
-    file.write("nlos/orders", {capture.orders.size()}, capture.orders);
+    shape.insert(shape.begin(), stack.size());
+    file.write_rows(
+        name, shape, [&](std::size_t first, std::size_t count, std::vector<float>& rows) {
+            for (std::size_t i = 0; i < count; ++i) {
+                copy_rows(stack[first + i], 0, h_shape[0], rows.data() + i * (rows.size() / count));
+            }
+        });
 }
 
 /// What y-tal has no name for, if there is any and y-tal need not read the file.
@@ -117,7 +116,7 @@ bool write_own_group(Hdf5Writer& file,
                      const Capture& capture,
                      const CaptureWriteSettings& settings) {
     const bool radiance = capture.unit == core::TransientUnit::Radiance;
-    const bool has_own = capture.variance || !capture.orders.empty();
+    const bool has_own = capture.variance || !capture.orders.empty() || capture.sequence;
     if ((!has_own && radiance) || settings.for_ytal) return has_own;
     file.create_group("nlos");
     file.write_attribute("nlos", "unit", std::string(enum_name(capture.unit)));
@@ -125,7 +124,15 @@ bool write_own_group(Hdf5Writer& file,
         file.write_attribute("nlos", "counts_per_radiance", {}, {&*capture.counts_per_radiance, 1});
     }
     if (capture.variance) write_transient(file, "nlos/variance", h_shape, *capture.variance);
-    if (!capture.orders.empty()) write_orders(file, h_shape, capture);
+    if (!capture.orders.empty()) {
+        write_stack(file, "nlos/H_by_order", h_shape, capture.by_order);
+        file.write("nlos/orders", {capture.orders.size()}, capture.orders);
+    }
+    if (capture.sequence) {
+        write_stack(file, "nlos/frames", h_shape, capture.sequence->frames);
+        file.write_attribute("nlos/frames", kGateStep, {1}, {{capture.sequence->gate_step_m}});
+        file.write_attribute("nlos/frames", kFrameTime, {1}, {{capture.sequence->frame_s}});
+    }
     return has_own;
 }
 

@@ -32,6 +32,23 @@ void validate_points(const WallPoints& points, const std::string& where) {
     }
 }
 
+void validate_histograms(const Capture& capture,
+                         const Transient& transient,
+                         const std::string& where) {
+    if (transient.num_pairs() != capture.scan.num_pairs() ||
+        transient.num_bins() != static_cast<std::size_t>(capture.time_axis.num_bins)) {
+        throw Error(
+            where,
+            fmt::format("found {} pairs x {} bins", transient.num_pairs(), transient.num_bins()),
+            fmt::format("must be {} x {}", capture.scan.num_pairs(), capture.time_axis.num_bins));
+    }
+    for (const float value : transient.values()) {
+        if (!std::isfinite(value)) {
+            throw Error(where, fmt::format("found {}", value), "must be finite numbers");
+        }
+    }
+}
+
 }  // namespace
 
 void validate(const Capture& capture, const std::string& where) {
@@ -49,19 +66,11 @@ void validate(const Capture& capture, const std::string& where) {
                     fmt::format("must equal the {} sensing points of a confocal scan",
                                 capture.scan.sensing.size()));
     }
-    if (capture.transient.num_pairs() != capture.scan.num_pairs() ||
-        capture.transient.num_bins() != static_cast<std::size_t>(capture.time_axis.num_bins)) {
-        throw Error(
-            where + ": H",
-            fmt::format("found {} pairs x {} bins",
-                        capture.transient.num_pairs(),
-                        capture.transient.num_bins()),
-            fmt::format("must be {} x {}", capture.scan.num_pairs(), capture.time_axis.num_bins));
-    }
-    for (const float value : capture.transient.values()) {
-        if (!std::isfinite(value)) {
-            throw Error(where + ": H", fmt::format("found {}", value), "must be finite numbers");
-        }
+    validate_histograms(capture, capture.transient, where + ": H");
+    if (!capture.sequence) return;
+    for (std::size_t i = 0; i < capture.sequence->frames.size(); ++i) {
+        validate_histograms(
+            capture, capture.sequence->frames[i], fmt::format("{}: frame {}", where, i));
     }
 }
 

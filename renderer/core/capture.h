@@ -87,6 +87,13 @@ struct Scan {
     }
 };
 
+/// Frames of a gate and of objects that move on from one to the next.
+struct FrameSequence {
+    std::vector<Transient> frames;  ///< the last one is the capture's own transient
+    double gate_step_m = 0.0;       ///< by which the time axis moved per frame
+    double frame_s = 0.0;           ///< in which objects moved on per frame
+};
+
 /// What a detector recorded, or a renderer computed: transients and where they belong.
 struct Capture {
     Scan scan;
@@ -97,6 +104,7 @@ struct Capture {
     std::optional<double> counts_per_radiance;  ///< when counts stem from known radiance
     std::vector<int> orders;          ///< bounce orders of `by_order`; empty when not resolved
     std::vector<Transient> by_order;  ///< one per entry of `orders`; they sum to `transient`
+    std::optional<FrameSequence> sequence;  ///< whose last frame the rest is about
 
     Json scene_info = Json::object();  ///< free dictionary: settings echo, version, seed, ...
     std::vector<std::string> notes;    ///< what the reader assumed or changed; shown by `nlos info`

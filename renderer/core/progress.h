@@ -15,6 +15,16 @@ struct Progress {
     /// Asked between passes; true ends the work early with what is there. May be empty.
     std::function<bool()> stop_requested;
 
+    /// The progress of a part of the work that takes it from share `begin` to `end`. Refers to
+    /// this.
+    Progress part(double begin, double end) const {
+        Progress result = *this;
+        result.report = [this, begin, end](double share, const std::string& detail) {
+            update(begin + (end - begin) * share, detail);
+        };
+        return result;
+    }
+
     void update(double share, const std::string& detail) const {
         if (report) report(share, detail);
     }

@@ -256,5 +256,38 @@ TEST(Pictures, ImagesAreDrawnFromTheTop) {
     EXPECT_FALSE(encode_panels_png(panels, 3).empty());
 }
 
+TEST(Pictures, PreviewShowsTheImageUpright) {
+    core::Capture capture = test_support::example_image();
+    for (float& value : capture.transient.values()) value = 0.0F;
+    capture.transient.histogram(1)[2] = 2.0F;  // x 0, y 1: bottom left
+    const std::string png = encode_preview_png(capture);
+    const cv::Mat bytes(1, static_cast<int>(png.size()), CV_8U, const_cast<char*>(png.data()));
+    const cv::Mat picture = cv::imdecode(bytes, cv::IMREAD_GRAYSCALE);
+    ASSERT_EQ(picture.cols, 639);
+    ASSERT_EQ(picture.rows, 426);
+    EXPECT_EQ(picture.at<std::uint8_t>(320, 100), 255);
+    EXPECT_EQ(picture.at<std::uint8_t>(100, 100), 0);
+    EXPECT_EQ(picture.at<std::uint8_t>(320, 320), 0);
+}
+
+TEST(Pictures, FilmStripShowsFramesOnOneScale) {
+    for (core::Capture capture : {test_support::example_image(),
+                                  test_support::example_capture(core::ScanPattern::Confocal)}) {
+        core::FrameSequence sequence;
+        sequence.frames.assign(30, capture.transient);
+        sequence.gate_step_m = 0.01;
+        for (float& value : sequence.frames[0].values()) value = 0.0F;
+        capture.sequence = sequence;
+        const std::vector<Panel> panels = capture_panels(capture);
+        ASSERT_EQ(panels.size(), 12U);
+        EXPECT_EQ(image(panels[0]).value_range, image(panels[11]).value_range);
+        EXPECT_EQ(image(panels[0]).values[0], 0.0F);
+        EXPECT_GT(image(panels[11]).values[0], 0.0F);
+        // The axis of the example starts at 0.25 m and stands for the last frame.
+        EXPECT_EQ(image(panels[0]).title, "Frame 0: -0.04 to 0 m");
+        EXPECT_EQ(image(panels[11]).title, "Frame 29: 0.25 to 0.29 m");
+    }
+}
+
 }  // namespace
 }  // namespace nlos

@@ -74,6 +74,24 @@ TEST(YtalCapture, ImagesSurviveTheRoundTrip) {
     EXPECT_EQ(read.scan.detector_position, capture.scan.detector_position);
 }
 
+TEST(YtalCapture, FramesSurviveTheRoundTrip) {
+    for (Capture capture :
+         {example_capture(ScanPattern::Exhaustive), test_support::example_image()}) {
+        core::FrameSequence sequence{{capture.transient, capture.transient}, 0.02, 0.04};
+        for (float& value : sequence.frames[0].values()) value *= -3.0F;
+        capture.sequence = sequence;
+        const Capture read = CaptureFile(capture).read();
+        ASSERT_TRUE(read.sequence.has_value());
+        EXPECT_EQ(read.sequence->gate_step_m, 0.02);
+        EXPECT_EQ(read.sequence->frame_s, 0.04);
+        ASSERT_EQ(read.sequence->frames.size(), 2U);
+        for (std::size_t i = 0; i < 2; ++i) {
+            EXPECT_TRUE(
+                std::ranges::equal(read.sequence->frames[i].values(), sequence.frames[i].values()));
+        }
+    }
+}
+
 TEST(YtalCapture, ImagesHaveNullGrids) {
     const CaptureFile file(test_support::example_image());
     const Hdf5Reader reader(file.path());

@@ -185,4 +185,20 @@ TEST(SceneFile, BadCamerasAreNamed) {
                       "render.max_bounces: found 1 with camera.light_spot_m");
 }
 
+TEST(SceneFile, FramesAreReadAndChecked) {
+    const auto scene = read_text(
+        R"({"geometry": "a.glb", "frames": {"count": 100, "gate_step_m": 0.02, "frame_s": 0.04}})");
+    ASSERT_TRUE(scene.frames.has_value());
+    EXPECT_EQ(scene.frames->count, 100);
+    EXPECT_EQ(scene.frames->gate_step_m, 0.02);
+    EXPECT_EQ(scene.frames->frame_s, 0.04);
+    EXPECT_FALSE(read_text(R"({"geometry": "a.glb"})").frames.has_value());
+    EXPECT_ERROR_WITH(read_text(R"({"geometry": "a.glb", "frames": {"count": 0}})"),
+                      "frames.count: found 0");
+    EXPECT_ERROR_WITH(read_text(R"({"geometry": "a.glb", "frames": {"frame_s": -1}})"),
+                      "frames.frame_s");
+    EXPECT_ERROR_WITH(read_text(R"({"geometry": "a.glb", "frames": {"count": 2000000000}})"),
+                      "must fit into");
+}
+
 }  // namespace

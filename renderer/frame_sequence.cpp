@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/frame_sequence.h"
+
+#include "renderer/core/random.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+
+namespace renderer {
+namespace {
+
+bool anything_moves(const Scene& scene) {
+    return std::any_of(scene.objects().begin(), scene.objects().end(), [](const Object& object) {
+        return object.velocity_m_per_s.norm() > 0.0;
+    });
+}
+
+// The first frame is what a render without frames gives; the others are independent of it, and of
+// the frames of other seeds.
+std::uint64_t seed_of_frame(std::uint64_t seed, int frame) {
+    if (frame == 0) return seed;
+    return core::Rng(seed, 0, static_cast<std::uint64_t>(frame)).next_bits();
+}
+
+}  // namespace
+
+FrameRenderer make_frame_renderer() {
+    return [](const Frame& frame, const core::Scan& scan, const core::Progress& progress) {
+        return render(*frame.scene, scan, frame.axis, frame.settings, progress);
+    };
+}
+
+SceneGeometry moved_by(const Scene& scene, double seconds) {
+    SceneGeometry geometry;
+    geometry.objects = scene.objects();
+    for (Object& object : geometry.objects) {
+        const core::Vec3 way = seconds * object.velocity_m_per_s;
+        for (core::Vec3& vertex : object.mesh.vertices) vertex += way;
+        object.world_from_node.pretranslate(way);
+    }
+    return geometry;
+}
+
+RenderResult render_frames(std::shared_ptr<const Scene> scene,
+                           const core::Scan& scan,
+                           const SceneDescription& description,
+                           const FrameRenderer& render_frame,
+                           const core::Progress& progress) {
+    const FrameSettings& frames = *description.frames;
+    const bool moves = frames.frame_s > 0.0 && anything_moves(*scene);
+    RenderResult sequence;
+    core::FrameSequence recorded{{}, frames.gate_step_m, frames.frame_s};
+    for (int i = 0; i < frames.count && !sequence.interrupted; ++i) {
+        Frame frame{i, scene, description.time_axis, description.render};
+        if (moves && i > 0) {
+            frame.scene = std::make_shared<const Scene>(
+                moved_by(*scene, i * frames.frame_s), scan, description.relay_wall);
+        }
+        frame.axis.opl_start_m += i * frames.gate_step_m;
+        frame.settings.seed = seed_of_frame(description.render.seed, i);
+        const double count = frames.count;
+        RenderResult rendered =
+            render_frame(frame, scan, progress.part(i / count, (i + 1) / count));
+        rendered.num_rays += sequence.num_rays;
+        rendered.seconds += sequence.seconds;
+        sequence = std::move(rendered);
+        recorded.frames.push_back(sequence.capture.transient);
+        if (i + 1 < frames.count && progress.should_stop()) sequence.interrupted = true;
+    }
+    sequence.capture.sequence = std::move(recorded);
+    return sequence;
+}
+
+}  // namespace renderer
