@@ -77,6 +77,14 @@ std::vector<Fact> capture_facts(const core::Capture& capture) {
     double total = 0.0;
     for (const float value : values) total += value;
     std::vector<Fact> facts = scan_facts(capture.scan);
+    if (capture.sequence) {
+        facts.emplace_back(
+            "Frames, of which H is the last",
+            fmt::format("{}, the path length moves by {} mm and time by {} s per frame",
+                        capture.sequence->frames.size(),
+                        short_number(1e3 * capture.sequence->gate_step_m),
+                        short_number(capture.sequence->frame_s)));
+    }
     facts.insert(
         facts.end(),
         {{"Bins",

@@ -74,7 +74,10 @@ Range light_range(std::vector<float> values, double brightest_share) {
     const double share = 1.0 - brightest_share;
     const auto rank = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
     std::nth_element(values.begin(), values.begin() + rank, values.end());
-    return {0.0, static_cast<double>(values[static_cast<std::size_t>(rank)])};
+    const float bright = values[static_cast<std::size_t>(rank)];
+    // A gate may hold so little that the share is all of it.
+    const float top = bright > 0.0F ? bright : *std::max_element(values.begin(), values.end());
+    return {0.0, double{top}};
 }
 
 ImagePanel streak_panel(const core::Capture& capture,

@@ -191,6 +191,50 @@ TEST_F(CommandLine, BadScenesAreOneLineAndKeepOlderResults) {
         "render scenes/letter/scene.json -o " + out + " --set time_axis", "--set", out);
 }
 
+TEST_F(CommandLine, ImagesOfACamera) {
+    const std::string out = file("image.h5");
+    const std::string small = " --samples 8 --set camera.resolution=[16,12]";
+    const Outcome render = run("render scenes/box/scene.json -o " + out + small);
+    EXPECT_EQ(render.status, 0) << render.err;
+    EXPECT_NE(render.out.find("192 pairs x 256 bins, camera by path"), std::string::npos)
+        << render.out;
+    EXPECT_EQ(file_bytes(file("image.png")).substr(1, 3), "PNG");
+    EXPECT_NE(run("info " + out).out.find("camera: 16 x 12 pixels"), std::string::npos);
+    EXPECT_EQ(run("compare " + out + " " + out).status, 0);
+    expect_bad_input("reconstruct " + out + " -o " + file("v.h5"), "image of a camera");
+    expect_bad_input("compare " + out + " scenes/box/scene.json", "cannot be compared");
+    expect_bad_input("info scenes/box/scene.json --picture " + file("p.png"), "relay wall");
+    expect_bad_input(
+        "render scenes/box/scene.json -o " + out + " --set camera.up=[0,0,1]", "camera.up", out);
+    expect_bad_input("render scenes/letter/scene.json -o " + out + " --set camera.fov_y_deg=30",
+                     "found together with relay_wall",
+                     out);
+    expect_bad_input(
+        "render scenes/box/scene.json -o " + out + " --method third_bounce --max-bounces 3",
+        "found third_bounce for a camera",
+        out);
+    expect_bad_input("render scenes/box/scene.json -o " + out +
+                         " --set camera.light_m=null camera.light_spot_m=[0,0,0]",
+                     "camera.light_spot_m",
+                     out);
+}
+
+TEST_F(CommandLine, SequencesBecomeFilmStripsInTheReport) {
+    fs::create_directories(file("box"));
+    const Outcome render = run("render scenes/box/gated.json -o " + file("box/gated.h5") +
+                               " --samples 4 --set camera.resolution=[16,12]");
+    EXPECT_EQ(render.status, 0) << render.err;
+    EXPECT_NE(render.out.find("24 frames x 192 pairs x 1 bins"), std::string::npos) << render.out;
+    const core::Capture capture = nlos::read_capture(file("box/gated.h5"));
+    ASSERT_TRUE(capture.sequence.has_value());
+    EXPECT_EQ(capture.sequence->frames.size(), 24U);
+    EXPECT_NEAR(capture.time_axis.opl_start_m, 1.5 + 23 * 0.1, 1e-9);
+    ASSERT_EQ(run("report " + file("box") + " -o " + file("box.html")).status, 0);
+    const std::string page = file_bytes(file("box.html"));
+    EXPECT_NE(page.find("16 x 12 pixels"), std::string::npos);
+    EXPECT_NE(page.find("24, the path length moves by 100 mm"), std::string::npos);
+}
+
 TEST_F(CommandLine, BadGeometryIsOneLineAndKeepsOlderResults) {
     const std::string out = file("capture.h5");
     const std::string scene = make_scene("scene.json", core::Json::object());

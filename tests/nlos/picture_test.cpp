@@ -275,7 +275,7 @@ TEST(Pictures, FilmStripShowsFramesOnOneScale) {
                                   test_support::example_capture(core::ScanPattern::Confocal)}) {
         core::FrameSequence sequence;
         sequence.frames.assign(30, capture.transient);
-        sequence.gate_step_m = 0.01;
+        sequence.gate_step_m = 0.005;
         for (float& value : sequence.frames[0].values()) value = 0.0F;
         capture.sequence = sequence;
         const std::vector<Panel> panels = capture_panels(capture);
@@ -284,7 +284,7 @@ TEST(Pictures, FilmStripShowsFramesOnOneScale) {
         EXPECT_EQ(image(panels[0]).values[0], 0.0F);
         EXPECT_GT(image(panels[11]).values[0], 0.0F);
         // The axis of the example starts at 0.25 m and stands for the last frame.
-        EXPECT_EQ(image(panels[0]).title, "Frame 0: -0.04 to 0 m");
+        EXPECT_EQ(image(panels[0]).title, "Frame 0: 0.105 to 0.145 m");
         EXPECT_EQ(image(panels[11]).title, "Frame 29: 0.25 to 0.29 m");
     }
 }
