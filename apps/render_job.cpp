@@ -58,8 +58,11 @@ renderer::RenderResult run(const renderer::SceneDescription& description,
     const auto scene =
         std::make_shared<const renderer::Scene>(renderer::load_scene(description, scan));
     if (description.frames) {
-        return renderer::render_frames(
-            scene, scan, description, renderer::make_frame_renderer(), progress);
+        return renderer::render_frames(scene,
+                                       scan,
+                                       description,
+                                       renderer::make_frame_renderer(scan, description.render),
+                                       progress);
     }
     return renderer::render(*scene, scan, description.time_axis, description.render, progress);
 }

@@ -2,6 +2,7 @@
 #include "renderer/frame_sequence.h"
 
 #include "renderer/core/random.h"
+#include "renderer/restir_render.h"
 
 #include <fmt/core.h>
 
@@ -25,9 +26,10 @@ std::uint64_t seed_of_frame(std::uint64_t seed, int frame) {
 
 }  // namespace
 
-FrameRenderer make_frame_renderer() {
-    return [](const Frame& frame, const core::Scan& scan, const core::Progress& progress) {
-        return render(*frame.scene, scan, frame.axis, frame.settings, progress);
+FrameRenderer make_frame_renderer(const core::Scan& scan, const RenderSettings& settings) {
+    if (settings.method == Estimator::Restir) return make_restir_frame_renderer(scan, settings);
+    return [](const Frame& frame, const core::Scan& frame_scan, const core::Progress& progress) {
+        return render(*frame.scene, frame_scan, frame.axis, frame.settings, progress);
     };
 }
 

@@ -22,8 +22,11 @@ struct Frame {
 using FrameRenderer =
     std::function<RenderResult(const Frame&, const core::Scan&, const core::Progress&)>;
 
-/// The renderer of the frames that the settings ask for: render(), every frame on its own.
-FrameRenderer make_frame_renderer();
+/// The renderer of the frames that the settings ask for: `restir` carries its paths on from frame to
+/// frame, the others render() every frame on its own.
+///
+/// scan   must outlive what is returned
+FrameRenderer make_frame_renderer(const core::Scan& scan, const RenderSettings& settings);
 
 /// Objects where they are after `seconds` at their velocities.
 SceneGeometry moved_by(const Scene& scene, double seconds);

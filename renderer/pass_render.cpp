@@ -3,6 +3,7 @@
 
 #include "renderer/core/parallel.h"
 #include "renderer/core/process.h"
+#include "renderer/short_paths.h"
 #include "renderer/transient_accumulator.h"
 
 #include <fmt/core.h>
@@ -40,32 +41,6 @@ PassPlan plan_passes(const RenderSettings& settings, const PassWork& work) {
     // Multiples of 4 split into the path tracer's two kinds of samples without rounding noise.
     if (per_pass > 4) per_pass -= per_pass % 4;
     return {per_pass, (settings.samples + per_pass - 1) / per_pass};
-}
-
-// Orders 1 and 2, which need no sampling.
-void add_short_paths(const Scene& scene,
-                     const PathEnds& ends,
-                     const RenderSettings& settings,
-                     PassHistogram& histogram) {
-    const auto channel = [&](int order) { return settings.by_order ? order - 1 : 0; };
-    if (ends.coincide) {
-        if (settings.direct_return) {
-            histogram.add(
-                channel(1), ends.device_legs_m, ends.light.strength / settings.laser_spot_m2);
-        }
-        return;
-    }
-    if (settings.max_bounces < 2 || scene.has_relay_wall()) return;
-    const core::Vec3 offset = ends.light.position - ends.sensor.position;
-    const double distance = offset.norm();
-    const core::Vec3 direction = offset / distance;
-    const double value =
-        ends.sensor.factor(direction) * ends.light.factor(-direction) / (distance * distance);
-    if (value > 0.0 &&
-        !scene.rays().is_blocked(
-            ends.sensor.position, ends.sensor.normal, ends.light.position, ends.light.normal)) {
-        histogram.add(channel(2), distance + ends.device_legs_m, value);
-    }
 }
 
 int channel_count(const RenderSettings& settings) {

@@ -3,6 +3,7 @@
 
 #include "renderer/ellipsoidal_render.h"
 #include "renderer/pass_render.h"
+#include "renderer/restir_render.h"
 #include "renderer/third_bounce.h"
 #include "renderer/third_bounce_pieces.h"
 
@@ -104,6 +105,10 @@ RenderResult render(const Scene& scene,
                     const core::Progress& progress) {
     if (settings.method == Estimator::Ellipsoidal) {
         return render_ellipsoidal(scene, scan, axis, settings, progress);
+    }
+    if (settings.method == Estimator::Restir) {
+        return render_restir(
+            {std::shared_ptr<const Scene>(), &scene}, scan, axis, settings, progress);
     }
     const Surfaces surfaces = surfaces_of(scene);
     if (settings.method == Estimator::ThirdBounce) {

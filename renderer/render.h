@@ -4,6 +4,7 @@
 #include "renderer/core/capture.h"
 #include "renderer/core/progress.h"
 #include "renderer/render_settings.h"
+#include "renderer/restir_counts.h"
 #include "renderer/scene.h"
 
 #include <cstdint>
@@ -32,6 +33,7 @@ struct RenderResult {
     std::vector<std::string>
         excluded_objects;  ///< from ellipsoidal connections, when there are any
     std::vector<std::string> warnings;
+    RestirCounts restir_counts;  ///< of restir
     bool interrupted = false;  ///< stopped early; every pair has a result
 };
 

@@ -11,7 +11,10 @@
 namespace renderer {
 
 /// Which estimator computes the transient. Adding one: a name here, a case in render(), one .cpp.
-enum class Estimator { Auto, Path, ThirdBounce, Ellipsoidal };
+enum class Estimator { Auto, Path, ThirdBounce, Ellipsoidal, Restir };
+
+/// Reservoirs store paths of up to this many bounces.
+inline constexpr int kMostRestirBounces = 9;
 
 /// Shape of the time gate of a one-bin axis; peak 1.
 enum class GateShape { Box, Tent, Gaussian };
@@ -70,11 +73,12 @@ void validate(const RenderSettings& settings, const std::string& where);
 
 template <>
 struct core::EnumNames<renderer::Estimator> {
-    static constexpr std::array<std::pair<renderer::Estimator, std::string_view>, 4> value{
+    static constexpr std::array<std::pair<renderer::Estimator, std::string_view>, 5> value{
         {{renderer::Estimator::Auto, "auto"},
          {renderer::Estimator::Path, "path"},
          {renderer::Estimator::ThirdBounce, "third_bounce"},
-         {renderer::Estimator::Ellipsoidal, "ellipsoidal"}}};
+         {renderer::Estimator::Ellipsoidal, "ellipsoidal"},
+         {renderer::Estimator::Restir, "restir"}}};
 };
 template <>
 struct core::EnumNames<renderer::GateShape> {

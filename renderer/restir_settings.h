@@ -12,9 +12,19 @@ enum class Chart { Plane, Hemisphere, Barycentric, Adaptive, Custom };
 /// What fixes the second coordinate of the moved vertex.
 enum class Gauge { Average, Start, Fixed, Midpoint, Symmetric, Flow };
 
-/// Reservoir reuse. Part of the scene format, so that every scene file reads; `auto`, `path` and
-/// `third_bounce` reuse nothing and leave it alone.
+/// Where the paths that reservoirs choose from come from. Walks always take part; the other kinds
+/// are weighted against them by the balance heuristic.
+enum class Candidates {
+    Path,         ///< independent walks from the sensor
+    Ellipsoidal,  ///< these, and from each of their vertices an ellipsoidal connection to the light
+    Shared  ///< walks from the light, shared by all pairs and tested for length before any ray
+};
+
+/// Reservoir reuse: what the estimator `restir` is told; the others leave it alone.
 struct RestirSettings {
+    Candidates candidates = Candidates::Shared;
+    int walks = 1;
+    int shared_walks = 512;
     Reuse reuse = Reuse::PathLength;
     Chart chart = Chart::Adaptive;
     Gauge gauge = Gauge::Average;
@@ -22,10 +32,15 @@ struct RestirSettings {
     int neighbours = 3;
     int confidence_cap = 20;
     double shrink_fraction = 0.0;
+    bool reuse_bins = true;
+    bool reverse_check = true;
 };
 
 template <class Visitor>
 void for_each_field(RestirSettings& s, Visitor&& visit) {
+    visit("candidates", s.candidates, "what reservoirs choose from");
+    visit("walks", s.walks, "walks from the sensor, per pair and frame");
+    visit("shared_walks", s.shared_walks, "shared: walks from the light tried, per pair and frame");
     visit("reuse", s.reuse, "how paths are reused");
     visit("chart", s.chart, "coordinates in which a vertex moves");
     visit("gauge", s.gauge, "what fixes the second coordinate");
@@ -33,10 +48,19 @@ void for_each_field(RestirSettings& s, Visitor&& visit) {
     visit("neighbours", s.neighbours, "neighbours per round");
     visit("confidence_cap", s.confidence_cap, "cap of the confidence, in frames");
     visit("shrink_fraction", s.shrink_fraction, "share of walks traced against a wider gate");
+    visit("reuse_bins", s.reuse_bins, "histograms: also reuse the two neighbouring bins");
+    visit("reverse_check", s.reverse_check, "solve every shift backwards too");
 }
 
 }  // namespace renderer
 
+template <>
+struct core::EnumNames<renderer::Candidates> {
+    static constexpr std::array<std::pair<renderer::Candidates, std::string_view>, 3> value{
+        {{renderer::Candidates::Path, "path"},
+         {renderer::Candidates::Ellipsoidal, "ellipsoidal"},
+         {renderer::Candidates::Shared, "shared"}}};
+};
 template <>
 struct core::EnumNames<renderer::Reuse> {
     static constexpr std::array<std::pair<renderer::Reuse, std::string_view>, 3> value{

@@ -31,7 +31,7 @@ struct Facet {
 
 /// A point on a facet.
 struct SurfacePoint {
-    core::Vec3 position;
+    core::Vec3 position = core::Vec3::Zero();
     std::uint32_t facet = 0;
 };
 

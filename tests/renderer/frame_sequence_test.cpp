@@ -60,7 +60,7 @@ renderer::RenderResult render_sequence(const core::Scan& scan,
     const auto scene = std::make_shared<const renderer::Scene>(
         renderer::SceneGeometry{objects_after(0.0), {}}, scan, description.relay_wall);
     return renderer::render_frames(
-        scene, scan, description, renderer::make_frame_renderer(), progress);
+        scene, scan, description, renderer::make_frame_renderer(scan, description.render), progress);
 }
 
 // third_bounce is deterministic: a gate that moves by its width sees bin after bin.
@@ -97,7 +97,7 @@ TEST(FrameSequence, FramesAreRendersOfTheMovedScene) {
         std::vector<renderer::Frame> seen;
         const auto scene = std::make_shared<const renderer::Scene>(
             renderer::SceneGeometry{objects_after(0.0), {}}, scan, description.relay_wall);
-        const auto plain = renderer::make_frame_renderer();
+        const auto plain = renderer::make_frame_renderer(scan, description.render);
         const auto result = renderer::render_frames(
             scene,
             scan,

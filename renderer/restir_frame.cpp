@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/restir_frame.h"
+
+namespace renderer {
+namespace {
+
+using core::Vec3;
+
+std::optional<ShiftMapping> make_shift(const Scene& scene, const RestirSettings& settings) {
+    if (settings.reuse != Reuse::PathLength) return std::nullopt;
+    ShiftSettings shift;
+    shift.chart = settings.chart;
+    shift.gauge = settings.gauge;
+    shift.reverse_check = settings.reverse_check;
+    return ShiftMapping(scene, shift);
+}
+
+// How far a facet lies in `to` from where it lies in `from`.
+Vec3 motion(const RestirScene& from, const RestirScene& to, std::uint32_t facet) {
+    if (&from == &to) return Vec3::Zero();
+    return to.scene->facet(facet).corner - from.scene->facet(facet).corner;
+}
+
+// Length of a path behind its first vertex's two legs, and before them.
+double rest_of_length(const PathDomain& domain, const ReusablePath& path) {
+    double rest = domain.extra_opl_m();
+    if (path.num_vertices == 1) return rest;
+    for (int i = 2; i < path.num_vertices; ++i) {
+        rest += (path.at(i).position - path.at(i - 1).position).norm();
+    }
+    return rest + (domain.ends.light.position - path.last().position).norm();
+}
+
+// Neighbours of the first vertex, moved along with it.
+ShiftEnd shift_end(const RestirSide& side, const ReusablePath& path, const Vec3& moved) {
+    ShiftEnd end;
+    end.a = side.domain->start() + moved;
+    if (path.num_vertices == 1) {
+        end.y = side.domain->ends.light.position + moved;
+        end.normal_y = side.domain->ends.light.normal;
+    } else {
+        end.y = path.at(1).position + moved;
+        end.normal_y = side.scene->scene->facet(path.at(1).facet).normal;
+    }
+    return end;
+}
+
+bool is_same(const ShiftEnd& a, const ShiftEnd& b) {
+    return a.a == b.a && a.y == b.y;
+}
+
+// Moves the first vertex of `path`, whose other vertices are in place already.
+// returns   the Jacobian; nothing when the shift is not defined
+std::optional<double> shift_first(const PathReservoir& reservoir,
+                                  const RestirSide& from,
+                                  const RestirSide& to,
+                                  const RestirScene& current,
+                                  ReusablePath& path,
+                                  ShiftCounts& counts) {
+    const std::uint32_t facet = path.first().facet;
+    const Vec3 from_moved = motion(*from.scene, current, facet);
+    const Vec3 to_moved = motion(*to.scene, current, facet);
+    const ShiftEnd source = shift_end(from, reservoir.sample, from_moved);
+    const ShiftEnd target = shift_end(to, path, to_moved);
+    LengthChange change;
+    change.ratio = to.gate.width_m / from.gate.width_m;
+    change.offset_m =
+        to.gate.start_m - rest_of_length(*to.domain, path) -
+        change.ratio * (from.gate.start_m - rest_of_length(*from.domain, reservoir.sample));
+    SurfacePoint& x = path.at(0);
+    if (change.ratio == 1.0 && change.offset_m == 0.0 && is_same(source, target)) {
+        x.position = reservoir.sample.first().position + from_moved - to_moved;
+        return 1.0;
+    }
+    const SurfacePoint start{reservoir.sample.first().position + from_moved, facet};
+    const auto shifted = current.shift->shift_path(start, source, target, change, counts);
+    if (!shifted) return std::nullopt;
+    // Another object may have moved otherwise.
+    if (motion(*to.scene, current, shifted->point.facet) != to_moved) return std::nullopt;
+    x = shifted->point;
+    x.position -= to_moved;
+    return shifted->jacobian;
+}
+
+// Whether the legs that a move has changed are open.
+bool is_open(const RestirSide& from,
+             const RestirSide& to,
+             const ReusablePath& path,
+             std::uint64_t& num_rays) {
+    const PathIntegrand& integrand = to.scene->candidates.integrand();
+    if (from.scene != to.scene) return !integrand.is_any_blocked(*to.domain, path, num_rays);
+    const bool there_and_back = to.domain->ends.coincide && path.num_vertices == 1;
+    const bool light_moved =
+        path.num_vertices > 1 && from.domain->ends.light.position != to.domain->ends.light.position;
+    for (const int leg : {0, 1, path.num_vertices}) {
+        if (leg == 1 && there_and_back) break;
+        if (leg > 1 && !light_moved) break;
+        ++num_rays;
+        if (integrand.is_blocked(*to.domain, path, leg)) return false;
+        if (leg == 1 && path.num_vertices == 1) break;
+    }
+    return true;
+}
+
+}  // namespace
+
+RestirScene::RestirScene(std::shared_ptr<const Scene> scene_of_frames,
+                         const core::Scan& scan,
+                         const RenderSettings& settings)
+    : scene(std::move(scene_of_frames)),
+      measurement(*scene, scan),
+      walk(*scene, settings.laser_spot_m2),
+      candidates(*scene, scan, measurement, walk, settings),
+      shift(make_shift(*scene, settings.restir)) {}
+
+CarriedPath carry_path(const PathReservoir& reservoir,
+                       const RestirSide& from,
+                       const RestirSide& to,
+                       const RestirScene& current,
+                       RestirCounts& counts) {
+    if (reservoir.empty() || to.domain->is_dark) return std::nullopt;
+    Carried<ReusablePath> carried{reservoir.sample, 0.0, 1.0};
+    if (from.scene != to.scene) {
+        for (int i = 0; i < carried.sample.num_vertices; ++i) {
+            SurfacePoint& vertex = carried.sample.at(i);
+            vertex.position += motion(*from.scene, *to.scene, vertex.facet);
+        }
+    }
+    if (current.shift) {
+        const auto jacobian =
+            shift_first(reservoir, from, to, current, carried.sample, counts.shifts);
+        if (!jacobian) return std::nullopt;
+        carried.jacobian = *jacobian;
+    }
+    const PathValue value = to.scene->candidates.integrand().evaluate(*to.domain, carried.sample);
+    carried.target_value = value.radiance * to.gate.weight(value.opl_m);
+    if (!(carried.target_value > 0.0) || !is_open(from, to, carried.sample, counts.num_rays)) {
+        carried.target_value = 0.0;
+    }
+    return carried;
+}
+
+}  // namespace renderer

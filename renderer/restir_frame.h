@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/packed_reservoirs.h"
+#include "renderer/path_candidates.h"
+#include "renderer/resampling.h"
+#include "renderer/restir_counts.h"
+#include "renderer/shift_mapping.h"
+#include "renderer/time_gate.h"
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace renderer {
+
+/// What reservoirs need to know of a scene; the same for all frames in which nothing moves.
+struct RestirScene {
+    /// scan   must outlive this
+    RestirScene(std::shared_ptr<const Scene> scene_of_frames,
+                const core::Scan& scan,
+                const RenderSettings& settings);
+    RestirScene(const RestirScene&) = delete;
+    RestirScene& operator=(const RestirScene&) = delete;
+
+    std::shared_ptr<const Scene> scene;
+    Measurement measurement;
+    SurfaceWalk walk;
+    PathCandidates candidates;
+    std::optional<ShiftMapping> shift;  ///< nothing: paths are reused as they are
+};
+
+/// One frame's reservoirs, one per pair and bin, and what they belong to.
+struct RestirFrame {
+    std::shared_ptr<RestirScene> scene;
+    core::TimeAxis axis;
+    std::vector<PathDomain> domains;    ///< per pair
+    PackedReservoirs reservoirs{0, 0};  ///< [pair][bin]
+};
+
+/// One reservoir's place: a pair and a gate, in a scene.
+struct RestirSide {
+    const RestirScene* scene = nullptr;
+    const PathDomain* domain = nullptr;
+    TimeGate gate;
+
+    RestirSide() = default;
+    RestirSide(const RestirFrame& frame, std::size_t pair, int bin, GateShape shape)
+        : scene(frame.scene.get()),
+          domain(&frame.domains[pair]),
+          gate(TimeGate::of_bin(frame.axis, bin, shape)) {}
+};
+
+using PathReservoir = Reservoir<ReusablePath>;
+using CarriedPath = std::optional<Carried<ReusablePath>>;
+
+/// Carries a reservoir's path from one place to another, so that it fits the gate there.
+///
+/// Objects may have moved in between. The shift is solved in the `current` scene: paths of another
+/// one are taken there by the motion of the object that carries the first vertex, both neighbours
+/// along with it, which keeps lengths and areas.
+///
+/// counts    receives shifts and rays
+/// returns   the path there, or nothing: what is not carried has no image
+CarriedPath carry_path(const PathReservoir& reservoir,
+                       const RestirSide& from,
+                       const RestirSide& to,
+                       const RestirScene& current,
+                       RestirCounts& counts);
+
+}  // namespace renderer

@@ -1,0 +1,405 @@
+// SPDX-License-Identifier: MIT
+// Resampled paths against path tracing: same means whatever is reused. Neighbours share their
+// noise, so the spread is taken from independent renders, not from variances of single values.
+#include "renderer/core/parallel.h"
+#include "renderer/core/random.h"
+#include "renderer/restir_render.h"
+#include "tests/support/error_message.h"
+#include "tests/support/statistics.h"
+#include "tests/support/test_scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+namespace {
+
+using core::Vec3;
+using renderer::Estimator;
+using test_support::Parallelogram;
+
+constexpr int kRenders = 24;
+
+// What a render says, as few numbers that many paths contribute to.
+using Numbers = std::vector<double>;
+
+Numbers sums_of(const core::Transient& transient) {
+    Numbers numbers(transient.num_bins() + transient.num_pairs() + 1);
+    for (std::size_t pair = 0; pair < transient.num_pairs(); ++pair) {
+        const auto histogram = transient.histogram(pair);
+        for (std::size_t bin = 0; bin < histogram.size(); ++bin) {
+            const double value = double{histogram[bin]};
+            numbers[bin] += value;
+            numbers[histogram.size() + pair] += value;
+            numbers.back() += value;
+        }
+    }
+    return numbers;
+}
+
+struct Estimate {
+    Numbers mean;
+    Numbers squared_error;
+};
+
+Estimate repeat(const std::function<Numbers(std::uint64_t seed)>& render, const std::string& name) {
+    Estimate estimate;
+    Numbers squares;
+    for (int i = 0; i < kRenders; ++i) {
+        const Numbers numbers = render(test_support::seed_of(name) + static_cast<std::uint64_t>(i));
+        estimate.mean.resize(numbers.size());
+        squares.resize(numbers.size());
+        for (std::size_t k = 0; k < numbers.size(); ++k) {
+            estimate.mean[k] += numbers[k] / kRenders;
+            squares[k] += numbers[k] * numbers[k] / kRenders;
+        }
+    }
+    for (std::size_t k = 0; k < squares.size(); ++k) {
+        const double spread = std::max(0.0, squares[k] - estimate.mean[k] * estimate.mean[k]);
+        estimate.squared_error.push_back(spread / (kRenders - 1));
+    }
+    return estimate;
+}
+
+// A t value as the normal value of about the same tail (source [Wallace1959]).
+double normal_of_t(double t) {
+    constexpr double kDegrees = kRenders - 1;
+    return std::copysign(
+        std::sqrt(kDegrees * std::log1p(t * t / kDegrees)) * (1.0 - 3.0 / (16.0 * kDegrees)), t);
+}
+
+void expect_same_means(const Estimate& a, const Estimate& b, double most_relative_error) {
+    ASSERT_EQ(a.mean.size(), b.mean.size());
+    std::vector<std::pair<double, std::size_t>> compared;
+    for (std::size_t k = 0; k < a.mean.size(); ++k) {
+        // Numbers that few paths make are far from normal.
+        const double error_a = std::sqrt(a.squared_error[k]);
+        const double error_b = std::sqrt(b.squared_error[k]);
+        const bool is_large = b.mean[k] > 0.02 * b.mean.back() && error_b < 0.1 * b.mean[k];
+        if (!is_large && !(error_a < 0.1 * a.mean[k] && error_b < 0.1 * b.mean[k])) continue;
+        compared.emplace_back((a.mean[k] - b.mean[k]) / std::hypot(error_a, error_b), k);
+    }
+    ASSERT_GT(4 * compared.size(), a.mean.size());
+    const double level = test_support::sidak_level(1e-3, compared.size());
+    for (const auto& [t, k] : compared) {
+        EXPECT_GT(test_support::normal_tail(normal_of_t(t)), level)
+            << "number " << k << " of " << a.mean.size() << ": " << a.mean[k] << " against "
+            << b.mean[k];
+    }
+    // The total, tightly.
+    const double sigma = std::sqrt(a.squared_error.back() + b.squared_error.back());
+    EXPECT_LT(sigma, most_relative_error * b.mean.back());
+}
+
+// Two surfaces that light each other, an occluder before them, and a relay wall.
+constexpr double kVelocity = 0.2;
+
+std::vector<renderer::Object> make_objects() {
+    std::vector<renderer::Object> objects{
+        test_support::parallelogram_object(
+            {Vec3(-0.25, -0.2, 0.75), Vec3(0.45, 0.05, 0.15), Vec3(-0.05, 0.4, -0.1), 0.8}),
+        test_support::parallelogram_object(
+            {Vec3(0.3, -0.3, 0.5), Vec3(0.05, 0.6, 0.05), Vec3(0.0, 0.1, 0.4), 0.7}),
+        test_support::parallelogram_object(
+            {Vec3(-0.05, -0.1, 0.4), Vec3(0.15, 0, 0.02), Vec3(0.02, 0.2, 0), 0.5})};
+    objects[1].role = renderer::Role::BackWall;
+    objects[0].velocity_m_per_s = Vec3(0.0, 0.1, -kVelocity);
+    return objects;
+}
+
+renderer::SceneGeometry geometry(bool glossy) {
+    renderer::SceneGeometry result{make_objects(), {}};
+    if (glossy) {
+        result.objects[0].material.model = renderer::SurfaceModel::Ggx;
+        result.objects[0].material.roughness = 0.5;
+    }
+    return result;
+}
+
+core::Scan wall_scan(core::ScanPattern pattern) {
+    std::vector<Vec3> points;
+    for (int i = 0; i < 9; ++i) {
+        points.emplace_back(-0.3 + 0.2 * (i % 3), -0.2 + 0.2 * (i / 3), 0.0);
+    }
+    if (pattern == core::ScanPattern::Confocal) return test_support::confocal_scan(points);
+    if (pattern == core::ScanPattern::Single) {
+        return test_support::single_scan({0.1, 0.05, 0.0}, points);
+    }
+    return test_support::exhaustive_scan({{0.1, 0.05, 0.0}, {-0.2, 0.1, 0.0}}, points);
+}
+
+core::Scan image() {
+    core::PinholeCamera camera;
+    camera.position_m = Vec3(0.1, 0.1, -0.5);
+    camera.look_at_m = Vec3(0.05, 0, 0.8);
+    camera.light_m = Vec3(-0.3, 0.3, -0.1);
+    camera.resolution = {4, 4};
+    core::Scan scan;
+    scan.pattern = core::ScanPattern::Single;
+    scan.opl_origin = core::OplOrigin::Device;
+    scan.camera = camera;
+    return scan;
+}
+
+// All pixels see one surface, and no edge crosses them.
+core::Scan close_up() {
+    core::Scan scan = image();
+    scan.camera->look_at_m = Vec3(0.08, 0.12, 0.83);
+    scan.camera->fov_y_deg = 1.5;
+    return scan;
+}
+
+renderer::RenderSettings settings_for(Estimator method, int samples, int max_bounces) {
+    renderer::RenderSettings settings;
+    settings.method = method;
+    settings.samples = samples;
+    settings.max_bounces = max_bounces;
+    settings.restir.shared_walks = 64;
+    settings.restir.neighbours = 2;
+    return settings;
+}
+
+Estimate render_often(const renderer::Scene& scene,
+                      const core::Scan& scan,
+                      const core::TimeAxis& axis,
+                      renderer::RenderSettings settings,
+                      const std::string& name) {
+    return repeat(
+        [&](std::uint64_t seed) {
+            settings.seed = seed;
+            return sums_of(renderer::render(scene, scan, axis, settings, {}).capture.transient);
+        },
+        name);
+}
+
+struct Case {
+    std::string name;
+    std::function<void(renderer::RenderSettings&)> change;
+};
+
+const core::TimeAxis kHistogram{1.2, 0.15, 12};
+const core::TimeAxis kGate{1.7, 0.1, 1};
+const core::TimeAxis kImageHistogram{1.8, 0.3, 6};
+const core::TimeAxis kImageGate{2.2, 0.6, 1};
+
+const std::vector<Case> kCases{
+    {"candidates", [](auto& s) { s.restir.reuse = renderer::Reuse::None; }},
+    {"walks",
+     [](auto& s) {
+         s.restir.candidates = renderer::Candidates::Path;
+         s.restir.walks = 32;
+     }},
+    {"ellipsoidal",
+     [](auto& s) {
+         s.restir.candidates = renderer::Candidates::Ellipsoidal;
+         s.restir.walks = 16;
+     }},
+    {"ellipsoidal_everywhere",
+     [](auto& s) {
+         s.restir.candidates = renderer::Candidates::Ellipsoidal;
+         s.restir.walks = 16;
+         s.exclude = renderer::Exclusion::None;
+     }},
+    {"one_round", [](auto&) {}},
+    {"eight_rounds", [](auto& s) { s.restir.rounds = 8; }},
+    {"naive", [](auto& s) { s.restir.reuse = renderer::Reuse::Naive; }},
+    {"plane", [](auto& s) { s.restir.chart = renderer::Chart::Plane; }},
+    {"barycentric", [](auto& s) { s.restir.chart = renderer::Chart::Barycentric; }},
+    {"hemisphere", [](auto& s) { s.restir.chart = renderer::Chart::Hemisphere; }},
+    {"midpoint", [](auto& s) { s.restir.gauge = renderer::Gauge::Midpoint; }}};
+
+struct Setting {
+    const char* name;
+    core::Scan scan;
+    core::TimeAxis axis;
+    int max_bounces;
+    bool glossy;
+};
+
+std::vector<Setting> settings() {
+    return {{"gate", wall_scan(core::ScanPattern::Confocal), kGate, 5, false},
+            {"histogram", wall_scan(core::ScanPattern::Single), kHistogram, 4, true},
+            {"exhaustive", wall_scan(core::ScanPattern::Exhaustive), kHistogram, 3, false},
+            {"image_gate", image(), kImageGate, 4, true},
+            {"image_histogram", image(), kImageHistogram, 3, false}};
+}
+
+class RestirOf : public testing::TestWithParam<std::size_t> {};
+
+TEST_P(RestirOf, EveryKindOfReuseAgreesWithPathTracing) {
+    const Setting setting = settings()[GetParam()];
+    const renderer::Scene scene(geometry(setting.glossy), setting.scan, {});
+    const Estimate paths = render_often(scene,
+                                        setting.scan,
+                                        setting.axis,
+                                        settings_for(Estimator::Path, 16384, setting.max_bounces),
+                                        std::string("Restir.Paths.") + setting.name);
+    for (const Case& kind : kCases) {
+        SCOPED_TRACE(kind.name);
+        renderer::RenderSettings restir =
+            settings_for(Estimator::Restir, 2080, setting.max_bounces);
+        kind.change(restir);
+        expect_same_means(render_often(scene,
+                                       setting.scan,
+                                       setting.axis,
+                                       restir,
+                                       std::string("Restir.") + setting.name + kind.name),
+                          paths,
+                          0.04);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Measurements,
+                         RestirOf,
+                         testing::Range<std::size_t>(0, 5),
+                         [](const auto& test) { return settings()[test.param].name; });
+
+class RestirOfScenes : public testing::TestWithParam<const char*> {};
+
+TEST_P(RestirOfScenes, AgreesWithPathTracing) {
+    const std::string path = std::string(NLOS_SOURCE_DIR "/scenes/") + GetParam() + "/scene.json";
+    auto description = renderer::read_scene_description(path, {});
+    const bool is_image = description.camera.has_value();
+    if (is_image) {
+        description.camera->resolution = {4, 3};
+        description.time_axis = {1.4, 0.4, 8};
+    } else {
+        description.scan.sensing_points = {3, 3};
+        description.time_axis = {1.0, 0.15, 12};
+    }
+    const core::Scan scan = renderer::make_scan(description);
+    const renderer::Scene scene = renderer::load_scene(description, scan);
+    const int max_bounces = is_image ? 4 : 5;
+    const Estimate paths = render_often(scene,
+                                        scan,
+                                        description.time_axis,
+                                        settings_for(Estimator::Path, 8192, max_bounces),
+                                        std::string("Restir.Scenes.Paths.") + GetParam());
+    for (const int rounds : {1, 8}) {
+        SCOPED_TRACE(rounds);
+        renderer::RenderSettings restir = settings_for(Estimator::Restir, 2080, max_bounces);
+        restir.restir.rounds = rounds;
+        expect_same_means(render_often(scene,
+                                       scan,
+                                       description.time_axis,
+                                       restir,
+                                       std::string("Restir.Scenes.") + GetParam()),
+                          paths,
+                          0.1);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes,
+                         RestirOfScenes,
+                         testing::Values("letter", "bars", "corner", "glossy", "box"),
+                         [](const auto& test) { return std::string(test.param); });
+
+// Totals of every frame, and the last frame's pairs.
+Numbers sums_of_frames(const core::Scan& scan,
+                       const renderer::SceneDescription& description,
+                       bool glossy) {
+    const auto scene =
+        std::make_shared<const renderer::Scene>(geometry(glossy), scan, description.relay_wall);
+    const auto result = renderer::render_frames(
+        scene, scan, description, renderer::make_frame_renderer(scan, description.render), {});
+    Numbers numbers;
+    for (const core::Transient& frame : result.capture.sequence->frames) {
+        numbers.push_back(sums_of(frame).back());
+    }
+    const Numbers last = sums_of(result.capture.transient);
+    numbers.insert(numbers.end(), last.begin(), last.end());
+    return numbers;
+}
+
+class RestirFrames : public testing::TestWithParam<bool> {};
+
+TEST_P(RestirFrames, EveryFrameAgreesWithPathTracing) {
+    const bool is_image = GetParam();
+    const core::Scan scan = is_image ? close_up() : wall_scan(core::ScanPattern::Confocal);
+    for (const auto& [step, frame_s] :
+         std::vector<std::pair<double, double>>{{0.02, 0.0}, {0.0, 0.0}, {0.01, 0.1}}) {
+        SCOPED_TRACE(testing::Message() << "gate step " << step << ", frame " << frame_s << " s");
+        renderer::SceneDescription description;
+        description.time_axis = is_image ? core::TimeAxis{2.45, 0.5, 1} : kGate;
+        description.frames = {6, step, frame_s};
+        const auto sequence = [&](Estimator method, int samples) {
+            description.render = settings_for(method, samples, is_image ? 3 : 4);
+            return repeat(
+                [&](std::uint64_t seed) {
+                    description.render.seed = seed;
+                    return sums_of_frames(scan, description, false);
+                },
+                std::string("RestirFrames.") + std::string(core::enum_name(method)));
+        };
+        expect_same_means(
+            sequence(Estimator::Restir, 65), sequence(Estimator::Path, 4096), 0.2);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Measurements, RestirFrames, testing::Bool(), [](const auto& test) {
+    return std::string(test.param ? "image" : "scan");
+});
+
+TEST(Restir, WiderGatesShiftedIntoNarrowOnesChangeNoMean) {
+    const core::Scan scan = wall_scan(core::ScanPattern::Confocal);
+    const renderer::Scene scene(geometry(false), scan, {});
+    const Estimate paths = render_often(
+        scene, scan, kGate, settings_for(Estimator::Path, 8192, 4), "Restir.Shrink.Paths");
+    for (const double fraction : {0.2, 0.5, 0.9}) {
+        renderer::RenderSettings restir = settings_for(Estimator::Restir, 4096, 4);
+        restir.restir.walks = 8;
+        restir.restir.shrink_fraction = fraction;
+        expect_same_means(render_often(scene, scan, kGate, restir, "Restir.Shrink"), paths, 0.04);
+    }
+}
+
+TEST(Restir, SameBitsForAnyNumberOfThreads) {
+    for (const core::Scan& scan : {wall_scan(core::ScanPattern::Single), image()}) {
+        const renderer::Scene scene(geometry(true), scan, {});
+        std::vector<std::vector<float>> results;
+        for (const int threads : {1, 7}) {
+            const core::ThreadLimit limit(threads);
+            const auto result = renderer::render(
+                scene, scan, kHistogram, settings_for(Estimator::Restir, 512, 4), {});
+            const auto values = result.capture.transient.values();
+            results.emplace_back(values.begin(), values.end());
+        }
+        EXPECT_EQ(results[0], results[1]);
+    }
+}
+
+TEST(Restir, StaticFramesSettle) {
+    // With a gate that stands still, what frames have seen adds up.
+    const core::Scan scan = wall_scan(core::ScanPattern::Confocal);
+    renderer::SceneDescription description;
+    description.time_axis = kGate;
+    description.frames = {20, 0.0, 0.0};
+    description.render = settings_for(Estimator::Restir, 65, 3);
+    description.render.restir.confidence_cap = 50;
+    description.render.restir.rounds = 0;
+    const Estimate estimate = repeat(
+        [&](std::uint64_t seed) {
+            description.render.seed = seed;
+            return sums_of_frames(scan, description, false);
+        },
+        "Restir.Static");
+    EXPECT_LT(estimate.squared_error[19], 0.3 * estimate.squared_error[0]);
+}
+
+TEST(Restir, SettingsSayWhatIsWrong) {
+    renderer::RenderSettings settings = settings_for(Estimator::Restir, 64, 10);
+    EXPECT_ERROR_WITH(renderer::validate(settings, "render"), "found 10 for method restir");
+    settings = settings_for(Estimator::Restir, 64, 3);
+    settings.by_order = true;
+    EXPECT_ERROR_WITH(renderer::validate(settings, "render"), "render.by_order");
+    settings = settings_for(Estimator::Restir, 64, 3);
+    settings.restir.walks = 0;
+    EXPECT_ERROR_WITH(renderer::validate(settings, "render"), "render.restir.walks: found 0");
+    settings = settings_for(Estimator::Restir, 64, 3);
+    settings.restir.shrink_fraction = 1.0;
+    EXPECT_ERROR_WITH(renderer::validate(settings, "render"),
+                      "render.restir.shrink_fraction: found 1");
+}
+
+}  // namespace
