@@ -73,6 +73,7 @@ RenderJob render_to_file(const std::string& scene_path,
                          const std::vector<std::string>& overrides,
                          const std::string& capture_path) {
     // A target that cannot be written is found before the work, not after it.
+    nlos::check_capture_suffix(capture_path);
     const core::OutputFile probe(capture_path);
     const renderer::SceneDescription description =
         renderer::read_scene_description(scene_path, overrides);
@@ -80,7 +81,7 @@ RenderJob render_to_file(const std::string& scene_path,
     ProgressBar bar("render");
     renderer::RenderResult result = run(description, scan, bar.progress());
     result.capture.scene_info = provenance(scene_path, description, result);
-    nlos::write_capture(capture_path, result.capture);
+    const std::vector<std::string> left_out = nlos::write_capture(capture_path, result.capture);
     if (scan.camera) {
         core::write_text_file(with_suffix(capture_path, ".png"),
                               nlos::encode_preview_png(result.capture));
@@ -97,6 +98,7 @@ RenderJob render_to_file(const std::string& scene_path,
     job.seconds = result.seconds;
     job.interrupted = result.interrupted;
     job.warnings = result.warnings;
+    job.warnings.insert(job.warnings.end(), left_out.begin(), left_out.end());
     return job;
 }
 

@@ -196,7 +196,7 @@ std::vector<fs::path> visible_files(const fs::path& folder) {
 }
 
 bool is_measurement(const std::string& suffix) {
-    return suffix == ".h5" || suffix == ".hdf5" || suffix == ".mat";
+    return suffix == ".h5" || suffix == ".hdf5" || suffix == ".mat" || suffix == ".exr";
 }
 
 void read_file(const fs::path& path, ResultsFolder& results) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/formats/capture_format.h"
+#include "nlos/formats/exr_image.h"
 #include "nlos/formats/exr_table.h"
 #include "renderer/core/error.h"
 
@@ -207,7 +208,13 @@ bool recognise(const std::string& path) {
 
 Capture read(const std::string& path, const CaptureReadSettings& settings) {
     const ExrTable table = read_exr_table(path);
-    if (!table.texts.contains(kFormatKey) || table.texts.at(kFormatKey) != kFormat) {
+    const auto format = table.texts.find(kFormatKey);
+    if (format != table.texts.end() && format->second == kExrImageFormat) {
+        Capture image = from_exr_image(path, table);
+        image.time_axis.bin_width_m = settings.bin_width_m.value_or(image.time_axis.bin_width_m);
+        return image;
+    }
+    if (format == table.texts.end() || format->second != kFormat) {
         throw Error(path,
                     fmt::format("is an image without the header attribute {}", kFormatKey),
                     "must be a capture written as OpenEXR");
@@ -251,7 +258,9 @@ std::vector<std::string> write(const std::string& path,
                                const Capture& capture,
                                const CaptureWriteSettings&) {
     if (capture.scan.camera) {
-        throw Error(path, "is to hold the image of a camera", "must hold a scan of wall points");
+        write_exr_table(path, to_exr_image(capture));
+        if (!capture.variance && capture.orders.empty() && !capture.sequence) return {};
+        return {"variance, orders of bounces and frames are left out"};
     }
     const core::Scan& scan = capture.scan;
     const bool is_wall = shows_wall(capture);
@@ -286,13 +295,14 @@ std::vector<std::string> write(const std::string& path,
             to_channel(capture.by_order[i], capture, is_wall);
     }
     write_exr_table(path, table);
+    if (capture.sequence) return {"frames are left out"};
     return {};
 }
 
 }  // namespace
 
 CaptureFormat exr_format() {
-    return {"OpenEXR streak image",
+    return {"OpenEXR",
             "OpenEXR with the header attribute nlosFormat",
             recognise,
             read,

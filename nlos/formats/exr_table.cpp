@@ -27,7 +27,7 @@ namespace nlos {
 namespace {
 
 constexpr std::size_t kColumnBytes = sizeof(float);
-constexpr std::uint64_t kMostChannels = 256;
+constexpr std::uint64_t kMostChannels = 1 << 16;
 
 [[noreturn]] void throw_damaged(const std::string& path) {
     throw core::Error(path, "is damaged or cut short", "must be a complete OpenEXR file");

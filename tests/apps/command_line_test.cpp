@@ -201,6 +201,10 @@ TEST_F(CommandLine, ImagesOfACamera) {
     EXPECT_EQ(file_bytes(file("image.png")).substr(1, 3), "PNG");
     EXPECT_NE(run("info " + out).out.find("camera: 16 x 12 pixels"), std::string::npos);
     EXPECT_EQ(run("compare " + out + " " + out).status, 0);
+    ASSERT_EQ(run("render scenes/box/scene.json -o " + file("same.exr") + small).status, 0);
+    EXPECT_NE(run("compare " + file("same.exr") + " " + out).out.find("rel_l2               0 "),
+              std::string::npos);
+    expect_bad_input("render scenes/box/scene.json -o " + file("image.tiff") + small, "image.tiff");
     expect_bad_input("reconstruct " + out + " -o " + file("v.h5"), "image of a camera");
     expect_bad_input("compare " + out + " scenes/box/scene.json", "cannot be compared");
     expect_bad_input("info scenes/box/scene.json --picture " + file("p.png"), "relay wall");

@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 
 namespace nlos {
 namespace {
@@ -67,7 +68,7 @@ TEST(CaptureConversion, Hdf5AndExrKeepEverythingBothWays) {
         write_capture(folder.file("c.hdf5"), from_exr);
         expect_all_the_same(from_exr, capture);
         expect_all_the_same(read_capture(folder.file("c.hdf5")), capture);
-        EXPECT_EQ(capture_format(folder.file("b.exr")), "OpenEXR streak image");
+        EXPECT_EQ(capture_format(folder.file("b.exr")), "OpenEXR");
     }
 }
 
@@ -241,6 +242,72 @@ TEST(CaptureConversion, OldHdf5FilesAreRead) {
     const Capture read = read_capture(folder.file("old.h5"));
     EXPECT_TRUE(std::ranges::equal(read.transient.values(), capture.transient.values()));
     EXPECT_EQ(read.scene_info["seed"], 7);
+}
+
+TEST(CaptureConversion, ExrOfACameraHasOneChannelPerBinFromTheTopLeft) {
+    const TemporaryFolder folder;
+    const Capture image = test_support::example_image();
+    EXPECT_TRUE(write_capture(folder.file("image.exr"), image).empty());
+    const ExrTable table = read_exr_table(folder.file("image.exr"));
+    EXPECT_EQ(table.width, 3U);
+    EXPECT_EQ(table.height, 2U);
+    ASSERT_EQ(table.channels.size(), 5U);
+    for (std::size_t bin = 0; bin < 5; ++bin) {
+        const auto& channel = table.channels.at("bin00" + std::to_string(bin));
+        for (std::size_t x = 0; x < 3; ++x) {
+            for (std::size_t y = 0; y < 2; ++y) {
+                EXPECT_EQ(channel[y * 3 + x], image.transient.histogram(2 * x + y)[bin]);
+            }
+        }
+    }
+    const Capture read = read_capture(folder.file("image.exr"));
+    expect_all_the_same(read, image);
+    EXPECT_EQ(core::write_value(*read.scan.camera), core::write_value(*image.scan.camera));
+}
+
+TEST(CaptureConversion, ManyBinsOfAnImageKeepTheirOrder) {
+    const TemporaryFolder folder;
+    Capture image = test_support::example_image();
+    image.time_axis.num_bins = 1200;
+    image.transient = core::Transient(6, 1200);
+    float next = 0.0F;
+    for (float& value : image.transient.values()) value = next += 1.0F;
+    write_capture(folder.file("image.exr"), image);
+    expect_all_the_same(read_capture(folder.file("image.exr")), image);
+}
+
+TEST(CaptureConversion, ExrSaysThatFramesAreLeftOut) {
+    const TemporaryFolder folder;
+    for (Capture capture : {test_support::example_image(), example_capture(ScanPattern::Single)}) {
+        capture.sequence = core::FrameSequence{{capture.transient}, 0.02, 0.04};
+        const auto notes = write_capture(folder.file("last.exr"), capture);
+        ASSERT_EQ(notes.size(), 1U);
+        EXPECT_NE(notes[0].find("frames"), std::string::npos);
+    }
+}
+
+TEST(CaptureConversion, DamagedExrImagesAreNamed) {
+    const TemporaryFolder folder;
+    const std::string path = folder.file("image.exr");
+    const Capture image = test_support::example_image();
+    write_capture(path, image);
+    const auto refused = [&](const std::function<void(ExrTable&)>& change,
+                             const std::string& part) {
+        ExrTable table = read_exr_table(path);
+        change(table);
+        write_exr_table(folder.file("bad.exr"), table);
+        EXPECT_ERROR_WITH(read_capture(folder.file("bad.exr")), part);
+    };
+    refused([](ExrTable& t) { t.texts.erase("nlosCamera"); }, "nlosCamera");
+    refused([](ExrTable& t) { t.texts["nlosCamera"] = "{"; }, "nlosCamera: is no JSON");
+    refused([](ExrTable& t) { t.numbers.erase("nlosBinWidthM"); }, "nlosBinWidthM");
+    refused([](ExrTable& t) { t.texts["nlosUnit"] = "joule"; }, "nlosUnit");
+    refused(
+        [](ExrTable& t) {
+            t.channels["binary"] = t.channels.at("bin004");
+            t.channels.erase("bin004");
+        },
+        "bin004");
 }
 
 }  // namespace

@@ -86,6 +86,17 @@ TEST(FileFuzz, MutatedStreakImagesAreReadOrRefused) {
     fuzz(path, [&] { read_capture(path); });
 }
 
+TEST(FileFuzz, MutatedImagesAreReadOrRefused) {
+    const TemporaryFolder folder;
+    core::Capture image = test_support::example_image();
+    write_capture(folder.file("image.exr"), image);
+    image.sequence = core::FrameSequence{{image.transient, image.transient}, 0.02, 0.04};
+    write_capture(folder.file("image.h5"), image);
+    for (const char* name : {"image.exr", "image.h5"}) {
+        fuzz(folder.file(name), [&] { read_capture(folder.file(name)); });
+    }
+}
+
 TEST(FileFuzz, MutatedOldHdf5FilesAreReadOrRefused) {
     const TemporaryFolder folder;
     const std::string path = folder.file("capture.h5");

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "nlos/formats/exr_table.h"
+#include "renderer/core/capture.h"
+
+#include <string>
+
+namespace nlos {
+
+// The image of a camera as an OpenEXR image, top-left first: one float channel per bin, `bin000`
+// and so on. Header attributes:
+//
+//   nlosFormat                        text: image 1
+//   nlosCamera                        text: JSON of core::PinholeCamera
+//   nlosUnit                          text: radiance | counts
+//   nlosCountsPerRadiance             double, when known
+//   nlosOplStartM, nlosBinWidthM      double: start of bin 0 and width of a bin [m of path length]
+//   nlosSceneInfo                     text: JSON, where the capture came from
+
+/// The value of nlosFormat.
+inline constexpr const char* kExrImageFormat = "image 1";
+
+/// An image as the table of such a file; variance, bounce orders and frames have no place in it.
+/// capture   with a camera
+ExrTable to_exr_image(const core::Capture& capture);
+
+/// The inverse of to_exr_image().
+/// throws   core::Error naming the file and what is missing or of another size
+core::Capture from_exr_image(const std::string& path, const ExrTable& table);
+
+}  // namespace nlos
