@@ -137,25 +137,29 @@ TEST(Camera, WholeLengthFromLightToCameraCounts) {
 }
 
 TEST(Camera, LitSpotCountsAsABounceAndSendsItsAlbedoOn) {
+    // Whichever way the lit facet is oriented, its lit side faces the camera.
     const Parallelogram side{Vec3(-1, -2, 0), Vec3(0, 4, 0), Vec3(0, 0, 2), 0.8};
+    const Parallelogram turned{side.corner, side.v, side.u, side.albedo};
     const Vec3 seen(0.25, -0.1, 0.0);
     core::PinholeCamera camera = narrow_camera(Vec3(0.1, -0.2, 1.5), seen);
     camera.light_spot_m = Vec3(-1.0, 0.3, 0.7);
     const core::TimeAxis axis{0.0, 1e-3, 5000};
-    const auto capture = render_image(
-        {test_support::parallelogram_object(kFloor), test_support::parallelogram_object(side)},
-        camera,
-        axis,
-        settings_with(16, 2));
     const Vec3 to_spot = *camera.light_spot_m - seen;
     const Vec3 direction = to_spot.normalized();
     const double expected = kFloor.albedo / kPi * direction.z() * side.albedo / kPi *
                             -direction.x() / to_spot.squaredNorm();
     const int bin = *axis.bin_of((camera.position_m - seen).norm() + to_spot.norm());
-    EXPECT_EQ(sum_of(capture.by_order[0].values()), 0.0);
-    const auto histogram = capture.by_order[1].histogram(0);
-    EXPECT_NEAR(histogram[static_cast<std::size_t>(bin)] / expected, 1.0, 1e-4);
-    EXPECT_NEAR(sum_of(histogram) / expected, 1.0, 1e-4);
+    for (const Parallelogram& lit : {side, turned}) {
+        const auto capture = render_image(
+            {test_support::parallelogram_object(kFloor), test_support::parallelogram_object(lit)},
+            camera,
+            axis,
+            settings_with(16, 2));
+        EXPECT_EQ(sum_of(capture.by_order[0].values()), 0.0);
+        const auto histogram = capture.by_order[1].histogram(0);
+        EXPECT_NEAR(histogram[static_cast<std::size_t>(bin)] / expected, 1.0, 1e-4);
+        EXPECT_NEAR(sum_of(histogram) / expected, 1.0, 1e-4);
+    }
 }
 
 TEST(Camera, SpotBesideEverySurfaceIsRefused) {
