@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/arguments.h"
 #include "apps/bench_render.h"
+#include "apps/bench_sequences.h"
 #include "apps/commands.h"
 #include "apps/gnuplot.h"
 #include "apps/terminal.h"
@@ -23,6 +24,21 @@ struct BenchArguments {
     std::string exclusion_scene = "scenes/corner/scene.json";
     int repeats = 1;
 };
+
+struct SequenceArguments {
+    std::string folder;
+    std::string scene = "scenes/bars/scene.json";
+    std::string image_scene = "scenes/box/scene.json";
+    std::string only;
+    int frames = 60;
+    int repeats = 4;
+};
+
+void make_folder(const std::string& folder) {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error) throw core::Error(folder, "cannot be made", "must be a writable folder");
+}
 
 std::string gate_name(double gate_mm) {
     return gate_mm > 0.0 ? fmt::format("{:g} mm", gate_mm) : "histogram";
@@ -129,10 +145,59 @@ LogPlot plot_of(const RenderBench& bench) {
     return plot;
 }
 
+std::string sequences_text(const std::vector<SequenceBench>& benches) {
+    std::string text = fmt::format("{:<30} {:<20} {:>9} {:>10} {:>10} {:>7} {:>8} {:>8} {:>8}\n",
+                                   "sequence",
+                                   "method",
+                                   "ms/frame",
+                                   "relMSE",
+                                   "trimmed",
+                                   "sum",
+                                   "gain",
+                                   "trimmed",
+                                   "accepted");
+    for (const SequenceBench& bench : benches) {
+        text += fmt::format(
+            "{:<30} {:<20} {:>9.1f} {:>10.3e} {:>10.3e} {:>7.4f} {:>8.2f} {:>8.2f} {:>8.2f}\n",
+            bench.sequence,
+            bench.method,
+            1e3 * bench.seconds_per_frame,
+            bench.rel_mse,
+            bench.trimmed_rel_mse,
+            bench.sum_ratio,
+            bench.gain,
+            bench.trimmed_gain,
+            bench.accepted_share);
+    }
+    return text;
+}
+
+void run_sequences(const SequenceArguments& arguments) {
+    make_folder(arguments.folder);
+    ProgressBar bar("bench sequences");
+    std::vector<SequenceBench> benches;
+    for (const SequenceCase& sequence :
+         standard_sequences(arguments.scene, arguments.image_scene, arguments.frames)) {
+        if (sequence.name.find(arguments.only) == std::string::npos) continue;
+        const auto found = bench_sequence(
+            sequence,
+            standard_methods(sequence.scene == arguments.image_scene, sequence.gate_step_mm == 0.0),
+            arguments.repeats,
+            bar.progress());
+        fmt::print("{}", sequences_text(found));
+        benches.insert(benches.end(), found.begin(), found.end());
+    }
+    const std::string stem = (fs::path(arguments.folder) / "bench_sequences").string();
+    core::Json json;
+    json["sequences"] = core::write_value(benches);
+    json["program"] = version_text();
+    core::write_text_file(stem + ".json", json.dump(2) + "\n");
+    core::write_text_file(stem + ".txt", sequences_text(benches));
+    fmt::print("wrote {}\n", stem + ".json");
+}
+
 void run_render(const BenchArguments& arguments) {
-    std::error_code error;
-    fs::create_directories(arguments.folder, error);
-    if (error) throw core::Error(arguments.folder, "cannot be made", "must be a writable folder");
+    make_folder(arguments.folder);
     ProgressBar bar("bench render");
     const RenderBench bench =
         bench_render(arguments.scene, arguments.exclusion_scene, arguments.repeats, bar.progress());
@@ -170,6 +235,22 @@ void add_bench_command(CLI::App& app) {
         ->check(CLI::Range(1, 1000));
     render->footer(settings_footer({}, "nlos bench render -o out/bench"));
     render->callback([arguments] { run_render(*arguments); });
+
+    const auto sequence = std::make_shared<SequenceArguments>();
+    CLI::App* sequences =
+        command->add_subcommand("sequences", "Frame sequences: reuse of paths against none");
+    sequences->add_option("-o,--output", sequence->folder, "Folder for JSON and table")->required();
+    sequences->add_option("--scene", sequence->scene, "Scan")->capture_default_str();
+    sequences->add_option("--image-scene", sequence->image_scene, "Camera")->capture_default_str();
+    sequences->add_option("--only", sequence->only, "Sequences whose names contain this");
+    sequences->add_option("--frames", sequence->frames, "Frames of a sequence")
+        ->capture_default_str()
+        ->check(CLI::Range(2, 10'000));
+    sequences->add_option("--repeats", sequence->repeats, "Runs per method")
+        ->capture_default_str()
+        ->check(CLI::Range(1, 1000));
+    sequences->footer(settings_footer({}, "nlos bench sequences -o out/bench --only 'scan'"));
+    sequences->callback([sequence] { run_sequences(*sequence); });
 }
 
 }  // namespace apps

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/core/progress.h"
+#include "renderer/core/settings.h"
+
+#include <string>
+#include <vector>
+
+namespace apps {
+
+/// A gate that moves over a scene, as frames.
+struct SequenceCase {
+    std::string name;
+    std::string scene;
+    std::vector<std::string> overrides;  ///< of scene.json
+    double gate_start_m = 0.0;
+    double gate_width_mm = 10.0;
+    double gate_step_mm = 10.0;  ///< per frame; 0: the gate stands still
+    int num_frames = 60;
+};
+
+/// How one method does on a sequence, on one thread.
+struct SequenceBench {
+    std::string sequence;
+    std::string method;
+    double seconds_per_frame = 0.0;  ///< CPU time
+    double rel_mse = 0.0;
+    double trimmed_rel_mse = 0.0;
+    double sum_ratio = 0.0;
+    double gain = 0.0;
+    double trimmed_gain = 0.0;
+    double accepted_share = 0.0;
+    std::vector<double> rel_mse_of_frames;
+};
+
+template <class Visitor>
+void for_each_field(SequenceBench& bench, Visitor&& visit) {
+    visit("sequence", bench.sequence, "gate and measurement");
+    visit("method", bench.method, "estimator and candidates");
+    visit("seconds_per_frame", bench.seconds_per_frame, "CPU time of a frame [s]");
+    visit("rel_mse", bench.rel_mse, "mean over the later frames and all seeds");
+    visit("trimmed_rel_mse", bench.trimmed_rel_mse, "the same without the worst 0.2 % of values");
+    visit("sum_ratio", bench.sum_ratio, "sum of all values over that of the reference");
+    visit("gain", bench.gain, "relative MSE times seconds of the first method over this one's");
+    visit("trimmed_gain", bench.trimmed_gain, "the same for the trimmed error");
+    visit("accepted_share", bench.accepted_share, "of shifts; 0: none was tried");
+    visit("rel_mse_of_frames", bench.rel_mse_of_frames, "frame by frame");
+}
+
+/// A method and the settings that make it.
+struct SequenceMethod {
+    std::string name;
+    std::vector<std::string> overrides;
+};
+
+/// Runs methods over a sequence and measures them against two independent references, whose
+/// product has no bias from their noise: long histograms of which every gate is a sum of bins.
+///
+/// methods     the first is what gains are counted against
+/// num_seeds   runs per method
+std::vector<SequenceBench> bench_sequence(const SequenceCase& sequence,
+                                          const std::vector<SequenceMethod>& methods,
+                                          int num_seeds,
+                                          const core::Progress& progress);
+
+/// The sequences and methods of the standard table.
+std::vector<SequenceCase> standard_sequences(const std::string& scan_scene,
+                                             const std::string& image_scene,
+                                             int num_frames);
+std::vector<SequenceMethod> standard_methods(bool is_image, bool is_static);
+
+}  // namespace apps
