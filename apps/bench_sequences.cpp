@@ -218,8 +218,14 @@ std::vector<SequenceCase> standard_sequences(const std::string& scan_scene,
 }
 
 std::vector<SequenceMethod> standard_methods(bool is_image, bool is_static) {
-    const std::string cap = fmt::format("render.restir.confidence_cap={}", is_static ? 50 : 5);
-    const std::string near = fmt::format("render.restir.neighbours={}", is_static ? 0 : 3);
+    // Good candidates leave little for reuse to add: a moving gate then wants a short memory.
+    const auto cap = [&](int moving) {
+        return fmt::format("render.restir.confidence_cap={}", is_static ? 50 : moving);
+    };
+    const auto near = [&](int moving) {
+        return fmt::format("render.restir.neighbours={}", is_static ? 0 : moving);
+    };
+    const int memory = is_image ? 8 : 5;
     const std::string walks = is_image ? "render.restir.walks=2" : "render.restir.walks=8";
     const std::string shared = fmt::format("render.restir.shared_walks={}", is_image ? 512 : 1024);
     const std::string restir = "render.method=restir";
@@ -228,11 +234,11 @@ std::vector<SequenceMethod> standard_methods(bool is_image, bool is_static) {
             {"ellipsoidal",
              {"render.method=ellipsoidal", is_image ? "render.samples=4" : "render.samples=32"}},
             {"naive, ellipsoidal",
-             {restir, ellipsoidal, walks, cap, near, "render.restir.reuse=naive"}},
-            {"restir, walks", {restir, "render.restir.candidates=path", walks, cap, near}},
-            {"restir, ellipsoidal", {restir, ellipsoidal, walks, cap, near}},
+             {restir, ellipsoidal, walks, cap(memory), near(3), "render.restir.reuse=naive"}},
+            {"restir, walks", {restir, "render.restir.candidates=path", walks, cap(memory), near(3)}},
+            {"restir, ellipsoidal", {restir, ellipsoidal, walks, cap(memory), near(3)}},
             {"shared alone", {restir, shared, "render.restir.reuse=none"}},
-            {"restir, shared", {restir, shared, cap, near}}};
+            {"restir, shared", {restir, shared, cap(is_image ? 5 : 2), near(is_image ? 3 : 0)}}};
 }
 
 }  // namespace apps

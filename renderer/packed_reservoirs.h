@@ -34,6 +34,7 @@ class PackedReservoirs {
         reservoir.contribution_weight = head.contribution_weight;
         reservoir.confidence = double{head.confidence};
         reservoir.sample.num_vertices = head.num_vertices;
+        reservoir.sample.pixel_u = head.pixel_u;
         const SurfacePoint* const stored = vertices_.data() + index * max_vertices_;
         std::copy(stored, stored + head.num_vertices, reservoir.sample.vertices.begin());
         return reservoir;
@@ -45,6 +46,7 @@ class PackedReservoirs {
         head.contribution_weight = reservoir.contribution_weight;
         head.confidence = static_cast<float>(reservoir.confidence);
         head.num_vertices = reservoir.empty() ? 0 : reservoir.sample.num_vertices;
+        head.pixel_u = reservoir.sample.pixel_u;
         std::copy_n(reservoir.sample.vertices.begin(),
                     head.num_vertices,
                     vertices_.data() + index * max_vertices_);
@@ -54,6 +56,7 @@ class PackedReservoirs {
     struct Head {
         double target_value = 0.0;
         double contribution_weight = 0.0;
+        core::Vec2 pixel_u = core::Vec2::Zero();
         float confidence = 0.0F;
         std::int32_t num_vertices = 0;
     };

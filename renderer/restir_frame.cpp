@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/restir_frame.h"
 
+#include "renderer/core/parallel.h"
+
 namespace renderer {
 namespace {
 
@@ -111,15 +113,48 @@ RestirScene::RestirScene(std::shared_ptr<const Scene> scene_of_frames,
       measurement(*scene, scan),
       walk(*scene, settings.laser_spot_m2),
       candidates(*scene, scan, measurement, walk, settings),
-      shift(make_shift(*scene, settings.restir)) {}
+      shift(make_shift(*scene, settings.restir)) {
+    if (!measurement.is_image()) return;
+    pixel_normals.resize(measurement.num_pairs(), Vec3::Zero());
+    core::parallel_for(pixel_normals.size(), [&](std::size_t pixel) {
+        const auto seen = measurement.first_vertex(pixel, {0.5, 0.5});
+        if (seen) pixel_normals[pixel] = seen->normal;
+    });
+}
+
+PathDomain pixel_domain(const Measurement& measurement,
+                        std::size_t pixel,
+                        const core::Vec2& pixel_u) {
+    PathDomain domain;
+    domain.ends = measurement.ends(pixel);
+    domain.pixel_u = pixel_u;
+    domain.seen = measurement.first_vertex(pixel, pixel_u);
+    domain.is_dark = !domain.seen;
+    return domain;
+}
 
 CarriedPath carry_path(const PathReservoir& reservoir,
-                       const RestirSide& from,
-                       const RestirSide& to,
+                       RestirSide from,
+                       RestirSide to,
                        const RestirScene& current,
                        RestirCounts& counts) {
-    if (reservoir.empty() || to.domain->is_dark) return std::nullopt;
+    if (reservoir.empty()) return std::nullopt;
     Carried<ReusablePath> carried{reservoir.sample, 0.0, 1.0};
+    if (from.scene == to.scene && from.pair == to.pair && from.gate == to.gate) {
+        carried.target_value = reservoir.target_value;
+        return carried;
+    }
+    PathDomain seen_from;
+    PathDomain seen_to;
+    if (current.measurement.is_image()) {
+        const core::Vec2& pixel_u = reservoir.sample.pixel_u;
+        seen_from = pixel_domain(from.scene->measurement, from.pair, pixel_u);
+        seen_to = pixel_domain(to.scene->measurement, to.pair, pixel_u);
+        counts.num_rays += 2;
+        from.domain = &seen_from;
+        to.domain = &seen_to;
+    }
+    if (from.domain->is_dark || to.domain->is_dark) return std::nullopt;
     if (from.scene != to.scene) {
         for (int i = 0; i < carried.sample.num_vertices; ++i) {
             SurfacePoint& vertex = carried.sample.at(i);

@@ -28,43 +28,53 @@ struct RestirScene {
     SurfaceWalk walk;
     PathCandidates candidates;
     std::optional<ShiftMapping> shift;  ///< nothing: paths are reused as they are
+    /// Normals of what is seen through the middle of pixels, 0 where that is nothing.
+    std::vector<core::Vec3> pixel_normals;
 };
 
 /// One frame's reservoirs, one per pair and bin, and what they belong to.
 struct RestirFrame {
     std::shared_ptr<RestirScene> scene;
     core::TimeAxis axis;
-    std::vector<PathDomain> domains;    ///< per pair
+    std::vector<PathDomain> domains;    ///< per pair, of the frame's own candidates
     PackedReservoirs reservoirs{0, 0};  ///< [pair][bin]
 };
 
 /// One reservoir's place: a pair and a gate, in a scene.
 struct RestirSide {
     const RestirScene* scene = nullptr;
-    const PathDomain* domain = nullptr;
+    const PathDomain* domain = nullptr;  ///< of a pixel, the one of the frame's own candidates
     TimeGate gate;
+    std::size_t pair = 0;
 
     RestirSide() = default;
-    RestirSide(const RestirFrame& frame, std::size_t pair, int bin, GateShape shape)
+    RestirSide(const RestirFrame& frame, std::size_t pair_index, int bin, GateShape shape)
         : scene(frame.scene.get()),
-          domain(&frame.domains[pair]),
-          gate(TimeGate::of_bin(frame.axis, bin, shape)) {}
+          domain(&frame.domains[pair_index]),
+          gate(TimeGate::of_bin(frame.axis, bin, shape)),
+          pair(pair_index) {}
 };
 
 using PathReservoir = Reservoir<ReusablePath>;
 using CarriedPath = std::optional<Carried<ReusablePath>>;
 
+/// Where the paths through one place of a pixel start and end.
+PathDomain pixel_domain(const Measurement& measurement,
+                        std::size_t pixel,
+                        const core::Vec2& pixel_u);
+
 /// Carries a reservoir's path from one place to another, so that it fits the gate there.
 ///
-/// Objects may have moved in between. The shift is solved in the `current` scene: paths of another
-/// one are taken there by the motion of the object that carries the first vertex, both neighbours
-/// along with it, which keeps lengths and areas.
+/// A pixel's paths start anywhere in it: the place within the pixel is a part of the path, and
+/// stays when another pixel takes the path over. Objects may have moved in between. The shift is
+/// solved in the `current` scene: paths of another one are taken there by the motion of the object
+/// that carries the first vertex, both neighbours along with it, which keeps lengths and areas.
 ///
 /// counts    receives shifts and rays
 /// returns   the path there, or nothing: what is not carried has no image
 CarriedPath carry_path(const PathReservoir& reservoir,
-                       const RestirSide& from,
-                       const RestirSide& to,
+                       RestirSide from,
+                       RestirSide to,
                        const RestirScene& current,
                        RestirCounts& counts);
 

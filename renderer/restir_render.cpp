@@ -144,7 +144,7 @@ RenderResult render_restir(std::shared_ptr<const Scene> scene,
     bool interrupted = false;
     while (done < num_frames) {
         const auto number = static_cast<std::uint64_t>(done);
-        add_frame(renderer.render({restir_scene, axis, nullptr, number, number}), settings, sums);
+        add_frame(renderer.render({restir_scene, axis, nullptr, number}), settings, sums);
         ++done;
         const double elapsed = seconds_since(start);
         const double share =
@@ -186,8 +186,7 @@ FrameRenderer make_restir_frame_renderer(const core::Scan& scan, const RenderSet
         RestirFrame rendered = state->renderer.render({scene,
                                                        frame.axis,
                                                        is_first ? nullptr : &state->last,
-                                                       static_cast<std::uint64_t>(frame.index),
-                                                       0});
+                                                       static_cast<std::uint64_t>(frame.index)});
         TransientAccumulator sums = empty_sums(frame_scan, frame.axis, state->settings);
         add_frame(rendered, state->settings, sums);
         state->last = std::move(rendered);

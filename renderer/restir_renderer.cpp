@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kPairsPerBlock = 16;
 
 // Streams of random numbers of one frame: one for the candidates, one for each round of reuse, and
-// one that all frames of a sequence share.
+// one for the places within pixels.
 constexpr std::uint64_t kStreamsPerFrame = 64;
 constexpr int kCandidateStage = 0;
 constexpr std::uint64_t kPixelStream = kStreamsPerFrame - 1;
@@ -100,12 +100,9 @@ void RestirRenderer::find_domains(const FrameInput& input, RestirFrame& frame) c
         PathDomain& domain = frame.domains[pair];
         domain.ends = measurement.ends(pair);
         if (!measurement.is_image()) return;
-        // The place within the pixel stays for a whole sequence: each frame is unbiased, and what
-        // does not move has nothing to be shifted.
-        core::Rng rng(settings_.seed, pair, input.first_number * kStreamsPerFrame + kPixelStream);
+        core::Rng rng(settings_.seed, pair, input.number * kStreamsPerFrame + kPixelStream);
         const double u1 = rng.uniform();
-        domain.seen = measurement.first_vertex(pair, {u1, rng.uniform()});
-        domain.is_dark = !domain.seen;
+        domain = pixel_domain(measurement, pair, {u1, rng.uniform()});
     });
 }
 
@@ -126,6 +123,11 @@ void RestirRenderer::fill(const FrameInput& input, RestirFrame& frame) {
 }
 
 namespace {
+
+ReusablePath placed(ReusablePath path, const PathDomain& domain) {
+    path.pixel_u = domain.pixel_u;
+    return path;
+}
 
 PathCandidates::Effort effort_of(const RestirSettings& settings, double share) {
     PathCandidates::Effort effort;
@@ -155,7 +157,7 @@ void RestirRenderer::draw(Worker& worker, const RestirFrame& frame, std::size_t 
             const TimeGate gate = TimeGate::of_bin(frame.axis, *bin, settings_.gate);
             const double target = value.radiance * gate.weight(value.opl_m);
             worker.builders[static_cast<std::size_t>(*bin)].add(
-                path, target, target / density, worker.rng.uniform());
+                placed(path, request.domain), target, target / density, worker.rng.uniform());
         });
 }
 
@@ -174,7 +176,8 @@ PathReservoir RestirRenderer::draw_wide(Worker& worker,
     worker.counts.num_rays += frame.scene->candidates.generate(
         request, worker.rng, [&](const ReusablePath& path, const PathValue& value, double density) {
             const double target = value.radiance * wide.gate.weight(value.opl_m);
-            builder.add(path, target, target / density, worker.rng.uniform());
+            builder.add(
+                placed(path, request.domain), target, target / density, worker.rng.uniform());
         });
     const PathReservoir other = builder.finish(share * kConfidenceOfFrame);
     const CarriedPath in = carry_path(other, wide, here, *frame.scene, worker.counts);
@@ -191,7 +194,6 @@ PathReservoir RestirRenderer::with_history(Worker& worker,
     const int bin = static_cast<int>(index % static_cast<std::size_t>(frame.axis.num_bins));
     const RestirSide here(frame, worker.pair, bin, settings_.gate);
     const RestirSide before(previous, worker.pair, bin, settings_.gate);
-    if (here.domain->is_dark || before.domain->is_dark) return fresh;
     const PathReservoir history =
         limited(previous.reservoirs.load(index), settings_.restir.confidence_cap);
     const CarriedPath in = carry_path(history, before, here, *frame.scene, worker.counts);
@@ -204,15 +206,15 @@ void RestirRenderer::reuse_neighbours(const FrameInput& input, int round, Restir
     const auto num_bins = static_cast<std::size_t>(frame.axis.num_bins);
     PackedReservoirs merged(frame.reservoirs.size(), max_vertices_);
     for_each_pair(input, kCandidateStage + 1 + round, [&](Worker& worker, std::size_t pair) {
-        const PathDomain& domain = frame.domains[pair];
-        if (domain.is_dark) return;
         neighbours_.pick(pair, settings_.restir.neighbours, worker.rng, worker.neighbours);
-        // Which neighbours count is decided before their reservoirs are looked at.
-        std::erase_if(worker.neighbours, [&](std::size_t other) {
-            const PathDomain& there = frame.domains[other];
-            return there.is_dark ||
-                   there.start_normal().dot(domain.start_normal()) < kLeastNormalCosine;
-        });
+        // Which neighbours count depends on nothing that is random in their reservoirs: not on
+        // where in the pixels their paths start, either.
+        const std::vector<core::Vec3>& normals = frame.scene->pixel_normals;
+        if (!normals.empty()) {
+            std::erase_if(worker.neighbours, [&](std::size_t other) {
+                return std::abs(normals[other].dot(normals[pair])) < kLeastNormalCosine;
+            });
+        }
         for (std::size_t bin = 0; bin < num_bins; ++bin) {
             merged.store(pair * num_bins + bin,
                          with_neighbours(worker, frame, pair * num_bins + bin));

@@ -23,7 +23,6 @@ class RestirRenderer {
         core::TimeAxis axis;
         const RestirFrame* previous = nullptr;  ///< whose reservoirs to reuse; null: none
         std::uint64_t number = 0;               ///< among all frames of one seed
-        std::uint64_t first_number = 0;         ///< of the sequence that the frame belongs to
     };
     /// Renders a frame. Its estimates are those of its reservoirs.
     RestirFrame render(const FrameInput& input);

@@ -19,6 +19,8 @@ struct ReusablePath {
 
     int num_vertices = 0;
     std::array<SurfacePoint, kMostVertices> vertices;
+    core::Vec2 pixel_u =
+        core::Vec2::Zero();  ///< place within the pixel where an image's path starts
 
     const SurfacePoint& first() const { return vertices[0]; }
     const SurfacePoint& last() const { return at(num_vertices - 1); }
@@ -27,9 +29,10 @@ struct ReusablePath {
     void append(const SurfacePoint& point) { at(num_vertices++) = point; }
 };
 
-/// Where all paths of one pair start and end, in one frame.
+/// Where paths of one pair start and end; of a pixel, those through one place of it.
 struct PathDomain {
     PathEnds ends;
+    core::Vec2 pixel_u = core::Vec2::Zero();
     std::optional<PathVertex> seen;  ///< of a pixel: what it sees, in place of the sensor
     bool is_dark = false;            ///< of a pixel that sees nothing: there are no paths
 

@@ -20,6 +20,8 @@ struct TimeGate {
         return {axis.bin_begin_m(bin), axis.bin_width_m, shape};
     }
 
+    bool operator==(const TimeGate&) const = default;
+
     double weight(double opl_m) const {
         if (shape == GateShape::Box) return opl_m >= begin_m() && opl_m < end_m() ? 1.0 : 0.0;
         const double offset = (opl_m - start_m) / width_m - 0.5;
