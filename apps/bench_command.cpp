@@ -28,7 +28,7 @@ struct BenchArguments {
 struct SequenceArguments {
     std::string folder;
     std::string scene = "scenes/bars/scene.json";
-    std::string image_scene = "scenes/box/scene.json";
+    std::string image_scene = "scenes/room/scene.json";
     std::string only;
     int frames = 60;
     int repeats = 4;

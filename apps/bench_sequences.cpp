@@ -209,7 +209,7 @@ std::vector<SequenceCase> standard_sequences(const std::string& scan_scene,
         sequences.push_back({"camera, 5 vertices, " + gate,
                              image_scene,
                              {"render.max_bounces=5"},
-                             3.2,
+                             2.6,
                              width,
                              step,
                              num_frames});

@@ -19,6 +19,11 @@ class PassHistogram {
 
     /// Adds a contribution of a path of length `opl_m`, weighted by the gate.
     void add(int channel, double opl_m, double value);
+    /// Whether a path of this length counts at all.
+    bool admits(double opl_m) const {
+        int bin = 0;
+        return gate_weight(opl_m, bin) > 0.0;
+    }
     /// Adds many contributions, those of 0 left out.
     ///
     /// opl_m, values   one entry per path, at most kMostAtOnce

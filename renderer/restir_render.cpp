@@ -55,16 +55,36 @@ void require_memory(double needed) {
             "reservoirs need {:.1f} GB, {:.1f} GB are free", needed * 1e-9, available * 1e-9));
 }
 
+// What goes straight from the surface that a pixel sees to the light. A gate's edge that crosses a
+// pixel would be noise if one place of it stood for all.
+void add_direct_light_of_pixel(const RestirFrame& frame,
+                               std::size_t pixel,
+                               const RenderSettings& settings,
+                               PassHistogram& histogram) {
+    constexpr int kPlacesPerSide = 4;
+    constexpr double kWeight = 1.0 / (kPlacesPerSide * kPlacesPerSide);
+    const PathDomain& domain = frame.domains[pixel];
+    const Measurement& measurement = frame.scene->measurement;
+    for (int i = 0; i < kPlacesPerSide; ++i) {
+        for (int j = 0; j < kPlacesPerSide; ++j) {
+            // One jitter for all: the places are a grid shifted at random.
+            const core::Vec2 place = (core::Vec2(i, j) + domain.pixel_u) / kPlacesPerSide;
+            auto seen = measurement.first_vertex(pixel, place);
+            if (!seen) continue;
+            seen->throughput = kWeight;
+            add_direct_light(*seen, domain.ends, frame.scene->walk, settings, histogram);
+        }
+    }
+}
+
 void add_paths_without_vertices(const RestirFrame& frame,
                                 std::size_t pair,
                                 const RenderSettings& settings,
                                 PassHistogram& histogram) {
-    const PathDomain& domain = frame.domains[pair];
-    if (domain.is_dark) return;
-    if (domain.seen) {
-        add_direct_light(*domain.seen, domain.ends, frame.scene->walk, settings, histogram);
+    if (frame.scene->measurement.is_image()) {
+        add_direct_light_of_pixel(frame, pair, settings, histogram);
     } else {
-        add_short_paths(*frame.scene->scene, domain.ends, settings, histogram);
+        add_short_paths(*frame.scene->scene, frame.domains[pair].ends, settings, histogram);
     }
 }
 

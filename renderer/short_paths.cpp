@@ -33,10 +33,10 @@ void add_direct_light(const PathVertex& seen,
                       const SurfaceWalk& walk,
                       const RenderSettings& settings,
                       PassHistogram& histogram) {
-    if (seen.order > settings.max_bounces) return;
+    const double to_light = (ends.light.position - seen.point.position).norm();
+    if (seen.order > settings.max_bounces || !histogram.admits(seen.opl_m + to_light)) return;
     const double value = walk.connection_value(seen, ends);
     if (!(value > 0.0) || walk.light_is_hidden(seen, ends)) return;
-    const double to_light = (ends.light.position - seen.point.position).norm();
     histogram.add(settings.by_order ? seen.order - 1 : 0, seen.opl_m + to_light, value);
 }
 

@@ -7,8 +7,13 @@
 namespace scenes {
 
 std::vector<GeneratedScene> generated_scenes() {
-    return {
-        make_letter(), make_bars(), make_corner(), make_glossy(), make_curved(), make_box_room()};
+    return {make_letter(),
+            make_bars(),
+            make_corner(),
+            make_glossy(),
+            make_curved(),
+            make_box_room(),
+            make_diffuse_room()};
 }
 
 void write_scene(const GeneratedScene& scene, const std::string& folder) {

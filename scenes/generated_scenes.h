@@ -15,12 +15,13 @@ struct GeneratedScene {
     std::string description;  ///< text of scene.json; empty when that is written by hand
 };
 
-GeneratedScene make_letter();    ///< a flat F
-GeneratedScene make_bars();      ///< a smooth closed surface behind bars
-GeneratedScene make_corner();    ///< the corner of a room with two objects
-GeneratedScene make_glossy();    ///< two GGX surfaces and a retroreflective plate
-GeneratedScene make_curved();    ///< a torus in front of a curved relay wall
-GeneratedScene make_box_room();  ///< a room with a mirror-like ball and a glossy block
+GeneratedScene make_letter();        ///< a flat F
+GeneratedScene make_bars();          ///< a smooth closed surface behind bars
+GeneratedScene make_corner();        ///< the corner of a room with two objects
+GeneratedScene make_glossy();        ///< two GGX surfaces and a retroreflective plate
+GeneratedScene make_curved();        ///< a torus in front of a curved relay wall
+GeneratedScene make_box_room();      ///< a room with a mirror-like ball and a glossy block
+GeneratedScene make_diffuse_room();  ///< the same room, all diffuse, with a wavy ball
 
 std::vector<GeneratedScene> generated_scenes();
 
