@@ -3,6 +3,8 @@
 
 #include "renderer/core/parallel.h"
 
+#include <limits>
+
 namespace renderer {
 namespace {
 
@@ -116,9 +118,13 @@ RestirScene::RestirScene(std::shared_ptr<const Scene> scene_of_frames,
       shift(make_shift(*scene, settings.restir)) {
     if (!measurement.is_image()) return;
     pixel_normals.resize(measurement.num_pairs(), Vec3::Zero());
+    pixel_direct_opl_m.resize(measurement.num_pairs(), std::numeric_limits<double>::infinity());
+    const Vec3 light = measurement.ends(0).light.position;
     core::parallel_for(pixel_normals.size(), [&](std::size_t pixel) {
         const auto seen = measurement.first_vertex(pixel, {0.5, 0.5});
-        if (seen) pixel_normals[pixel] = seen->normal;
+        if (!seen) return;
+        pixel_normals[pixel] = seen->normal;
+        pixel_direct_opl_m[pixel] = seen->opl_m + (light - seen->point.position).norm();
     });
 }
 

@@ -28,8 +28,10 @@ struct RestirScene {
     SurfaceWalk walk;
     PathCandidates candidates;
     std::optional<ShiftMapping> shift;  ///< nothing: paths are reused as they are
-    /// Normals of what is seen through the middle of pixels, 0 where that is nothing.
+    /// Of an image, what is seen through the middle of its pixels: normals, 0 where that is
+    /// nothing, and lengths of the path straight to the light, infinite there.
     std::vector<core::Vec3> pixel_normals;
+    std::vector<double> pixel_direct_opl_m;
 };
 
 /// One frame's reservoirs, one per pair and bin, and what they belong to.

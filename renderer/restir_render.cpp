@@ -55,23 +55,40 @@ void require_memory(double needed) {
             "reservoirs need {:.1f} GB, {:.1f} GB are free", needed * 1e-9, available * 1e-9));
 }
 
+// Whether the end of a bin may cross a pixel, judged by the middles of the pixels around it.
+bool bin_may_end_in(const RestirFrame& frame, std::size_t pixel, const core::Scan& scan) {
+    const std::vector<double>& opl_m = frame.scene->pixel_direct_opl_m;
+    const std::size_t height = scan.camera->height();
+    double low = opl_m[pixel];
+    double high = opl_m[pixel];
+    for (const std::size_t other : {pixel - 1, pixel + 1, pixel - height, pixel + height}) {
+        if (other >= opl_m.size()) continue;  // also below 0
+        low = std::min(low, opl_m[other]);
+        high = std::max(high, opl_m[other]);
+    }
+    if (low > frame.axis.opl_end_m() || high < frame.axis.opl_start_m) return false;
+    const auto first = frame.axis.bin_of(low);
+    return !first || first != frame.axis.bin_of(high);
+}
+
 // What goes straight from the surface that a pixel sees to the light. A gate's edge that crosses a
 // pixel would be noise if one place of it stood for all.
 void add_direct_light_of_pixel(const RestirFrame& frame,
                                std::size_t pixel,
+                               const core::Scan& scan,
                                const RenderSettings& settings,
                                PassHistogram& histogram) {
-    constexpr int kPlacesPerSide = 4;
-    constexpr double kWeight = 1.0 / (kPlacesPerSide * kPlacesPerSide);
+    const int places_per_side = bin_may_end_in(frame, pixel, scan) ? 4 : 1;
+    const double weight = 1.0 / (places_per_side * places_per_side);
     const PathDomain& domain = frame.domains[pixel];
     const Measurement& measurement = frame.scene->measurement;
-    for (int i = 0; i < kPlacesPerSide; ++i) {
-        for (int j = 0; j < kPlacesPerSide; ++j) {
+    for (int i = 0; i < places_per_side; ++i) {
+        for (int j = 0; j < places_per_side; ++j) {
             // One jitter for all: the places are a grid shifted at random.
-            const core::Vec2 place = (core::Vec2(i, j) + domain.pixel_u) / kPlacesPerSide;
+            const core::Vec2 place = (core::Vec2(i, j) + domain.pixel_u) / places_per_side;
             auto seen = measurement.first_vertex(pixel, place);
             if (!seen) continue;
-            seen->throughput = kWeight;
+            seen->throughput = weight;
             add_direct_light(*seen, domain.ends, frame.scene->walk, settings, histogram);
         }
     }
@@ -79,10 +96,11 @@ void add_direct_light_of_pixel(const RestirFrame& frame,
 
 void add_paths_without_vertices(const RestirFrame& frame,
                                 std::size_t pair,
+                                const core::Scan& scan,
                                 const RenderSettings& settings,
                                 PassHistogram& histogram) {
     if (frame.scene->measurement.is_image()) {
-        add_direct_light_of_pixel(frame, pair, settings, histogram);
+        add_direct_light_of_pixel(frame, pair, scan, settings, histogram);
     } else {
         add_short_paths(*frame.scene->scene, frame.domains[pair].ends, settings, histogram);
     }
@@ -90,6 +108,7 @@ void add_paths_without_vertices(const RestirFrame& frame,
 
 // Adds what a frame's reservoirs estimate, and paths too short to be sampled, to the sums.
 void add_frame(const RestirFrame& frame,
+               const core::Scan& scan,
                const RenderSettings& settings,
                TransientAccumulator& sums) {
     const auto num_bins = static_cast<std::size_t>(frame.axis.num_bins);
@@ -99,7 +118,7 @@ void add_frame(const RestirFrame& frame,
             PassHistogram gated(frame.axis, settings.gate, 1);
             PassHistogram histogram(frame.axis, GateShape::Box, 1);
             for (std::size_t pair = begin; pair < end; ++pair) {
-                add_paths_without_vertices(frame, pair, settings, gated);
+                add_paths_without_vertices(frame, pair, scan, settings, gated);
                 gated.drain([](std::size_t, double) {},
                             [&](std::size_t bin, double value) {
                                 histogram.add(
@@ -164,7 +183,7 @@ RenderResult render_restir(std::shared_ptr<const Scene> scene,
     bool interrupted = false;
     while (done < num_frames) {
         const auto number = static_cast<std::uint64_t>(done);
-        add_frame(renderer.render({restir_scene, axis, nullptr, number}), settings, sums);
+        add_frame(renderer.render({restir_scene, axis, nullptr, number}), scan, settings, sums);
         ++done;
         const double elapsed = seconds_since(start);
         const double share =
@@ -208,7 +227,7 @@ FrameRenderer make_restir_frame_renderer(const core::Scan& scan, const RenderSet
                                                        is_first ? nullptr : &state->last,
                                                        static_cast<std::uint64_t>(frame.index)});
         TransientAccumulator sums = empty_sums(frame_scan, frame.axis, state->settings);
-        add_frame(rendered, state->settings, sums);
+        add_frame(rendered, frame_scan, state->settings, sums);
         state->last = std::move(rendered);
         RenderResult result = result_of(sums, 1, frame_scan, frame.axis, state->settings);
         result.num_rays = state->renderer.counts().num_rays - rays_before;
