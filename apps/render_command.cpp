@@ -18,6 +18,7 @@ struct RenderArguments {
     std::vector<std::string> overrides;
     std::vector<std::string> shorthands;  ///< --samples 64 becomes render.samples=64
     int threads = 0;
+    bool verbose = false;
 };
 
 void add_shorthand(CLI::App& command,
@@ -55,6 +56,7 @@ void run(const RenderArguments& arguments) {
                                         effort,
                                         job.seconds));
     }
+    if (arguments.verbose) fmt::print("{}\n", job.details.dump(2));
     const std::string frames =
         job.num_frames > 0 ? fmt::format("{} frames x ", job.num_frames) : "";
     fmt::print("wrote {} ({}{} pairs x {} bins, {} by {}, {}{:.2f} s)\n",
@@ -96,6 +98,10 @@ void add_render_command(CLI::App& app) {
     command->add_option("--threads", arguments->threads, "Threads; 0 takes all processors")
         ->capture_default_str()
         ->check(CLI::Range(0, 1024));
+    command->add_flag("--verbose",
+                      arguments->verbose,
+                      "Also print what the run did: estimators, excluded objects, shifts and why "
+                      "they were rejected");
     add_set_option(*command, arguments->overrides);
     command->footer(settings_footer(core::settings_help(renderer::SceneDescription{}),
                                     "nlos render scenes/letter/scene.json -o letter.h5"));

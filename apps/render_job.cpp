@@ -24,6 +24,21 @@ std::string estimator_names(const renderer::RenderResult& result) {
     return names.empty() ? "closed form" : names;
 }
 
+// How reuse went: merges, shifts and why shifts were rejected, over all frames.
+core::Json resampling_of(const renderer::RenderResult& result) {
+    const renderer::RestirCounts& counts = result.restir_counts;
+    core::Json info;
+    info["merges"] = counts.num_merges;
+    info["shifts_tried"] = counts.shifts.tried();
+    info["shifts_accepted"] = counts.shifts.accepted;
+    info["shifts_accepted_by_ray"] = counts.shifts.by_ray;
+    for (std::size_t i = 0; i < counts.shifts.rejected.size(); ++i) {
+        info["shifts_rejected"][std::string(renderer::kShiftRejectionNames[i])] =
+            counts.shifts.rejected[i];
+    }
+    return info;
+}
+
 core::Json provenance(const std::string& scene_path,
                       const renderer::SceneDescription& description,
                       const renderer::RenderResult& result) {
@@ -46,6 +61,7 @@ core::Json provenance(const std::string& scene_path,
     }
     if (!result.warnings.empty()) info["warnings"] = result.warnings;
     info["samples_per_pair"] = result.samples_per_pair;
+    if (result.restir_counts.num_merges > 0) info["restir"] = resampling_of(result);
     info["seconds"] = result.seconds;
     info["interrupted"] = result.interrupted;
     info["settings"] = core::write_value(description);
@@ -98,6 +114,8 @@ RenderJob render_to_file(const std::string& scene_path,
     job.seconds = result.seconds;
     job.interrupted = result.interrupted;
     job.warnings = result.warnings;
+    job.details = result.capture.scene_info;
+    job.details.erase("settings");
     job.warnings.insert(job.warnings.end(), left_out.begin(), left_out.end());
     return job;
 }

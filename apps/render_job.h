@@ -22,6 +22,7 @@ struct RenderJob {
     double seconds = 0.0;
     bool interrupted = false;
     std::vector<std::string> warnings;
+    core::Json details;  ///< what the capture says of the run, settings aside
 };
 
 /// Renders a scene file into a capture file that carries settings, seed, version and command line;
