@@ -2,6 +2,7 @@
 #include "apps/arguments.h"
 #include "apps/bench_render.h"
 #include "apps/bench_sequences.h"
+#include "apps/bench_shift.h"
 #include "apps/commands.h"
 #include "apps/gnuplot.h"
 #include "apps/terminal.h"
@@ -33,12 +34,6 @@ struct SequenceArguments {
     int frames = 60;
     int repeats = 4;
 };
-
-void make_folder(const std::string& folder) {
-    std::error_code error;
-    fs::create_directories(folder, error);
-    if (error) throw core::Error(folder, "cannot be made", "must be a writable folder");
-}
 
 std::string gate_name(double gate_mm) {
     return gate_mm > 0.0 ? fmt::format("{:g} mm", gate_mm) : "histogram";
@@ -86,6 +81,13 @@ std::string exclusion_text(const std::vector<ExclusionBench>& benches) {
     }
     return text;
 }
+
+struct ShiftBenchArguments {
+    std::string folder;
+    std::vector<std::string> scenes{
+        "scenes/corner/scene.json", "scenes/letter/scene.json", "scenes/bars/scene.json"};
+    int shifts = 20'000;
+};
 
 std::string table_of(const RenderBench& bench) {
     std::string text = fmt::format(
@@ -145,6 +147,21 @@ LogPlot plot_of(const RenderBench& bench) {
     return plot;
 }
 
+// The path of a result's files in the folder, which is made when it is not there.
+std::string result_stem(const std::string& folder, const std::string& name) {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error) throw core::Error(folder, "cannot be made", "must be a writable folder");
+    return (fs::path(folder) / name).string();
+}
+
+void write_tables(const std::string& stem, core::Json json, const std::string& table) {
+    json["program"] = version_text();
+    core::write_text_file(stem + ".json", json.dump(2) + "\n");
+    core::write_text_file(stem + ".txt", table);
+    fmt::print("{}", table);
+}
+
 std::string sequences_text(const std::vector<SequenceBench>& benches) {
     std::string text = fmt::format("{:<30} {:<20} {:>9} {:>10} {:>10} {:>7} {:>8} {:>8} {:>8}\n",
                                    "sequence",
@@ -173,7 +190,7 @@ std::string sequences_text(const std::vector<SequenceBench>& benches) {
 }
 
 void run_sequences(const SequenceArguments& arguments) {
-    make_folder(arguments.folder);
+    const std::string stem = result_stem(arguments.folder, "bench_sequences");
     ProgressBar bar("bench sequences");
     std::vector<SequenceBench> benches;
     for (const SequenceCase& sequence :
@@ -184,30 +201,29 @@ void run_sequences(const SequenceArguments& arguments) {
             standard_methods(sequence.scene == arguments.image_scene, sequence.gate_step_mm == 0.0),
             arguments.repeats,
             bar.progress());
-        fmt::print("{}", sequences_text(found));
         benches.insert(benches.end(), found.begin(), found.end());
     }
-    const std::string stem = (fs::path(arguments.folder) / "bench_sequences").string();
     core::Json json;
     json["sequences"] = core::write_value(benches);
-    json["program"] = version_text();
-    core::write_text_file(stem + ".json", json.dump(2) + "\n");
-    core::write_text_file(stem + ".txt", sequences_text(benches));
+    write_tables(stem, json, sequences_text(benches));
+    fmt::print("wrote {}\n", stem + ".json");
+}
+
+void run_shift(const ShiftBenchArguments& arguments) {
+    const std::string stem = result_stem(arguments.folder, "bench_shift");
+    ProgressBar bar("bench shift");
+    const ShiftBench bench = bench_shift(arguments.scenes, arguments.shifts, bar.progress());
+    write_tables(stem, core::write_value(bench), table_of(bench));
     fmt::print("wrote {}\n", stem + ".json");
 }
 
 void run_render(const BenchArguments& arguments) {
-    make_folder(arguments.folder);
+    const std::string stem = result_stem(arguments.folder, "bench_render");
     ProgressBar bar("bench render");
     const RenderBench bench =
         bench_render(arguments.scene, arguments.exclusion_scene, arguments.repeats, bar.progress());
 
-    const std::string stem = (fs::path(arguments.folder) / "bench_render").string();
-    core::Json json = core::write_value(bench);
-    json["program"] = version_text();
-    core::write_text_file(stem + ".json", json.dump(2) + "\n");
-    core::write_text_file(stem + ".txt", table_of(bench));
-    fmt::print("{}", table_of(bench));
+    write_tables(stem, core::write_value(bench), table_of(bench));
     if (!draw_plot(plot_of(bench), stem) || !draw_plot(gate_plot(bench.gates), stem + "_gates")) {
         fmt::print(stderr, "bench: gnuplot is not there, so no plot was drawn\n");
     }
@@ -251,6 +267,18 @@ void add_bench_command(CLI::App& app) {
         ->check(CLI::Range(1, 1000));
     sequences->footer(settings_footer({}, "nlos bench sequences -o out/bench --only 'scan'"));
     sequences->callback([sequence] { run_sequences(*sequence); });
+    const auto shift_arguments = std::make_shared<ShiftBenchArguments>();
+    CLI::App* shift =
+        command->add_subcommand("shift", "Gauges and charts of the path-length-aware shift");
+    shift->add_option("-o,--output", shift_arguments->folder, "Folder for JSON and table")
+        ->required();
+    shift->add_option("--scene", shift_arguments->scenes, "Scene descriptions; gauges on the first")
+        ->capture_default_str();
+    shift->add_option("--shifts", shift_arguments->shifts, "Shifts per scene")
+        ->capture_default_str()
+        ->check(CLI::Range(1, 100'000'000));
+    shift->footer(settings_footer({}, "nlos bench shift -o out/bench"));
+    shift->callback([shift_arguments] { run_shift(*shift_arguments); });
 }
 
 }  // namespace apps
