@@ -279,6 +279,7 @@ void add_bench_command(CLI::App& app) {
         ->check(CLI::Range(1, 100'000'000));
     shift->footer(settings_footer({}, "nlos bench shift -o out/bench"));
     shift->callback([shift_arguments] { run_shift(*shift_arguments); });
+    add_noise_bench(*command);
 }
 
 }  // namespace apps

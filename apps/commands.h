@@ -20,4 +20,7 @@ void add_report_command(CLI::App& app);
 void add_demo_command(CLI::App& app);
 void add_bench_command(CLI::App& app);
 
+/// Adds `bench noise` to `bench`.
+void add_noise_bench(CLI::App& bench);
+
 }  // namespace apps

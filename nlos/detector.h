@@ -74,8 +74,8 @@ void for_each_field(DetectorSettings& s, Visitor&& visit) {
 ///
 /// capture    radiance, or counts to be scaled to another number of photons; not negative
 /// returns    the scan of `capture` with unit counts; `counts_per_radiance` and the settings are
-///            recorded; variance and orders of bounces are dropped. The same for any number of
-///            threads.
+///            recorded; variance, orders of bounces and frames are dropped. The same for any number
+///            of threads.
 /// throws     core::Error for settings or captures that do not fit
 /// source     first photon of a pulse [Coates1968]
 core::Capture detect(const core::Capture& capture, const DetectorSettings& settings);

@@ -14,6 +14,7 @@
 #include "nlos/surface.h"
 #include "nlos/total_variation.h"
 #include "nlos/virtual_wave.h"
+#include "nlos/wiener_snr.h"
 #include "renderer/core/process.h"
 
 #include <fmt/format.h>
@@ -37,11 +38,11 @@ int default_merge_bins(const core::TimeAxis& axis, const WallFrame& wall) {
     return merge;
 }
 
-/// Fills in merge_bins, ambient and snr, and says what becomes of the histograms.
+/// Fills in merge_bins, ambient and, where a method has it, snr, and says what becomes of the
+/// histograms.
 PreparationPlan choose_preparation(const Measurement& measurement, ReconstructSettings& settings) {
     const core::TimeAxis& axis = measurement.time_axis;
     const bool is_counts = measurement.unit == core::TransientUnit::Counts;
-    if (!settings.snr) settings.snr = is_counts ? 0.1 : 1.0;
     if (settings.ambient == Ambient::Auto) {
         settings.ambient = is_counts ? Ambient::Subtract : Ambient::Keep;
     }
@@ -63,6 +64,14 @@ PreparationPlan choose_preparation(const Measurement& measurement, ReconstructSe
                     std::clamp(end, std::min(kFewestBins, plan.num_bins), plan.num_bins);
             }
         }
+    }
+    const bool has_filter = settings.method == Method::Dlct ||
+                            (settings.method == Method::Lct && settings.prior == Prior::None);
+    if (has_filter && !settings.snr) {
+        settings.snr =
+            is_counts ? wiener_snr(
+                            measurement.scan, axis, measurement.transient(), plan, settings.falloff)
+                      : kNoiselessSnr;
     }
     return plan;
 }

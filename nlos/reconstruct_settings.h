@@ -63,7 +63,7 @@ struct ReconstructSettings {
     PhasorSettings phasor;
     TvSettings tv;
     CropSettings crop;
-    std::optional<double> snr;  ///< Wiener filter of lct; empty: 0.1 for counts, else 1
+    std::optional<double> snr;  ///< Wiener filter of lct, dlct; empty: see wiener_snr()
     Ambient ambient = Ambient::Auto;
     std::optional<int> merge_bins;  ///< neighbouring bins added up first; empty: from the pitch
     double mask_threshold = 0.2;    ///< of the maximum: foreground of depth map and points
@@ -111,10 +111,11 @@ void for_each_field(ReconstructSettings& s, Visitor&& visit) {
     visit("filter", s.filter, "how fbp sharpens");
     visit("phasor", s.phasor, "virtual wave (phasor, and fbp by phasor)");
     visit("crop", s.crop, "part of the capture to use");
-    visit("snr",
-          s.snr,
-          "signal to noise ratio of the Wiener filter (lct, dlct); null: 0.1 for counts, 1 for "
-          "radiance");
+    visit(
+        "snr",
+        s.snr,
+        "signal to noise ratio of the Wiener filter (lct, dlct); null: from the noise of counts, 1 "
+        "for radiance");
     visit("ambient",
           s.ambient,
           "constant background light, and bins behind the signal's end; auto: taken off counts");

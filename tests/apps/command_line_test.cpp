@@ -285,6 +285,48 @@ TEST_F(CommandLine, BadCapturesAreOneLineAndKeepOlderResults) {
     expect_bad_input("reconstruct " + file("nan.h5") + " -o " + out, "finite", out);
 }
 
+TEST_F(CommandLine, NoisyCapturesAreCountsOfTheirSeed) {
+    const std::string scene = make_scene("scene.json", core::Json::object());
+    ASSERT_EQ(run("render " + scene + " -o " + file("c.h5")).status, 0);
+    const std::string noise = "simulate-noise " + file("c.h5") + " -o ";
+    const std::string settings = " --photons 5000 --jitter-fwhm-ps 60 --ambient 0.01 --seed 3";
+    const Outcome outcome = run(noise + file("a.h5") + settings + " --threads 1");
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find("wrote " + file("a.h5")), std::string::npos);
+    ASSERT_EQ(run(noise + file("b.h5") + settings + " --threads 2").status, 0);
+    const core::Capture a = nlos::read_capture(file("a.h5"));
+    const core::Capture b = nlos::read_capture(file("b.h5"));
+    EXPECT_TRUE(std::ranges::equal(a.transient.values(), b.transient.values()));
+    EXPECT_EQ(a.unit, core::TransientUnit::Counts);
+    EXPECT_GT(a.counts_per_radiance.value(), 0.0);
+    EXPECT_EQ(a.scene_info["detector"]["photons"], 5000.0);
+    double sum = 0.0;
+    for (const float count : a.transient.values()) sum += count;
+    const double wanted = 5000.0 + 0.01 * static_cast<double>(a.transient.values().size());
+    EXPECT_NEAR(sum, wanted, 6.0 * std::sqrt(wanted));
+    expect_bad_input(noise + file("d.h5"), "photons", file("d.h5"));
+    expect_bad_input(noise + file("d.h5") + " --photons -1", "photons", file("d.h5"));
+}
+
+TEST_F(CommandLine, ConversionsComeBackTheSame) {
+    const std::string scene = make_scene("scene.json", core::Json::object());
+    ASSERT_EQ(run("render " + scene + " -o " + file("a.h5")).status, 0);
+    ASSERT_EQ(run("convert " + file("a.h5") + " " + file("b.exr")).status, 0);
+    ASSERT_EQ(run("convert " + file("b.exr") + " " + file("c.hdf5")).status, 0);
+    const core::Capture a = nlos::read_capture(file("a.h5"));
+    const core::Capture c = nlos::read_capture(file("c.hdf5"));
+    EXPECT_TRUE(std::ranges::equal(a.transient.values(), c.transient.values()));
+    EXPECT_EQ(a.scene_info, c.scene_info);
+    const Outcome mat = run("convert " + file("a.h5") + " " + file("d.mat"));
+    ASSERT_EQ(mat.status, 0) << mat.err;
+    EXPECT_NE(mat.out.find("not kept:"), std::string::npos);
+    ASSERT_EQ(run("convert " + file("a.h5") + " " + file("e.exr") + " --steady").status, 0);
+    EXPECT_EQ(nlos::read_capture(file("e.exr")).time_axis.num_bins, 1);
+    expect_bad_input("convert " + file("a.h5") + " " + file("f.tiff"), ".exr", file("f.tiff"));
+    expect_bad_input(
+        "convert " + file("a.h5") + " " + file("g.h5") + " --gate-m 9 1", "gate", file("g.h5"));
+}
+
 TEST_F(CommandLine, FilesThatDoNotFitTogetherAreRefused) {
     const std::string scene = make_scene("scene.json", core::Json::object());
     ASSERT_EQ(run("render scenes/curved/scene.json -o " + file("curved.h5")).status, 0);

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+#include "apps/arguments.h"
+#include "apps/bench_noise.h"
+#include "apps/commands.h"
+#include "apps/terminal.h"
+#include "apps/version.h"
+#include "renderer/core/output_file.h"
+
+#include <fmt/core.h>
+
+#include <filesystem>
+#include <memory>
+
+namespace apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct NoiseBenchArguments {
+    std::string folder;
+    std::string scene = "scenes/bars/scene.json";
+    int repeats = 1;
+};
+
+void run(const NoiseBenchArguments& arguments) {
+    std::error_code error;
+    fs::create_directories(arguments.folder, error);
+    if (error) throw core::Error(arguments.folder, "cannot be made", "must be a writable folder");
+    ProgressBar bar("bench noise");
+    const NoiseBench bench = bench_noise(arguments.scene, arguments.repeats, bar.progress());
+
+    const std::string stem = (fs::path(arguments.folder) / "bench_noise").string();
+    core::Json json = core::write_value(bench);
+    json["program"] = version_text();
+    core::write_text_file(stem + ".json", json.dump(2) + "\n");
+    core::write_text_file(stem + ".txt", noise_table(bench));
+    fmt::print("{}", noise_table(bench));
+    if (!draw_noise_plots(bench, stem)) {
+        fmt::print(stderr, "bench: gnuplot is not there, so no plot was drawn\n");
+    }
+    fmt::print("wrote {}\n", stem + ".json");
+}
+
+}  // namespace
+
+void add_noise_bench(CLI::App& bench) {
+    const auto arguments = std::make_shared<NoiseBenchArguments>();
+    CLI::App* noise =
+        bench.add_subcommand("noise", "Every reconstruction method against the number of photons");
+    noise->add_option("-o,--output", arguments->folder, "Folder for JSON, table and plots")
+        ->required();
+    noise->add_option("--scene", arguments->scene, "Scene description")->capture_default_str();
+    noise->add_option("--repeats", arguments->repeats, "Seeds per figure")
+        ->capture_default_str()
+        ->check(CLI::Range(1, 1000));
+    noise->footer(settings_footer({}, "nlos bench noise -o out/bench"));
+    noise->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace apps
