@@ -150,7 +150,8 @@ RenderResult result_of(const TransientAccumulator& sums,
     result.capture.time_axis = axis;
     result.capture.transient = sums.mean_of_all(num_frames);
     if (settings.variance && num_frames > 1) result.capture.variance = sums.variance(num_frames);
-    result.sources.push_back({3, settings.max_bounces, Estimator::Restir, "all"});
+    const int first_order = !scan.camera ? 3 : scan.camera->light_spot_m ? 2 : 1;
+    result.sources.push_back({first_order, settings.max_bounces, Estimator::Restir, "all"});
     result.samples_per_pair = static_cast<std::uint64_t>(num_frames) *
                               static_cast<std::uint64_t>(candidates_per_frame(settings.restir));
     return result;
