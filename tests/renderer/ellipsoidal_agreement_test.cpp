@@ -4,6 +4,7 @@
 #include "renderer/ellipsoidal_render.h"
 #include "renderer/scene_file.h"
 #include "tests/support/statistics.h"
+#include "tests/support/test_scenes.h"
 
 #include <gtest/gtest.h>
 
@@ -164,6 +165,45 @@ TEST(EllipsoidalTracer, DropLosesExactlyTheSignalOfTheExcludedSurfaces) {
     EXPECT_GT(test_support::normal_tail((measured.lost - expected) / sigma), 1e-4)
         << measured.lost << " +- " << measured.sigma << " expected " << expected;
     EXPECT_LT(measured.sigma, 0.2 * expected);
+}
+
+// A camera inside an open box with a ball, its light beside it or a spot on the floor.
+TEST(EllipsoidalTracer, ImagesAgreeWithPaths) {
+    using core::Vec3;
+    std::vector<renderer::Object> objects;
+    for (const auto& side :
+         {test_support::Parallelogram{Vec3(-1, -1, -1), Vec3(2, 0, 0), Vec3(0, 0, 2), 0.7},
+          {Vec3(-1, -1, -1), Vec3(0, 2, 0), Vec3(0, 0, 2), 0.6},
+          {Vec3(-1, -1, 1), Vec3(2, 0, 0), Vec3(0, 2, 0), 0.8}}) {
+        objects.push_back(test_support::parallelogram_object(side));
+    }
+    objects.push_back(test_support::sphere_object(Vec3(0.2, -0.4, 0.2), 0.4, 2, 0.9));
+    for (const bool spot : {false, true}) {
+        core::Scan scan;
+        scan.pattern = core::ScanPattern::Single;
+        scan.opl_origin = core::OplOrigin::Device;
+        scan.camera.emplace();
+        scan.camera->position_m = Vec3(0.3, 0.2, -2.0);
+        scan.camera->look_at_m = Vec3(0, -0.2, 0);
+        scan.camera->resolution = {2, 2};
+        if (spot) scan.camera->light_spot_m = Vec3(-0.5, -1.0, 0.3);
+        const renderer::Scene scene({objects, {}}, scan, {});
+        RenderSettings settings;
+        settings.max_bounces = 4;
+        settings.variance = true;
+        settings.seed = test_support::seed_of("ImagesAgreeWithPaths");
+        // Gates that no first vertex reaches, so that the choice of lengths does all the work.
+        for (const core::TimeAxis& axis :
+             {core::TimeAxis{2.0, 0.25, 28}, core::TimeAxis{7.0, 0.03, 1}}) {
+            settings.method = Estimator::Path;
+            settings.samples = 150'000;
+            const auto paths = renderer::render(scene, scan, axis, settings, {}).capture;
+            settings.method = Estimator::Ellipsoidal;
+            settings.samples = 40'000;
+            ++settings.seed;
+            expect_agreement(renderer::render(scene, scan, axis, settings, {}).capture, paths);
+        }
+    }
 }
 
 TEST(EllipsoidalTracer, SameBitsForAnyNumberOfThreads) {
