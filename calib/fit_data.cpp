@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+#include "calib/fit_data.h"
+
+#include "renderer/core/parallel.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace calib {
+
+FitData crop(const core::Capture& capture, const std::optional<std::array<double, 2>>& window_m) {
+    const core::TimeAxis& axis = capture.time_axis;
+    int first = 0;
+    int last = axis.num_bins;
+    if (window_m) {
+        const auto bin_at = [&](double opl_m) {
+            return std::clamp((opl_m - axis.opl_start_m) / axis.bin_width_m, 0.0, 1.0 * last);
+        };
+        first = static_cast<int>(std::ceil(bin_at((*window_m)[0])));
+        last = static_cast<int>(std::floor(bin_at((*window_m)[1])));
+    }
+    if (first >= last) {
+        throw core::Error(
+            "window_m",
+            fmt::format("found no bin in [{}, {}]", (*window_m)[0], (*window_m)[1]),
+            fmt::format("the data cover {} to {} m", axis.opl_start_m, axis.opl_end_m()));
+    }
+    FitData data;
+    data.axis = axis;
+    data.axis.opl_start_m = axis.bin_begin_m(first);
+    data.axis.num_bins = last - first;
+    for (std::size_t pair = 0; pair < capture.transient.num_pairs(); ++pair) {
+        const auto histogram = capture.transient.histogram(pair);
+        data.values.insert(data.values.end(), histogram.begin() + first, histogram.begin() + last);
+    }
+    return data;
+}
+
+FitData coarsen(const FitData& data, double blur_m, int merged) {
+    FitData result;
+    result.axis = data.axis;
+    result.axis.num_bins = data.axis.num_bins / merged;
+    result.axis.bin_width_m *= merged;
+    const auto bins = static_cast<std::size_t>(data.axis.num_bins);
+    const auto target_bins = static_cast<std::size_t>(result.axis.num_bins);
+    const std::size_t pairs = data.values.size() / bins;
+    result.values.assign(pairs * target_bins, 0.0);
+    core::ResponseFilter filter{0, {1.0}};
+    if (blur_m > 0.0) {
+        filter = core::sample_response(core::GaussianResponse{blur_m}, data.axis.bin_width_m);
+    }
+    core::parallel_for(pairs, [&](std::size_t pair) {
+        std::vector<double> smooth(bins);
+        core::apply_filter<double, double>(
+            filter, std::span(data.values).subspan(pair * bins, bins), smooth);
+        for (std::size_t b = 0; b < target_bins * static_cast<std::size_t>(merged); ++b) {
+            result.values[pair * target_bins + b / static_cast<std::size_t>(merged)] += smooth[b];
+        }
+    });
+    return result;
+}
+
+bool is_integer_valued(const core::Capture& capture) {
+    const auto values = capture.transient.values();
+    return std::all_of(values.begin(), values.end(), [](float value) {
+        return value >= 0.0F && value == std::floor(value);
+    });
+}
+
+double quietest_level(const FitData& data) {
+    constexpr std::size_t kParts = 16;
+    const auto bins = static_cast<std::size_t>(data.axis.num_bins);
+    const std::size_t parts = std::min(kParts, bins);
+    std::vector<double> sums(parts, 0.0);
+    std::vector<double> counts(parts, 0.0);
+    for (std::size_t i = 0; i < data.values.size(); ++i) {
+        const std::size_t part = (i % bins) * parts / bins;
+        sums[part] += data.values[i];
+        counts[part] += 1.0;
+    }
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t p = 0; p < parts; ++p) least = std::min(least, sums[p] / counts[p]);
+    return std::max(0.0, least);
+}
+
+}  // namespace calib

@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: MIT
+#include "calib/fit_driver.h"
+
+#include "calib/starts.h"
+#include "renderer/core/error.h"
+#include "renderer/core/parallel.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace calib {
+namespace {
+
+using core::Vec3;
+
+// Bins are merged while they stay this narrow against the response with its blur.
+constexpr double kBinPerSigma = 0.7;
+constexpr int kMostVisibilityRounds = 4;
+
+Vec3 surface_center(const ModelBody& body) {
+    Vec3 sum = Vec3::Zero();
+    for (const ModelVertex& v : body.vertices) sum += v.position_m;
+    return sum / static_cast<double>(body.vertices.size());
+}
+
+bool is_free(const FreeObject& object) {
+    return object.translation || object.rotation;
+}
+
+}  // namespace
+
+FitDriver::FitDriver(const FitInput& input, const core::Progress& progress)
+    : input_(input), progress_(progress), settings_(input.settings) {
+    validate(settings_, "model: ");
+    response_ = core::make_response(settings_.response, "model: response");
+    response_sigma_m_ = std::sqrt(core::moments(response_).variance_m2);
+    const bool is_gaussian = std::holds_alternative<core::GaussianResponse>(response_);
+    if (settings_.free.response_fwhm && !(is_gaussian && response_sigma_m_ > 0.0)) {
+        throw core::Error("model: free.response_fwhm",
+                          "found a response without a width to scale",
+                          "needs response.jitter_fwhm_ps alone");
+    }
+    is_poisson_ = settings_.residual == ResidualKind::Poisson ||
+                  (settings_.residual == ResidualKind::Auto && is_integer_valued(input.capture));
+    data_ = crop(input.capture, settings_.window_m);
+    const double total = std::accumulate(data_.values.begin(), data_.values.end(), 0.0);
+    if (!(total > 0.0)) throw core::Error("capture", "found no light", "must hold some to fit");
+    data_.least_mean = 1e-6 * total / static_cast<double>(data_.values.size());
+    offset_m_ = input.offset_m;
+    for (std::size_t pair = 0; offset_m_.size() < input.capture.scan.num_pairs(); ++pair) {
+        offset_m_.push_back(input.capture.scan.device_legs_m(pair));
+    }
+
+    // Data of unknown scale leave one albedo open: the first free one stays at its start.
+    scale_is_unknown_ = input.capture.unit == core::TransientUnit::Counts &&
+                        !input.geometry.objects.empty() && !settings_.free.objects.empty();
+    if (scale_is_unknown_) {
+        for (FreeObject& object : settings_.free.objects) {
+            if (!object.albedo) continue;
+            object.albedo = false;
+            fixed_albedo_ = object.name;
+            break;
+        }
+    }
+    if (!is_poisson_) {
+        elimination_ = {scale_is_unknown_, settings_.free.ambient};
+        settings_.free.ambient = false;
+    }
+    model_ =
+        std::make_unique<SceneModel>(input.geometry, settings_, scale_is_unknown_ && is_poisson_);
+    ambient_guess_ = quietest_level(data_);
+
+    solve_.loss = settings_.loss;
+    solve_.loss_scale = settings_.loss_scale;
+    solve_.laplacian_weight = settings_.laplacian_weight;
+    solve_.time_zero_sigma_m = settings_.free.time_zero_sigma_m;
+    solve_.lowest_log_ambient = std::log(data_.least_mean);
+    solve_.stop_requested = progress.stop_requested;
+}
+
+FitDriver::Stage FitDriver::make_stage(double blur_m) const {
+    Stage stage;
+    stage.blur_m = blur_m;
+    ForwardSettings forward;
+    const double sigma_m = std::hypot(response_sigma_m_, blur_m);
+    const double width = sigma_m > 0.0 ? sigma_m : data_.axis.bin_width_m;
+    const int merged = std::max(1, static_cast<int>(kBinPerSigma * width / data_.axis.bin_width_m));
+    stage.data = coarsen(data_, blur_m, merged);
+    stage.data.least_mean = data_.least_mean * merged;
+    forward.axis = stage.data.axis;
+    forward.bins_per_ambient = merged;
+    forward.sigma_m = sigma_m;
+    forward.response_share =
+        sigma_m > 0.0 ? response_sigma_m_ * response_sigma_m_ / (sigma_m * sigma_m) : 1.0;
+    // Under a wide blur the shape of the response does not matter, only its width and mean.
+    const bool is_gaussian = std::holds_alternative<core::GaussianResponse>(response_);
+    if (!is_gaussian && blur_m == 0.0) forward.measured = response_;
+    const double mean_delay = forward.measured ? 0.0 : core::moments(response_).mean_m;
+    forward.offset_m = offset_m_;
+    for (double& offset : forward.offset_m) offset += mean_delay;
+    const double albedo = input_.scene.relay_wall.albedo;
+    forward.radiance_factor = albedo * albedo / (core::kPi * core::kPi * core::kPi);
+    forward.spot_m2 = input_.scene.render.laser_spot_m2;
+    forward.tolerance = settings_.piece_tolerance;
+    stage.model = std::make_unique<ForwardModel>(*model_, input_.capture.scan, std::move(forward));
+    return stage;
+}
+
+void FitDriver::check_start(const SceneState& state) const {
+    const core::Scan& scan = input_.capture.scan;
+    for (std::size_t b = 0; b < model_->bodies().size(); ++b) {
+        if (!is_free(model_->bodies()[b].free)) continue;
+        bool is_in_front = false;
+        for (std::size_t v = 0; v < model_->bodies()[b].vertices.size() && !is_in_front; ++v) {
+            const Vec3 p = model_->vertex_world(state.bodies[b], b, v);
+            for (std::size_t i = 0; i < scan.sensing.size() && !is_in_front; ++i) {
+                is_in_front = scan.sensing.normals[i].dot(p - scan.sensing.positions[i]) > 0.0;
+            }
+        }
+        if (is_in_front) continue;
+        throw core::Error("model: start of " + model_->bodies()[b].name,
+                          "found it behind the relay wall",
+                          "must be on the hidden side, or use start: search");
+    }
+}
+
+std::vector<std::pair<std::string, SceneState>> FitDriver::searched(const Vec3& center) const {
+    std::size_t target = model_->bodies().size();
+    for (std::size_t b = 0; b < model_->bodies().size(); ++b) {
+        if (!is_free(model_->bodies()[b].free)) continue;
+        if (target < model_->bodies().size()) {
+            throw core::Error("model: start",
+                              "found several objects with a free pose",
+                              "search places one; give the others' poses");
+        }
+        target = b;
+    }
+    std::vector<std::pair<std::string, SceneState>> result;
+    SceneState state = model_->start();
+    if (target == model_->bodies().size()) return {{"search", state}};
+    const ModelBody& body = model_->bodies()[target];
+    const int count = body.free.rotation ? settings_.search_rotations : 1;
+    for (const Eigen::Quaterniond& rotation : spread_rotations(count)) {
+        BodyState& pose = state.bodies[target];
+        pose.rotation = rotation;
+        if (body.free.translation) pose.position_m = center - rotation * surface_center(body);
+        result.emplace_back(fmt::format("rotation {}", result.size()), state);
+    }
+    return result;
+}
+
+void FitDriver::place_points(SceneState& state) const {
+    if (state.points.empty()) return;
+    std::vector<Vec3> positions;
+    if (!input_.start_points.empty()) {  // farthest-point sampling
+        positions.push_back(input_.start_points.front());
+        while (positions.size() < state.points.size()) {
+            double best = -1.0;
+            Vec3 farthest = positions.front();
+            for (const Vec3& p : input_.start_points) {
+                double nearest = 1e300;
+                for (const Vec3& q : positions) nearest = std::min(nearest, (p - q).norm());
+                if (nearest > best) {
+                    best = nearest;
+                    farthest = p;
+                }
+            }
+            positions.push_back(farthest);
+        }
+    } else {
+        const double blur = settings_.blur_schedule_m.size() > 1
+                                ? *(settings_.blur_schedule_m.end() - 2)
+                                : response_sigma_m_;
+        const double width = std::hypot(response_sigma_m_, blur);
+        const int merged =
+            std::max(1, static_cast<int>(kBinPerSigma * width / data_.axis.bin_width_m));
+        const FitData coarse = coarsen(data_, blur, merged);
+        positions = brightest_points(input_.capture.scan,
+                                     coarse,
+                                     ambient_guess_ * merged,
+                                     width,
+                                     offset_m_,
+                                     static_cast<int>(state.points.size()));
+    }
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+        state.points[i].position_m = positions[i];
+        state.points[i].log_albedo = std::log(1e-3);
+    }
+}
+
+std::vector<std::pair<std::string, SceneState>> FitDriver::starts() const {
+    std::vector<std::pair<std::string, SceneState>> result;
+    if (settings_.start == "given") {
+        result = {{"given", model_->start()}};
+        check_start(result.front().second);
+    } else if (settings_.start == "search") {
+        result = searched(trilaterate(input_.capture.scan, data_, ambient_guess_, offset_m_));
+    } else {
+        if (input_.start_points.empty()) {
+            throw core::Error(settings_.start, "holds no surface point", "cannot be started from");
+        }
+        Vec3 sum = Vec3::Zero();
+        for (const Vec3& p : input_.start_points) sum += p;
+        result = searched(sum / static_cast<double>(input_.start_points.size()));
+    }
+    for (auto& [name, state] : result) {
+        place_points(state);
+        state.log_ambient = std::log(std::max(ambient_guess_, 10.0 * data_.least_mean));
+    }
+    return result;
+}
+
+// The one factor that all light shares is set by the sums of data and model.
+void FitDriver::match_brightness(Stage& stage, SceneState& state) const {
+    SceneState dark = state;
+    dark.has_ambient = false;
+    stage.model->update(dark, core::Slopes::Without);
+    std::vector<double> sums(input_.capture.scan.num_pairs());
+    core::parallel_for(sums.size(), [&](std::size_t pair) {
+        PairModel model;
+        stage.model->evaluate(pair, model);
+        sums[pair] = std::accumulate(model.mean.begin(), model.mean.end(), 0.0);
+    });
+    const double light = std::accumulate(sums.begin(), sums.end(), 0.0);
+    const double total = std::accumulate(stage.data.values.begin(), stage.data.values.end(), 0.0);
+    const double ambient =
+        std::min(0.9 * total, ambient_guess_ * static_cast<double>(data_.values.size()));
+    if (!(light > 0.0)) return;
+    const double change = std::log((total - ambient) / light);
+    if (!std::isfinite(change)) return;
+    if (model_->find(ParameterKind::Scale) != nullptr) state.log_scale += change;
+    if (scale_is_unknown_) return;
+    for (std::size_t b = 0; b < state.bodies.size(); ++b) {
+        if (model_->bodies()[b].free.albedo) state.bodies[b].log_albedo += change;
+    }
+    for (PointState& point : state.points) point.log_albedo += change;
+}
+
+SolveSummary FitDriver::solve(Stage& stage, SceneState& state, int max_iterations) const {
+    SolveSettings solve_settings = solve_;
+    solve_settings.max_iterations = max_iterations;
+    SolveSummary total;
+    for (int round = 0; round < kMostVisibilityRounds; ++round) {
+        stage.model->refresh(state);
+        if (round > 0 && !stage.model->visibility_changed()) break;
+        if (round == 0) match_brightness(stage, state);
+        stage.objective = std::make_unique<FitObjective>(
+            *stage.model, stage.data, is_poisson_, elimination_, model_->num_columns());
+        const SolveSummary summary = solve_stage(*model_, *stage.objective, solve_settings, state);
+        total.cost = summary.cost;
+        total.converged = summary.converged;
+        total.message = summary.message;
+        total.iterations += summary.iterations;
+    }
+    return total;
+}
+
+}  // namespace calib

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "calib/fit.h"
+#include "calib/fit_data.h"
+#include "calib/stage_solver.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace calib {
+
+/// A fit under way: the model, the prepared data and the stages from coarse to sharp.
+class FitDriver {
+ public:
+    FitDriver(const FitInput& input, const core::Progress& progress);
+
+    /// Objective of one blur; the forward model inside is cut for it.
+    struct Stage {
+        FitData data;
+        std::unique_ptr<ForwardModel> model;
+        std::unique_ptr<FitObjective> objective;
+        double blur_m = 0.0;
+    };
+
+    bool is_poisson() const { return is_poisson_; }
+    bool scale_is_eliminated() const { return elimination_.scale; }
+    const SceneModel& model() const { return *model_; }
+    const FitData& data() const { return data_; }
+    const SolveSettings& solve_settings() const { return solve_; }
+    double response_sigma_m() const { return response_sigma_m_; }
+    bool scale_is_unknown() const { return scale_is_unknown_; }
+    bool has_fixed_albedo() const { return !fixed_albedo_.empty(); }
+    const std::string& fixed_albedo() const { return fixed_albedo_; }
+
+    Stage make_stage(double blur_m) const;
+    /// The starts to try, by name.
+    std::vector<std::pair<std::string, SceneState>> starts() const;
+    /// Solves one stage from `state`; repeats while what is seen changes.
+    SolveSummary solve(Stage& stage, SceneState& state, int max_iterations) const;
+
+ private:
+    void match_brightness(Stage& stage, SceneState& state) const;
+    std::vector<std::pair<std::string, SceneState>> searched(const core::Vec3& center) const;
+    void place_points(SceneState& state) const;
+    void check_start(const SceneState& state) const;
+
+    const FitInput& input_;
+    const core::Progress& progress_;
+    FitSettings settings_;  ///< with what elimination takes out
+    core::InstrumentResponse response_;
+    bool is_poisson_ = false;
+    bool scale_is_unknown_ = false;
+    Elimination elimination_;
+    std::string fixed_albedo_;
+    std::unique_ptr<SceneModel> model_;
+    FitData data_;
+    std::vector<double> offset_m_;
+    double response_sigma_m_ = 0.0;
+    double ambient_guess_ = 0.0;
+    SolveSettings solve_;
+};
+
+}  // namespace calib

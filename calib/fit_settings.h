@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/core/instrument_response.h"
+#include "renderer/core/settings.h"
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace calib {
+
+/// What may move of one object of the model.
+struct FreeObject {
+    std::string name;  ///< of the glTF node
+    bool translation = false;
+    bool rotation = false;
+    bool size = false;
+    bool albedo = false;
+    bool vertices = false;  ///< heights along the start's vertex normals
+};
+
+/// How residuals are formed: `auto` takes poisson for integer-valued data.
+enum class ResidualKind { Auto, Poisson, LeastSquares };
+
+/// Robust loss on whole wall points.
+enum class LossKind { None, Huber, Cauchy };
+
+/// The free quantities of MODEL.json.
+struct FreeSettings {
+    std::vector<FreeObject> objects;
+    int point_scatterers = 0;
+    bool time_zero = false;
+    std::optional<double> time_zero_sigma_m;  ///< prior, in path length
+    bool ambient = true;
+    bool response_fwhm = false;
+    bool wall_bow = false;
+    bool wall_scale = false;
+};
+
+/// MODEL.json: what is fitted, from where and how.
+struct FitSettings {
+    std::string scene;
+    FreeSettings free;
+    core::ResponseSettings response;
+    std::string start = "given";
+    std::vector<double> blur_schedule_m{0.12, 0.04, 0.0};
+    ResidualKind residual = ResidualKind::Auto;
+    LossKind loss = LossKind::None;
+    double loss_scale = 1.5;
+    double laplacian_weight = 1e-3;
+    double piece_tolerance = 0.02;
+    std::optional<std::array<double, 2>> window_m;
+    int search_rotations = 10;
+    int max_iterations = 60;
+};
+
+void read_value(const core::Json& json, const std::string& where, FreeSettings& free);
+core::Json write_value(const FreeSettings& free);
+void read_value(const core::Json& json, const std::string& where, LossKind& loss);
+
+template <class Visitor>
+void for_each_field(FitSettings& s, Visitor&& visit) {
+    visit("scene", s.scene, "scene.json whose geometry, wall and poses are the start");
+    visit("free",
+          s.free,
+          "node name -> any of pose|translation|rotation|size|albedo|vertices; "
+          "point_scatterers, time_zero, ambient, response_fwhm, wall");
+    visit("response", s.response, "instrument response of the data");
+    visit("start", s.start, "given, search, or a VOLUME.h5");
+    visit("blur_schedule_m", s.blur_schedule_m, "blur of the stages, in path length [m]");
+    visit("residual", s.residual, "how data and model are compared");
+    visit("loss", s.loss, "robust loss on whole wall points, or null");
+    visit("loss_scale", s.loss_scale, "where the loss sets in, in median misfits of wall points");
+    visit("laplacian_weight", s.laplacian_weight, "cost of 1 mm of roughness of free vertices");
+    visit("piece_tolerance", s.piece_tolerance, "relative L2 error of the model's pieces");
+    visit("window_m", s.window_m, "path lengths that count [m]; null: all");
+    visit("search_rotations", s.search_rotations, "rotations that start: search tries");
+    visit("max_iterations", s.max_iterations, "of one stage");
+}
+
+/// Throws core::Error naming the setting that is out of range.
+void validate(const FitSettings& settings, const std::string& where);
+
+/// Reads MODEL.json; `scene` becomes a path relative to the working folder.
+FitSettings read_fit_settings(const std::string& path, const std::vector<std::string>& overrides);
+
+}  // namespace calib
+
+template <>
+struct core::EnumNames<calib::ResidualKind> {
+    static constexpr std::array<std::pair<calib::ResidualKind, std::string_view>, 3> value{
+        {{calib::ResidualKind::Auto, "auto"},
+         {calib::ResidualKind::Poisson, "poisson"},
+         {calib::ResidualKind::LeastSquares, "least_squares"}}};
+};
+template <>
+struct core::EnumNames<calib::LossKind> {
+    static constexpr std::array<std::pair<calib::LossKind, std::string_view>, 3> value{
+        {{calib::LossKind::None, "none"},
+         {calib::LossKind::Huber, "huber"},
+         {calib::LossKind::Cauchy, "cauchy"}}};
+};

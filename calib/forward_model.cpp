@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: MIT
+#include "calib/forward_model.h"
+
+#include "calib/model_visibility.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace calib {
+namespace {
+
+using core::Slopes;
+using core::Vec3;
+
+// A measured response is applied to bins this much finer than the data's.
+constexpr int kOversampling = 3;
+
+}  // namespace
+
+ForwardModel::ForwardModel(const SceneModel& model,
+                           const core::Scan& scan,
+                           ForwardSettings settings)
+    : model_(model), scan_(scan), settings_(std::move(settings)), wall_(scan) {
+    if (!settings_.measured) return;
+    oversampling_ = kOversampling;
+    filter_ =
+        core::sample_response(*settings_.measured, settings_.axis.bin_width_m / oversampling_);
+    const int last = filter_.first_delay + static_cast<int>(filter_.weights.size());
+    const int reach = std::max(std::abs(filter_.first_delay), std::abs(last));
+    margin_ = (reach / oversampling_ + 1) * oversampling_;
+}
+
+core::TimeAxis ForwardModel::fine_axis() const {
+    core::TimeAxis axis = settings_.axis;
+    axis.bin_width_m /= oversampling_;
+    axis.num_bins = axis.num_bins * oversampling_ + 2 * margin_;
+    axis.opl_start_m -= margin_ * axis.bin_width_m;
+    return axis;
+}
+
+void ForwardModel::refresh(const SceneState& state) {
+    const double smear = settings_.measured || settings_.sigma_m == 0.0
+                             ? 0.5 * settings_.axis.bin_width_m
+                             : settings_.sigma_m;
+    const auto old_light = std::move(light_masks_);
+    const auto old_sensor = std::move(sensor_masks_);
+    light_masks_.clear();
+    sensor_masks_.clear();
+    pieces_ = cut_pieces(model_, state, scan_, smear, settings_.tolerance);
+    if (!is_planar(model_, state)) {
+        const auto trace = [&](const core::WallPoints& points) {
+            return trace_masks(model_, state, pieces_, scan_, wall_.moved_points(points, state));
+        };
+        sensor_masks_ = trace(scan_.sensing);
+        light_masks_ = scan_.pattern == core::ScanPattern::Confocal ? sensor_masks_
+                                                                    : trace(scan_.illumination);
+    }
+    visibility_changed_ = old_light != light_masks_ || old_sensor != sensor_masks_;
+}
+
+void ForwardModel::update(const SceneState& state, Slopes slopes) {
+    state_ = state;
+    slopes_ = slopes;
+    const double width = std::exp(state.log_width);
+    const double response2 =
+        settings_.response_share * settings_.sigma_m * settings_.sigma_m * width * width;
+    const double blur2 = (1.0 - settings_.response_share) * settings_.sigma_m * settings_.sigma_m;
+    sigma_m_ = settings_.measured ? 0.0 : std::sqrt(response2 + blur2);
+    width_share_ = sigma_m_ > 0.0 ? response2 / (response2 + blur2) : 0.0;
+    sensor_points_ = wall_.moved(scan_.sensing, state);
+    light_points_ = scan_.pattern == core::ScanPattern::Confocal
+                        ? sensor_points_
+                        : wall_.moved(scan_.illumination, state);
+    posed_.clear();
+    posed_.reserve(pieces_.size());
+    FacetMotion motion;
+    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+        if (i == 0 || pieces_[i].facet != pieces_[i - 1].facet) {
+            motion = model_.motion(state, pieces_[i].facet);
+        }
+        posed_.push_back(pose(pieces_[i], motion));
+    }
+}
+
+ForwardModel::PosedPiece ForwardModel::pose(const ModelPiece& piece,
+                                            const FacetMotion& motion) const {
+    const ModelFacet& facet = model_.facets()[piece.facet];
+    const Vec3 edge1 = motion.corners[1] - motion.corners[0];
+    const Vec3 edge2 = motion.corners[2] - motion.corners[0];
+    const Vec3 across = edge1.cross(edge2);
+    const double norm = across.norm();
+    PosedPiece posed;
+    posed.normal = across / norm;
+    posed.is_retroreflective = facet.is_retroreflective;
+    posed.weight = 0.5 * norm * piece.area_share * facet.albedo_ratio *
+                   std::exp(state_.bodies[facet.body].log_albedo + state_.log_scale) *
+                   settings_.radiance_factor;
+    if (posed.is_retroreflective) posed.weight *= core::kPi / settings_.spot_m2;
+    const auto interpolate = [&](const std::array<Vec3, 3>& corners, std::array<Vec3, 6>& nodes) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Vec3& b = piece.barycentric[i];
+            nodes[i] = b[0] * corners[0] + b[1] * corners[1] + b[2] * corners[2];
+        }
+        for (std::size_t i = 0; i < 3; ++i) nodes[3 + i] = 0.5 * (nodes[i] + nodes[(i + 1) % 3]);
+    };
+    interpolate(motion.corners, posed.nodes);
+    if (slopes_ == Slopes::Without) return posed;
+
+    if (const auto* albedo = model_.find(ParameterKind::Albedo, facet.body)) {
+        posed.albedo_column = albedo->first_column;
+    }
+    posed.columns = motion.columns;
+    for (const auto& corners : motion.by_column) {
+        interpolate(corners, posed.node_slopes.emplace_back());
+        const Vec3 change =
+            (corners[1] - corners[0]).cross(edge2) + edge1.cross(Vec3(corners[2] - corners[0]));
+        const double along = posed.normal.dot(change) / norm;
+        posed.normal_slopes.push_back(change / norm - along * posed.normal);
+        posed.log_area_slopes.push_back(along);
+    }
+    return posed;
+}
+
+double ForwardModel::visible_share(std::size_t piece, std::size_t pair) const {
+    if (light_masks_.empty()) return 1.0;
+    const std::size_t l = scan_.illumination_index(pair) * pieces_.size() + piece;
+    const std::size_t s = scan_.sensing_index(pair) * pieces_.size() + piece;
+    const unsigned common = static_cast<unsigned>(light_masks_[l] & sensor_masks_[s]);
+    return std::popcount(common) / static_cast<double>(kVisibilityRays);
+}
+
+void ForwardModel::evaluate(std::size_t pair, PairModel& result) const {
+    thread_local PairModel fine;
+    const bool is_filtered = settings_.measured.has_value();
+    PairModel& target = is_filtered ? fine : result;
+    const auto bins = static_cast<std::size_t>(fine_axis().num_bins);
+    const auto columns = static_cast<std::size_t>(model_.num_columns());
+    target.mean.assign(bins, 0.0);
+    target.slopes.assign(slopes_ == Slopes::With ? bins * columns : 0, 0.0);
+    for (std::size_t i = 0; i < posed_.size(); ++i) {
+        const double share = visible_share(i, pair);
+        if (share > 0.0) add_piece(posed_[i], share, pair, target);
+    }
+    for (std::size_t i = 0; i < state_.points.size(); ++i) add_point(i, pair, target);
+    finish(target, result);
+}
+
+// Signal becomes data: scale, response, ambient light.
+void ForwardModel::finish(PairModel& fine, PairModel& result) const {
+    const auto columns = static_cast<std::size_t>(model_.num_columns());
+    const bool with_slopes = slopes_ == Slopes::With;
+    if (const auto* scale = model_.find(ParameterKind::Scale); scale && with_slopes) {
+        for (std::size_t b = 0; b < fine.mean.size(); ++b) {
+            fine.slopes[b * columns + static_cast<std::size_t>(scale->first_column)] = fine.mean[b];
+        }
+    }
+    const auto bins = static_cast<std::size_t>(settings_.axis.num_bins);
+    if (settings_.measured) {
+        result.mean.assign(bins, 0.0);
+        result.slopes.assign(with_slopes ? bins * columns : 0, 0.0);
+        for (int f = 0; f < static_cast<int>(fine.mean.size()); ++f) {
+            const double* row =
+                with_slopes ? fine.slopes.data() + static_cast<std::size_t>(f) * columns : nullptr;
+            if (fine.mean[static_cast<std::size_t>(f)] == 0.0) continue;
+            for (std::size_t k = 0; k < filter_.weights.size(); ++k) {
+                const int to = f - margin_ + filter_.first_delay + static_cast<int>(k);
+                if (to < 0 || to / oversampling_ >= settings_.axis.num_bins) continue;
+                const auto b = static_cast<std::size_t>(to / oversampling_);
+                result.mean[b] += filter_.weights[k] * fine.mean[static_cast<std::size_t>(f)];
+                if (!with_slopes) continue;
+                for (std::size_t c = 0; c < columns; ++c) {
+                    result.slopes[b * columns + c] += filter_.weights[k] * row[c];
+                }
+            }
+        }
+    }
+    if (!state_.has_ambient) return;
+    const double ambient = std::exp(state_.log_ambient) * settings_.bins_per_ambient;
+    const auto* block = model_.find(ParameterKind::Ambient);
+    for (std::size_t b = 0; b < bins; ++b) {
+        result.mean[b] += ambient;
+        if (with_slopes && block != nullptr) {
+            result.slopes[b * columns + static_cast<std::size_t>(block->first_column)] = ambient;
+        }
+    }
+}
+
+}  // namespace calib
