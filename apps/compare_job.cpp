@@ -4,6 +4,8 @@
 #include "apps/arguments.h"
 #include "apps/file_kind.h"
 #include "apps/scene_truth.h"
+#include "calib/compare_fit.h"
+#include "calib/fit_file.h"
 #include "nlos/formats/capture_file.h"
 #include "nlos/formats/picture.h"
 #include "nlos/formats/ply_file.h"
@@ -50,6 +52,26 @@ nlos::Metrics compare_volume_to_scene(const std::string& a,
     return nlos::compare_to_truth(result, truth);
 }
 
+// A fit's poses and, beside them, its surfaces as samples.
+nlos::Metrics compare_fit_to_scene(const std::string& a, const std::string& b, double threshold_m) {
+    const calib::FitResult fit = calib::read_fit(a);
+    const std::string geometry = with_suffix(a, ".glb");
+    const auto errors =
+        calib::compare_fit(fit,
+                           renderer::load_gltf(geometry),
+                           renderer::load_gltf(renderer::read_scene_description(b, {}).geometry));
+    nlos::Metrics metrics;
+    if (!errors.fitted_points.positions.empty()) {
+        metrics = nlos::compare_points(errors.fitted_points, errors.true_points, threshold_m);
+    }
+    metrics.position_error_m = errors.position_m;
+    metrics.rotation_error_deg = errors.rotation_deg;
+    metrics.size_error = errors.size;
+    metrics.albedo_error = errors.albedo;
+    metrics.seconds = fit.seconds;
+    return metrics;
+}
+
 bool is_surface(FileKind kind) {
     return kind == FileKind::Geometry || kind == FileKind::PointCloud;
 }
@@ -62,6 +84,9 @@ nlos::Metrics compare_kinds(const std::string& a,
     const FileKind kind_b = kind_of_file(b);
     if (kind_a == FileKind::Volume && kind_b == FileKind::Scene) {
         return compare_volume_to_scene(a, b, picture_path);
+    }
+    if (kind_a == FileKind::Fit && kind_b == FileKind::Scene) {
+        return compare_fit_to_scene(a, b, threshold_m);
     }
     if (is_surface(kind_a) && kind_b == FileKind::Scene) {
         return nlos::compare_points(
@@ -76,10 +101,11 @@ nlos::Metrics compare_kinds(const std::string& a,
     if (kind_a == FileKind::Capture && kind_b == FileKind::Capture) {
         return nlos::compare_captures(nlos::read_capture(a), nlos::read_capture(b));
     }
-    throw core::Error(a,
-                      "cannot be compared with " + b,
-                      "must be a volume, mesh or point cloud against a scene.json, or two files of "
-                      "one kind");
+    throw core::Error(
+        a,
+        "cannot be compared with " + b,
+        "must be a volume, mesh, point cloud or fit against a scene.json, or two files of "
+        "one kind");
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "apps/commands.h"
 #include "apps/compare_job.h"
 #include "apps/file_picture.h"
+#include "apps/fit_job.h"
 #include "apps/reconstruct_job.h"
 #include "apps/render_job.h"
 #include "apps/report.h"
@@ -59,6 +60,16 @@ void run(const DemoArguments& arguments) {
                    1e3 * metrics.depth_mae_m.value_or(0.0),
                    metrics.mask_iou_best.value_or(0.0));
     }
+    stop_if_interrupted();
+    const std::string model = (fs::path(scene).parent_path() / "model.json").string();
+    const calib::FitResult fit = fit_to_file(file("capture.h5"), model, {}, "", file("fit.json"));
+    const auto errors = compare_files(file("fit.json"), scene, file("metrics_fit.json"), 0.01);
+    fmt::print("{:<12} {} ({:.2f} s, position error {:.2f} mm, rotation error {:.2f} deg)\n",
+               "fit",
+               file("fit.json"),
+               fit.seconds,
+               1e3 * errors.position_error_m.value_or(0.0),
+               errors.rotation_error_deg.value_or(0.0));
     write_report(folder.string(), file("report.html"));
     fmt::print("wrote {}\n", file("report.html"));
 }
@@ -67,7 +78,7 @@ void run(const DemoArguments& arguments) {
 
 void add_demo_command(CLI::App& app) {
     CLI::App* command = app.add_subcommand(
-        "demo", "Scene, capture, reconstruction, comparison and report in one go");
+        "demo", "Scene, capture, reconstruction, fit, comparison and report in one go");
     const auto arguments = std::make_shared<DemoArguments>();
     command->add_option("-o,--output", arguments->folder, "Folder for the results")
         ->capture_default_str();

@@ -5,7 +5,7 @@
 
 namespace apps {
 
-enum class FileKind { Scene, Volume, Geometry, PointCloud, Capture };
+enum class FileKind { Scene, Fit, Volume, Geometry, PointCloud, Capture };
 
 /// What a file is, by suffix and content; anything unknown counts as a capture, whose readers then
 /// say what they expect. Throws core::Error when there is no such file.

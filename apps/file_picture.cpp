@@ -21,6 +21,7 @@ void write_picture(const std::string& path, const std::string& png_path) {
         case FileKind::Capture:
             nlos::write_panels_png(png_path, nlos::capture_panels(nlos::read_capture(path)), 3);
             return;
+        case FileKind::Fit:
         case FileKind::Geometry:
         case FileKind::PointCloud:
             break;

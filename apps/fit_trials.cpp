@@ -128,7 +128,7 @@ core::Capture expected_capture(const TrialSetup& setup, const TrialPose& truth) 
     forward.sigma_m = core::sigma_m_from_fwhm_ps(setup.fwhm_ps);
     forward.offset_m.assign(capture.scan.num_pairs(), 0.0);
     forward.tolerance = 1e-3;
-    calib::ForwardModel light(model, capture.scan, forward);
+    calib::ForwardModel light(model, capture.scan, calib::WallMotion(capture.scan), forward);
     calib::SceneState state = model.start();
     state.has_ambient = false;
     light.refresh(state);

@@ -3,6 +3,7 @@
 #include "apps/commands.h"
 #include "apps/file_kind.h"
 #include "apps/file_picture.h"
+#include "calib/fit_file.h"
 #include "nlos/capture_check.h"
 #include "nlos/formats/capture_file.h"
 #include "nlos/formats/ply_file.h"
@@ -100,10 +101,33 @@ void describe_capture_file(const std::string& path, const std::vector<std::strin
     }
 }
 
+void describe_fit(const std::string& path) {
+    const calib::FitResult fit = calib::read_fit(path);
+    fmt::print("format: fit\n{}converged in {:.2f} s, deviance {:.4g} of {:.4g} expected\n",
+               fit.converged ? "" : "not ",
+               fit.seconds,
+               fit.deviance,
+               fit.expected_deviance);
+    for (const calib::FittedObject& object : fit.objects) {
+        const auto& p = object.position_m;
+        fmt::print("{}: at ({:.4f}, {:.4f}, {:.4f}) m, size {:.4f}, albedo {:.4f}\n",
+                   object.name,
+                   p.x(),
+                   p.y(),
+                   p.z(),
+                   object.size,
+                   object.albedo);
+    }
+    fmt::print("{} point scatterers\n", fit.points.size());
+}
+
 void run(const InfoArguments& arguments) {
     switch (kind_of_file(arguments.file)) {
         case FileKind::Scene:
             describe_scene(arguments.file);
+            break;
+        case FileKind::Fit:
+            describe_fit(arguments.file);
             break;
         case FileKind::Geometry:
             describe_geometry(arguments.file);

@@ -35,7 +35,7 @@ void reject_unknown_command(const CLI::App& app, const std::vector<std::string>&
 }
 
 int run(const std::vector<std::string>& arguments) {
-    CLI::App app("Non-line-of-sight imaging: simulate, reconstruct, compare.", "nlos");
+    CLI::App app("Non-line-of-sight imaging: simulate, reconstruct, fit, compare.", "nlos");
     app.set_version_flag("--version", apps::version_text());
     app.require_subcommand(1);
     app.footer("Example:\n  nlos demo -o out/demo");
@@ -43,6 +43,7 @@ int run(const std::vector<std::string>& arguments) {
     apps::add_convert_command(app);
     apps::add_simulate_noise_command(app);
     apps::add_reconstruct_command(app);
+    apps::add_fit_command(app);
     apps::add_compare_command(app);
     apps::add_info_command(app);
     apps::add_report_command(app);

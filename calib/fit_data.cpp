@@ -63,6 +63,66 @@ FitData coarsen(const FitData& data, double blur_m, int merged) {
     return result;
 }
 
+PairSubset thin(const core::Scan& scan, std::size_t most) {
+    const bool is_exhaustive = scan.pattern == core::ScanPattern::Exhaustive;
+    std::size_t step = 1;
+    const auto kept = [&](const core::WallPoints& points) {
+        std::vector<std::size_t> indices;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const std::size_t columns = points.grid ? (*points.grid)[1] : 1;
+            const std::size_t first = step / 2;
+            const bool on_grid =
+                points.grid ? (i / columns % step == std::min(first, (*points.grid)[0] - 1) &&
+                               i % columns % step == std::min(first, columns - 1))
+                            : i % (step * step) == 0;
+            if (on_grid) indices.push_back(i);
+        }
+        return indices;
+    };
+    const auto pick = [](const core::WallPoints& points, const std::vector<std::size_t>& indices) {
+        core::WallPoints result;
+        for (const std::size_t i : indices) {
+            result.positions.push_back(points.positions[i]);
+            result.normals.push_back(points.normals[i]);
+        }
+        return result;
+    };
+    std::vector<std::size_t> sensing = kept(scan.sensing);
+    std::vector<std::size_t> light = kept(scan.illumination);
+    const auto count = [&] { return sensing.size() * (is_exhaustive ? light.size() : 1); };
+    while (count() > most) {
+        ++step;
+        sensing = kept(scan.sensing);
+        if (is_exhaustive) light = kept(scan.illumination);
+    }
+    PairSubset subset{scan, {}};
+    subset.scan.sensing = pick(scan.sensing, sensing);
+    if (scan.pattern == core::ScanPattern::Confocal) subset.scan.illumination = subset.scan.sensing;
+    if (is_exhaustive) {
+        subset.scan.illumination = pick(scan.illumination, light);
+        for (const std::size_t l : light) {
+            for (const std::size_t s : sensing) {
+                subset.pairs.push_back(l * scan.sensing.size() + s);
+            }
+        }
+    } else {
+        subset.pairs = sensing;
+    }
+    return subset;
+}
+
+FitData select(const FitData& data, const std::vector<std::size_t>& pairs) {
+    FitData result;
+    result.axis = data.axis;
+    result.least_mean = data.least_mean;
+    const auto bins = static_cast<std::ptrdiff_t>(data.axis.num_bins);
+    for (const std::size_t pair : pairs) {
+        const auto begin = data.values.begin() + static_cast<std::ptrdiff_t>(pair) * bins;
+        result.values.insert(result.values.end(), begin, begin + bins);
+    }
+    return result;
+}
+
 bool is_integer_valued(const core::Capture& capture) {
     const auto values = capture.transient.values();
     return std::all_of(values.begin(), values.end(), [](float value) {

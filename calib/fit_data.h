@@ -6,6 +6,7 @@
 
 #include <array>
 #include <optional>
+#include <vector>
 
 namespace calib {
 
@@ -17,6 +18,17 @@ FitData crop(const core::Capture& capture, const std::optional<std::array<double
 /// blur_m    standard deviation in path length; 0: none
 /// merged    bins that become one; a rest at the end is left out
 FitData coarsen(const FitData& data, double blur_m, int merged);
+
+/// Some of a scan's pairs, spread evenly over the wall.
+struct PairSubset {
+    core::Scan scan;
+    std::vector<std::size_t> pairs;  ///< of the whole scan, in the subset's order
+};
+/// At most about `most` pairs, every k-th point of each axis of a grid.
+PairSubset thin(const core::Scan& scan, std::size_t most);
+
+/// The histograms of some pairs.
+FitData select(const FitData& data, const std::vector<std::size_t>& pairs);
 
 /// True when every value is a whole number that is not negative.
 bool is_integer_valued(const core::Capture& capture);

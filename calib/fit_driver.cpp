@@ -19,6 +19,7 @@ using core::Vec3;
 // Bins are merged while they stay this narrow against the response with its blur.
 constexpr double kBinPerSigma = 0.7;
 constexpr int kMostVisibilityRounds = 4;
+constexpr std::size_t kPairsOfBlurredStages = 400;
 
 Vec3 surface_center(const ModelBody& body) {
     Vec3 sum = Vec3::Zero();
@@ -88,7 +89,10 @@ FitDriver::Stage FitDriver::make_stage(double blur_m) const {
     const double sigma_m = std::hypot(response_sigma_m_, blur_m);
     const double width = sigma_m > 0.0 ? sigma_m : data_.axis.bin_width_m;
     const int merged = std::max(1, static_cast<int>(kBinPerSigma * width / data_.axis.bin_width_m));
-    stage.data = coarsen(data_, blur_m, merged);
+    // Blurred stages only lead the way: they need few pairs.
+    const PairSubset subset =
+        thin(input_.capture.scan, blur_m > 0.0 ? kPairsOfBlurredStages : offset_m_.size());
+    stage.data = coarsen(select(data_, subset.pairs), blur_m, merged);
     stage.data.least_mean = data_.least_mean * merged;
     forward.axis = stage.data.axis;
     forward.bins_per_ambient = merged;
@@ -99,13 +103,15 @@ FitDriver::Stage FitDriver::make_stage(double blur_m) const {
     const bool is_gaussian = std::holds_alternative<core::GaussianResponse>(response_);
     if (!is_gaussian && blur_m == 0.0) forward.measured = response_;
     const double mean_delay = forward.measured ? 0.0 : core::moments(response_).mean_m;
-    forward.offset_m = offset_m_;
-    for (double& offset : forward.offset_m) offset += mean_delay;
+    for (const std::size_t pair : subset.pairs) {
+        forward.offset_m.push_back(offset_m_[pair] + mean_delay);
+    }
+    const WallMotion wall(input_.capture.scan);
     const double albedo = input_.scene.relay_wall.albedo;
     forward.radiance_factor = albedo * albedo / (core::kPi * core::kPi * core::kPi);
     forward.spot_m2 = input_.scene.render.laser_spot_m2;
     forward.tolerance = settings_.piece_tolerance;
-    stage.model = std::make_unique<ForwardModel>(*model_, input_.capture.scan, std::move(forward));
+    stage.model = std::make_unique<ForwardModel>(*model_, subset.scan, wall, std::move(forward));
     return stage;
 }
 
@@ -218,7 +224,7 @@ void FitDriver::match_brightness(Stage& stage, SceneState& state) const {
     SceneState dark = state;
     dark.has_ambient = false;
     stage.model->update(dark, core::Slopes::Without);
-    std::vector<double> sums(input_.capture.scan.num_pairs());
+    std::vector<double> sums(stage.model->scan().num_pairs());
     core::parallel_for(sums.size(), [&](std::size_t pair) {
         PairModel model;
         stage.model->evaluate(pair, model);
@@ -226,8 +232,9 @@ void FitDriver::match_brightness(Stage& stage, SceneState& state) const {
     });
     const double light = std::accumulate(sums.begin(), sums.end(), 0.0);
     const double total = std::accumulate(stage.data.values.begin(), stage.data.values.end(), 0.0);
-    const double ambient =
-        std::min(0.9 * total, ambient_guess_ * static_cast<double>(data_.values.size()));
+    const double ambient = std::min(0.9 * total,
+                                    ambient_guess_ * static_cast<double>(stage.data.values.size()) *
+                                        stage.model->settings().bins_per_ambient);
     if (!(light > 0.0)) return;
     const double change = std::log((total - ambient) / light);
     if (!std::isfinite(change)) return;

@@ -19,16 +19,25 @@ constexpr int kOversampling = 3;
 }  // namespace
 
 ForwardModel::ForwardModel(const SceneModel& model,
-                           const core::Scan& scan,
+                           core::Scan scan,
+                           const WallMotion& wall,
                            ForwardSettings settings)
-    : model_(model), scan_(scan), settings_(std::move(settings)), wall_(scan) {
+    : model_(model), scan_(std::move(scan)), settings_(std::move(settings)), wall_(wall) {
     if (!settings_.measured) return;
     oversampling_ = kOversampling;
-    filter_ =
+    const core::ResponseFilter filter =
         core::sample_response(*settings_.measured, settings_.axis.bin_width_m / oversampling_);
-    const int last = filter_.first_delay + static_cast<int>(filter_.weights.size());
-    const int reach = std::max(std::abs(filter_.first_delay), std::abs(last));
+    first_delay_ = filter.first_delay;
+    const int taps = static_cast<int>(filter.weights.size());
+    const int reach = std::max(std::abs(first_delay_), std::abs(first_delay_ + taps));
     margin_ = (reach / oversampling_ + 1) * oversampling_;
+    for (int phase = 0; phase < oversampling_; ++phase) {
+        auto& weights = phase_weights_.emplace_back((taps + phase) / oversampling_ + 1, 0.0);
+        for (int k = 0; k < taps; ++k) {
+            weights[static_cast<std::size_t>((k + phase) / oversampling_)] +=
+                filter.weights[static_cast<std::size_t>(k)];
+        }
+    }
 }
 
 core::TimeAxis ForwardModel::fine_axis() const {
@@ -146,6 +155,34 @@ void ForwardModel::evaluate(std::size_t pair, PairModel& result) const {
     finish(target, result);
 }
 
+// Every fine bin's light goes to the bins that the response delays it to.
+void ForwardModel::add_response(const PairModel& fine, PairModel& result) const {
+    const bool with_slopes = slopes_ == Slopes::With;
+    const auto columns = static_cast<std::size_t>(model_.num_columns());
+    const auto bins = static_cast<std::size_t>(settings_.axis.num_bins);
+    result.mean.assign(bins, 0.0);
+    result.slopes.assign(with_slopes ? bins * columns : 0, 0.0);
+    for (std::size_t f = 0; f < fine.mean.size(); ++f) {
+        if (fine.mean[f] == 0.0) continue;
+        // Counted from far enough ahead of the axis to divide without sign.
+        const int from = static_cast<int>(f) + first_delay_ + margin_;
+        const auto& weights = phase_weights_[static_cast<std::size_t>(from % oversampling_)];
+        const int first_bin = from / oversampling_ - 2 * margin_ / oversampling_;
+        const int begin = std::max(0, -first_bin);
+        const int end =
+            std::min(static_cast<int>(weights.size()), settings_.axis.num_bins - first_bin);
+        for (int k = begin; k < end; ++k) {
+            const double weight = weights[static_cast<std::size_t>(k)];
+            const auto b = static_cast<std::size_t>(first_bin + k);
+            result.mean[b] += weight * fine.mean[f];
+            if (!with_slopes) continue;
+            const double* row = fine.slopes.data() + f * columns;
+            double* target = result.slopes.data() + b * columns;
+            for (std::size_t c = 0; c < columns; ++c) target[c] += weight * row[c];
+        }
+    }
+}
+
 // Signal becomes data: scale, response, ambient light.
 void ForwardModel::finish(PairModel& fine, PairModel& result) const {
     const auto columns = static_cast<std::size_t>(model_.num_columns());
@@ -156,25 +193,7 @@ void ForwardModel::finish(PairModel& fine, PairModel& result) const {
         }
     }
     const auto bins = static_cast<std::size_t>(settings_.axis.num_bins);
-    if (settings_.measured) {
-        result.mean.assign(bins, 0.0);
-        result.slopes.assign(with_slopes ? bins * columns : 0, 0.0);
-        for (int f = 0; f < static_cast<int>(fine.mean.size()); ++f) {
-            const double* row =
-                with_slopes ? fine.slopes.data() + static_cast<std::size_t>(f) * columns : nullptr;
-            if (fine.mean[static_cast<std::size_t>(f)] == 0.0) continue;
-            for (std::size_t k = 0; k < filter_.weights.size(); ++k) {
-                const int to = f - margin_ + filter_.first_delay + static_cast<int>(k);
-                if (to < 0 || to / oversampling_ >= settings_.axis.num_bins) continue;
-                const auto b = static_cast<std::size_t>(to / oversampling_);
-                result.mean[b] += filter_.weights[k] * fine.mean[static_cast<std::size_t>(f)];
-                if (!with_slopes) continue;
-                for (std::size_t c = 0; c < columns; ++c) {
-                    result.slopes[b * columns + c] += filter_.weights[k] * row[c];
-                }
-            }
-        }
-    }
+    if (settings_.measured) add_response(fine, result);
     if (!state_.has_ambient) return;
     const double ambient = std::exp(state_.log_ambient) * settings_.bins_per_ambient;
     const auto* block = model_.find(ParameterKind::Ambient);

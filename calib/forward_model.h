@@ -38,8 +38,13 @@ struct PairModel {
 /// corners and edge midpoints, with their gradients, go through the closed-form kernel of core.
 class ForwardModel {
  public:
-    /// model, scan   must outlive this
-    ForwardModel(const SceneModel& model, const core::Scan& scan, ForwardSettings settings);
+    /// model   must outlive this
+    /// scan    the pairs to model
+    /// wall    how the points of the whole scan move
+    ForwardModel(const SceneModel& model,
+                 core::Scan scan,
+                 const WallMotion& wall,
+                 ForwardSettings settings);
 
     /// Cuts the surfaces anew and finds what wall points see of them.
     void refresh(const SceneState& state);
@@ -75,6 +80,7 @@ class ForwardModel {
                    std::size_t pair,
                    PairModel& result) const;
     void add_point(std::size_t point, std::size_t pair, PairModel& result) const;
+    void add_response(const PairModel& fine, PairModel& result) const;
     void finish(PairModel& fine, PairModel& result) const;
     core::TimeAxis fine_axis() const;
     double visible_share(std::size_t piece, std::size_t pair) const;
@@ -94,7 +100,9 @@ class ForwardModel {
     std::vector<std::uint8_t> light_masks_;  ///< [point][piece]; empty: all is visible
     std::vector<std::uint8_t> sensor_masks_;
     bool visibility_changed_ = false;
-    core::ResponseFilter filter_;
+    /// Weights of the data's bins for each position of a fine bin within its bin.
+    std::vector<std::vector<double>> phase_weights_;
+    int first_delay_ = 0;  ///< in fine bins
     int oversampling_ = 1;
     int margin_ = 0;  ///< fine bins before and behind the axis
 };

@@ -180,6 +180,9 @@ void evaluate_triangle(const TriangleKnots& knots,
     const auto cumulative_at = [&](int edge) {
         if (edge <= begin) return Slots{};
         if (edge >= end) return whole_triangle(knots);
+        if (sigma_m == 0.0 && slopes == Slopes::Without) {
+            return Slots{triangle_cumulative(knots, axis.bin_begin_m(edge))};
+        }
         const double edge_m = axis.bin_begin_m(edge) - knots.opl_m[0];
         splines.evaluate(edge_m * per_m, slopes == Slopes::With, values);
         return cumulative_of(values, knots, edge_m, per_m, slopes);

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: MIT
+#include "calib/fit_file.h"
+
+#include <cmath>
+#include <fstream>
+
+namespace calib {
+namespace {
+
+using core::Json;
+using core::Vec3;
+
+// What the data do not determine has no number.
+Json number(double value) {
+    return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json list(const Vec3& v) {
+    return {number(v.x()), number(v.y()), number(v.z())};
+}
+
+Json list(const std::vector<double>& values) {
+    Json json = Json::array();
+    for (const double value : values) json.push_back(number(value));
+    return json;
+}
+
+double value_of(const Json& json) {
+    return json.is_number() ? json.get<double>() : kUnknown;
+}
+
+Vec3 vector_of(const Json& json) {
+    return {value_of(json.at(0)), value_of(json.at(1)), value_of(json.at(2))};
+}
+
+Json objects_json(const FitResult& result) {
+    Json json = Json::object();
+    for (const FittedObject& object : result.objects) {
+        const auto& q = object.rotation;
+        json[object.name] = {{"position_m", list(object.position_m)},
+                             {"rotation_wxyz", {q.w(), q.x(), q.y(), q.z()}},
+                             {"size", object.size},
+                             {"albedo", object.albedo}};
+        if (!object.heights_m.empty()) json[object.name]["heights_m"] = list(object.heights_m);
+    }
+    return json;
+}
+
+Json points_json(const FitResult& result) {
+    Json json = Json::array();
+    for (const FittedPoint& p : result.points) {
+        Json point = list(p.position_m);
+        point.push_back(number(p.albedo));
+        json.push_back(point);
+    }
+    return json;
+}
+
+Json sigma_json(const FitResult& result) {
+    Json json;
+    json["objects"] = Json::object();
+    for (const FittedObject& object : result.objects) {
+        Json& target = json["objects"][object.name];
+        target = {{"position_m", list(object.position_sigma_m)},
+                  {"rotation_deg", list(object.rotation_sigma_deg)},
+                  {"size", number(object.size_sigma)},
+                  {"albedo", number(object.albedo_sigma)}};
+        if (!object.heights_m.empty()) target["heights_m"] = list(object.heights_sigma_m);
+    }
+    json["scale"] = number(result.scale.sigma);
+    json["point_scatterers"] = Json::array();
+    for (const FittedPoint& p : result.points) {
+        Json point = list(p.position_sigma_m);
+        point.push_back(number(p.albedo_sigma));
+        json["point_scatterers"].push_back(point);
+    }
+    json["time_zero_m"] = number(result.time_zero_m.sigma);
+    json["ambient"] = number(result.ambient.sigma);
+    json["response_fwhm_ps"] = number(result.response_fwhm_ps.sigma);
+    json["wall"] = {{"bow_m", number(result.wall_bow_m.sigma)},
+                    {"scale", number(result.wall_scale.sigma)}};
+    return json;
+}
+
+}  // namespace
+
+Json fit_json(const FitResult& result) {
+    Json json;
+    json["objects"] = objects_json(result);
+    json["scale"] = result.scale.value;
+    json["point_scatterers"] = points_json(result);
+    json["time_zero_m"] = result.time_zero_m.value;
+    json["ambient"] = result.ambient.value;
+    json["response_fwhm_ps"] = result.response_fwhm_ps.value;
+    json["wall"] = {{"bow_m", result.wall_bow_m.value}, {"scale", result.wall_scale.value}};
+    json["sigma"] = sigma_json(result);
+    json["correlations"] = Json::array();
+    for (const FittedCorrelation& c : result.correlations) {
+        json["correlations"].push_back({{"a", c.a}, {"b", c.b}, {"value", number(c.value)}});
+    }
+    json["condition_number"] = number(result.condition_number);
+    json["unidentifiable"] = result.unidentifiable;
+    json["warnings"] = result.warnings;
+    json["residual"] = result.residual;
+    json["deviance"] = result.deviance;
+    json["expected_deviance"] = result.expected_deviance;
+    json["expected_deviance_sigma"] = result.expected_deviance_sigma;
+    json["iterations"] = result.iterations;
+    json["seconds"] = result.seconds;
+    json["converged"] = result.converged;
+    json["message"] = result.message;
+    json["pieces"] = result.num_pieces;
+    json["starts"] = Json::array();
+    for (const FitStart& s : result.starts) {
+        json["starts"].push_back({{"name", s.name}, {"cost", number(s.cost)}});
+    }
+    return json;
+}
+
+FitResult read_fit(const std::string& path) {
+    const Json json = core::read_json_file(path);
+    FitResult result;
+    try {
+        for (const auto& [name, item] : json.at("objects").items()) {
+            FittedObject& object = result.objects.emplace_back();
+            object.name = name;
+            object.position_m = vector_of(item.at("position_m"));
+            const Json& q = item.at("rotation_wxyz");
+            object.rotation = Eigen::Quaterniond(
+                value_of(q.at(0)), value_of(q.at(1)), value_of(q.at(2)), value_of(q.at(3)));
+            object.size = value_of(item.at("size"));
+            object.albedo = value_of(item.at("albedo"));
+            const Json& sigma = json.at("sigma").at("objects").at(name);
+            object.position_sigma_m = vector_of(sigma.at("position_m"));
+            object.rotation_sigma_deg = vector_of(sigma.at("rotation_deg"));
+        }
+        for (const Json& item : json.at("point_scatterers")) {
+            result.points.push_back({vector_of(item), value_of(item.at(3)), {}, kFixed});
+        }
+        result.seconds = value_of(json.at("seconds"));
+        result.converged = json.at("converged").get<bool>();
+        result.deviance = value_of(json.at("deviance"));
+        result.expected_deviance = value_of(json.at("expected_deviance"));
+    } catch (const nlohmann::json::exception&) {
+        throw core::Error(path, "is no complete FIT.json", "must be what nlos fit wrote");
+    }
+    return result;
+}
+
+bool is_fit_file(const std::string& path) {
+    std::ifstream file(path);
+    const Json json = Json::parse(file, nullptr, false);
+    return json.is_object() && json.contains("objects") && json.contains("sigma") &&
+           json.contains("expected_deviance");
+}
+
+Json fitted_scene_json(const FitInput& input, const std::string& geometry_file) {
+    renderer::SceneDescription scene = input.scene;
+    const core::Capture& capture = input.capture;
+    scene.geometry = geometry_file;
+    scene.time_axis = capture.time_axis;
+    scene.scan.pattern = capture.scan.pattern;
+    scene.scan.sensing_points_m = capture.scan.sensing.positions;
+    scene.scan.sensing_normals = capture.scan.sensing.normals;
+    scene.scan.opl_origin = capture.scan.opl_origin;
+    if (capture.scan.opl_origin == core::OplOrigin::Device) {
+        scene.scan.laser_m = capture.scan.laser_position;
+        scene.scan.detector_m = capture.scan.detector_position;
+    }
+    if (capture.scan.pattern != core::ScanPattern::Confocal) {
+        scene.scan.illumination_points_m = capture.scan.illumination.positions;
+        scene.scan.illumination_normals = capture.scan.illumination.normals;
+    }
+    return core::write_value(scene);
+}
+
+}  // namespace calib
