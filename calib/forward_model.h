@@ -59,6 +59,7 @@ class ForwardModel {
     const core::Scan& scan() const { return scan_; }
     const ForwardSettings& settings() const { return settings_; }
     std::size_t num_pieces() const { return pieces_.size(); }
+    const std::vector<ModelPiece>& pieces() const { return pieces_; }
 
  private:
     /// A piece where the state puts it.

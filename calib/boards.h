@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/core/types.h"
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace calib {
+
+/// Chessboards photographed by a camera that also sees the wall.
+struct BoardSettings {
+    std::vector<std::string> images;
+    std::array<int, 2> inner_corners{9, 6};
+    double square_m = 0.025;
+    int wall_image = 0;  ///< which image shows the board lying on the wall
+};
+
+template <class Visitor>
+void for_each_field(BoardSettings& s, Visitor&& visit) {
+    visit("images", s.images, "photographs of the board in several poses");
+    visit("inner_corners", s.inner_corners, "corners between four squares, per row and per column");
+    visit("square_m", s.square_m, "edge of a square [m]");
+    visit("wall_image", s.wall_image, "the image whose board lies on the wall, from 0");
+}
+
+/// A pinhole camera with two radial distortion terms; world is the wall's frame.
+struct CameraCalibration {
+    double focal_x_px = 0.0;
+    double focal_y_px = 0.0;
+    double center_x_px = 0.0;
+    double center_y_px = 0.0;
+    std::array<double, 2> radial{};
+    std::array<double, 4> sigma_px{};  ///< of the four above
+    double reprojection_rms_px = 0.0;
+    core::Transform camera_from_wall = core::Transform::Identity();
+    core::Mat3 wall_from_pixel = core::Mat3::Identity();  ///< homography, distortion removed first
+
+    /// Wall point (x, y) seen at a pixel [m].
+    core::Vec2 wall_point(const core::Vec2& pixel) const;
+    /// Pixel at which a wall point is seen.
+    core::Vec2 project(const core::Vec3& wall_point) const;
+};
+
+/// Finds the boards, calibrates the camera, and places the wall.
+///
+/// The wall's frame: origin at the board's first inner corner, x along its rows, normal towards the
+/// camera.
+///
+/// images    8-bit grey or colour photographs of one size
+/// throws    core::Error naming an image that cannot be read or shows no board
+/// source    [Zhang2000] as OpenCV implements it
+CameraCalibration calibrate_camera(const BoardSettings& settings);
+
+}  // namespace calib

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/core/capture.h"
+
+#include <vector>
+
+namespace calib {
+
+/// Shape of the instrument response.
+enum class ResponseShape { Gaussian, GaussianExponential };
+
+/// A direct return's path length as the axis reads it, time zero included.
+struct DirectReturn {
+    double opl_m = 0.0;
+    double sigma_m = 0.0;
+    double counts = 0.0;
+};
+
+/// What the peaks of direct returns tell together.
+struct DirectReturns {
+    std::vector<DirectReturn> points;
+    double sigma_m = 0.0;  ///< of the response's Gaussian core, in path length
+    double sigma_error_m = 0.0;
+    double tail_m = 0.0;  ///< mean of its exponential tail; 0 without one
+    double tail_error_m = 0.0;
+    double ambient = 0.0;  ///< counts per bin
+    double ambient_error = 0.0;
+    double deviance = 0.0;
+    double expected_deviance = 0.0;
+};
+
+/// Fits a peak per point and one response for all by maximum likelihood, far below a bin's width.
+///
+/// capture   counts with one direct return per histogram
+/// throws    core::Error when a histogram holds no peak; core::Failure when the fit does not
+/// converge source    likelihood of Poisson counts; the response's cumulative distributions are
+/// core's
+DirectReturns fit_direct_returns(const core::Capture& capture, ResponseShape shape);
+
+}  // namespace calib
+
+template <>
+struct core::EnumNames<calib::ResponseShape> {
+    static constexpr std::array<std::pair<calib::ResponseShape, std::string_view>, 2> value{
+        {{calib::ResponseShape::Gaussian, "gaussian"},
+         {calib::ResponseShape::GaussianExponential, "gaussian_exponential"}}};
+};
