@@ -15,6 +15,7 @@ void add_convert_command(CLI::App& app);
 void add_simulate_noise_command(CLI::App& app);
 void add_reconstruct_command(CLI::App& app);
 void add_fit_command(CLI::App& app);
+void add_calibrate_command(CLI::App& app);
 void add_compare_command(CLI::App& app);
 void add_info_command(CLI::App& app);
 void add_report_command(CLI::App& app);

@@ -4,6 +4,7 @@
 #include "apps/arguments.h"
 #include "apps/terminal.h"
 #include "apps/version.h"
+#include "calib/calibrate.h"
 #include "calib/fit_file.h"
 #include "calib/poisson_deviance.h"
 #include "nlos/formats/capture_file.h"
@@ -35,6 +36,16 @@ calib::FitInput make_input(const std::string& capture_path,
         input.start_points = nlos::read_volume(input.settings.start).points.positions;
     }
     return input;
+}
+
+// The data stay as they are: offsets go into the model, where they cost no light.
+void use_calibration(const calib::AppliedCalibration& calibration, calib::FitInput& input) {
+    calib::replace_points(calibration, input.capture.scan);
+    input.offset_m = calib::pair_offsets(calibration, input.capture.scan);
+    const core::ResponseSettings& response = input.settings.response;
+    if (response.jitter_fwhm_ps == 0.0 && response.tail_ps == 0.0 && response.curve.empty()) {
+        input.settings.response = calibration.response;
+    }
 }
 
 void write_results(const calib::FitInput& input,
@@ -115,8 +126,8 @@ calib::FitResult fit_to_file(const std::string& capture_path,
                              const std::string& fit_path) {
     // A target that cannot be written is found before the work, not after it.
     const core::OutputFile probe(fit_path);
-    const calib::FitInput input = make_input(capture_path, model_path, overrides);
-    static_cast<void>(calibration);
+    calib::FitInput input = make_input(capture_path, model_path, overrides);
+    if (!calibration.empty()) use_calibration(calib::read_calibration(calibration), input);
     ProgressBar bar("fit");
     calib::FitResult result = calib::fit_scene(input, bar.progress());
     write_results(input, result, fit_path);

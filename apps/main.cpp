@@ -44,6 +44,7 @@ int run(const std::vector<std::string>& arguments) {
     apps::add_simulate_noise_command(app);
     apps::add_reconstruct_command(app);
     apps::add_fit_command(app);
+    apps::add_calibrate_command(app);
     apps::add_compare_command(app);
     apps::add_info_command(app);
     apps::add_report_command(app);

@@ -17,6 +17,7 @@ struct ReconstructArguments {
     std::string method;
     std::string ply;
     std::string glb;
+    std::string calibration;
     std::vector<std::string> overrides;
     int threads = 0;
 };
@@ -25,8 +26,12 @@ void run(const ReconstructArguments& arguments) {
     const core::ThreadLimit threads(arguments.threads);
     std::vector<std::string> overrides = arguments.overrides;
     if (!arguments.method.empty()) overrides.push_back("method=" + arguments.method);
-    const nlos::Reconstruction result = reconstruct_to_file(
-        arguments.capture, overrides, arguments.output, arguments.ply, arguments.glb);
+    const nlos::Reconstruction result = reconstruct_to_file(arguments.capture,
+                                                            overrides,
+                                                            arguments.output,
+                                                            arguments.ply,
+                                                            arguments.glb,
+                                                            arguments.calibration);
     for (const std::string& warning : result.warnings) {
         fmt::print(stderr, "warning: {}\n", warning);
     }
@@ -62,6 +67,8 @@ void add_reconstruct_command(CLI::App& app) {
                         "Method: auto, lct, dlct, fk, phasor, bp or fbp (default auto)");
     command->add_option("--ply", arguments->ply, "Also write the surface points (.ply)");
     command->add_option("--glb", arguments->glb, "Also write the surface as a mesh (.glb)");
+    command->add_option(
+        "--calibration", arguments->calibration, "Calibration of the set-up (.json)");
     command->add_option("--threads", arguments->threads, "Threads; 0 takes all processors")
         ->capture_default_str()
         ->check(CLI::Range(0, 1024));

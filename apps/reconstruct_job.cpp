@@ -3,6 +3,7 @@
 
 #include "apps/arguments.h"
 #include "apps/terminal.h"
+#include "calib/calibrate.h"
 #include "nlos/formats/picture.h"
 #include "nlos/formats/ply_file.h"
 #include "nlos/formats/volume_file.h"
@@ -29,12 +30,16 @@ nlos::Reconstruction reconstruct_to_file(const std::string& capture_path,
                                          const std::vector<std::string>& overrides,
                                          const std::string& volume_path,
                                          const std::string& ply_path,
-                                         const std::string& glb_path) {
+                                         const std::string& glb_path,
+                                         const std::string& calibration_path) {
     // A target that cannot be written is found before the work, not after it.
     const core::OutputFile probe(volume_path);
     ReconstructOptions options;
     for (const std::string& text : overrides) core::apply_override(options, text);
-    const core::Capture capture = nlos::read_capture(capture_path, options.capture);
+    core::Capture capture = nlos::read_capture(capture_path, options.capture);
+    if (!calibration_path.empty()) {
+        capture = calib::apply_calibration(calib::read_calibration(calibration_path), capture);
+    }
 
     ProgressBar bar("reconstruct");
     nlos::Reconstruction result = nlos::reconstruct(capture, options.reconstruct, bar.progress());

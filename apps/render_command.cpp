@@ -15,6 +15,7 @@ namespace {
 struct RenderArguments {
     std::string scene;
     std::string output;
+    std::string calibration;
     std::vector<std::string> overrides;
     std::vector<std::string> shorthands;  ///< --samples 64 becomes render.samples=64
     int threads = 0;
@@ -41,7 +42,8 @@ void run(const RenderArguments& arguments) {
     const core::ThreadLimit threads(arguments.threads);
     std::vector<std::string> overrides = arguments.overrides;
     overrides.insert(overrides.end(), arguments.shorthands.begin(), arguments.shorthands.end());
-    const RenderJob job = render_to_file(arguments.scene, overrides, arguments.output);
+    const RenderJob job =
+        render_to_file(arguments.scene, overrides, arguments.output, arguments.calibration);
     for (const std::string& warning : job.warnings) {
         fmt::print(stderr, "warning: {}\n", warning);
     }
@@ -95,6 +97,9 @@ void add_render_command(CLI::App& app) {
                   "K",
                   "Bounces, both on the relay wall included");
     add_shorthand(*command, *arguments, "--seed", "render.seed", "N", "Seed of the random numbers");
+    command->add_option("--calibration",
+                        arguments->calibration,
+                        "Calibration of the set-up to record with (.json)");
     command->add_option("--threads", arguments->threads, "Threads; 0 takes all processors")
         ->capture_default_str()
         ->check(CLI::Range(0, 1024));

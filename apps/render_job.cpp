@@ -4,6 +4,7 @@
 #include "apps/arguments.h"
 #include "apps/terminal.h"
 #include "apps/version.h"
+#include "calib/calibrate.h"
 #include "nlos/formats/capture_file.h"
 #include "nlos/pictures.h"
 #include "renderer/core/output_file.h"
@@ -87,15 +88,29 @@ renderer::RenderResult run(const renderer::SceneDescription& description,
 
 RenderJob render_to_file(const std::string& scene_path,
                          const std::vector<std::string>& overrides,
-                         const std::string& capture_path) {
+                         const std::string& capture_path,
+                         const std::string& calibration_path) {
     // A target that cannot be written is found before the work, not after it.
     nlos::check_capture_suffix(capture_path);
     const core::OutputFile probe(capture_path);
     const renderer::SceneDescription description =
         renderer::read_scene_description(scene_path, overrides);
-    const core::Scan scan = renderer::make_scan(description);
+    core::Scan scan = renderer::make_scan(description);
+    renderer::SceneDescription rendered = description;
+    std::optional<calib::AppliedCalibration> calibration;
+    if (!calibration_path.empty()) {
+        if (scan.camera || description.frames) {
+            throw core::Error("--calibration", "found a camera or frames", "must be a scan");
+        }
+        calibration = calib::read_calibration(calibration_path);
+        calib::replace_points(*calibration, scan);
+        rendered.time_axis = calib::axis_to_render(*calibration, description.time_axis);
+    }
     ProgressBar bar("render");
-    renderer::RenderResult result = run(description, scan, bar.progress());
+    renderer::RenderResult result = run(rendered, scan, bar.progress());
+    if (calibration) {
+        result.capture = calib::record_with(*calibration, result.capture, description.time_axis);
+    }
     result.capture.scene_info = provenance(scene_path, description, result);
     const std::vector<std::string> left_out = nlos::write_capture(capture_path, result.capture);
     if (scan.camera) {

@@ -27,9 +27,13 @@ struct RenderJob {
 
 /// Renders a scene file into a capture file that carries settings, seed, version and command line;
 /// beside the image of a camera goes a preview (.png).
+///
+/// calibration_path   CALIBRATION.json whose points, path lengths and response the capture gets;
+///                    empty: none
 /// throws   core::Error, core::Failure as the front doors do
 RenderJob render_to_file(const std::string& scene_path,
                          const std::vector<std::string>& overrides,
-                         const std::string& capture_path);
+                         const std::string& capture_path,
+                         const std::string& calibration_path = "");
 
 }  // namespace apps

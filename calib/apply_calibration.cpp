@@ -69,6 +69,21 @@ core::Capture apply_calibration(const AppliedCalibration& calibration,
     return result;
 }
 
+core::TimeAxis axis_to_render(const AppliedCalibration& calibration, const core::TimeAxis& axis) {
+    const auto [least, most] =
+        std::minmax_element(calibration.opl_offset_m.begin(), calibration.opl_offset_m.end());
+    const core::InstrumentResponse response =
+        core::make_response(calibration.response, "--calibration: response");
+    const core::ResponseFilter filter = core::sample_response(response, axis.bin_width_m);
+    const int reach = std::abs(filter.first_delay) + static_cast<int>(filter.weights.size());
+    const int ahead = static_cast<int>(std::ceil(*most / axis.bin_width_m)) + reach;
+    const int spread = static_cast<int>(std::ceil((*most - *least) / axis.bin_width_m));
+    core::TimeAxis result = axis;
+    result.opl_start_m -= ahead * axis.bin_width_m;
+    result.num_bins += spread + 2 * reach;
+    return result;
+}
+
 core::Capture record_with(const AppliedCalibration& calibration,
                           const core::Capture& rendered,
                           const core::TimeAxis& axis) {

@@ -8,11 +8,37 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include <algorithm>
+
 namespace calib {
 namespace {
 
 using core::Vec2;
 using core::Vec3;
+
+// Brightness in the middle of the square whose first corner has this index.
+double square_brightness(const cv::Mat& image,
+                         const std::vector<cv::Point2f>& corners,
+                         std::size_t index,
+                         std::size_t columns) {
+    const cv::Point2f middle = 0.25F * (corners[index] + corners[index + 1] +
+                                        corners[index + columns] + corners[index + columns + 1]);
+    cv::Mat patch;
+    cv::getRectSubPix(image, cv::Size(3, 3), middle, patch);
+    return cv::mean(patch)[0];
+}
+
+// The detector may start at either end of the board. Where the two ends differ in colour, the dark
+// one comes first.
+void start_at_dark_end(const cv::Mat& image,
+                       const cv::Size& inner,
+                       std::vector<cv::Point2f>& corners) {
+    if ((inner.width + inner.height) % 2 == 0) return;
+    const auto columns = static_cast<std::size_t>(inner.width);
+    const double first = square_brightness(image, corners, 0, columns);
+    const double last = square_brightness(image, corners, corners.size() - columns - 2, columns);
+    if (first > last) std::reverse(corners.begin(), corners.end());
+}
 
 std::vector<cv::Point2f> find_corners(const std::string& path,
                                       const cv::Size& inner,
@@ -32,6 +58,7 @@ std::vector<cv::Point2f> find_corners(const std::string& path,
             "shows no whole chessboard",
             fmt::format("must show one of {} x {} inner corners", inner.width, inner.height));
     }
+    start_at_dark_end(image, inner, corners);
     return corners;
 }
 

@@ -46,7 +46,8 @@ struct CameraCalibration {
 /// Finds the boards, calibrates the camera, and places the wall.
 ///
 /// The wall's frame: origin at the board's first inner corner, x along its rows, normal towards the
-/// camera.
+/// camera. Of a board with an odd and an even number of inner corners, the first corner is the one
+/// at a dark outer square; with others it may be either end, so avoid those.
 ///
 /// images    8-bit grey or colour photographs of one size
 /// throws    core::Error naming an image that cannot be read or shows no board

@@ -97,8 +97,11 @@ void replace_points(const AppliedCalibration& calibration, core::Scan& scan);
 core::Capture apply_calibration(const AppliedCalibration& calibration,
                                 const core::Capture& capture);
 
-/// A rendered capture between wall points as the calibrated device would record it: through its
-/// response and with its path lengths; the axis starts `start_m` later than the rendered one.
+/// The axis between wall points that light recorded on `axis` can come from.
+core::TimeAxis axis_to_render(const AppliedCalibration& calibration, const core::TimeAxis& axis);
+
+/// A capture rendered on axis_to_render() as the calibrated device records it on `axis`: through
+/// its response and with its path lengths.
 core::Capture record_with(const AppliedCalibration& calibration,
                           const core::Capture& rendered,
                           const core::TimeAxis& axis);

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+#include "apps/arguments.h"
+#include "apps/bench_fit.h"
+#include "apps/commands.h"
+#include "apps/gnuplot.h"
+#include "apps/terminal.h"
+#include "apps/version.h"
+#include "renderer/core/output_file.h"
+
+#include <fmt/core.h>
+
+#include <filesystem>
+#include <memory>
+
+namespace apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct BenchFitArguments {
+    std::string folder;
+    int trials = 30;
+};
+
+std::string table_of(const FitBench& bench) {
+    std::string text = fmt::format("{:<80} {:<38} {:<46} met\n", "fit", "target", "ours");
+    for (const FitBenchRow& row : bench.rows) {
+        text += fmt::format(
+            "{:<80} {:<38} {:<46} {}\n", row.name, row.target, row.ours, row.holds ? "yes" : "no");
+    }
+    text += fmt::format("\n{:<20} {:>8} {:>12} {:>14} {:>14}\n",
+                        "choice",
+                        "CPU s",
+                        "iterations",
+                        "position [mm]",
+                        "turn [deg]");
+    for (const FitBenchPoint& point : bench.points) {
+        text += fmt::format("{:<20} {:>8.2f} {:>12.1f} {:>14.3f} {:>14.3f}\n",
+                            point.choice,
+                            point.cpu_seconds,
+                            point.iterations,
+                            1e3 * point.position_rms_m,
+                            point.rotation_rms_deg);
+    }
+    return text;
+}
+
+void run(const BenchFitArguments& arguments) {
+    std::error_code error;
+    fs::create_directories(arguments.folder, error);
+    if (error) throw core::Error(arguments.folder, "cannot be made", "must be a writable folder");
+    ProgressBar bar("bench fit");
+    const FitBench bench = bench_fit(arguments.trials, bar.progress());
+    const std::string stem = (fs::path(arguments.folder) / "bench_fit").string();
+    core::Json json = core::write_value(bench);
+    json["program"] = version_text();
+    core::write_text_file(stem + ".json", json.dump(2) + "\n");
+    core::write_text_file(stem + ".txt", table_of(bench));
+    fmt::print("{}", table_of(bench));
+    LogPlot plot{"Error against time of fits", "CPU time [s]", "position error [m]", {}};
+    for (const FitBenchPoint& point : bench.points) {
+        plot.lines.push_back({point.choice, {point.cpu_seconds}, {point.position_rms_m}});
+    }
+    if (!draw_plot(plot, stem)) {
+        fmt::print(stderr, "bench: gnuplot is not there, so no plot was drawn\n");
+    }
+    fmt::print("wrote {}\n", stem + ".json");
+}
+
+}  // namespace
+
+void add_bench_fit_command(CLI::App& bench) {
+    const auto arguments = std::make_shared<BenchFitArguments>();
+    CLI::App* command =
+        bench.add_subcommand("fit", "Fitting and calibration against their targets");
+    command->add_option("-o,--output", arguments->folder, "Folder for JSON, table and plot")
+        ->required();
+    command->add_option("--trials", arguments->trials, "Fits per row of the table")
+        ->capture_default_str()
+        ->check(CLI::Range(1, 10000));
+    command->footer(settings_footer({}, "nlos bench fit -o out/bench --trials 1"));
+    command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace apps

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+#include "apps/arguments.h"
+#include "apps/commands.h"
+#include "apps/version.h"
+#include "calib/calibrate.h"
+#include "nlos/formats/capture_file.h"
+#include "renderer/core/output_file.h"
+
+#include <fmt/core.h>
+
+#include <memory>
+
+namespace apps {
+namespace {
+
+struct CalibrateArguments {
+    std::string setup;
+    std::string output;
+    std::vector<std::string> overrides;
+};
+
+void run(const CalibrateArguments& arguments) {
+    const core::OutputFile probe(arguments.output);
+    const calib::SetupSettings settings = calib::read_setup(arguments.setup, arguments.overrides);
+    const core::Capture capture = nlos::read_capture(settings.direct_returns);
+    const calib::Calibration calibration = calib::calibrate(settings, capture);
+    core::Json json = calib::calibration_json(calibration);
+    json["program"] = version_text();
+    json["command"] = command_line();
+    json["settings"] = core::write_value(settings);
+    core::write_text_file(arguments.output, json.dump(2) + "\n");
+
+    const calib::SetupGeometry& setup = calibration.setup;
+    for (std::size_t i = 0; i < setup.values.size(); ++i) {
+        if (setup.sigma[i] == 0.0) continue;
+        fmt::print(
+            "{:<18} {:>11.6g} +- {:.2g}\n", calib::kSetupNames[i], setup.values[i], setup.sigma[i]);
+    }
+    const auto response = json["response"];
+    fmt::print("{:<18} {:>11.6g} ps\n", "response FWHM", response["jitter_fwhm_ps"].get<double>());
+    fmt::print("wrote {} ({} points, condition number {:.3g}, path lengths off by {:.3g} mm rms)\n",
+               arguments.output,
+               setup.points_m.size(),
+               setup.uncertainty.condition_number,
+               1e3 * setup.range_rms_m);
+}
+
+}  // namespace
+
+void add_calibrate_command(CLI::App& app) {
+    CLI::App* command = app.add_subcommand(
+        "calibrate", "Calibrate wall, spots, time zero and response of a set-up");
+    const auto arguments = std::make_shared<CalibrateArguments>();
+    command->add_option("SETUP", arguments->setup, "Description of the measurements (.json)")
+        ->required();
+    command->add_option("-o,--output", arguments->output, "Calibration to write (.json)")
+        ->required();
+    add_set_option(*command, arguments->overrides);
+    command->footer(settings_footer(core::settings_help(calib::SetupSettings{}),
+                                    "nlos calibrate setup.json -o calibration.json"));
+    command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace apps
