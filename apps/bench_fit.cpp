@@ -212,15 +212,15 @@ struct PoseSummary {
     int count = 0;
 };
 
-PoseSummary summarise(const TrialSetup& setup, int trials, const core::Capture* given = nullptr) {
+PoseSummary summarise(const TrialSetup& setup, int trials) {
     PoseSummary summary;
     double error2 = 0.0;
     double bound2 = 0.0;
     const TrialPose truth = standard_pose();
-    const core::Capture expected = given != nullptr ? *given : expected_capture(setup, truth);
+    const core::Capture light = expected_light(setup, truth);
     for (int i = 0; i < trials; ++i) {
         const auto seed = static_cast<std::uint64_t>(i);
-        const core::Capture counts = counted_capture(expected, seed);
+        const core::Capture counts = counted_capture(setup, light, 0.0, seed);
         const double begin = core::cpu_seconds();
         const calib::FitResult fit =
             calib::fit_scene(trial_input(setup, counts, displaced(truth, 0.03, 8.0, seed)), {});
@@ -304,7 +304,8 @@ double found_share(const TrialSetup& setup, double distance_m, double angle_deg,
     for (int i = 0; i < trials; ++i) {
         const auto seed = static_cast<std::uint64_t>(i);
         const TrialPose truth = random_pose(seed);
-        const core::Capture counts = counted_capture(expected_capture(setup, truth), seed);
+        const core::Capture counts =
+            counted_capture(setup, expected_light(setup, truth), 0.0, seed);
         const TrialPose start = displaced(truth, distance_m, angle_deg, seed);
         const calib::FitResult fit = calib::fit_scene(trial_input(setup, counts, start), {});
         if (is_found(trial_error(fit, truth))) ++found;
@@ -332,7 +333,8 @@ void bench_search(int trials, FitBench& bench) {
     for (int i = 0; i < trials; ++i) {
         const auto seed = static_cast<std::uint64_t>(i);
         const TrialPose truth = random_pose(1000 + seed);
-        const core::Capture counts = counted_capture(expected_capture(setup, truth), seed);
+        const core::Capture counts =
+            counted_capture(setup, expected_light(setup, truth), 0.0, seed);
         const TrialPose anywhere = displaced(truth, 0.5, 170.0, seed);
         const double begin = core::cpu_seconds();
         const calib::FitResult fit = calib::fit_scene(trial_input(setup, counts, anywhere), {});
@@ -364,25 +366,14 @@ void bench_monte_carlo(int trials, FitBench& bench) {
     renderer::RenderSettings render_settings;
     render_settings.method = renderer::Estimator::Path;
     render_settings.samples = 8192;
-    core::Capture rendered =
+    const core::Capture rendered =
         renderer::render(scene, scan, trial_axis(), render_settings, {}).capture;
-    const auto filter =
-        core::sample_response(core::GaussianResponse{core::sigma_m_from_fwhm_ps(setup.fwhm_ps)},
-                              rendered.time_axis.bin_width_m);
-    rendered.transient = core::apply_filter(filter, rendered.transient);
-    double sum = 0.0;
-    for (const float value : rendered.transient.values()) sum += static_cast<double>(value);
-    const double ambient = setup.photons / static_cast<double>(rendered.transient.values().size());
-    for (float& value : rendered.transient.values()) {
-        value = static_cast<float>(static_cast<double>(value) * setup.photons / sum + ambient);
-    }
-    rendered.unit = core::TransientUnit::Counts;
 
     PoseSummary summary;
     double excess = 0.0;
     for (int i = 0; i < trials; ++i) {
         const auto seed = static_cast<std::uint64_t>(i);
-        const core::Capture counts = counted_capture(rendered, seed);
+        const core::Capture counts = counted_capture(setup, rendered, setup.fwhm_ps, seed);
         calib::FitInput input = trial_input(setup, counts, displaced(truth, 0.03, 8.0, seed));
         input.geometry.objects.push_back(occluder);
         const calib::FitResult fit = calib::fit_scene(input, {});

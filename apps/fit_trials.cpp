@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "apps/fit_trials.h"
 
+#include "nlos/detector.h"
 #include "renderer/core/parallel.h"
 #include "renderer/core/random.h"
 
+#include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace apps {
 namespace {
@@ -25,24 +26,6 @@ Vec3 random_direction(core::Rng& rng) {
 
 Eigen::Quaterniond turn(double angle, const Vec3& axis) {
     return Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis));
-}
-
-// Inversion in small steps below 30, a normal approximation above: counts stay far below 2^53.
-double draw_poisson(double mean, core::Rng& rng) {
-    if (mean > 30.0) {
-        const double radius = std::sqrt(-2.0 * std::log(1.0 - rng.uniform()));
-        const double normal = radius * std::cos(2.0 * core::kPi * rng.uniform());
-        return std::max(0.0, std::round(mean + std::sqrt(mean) * normal));
-    }
-    double probability = std::exp(-mean);
-    double left = rng.uniform() - probability;
-    double count = 0.0;
-    while (left >= 0.0 && count < 200.0) {
-        count += 1.0;
-        probability *= mean / count;
-        left -= probability;
-    }
-    return count;
 }
 
 }  // namespace
@@ -113,7 +96,7 @@ TrialPose displaced(const TrialPose& pose,
     return moved;
 }
 
-core::Capture expected_capture(const TrialSetup& setup, const TrialPose& truth) {
+core::Capture expected_light(const TrialSetup& setup, const TrialPose& truth) {
     core::Capture capture;
     capture.scan = trial_scan(setup.scan_points);
     capture.time_axis = trial_axis();
@@ -128,6 +111,7 @@ core::Capture expected_capture(const TrialSetup& setup, const TrialPose& truth) 
     forward.sigma_m = core::sigma_m_from_fwhm_ps(setup.fwhm_ps);
     forward.offset_m.assign(capture.scan.num_pairs(), 0.0);
     forward.tolerance = 1e-3;
+    forward.radiance_factor = std::pow(core::kPi, -3.0);
     calib::ForwardModel light(model, capture.scan, calib::WallMotion(capture.scan), forward);
     calib::SceneState state = model.start();
     state.has_ambient = false;
@@ -143,26 +127,24 @@ core::Capture expected_capture(const TrialSetup& setup, const TrialPose& truth) 
                   result.mean.end(),
                   expected.begin() + static_cast<std::ptrdiff_t>(pair * bins));
     });
-    const double sum = std::accumulate(expected.begin(), expected.end(), 0.0);
-    const double ambient =
-        setup.photons / setup.signal_to_background / static_cast<double>(expected.size());
-    for (std::size_t i = 0; i < expected.size(); ++i) {
-        capture.transient.values()[i] =
-            static_cast<float>(expected[i] * setup.photons / sum + ambient);
-    }
-    capture.unit = core::TransientUnit::Counts;
+    std::transform(expected.begin(),
+                   expected.end(),
+                   capture.transient.values().begin(),
+                   [](double value) { return static_cast<float>(std::max(0.0, value)); });
     return capture;
 }
 
-core::Capture counted_capture(const core::Capture& expected, std::uint64_t seed) {
-    core::Capture counted = expected;
-    core::parallel_for(expected.scan.num_pairs(), [&](std::size_t pair) {
-        core::Rng rng(seed, pair, 3);
-        for (float& value : counted.transient.histogram(pair)) {
-            value = static_cast<float>(draw_poisson(static_cast<double>(value), rng));
-        }
-    });
-    return counted;
+core::Capture counted_capture(const TrialSetup& setup,
+                              const core::Capture& light,
+                              double jitter_fwhm_ps,
+                              std::uint64_t seed) {
+    nlos::DetectorSettings detector;
+    detector.photons = setup.photons;
+    detector.response.jitter_fwhm_ps = jitter_fwhm_ps;
+    detector.ambient = setup.photons / setup.signal_to_background /
+                       static_cast<double>(light.transient.values().size());
+    detector.seed = seed;
+    return nlos::detect(light, detector);
 }
 
 calib::FitInput trial_input(const TrialSetup& setup,

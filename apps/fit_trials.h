@@ -5,6 +5,7 @@
 #include "calib/forward_model.h"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,7 +29,7 @@ struct TrialSetup {
     bool time_zero_free = false;
     std::vector<double> blur_schedule_m{0.12, 0.04, 0.0};
     std::string start = "given";
-    double piece_tolerance = 0.02;
+    std::optional<double> piece_tolerance;
     calib::ResidualKind residual = calib::ResidualKind::Poisson;
 };
 
@@ -45,9 +46,13 @@ TrialPose random_pose(std::uint64_t seed);
 /// `pose` displaced by a length and an angle in random directions.
 TrialPose displaced(const TrialPose& pose, double distance_m, double angle_deg, std::uint64_t seed);
 
-/// Expected counts of a trial, and counts drawn from them.
-core::Capture expected_capture(const TrialSetup& setup, const TrialPose& truth);
-core::Capture counted_capture(const core::Capture& expected, std::uint64_t seed);
+/// The light of a trial after the response, and counts that a detector records of light.
+core::Capture expected_light(const TrialSetup& setup, const TrialPose& truth);
+/// jitter_fwhm_ps   response that the light has not gone through yet; 0: none
+core::Capture counted_capture(const TrialSetup& setup,
+                              const core::Capture& light,
+                              double jitter_fwhm_ps,
+                              std::uint64_t seed);
 
 /// A fit of the rectangle to a capture, started from `start`.
 calib::FitInput trial_input(const TrialSetup& setup,

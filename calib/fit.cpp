@@ -17,7 +17,7 @@ namespace {
 
 using core::Vec3;
 
-constexpr int kScoutIterations = 12;    // of each of many starts, on the coarsest data
+constexpr int kScoutIterations = 8;     // of each of many starts, on the coarsest data
 constexpr std::size_t kKeptStarts = 3;  // that go on to the second stage
 constexpr double kDegrees = 180.0 / core::kPi;
 

@@ -21,6 +21,16 @@ constexpr double kBinPerSigma = 0.7;
 constexpr int kMostVisibilityRounds = 4;
 constexpr std::size_t kPairsOfBlurredStages = 400;
 
+// Errors of pieces may be this large while a blurred stage leads the way.
+constexpr double kBlurredTolerance = 0.1;
+
+// Noise of all data together is 1/sqrt(counts) of them; the rule for pieces bounds the worst
+// histogram, several times above what matters for the whole.
+double tolerance_for(double counts) {
+    return std::clamp(8.0 / std::sqrt(counts), 0.005, 0.1);
+}
+constexpr double kToleranceWithoutNoise = 0.02;
+
 Vec3 surface_center(const ModelBody& body) {
     Vec3 sum = Vec3::Zero();
     for (const ModelVertex& v : body.vertices) sum += v.position_m;
@@ -57,7 +67,8 @@ FitDriver::FitDriver(const FitInput& input, const core::Progress& progress)
 
     // Data of unknown scale leave one albedo open: the first free one stays at its start.
     scale_is_unknown_ = input.capture.unit == core::TransientUnit::Counts &&
-                        !input.geometry.objects.empty() && !settings_.free.objects.empty();
+                        !input.capture.counts_per_radiance && !input.geometry.objects.empty() &&
+                        !settings_.free.objects.empty();
     if (scale_is_unknown_) {
         for (FreeObject& object : settings_.free.objects) {
             if (!object.albedo) continue;
@@ -73,6 +84,8 @@ FitDriver::FitDriver(const FitInput& input, const core::Progress& progress)
     model_ =
         std::make_unique<SceneModel>(input.geometry, settings_, scale_is_unknown_ && is_poisson_);
     ambient_guess_ = quietest_level(data_);
+    tolerance_ = settings_.piece_tolerance.value_or(is_poisson_ ? tolerance_for(total)
+                                                                : kToleranceWithoutNoise);
 
     solve_.loss = settings_.loss;
     solve_.loss_scale = settings_.loss_scale;
@@ -108,9 +121,10 @@ FitDriver::Stage FitDriver::make_stage(double blur_m) const {
     }
     const WallMotion wall(input_.capture.scan);
     const double albedo = input_.scene.relay_wall.albedo;
-    forward.radiance_factor = albedo * albedo / (core::kPi * core::kPi * core::kPi);
+    forward.radiance_factor = albedo * albedo / (core::kPi * core::kPi * core::kPi) *
+                              input_.capture.counts_per_radiance.value_or(1.0);
     forward.spot_m2 = input_.scene.render.laser_spot_m2;
-    forward.tolerance = settings_.piece_tolerance;
+    forward.tolerance = blur_m > 0.0 ? std::max(tolerance_, kBlurredTolerance) : tolerance_;
     stage.model = std::make_unique<ForwardModel>(*model_, subset.scan, wall, std::move(forward));
     return stage;
 }

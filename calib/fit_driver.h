@@ -59,6 +59,7 @@ class FitDriver {
     std::vector<double> offset_m_;
     double response_sigma_m_ = 0.0;
     double ambient_guess_ = 0.0;
+    double tolerance_ = 0.02;  ///< of the last stage's pieces
     SolveSettings solve_;
 };
 

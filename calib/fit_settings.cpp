@@ -156,7 +156,7 @@ void validate(const FitSettings& s, const std::string& where) {
                 "must be positive");
     };
     positive(s.loss_scale, "loss_scale");
-    positive(s.piece_tolerance, "piece_tolerance");
+    if (s.piece_tolerance) positive(*s.piece_tolerance, "piece_tolerance");
     positive(s.max_iterations, "max_iterations");
     positive(s.search_rotations, "search_rotations");
     require(s.laplacian_weight >= 0.0,

@@ -12,8 +12,9 @@ namespace {
 using core::Vec3;
 
 constexpr double kErrorPerKappa = 0.05;
-// Weights are linear over a piece only while it is small against its distance.
-constexpr double kLargestAspect = 0.35;
+// Weights are linear over a piece only while it is small against its distance: squared edge over
+// squared distance per tolerance.
+constexpr double kSquaredAspectPerTolerance = 6.0;
 constexpr std::size_t kMostPieces = 200'000;
 constexpr int kMostBisections = 24;
 
@@ -60,7 +61,7 @@ std::vector<ModelPiece> cut_pieces(const SceneModel& model,
             const double kappa = squared[longest] / (8.0 * distance * 0.5 * sigma_m);
             const bool is_small =
                 kErrorPerKappa * kappa <= tolerance &&
-                squared[longest] <= kLargestAspect * kLargestAspect * distance * distance;
+                squared[longest] <= kSquaredAspectPerTolerance * tolerance * distance * distance;
             if (is_small || candidate.depth == kMostBisections) {
                 pieces.push_back(candidate.piece);
                 if (pieces.size() > kMostPieces) {

@@ -73,8 +73,8 @@ double mean_of(const std::array<double, 3>& values) {
     return (values[0] + values[1] + values[2]) / 3.0;
 }
 
-// The Gaussian response is cut off this many standard deviations away: beyond, it holds 1e-15.
-constexpr double kReach = 8.0;
+// The Gaussian response is cut off this many standard deviations away: beyond, it holds 1e-11.
+constexpr double kReach = 6.8;
 
 using Slots = std::array<double, TriangleBins::kSlots>;
 
