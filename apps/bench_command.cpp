@@ -252,6 +252,7 @@ void add_bench_command(CLI::App& app) {
     render->footer(settings_footer({}, "nlos bench render -o out/bench"));
     render->callback([arguments] { run_render(*arguments); });
 
+    add_bench_fit_command(*command);
     const auto sequence = std::make_shared<SequenceArguments>();
     CLI::App* sequences =
         command->add_subcommand("sequences", "Frame sequences: reuse of paths against none");

@@ -24,5 +24,6 @@ void add_bench_command(CLI::App& app);
 
 /// Adds `bench noise` to `bench`.
 void add_noise_bench(CLI::App& bench);
+void add_bench_fit_command(CLI::App& bench);  // a subcommand of bench
 
 }  // namespace apps

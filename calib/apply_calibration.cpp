@@ -97,6 +97,9 @@ core::Capture record_with(const AppliedCalibration& calibration,
     const core::Transient smeared =
         core::apply_filter(core::sample_response(response, axis.bin_width_m), rendered.transient);
     const core::Transient moved = delayed(smeared, rendered.time_axis, delays);
+    result.variance.reset();
+    result.orders.clear();
+    result.by_order.clear();
     result.time_axis = axis;
     result.transient = core::Transient(rendered.transient.num_pairs(), axis.num_bins);
     for (std::size_t pair = 0; pair < moved.num_pairs(); ++pair) {
