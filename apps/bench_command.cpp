@@ -22,6 +22,7 @@ namespace fs = std::filesystem;
 struct BenchArguments {
     std::string folder;
     std::string scene = "scenes/bars/scene.json";
+    std::string camera_scene = "scenes/box/scene.json";
     std::string exclusion_scene = "scenes/corner/scene.json";
     int repeats = 1;
 };
@@ -116,7 +117,8 @@ std::string table_of(const RenderBench& bench) {
             equal.third_bounce_seconds,
             equal.path_seconds);
     }
-    return text + gates_text(bench.gates) + exclusion_text(bench.exclusion);
+    for (const GateTable& table : bench.gates) text += gates_text(table);
+    return text + exclusion_text(bench.exclusion);
 }
 
 LogPlot gate_plot(const GateTable& table) {
@@ -220,11 +222,19 @@ void run_shift(const ShiftBenchArguments& arguments) {
 void run_render(const BenchArguments& arguments) {
     const std::string stem = result_stem(arguments.folder, "bench_render");
     ProgressBar bar("bench render");
-    const RenderBench bench =
-        bench_render(arguments.scene, arguments.exclusion_scene, arguments.repeats, bar.progress());
+    const RenderBench bench = bench_render(arguments.scene,
+                                           arguments.camera_scene,
+                                           arguments.exclusion_scene,
+                                           arguments.repeats,
+                                           bar.progress());
 
     write_tables(stem, core::write_value(bench), table_of(bench));
-    if (!draw_plot(plot_of(bench), stem) || !draw_plot(gate_plot(bench.gates), stem + "_gates")) {
+    bool drawn = draw_plot(plot_of(bench), stem);
+    for (const GateTable& table : bench.gates) {
+        const std::string name = fs::path(table.scene).parent_path().filename().string();
+        drawn = draw_plot(gate_plot(table), stem + "_gates_" + name) && drawn;
+    }
+    if (!drawn) {
         fmt::print(stderr, "bench: gnuplot is not there, so no plot was drawn\n");
     }
     fmt::print("wrote {}\n", stem + ".json");
@@ -241,6 +251,8 @@ void add_bench_command(CLI::App& app) {
     render->add_option("-o,--output", arguments->folder, "Folder for JSON, table and plots")
         ->required();
     render->add_option("--scene", arguments->scene, "Scene description")->capture_default_str();
+    render->add_option("--camera-scene", arguments->camera_scene, "Image to try gates on")
+        ->capture_default_str();
     render
         ->add_option("--exclusion-scene",
                      arguments->exclusion_scene,

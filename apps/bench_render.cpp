@@ -154,6 +154,7 @@ std::vector<EqualError> equal_errors(const BenchCurve& third_bounce, const Bench
 }  // namespace
 
 RenderBench bench_render(const std::string& scene_path,
+                         const std::string& camera_scene,
                          const std::string& exclusion_scene,
                          int repeats,
                          const core::Progress& progress) {
@@ -170,7 +171,9 @@ RenderBench bench_render(const std::string& scene_path,
             measure_curve(bench, method, efforts, reference, repeats, progress));
     }
     result.equal_error = equal_errors(result.curves[0], result.curves[1]);
-    result.gates = bench_gates(scene_path, std::max(kFewestGateRuns, repeats), progress);
+    for (const std::string& path : {scene_path, camera_scene}) {
+        result.gates.push_back(bench_gates(path, std::max(kFewestGateRuns, repeats), progress));
+    }
     for (const std::string& path : {scene_path, exclusion_scene}) {
         const auto part = bench_exclusion(path, std::max(kFewestGateRuns, repeats));
         result.exclusion.insert(result.exclusion.end(), part.begin(), part.end());

@@ -65,7 +65,7 @@ struct RenderBench {
     int repeats = 0;
     std::vector<BenchCurve> curves;
     std::vector<EqualError> equal_error;
-    GateTable gates;
+    std::vector<GateTable> gates;
     std::vector<ExclusionBench> exclusion;
 };
 
@@ -84,9 +84,11 @@ void for_each_field(RenderBench& bench, Visitor&& visit) {
 
 /// Measures every estimator on a scene at several efforts, on one thread.
 ///
+/// camera_scene      where gates are tried beside the first scene
 /// exclusion_scene   where excluding a back wall from ellipsoidal connections is tried; excluding
 ///                   the relay wall is tried on the first
 RenderBench bench_render(const std::string& scene_path,
+                         const std::string& camera_scene,
                          const std::string& exclusion_scene,
                          int repeats,
                          const core::Progress& progress);
