@@ -21,6 +21,9 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kPairsPerBlock = 64;
 
+// Estimates of one frame of a sequence, at most: each has random numbers of its own.
+constexpr std::uint64_t kMostRepeats = 1 << 16;
+
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
@@ -223,14 +226,21 @@ FrameRenderer make_restir_frame_renderer(const core::Scan& scan, const RenderSet
                 ? state->last.scene
                 : std::make_shared<RestirScene>(frame.scene, frame_scan, state->settings);
         const std::uint64_t rays_before = state->renderer.counts().num_rays;
-        RestirFrame rendered = state->renderer.render({scene,
-                                                       frame.axis,
-                                                       is_first ? nullptr : &state->last,
-                                                       static_cast<std::uint64_t>(frame.index)});
         TransientAccumulator sums = empty_sums(frame_scan, frame.axis, state->settings);
-        add_frame(rendered, frame_scan, state->settings, sums);
+        // Time that is left goes into more estimates from the same past; the last one is kept.
+        RestirFrame rendered;
+        int repeats = 0;
+        do {
+            const std::uint64_t number = static_cast<std::uint64_t>(frame.index) * kMostRepeats +
+                                         static_cast<std::uint64_t>(repeats);
+            rendered = state->renderer.render(
+                {scene, frame.axis, is_first ? nullptr : &state->last, number});
+            add_frame(rendered, frame_scan, state->settings, sums);
+            ++repeats;
+        } while (state->settings.seconds && seconds_since(start) < *state->settings.seconds &&
+                 repeats < static_cast<int>(kMostRepeats));
         state->last = std::move(rendered);
-        RenderResult result = result_of(sums, 1, frame_scan, frame.axis, state->settings);
+        RenderResult result = result_of(sums, repeats, frame_scan, frame.axis, state->settings);
         result.num_rays = state->renderer.counts().num_rays - rays_before;
         result.restir_counts = state->renderer.counts();
         result.seconds = seconds_since(start);
