@@ -64,18 +64,20 @@ std::string gates_text(const GateTable& table) {
 
 std::string exclusion_text(const std::vector<ExclusionBench>& benches) {
     std::string text = "\nellipsoidal, excluded surfaces: relative variance after one CPU second\n";
-    text += fmt::format("{:<28} {:>7} {:<10} {:>5} {:>10} {:>7}\n",
+    text += fmt::format("{:<28} {:>7} {:<10} {:>8} {:>5} {:>10} {:>7}\n",
                         "scene",
                         "bounces",
                         "gate",
+                        "at",
                         "mode",
                         "variance",
                         "gain");
     for (const ExclusionBench& bench : benches) {
-        text += fmt::format("{:<28} {:>7} {:<10} {:>5} {:>10.2e} {:>7.2f}\n",
+        text += fmt::format("{:<28} {:>7} {:<10} {:>6.2f} m {:>5} {:>10.2e} {:>7.2f}\n",
                             bench.scene,
                             bench.max_bounces,
                             gate_name(bench.gate_mm),
+                            bench.center_m,
                             bench.mode,
                             bench.variance_seconds,
                             bench.gain);

@@ -87,10 +87,12 @@ Mean cost(const Case& c, const core::Capture& a, const core::Capture& b, int rep
     return mean_of(costs);
 }
 
-// Length before which half of the signal arrives.
-double middle_of_signal_m(const BenchScene& scene) {
+// Length before which half of the signal arrives; with Exclusion::Drop, of that by way of surfaces
+// that are not excluded.
+double middle_of_signal_m(const BenchScene& scene, renderer::Exclusion exclude) {
     renderer::RenderSettings settings = scene.settings();
-    settings.method = renderer::Estimator::Path;
+    settings.method = renderer::Estimator::Ellipsoidal;
+    settings.exclude = exclude;
     settings.samples = kPilotSamples;
     const core::Capture capture = scene.render(settings);
     const int num_bins = scene.axis().num_bins;
@@ -150,7 +152,7 @@ GateBench bench_gate(const BenchScene& scene, double center_m, double gate_mm, i
 GateTable bench_gates(const std::string& scene_path, int repeats, const core::Progress& progress) {
     const BenchScene scene(scene_path);
     const core::ThreadLimit one_thread(1);
-    GateTable table{scene_path, middle_of_signal_m(scene), {}, 0.0};
+    GateTable table{scene_path, middle_of_signal_m(scene, renderer::Exclusion::None), {}, 0.0};
     for (const double gate_mm : kGates_mm) {
         if (progress.should_stop()) throw core::Failure("bench", "interrupted");
         progress.update(double(table.gates.size()) / double(std::size(kGates_mm)), "gates");
@@ -164,26 +166,29 @@ std::vector<ExclusionBench> bench_exclusion(const std::string& scene_path, int r
     using renderer::Exclusion;
     const BenchScene scene(scene_path);
     const core::ThreadLimit one_thread(1);
-    const double center_m = middle_of_signal_m(scene);
+    const double all_m = middle_of_signal_m(scene, Exclusion::None);
+    const double kept_m = middle_of_signal_m(scene, Exclusion::Drop);
     std::vector<ExclusionBench> result;
-    for (const auto& [max_bounces, gate_mm] :
-         {std::pair{3, 0.0}, std::pair{3, 10.0}, std::pair{5, 0.0}, std::pair{5, 10.0}}) {
-        double none = 0.0;
-        for (const Exclusion mode : {Exclusion::None, Exclusion::Mis, Exclusion::Drop}) {
-            Case c{scene, gate_axis(scene, center_m, gate_mm), scene.settings()};
-            c.settings.method = renderer::Estimator::Ellipsoidal;
-            c.settings.max_bounces = max_bounces;
-            c.settings.exclude = mode;
-            const auto [a, b] = references(c);
-            ExclusionBench bench;
-            bench.scene = scene_path;
-            bench.mode = core::enum_name(mode);
-            bench.max_bounces = max_bounces;
-            bench.gate_mm = gate_mm;
-            bench.variance_seconds = cost(c, a, b, repeats).value;
-            if (mode == Exclusion::None) none = bench.variance_seconds;
-            bench.gain = none / bench.variance_seconds;
-            result.push_back(bench);
+    for (const int max_bounces : {3, 5}) {
+        for (const auto& [gate_mm, center_m] :
+             {std::pair{0.0, all_m}, std::pair{10.0, all_m}, std::pair{10.0, kept_m}}) {
+            double none = 0.0;
+            for (const Exclusion mode : {Exclusion::None, Exclusion::Mis, Exclusion::Drop}) {
+                Case c{scene, gate_axis(scene, center_m, gate_mm), scene.settings()};
+                c.settings.method = renderer::Estimator::Ellipsoidal;
+                c.settings.max_bounces = max_bounces;
+                c.settings.exclude = mode;
+                const auto [a, b] = references(c);
+                const double cost_s = cost(c, a, b, repeats).value;
+                if (mode == Exclusion::None) none = cost_s;
+                result.push_back({scene_path,
+                                  std::string(core::enum_name(mode)),
+                                  max_bounces,
+                                  gate_mm,
+                                  center_m,
+                                  cost_s,
+                                  none / cost_s});
+            }
         }
     }
     return result;

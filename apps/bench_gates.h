@@ -51,6 +51,7 @@ struct ExclusionBench {
     std::string mode;
     int max_bounces = 3;
     double gate_mm = 0.0;
+    double center_m = 0.0;
     double variance_seconds = 0.0;  ///< relative to the squared signal
     double gain = 0.0;
 };
@@ -61,6 +62,7 @@ void for_each_field(ExclusionBench& bench, Visitor&& visit) {
     visit("mode", bench.mode, "what becomes of excluded surfaces");
     visit("max_bounces", bench.max_bounces, "bounces");
     visit("gate_mm", bench.gate_mm, "width of the gate in path length [mm]; 0: the histogram");
+    visit("center_m", bench.center_m, "centre of the gate in path length [m]");
     visit("variance_seconds", bench.variance_seconds, "relative variance after one CPU second");
     visit("gain", bench.gain, "that of mode none over it");
 }
@@ -73,7 +75,9 @@ void for_each_field(ExclusionBench& bench, Visitor&& visit) {
 GateTable bench_gates(const std::string& scene_path, int repeats, const core::Progress& progress);
 
 /// Variance per second of `ellipsoidal` with each mode of exclusion, for 3 and 5 bounces, on one
-/// thread. Each mode is measured against its own expectation: that of `drop` lacks a part.
+/// thread: histogram, a gate at the middle of the signal, and one at the middle of what comes by
+/// way of surfaces that are not excluded. Each mode is measured against its own expectation: that
+/// of `drop` lacks a part.
 std::vector<ExclusionBench> bench_exclusion(const std::string& scene_path, int repeats);
 
 }  // namespace apps

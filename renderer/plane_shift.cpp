@@ -21,14 +21,16 @@ struct PlaneEnd {
           flatness(1.0 - (foci.b - foci.a).squaredNorm() / (length_m * length_m)) {}
 
     // The flatness, and the circle's radius where the ellipsoid touches the plane, are roots of
-    // differences; where either is small its rounding shows in the Jacobian. Such ends are left
-    // out, like those that the solver cannot resolve, and on both sides of a shift.
+    // differences; where either is small its rounding shows in the Jacobian. On a thin ellipse the
+    // angle is felt through the shorter axis, and the Jacobian turns within the ratio of the axes.
+    // Such ends are left out, like those that the solver cannot resolve, and on both sides of a
+    // shift.
     bool is_resolved(double leg_a, double leg_b, double rounding_m) const {
         const double radius = section->circle_radius();
         const double shorter = std::min(leg_a, leg_b);
         return radius * radius * std::sqrt(flatness) > kTinyDeterminant &&
                flatness > kTinyDeterminant && shorter > kShortestLeg * length &&
-               shorter * radius > kFeltRoundings * rounding_m;
+               shorter * radius * radius * flatness > kFeltRoundings * rounding_m;
     }
 };
 

@@ -21,11 +21,14 @@ inline constexpr double kShiftTolerance = 1e-9;
 inline constexpr double kTinyDeterminant = 1e-6;
 /// Shorter legs, as a share of both, count as none.
 inline constexpr double kShortestLeg = 1e-6;
-/// Slopes come out right to e/reach where positions are right to e; a reach shorter than this many
-/// roundings is lost.
+/// With steepness s = reach/leg, coordinates right to e give a solution right to e/s, and from it a
+/// determinant right to e/s over the reach, e/(leg s^2). What is left of the leg must exceed this
+/// many roundings.
 inline constexpr double kFeltRoundings = 1e8;
-/// The reverse solve must come back to within this share of the shorter leg.
-inline constexpr double kReturnTolerance = 1e-8;
+/// The reverse solve must come back to within this share of the shorter leg: ten times what
+/// rounding leaves of ends that count as resolved. Far from the foci many facets fit into that, so
+/// it must be the same facet, too.
+inline constexpr double kReturnTolerance = 1e-7;
 inline constexpr int kMaxIterations = 10;
 inline constexpr int kMaxHalvings = 4;
 
@@ -38,8 +41,9 @@ struct ShiftSolution {
 
 /// Whether an end is far enough from its foci and from tangent points for a shift to mean anything.
 inline bool is_resolved(const ChartExpansion& e, const core::Vec2& gauge) {
+    const double reach = e.reach_m(gauge);
     return e.shorter_leg_m > kShortestLeg * e.legs_m &&
-           e.reach_m(gauge) > kFeltRoundings * e.rounding_m;
+           reach * reach > kFeltRoundings * e.rounding_m * e.shorter_leg_m;
 }
 
 /// Newton's method with line search on F1 = f_t(xi') - f_s(xi) - change and the gauge's F2.
@@ -172,7 +176,8 @@ std::optional<ShiftSolution> shift_on_charts(const Gauge& gauge,
     const auto back = newton_shift(
         gauge, problem.inverse(), solution->xi, solution->at_target, *source_at_end, trace);
     const double allowed = kReturnTolerance * at_source.shorter_leg_m;
-    if (!back || !((back->at_target.position - at_source.position).norm() <= allowed)) {
+    if (!back || back->at_target.facet != at_source.facet ||
+        !((back->at_target.position - at_source.position).norm() <= allowed)) {
         return trace.reject(ShiftRejection::NotReversible);
     }
     return solution;

@@ -112,7 +112,33 @@ double length_of(const renderer::ShiftEnd& end, const Vec3& x) {
     return (end.a - x).norm() + (x - end.y).norm();
 }
 
-// What is wrong with an accepted shift; empty when nothing is.
+// Whether the source lies, as far as rounding can tell, where shifts begin to be refused or to lead
+// elsewhere: one of eight points around it, at 1e-8 legs, fails or ends far from the others.
+bool is_at_edge(const renderer::ShiftMapping& mapping,
+                const renderer::Facet& facet,
+                const ShiftCase& c,
+                const renderer::ShiftedPath& there) {
+    const double legs = length_of(c.source, c.x.position);
+    const Vec3 across = facet.normal.unitOrthogonal();
+    const Vec3 along = facet.normal.cross(across);
+    const double step = 1e-8 * legs + 1e-15 * c.x.position.cwiseAbs().maxCoeff();
+    for (int i = 0; i < 8; ++i) {
+        ShiftCase next = c;
+        const double angle = i * core::kPi / 4.0;
+        next.x.position += step * (std::cos(angle) * across + std::sin(angle) * along);
+        renderer::ShiftCounts counts;
+        const auto moved = shift(mapping, next, counts);
+        if (!moved || (moved->point.position - there.point.position).norm() > 1e-6 * legs) {
+            return true;
+        }
+    }
+    return false;
+}
+
+constexpr std::string_view kAtEdge = "at edge";
+
+// What is wrong with an accepted shift; empty when nothing is, kAtEdge where the way back is
+// refused because of rounding next to the edge of what can be shifted.
 std::string fault_of(const renderer::Scene& scene,
                      const renderer::ShiftMapping& mapping,
                      const ShiftCase& c,
@@ -142,6 +168,7 @@ std::string fault_of(const renderer::Scene& scene,
     renderer::ShiftCounts counts;
     const auto back = shift(mapping, c.inverse(there.point), counts);
     if (!back) {
+        if (is_at_edge(mapping, scene.facet(c.x.facet), c, there)) return std::string(kAtEdge);
         const auto reason = std::find(counts.rejected.begin(), counts.rejected.end(), 1U);
         return fmt::format(
             "no way back: {}",
@@ -163,6 +190,7 @@ HardShiftBench::Tally& HardShiftBench::Tally::operator+=(const Tally& other) {
         tried[i] += other.tried[i];
         accepted[i] += other.accepted[i];
     }
+    at_edge += other.at_edge;
     if (wrong == 0) first_wrong = other.first_wrong;
     wrong += other.wrong;
     return *this;
@@ -213,7 +241,8 @@ HardShiftBench::Tally HardShiftBench::run(std::uint64_t begin, std::uint64_t end
         if (!there) continue;
         ++tally.accepted[kind];
         const std::string fault = fault_of(*stage.scene, mapping, c, *there);
-        if (fault.empty()) continue;
+        if (fault == kAtEdge) ++tally.at_edge;
+        if (fault.empty() || fault == kAtEdge) continue;
         if (tally.wrong++ == 0) {
             tally.first_wrong = fmt::format("shift {} ({}, size {} m, centre x {} m, chart {}): {}",
                                             i,

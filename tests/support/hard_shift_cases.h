@@ -46,6 +46,9 @@ class HardShiftBench {
     struct Tally {
         std::array<std::uint64_t, kHardShiftNames.size()> tried{};
         std::array<std::uint64_t, kHardShiftNames.size()> accepted{};
+        /// Accepted, while the way back is refused because rounding decides there: the source lies
+        /// within 1e-8 of the legs of points that cannot be shifted, or lead elsewhere.
+        std::uint64_t at_edge = 0;
         std::uint64_t wrong = 0;
         std::string first_wrong;  ///< what was wrong with the first one
 
