@@ -45,14 +45,20 @@ std::string gates_text(const GateTable& table) {
         fmt::format("\n{}, gates about {:.3f} m: relative MSE after one CPU second\n",
                     table.scene,
                     table.center_m);
-    text += fmt::format("{:<12} {:>11} {:>12} {:>9}\n", "gate", "path", "ellipsoidal", "ratio");
+    text += fmt::format("{:<12} {:>11} {:>12} {:>9} {:>20}\n",
+                        "gate",
+                        "path",
+                        "ellipsoidal",
+                        "ratio",
+                        "trimmed ratio");
     for (const GateBench& gate : table.gates) {
-        text += fmt::format("{:<12} {:>11.2e} {:>12.2e} {:>9.3g} +- {:.2g}\n",
+        text += fmt::format("{:<12} {:>11.2e} {:>12.2e} {:>9.3g} +- {:<7.2g} {:>9.3g}\n",
                             gate_name(gate.gate_mm),
                             gate.path_rel_mse,
                             gate.ellipsoidal_rel_mse,
                             gate.ratio,
-                            gate.ratio_sigma);
+                            gate.ratio_sigma,
+                            gate.trimmed_ratio);
     }
     if (table.crossing_mm > 0.0) {
         text += fmt::format("they cross at {:.3g} mm\n", table.crossing_mm);

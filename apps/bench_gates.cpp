@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/bench_gates.h"
 
+#include "apps/bench_error.h"
 #include "apps/bench_scene.h"
 #include "renderer/core/parallel.h"
 #include "renderer/core/process.h"
@@ -45,21 +46,6 @@ int samples_for(const Case& c, double seconds) {
     return static_cast<int>(std::clamp(kPilotSamples * seconds / pilot, 16.0, 1e7));
 }
 
-// Sum of (x - a) (x - b) over the sum of a b: with independent a and b around the truth its mean is
-// the relative MSE of x.
-double relative_mse(const core::Capture& x, const core::Capture& a, const core::Capture& b) {
-    const auto& xs = x.transient.values();
-    double error = 0.0;
-    double signal = 0.0;
-    for (std::size_t i = 0; i < xs.size(); ++i) {
-        const double va = double{a.transient.values()[i]};
-        const double vb = double{b.transient.values()[i]};
-        error += (double{xs[i]} - va) * (double{xs[i]} - vb);
-        signal += va * vb;
-    }
-    return error / signal;
-}
-
 // Mean and its standard deviation.
 struct Mean {
     double value = 0.0;
@@ -77,14 +63,22 @@ Mean mean_of(const std::vector<double>& values) {
 }
 
 // Relative MSE times CPU seconds, which is what is left after one second.
-Mean cost(const Case& c, const core::Capture& a, const core::Capture& b, int repeats) {
+struct Cost {
+    Mean all;
+    Mean trimmed;
+};
+
+Cost cost(const Case& c, const core::Capture& a, const core::Capture& b, int repeats) {
     const int samples = samples_for(c, kRunSeconds);
-    std::vector<double> costs;
+    std::vector<double> all;
+    std::vector<double> trimmed;
     for (int i = 0; i < repeats; ++i) {
         const TimedCapture timed = run(c, samples, static_cast<std::uint64_t>(i));
-        costs.push_back(relative_mse(timed.capture, a, b) * timed.cpu_seconds);
+        const ErrorSums errors = errors_of(timed.capture.transient, a.transient, b.transient);
+        all.push_back(errors.rel_mse() * timed.cpu_seconds);
+        trimmed.push_back(errors.trimmed_rel_mse() * timed.cpu_seconds);
     }
-    return mean_of(costs);
+    return {mean_of(all), mean_of(trimmed)};
 }
 
 // Length before which half of the signal arrives; with Exclusion::Drop, of that by way of surfaces
@@ -139,12 +133,17 @@ GateBench bench_gate(const BenchScene& scene, double center_m, double gate_mm, i
     Case path = ellipsoidal;
     path.settings.method = renderer::Estimator::Path;
     const auto [a, b] = references(ellipsoidal);
-    const Mean by_path = cost(path, a, b, repeats);
-    const Mean by_ellipsoid = cost(ellipsoidal, a, b, repeats);
-    const double ratio = by_path.value / by_ellipsoid.value;
-    const double sigma =
-        ratio * std::hypot(by_path.sigma / by_path.value, by_ellipsoid.sigma / by_ellipsoid.value);
-    return {gate_mm, by_path.value, by_ellipsoid.value, ratio, sigma};
+    const Cost by_path = cost(path, a, b, repeats);
+    const Cost by_ellipsoid = cost(ellipsoidal, a, b, repeats);
+    const double ratio = by_path.all.value / by_ellipsoid.all.value;
+    const double sigma = ratio * std::hypot(by_path.all.sigma / by_path.all.value,
+                                            by_ellipsoid.all.sigma / by_ellipsoid.all.value);
+    return {gate_mm,
+            by_path.all.value,
+            by_ellipsoid.all.value,
+            ratio,
+            sigma,
+            by_path.trimmed.value / by_ellipsoid.trimmed.value};
 }
 
 }  // namespace
@@ -179,7 +178,7 @@ std::vector<ExclusionBench> bench_exclusion(const std::string& scene_path, int r
                 c.settings.max_bounces = max_bounces;
                 c.settings.exclude = mode;
                 const auto [a, b] = references(c);
-                const double cost_s = cost(c, a, b, repeats).value;
+                const double cost_s = cost(c, a, b, repeats).all.value;
                 if (mode == Exclusion::None) none = cost_s;
                 result.push_back({scene_path,
                                   std::string(core::enum_name(mode)),

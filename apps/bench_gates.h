@@ -16,6 +16,7 @@ struct GateBench {
     double ellipsoidal_rel_mse = 0.0;
     double ratio = 0.0;
     double ratio_sigma = 0.0;
+    double trimmed_ratio = 0.0;
 };
 
 template <class Visitor>
@@ -25,6 +26,7 @@ void for_each_field(GateBench& bench, Visitor&& visit) {
     visit("ellipsoidal_rel_mse", bench.ellipsoidal_rel_mse, "that of ellipsoidal");
     visit("ratio", bench.ratio, "the first over the second: how much better ellipsoidal is");
     visit("ratio_sigma", bench.ratio_sigma, "standard deviation of the ratio");
+    visit("trimmed_ratio", bench.trimmed_ratio, "the ratio without the worst 0.2 % of values");
 }
 
 /// All gates of a scene, the histogram first, then by falling width.

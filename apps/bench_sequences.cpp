@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/bench_sequences.h"
 
+#include "apps/bench_error.h"
 #include "renderer/core/parallel.h"
 #include "renderer/core/process.h"
 #include "renderer/frame_sequence.h"
@@ -15,7 +16,6 @@
 namespace apps {
 namespace {
 
-constexpr double kTrimmedShare = 0.002;
 constexpr int kReferenceSamples = 60'000;
 
 // Frames before this share of a sequence are left out of the means: reuse has to settle.
@@ -82,49 +82,6 @@ Frames reference_frames(const SequenceCase& sequence, std::uint64_t seed) {
     return frames;
 }
 
-// Sums over the values of frames that errors are made of.
-struct ErrorSums {
-    double squared = 0.0;
-    double trimmed = 0.0;
-    double reference = 0.0;
-    double sum = 0.0;
-    double reference_sum = 0.0;
-
-    ErrorSums& operator+=(const ErrorSums& other) {
-        squared += other.squared;
-        trimmed += other.trimmed;
-        reference += other.reference;
-        sum += other.sum;
-        reference_sum += other.reference_sum;
-        return *this;
-    }
-    double rel_mse() const { return squared / reference; }
-};
-
-ErrorSums errors_of(const core::Transient& frame,
-                    const core::Transient& reference1,
-                    const core::Transient& reference2) {
-    ErrorSums sums;
-    std::vector<double> squares;
-    for (std::size_t i = 0; i < frame.values().size(); ++i) {
-        const double x = double{frame.values()[i]};
-        const double a = double{reference1.values()[i]};
-        const double b = double{reference2.values()[i]};
-        squares.push_back((x - a) * (x - b));
-        sums.reference += a * b;
-        sums.sum += x;
-        sums.reference_sum += 0.5 * (a + b);
-    }
-    const auto kept =
-        static_cast<std::ptrdiff_t>(static_cast<double>(squares.size()) * (1.0 - kTrimmedShare));
-    std::nth_element(squares.begin(), squares.begin() + kept, squares.end());
-    for (std::size_t i = 0; i < squares.size(); ++i) {
-        sums.squared += squares[i];
-        if (static_cast<std::ptrdiff_t>(i) < kept) sums.trimmed += squares[i];
-    }
-    return sums;
-}
-
 SequenceBench run_method(const SequenceCase& sequence,
                          const SequenceMethod& method,
                          int num_seeds,
@@ -157,7 +114,7 @@ SequenceBench run_method(const SequenceCase& sequence,
         if (static_cast<double>(f) >= kSettlingShare * sequence.num_frames) settled += of_frames[f];
     }
     bench.rel_mse = settled.rel_mse();
-    bench.trimmed_rel_mse = settled.trimmed / settled.reference;
+    bench.trimmed_rel_mse = settled.trimmed_rel_mse();
     bench.sum_ratio = settled.sum / settled.reference_sum;
     if (shifts.tried() > 0) {
         bench.accepted_share =
@@ -230,15 +187,16 @@ std::vector<SequenceMethod> standard_methods(bool is_image, bool is_static) {
     const std::string shared = fmt::format("render.restir.shared_walks={}", is_image ? 512 : 1024);
     const std::string restir = "render.method=restir";
     const std::string ellipsoidal = "render.restir.candidates=ellipsoidal";
-    return {{"path", {"render.method=path", is_image ? "render.samples=16" : "render.samples=512"}},
-            {"ellipsoidal",
-             {"render.method=ellipsoidal", is_image ? "render.samples=4" : "render.samples=32"}},
-            {"naive, ellipsoidal",
-             {restir, ellipsoidal, walks, cap(memory), near(3), "render.restir.reuse=naive"}},
-            {"restir, walks", {restir, "render.restir.candidates=path", walks, cap(memory), near(3)}},
-            {"restir, ellipsoidal", {restir, ellipsoidal, walks, cap(memory), near(3)}},
-            {"shared alone", {restir, shared, "render.restir.reuse=none"}},
-            {"restir, shared", {restir, shared, cap(is_image ? 5 : 2), near(is_image ? 3 : 0)}}};
+    return {
+        {"path", {"render.method=path", is_image ? "render.samples=16" : "render.samples=512"}},
+        {"ellipsoidal",
+         {"render.method=ellipsoidal", is_image ? "render.samples=4" : "render.samples=32"}},
+        {"naive, ellipsoidal",
+         {restir, ellipsoidal, walks, cap(memory), near(3), "render.restir.reuse=naive"}},
+        {"restir, walks", {restir, "render.restir.candidates=path", walks, cap(memory), near(3)}},
+        {"restir, ellipsoidal", {restir, ellipsoidal, walks, cap(memory), near(3)}},
+        {"shared alone", {restir, shared, "render.restir.reuse=none"}},
+        {"restir, shared", {restir, shared, cap(is_image ? 5 : 2), near(is_image ? 3 : 0)}}};
 }
 
 }  // namespace apps

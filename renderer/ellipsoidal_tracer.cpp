@@ -115,7 +115,9 @@ EllipsoidalTracer::EllipsoidalTracer(const Scene& scene,
       surface_walk_(scene, settings.laser_spot_m2),
       facet_traits_(scene, hidden_objects(scene)),
       excluded_(ExcludedFacets::of(scene, settings)),
-      technique_(scene, excluded_, scan) {}
+      technique_(scene, excluded_, scan) {
+    if (scan.camera) pixel_places_.emplace(Measurement(scene, scan), scan.camera->height());
+}
 
 std::uint64_t EllipsoidalTracer::trace(const PathEnds& ends,
                                        int num_samples,
@@ -214,17 +216,18 @@ void EllipsoidalTracer::Walk::trace_directions(int count) {
     finish_first_vertices(false);
 }
 
-// The first vertex is what the pixel shows: only later ones can be chosen.
 void EllipsoidalTracer::Walk::trace_pixel_samples(const Measurement& measurement,
                                                   std::size_t pixel,
                                                   int count) {
     const SurfaceWalk& walk = tracer_.surface_walk_;
+    const PixelPlaces::Band places = tracer_.pixel_places_->band(pixel, tracer_.lengths_);
     for (int i = 0; i < count; ++i) {
         const double u1 = (i + rng_.uniform()) / count;
-        auto vertex = measurement.first_vertex(pixel, {u1, rng_.uniform()});
+        const Vec2 place = places.sample({u1, rng_.uniform()});
+        auto vertex = measurement.first_vertex(pixel, place);
         ++num_rays_;
         if (!vertex || vertex->order > tracer_.max_order_) continue;
-        vertex->throughput /= count;
+        vertex->throughput /= count * places.pdf(place);
         const double value = walk.connection_value(*vertex, ends_);
         if (value > 0.0 && tracer_.scope_ != ConnectionScope::Excluded &&
             histogram_.lets_through(opl_to_light(*vertex))) {

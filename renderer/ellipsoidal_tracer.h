@@ -5,6 +5,7 @@
 #include "renderer/first_vertices.h"
 #include "renderer/measurement.h"
 #include "renderer/pass_histogram.h"
+#include "renderer/pixel_places.h"
 #include "renderer/surface_walk.h"
 
 namespace renderer {
@@ -17,7 +18,8 @@ enum class ConnectionScope { All, Kept, Excluded };
 /// From every vertex of a walk from the sensor, the vertex before the light is drawn twice: by the
 /// walk itself, from the hidden area or the BSDF, and on an ellipsoid, so that the whole path's
 /// length falls within the time axis. The balance heuristic weighs the two (source [Veach1997],
-/// [Pediredla2019]). Third bounces share one cut of the hierarchy per pair and packets of rays.
+/// [Pediredla2019]). Third bounces share one cut of the hierarchy per pair and packets of rays. An
+/// image's first vertex is chosen by length, too: see PixelPlaces.
 class EllipsoidalTracer {
  public:
     /// scene   must outlive the tracer
@@ -62,6 +64,7 @@ class EllipsoidalTracer {
     FacetTraits facet_traits_;
     ExcludedFacets excluded_;
     ConnectionTechnique technique_;
+    std::optional<PixelPlaces> pixel_places_;  ///< of images
 };
 
 }  // namespace renderer
