@@ -81,7 +81,11 @@ renderer::RenderResult run(const renderer::SceneDescription& description,
                                        renderer::make_frame_renderer(scan, description.render),
                                        progress);
     }
-    return renderer::render(*scene, scan, description.time_axis, description.render, progress);
+    return renderer::render(*scene,
+                            scan,
+                            {description.time_axis, description.velocity_axis},
+                            description.render,
+                            progress);
 }
 
 }  // namespace
@@ -99,8 +103,10 @@ RenderJob render_to_file(const std::string& scene_path,
     renderer::SceneDescription rendered = description;
     std::optional<calib::AppliedCalibration> calibration;
     if (!calibration_path.empty()) {
-        if (scan.camera || description.frames) {
-            throw core::Error("--calibration", "found a camera or frames", "must be a scan");
+        if (scan.camera || description.frames || description.velocity_axis) {
+            throw core::Error("--calibration",
+                              "found a camera, frames or a velocity axis",
+                              "must be a scan without these");
         }
         calibration = calib::read_calibration(calibration_path);
         calib::replace_points(*calibration, scan);

@@ -87,7 +87,7 @@ DroppedSignal measure_dropped_signal(const Scene& scene,
 
 RenderResult render_ellipsoidal(const Scene& scene,
                                 const core::Scan& scan,
-                                const core::TimeAxis& axis,
+                                const core::HistogramAxes& axes,
                                 const RenderSettings& settings,
                                 const core::Progress& progress) {
     const bool drops = settings.exclude == Exclusion::Drop;
@@ -95,16 +95,16 @@ RenderResult render_ellipsoidal(const Scene& scene,
     PassWork work;
     if (settings.max_bounces >= first_order) {
         work.estimate = ellipsoidal_estimator(
-            scene, scan, axis, settings, drops ? ConnectionScope::Kept : ConnectionScope::All);
+            scene, scan, axes.time, settings, drops ? ConnectionScope::Kept : ConnectionScope::All);
     }
-    RenderResult result = render_passes(scene, scan, axis, settings, work, progress);
+    RenderResult result = render_passes(scene, scan, axes, settings, work, progress);
     if (!work.estimate) return result;
     result.excluded_objects = ExcludedFacets::of(scene, settings).objects;
     std::string surfaces = "all";
     if (drops && !result.excluded_objects.empty()) {
         surfaces = "all but the excluded ones";
         const DroppedSignal dropped =
-            measure_dropped_signal(scene, scan, axis, settings, kMeasuredPairs);
+            measure_dropped_signal(scene, scan, axes.time, settings, kMeasuredPairs);
         const double kept = kept_signal(result.capture, dropped.pairs);
         result.warnings.push_back(drop_warning(dropped, kept, result.excluded_objects));
     }

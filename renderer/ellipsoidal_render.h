@@ -11,7 +11,7 @@ namespace renderer {
 /// measured on some of the pairs.
 RenderResult render_ellipsoidal(const Scene& scene,
                                 const core::Scan& scan,
-                                const core::TimeAxis& axis,
+                                const core::HistogramAxes& axes,
                                 const RenderSettings& settings,
                                 const core::Progress& progress);
 

@@ -287,13 +287,15 @@ void EllipsoidalTracer::Walk::weigh(int index, double ellipsoidal_pdf) {
 
 void EllipsoidalTracer::Walk::connect_seen() {
     if (!ends_.coincide) num_rays_ += first_.trace_from(ends_.light);
-    histogram_.add(tracer_.by_order_ ? 2 : 0, first_.opl_m(), first_.contributions());
+    std::span<const double> velocities;
+    if (histogram_.resolves_velocity()) velocities = first_.find_velocities(ends_);
+    histogram_.add(tracer_.by_order_ ? 2 : 0, first_.opl_m(), velocities, first_.contributions());
     first_.clear();
 }
 
 // What is left of the wanted lengths after the path up to a vertex, for the two legs to the light.
 OplBand EllipsoidalTracer::Walk::lengths_left(const PathVertex& vertex) const {
-    const double before = vertex.opl_m + ends_.device_legs_m;
+    const double before = vertex.extent.opl_m + ends_.device_legs_m;
     return {tracer_.lengths_.low_m - before, tracer_.lengths_.high_m - before};
 }
 
@@ -341,12 +343,14 @@ void EllipsoidalTracer::Walk::connect(const PathVertex& vertex,
 }
 
 double EllipsoidalTracer::Walk::opl_to_light(const PathVertex& vertex) const {
-    return vertex.opl_m + (ends_.light.position - vertex.point.position).norm() +
+    return vertex.extent.opl_m + (ends_.light.position - vertex.point.position).norm() +
            ends_.device_legs_m;
 }
 
 void EllipsoidalTracer::Walk::deposit(const PathVertex& vertex, double value) {
-    histogram_.add(tracer_.by_order_ ? vertex.order - 1 : 0, opl_to_light(vertex), value);
+    histogram_.add(tracer_.by_order_ ? vertex.order - 1 : 0,
+                   tracer_.surface_walk_.extent_to_light(vertex, ends_),
+                   value);
 }
 
 }  // namespace renderer

@@ -170,14 +170,27 @@ void FirstVertices::keep_useful(bool by_contribution) {
     }
 }
 
+std::span<const double> FirstVertices::find_velocities(const PathEnds& ends) {
+    for (int i = 0; i < count_; ++i) {
+        const Vec3 position(x_[i], y_[i], z_[i]);
+        const Vec3& velocity = scene_.velocity_m_per_s(facet_[i]);
+        PathExtent path;
+        path.add_segment(position - ends.sensor.position, Vec3::Zero(), velocity);
+        path.add_segment(ends.light.position - position, velocity, Vec3::Zero());
+        velocity_[i] = path.velocity_m_per_s;
+    }
+    return {velocity_, size_t_count()};
+}
+
 PathVertex FirstVertices::vertex(int i, const PathEnd& sensor) const {
     PathVertex vertex;
     vertex.point = {{x_[i], y_[i], z_[i]}, facet_[i]};
     vertex.normal = {normal_x_[i], normal_y_[i], normal_z_[i]};
     vertex.bsdf = scene_.bsdf_at(vertex.point);
     const Vec3 to_sensor = sensor.position - vertex.point.position;
-    vertex.opl_m = to_sensor.norm();
-    vertex.to_previous = to_sensor / vertex.opl_m;
+    vertex.extent.add_segment(
+        -to_sensor, Vec3::Zero(), scene_.velocity_m_per_s(vertex.point.facet));
+    vertex.to_previous = to_sensor / vertex.extent.opl_m;
     vertex.throughput = throughput_[i];
     return vertex;
 }

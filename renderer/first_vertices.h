@@ -87,6 +87,8 @@ class FirstVertices {
     void set_contribution(int index, double value) { contribution_[index] = value; }
     /// Sensor to light by way of each vertex, devices included [m].
     std::span<const double> opl_m() const { return {opl_m_, size_t_count()}; }
+    /// How fast these lengths change [m/s], computed by this call; ends stand still.
+    std::span<const double> find_velocities(const PathEnds& ends);
     std::span<const double> contributions() const { return {contribution_, size_t_count()}; }
 
  private:
@@ -110,6 +112,7 @@ class FirstVertices {
     alignas(64) double pdf_area_[kCapacity];
     alignas(64) double throughput_[kCapacity];
     alignas(64) double opl_m_[kCapacity];
+    alignas(64) double velocity_[kCapacity];
     alignas(64) double contribution_[kCapacity];
 };
 

@@ -29,7 +29,7 @@ std::uint64_t seed_of_frame(std::uint64_t seed, int frame) {
 FrameRenderer make_frame_renderer(const core::Scan& scan, const RenderSettings& settings) {
     if (settings.method == Estimator::Restir) return make_restir_frame_renderer(scan, settings);
     return [](const Frame& frame, const core::Scan& frame_scan, const core::Progress& progress) {
-        return render(*frame.scene, frame_scan, frame.axis, frame.settings, progress);
+        return render(*frame.scene, frame_scan, frame.axes, frame.settings, progress);
     };
 }
 
@@ -54,12 +54,13 @@ RenderResult render_frames(std::shared_ptr<const Scene> scene,
     RenderResult sequence;
     core::FrameSequence recorded{{}, frames.gate_step_m, frames.frame_s};
     for (int i = 0; i < frames.count && !sequence.interrupted; ++i) {
-        Frame frame{i, scene, description.time_axis, description.render};
+        Frame frame{
+            i, scene, {description.time_axis, description.velocity_axis}, description.render};
         if (moves && i > 0) {
             frame.scene = std::make_shared<const Scene>(
                 moved_by(*scene, i * frames.frame_s), scan, description.relay_wall);
         }
-        frame.axis.opl_start_m += i * frames.gate_step_m;
+        frame.axes.time.opl_start_m += i * frames.gate_step_m;
         frame.settings.seed = seed_of_frame(description.render.seed, i);
         const double count = frames.count;
         RenderResult rendered =

@@ -13,17 +13,17 @@ namespace renderer {
 struct Frame {
     int index = 0;
     std::shared_ptr<const Scene>
-        scene;                ///< objects where they are now; the same while nothing moves
-    core::TimeAxis axis;      ///< the gate where it is now
-    RenderSettings settings;  ///< with a seed of the frame's own
+        scene;                 ///< objects where they are now; the same while nothing moves
+    core::HistogramAxes axes;  ///< the gate where it is now
+    RenderSettings settings;   ///< with a seed of the frame's own
 };
 
 /// Renders one frame. Called in order; what carries state from frame to frame owns it.
 using FrameRenderer =
     std::function<RenderResult(const Frame&, const core::Scan&, const core::Progress&)>;
 
-/// The renderer of the frames that the settings ask for: `restir` carries its paths on from frame to
-/// frame, the others render() every frame on its own.
+/// The renderer of the frames that the settings ask for: `restir` carries its paths on from frame
+/// to frame, the others render() every frame on its own.
 ///
 /// scan   must outlive what is returned
 FrameRenderer make_frame_renderer(const core::Scan& scan, const RenderSettings& settings);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "renderer/core/types.h"
+#include "renderer/path_extent.h"
 #include "renderer/scene.h"
 
 #include <cstdint>
@@ -19,6 +20,7 @@ struct PathEnd {
     core::Vec3 normal = core::Vec3::UnitZ();
     double strength = 1.0 / core::kPi;
     bool isotropic = false;
+    core::Vec3 velocity_m_per_s = core::Vec3::Zero();
 
     double factor(const core::Vec3& direction) const {
         if (isotropic) return strength;
@@ -43,8 +45,8 @@ struct PathVertex {
     Bsdf bsdf;
     /// Everything before this vertex over the density of the draws, cosine at this vertex included.
     double throughput = 0.0;
-    double opl_m = 0.0;  ///< from the sensor point to here
-    int order = 3;       ///< bounces of the path that goes from here straight to the light
+    PathExtent extent;  ///< from the sensor point to here
+    int order = 3;      ///< bounces of the path that goes from here straight to the light
 };
 
 }  // namespace renderer

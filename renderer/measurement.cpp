@@ -72,6 +72,7 @@ PathEnd Measurement::spot_light(const Vec3& spot) const {
     light.normal = scene_->facet(point->facet).normal;
     if (light.normal.dot(scan_->camera->position_m - light.position) < 0.0) light.normal *= -1.0;
     light.strength = albedo_of(scene_->bsdf_at(*point)) / core::kPi;
+    light.velocity_m_per_s = scene_->velocity_m_per_s(point->facet);
     return light;
 }
 
@@ -106,7 +107,8 @@ std::optional<PathVertex> Measurement::first_vertex(std::size_t pixel, const cor
     vertex.to_previous = -direction;
     vertex.bsdf = scene_->bsdf_at(*hit);
     vertex.throughput = 1.0;
-    vertex.opl_m = (hit->position - camera.position_m).norm();
+    vertex.extent.add_segment(
+        hit->position - camera.position_m, Vec3::Zero(), scene_->velocity_m_per_s(hit->facet));
     vertex.order = first_order_;
     return vertex;
 }

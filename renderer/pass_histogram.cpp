@@ -7,32 +7,48 @@
 
 namespace renderer {
 
-PassHistogram::PassHistogram(const core::TimeAxis& axis, GateShape gate, int num_channels)
-    : axis_(axis),
+PassHistogram::PassHistogram(const core::HistogramAxes& axes, GateShape gate, int num_channels)
+    : axis_(axes.time),
       gate_(gate),
-      values_(static_cast<std::size_t>(num_channels) * static_cast<std::size_t>(axis.num_bins) + 1),
-      first_touched_(axis.num_bins) {}
+      values_(static_cast<std::size_t>(num_channels) *
+                  static_cast<std::size_t>(axes.time.num_bins) +
+              1),
+      first_touched_(axes.time.num_bins) {
+    if (axes.velocity) velocity_.emplace(*axes.velocity, axes.time.num_bins);
+}
 
-void PassHistogram::add(int channel, double opl_m, double value) {
-    if (!std::isfinite(value) || !std::isfinite(opl_m)) {
+void PassHistogram::add(int channel, const PathExtent& path, double value) {
+    if (!std::isfinite(value) || !std::isfinite(path.opl_m)) {
         ++num_non_finite_;
         return;
     }
     int bin = 0;
-    const double weighted = value * gate_weight(opl_m, bin);
-    if (weighted == 0.0) return;
+    const double weight = gate_weight(path.opl_m, bin);
+    add_to_bin(channel, bin, path.velocity_m_per_s, value * weight);
+}
+
+void PassHistogram::add_to_bin(int channel, int bin, double velocity_m_per_s, double value) {
+    if (!std::isfinite(value) || std::isnan(velocity_m_per_s)) {
+        ++num_non_finite_;
+        return;
+    }
+    if (value == 0.0) return;
     first_touched_ = std::min(first_touched_, bin);
     last_touched_ = std::max(last_touched_, bin);
-    values_[static_cast<std::size_t>(channel * axis_.num_bins + bin)] += weighted;
+    values_[static_cast<std::size_t>(channel * axis_.num_bins + bin)] += value;
+    if (velocity_) velocity_->add(velocity_m_per_s, bin, value);
 }
 
 void PassHistogram::add(int channel,
                         std::span<const double> opl_m,
+                        std::span<const double> velocities,
                         std::span<const double> values) {
     double sum = 0.0;
     for (std::size_t i = 0; i < values.size(); ++i) sum += values[i] + opl_m[i];
-    if (gate_ != GateShape::Box || !std::isfinite(sum)) {
-        for (std::size_t i = 0; i < values.size(); ++i) add(channel, opl_m[i], values[i]);
+    if (gate_ != GateShape::Box || velocity_ || !std::isfinite(sum)) {
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            add(channel, {opl_m[i], velocity_ ? velocities[i] : 0.0}, values[i]);
+        }
         return;
     }
     // As TimeAxis::bin_of(), all at once; what lies outside the axis goes to one place.

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/core/time_axis.h"
+#include "renderer/pass_velocity_histogram.h"
+#include "renderer/path_extent.h"
 #include "renderer/render_settings.h"
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -12,13 +14,16 @@ namespace renderer {
 
 /// Collects the contributions of one pair during one pass, and remembers which bins it touched.
 ///
-/// A channel is a bounce order, or channel 0 holds all of them.
+/// A channel is a bounce order, or channel 0 holds all of them. With a velocity axis what counts is
+/// collected by path velocity, too.
 class PassHistogram {
  public:
-    PassHistogram(const core::TimeAxis& axis, GateShape gate, int num_channels);
+    PassHistogram(const core::HistogramAxes& axes, GateShape gate, int num_channels);
 
-    /// Adds a contribution of a path of length `opl_m`, weighted by the gate.
-    void add(int channel, double opl_m, double value);
+    /// Adds a contribution of a path, weighted by the gate.
+    void add(int channel, const PathExtent& path, double value);
+    /// Adds what the gate has weighted already, of a path in a bin.
+    void add_to_bin(int channel, int bin, double velocity_m_per_s, double value);
     /// Whether a path of this length counts at all.
     bool admits(double opl_m) const {
         int bin = 0;
@@ -27,8 +32,15 @@ class PassHistogram {
     /// Adds many contributions, those of 0 left out.
     ///
     /// opl_m, values   one entry per path, at most kMostAtOnce
-    void add(int channel, std::span<const double> opl_m, std::span<const double> values);
+    /// velocities      [m/s] likewise; not looked at unless resolves_velocity()
+    void add(int channel,
+             std::span<const double> opl_m,
+             std::span<const double> velocities,
+             std::span<const double> values);
     static constexpr std::size_t kMostAtOnce = 64;
+    bool resolves_velocity() const { return velocity_.has_value(); }
+    /// What was collected by velocity; only if resolves_velocity().
+    PassVelocityHistogram& velocity() { return *velocity_; }
     /// Whether a path of this length may count.
     bool lets_through(double opl_m) const;
 
@@ -68,6 +80,7 @@ class PassHistogram {
     std::vector<double> values_;  ///< [channel][bin], and one for what lies outside the axis
     int first_touched_;
     int last_touched_ = -1;
+    std::optional<PassVelocityHistogram> velocity_;
     std::uint64_t num_non_finite_ = 0;
 };
 

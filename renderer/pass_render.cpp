@@ -47,37 +47,45 @@ int channel_count(const RenderSettings& settings) {
     return settings.by_order ? settings.max_bounces : 1;
 }
 
-// Running sums per pair: one array per channel, and the squares.
-double sums_bytes_per_pair(const core::TimeAxis& axis, const RenderSettings& settings) {
-    return (channel_count(settings) + (settings.variance ? 1.0 : 0.0)) * axis.num_bins *
+double num_velocity_values(const core::HistogramAxes& axes) {
+    return axes.velocity ? axes.velocity->num_values(axes.time.num_bins) : 0.0;
+}
+
+// Running sums per pair: one array per channel, the velocities, and the squares.
+double sums_bytes_per_pair(const core::HistogramAxes& axes, const RenderSettings& settings) {
+    const double squares = settings.variance ? 1.0 : 0.0;
+    return ((channel_count(settings) + squares) * axes.time.num_bins +
+            (1.0 + squares) * num_velocity_values(axes)) *
            sizeof(double);
 }
 
 std::size_t pairs_per_tile(const core::Scan& scan,
-                           const core::TimeAxis& axis,
+                           const core::HistogramAxes& axes,
                            const RenderSettings& settings,
                            double most_sums_bytes) {
     if (settings.seconds) return scan.num_pairs();  // every pair must get the same time
-    const double pairs = std::floor(most_sums_bytes / sums_bytes_per_pair(axis, settings));
+    const double pairs = std::floor(most_sums_bytes / sums_bytes_per_pair(axes, settings));
     return static_cast<std::size_t>(std::clamp(pairs, 1.0, static_cast<double>(scan.num_pairs())));
 }
 
 void require_memory(const core::Scan& scan,
-                    const core::TimeAxis& axis,
+                    const core::HistogramAxes& axes,
                     const RenderSettings& settings,
                     std::size_t tile_pairs) {
     // The capture's arrays, and for one tile the sums and what is made of them.
-    const double arrays = channel_count(settings) + (settings.variance ? 2.0 : 1.0);
+    const double kinds = settings.variance ? 2.0 : 1.0;
+    const double values =
+        (channel_count(settings) + kinds) * axes.time.num_bins + kinds * num_velocity_values(axes);
     const double needed =
-        arrays * sizeof(float) * axis.num_bins *
+        values * sizeof(float) *
             (static_cast<double>(scan.num_pairs()) + static_cast<double>(tile_pairs)) +
-        sums_bytes_per_pair(axis, settings) * static_cast<double>(tile_pairs);
+        sums_bytes_per_pair(axes, settings) * static_cast<double>(tile_pairs);
     const double available = static_cast<double>(core::available_memory_bytes());
     if (needed > available) {
         throw core::Failure("render",
                             fmt::format("{} pairs x {} bins need {:.1f} GB, {:.1f} GB are free",
                                         scan.num_pairs(),
-                                        axis.num_bins,
+                                        axes.time.num_bins + num_velocity_values(axes),
                                         needed * 1e-9,
                                         available * 1e-9));
     }
@@ -94,12 +102,12 @@ class PassLoop {
  public:
     PassLoop(const Scene& scene,
              const core::Scan& scan,
-             const core::TimeAxis& axis,
+             const core::HistogramAxes& axes,
              const RenderSettings& settings,
              const PassWork& work)
         : scene_(scene),
           scan_(scan),
-          axis_(axis),
+          axes_(axes),
           settings_(settings),
           work_(work),
           num_channels_(channel_count(settings)),
@@ -113,15 +121,15 @@ class PassLoop {
                              int samples,
                              core::Rng& rng,
                              PassHistogram& histogram) const;
-    void run_pass(const Tile& tile, int pass, int samples, TransientAccumulator& sums);
+    void run_pass(const Tile& tile, int pass, int samples, HistogramSums& sums);
     void fill_capture(const Tile& tile,
-                      const TransientAccumulator& sums,
+                      const HistogramSums& sums,
                       int passes,
                       core::Capture& capture) const;
 
     const Scene& scene_;
     const core::Scan& scan_;
-    const core::TimeAxis& axis_;
+    const core::HistogramAxes& axes_;
     const RenderSettings& settings_;
     const PassWork& work_;
     int num_channels_;
@@ -141,11 +149,11 @@ std::uint64_t PassLoop::trace_pair(std::size_t pair,
     return num_rays;
 }
 
-void PassLoop::run_pass(const Tile& tile, int pass, int samples, TransientAccumulator& sums) {
+void PassLoop::run_pass(const Tile& tile, int pass, int samples, HistogramSums& sums) {
     constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
     std::atomic<std::size_t> bad_pair{kNone};
     core::parallel_blocks(tile.count, kPairsPerBlock, [&](std::size_t begin, std::size_t end) {
-        PassHistogram histogram(axis_, settings_.gate, num_channels_);
+        PassHistogram histogram(axes_, settings_.gate, num_channels_);
         for (std::size_t i = begin; i < end; ++i) {
             const std::size_t pair = tile.begin + i;
             core::Rng rng(settings_.seed, pair, static_cast<std::uint64_t>(pass));
@@ -168,24 +176,40 @@ void copy_tile(const core::Transient& from, const Tile& tile, core::Transient& t
     std::copy(from.values().begin(), from.values().end(), to.histogram(tile.begin).begin());
 }
 
+// The variance of `mean`, whose shape it gets with the first tile.
+void copy_variance(const TransientAccumulator& sums,
+                   const Tile& tile,
+                   int passes,
+                   const core::Transient& mean,
+                   std::optional<core::Transient>& variance) {
+    if (!variance) variance.emplace(mean.num_pairs(), static_cast<int>(mean.num_bins()));
+    copy_tile(sums.variance(passes), tile, *variance);
+}
+
 void PassLoop::fill_capture(const Tile& tile,
-                            const TransientAccumulator& sums,
+                            const HistogramSums& sums,
                             int passes,
                             core::Capture& capture) const {
-    copy_tile(sums.mean_of_all(passes), tile, capture.transient);
+    copy_tile(sums.time.mean_of_all(passes), tile, capture.transient);
+    if (sums.velocity) {
+        copy_tile(sums.velocity->mean_of_all(passes), tile, capture.velocity->values);
+    }
     if (settings_.variance && passes > 1) {
-        if (!capture.variance) capture.variance.emplace(scan_.num_pairs(), axis_.num_bins);
-        copy_tile(sums.variance(passes), tile, *capture.variance);
+        copy_variance(sums.time, tile, passes, capture.transient, capture.variance);
+        if (sums.velocity) {
+            copy_variance(
+                *sums.velocity, tile, passes, capture.velocity->values, capture.velocity->variance);
+        }
     }
     for (std::size_t i = 0; i < capture.orders.size(); ++i) {
-        copy_tile(sums.mean(capture.orders[i] - 1, passes), tile, capture.by_order[i]);
+        copy_tile(sums.time.mean(capture.orders[i] - 1, passes), tile, capture.by_order[i]);
     }
 }
 
 void PassLoop::run(const Tile& tile, const core::Progress& progress, RenderResult& result) {
     const auto start = Clock::now();
     const PassPlan plan = plan_passes(settings_, work_);
-    TransientAccumulator sums(tile.count, axis_.num_bins, num_channels_, settings_.variance);
+    HistogramSums sums(tile.count, axes_, num_channels_, settings_.variance);
     int pass = 0;
     while (pass < plan.num_passes) {
         run_pass(tile, pass, plan.samples_per_pass, sums);
@@ -209,16 +233,22 @@ void PassLoop::run(const Tile& tile, const core::Progress& progress, RenderResul
 }
 
 core::Capture empty_capture(const core::Scan& scan,
-                            const core::TimeAxis& axis,
+                            const core::HistogramAxes& axes,
                             const RenderSettings& settings) {
     core::Capture capture;
     capture.scan = scan;
-    capture.time_axis = axis;
-    capture.transient = core::Transient(scan.num_pairs(), axis.num_bins);
+    capture.time_axis = axes.time;
+    capture.transient = core::Transient(scan.num_pairs(), axes.time.num_bins);
+    if (axes.velocity) {
+        capture.velocity = {
+            *axes.velocity,
+            core::Transient(scan.num_pairs(), axes.velocity->num_values(axes.time.num_bins)),
+            std::nullopt};
+    }
     if (!settings.by_order) return capture;
     for (int order = 1; order <= channel_count(settings); ++order) {
         capture.orders.push_back(order);
-        capture.by_order.emplace_back(scan.num_pairs(), axis.num_bins);
+        capture.by_order.emplace_back(scan.num_pairs(), axes.time.num_bins);
     }
     return capture;
 }
@@ -227,17 +257,17 @@ core::Capture empty_capture(const core::Scan& scan,
 
 RenderResult render_passes(const Scene& scene,
                            const core::Scan& scan,
-                           const core::TimeAxis& axis,
+                           const core::HistogramAxes& axes,
                            const RenderSettings& settings,
                            const PassWork& work,
                            const core::Progress& progress) {
     const auto start = Clock::now();
     const std::size_t num_pairs = scan.num_pairs();
-    const std::size_t tile_pairs = pairs_per_tile(scan, axis, settings, work.most_sums_bytes);
-    require_memory(scan, axis, settings, tile_pairs);
+    const std::size_t tile_pairs = pairs_per_tile(scan, axes, settings, work.most_sums_bytes);
+    require_memory(scan, axes, settings, tile_pairs);
     RenderResult result;
-    result.capture = empty_capture(scan, axis, settings);
-    PassLoop loop(scene, scan, axis, settings, work);
+    result.capture = empty_capture(scan, axes, settings);
+    PassLoop loop(scene, scan, axes, settings, work);
     for (std::size_t begin = 0; begin < num_pairs; begin += tile_pairs) {
         const Tile tile{begin, std::min(tile_pairs, num_pairs - begin)};
         core::Progress part = progress;

@@ -22,7 +22,7 @@ struct PassWork {
 ///          the tiles are not even then
 RenderResult render_passes(const Scene& scene,
                            const core::Scan& scan,
-                           const core::TimeAxis& axis,
+                           const core::HistogramAxes& axes,
                            const RenderSettings& settings,
                            const PassWork& work,
                            const core::Progress& progress);

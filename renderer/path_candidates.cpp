@@ -33,7 +33,7 @@ ConnectionEnds ends_of(const PathDomain& domain, const PathVertex* vertex) {
 // Lengths that the two last legs of a path may have after a vertex.
 OplBand remaining(const PathCandidates::Request& request, const PathVertex* vertex) {
     const double before =
-        request.domain.ends.device_legs_m + (vertex != nullptr ? vertex->opl_m : 0.0);
+        request.domain.ends.device_legs_m + (vertex != nullptr ? vertex->extent.opl_m : 0.0);
     return {request.opl_begin_m - before, request.opl_end_m - before};
 }
 
@@ -165,7 +165,7 @@ void PathCandidates::walk_from_sensor(Job& job) const {
             }
         }
         if (path.num_vertices == max_vertices_) return;
-        const double shortest = job.ends().device_legs_m + vertex.opl_m +
+        const double shortest = job.ends().device_legs_m + vertex.extent.opl_m +
                                 (job.ends().light.position - vertex.point.position).norm();
         if (shortest >= job.request.opl_end_m) return;
         connect_by_ellipsoid(job, &vertex, path);
@@ -217,8 +217,8 @@ void PathCandidates::try_shared(Job& job) const {
 std::optional<PathValue> PathCandidates::value_within(const Job& job,
                                                       const ReusablePath& path) const {
     const PathValue value = integrand_.evaluate(job.domain(), path);
-    if (!(value.radiance > 0.0) || value.opl_m < job.request.opl_begin_m ||
-        value.opl_m >= job.request.opl_end_m) {
+    if (!(value.radiance > 0.0) || value.extent.opl_m < job.request.opl_begin_m ||
+        value.extent.opl_m >= job.request.opl_end_m) {
         return std::nullopt;
     }
     return value;

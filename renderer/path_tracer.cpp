@@ -179,15 +179,16 @@ void PathTracer::Walk::finish_first_vertices(bool may_be_hidden) {
         if (goes_on) first_.keep_useful(true);
         num_rays_ += first_.trace_from(ends_.light);
     }
-    histogram_.add(tracer_.by_order_ ? 2 : 0, first_.opl_m(), first_.contributions());
+    std::span<const double> velocities;
+    if (histogram_.resolves_velocity()) velocities = first_.find_velocities(ends_);
+    histogram_.add(tracer_.by_order_ ? 2 : 0, first_.opl_m(), velocities, first_.contributions());
     first_.clear();
     for (int i = 0; i < num_vertices; ++i) extend(vertices[static_cast<std::size_t>(i)]);
 }
 
 void PathTracer::Walk::deposit(const PathVertex& vertex, double value) {
-    const double to_light = (ends_.light.position - vertex.point.position).norm();
     const int channel = tracer_.by_order_ ? vertex.order - 1 : 0;
-    histogram_.add(channel, vertex.opl_m + to_light + ends_.device_legs_m, value);
+    histogram_.add(channel, tracer_.surface_walk_.extent_to_light(vertex, ends_), value);
 }
 
 void PathTracer::Walk::connect_to_light(const PathVertex& vertex) {

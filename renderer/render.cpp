@@ -7,6 +7,8 @@
 #include "renderer/third_bounce.h"
 #include "renderer/third_bounce_pieces.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 
 namespace renderer {
@@ -39,6 +41,24 @@ void require_wall(const core::Scan& scan) {
     throw core::Error("render.method",
                       "found third_bounce for a camera",
                       "must be auto or path: there are no wall points");
+}
+
+// Velocities need paths with vertices, and wall points that stand still.
+void require_velocities(const Scene& scene,
+                        const core::Scan& scan,
+                        const RenderSettings& settings) {
+    if (settings.method == Estimator::ThirdBounce) {
+        throw core::Error("render.method",
+                          "found third_bounce with velocity_axis",
+                          "must be auto, path, ellipsoidal or restir: it knows no velocities");
+    }
+    if (scan.camera) return;
+    for (const Object& object : scene.objects()) {
+        if (object.role != Role::RelayWall || object.velocity_m_per_s.norm() == 0.0) continue;
+        throw core::Error("velocity_axis",
+                          fmt::format("found a relay wall that moves ({})", object.name),
+                          "must be left out, or the wall stand still: its points do");
+    }
 }
 
 // Which part of the third bounce path tracing computes; it computes all higher orders.
@@ -80,7 +100,7 @@ void list_path_orders(const core::Scan& scan,
 
 RenderResult trace_paths(const Scene& scene,
                          const core::Scan& scan,
-                         const core::TimeAxis& axis,
+                         const core::HistogramAxes& axes,
                          const RenderSettings& settings,
                          PathShare share,
                          const core::Progress& progress) {
@@ -93,42 +113,43 @@ RenderResult trace_paths(const Scene& scene,
                            share == PathShare::NotIntegrable ? ThirdBounceScope::NotIntegrable
                                                              : ThirdBounceScope::All);
     }
-    return render_passes(scene, scan, axis, settings, work, progress);
+    return render_passes(scene, scan, axes, settings, work, progress);
 }
 
 }  // namespace
 
 RenderResult render(const Scene& scene,
                     const core::Scan& scan,
-                    const core::TimeAxis& axis,
+                    const core::HistogramAxes& axes,
                     const RenderSettings& settings,
                     const core::Progress& progress) {
+    if (axes.velocity) require_velocities(scene, scan, settings);
     if (settings.method == Estimator::Ellipsoidal) {
-        return render_ellipsoidal(scene, scan, axis, settings, progress);
+        return render_ellipsoidal(scene, scan, axes, settings, progress);
     }
     if (settings.method == Estimator::Restir) {
         return render_restir(
-            {std::shared_ptr<const Scene>(), &scene}, scan, axis, settings, progress);
+            {std::shared_ptr<const Scene>(), &scene}, scan, axes, settings, progress);
     }
     const Surfaces surfaces = surfaces_of(scene);
     if (settings.method == Estimator::ThirdBounce) {
         require_wall(scan);
         require_integrable(surfaces);
     }
-    const bool integrates = settings.method != Estimator::Path && !scan.camera &&
+    const bool integrates = settings.method != Estimator::Path && !scan.camera && !axes.velocity &&
                             settings.max_bounces >= 3 && settings.gate == GateShape::Box &&
                             surfaces.integrable;
     if (!integrates) {
         RenderResult result =
-            trace_paths(scene, scan, axis, settings, PathShare::Everything, progress);
+            trace_paths(scene, scan, axes, settings, PathShare::Everything, progress);
         list_path_orders(scan, settings, PathShare::Everything, result);
         return result;
     }
     const PathShare share = share_of_paths(settings, surfaces);
     const double done = share == PathShare::Nothing ? 1.0 : 0.1;
     const ThirdBounce third =
-        integrate_third_bounce(scene, scan, axis, settings, progress.part(0.0, done));
-    RenderResult result = trace_paths(scene, scan, axis, settings, share, progress.part(done, 1.0));
+        integrate_third_bounce(scene, scan, axes.time, settings, progress.part(0.0, done));
+    RenderResult result = trace_paths(scene, scan, axes, settings, share, progress.part(done, 1.0));
     add(third.transient, result.capture.transient);
     if (settings.by_order) add(third.transient, result.capture.by_order[2]);
     OrderSource integrated{3, 3, Estimator::ThirdBounce, "all"};

@@ -34,13 +34,14 @@ struct RenderResult {
         excluded_objects;  ///< from ellipsoidal connections, when there are any
     std::vector<std::string> warnings;
     RestirCounts restir_counts;  ///< of restir
-    bool interrupted = false;  ///< stopped early; every pair has a result
+    bool interrupted = false;    ///< stopped early; every pair has a result
 };
 
 /// Renders the transients that a scan, or a camera, records of a scene.
 ///
 /// scan       wall points with unit normals, or a camera
-/// axis       bins of optical path length
+/// axes       bins of optical path length and, if asked for, of path velocity: the same light by
+///            how fast its paths change their length, within the time axis
 /// settings   validated; `samples` is rounded up to whole passes; method `auto` integrates third
 ///            bounces where it can and traces paths for what is left
 /// progress   asked after every pass or part whether to stop
@@ -52,7 +53,7 @@ struct RenderResult {
 ///            not suffice or a contribution is not finite
 RenderResult render(const Scene& scene,
                     const core::Scan& scan,
-                    const core::TimeAxis& axis,
+                    const core::HistogramAxes& axes,
                     const RenderSettings& settings,
                     const core::Progress& progress);
 

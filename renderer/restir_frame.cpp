@@ -10,13 +10,15 @@ namespace {
 
 using core::Vec3;
 
-std::optional<ShiftMapping> make_shift(const Scene& scene, const RestirSettings& settings) {
+std::optional<ShiftMapping> make_shift(const Scene& scene,
+                                       const RestirSettings& settings,
+                                       ShiftQuantity quantity) {
     if (settings.reuse != Reuse::PathLength) return std::nullopt;
     ShiftSettings shift;
     shift.chart = settings.chart;
     shift.gauge = settings.gauge;
     shift.reverse_check = settings.reverse_check;
-    return ShiftMapping(scene, shift);
+    return ShiftMapping(scene, shift, quantity);
 }
 
 // How far a facet lies in `to` from where it lies in `from`.
@@ -25,32 +27,68 @@ Vec3 motion(const RestirScene& from, const RestirScene& to, std::uint32_t facet)
     return to.scene->facet(facet).corner - from.scene->facet(facet).corner;
 }
 
-// Length of a path behind its first vertex's two legs, and before them.
-double rest_of_length(const PathDomain& domain, const ReusablePath& path) {
-    double rest = domain.extra_opl_m();
+// A path behind its first vertex's two legs, and before them.
+PathExtent rest_of(const RestirSide& side, const ReusablePath& path) {
+    const Scene& scene = *side.scene->scene;
+    PathExtent rest = side.domain->extra();
     if (path.num_vertices == 1) return rest;
     for (int i = 2; i < path.num_vertices; ++i) {
-        rest += (path.at(i).position - path.at(i - 1).position).norm();
+        rest.add_segment(path.at(i).position - path.at(i - 1).position,
+                         scene.velocity_m_per_s(path.at(i - 1).facet),
+                         scene.velocity_m_per_s(path.at(i).facet));
     }
-    return rest + (domain.ends.light.position - path.last().position).norm();
+    const PathEnd& light = side.domain->ends.light;
+    rest.add_segment(light.position - path.last().position,
+                     scene.velocity_m_per_s(path.last().facet),
+                     light.velocity_m_per_s);
+    return rest;
+}
+
+// How the two legs of the first vertex must change for a path to fit its new place. Velocity bins
+// are all of one width.
+LengthChange change_between(const RestirSide& from,
+                            const ReusablePath& path_from,
+                            const RestirSide& to,
+                            const ReusablePath& path_to) {
+    const PathExtent rest_from = rest_of(from, path_from);
+    const PathExtent rest_to = rest_of(to, path_to);
+    LengthChange change;
+    if (from.gate.velocity) {
+        change.offset_m = to.gate.velocity->start_m_per_s() - rest_to.velocity_m_per_s -
+                          (from.gate.velocity->start_m_per_s() - rest_from.velocity_m_per_s);
+        return change;
+    }
+    change.ratio = to.gate.time.width_m / from.gate.time.width_m;
+    change.offset_m = to.gate.time.start_m - rest_to.opl_m -
+                      change.ratio * (from.gate.time.start_m - rest_from.opl_m);
+    return change;
 }
 
 // Neighbours of the first vertex, moved along with it.
 ShiftEnd shift_end(const RestirSide& side, const ReusablePath& path, const Vec3& moved) {
     ShiftEnd end;
+    const Scene& scene = *side.scene->scene;
     end.a = side.domain->start() + moved;
+    end.velocity_a = side.domain->start_velocity(scene);
     if (path.num_vertices == 1) {
         end.y = side.domain->ends.light.position + moved;
         end.normal_y = side.domain->ends.light.normal;
+        end.velocity_y = side.domain->ends.light.velocity_m_per_s;
     } else {
         end.y = path.at(1).position + moved;
-        end.normal_y = side.scene->scene->facet(path.at(1).facet).normal;
+        end.normal_y = scene.facet(path.at(1).facet).normal;
+        end.velocity_y = scene.velocity_m_per_s(path.at(1).facet);
     }
     return end;
 }
 
 bool is_same(const ShiftEnd& a, const ShiftEnd& b) {
-    return a.a == b.a && a.y == b.y;
+    return a.a == b.a && a.y == b.y && a.velocity_a == b.velocity_a && a.velocity_y == b.velocity_y;
+}
+
+// Whether the path velocity of the two legs is 0 wherever on its surface the vertex lies.
+bool is_at_rest(const ShiftEnd& end, const Vec3& surface_velocity) {
+    return end.velocity_a == surface_velocity && end.velocity_y == surface_velocity;
 }
 
 // Moves the first vertex of `path`, whose other vertices are in place already.
@@ -66,13 +104,13 @@ std::optional<double> shift_first(const PathReservoir& reservoir,
     const Vec3 to_moved = motion(*to.scene, current, facet);
     const ShiftEnd source = shift_end(from, reservoir.sample, from_moved);
     const ShiftEnd target = shift_end(to, path, to_moved);
-    LengthChange change;
-    change.ratio = to.gate.width_m / from.gate.width_m;
-    change.offset_m =
-        to.gate.start_m - rest_of_length(*to.domain, path) -
-        change.ratio * (from.gate.start_m - rest_of_length(*from.domain, reservoir.sample));
+    const LengthChange change = change_between(from, reservoir.sample, to, path);
     SurfacePoint& x = path.at(0);
-    if (change.ratio == 1.0 && change.offset_m == 0.0 && is_same(source, target)) {
+    const Vec3& velocity = current.scene->velocity_m_per_s(facet);
+    // Where nothing moves there is no velocity to change: the vertex stays, from either side.
+    const bool stays =
+        from.gate.velocity && is_at_rest(source, velocity) && is_at_rest(target, velocity);
+    if (stays || (change.ratio == 1.0 && change.offset_m == 0.0 && is_same(source, target))) {
         x.position = reservoir.sample.first().position + from_moved - to_moved;
         return 1.0;
     }
@@ -110,12 +148,13 @@ bool is_open(const RestirSide& from,
 
 RestirScene::RestirScene(std::shared_ptr<const Scene> scene_of_frames,
                          const core::Scan& scan,
-                         const RenderSettings& settings)
+                         const RenderSettings& settings,
+                         ShiftQuantity quantity)
     : scene(std::move(scene_of_frames)),
       measurement(*scene, scan),
       walk(*scene, settings.laser_spot_m2),
       candidates(*scene, scan, measurement, walk, settings),
-      shift(make_shift(*scene, settings.restir)) {
+      shift(make_shift(*scene, settings.restir, quantity)) {
     if (!measurement.is_image()) return;
     pixel_normals.resize(measurement.num_pairs(), Vec3::Zero());
     pixel_direct_opl_m.resize(measurement.num_pairs(), std::numeric_limits<double>::infinity());
@@ -124,7 +163,7 @@ RestirScene::RestirScene(std::shared_ptr<const Scene> scene_of_frames,
         const auto seen = measurement.first_vertex(pixel, {0.5, 0.5});
         if (!seen) return;
         pixel_normals[pixel] = seen->normal;
-        pixel_direct_opl_m[pixel] = seen->opl_m + (light - seen->point.position).norm();
+        pixel_direct_opl_m[pixel] = seen->extent.opl_m + (light - seen->point.position).norm();
     });
 }
 
@@ -174,7 +213,7 @@ CarriedPath carry_path(const PathReservoir& reservoir,
         carried.jacobian = *jacobian;
     }
     const PathValue value = to.scene->candidates.integrand().evaluate(*to.domain, carried.sample);
-    carried.target_value = value.radiance * to.gate.weight(value.opl_m);
+    carried.target_value = value.radiance * to.gate.weight(value.extent);
     if (!(carried.target_value > 0.0) || !is_open(from, to, carried.sample, counts.num_rays)) {
         carried.target_value = 0.0;
     }

@@ -3,10 +3,10 @@
 
 #include "renderer/packed_reservoirs.h"
 #include "renderer/path_candidates.h"
+#include "renderer/path_gate.h"
 #include "renderer/resampling.h"
 #include "renderer/restir_counts.h"
 #include "renderer/shift_mapping.h"
-#include "renderer/time_gate.h"
 
 #include <memory>
 #include <optional>
@@ -16,10 +16,12 @@ namespace renderer {
 
 /// What reservoirs need to know of a scene; the same for all frames in which nothing moves.
 struct RestirScene {
-    /// scan   must outlive this
+    /// scan       must outlive this
+    /// quantity   what shifts keep
     RestirScene(std::shared_ptr<const Scene> scene_of_frames,
                 const core::Scan& scan,
-                const RenderSettings& settings);
+                const RenderSettings& settings,
+                ShiftQuantity quantity);
     RestirScene(const RestirScene&) = delete;
     RestirScene& operator=(const RestirScene&) = delete;
 
@@ -34,10 +36,10 @@ struct RestirScene {
     std::vector<double> pixel_direct_opl_m;
 };
 
-/// One frame's reservoirs, one per pair and bin, and what they belong to.
+/// One frame's reservoirs, some per pair, and what they belong to.
 struct RestirFrame {
     std::shared_ptr<RestirScene> scene;
-    core::TimeAxis axis;
+    ReservoirBins bins;                 ///< of every pair
     std::vector<PathDomain> domains;    ///< per pair, of the frame's own candidates
     PackedReservoirs reservoirs{0, 0};  ///< [pair][bin]
 };
@@ -46,14 +48,14 @@ struct RestirFrame {
 struct RestirSide {
     const RestirScene* scene = nullptr;
     const PathDomain* domain = nullptr;  ///< of a pixel, the one of the frame's own candidates
-    TimeGate gate;
+    PathGate gate;
     std::size_t pair = 0;
 
     RestirSide() = default;
-    RestirSide(const RestirFrame& frame, std::size_t pair_index, int bin, GateShape shape)
+    RestirSide(const RestirFrame& frame, std::size_t pair_index, std::size_t bin)
         : scene(frame.scene.get()),
           domain(&frame.domains[pair_index]),
-          gate(TimeGate::of_bin(frame.axis, bin, shape)),
+          gate(frame.bins.gate(bin)),
           pair(pair_index) {}
 };
 

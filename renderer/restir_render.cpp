@@ -41,12 +41,20 @@ RenderSettings with_fitting_frames(RenderSettings settings) {
     return settings;
 }
 
-void require_gate_to_shrink_to(const core::TimeAxis& axis, const RenderSettings& settings) {
-    if (settings.restir.shrink_fraction == 0.0 || axis.num_bins == 1) return;
-    throw core::Error(
-        "render.restir.shrink_fraction",
-        fmt::format("found {} for {} bins", settings.restir.shrink_fraction, axis.num_bins),
-        "must be 0 unless the time axis has one bin, a gate");
+void require_gate_to_shrink_to(const core::HistogramAxes& axes, const RenderSettings& settings) {
+    if (settings.restir.shrink_fraction == 0.0) return;
+    if (axes.time.num_bins == 1 && !axes.velocity) return;
+    throw core::Error("render.restir.shrink_fraction",
+                      fmt::format("found {} for {} bins{}",
+                                  settings.restir.shrink_fraction,
+                                  axes.time.num_bins,
+                                  axes.velocity ? " and a velocity axis" : ""),
+                      "must be 0 unless the time axis has one bin, a gate, and there is no "
+                      "velocity axis");
+}
+
+ShiftQuantity kept_quantity(const core::HistogramAxes& axes) {
+    return axes.velocity ? ShiftQuantity::PathVelocity : ShiftQuantity::PathLength;
 }
 
 void require_memory(double needed) {
@@ -58,8 +66,10 @@ void require_memory(double needed) {
             "reservoirs need {:.1f} GB, {:.1f} GB are free", needed * 1e-9, available * 1e-9));
 }
 
-// Whether the end of a bin may cross a pixel, judged by the middles of the pixels around it.
+// Whether the end of a bin may cross a pixel, judged by the middles of the pixels around it; those
+// of velocities may anywhere.
 bool bin_may_end_in(const RestirFrame& frame, std::size_t pixel, const core::Scan& scan) {
+    const core::TimeAxis& axis = frame.bins.axes().time;
     const std::vector<double>& opl_m = frame.scene->pixel_direct_opl_m;
     const std::size_t height = scan.camera->height();
     double low = opl_m[pixel];
@@ -69,9 +79,10 @@ bool bin_may_end_in(const RestirFrame& frame, std::size_t pixel, const core::Sca
         low = std::min(low, opl_m[other]);
         high = std::max(high, opl_m[other]);
     }
-    if (low > frame.axis.opl_end_m() || high < frame.axis.opl_start_m) return false;
-    const auto first = frame.axis.bin_of(low);
-    return !first || first != frame.axis.bin_of(high);
+    if (low > axis.opl_end_m() || high < axis.opl_start_m) return false;
+    if (frame.bins.axes().velocity) return true;
+    const auto first = axis.bin_of(low);
+    return !first || first != axis.bin_of(high);
 }
 
 // What goes straight from the surface that a pixel sees to the light. A gate's edge that crosses a
@@ -109,30 +120,48 @@ void add_paths_without_vertices(const RestirFrame& frame,
     }
 }
 
+// The time bin of the path of a reservoir.
+std::optional<int> time_bin_of(const RestirFrame& frame,
+                               std::size_t pair,
+                               std::size_t bin,
+                               const ReusablePath& path) {
+    if (const auto known = frame.bins.time_bin(bin)) return known;
+    const RestirScene& scene = *frame.scene;
+    const PathDomain domain = scene.measurement.is_image()
+                                  ? pixel_domain(scene.measurement, pair, path.pixel_u)
+                                  : frame.domains[pair];
+    return frame.bins.axes().time.bin_of(
+        scene.candidates.integrand().evaluate(domain, path).extent.opl_m);
+}
+
+// Adds what the reservoirs of a pair estimate.
+void add_reservoirs(const RestirFrame& frame, std::size_t pair, PassHistogram& histogram) {
+    for (std::size_t bin = 0; bin < frame.bins.count(); ++bin) {
+        const PathReservoir reservoir = frame.reservoirs.load(pair * frame.bins.count() + bin);
+        const double value = reservoir.estimate();
+        if (value == 0.0) continue;
+        const auto time_bin = time_bin_of(frame, pair, bin, reservoir.sample);
+        // Beyond every axis, where none is known.
+        double velocity = std::numeric_limits<double>::infinity();
+        if (const auto velocity_bin = frame.bins.velocity_bin(bin)) {
+            velocity = frame.bins.axes().velocity->bin_center_m_per_s(*velocity_bin);
+        }
+        if (time_bin) histogram.add_to_bin(0, *time_bin, velocity, value);
+    }
+}
+
 // Adds what a frame's reservoirs estimate, and paths too short to be sampled, to the sums.
 void add_frame(const RestirFrame& frame,
                const core::Scan& scan,
                const RenderSettings& settings,
-               TransientAccumulator& sums) {
-    const auto num_bins = static_cast<std::size_t>(frame.axis.num_bins);
+               HistogramSums& sums) {
     std::atomic<bool> is_finite{true};
     core::parallel_blocks(
         frame.domains.size(), kPairsPerBlock, [&](std::size_t begin, std::size_t end) {
-            PassHistogram gated(frame.axis, settings.gate, 1);
-            PassHistogram histogram(frame.axis, GateShape::Box, 1);
+            PassHistogram histogram(frame.bins.axes(), settings.gate, 1);
             for (std::size_t pair = begin; pair < end; ++pair) {
-                add_paths_without_vertices(frame, pair, scan, settings, gated);
-                gated.drain([](std::size_t, double) {},
-                            [&](std::size_t bin, double value) {
-                                histogram.add(
-                                    0, frame.axis.bin_center_m(static_cast<double>(bin)), value);
-                            });
-                for (std::size_t bin = 0; bin < num_bins; ++bin) {
-                    const double value = frame.reservoirs.load(pair * num_bins + bin).estimate();
-                    if (value != 0.0) {
-                        histogram.add(0, frame.axis.bin_center_m(static_cast<double>(bin)), value);
-                    }
-                }
+                add_paths_without_vertices(frame, pair, scan, settings, histogram);
+                add_reservoirs(frame, pair, histogram);
                 if (histogram.num_non_finite() > 0) is_finite = false;
                 sums.add_pass(pair, histogram);
             }
@@ -143,16 +172,22 @@ void add_frame(const RestirFrame& frame,
     }
 }
 
-RenderResult result_of(const TransientAccumulator& sums,
+RenderResult result_of(const HistogramSums& sums,
                        int num_frames,
                        const core::Scan& scan,
-                       const core::TimeAxis& axis,
+                       const core::HistogramAxes& axes,
                        const RenderSettings& settings) {
     RenderResult result;
     result.capture.scan = scan;
-    result.capture.time_axis = axis;
-    result.capture.transient = sums.mean_of_all(num_frames);
-    if (settings.variance && num_frames > 1) result.capture.variance = sums.variance(num_frames);
+    const bool has_variance = settings.variance && num_frames > 1;
+    result.capture.time_axis = axes.time;
+    result.capture.transient = sums.time.mean_of_all(num_frames);
+    if (has_variance) result.capture.variance = sums.time.variance(num_frames);
+    if (sums.velocity) {
+        result.capture.velocity = {
+            *axes.velocity, sums.velocity->mean_of_all(num_frames), std::nullopt};
+        if (has_variance) result.capture.velocity->variance = sums.velocity->variance(num_frames);
+    }
     const int first_order = !scan.camera ? 3 : scan.camera->light_spot_m ? 2 : 1;
     result.sources.push_back({first_order, settings.max_bounces, Estimator::Restir, "all"});
     result.samples_per_pair = static_cast<std::uint64_t>(num_frames) *
@@ -160,34 +195,35 @@ RenderResult result_of(const TransientAccumulator& sums,
     return result;
 }
 
-TransientAccumulator empty_sums(const core::Scan& scan,
-                                const core::TimeAxis& axis,
-                                const RenderSettings& settings) {
-    return {scan.num_pairs(), axis.num_bins, 1, settings.variance};
+HistogramSums empty_sums(const core::Scan& scan,
+                         const core::HistogramAxes& axes,
+                         const RenderSettings& settings) {
+    return {scan.num_pairs(), axes, 1, settings.variance};
 }
 
 }  // namespace
 
 RenderResult render_restir(std::shared_ptr<const Scene> scene,
                            const core::Scan& scan,
-                           const core::TimeAxis& axis,
+                           const core::HistogramAxes& axes,
                            const RenderSettings& asked,
                            const core::Progress& progress) {
     const auto start = Clock::now();
-    require_gate_to_shrink_to(axis, asked);
+    require_gate_to_shrink_to(axes, asked);
     const RenderSettings settings = with_fitting_frames(asked);
     RestirRenderer renderer(scan, settings);
-    require_memory(renderer.bytes_needed(axis));
-    const auto restir_scene = std::make_shared<RestirScene>(std::move(scene), scan, settings);
+    require_memory(renderer.bytes_needed(axes));
+    const auto restir_scene =
+        std::make_shared<RestirScene>(std::move(scene), scan, settings, kept_quantity(axes));
     const int per_frame = candidates_per_frame(settings.restir);
     const int num_frames = settings.seconds ? std::numeric_limits<int>::max()
                                             : (settings.samples + per_frame - 1) / per_frame;
-    TransientAccumulator sums = empty_sums(scan, axis, settings);
+    HistogramSums sums = empty_sums(scan, axes, settings);
     int done = 0;
     bool interrupted = false;
     while (done < num_frames) {
         const auto number = static_cast<std::uint64_t>(done);
-        add_frame(renderer.render({restir_scene, axis, nullptr, number}), scan, settings, sums);
+        add_frame(renderer.render({restir_scene, axes, nullptr, number}), scan, settings, sums);
         ++done;
         const double elapsed = seconds_since(start);
         const double share =
@@ -199,7 +235,7 @@ RenderResult render_restir(std::shared_ptr<const Scene> scene,
             break;
         }
     }
-    RenderResult result = result_of(sums, done, scan, axis, settings);
+    RenderResult result = result_of(sums, done, scan, axes, settings);
     result.interrupted = interrupted;
     result.num_rays = renderer.counts().num_rays;
     result.restir_counts = renderer.counts();
@@ -218,15 +254,16 @@ FrameRenderer make_restir_frame_renderer(const core::Scan& scan, const RenderSet
     const auto state = std::make_shared<State>(scan, settings);
     return [state](const Frame& frame, const core::Scan& frame_scan, const core::Progress&) {
         const auto start = Clock::now();
-        require_gate_to_shrink_to(frame.axis, state->settings);
-        if (frame.index == 0) require_memory(state->renderer.bytes_needed(frame.axis));
+        require_gate_to_shrink_to(frame.axes, state->settings);
+        if (frame.index == 0) require_memory(state->renderer.bytes_needed(frame.axes));
         const bool is_first = state->last.scene == nullptr;
         const auto scene =
             !is_first && state->last.scene->scene == frame.scene
                 ? state->last.scene
-                : std::make_shared<RestirScene>(frame.scene, frame_scan, state->settings);
+                : std::make_shared<RestirScene>(
+                      frame.scene, frame_scan, state->settings, kept_quantity(frame.axes));
         const std::uint64_t rays_before = state->renderer.counts().num_rays;
-        TransientAccumulator sums = empty_sums(frame_scan, frame.axis, state->settings);
+        HistogramSums sums = empty_sums(frame_scan, frame.axes, state->settings);
         // Time that is left goes into more estimates from the same past; the last one is kept.
         RestirFrame rendered;
         int repeats = 0;
@@ -234,13 +271,13 @@ FrameRenderer make_restir_frame_renderer(const core::Scan& scan, const RenderSet
             const std::uint64_t number = static_cast<std::uint64_t>(frame.index) * kMostRepeats +
                                          static_cast<std::uint64_t>(repeats);
             rendered = state->renderer.render(
-                {scene, frame.axis, is_first ? nullptr : &state->last, number});
+                {scene, frame.axes, is_first ? nullptr : &state->last, number});
             add_frame(rendered, frame_scan, state->settings, sums);
             ++repeats;
         } while (state->settings.seconds && seconds_since(start) < *state->settings.seconds &&
                  repeats < static_cast<int>(kMostRepeats));
         state->last = std::move(rendered);
-        RenderResult result = result_of(sums, repeats, frame_scan, frame.axis, state->settings);
+        RenderResult result = result_of(sums, repeats, frame_scan, frame.axes, state->settings);
         result.num_rays = state->renderer.counts().num_rays - rays_before;
         result.restir_counts = state->renderer.counts();
         result.seconds = seconds_since(start);

@@ -15,7 +15,7 @@ namespace renderer {
 /// counts candidate paths.
 RenderResult render_restir(std::shared_ptr<const Scene> scene,
                            const core::Scan& scan,
-                           const core::TimeAxis& axis,
+                           const core::HistogramAxes& axes,
                            const RenderSettings& settings,
                            const core::Progress& progress);
 

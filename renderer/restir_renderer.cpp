@@ -49,9 +49,9 @@ RestirRenderer::RestirRenderer(const core::Scan& scan, const RenderSettings& set
       max_vertices_(std::max(0, settings.max_bounces - (scan.camera ? 1 : 2))),
       neighbours_(scan) {}
 
-double RestirRenderer::bytes_needed(const core::TimeAxis& axis) const {
-    const double reservoirs =
-        static_cast<double>(scan_->num_pairs()) * static_cast<double>(axis.num_bins);
+double RestirRenderer::bytes_needed(const core::HistogramAxes& axes) const {
+    const double reservoirs = static_cast<double>(scan_->num_pairs()) *
+                              static_cast<double>(ReservoirBins(axes, settings_.gate).count());
     // The frame's, those of a round of reuse, and the previous frame's.
     return 3.0 * reservoirs * PackedReservoirs::bytes_per_reservoir(max_vertices_);
 }
@@ -63,7 +63,7 @@ void RestirRenderer::for_each_pair(const FrameInput& input,
     core::parallel_blocks(
         scan_->num_pairs(), kPairsPerBlock, [&](std::size_t begin, std::size_t end) {
             Worker worker;
-            worker.builders.resize(static_cast<std::size_t>(input.axis.num_bins));
+            worker.builders.resize(ReservoirBins(input.axes, settings_.gate).count());
             for (std::size_t pair = begin; pair < end; ++pair) {
                 worker.pair = pair;
                 worker.rng =
@@ -80,10 +80,9 @@ void RestirRenderer::for_each_pair(const FrameInput& input,
 RestirFrame RestirRenderer::render(const FrameInput& input) {
     RestirFrame frame;
     frame.scene = input.scene;
-    frame.axis = input.axis;
+    frame.bins = ReservoirBins(input.axes, settings_.gate);
     frame.domains.resize(scan_->num_pairs());
-    frame.reservoirs = PackedReservoirs(
-        scan_->num_pairs() * static_cast<std::size_t>(input.axis.num_bins), max_vertices_);
+    frame.reservoirs = PackedReservoirs(scan_->num_pairs() * frame.bins.count(), max_vertices_);
     find_domains(input, frame);
     counts_.num_rays += input.scene->candidates.prepare(settings_.seed, input.number);
     fill(input, frame);
@@ -107,7 +106,7 @@ void RestirRenderer::find_domains(const FrameInput& input, RestirFrame& frame) c
 }
 
 void RestirRenderer::fill(const FrameInput& input, RestirFrame& frame) {
-    const auto num_bins = static_cast<std::size_t>(input.axis.num_bins);
+    const std::size_t num_bins = frame.bins.count();
     const bool reuses = settings_.restir.reuse != Reuse::None && input.previous != nullptr;
     for_each_pair(input, kCandidateStage, [&](Worker& worker, std::size_t pair) {
         draw(worker, frame, pair);
@@ -116,8 +115,10 @@ void RestirRenderer::fill(const FrameInput& input, RestirFrame& frame) {
             PathReservoir fresh = worker.builders[bin].finish(share * kConfidenceOfFrame);
             if (share < 1.0) fresh = draw_wide(worker, frame, fresh);
             const std::size_t index = pair * num_bins + bin;
+            const bool is_reused = reuses && !frame.bins.is_left_out(bin);
             frame.reservoirs.store(
-                index, reuses ? with_history(worker, frame, *input.previous, index, fresh) : fresh);
+                index,
+                is_reused ? with_history(worker, frame, *input.previous, index, fresh) : fresh);
         }
     });
 }
@@ -143,20 +144,18 @@ PathCandidates::Effort effort_of(const RestirSettings& settings, double share) {
 // Candidates of all bins of a pair.
 void RestirRenderer::draw(Worker& worker, const RestirFrame& frame, std::size_t pair) const {
     std::fill(worker.builders.begin(), worker.builders.end(), ReservoirBuilder<ReusablePath>());
-    const TimeGate first = TimeGate::of_bin(frame.axis, 0, settings_.gate);
-    const TimeGate last = TimeGate::of_bin(frame.axis, frame.axis.num_bins - 1, settings_.gate);
+    const TimeGate lengths = frame.bins.lengths();
     const PathCandidates::Request request{
         frame.domains[pair],
-        first.begin_m(),
-        last.end_m(),
+        lengths.begin_m(),
+        lengths.end_m(),
         effort_of(settings_.restir, 1.0 - settings_.restir.shrink_fraction)};
     worker.counts.num_rays += frame.scene->candidates.generate(
         request, worker.rng, [&](const ReusablePath& path, const PathValue& value, double density) {
-            const auto bin = frame.axis.num_bins == 1 ? 0 : frame.axis.bin_of(value.opl_m);
+            const auto bin = frame.bins.bin_of(value.extent);
             if (!bin) return;
-            const TimeGate gate = TimeGate::of_bin(frame.axis, *bin, settings_.gate);
-            const double target = value.radiance * gate.weight(value.opl_m);
-            worker.builders[static_cast<std::size_t>(*bin)].add(
+            const double target = value.radiance * lengths.weight(value.extent.opl_m);
+            worker.builders[*bin].add(
                 placed(path, request.domain), target, target / density, worker.rng.uniform());
         });
 }
@@ -166,16 +165,17 @@ PathReservoir RestirRenderer::draw_wide(Worker& worker,
                                         const RestirFrame& frame,
                                         const PathReservoir& narrow) const {
     const double share = settings_.restir.shrink_fraction;
-    const RestirSide here(frame, worker.pair, 0, settings_.gate);
+    const RestirSide here(frame, worker.pair, 0);
     RestirSide wide = here;
-    wide.gate.width_m /= kShrink;
-    wide.gate.start_m -= 0.5 * (wide.gate.width_m - here.gate.width_m);
+    TimeGate& gate = wide.gate.time;
+    gate.width_m /= kShrink;
+    gate.start_m -= 0.5 * (gate.width_m - here.gate.time.width_m);
     ReservoirBuilder<ReusablePath> builder;
     const PathCandidates::Request request{
-        *wide.domain, wide.gate.begin_m(), wide.gate.end_m(), effort_of(settings_.restir, share)};
+        *wide.domain, gate.begin_m(), gate.end_m(), effort_of(settings_.restir, share)};
     worker.counts.num_rays += frame.scene->candidates.generate(
         request, worker.rng, [&](const ReusablePath& path, const PathValue& value, double density) {
-            const double target = value.radiance * wide.gate.weight(value.opl_m);
+            const double target = value.radiance * gate.weight(value.extent.opl_m);
             builder.add(
                 placed(path, request.domain), target, target / density, worker.rng.uniform());
         });
@@ -191,9 +191,9 @@ PathReservoir RestirRenderer::with_history(Worker& worker,
                                            const RestirFrame& previous,
                                            std::size_t index,
                                            const PathReservoir& fresh) const {
-    const int bin = static_cast<int>(index % static_cast<std::size_t>(frame.axis.num_bins));
-    const RestirSide here(frame, worker.pair, bin, settings_.gate);
-    const RestirSide before(previous, worker.pair, bin, settings_.gate);
+    const std::size_t bin = index % frame.bins.count();
+    const RestirSide here(frame, worker.pair, bin);
+    const RestirSide before(previous, worker.pair, bin);
     const PathReservoir history =
         limited(previous.reservoirs.load(index), settings_.restir.confidence_cap);
     const CarriedPath in = carry_path(history, before, here, *frame.scene, worker.counts);
@@ -203,7 +203,7 @@ PathReservoir RestirRenderer::with_history(Worker& worker,
 }
 
 void RestirRenderer::reuse_neighbours(const FrameInput& input, int round, RestirFrame& frame) {
-    const auto num_bins = static_cast<std::size_t>(frame.axis.num_bins);
+    const std::size_t num_bins = frame.bins.count();
     PackedReservoirs merged(frame.reservoirs.size(), max_vertices_);
     for_each_pair(input, kCandidateStage + 1 + round, [&](Worker& worker, std::size_t pair) {
         neighbours_.pick(pair, settings_.restir.neighbours, worker.rng, worker.neighbours);
@@ -226,28 +226,31 @@ void RestirRenderer::reuse_neighbours(const FrameInput& input, int round, Restir
 PathReservoir RestirRenderer::with_neighbours(Worker& worker,
                                               const RestirFrame& frame,
                                               std::size_t index) const {
-    const auto num_bins = static_cast<std::size_t>(frame.axis.num_bins);
-    const int bin = static_cast<int>(index % num_bins);
-    const bool has_bins = settings_.restir.reuse_bins;
-    const bool before = has_bins && bin > 0;
-    const bool after = has_bins && bin + 1 < frame.axis.num_bins;
+    const std::size_t num_bins = frame.bins.count();
+    const std::size_t bin = index % num_bins;
+    const PathReservoir canonical = frame.reservoirs.load(index);
+    if (frame.bins.is_left_out(bin)) return canonical;
+    std::optional<std::size_t> before;
+    std::optional<std::size_t> after;
+    if (settings_.restir.reuse_bins) {
+        before = frame.bins.beside(bin, -1);
+        after = frame.bins.beside(bin, 1);
+    }
     const int num_neighbours =
         static_cast<int>(worker.neighbours.size()) + (before ? 1 : 0) + (after ? 1 : 0);
-    const PathReservoir canonical = frame.reservoirs.load(index);
-    const RestirSide here(frame, worker.pair, bin, settings_.gate);
+    const RestirSide here(frame, worker.pair, bin);
     PairwiseMerge<ReusablePath> merge(canonical, num_neighbours);
-    const auto add = [&](std::size_t pair, int other_bin) {
-        const RestirSide there(frame, pair, other_bin, settings_.gate);
-        const PathReservoir other =
-            frame.reservoirs.load(pair * num_bins + static_cast<std::size_t>(other_bin));
+    const auto add = [&](std::size_t pair, std::size_t other_bin) {
+        const RestirSide there(frame, pair, other_bin);
+        const PathReservoir other = frame.reservoirs.load(pair * num_bins + other_bin);
         const CarriedPath in = carry_path(other, there, here, *frame.scene, worker.counts);
         const CarriedPath out = carry_path(canonical, here, there, *frame.scene, worker.counts);
         merge.add_neighbour(other, in, out, worker.rng.uniform());
         ++worker.counts.num_merges;
     };
     for (const std::size_t pair : worker.neighbours) add(pair, bin);
-    if (before) add(worker.pair, bin - 1);
-    if (after) add(worker.pair, bin + 1);
+    if (before) add(worker.pair, *before);
+    if (after) add(worker.pair, *after);
     return limited(merge.finish(worker.rng.uniform()), settings_.restir.confidence_cap);
 }
 

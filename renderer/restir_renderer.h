@@ -14,13 +14,13 @@ class RestirRenderer {
     /// scan   must outlive the renderer
     RestirRenderer(const core::Scan& scan, const RenderSettings& settings);
 
-    /// Memory that rendering frames of an axis takes [bytes].
-    double bytes_needed(const core::TimeAxis& axis) const;
+    /// Memory that rendering frames takes [bytes].
+    double bytes_needed(const core::HistogramAxes& axes) const;
 
     /// What one frame is made from.
     struct FrameInput {
         std::shared_ptr<RestirScene> scene;
-        core::TimeAxis axis;
+        core::HistogramAxes axes;
         const RestirFrame* previous = nullptr;  ///< whose reservoirs to reuse; null: none
         std::uint64_t number = 0;               ///< among all frames of one seed
     };

@@ -18,7 +18,7 @@ PathIntegrand::PathIntegrand(const Scene& scene,
 
 PathValue PathIntegrand::evaluate(const PathDomain& domain, const ReusablePath& path) const {
     PathValue value;
-    value.opl_m = domain.extra_opl_m();
+    value.extent = domain.extra();
     if (!dropped_.empty() && dropped_[path.last().facet]) return value;
     // At the third bounce the relay wall only passes light on.
     if (!domain.seen && path.num_vertices == 1 && !scene_->is_hidden(path.first().facet)) {
@@ -27,6 +27,7 @@ PathValue PathIntegrand::evaluate(const PathDomain& domain, const ReusablePath& 
     const PathEnd& light = domain.ends.light;
     double carried = 1.0;
     PathVertex before;  // meaningless until the first vertex is passed
+    Vec3 velocity = domain.start_velocity(*scene_);
     for (int i = 0; i <= path.num_vertices; ++i) {
         const bool to_light = i == path.num_vertices;
         const Vec3& from = i == 0 ? domain.start() : before.point.position;
@@ -35,7 +36,11 @@ PathValue PathIntegrand::evaluate(const PathDomain& domain, const ReusablePath& 
         const double distance2 = offset.squaredNorm();
         const double distance = std::sqrt(distance2);
         const Vec3 direction = offset / distance;
-        value.opl_m += distance;
+        const Vec3& next_velocity =
+            to_light ? light.velocity_m_per_s : scene_->velocity_m_per_s(path.at(i).facet);
+        value.extent.opl_m += distance;
+        value.extent.velocity_m_per_s += direction.dot(next_velocity - velocity);
+        velocity = next_velocity;
         if (i > 0) {
             if (const auto* retro = std::get_if<Retroreflective>(&before.bsdf)) {
                 // Only straight back, to a light at the sensor: the returned spot's area stands

@@ -39,13 +39,23 @@ struct PathDomain {
     const core::Vec3& start() const { return seen ? seen->point.position : ends.sensor.position; }
     const core::Vec3& start_normal() const { return seen ? seen->normal : ends.sensor.normal; }
     /// Length that the axis counts beside the path itself [m].
-    double extra_opl_m() const { return ends.device_legs_m + (seen ? seen->opl_m : 0.0); }
+    double extra_opl_m() const { return extra().opl_m; }
+    /// That length and how fast it changes.
+    PathExtent extra() const {
+        PathExtent extent = seen ? seen->extent : PathExtent{};
+        extent.opl_m += ends.device_legs_m;
+        return extent;
+    }
+    /// Of the surface where paths start; wall points stand still.
+    core::Vec3 start_velocity(const Scene& scene) const {
+        return seen ? scene.velocity_m_per_s(seen->point.facet) : core::Vec3(core::Vec3::Zero());
+    }
 };
 
 /// What a path carries, as a density over the areas at all its vertices.
 struct PathValue {
     double radiance = 0.0;  ///< [W / (m^2 sr)] per product of areas, visibility aside
-    double opl_m = 0.0;     ///< the whole length that the axis counts
+    PathExtent extent;      ///< the whole length that the axis counts, and its rate
 };
 
 /// Evaluates reusable paths.

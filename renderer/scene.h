@@ -50,6 +50,10 @@ class Scene {
     const Object& object_of(std::uint32_t facet) const {
         return geometry_.objects[facets_[facet].object];
     }
+    /// Of a facet's surface, world.
+    const core::Vec3& velocity_m_per_s(std::uint32_t facet) const {
+        return object_of(facet).velocity_m_per_s;
+    }
     bool is_hidden(std::uint32_t facet) const { return object_of(facet).role != Role::RelayWall; }
     /// A direction that turns with the scene and is not parallel to `normal` (unit).
     const core::Vec3& tangent_hint(const core::Vec3& normal) const;

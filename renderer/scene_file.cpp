@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 
 namespace renderer {
 namespace {
@@ -87,13 +88,22 @@ void validate_size(const SceneDescription& scene, const std::string& where) {
         return points.empty() ? static_cast<double>(shape[0]) * shape[1]
                               : static_cast<double>(points.size());
     };
-    double values = count(scan.sensing_points_m, scan.sensing_points) * scene.time_axis.num_bins;
+    double pairs = count(scan.sensing_points_m, scan.sensing_points);
     if (scene.camera) {
-        values = static_cast<double>(scene.camera->num_pixels()) * scene.time_axis.num_bins;
+        pairs = static_cast<double>(scene.camera->num_pixels());
     } else if (scan.pattern == core::ScanPattern::Exhaustive) {
-        values *= count(scan.illumination_points_m, scan.illumination_points);
+        pairs *= count(scan.illumination_points_m, scan.illumination_points);
     }
-    if (scene.frames) values *= scene.frames->count;
+    double values = pairs * scene.time_axis.num_bins * (scene.frames ? scene.frames->count : 1);
+    if (scene.velocity_axis) {
+        const double time_bins = scene.velocity_axis->with_time ? scene.time_axis.num_bins : 1.0;
+        const double per_pair = scene.velocity_axis->num_bins * time_bins;
+        require(per_pair <= std::numeric_limits<int>::max(),
+                where + "velocity_axis with_time: values per pair",
+                per_pair,
+                fmt::format("at most {}", std::numeric_limits<int>::max()));
+        values += pairs * per_pair;
+    }
     const double available = static_cast<double>(core::available_memory_bytes());
     if (values * sizeof(float) > available) {
         throw Error(where + (scene.camera ? "camera.resolution" : "scan.sensing_points") +
@@ -237,6 +247,7 @@ void validate(const SceneDescription& scene, const std::string& where) {
         validate_scan(scene.scan, where + "scan");
     }
     core::validate(scene.time_axis, where + "time_axis");
+    if (scene.velocity_axis) core::validate(*scene.velocity_axis, where + "velocity_axis");
     if (scene.frames) validate_frames(*scene.frames, where + "frames");
     validate(scene.render, where + "render");
     validate_grid(scene.ground_truth.depth_resolution, where + "ground_truth.depth_resolution");

@@ -61,7 +61,8 @@ struct SceneDescription {
     ScanSettings scan;
     std::optional<CameraSettings> camera;  ///< replaces relay_wall and scan
     core::TimeAxis time_axis;
-    std::optional<FrameSettings> frames;  ///< nothing: one frame
+    std::optional<core::VelocityAxis> velocity_axis;  ///< nothing: velocities are not resolved
+    std::optional<FrameSettings> frames;              ///< nothing: one frame
     RenderSettings render;
     GroundTruthSettings ground_truth;
 };
@@ -121,6 +122,10 @@ void for_each_field(SceneDescription& scene, Visitor&& visit) {
           "instead of relay_wall and scan: an image; position_m, look_at_m, up, fov_y_deg, "
           "resolution, light_m, light_spot_m, or the name of a glTF camera");
     visit("time_axis", scene.time_axis, "bins of optical path length");
+    visit("velocity_axis",
+          scene.velocity_axis,
+          "Doppler: bins of path velocity; start_m_per_s, bin_width_m_per_s, num_bins, with_time, "
+          "carrier_hz");
     visit("frames", scene.frames, "a sequence: count, gate_step_m, frame_s; seconds are per frame");
     visit("render", scene.render, "estimator and effort");
     visit("ground_truth", scene.ground_truth, "what compare uses as truth");

@@ -10,8 +10,9 @@ void add_short_paths(const Scene& scene,
     const auto channel = [&](int order) { return settings.by_order ? order - 1 : 0; };
     if (ends.coincide) {
         if (settings.direct_return) {
-            histogram.add(
-                channel(1), ends.device_legs_m, ends.light.strength / settings.laser_spot_m2);
+            histogram.add(channel(1),
+                          {ends.device_legs_m, 0.0},
+                          ends.light.strength / settings.laser_spot_m2);
         }
         return;
     }
@@ -24,7 +25,7 @@ void add_short_paths(const Scene& scene,
     if (value > 0.0 &&
         !scene.rays().is_blocked(
             ends.sensor.position, ends.sensor.normal, ends.light.position, ends.light.normal)) {
-        histogram.add(channel(2), distance + ends.device_legs_m, value);
+        histogram.add(channel(2), {distance + ends.device_legs_m, 0.0}, value);
     }
 }
 
@@ -33,11 +34,11 @@ void add_direct_light(const PathVertex& seen,
                       const SurfaceWalk& walk,
                       const RenderSettings& settings,
                       PassHistogram& histogram) {
-    const double to_light = (ends.light.position - seen.point.position).norm();
-    if (seen.order > settings.max_bounces || !histogram.admits(seen.opl_m + to_light)) return;
+    const PathExtent path = walk.extent_to_light(seen, ends);
+    if (seen.order > settings.max_bounces || !histogram.admits(path.opl_m)) return;
     const double value = walk.connection_value(seen, ends);
     if (!(value > 0.0) || walk.light_is_hidden(seen, ends)) return;
-    histogram.add(settings.by_order ? seen.order - 1 : 0, seen.opl_m + to_light, value);
+    histogram.add(settings.by_order ? seen.order - 1 : 0, path, value);
 }
 
 }  // namespace renderer

@@ -45,6 +45,15 @@ double SurfaceWalk::connection_value(const PathVertex& vertex, const PathEnds& e
            std::abs(vertex.normal.dot(direction)) * ends.light.factor(-direction) / distance2;
 }
 
+PathExtent SurfaceWalk::extent_to_light(const PathVertex& vertex, const PathEnds& ends) const {
+    PathExtent extent = vertex.extent;
+    extent.add_segment(ends.light.position - vertex.point.position,
+                       scene_->velocity_m_per_s(vertex.point.facet),
+                       ends.light.velocity_m_per_s);
+    extent.opl_m += ends.device_legs_m;
+    return extent;
+}
+
 bool SurfaceWalk::survives(PathVertex& vertex, core::Rng& rng) const {
     if (vertex.order < kFirstRouletteOrder) return true;
     const double survival = std::clamp(albedo_of(vertex.bsdf), kLeastSurvival, 1.0);
@@ -126,7 +135,11 @@ PathVertex SurfaceWalk::advance(const PathVertex& vertex,
     advanced.to_previous = -step.direction;
     advanced.bsdf = scene_->bsdf_at(next);
     advanced.throughput = vertex.throughput * step.transport / pdf_area;
-    advanced.opl_m = vertex.opl_m + step.distance_m;
+    advanced.extent.opl_m = vertex.extent.opl_m + step.distance_m;
+    advanced.extent.velocity_m_per_s =
+        vertex.extent.velocity_m_per_s +
+        step.direction.dot(scene_->velocity_m_per_s(next.facet) -
+                           scene_->velocity_m_per_s(vertex.point.facet));
     advanced.order = vertex.order + 1;
     return advanced;
 }

@@ -37,6 +37,8 @@ class SurfaceWalk {
 
     /// What the path carries when it goes from `vertex` straight to the light, unless blocked.
     double connection_value(const PathVertex& vertex, const PathEnds& ends) const;
+    /// Length and velocity of that path, legs to the devices included.
+    PathExtent extent_to_light(const PathVertex& vertex, const PathEnds& ends) const;
     bool light_is_hidden(const PathVertex& vertex, const PathEnds& ends) const {
         return scene_->rays().is_blocked(
             vertex.point.position, vertex.normal, ends.light.position, ends.light.normal);

@@ -17,15 +17,6 @@ TransientAccumulator::TransientAccumulator(std::size_t num_pairs,
       sums_(num_pairs_ * num_channels_ * num_bins_),
       squares_(variance ? num_pairs_ * num_bins_ : 0) {}
 
-void TransientAccumulator::add_pass(std::size_t pair, PassHistogram& histogram) {
-    double* const sums = sums_.data() + pair * num_channels_ * num_bins_;
-    double* const squares = squares_.empty() ? nullptr : squares_.data() + pair * num_bins_;
-    histogram.drain([&](std::size_t index, double value) { sums[index] += value; },
-                    [&](std::size_t bin, double total) {
-                        if (squares != nullptr) squares[bin] += total * total;
-                    });
-}
-
 core::Transient TransientAccumulator::mean(int channel, int num_passes) const {
     core::Transient result(num_pairs_, static_cast<int>(num_bins_));
     core::parallel_for(num_pairs_, [&](std::size_t pair) {

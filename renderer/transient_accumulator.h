@@ -5,6 +5,7 @@
 #include "renderer/pass_histogram.h"
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 namespace renderer {
@@ -19,7 +20,17 @@ class TransientAccumulator {
     TransientAccumulator(std::size_t num_pairs, int num_bins, int num_channels, bool variance);
 
     /// Adds the estimate of one pass for one pair; different pairs may be added concurrently.
-    void add_pass(std::size_t pair, PassHistogram& histogram);
+    ///
+    /// histogram   PassHistogram, or PassVelocityHistogram for its bins; is left empty
+    template <class Histogram>
+    void add_pass(std::size_t pair, Histogram& histogram) {
+        double* const sums = sums_.data() + pair * num_channels_ * num_bins_;
+        double* const squares = squares_.empty() ? nullptr : squares_.data() + pair * num_bins_;
+        histogram.drain([&](std::size_t index, double value) { sums[index] += value; },
+                        [&](std::size_t bin, double total) {
+                            if (squares != nullptr) squares[bin] += total * total;
+                        });
+    }
 
     /// Mean over passes of one channel.
     core::Transient mean(int channel, int num_passes) const;
@@ -34,6 +45,26 @@ class TransientAccumulator {
     std::size_t num_channels_;
     std::vector<double> sums_;     ///< [pair][channel][bin]
     std::vector<double> squares_;  ///< [pair][bin] of the sum over channels; empty: not kept
+};
+
+/// The sums of all that a pass histogram collects.
+struct HistogramSums {
+    HistogramSums(std::size_t num_pairs,
+                  const core::HistogramAxes& axes,
+                  int num_channels,
+                  bool variance)
+        : time(num_pairs, axes.time.num_bins, num_channels, variance) {
+        if (!axes.velocity) return;
+        velocity.emplace(num_pairs, axes.velocity->num_values(axes.time.num_bins), 1, variance);
+    }
+
+    void add_pass(std::size_t pair, PassHistogram& histogram) {
+        time.add_pass(pair, histogram);
+        if (velocity) velocity->add_pass(pair, histogram.velocity());
+    }
+
+    TransientAccumulator time;
+    std::optional<TransientAccumulator> velocity;  ///< with a velocity axis
 };
 
 }  // namespace renderer

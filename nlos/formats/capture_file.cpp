@@ -111,6 +111,27 @@ std::vector<std::string> describe_camera(const core::PinholeCamera& camera) {
                         point_text(camera.light_position()))};
 }
 
+std::string describe_velocity(const core::VelocityHistogram& velocity) {
+    const core::VelocityAxis& axis = velocity.axis;
+    double sum = 0.0;
+    for (const float value : velocity.values.values()) sum += value;
+    const auto shift_hz = [&](double velocity_m_per_s) {
+        return core::frequency_shift_hz(axis.carrier_hz, velocity_m_per_s);
+    };
+    return fmt::format(
+        "path velocity{}: {} bins of {:.6g} m/s, from {:.6g} to {:.6g} m/s, sum {:.6g}; at {:.6g} "
+        "Hz a shift from {:.6g} to {:.6g} Hz",
+        axis.with_time ? " with time" : "",
+        axis.num_bins,
+        axis.bin_width_m_per_s,
+        axis.start_m_per_s,
+        axis.end_m_per_s(),
+        sum,
+        axis.carrier_hz,
+        shift_hz(axis.start_m_per_s),
+        shift_hz(axis.end_m_per_s()));
+}
+
 }  // namespace
 
 core::Capture read_capture(const std::string& path, const CaptureReadSettings& settings) {
@@ -176,6 +197,7 @@ std::vector<std::string> describe_capture(const core::Capture& capture) {
             fmt::format("path lengths {} the legs to laser and detector",
                         scan.opl_origin == core::OplOrigin::Device ? "include" : "exclude"));
     }
+    if (capture.velocity) lines.push_back(describe_velocity(*capture.velocity));
     if (capture.sequence) {
         lines.push_back(
             fmt::format("frames: {}, {:.6g} s apart, the axis moves by {:.6g} m per frame; what "

@@ -48,8 +48,8 @@ struct CaptureWriteSettings {
 /// y-tal layout, .exr a streak image, .mat the Stanford 2018 layout.
 ///
 /// y-tal refuses files with any name of its root that it does not know, so the group /nlos (unit,
-/// variance, bounce orders, frames) is written only for captures that have one of these or another
-/// unit than radiance.
+/// variance, bounce orders, velocities, frames) is written only for captures that have one of these
+/// or another unit than radiance.
 ///
 /// returns   what the format does not keep, a sentence each
 /// throws    core::Error for a bad target, an unknown suffix or a capture that the format cannot

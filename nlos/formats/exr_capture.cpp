@@ -259,8 +259,11 @@ std::vector<std::string> write(const std::string& path,
                                const CaptureWriteSettings&) {
     if (capture.scan.camera) {
         write_exr_table(path, to_exr_image(capture));
-        if (!capture.variance && capture.orders.empty() && !capture.sequence) return {};
-        return {"variance, orders of bounces and frames are left out"};
+        const bool has_joint = capture.velocity && capture.velocity->axis.with_time;
+        if (!capture.variance && capture.orders.empty() && !capture.sequence && !has_joint) {
+            return {};
+        }
+        return {"variance, orders of bounces, frames and velocities with time are left out"};
     }
     const core::Scan& scan = capture.scan;
     const bool is_wall = shows_wall(capture);
@@ -295,7 +298,7 @@ std::vector<std::string> write(const std::string& path,
             to_channel(capture.by_order[i], capture, is_wall);
     }
     write_exr_table(path, table);
-    if (capture.sequence) return {"frames are left out"};
+    if (capture.sequence || capture.velocity) return {"frames and velocities are left out"};
     return {};
 }
 

@@ -13,10 +13,13 @@ namespace {
 using core::Capture;
 using core::Error;
 
+constexpr const char* kTimeBin = "bin";
+constexpr const char* kVelocityBin = "velocity";
+
 /// Names of one length, so that they sort as their numbers.
-std::string channel_name(std::size_t bin, std::size_t num_bins) {
+std::string channel_name(const char* kind, std::size_t bin, std::size_t num_bins) {
     const std::size_t digits = std::max<std::size_t>(3, std::to_string(num_bins - 1).size());
-    return fmt::format("bin{:0{}}", bin, digits);
+    return fmt::format("{}{:0{}}", kind, bin, digits);
 }
 
 template <class Map>
@@ -46,11 +49,57 @@ void for_each_pixel(const core::PinholeCamera& camera, Visit&& visit) {
     }
 }
 
+void put_channels(const core::PinholeCamera& camera,
+                  const char* kind,
+                  const core::Transient& transient,
+                  ExrTable& table) {
+    for (std::size_t bin = 0; bin < transient.num_bins(); ++bin) {
+        std::vector<float>& channel = table.channels[channel_name(kind, bin, transient.num_bins())];
+        channel.resize(camera.num_pixels());
+        for_each_pixel(camera, [&](std::size_t pair, std::size_t place) {
+            channel[place] = transient.histogram(pair)[bin];
+        });
+    }
+}
+
+core::Transient read_channels(const std::string& path,
+                              const core::PinholeCamera& camera,
+                              const char* kind,
+                              int num_bins,
+                              const ExrTable& table) {
+    core::Transient transient(camera.num_pixels(), num_bins);
+    for (std::size_t bin = 0; bin < transient.num_bins(); ++bin) {
+        const auto& channel =
+            at(path, table.channels, channel_name(kind, bin, transient.num_bins()));
+        for_each_pixel(camera, [&](std::size_t pair, std::size_t place) {
+            transient.histogram(pair)[bin] = channel[place];
+        });
+    }
+    return transient;
+}
+
+/// The velocity axis, if the file has one; as many bins as it says must be there.
+void read_velocity(const std::string& path, const ExrTable& table, Capture& capture) {
+    const std::string name = "nlosVelocityAxis";
+    if (!table.texts.contains(name)) return;
+    core::VelocityHistogram velocity;
+    core::read_value(parse_object(path, table, name), path + ": " + name, velocity.axis);
+    validate(velocity.axis, path + ": " + name);
+    if (static_cast<std::size_t>(velocity.axis.num_bins) > table.channels.size()) {
+        throw Error(path + ": " + name,
+                    fmt::format("has {} bins", velocity.axis.num_bins),
+                    "must have no more than the file has channels");
+    }
+    velocity.axis.with_time = false;
+    velocity.values =
+        read_channels(path, *capture.scan.camera, kVelocityBin, velocity.axis.num_bins, table);
+    capture.velocity = std::move(velocity);
+}
+
 }  // namespace
 
 ExrTable to_exr_image(const Capture& capture) {
     const core::PinholeCamera& camera = *capture.scan.camera;
-    const std::size_t num_bins = capture.transient.num_bins();
     ExrTable table;
     table.width = camera.width();
     table.height = camera.height();
@@ -64,12 +113,10 @@ ExrTable to_exr_image(const Capture& capture) {
     if (capture.counts_per_radiance) {
         table.numbers["nlosCountsPerRadiance"] = *capture.counts_per_radiance;
     }
-    for (std::size_t bin = 0; bin < num_bins; ++bin) {
-        std::vector<float>& channel = table.channels[channel_name(bin, num_bins)];
-        channel.resize(camera.num_pixels());
-        for_each_pixel(camera, [&](std::size_t pair, std::size_t place) {
-            channel[place] = capture.transient.histogram(pair)[bin];
-        });
+    put_channels(camera, kTimeBin, capture.transient, table);
+    if (capture.velocity && !capture.velocity->axis.with_time) {
+        table.texts["nlosVelocityAxis"] = core::write_value(capture.velocity->axis).dump();
+        put_channels(camera, kVelocityBin, capture.velocity->values, table);
     }
     return table;
 }
@@ -90,7 +137,10 @@ Capture from_exr_image(const std::string& path, const ExrTable& table) {
             fmt::format("is {} x {} pixels", table.width, table.height),
             fmt::format("must be {} x {} as its camera says", camera.width(), camera.height()));
     }
-    const std::size_t num_bins = table.channels.size();
+    const auto num_bins =
+        std::count_if(table.channels.begin(), table.channels.end(), [](const auto& channel) {
+            return channel.first.starts_with(kTimeBin);
+        });
     capture.time_axis = {at(path, table.numbers, "nlosOplStartM"),
                          at(path, table.numbers, "nlosBinWidthM"),
                          static_cast<int>(num_bins)};
@@ -101,13 +151,8 @@ Capture from_exr_image(const std::string& path, const ExrTable& table) {
         capture.counts_per_radiance = scale->second;
     }
     capture.scene_info = parse_object(path, table, "nlosSceneInfo");
-    capture.transient = core::Transient(scan.num_pairs(), capture.time_axis.num_bins);
-    for (std::size_t bin = 0; bin < num_bins; ++bin) {
-        const auto& channel = at(path, table.channels, channel_name(bin, num_bins));
-        for_each_pixel(camera, [&](std::size_t pair, std::size_t place) {
-            capture.transient.histogram(pair)[bin] = channel[place];
-        });
-    }
+    capture.transient = read_channels(path, camera, kTimeBin, capture.time_axis.num_bins, table);
+    read_velocity(path, table, capture);
     return capture;
 }
 

@@ -9,19 +9,22 @@
 namespace nlos {
 
 // The image of a camera as an OpenEXR image, top-left first: one float channel per bin, `bin000`
-// and so on. Header attributes:
+// and so on, and one per bin of path velocity, `velocity000` and so on, unless these are resolved
+// in time. Header attributes:
 //
 //   nlosFormat                        text: image 1
 //   nlosCamera                        text: JSON of core::PinholeCamera
 //   nlosUnit                          text: radiance | counts
 //   nlosCountsPerRadiance             double, when known
 //   nlosOplStartM, nlosBinWidthM      double: start of bin 0 and width of a bin [m of path length]
+//   nlosVelocityAxis                  text: JSON of core::VelocityAxis, with velocities
 //   nlosSceneInfo                     text: JSON, where the capture came from
 
 /// The value of nlosFormat.
 inline constexpr const char* kExrImageFormat = "image 1";
 
-/// An image as the table of such a file; variance, bounce orders and frames have no place in it.
+/// An image as the table of such a file; variance, bounce orders, frames and velocities resolved in
+/// time have no place in it.
 /// capture   with a camera
 ExrTable to_exr_image(const core::Capture& capture);
 

@@ -222,9 +222,10 @@ std::vector<std::string> write(const std::string& path,
                     "of 4 ps from the direct return on",
                     kOwnAxis)};
     if (!is_integer) losses.emplace_back("rect_data is single precision: values are no counts");
-    if (capture.variance || !capture.orders.empty() || capture.sequence ||
+    if (capture.variance || !capture.orders.empty() || capture.sequence || capture.velocity ||
         !capture.scene_info.empty()) {
-        losses.emplace_back("variance, orders of bounces, frames and scene_info are left out");
+        losses.emplace_back(
+            "variance, orders of bounces, velocities, frames and scene_info are left out");
     }
     return losses;
 }

@@ -264,18 +264,18 @@ void copy_bins(const float* rows,
 
 core::Transient make_transient(const Hdf5Reader& file,
                                const std::string& name,
-                               const Capture& capture) {
+                               const Capture& capture,
+                               int num_bins) {
     const std::size_t pairs = capture.scan.num_pairs();
-    require_memory(sizeof(float) * pairs * static_cast<std::size_t>(capture.time_axis.num_bins),
-                   file.where(name));
-    return {pairs, capture.time_axis.num_bins};
+    require_memory(sizeof(float) * pairs * static_cast<std::size_t>(num_bins), file.where(name));
+    return {pairs, num_bins};
 }
 
 /// Reads (T, pairs...) with time slowest into [pair][bin].
 core::Transient read_transient(const Hdf5Reader& file,
                                const std::string& name,
                                const Capture& capture) {
-    core::Transient transient = make_transient(file, name, capture);
+    core::Transient transient = make_transient(file, name, capture, capture.time_axis.num_bins);
     file.read_rows(name, [&](std::size_t first, std::size_t count, const std::vector<float>& rows) {
         copy_bins(rows.data(), first, count, transient);
     });
@@ -289,6 +289,75 @@ void require_shape(const Hdf5Reader& file, const std::string& name, const Shape&
                 "must have shape " + shape_text(wanted) + ", as H");
 }
 
+void require_variances(const Hdf5Reader& file,
+                       const std::string& name,
+                       const core::Transient& variance) {
+    for (const float value : variance.values()) {
+        if (!(value >= 0.0F) || !std::isfinite(value)) {
+            throw Error(file.where(name),
+                        fmt::format("found {}", value),
+                        "must be finite and not negative");
+        }
+    }
+}
+
+/// The axis of /nlos/velocity, which has one dimension more than H when it resolves time too.
+core::VelocityAxis read_velocity_axis(const Hdf5Reader& file) {
+    const std::string name = "nlos/velocity";
+    const Shape shape = file.shape(name);
+    Shape wanted = file.shape("H");
+    core::VelocityAxis axis;
+    axis.with_time = shape.size() > wanted.size();
+    if (axis.with_time) wanted.insert(wanted.begin(), 0);
+    wanted[0] = shape.empty() ? 0 : shape[0];
+    require_shape(file, name, wanted);
+    const std::size_t num_values = wanted[0] * (axis.with_time ? wanted[1] : 1);
+    if (num_values > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
+        throw Error(file.where(name),
+                    fmt::format("has {} values per pair", num_values),
+                    "must have fewer than 2^31");
+    }
+    axis.num_bins = static_cast<int>(wanted[0]);
+    const auto read_number = [&](const char* attribute, double& value) {
+        const auto found = file.real_attribute(name, attribute);
+        if (!found || found->size() != 1) {
+            throw Error(file.where(name) + " attribute " + attribute,
+                        "is missing or no number",
+                        "must be one number");
+        }
+        value = found->front();
+    };
+    read_number(kVelocityStart, axis.start_m_per_s);
+    read_number(kVelocityBinWidth, axis.bin_width_m_per_s);
+    if (file.real_attribute(name, kVelocityCarrier)) read_number(kVelocityCarrier, axis.carrier_hz);
+    validate(axis, file.where(name));
+    return axis;
+}
+
+void read_velocity(const Hdf5Reader& file, Capture& capture) {
+    core::VelocityHistogram velocity;
+    velocity.axis = read_velocity_axis(file);
+    const int time_bins = capture.time_axis.num_bins;
+    const auto bins_per_row = static_cast<std::size_t>(velocity.axis.with_time ? time_bins : 1);
+    const auto read_values = [&](const std::string& name) {
+        core::Transient values =
+            make_transient(file, name, capture, velocity.axis.num_values(time_bins));
+        file.read_rows(
+            name, [&](std::size_t first, std::size_t count, const std::vector<float>& rows) {
+                copy_bins(rows.data(), first * bins_per_row, count * bins_per_row, values);
+            });
+        return values;
+    };
+    velocity.values = read_values("nlos/velocity");
+    const std::string variance = "nlos/velocity_variance";
+    if (file.has(variance)) {
+        require_shape(file, variance, file.shape("nlos/velocity"));
+        velocity.variance = read_values(variance);
+        require_variances(file, variance, *velocity.variance);
+    }
+    capture.velocity = std::move(velocity);
+}
+
 /// Reads several transients stored as one array, each of them as H.
 std::vector<core::Transient> read_stack(const Hdf5Reader& file,
                                         const std::string& name,
@@ -299,7 +368,7 @@ std::vector<core::Transient> read_stack(const Hdf5Reader& file,
     require_shape(file, name, wanted);
     std::vector<core::Transient> stack;
     for (std::size_t i = 0; i < wanted[0]; ++i) {
-        stack.push_back(make_transient(file, name, capture));
+        stack.push_back(make_transient(file, name, capture, capture.time_axis.num_bins));
     }
     file.read_rows(name, [&](std::size_t first, std::size_t count, const std::vector<float>& rows) {
         for (std::size_t i = 0; i < count; ++i) {
@@ -345,16 +414,11 @@ void read_own_group(const Hdf5Reader& file, Capture& capture) {
     }
     if (file.has("nlos/H_by_order")) read_orders(file, capture);
     if (file.has("nlos/frames")) read_frames(file, capture);
+    if (file.has("nlos/velocity")) read_velocity(file, capture);
     if (!file.has("nlos/variance")) return;
     require_shape(file, "nlos/variance", file.shape("H"));
     capture.variance = read_transient(file, "nlos/variance", capture);
-    for (const float value : capture.variance->values()) {
-        if (!(value >= 0.0F) || !std::isfinite(value)) {
-            throw Error(file.where("nlos/variance"),
-                        fmt::format("found {}", value),
-                        "must be finite and not negative");
-        }
-    }
+    require_variances(file, "nlos/variance", *capture.variance);
 }
 
 bool recognise(const std::string& path) {

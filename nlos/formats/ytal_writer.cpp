@@ -94,6 +94,33 @@ void write_transient(Hdf5Writer& file,
         });
 }
 
+/// Power by path velocity: (V, pairs...), or (V, T, pairs...) with time.
+void write_velocity(Hdf5Writer& file,
+                    const Shape& h_shape,
+                    const core::VelocityHistogram& velocity) {
+    Shape shape = h_shape;
+    if (velocity.axis.with_time) {
+        shape.insert(shape.begin(), static_cast<std::size_t>(velocity.axis.num_bins));
+    } else {
+        shape[0] = static_cast<std::size_t>(velocity.axis.num_bins);
+    }
+    const std::size_t bins_per_row = velocity.axis.with_time ? h_shape[0] : 1;
+    const auto write = [&](const std::string& name, const core::Transient& values) {
+        file.write_rows(
+            name, shape, [&](std::size_t first, std::size_t count, std::vector<float>& rows) {
+                copy_rows(values, first * bins_per_row, count * bins_per_row, rows.data());
+            });
+    };
+    write("nlos/velocity", velocity.values);
+    const auto attribute = [&](const char* name, double value) {
+        file.write_attribute("nlos/velocity", name, {1}, {{value}});
+    };
+    attribute(kVelocityStart, velocity.axis.start_m_per_s);
+    attribute(kVelocityBinWidth, velocity.axis.bin_width_m_per_s);
+    attribute(kVelocityCarrier, velocity.axis.carrier_hz);
+    if (velocity.variance) write("nlos/velocity_variance", *velocity.variance);
+}
+
 /// Several transients as one array, each of them as H.
 void write_stack(Hdf5Writer& file,
                  const std::string& name,
@@ -116,7 +143,8 @@ bool write_own_group(Hdf5Writer& file,
                      const Capture& capture,
                      const CaptureWriteSettings& settings) {
     const bool radiance = capture.unit == core::TransientUnit::Radiance;
-    const bool has_own = capture.variance || !capture.orders.empty() || capture.sequence;
+    const bool has_own =
+        capture.variance || !capture.orders.empty() || capture.velocity || capture.sequence;
     if ((!has_own && radiance) || settings.for_ytal) return has_own;
     file.create_group("nlos");
     file.write_attribute("nlos", "unit", std::string(enum_name(capture.unit)));
@@ -128,6 +156,7 @@ bool write_own_group(Hdf5Writer& file,
         write_stack(file, "nlos/H_by_order", h_shape, capture.by_order);
         file.write("nlos/orders", {capture.orders.size()}, capture.orders);
     }
+    if (capture.velocity) write_velocity(file, h_shape, *capture.velocity);
     if (capture.sequence) {
         write_stack(file, "nlos/frames", h_shape, capture.sequence->frames);
         file.write_attribute("nlos/frames", kGateStep, {1}, {{capture.sequence->gate_step_m}});
@@ -187,7 +216,7 @@ std::vector<std::string> write_ytal_capture(const std::string& path,
     const bool has_own = write_own_group(file, h_shape, capture, settings);
     file.finish();
     if (settings.for_ytal && has_own) {
-        return {"the group /nlos (variance, orders of bounces, frames) is left out"};
+        return {"the group /nlos (variance, orders of bounces, velocities, frames) is left out"};
     }
     return {};
 }

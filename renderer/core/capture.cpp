@@ -34,13 +34,14 @@ void validate_points(const WallPoints& points, const std::string& where) {
 
 void validate_histograms(const Capture& capture,
                          const Transient& transient,
+                         int num_bins,
                          const std::string& where) {
     if (transient.num_pairs() != capture.scan.num_pairs() ||
-        transient.num_bins() != static_cast<std::size_t>(capture.time_axis.num_bins)) {
+        transient.num_bins() != static_cast<std::size_t>(num_bins)) {
         throw Error(
             where,
             fmt::format("found {} pairs x {} bins", transient.num_pairs(), transient.num_bins()),
-            fmt::format("must be {} x {}", capture.scan.num_pairs(), capture.time_axis.num_bins));
+            fmt::format("must be {} x {}", capture.scan.num_pairs(), num_bins));
     }
     for (const float value : transient.values()) {
         if (!std::isfinite(value)) {
@@ -66,11 +67,18 @@ void validate(const Capture& capture, const std::string& where) {
                     fmt::format("must equal the {} sensing points of a confocal scan",
                                 capture.scan.sensing.size()));
     }
-    validate_histograms(capture, capture.transient, where + ": H");
+    const int num_bins = capture.time_axis.num_bins;
+    validate_histograms(capture, capture.transient, num_bins, where + ": H");
+    if (capture.velocity) {
+        const VelocityAxis& axis = capture.velocity->axis;
+        validate(axis, where + ": velocity axis");
+        validate_histograms(
+            capture, capture.velocity->values, axis.num_values(num_bins), where + ": velocity");
+    }
     if (!capture.sequence) return;
     for (std::size_t i = 0; i < capture.sequence->frames.size(); ++i) {
         validate_histograms(
-            capture, capture.sequence->frames[i], fmt::format("{}: frame {}", where, i));
+            capture, capture.sequence->frames[i], num_bins, fmt::format("{}: frame {}", where, i));
     }
 }
 

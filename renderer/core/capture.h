@@ -6,6 +6,7 @@
 #include "renderer/core/time_axis.h"
 #include "renderer/core/transient.h"
 #include "renderer/core/types.h"
+#include "renderer/core/velocity_axis.h"
 
 #include <array>
 #include <optional>
@@ -104,7 +105,8 @@ struct Capture {
     std::optional<double> counts_per_radiance;  ///< when counts stem from known radiance
     std::vector<int> orders;          ///< bounce orders of `by_order`; empty when not resolved
     std::vector<Transient> by_order;  ///< one per entry of `orders`; they sum to `transient`
-    std::optional<FrameSequence> sequence;  ///< whose last frame the rest is about
+    std::optional<VelocityHistogram> velocity;  ///< the same light by path velocity
+    std::optional<FrameSequence> sequence;      ///< whose last frame the rest is about
 
     Json scene_info = Json::object();  ///< free dictionary: settings echo, version, seed, ...
     std::vector<std::string> notes;    ///< what the reader assumed or changed; shown by `nlos info`

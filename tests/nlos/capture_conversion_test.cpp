@@ -286,6 +286,33 @@ TEST(CaptureConversion, ExrSaysThatFramesAreLeftOut) {
     }
 }
 
+TEST(CaptureConversion, ExrOfACameraKeepsVelocitiesWithoutTime) {
+    const TemporaryFolder folder;
+    const std::string path = folder.file("moving.exr");
+    Capture image = test_support::example_image();
+    core::VelocityAxis axis{-1.0, 0.5, 4};
+    image.velocity = {axis, core::Transient(6, 4), std::nullopt};
+    float next = 0.0F;
+    for (float& value : image.velocity->values.values()) value = next += 0.5F;
+    EXPECT_TRUE(write_capture(path, image).empty());
+    const Capture read = read_capture(path);
+    EXPECT_TRUE(std::ranges::equal(read.transient.values(), image.transient.values()));
+    ASSERT_TRUE(read.velocity.has_value());
+    EXPECT_EQ(core::write_value(read.velocity->axis), core::write_value(axis));
+    EXPECT_TRUE(
+        std::ranges::equal(read.velocity->values.values(), image.velocity->values.values()));
+    ExrTable table = read_exr_table(path);
+    table.texts["nlosVelocityAxis"] = R"({"num_bins": 100})";
+    write_exr_table(folder.file("bad.exr"), table);
+    EXPECT_ERROR_WITH(read_capture(folder.file("bad.exr")), "has 100 bins");
+    image.velocity->axis.with_time = true;
+    image.velocity->values = core::Transient(6, 20);
+    const auto notes = write_capture(path, image);
+    ASSERT_EQ(notes.size(), 1U);
+    EXPECT_NE(notes[0].find("velocities with time are left out"), std::string::npos);
+    EXPECT_FALSE(read_capture(path).velocity.has_value());
+}
+
 TEST(CaptureConversion, DamagedExrImagesAreNamed) {
     const TemporaryFolder folder;
     const std::string path = folder.file("image.exr");

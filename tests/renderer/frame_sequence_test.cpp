@@ -59,8 +59,11 @@ renderer::RenderResult render_sequence(const core::Scan& scan,
                                        const core::Progress& progress = {}) {
     const auto scene = std::make_shared<const renderer::Scene>(
         renderer::SceneGeometry{objects_after(0.0), {}}, scan, description.relay_wall);
-    return renderer::render_frames(
-        scene, scan, description, renderer::make_frame_renderer(scan, description.render), progress);
+    return renderer::render_frames(scene,
+                                   scan,
+                                   description,
+                                   renderer::make_frame_renderer(scan, description.render),
+                                   progress);
 }
 
 // third_bounce is deterministic: a gate that moves by its width sees bin after bin.
@@ -76,7 +79,7 @@ TEST(FrameSequence, MovingGateSeesTheBinsOfTheHistogram) {
 
     const renderer::Scene scene({objects_after(0.0), {}}, scan, {});
     const auto histogram =
-        renderer::render(scene, scan, {1.2, 0.1, 8}, description.render, {}).capture;
+        renderer::render(scene, scan, core::TimeAxis{1.2, 0.1, 8}, description.render, {}).capture;
     const float largest =
         *std::max_element(histogram.transient.values().begin(), histogram.transient.values().end());
     for (std::size_t frame = 0; frame < 8; ++frame) {
@@ -115,13 +118,13 @@ TEST(FrameSequence, FramesAreRendersOfTheMovedScene) {
             EXPECT_LT((seen[i].scene->facet(0).corner - moved.facet(0).corner).norm(), 1e-12);
             core::TimeAxis axis = description.time_axis;
             axis.opl_start_m += 0.05 * static_cast<double>(i);
-            EXPECT_EQ(seen[i].axis.opl_start_m, axis.opl_start_m);
+            EXPECT_EQ(seen[i].axes.time.opl_start_m, axis.opl_start_m);
             const auto alone = renderer::render(moved, scan, axis, seen[i].settings, {});
             EXPECT_LT(test_support::relative_l2(result.capture.sequence->frames[i].values(),
                                                 alone.capture.transient.values()),
                       1e-6);
         }
-        EXPECT_EQ(result.capture.time_axis.opl_start_m, seen[2].axis.opl_start_m);
+        EXPECT_EQ(result.capture.time_axis.opl_start_m, seen[2].axes.time.opl_start_m);
         EXPECT_TRUE(std::ranges::equal(result.capture.transient.values(),
                                        result.capture.sequence->frames[2].values()));
     }

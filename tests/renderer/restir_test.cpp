@@ -5,6 +5,7 @@
 #include "renderer/core/random.h"
 #include "renderer/restir_render.h"
 #include "tests/support/error_message.h"
+#include "tests/support/repeated_estimates.h"
 #include "tests/support/statistics.h"
 #include "tests/support/test_scenes.h"
 
@@ -17,80 +18,12 @@ namespace {
 
 using core::Vec3;
 using renderer::Estimator;
+using test_support::Estimate;
+using test_support::expect_same_means;
+using test_support::Numbers;
 using test_support::Parallelogram;
-
-constexpr int kRenders = 24;
-
-// What a render says, as few numbers that many paths contribute to.
-using Numbers = std::vector<double>;
-
-Numbers sums_of(const core::Transient& transient) {
-    Numbers numbers(transient.num_bins() + transient.num_pairs() + 1);
-    for (std::size_t pair = 0; pair < transient.num_pairs(); ++pair) {
-        const auto histogram = transient.histogram(pair);
-        for (std::size_t bin = 0; bin < histogram.size(); ++bin) {
-            const double value = double{histogram[bin]};
-            numbers[bin] += value;
-            numbers[histogram.size() + pair] += value;
-            numbers.back() += value;
-        }
-    }
-    return numbers;
-}
-
-struct Estimate {
-    Numbers mean;
-    Numbers squared_error;
-};
-
-Estimate repeat(const std::function<Numbers(std::uint64_t seed)>& render, const std::string& name) {
-    Estimate estimate;
-    Numbers squares;
-    for (int i = 0; i < kRenders; ++i) {
-        const Numbers numbers = render(test_support::seed_of(name) + static_cast<std::uint64_t>(i));
-        estimate.mean.resize(numbers.size());
-        squares.resize(numbers.size());
-        for (std::size_t k = 0; k < numbers.size(); ++k) {
-            estimate.mean[k] += numbers[k] / kRenders;
-            squares[k] += numbers[k] * numbers[k] / kRenders;
-        }
-    }
-    for (std::size_t k = 0; k < squares.size(); ++k) {
-        const double spread = std::max(0.0, squares[k] - estimate.mean[k] * estimate.mean[k]);
-        estimate.squared_error.push_back(spread / (kRenders - 1));
-    }
-    return estimate;
-}
-
-// A t value as the normal value of about the same tail (source [Wallace1959]).
-double normal_of_t(double t) {
-    constexpr double kDegrees = kRenders - 1;
-    return std::copysign(
-        std::sqrt(kDegrees * std::log1p(t * t / kDegrees)) * (1.0 - 3.0 / (16.0 * kDegrees)), t);
-}
-
-void expect_same_means(const Estimate& a, const Estimate& b, double most_relative_error) {
-    ASSERT_EQ(a.mean.size(), b.mean.size());
-    std::vector<std::pair<double, std::size_t>> compared;
-    for (std::size_t k = 0; k < a.mean.size(); ++k) {
-        // Numbers that few paths make are far from normal.
-        const double error_a = std::sqrt(a.squared_error[k]);
-        const double error_b = std::sqrt(b.squared_error[k]);
-        const bool is_large = b.mean[k] > 0.02 * b.mean.back() && error_b < 0.1 * b.mean[k];
-        if (!is_large && !(error_a < 0.1 * a.mean[k] && error_b < 0.1 * b.mean[k])) continue;
-        compared.emplace_back((a.mean[k] - b.mean[k]) / std::hypot(error_a, error_b), k);
-    }
-    ASSERT_GT(4 * compared.size(), a.mean.size());
-    const double level = test_support::sidak_level(1e-3, compared.size());
-    for (const auto& [t, k] : compared) {
-        EXPECT_GT(test_support::normal_tail(normal_of_t(t)), level)
-            << "number " << k << " of " << a.mean.size() << ": " << a.mean[k] << " against "
-            << b.mean[k];
-    }
-    // The total, tightly.
-    const double sigma = std::sqrt(a.squared_error.back() + b.squared_error.back());
-    EXPECT_LT(sigma, most_relative_error * b.mean.back());
-}
+using test_support::repeat;
+using test_support::sums_of;
 
 // Two surfaces that light each other, an occluder before them, and a relay wall.
 constexpr double kVelocity = 0.2;
@@ -332,8 +265,7 @@ TEST_P(RestirFrames, EveryFrameAgreesWithPathTracing) {
                 },
                 std::string("RestirFrames.") + std::string(core::enum_name(method)));
         };
-        expect_same_means(
-            sequence(Estimator::Restir, 65), sequence(Estimator::Path, 4096), 0.2);
+        expect_same_means(sequence(Estimator::Restir, 65), sequence(Estimator::Path, 4096), 0.2);
     }
 }
 

@@ -201,4 +201,22 @@ TEST(SceneFile, FramesAreReadAndChecked) {
                       "must fit into");
 }
 
+TEST(SceneFile, VelocityAxisIsReadAndChecked) {
+    const auto scene = read_text(R"({"geometry": "a.glb", "velocity_axis": {
+        "start_m_per_s": -10, "bin_width_m_per_s": 0.5, "num_bins": 40, "with_time": false }})");
+    ASSERT_TRUE(scene.velocity_axis.has_value());
+    EXPECT_EQ(core::write_value(*scene.velocity_axis), core::write_value(core::VelocityAxis{}));
+    EXPECT_FALSE(read_text(R"({"geometry": "a.glb"})").velocity_axis.has_value());
+    const auto expect_error = [](const std::string& axis, const std::string& part) {
+        EXPECT_ERROR_WITH(read_text(R"({"geometry": "a.glb", "velocity_axis": {)" + axis + "}}"),
+                          part);
+    };
+    expect_error(R"("num_bins": 0)", "velocity_axis.num_bins: found 0");
+    expect_error(R"("bin_width_m_per_s": 0)", "velocity_axis.bin_width_m_per_s: found 0");
+    expect_error(R"("carrier_hz": -1)", "velocity_axis.carrier_hz: found -1");
+    expect_error(R"("bins": 4)", "carrier_hz");
+    expect_error(R"("num_bins": 1000000000)", "must fit into");
+    expect_error(R"("num_bins": 1000000000, "with_time": true)", "values per pair");
+}
+
 }  // namespace

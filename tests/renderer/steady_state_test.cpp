@@ -72,10 +72,8 @@ std::vector<double> radiosity_by_order(int max_order, int steps) {
             const double radiance = from.albedo / kPi * irradiance[i] * from.area_m2;
             if (radiance == 0.0) continue;
             for (std::size_t j = 0; j < patches.size(); ++j) {
-                next[j] += radiance * exchange(from.center,
-                                               from.normal,
-                                               patches[j].center,
-                                               patches[j].normal);
+                next[j] += radiance *
+                           exchange(from.center, from.normal, patches[j].center, patches[j].normal);
             }
         }
         irradiance = next;
@@ -103,7 +101,8 @@ TEST(PathTracer, EnergyOfEveryOrderMatchesARadiositySolution) {
     settings.by_order = true;
     settings.samples = 1 << 20;
     settings.seed = test_support::seed_of("Radiosity");
-    const auto result = renderer::render(scene, scan, {0.0, 0.01, 2000}, settings, {});
+    const auto result =
+        renderer::render(scene, scan, core::TimeAxis{0.0, 0.01, 2000}, settings, {});
     for (int order = 3; order <= kMaxOrder; ++order) {
         const auto i = static_cast<std::size_t>(order - 3);
         // The midpoint rule converges with the square of the patch size.

@@ -140,8 +140,8 @@ TEST(PathTracer, InterruptedRenderKeepsWholePasses) {
     core::Progress progress;
     int passes = 0;
     progress.stop_requested = [&] { return ++passes == 3; };
-    const auto result =
-        renderer::render(scene, scan, {1.2, 0.02, 40}, settings_for("Interrupted", 800), progress);
+    const auto result = renderer::render(
+        scene, scan, core::TimeAxis{1.2, 0.02, 40}, settings_for("Interrupted", 800), progress);
     EXPECT_TRUE(result.interrupted);
     EXPECT_EQ(result.samples_per_pair, 300U);
     double sum = 0.0;
@@ -162,7 +162,8 @@ TEST(PathTracer, GateWeightsPathsByLength) {
         renderer::RenderSettings settings = settings_for("GateWeights", 1000);
         settings.gate = gate;
         // Centre at 1.005 m, width 0.02 m: a quarter of the width off.
-        const auto result = renderer::render(scene, scan, {0.995, 0.02, 1}, settings, {});
+        const auto result =
+            renderer::render(scene, scan, core::TimeAxis{0.995, 0.02, 1}, settings, {});
         EXPECT_NEAR(result.capture.transient.values()[0] / (expected * weight), 1.0, 1e-3);
     }
 }
@@ -180,7 +181,8 @@ TEST(PathTracer, RetroreflectorReturnsTheSpotOfConfocalPairsOnly) {
         const renderer::Scene scene(std::move(geometry), scan, renderer::RelayWall{});
         renderer::RenderSettings settings = settings_for("Retro", 1000);
         settings.laser_spot_m2 = kSpot;
-        const auto result = renderer::render(scene, scan, {0.9, 0.2, 1}, settings, {});
+        const auto result =
+            renderer::render(scene, scan, core::TimeAxis{0.9, 0.2, 1}, settings, {});
         const double expected = std::pow(core::kPi, -2) * 0.9 / kSpot * 4e-8 / 0.25;
         EXPECT_NEAR(
             result.capture.transient.values()[0], confocal ? expected : 0.0, 1e-3 * expected);

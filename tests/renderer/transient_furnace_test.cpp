@@ -277,7 +277,7 @@ TEST(TransientFurnace, FrontDoorAddsTheStraightWay) {
     renderer::RenderSettings settings;
     settings.by_order = true;
     settings.samples = 8;
-    const auto result = renderer::render(scene, scan, {0.0, 0.02, 600}, settings, {});
+    const auto result = renderer::render(scene, scan, core::TimeAxis{0.0, 0.02, 600}, settings, {});
     double total = 0.0;
     for (const float value : result.capture.by_order[1].values()) total += double{value};
     // The facet normals at both ends are off the radius by up to half a facet.

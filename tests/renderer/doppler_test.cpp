@@ -1,0 +1,474 @@
+// SPDX-License-Identifier: MIT
+// Path velocities against closed forms, against moved scenes and between estimators.
+#include "renderer/core/parallel.h"
+#include "renderer/core/random.h"
+#include "renderer/frame_sequence.h"
+#include "renderer/path_extent.h"
+#include "tests/support/error_message.h"
+#include "tests/support/repeated_estimates.h"
+#include "tests/support/statistics.h"
+#include "tests/support/test_scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+namespace {
+
+using core::kPi;
+using core::Vec3;
+using renderer::Estimator;
+using test_support::Parallelogram;
+
+const core::TimeAxis kAllLengths{0.0, 30.0, 1};
+const Vec3 kVelocity(1.3, -0.8, 4.0);
+
+// A square of 2 mm around `center`, small enough to have one velocity.
+renderer::Object small_patch(const Vec3& center, const Vec3& velocity) {
+    const Vec3 u(2e-3, 0, 4e-4);
+    const Vec3 v(0, 2e-3, -3e-4);
+    renderer::Object patch =
+        test_support::parallelogram_object({center - 0.5 * (u + v), u, v, 0.8});
+    patch.velocity_m_per_s = velocity;
+    return patch;
+}
+
+core::Scan image_of(const core::PinholeCamera& camera) {
+    core::Scan scan;
+    scan.pattern = core::ScanPattern::Single;
+    scan.opl_origin = core::OplOrigin::Device;
+    scan.camera = camera;
+    return scan;
+}
+
+// Two surfaces that light each other and move apart, an occluder at rest before them.
+renderer::Scene moving_scene(const core::Scan& scan, double speed = 1.0) {
+    std::vector<renderer::Object> objects{
+        test_support::parallelogram_object(
+            {Vec3(-0.25, -0.2, 0.75), Vec3(0.45, 0.05, 0.15), Vec3(-0.05, 0.4, -0.1), 0.8}),
+        test_support::parallelogram_object(
+            {Vec3(0.3, -0.3, 0.5), Vec3(0.05, 0.6, 0.05), Vec3(0.0, 0.1, 0.4), 0.7}),
+        test_support::parallelogram_object(
+            {Vec3(-0.05, -0.1, 0.4), Vec3(0.15, 0, 0.02), Vec3(0.02, 0.2, 0), 0.5})};
+    objects[0].velocity_m_per_s = speed * Vec3(1.0, 0.5, -2.0);
+    objects[1].velocity_m_per_s = speed * Vec3(-2.0, 0.0, 1.0);
+    return renderer::Scene({objects, {}}, scan, {});
+}
+
+core::Scan wall_scan(core::ScanPattern pattern) {
+    const std::vector<Vec3> points{{-0.3, -0.2, 0}, {0.1, 0.0, 0}, {-0.1, 0.3, 0}, {0.2, 0.25, 0}};
+    if (pattern == core::ScanPattern::Confocal) return test_support::confocal_scan(points);
+    return test_support::single_scan({0.1, 0.05, 0.0}, points);
+}
+
+core::Scan small_image() {
+    core::PinholeCamera camera;
+    camera.position_m = Vec3(0.1, 0.1, -0.5);
+    camera.look_at_m = Vec3(0.05, 0, 0.8);
+    camera.light_m = Vec3(-0.3, 0.3, -0.1);
+    camera.resolution = {3, 3};
+    return image_of(camera);
+}
+
+renderer::RenderSettings settings_for(Estimator method, int samples, int max_bounces) {
+    renderer::RenderSettings settings;
+    settings.method = method;
+    settings.samples = samples;
+    settings.max_bounces = max_bounces;
+    settings.variance = true;
+    settings.seed = test_support::seed_of("Doppler");
+    settings.restir.shared_walks = 64;
+    settings.restir.neighbours = 2;
+    return settings;
+}
+
+double sum_of(std::span<const float> values) {
+    return std::accumulate(values.begin(), values.end(), 0.0);
+}
+
+// Centre of the bins that hold a pair's light, weighted by it.
+double mean_velocity(const core::VelocityHistogram& velocity, std::size_t pair) {
+    const auto histogram = velocity.values.histogram(pair);
+    double sum = 0.0;
+    for (std::size_t i = 0; i < histogram.size(); ++i) {
+        sum += double{histogram[i]} * velocity.axis.bin_center_m_per_s(static_cast<double>(i));
+    }
+    return sum / sum_of(histogram);
+}
+
+TEST(PathExtent, VelocityIsTheRateAtWhichTheLengthChanges) {
+    core::Rng rng(test_support::seed_of("PathExtent"), 0, 0);
+    const auto random = [&] { return Vec3(rng.uniform(), rng.uniform(), rng.uniform()); };
+    for (int trial = 0; trial < 100; ++trial) {
+        std::vector<Vec3> points;
+        std::vector<Vec3> velocities;
+        for (int i = 0; i < 5; ++i) {
+            points.push_back(random());
+            velocities.push_back(random() - random());
+        }
+        const auto extent_after = [&](double seconds) {
+            renderer::PathExtent extent;
+            for (std::size_t i = 1; i < points.size(); ++i) {
+                const Vec3 from = points[i - 1] + seconds * velocities[i - 1];
+                extent.add_segment(
+                    points[i] + seconds * velocities[i] - from, velocities[i - 1], velocities[i]);
+            }
+            return extent;
+        };
+        constexpr double kStep_s = 1e-6;
+        const double by_difference =
+            (extent_after(kStep_s).opl_m - extent_after(-kStep_s).opl_m) / (2.0 * kStep_s);
+        EXPECT_NEAR(extent_after(0.0).velocity_m_per_s, by_difference, 1e-8);
+    }
+}
+
+TEST(FrequencyShift, IsThatOfTheCarrier) {
+    // At 1 m/s of path velocity 193 THz shift by 643.8 kHz and 24 GHz by 80.06 Hz, downwards.
+    EXPECT_NEAR(core::frequency_shift_hz(193e12, 1.0), -643778.7, 0.1);
+    EXPECT_NEAR(core::frequency_shift_hz(24e9, -2.5), 200.1384, 1e-4);
+    EXPECT_EQ(core::frequency_shift_hz(24e9, 0.0), 0.0);
+}
+
+class DopplerOf : public testing::TestWithParam<Estimator> {};
+
+// u = -v . (u_l + u_s), the rate of |l - p| + |p - s| for p moving with v.
+TEST_P(DopplerOf, MovingPatchHasTheClosedForm) {
+    const Vec3 p(0.15, -0.1, 0.6);
+    for (const auto pattern : {core::ScanPattern::Confocal, core::ScanPattern::Single}) {
+        const core::Scan scan = wall_scan(pattern);
+        const renderer::Scene scene({{small_patch(p, kVelocity)}, {}}, scan, {});
+        core::VelocityAxis axis;
+        axis.bin_width_m_per_s = 0.002;
+        axis.num_bins = 10000;
+        const auto capture =
+            renderer::render(
+                scene, scan, {kAllLengths, axis}, settings_for(GetParam(), 4096, 3), {})
+                .capture;
+        for (std::size_t pair = 0; pair < scan.num_pairs(); ++pair) {
+            const auto length_after = [&](double seconds) {
+                const Vec3 x = p + seconds * kVelocity;
+                return (x - scan.sensing.positions[scan.sensing_index(pair)]).norm() +
+                       (x - scan.illumination.positions[scan.illumination_index(pair)]).norm();
+            };
+            const double expected = (length_after(1e-6) - length_after(-1e-6)) / 2e-6;
+            const double found = mean_velocity(*capture.velocity, pair);
+            // Directions differ over the patch by 2 mm / 0.6 m; their mean by far less.
+            EXPECT_NEAR(found, expected, 1e-3);
+            for (const double carrier_hz : {193e12, 24e9}) {
+                EXPECT_NEAR(core::frequency_shift_hz(carrier_hz, found),
+                            -carrier_hz * expected / 299792458.0,
+                            carrier_hz * 1e-3 / 299792458.0);
+            }
+            const auto histogram = capture.velocity->values.histogram(pair);
+            for (std::size_t i = 0; i < histogram.size(); ++i) {
+                const double center = axis.bin_center_m_per_s(static_cast<double>(i));
+                if (std::abs(center - expected) > 0.03) {
+                    EXPECT_EQ(histogram[i], 0.0F);
+                }
+            }
+            EXPECT_NEAR(sum_of(histogram) / sum_of(capture.transient.histogram(pair)), 1.0, 1e-6);
+        }
+    }
+}
+
+TEST_P(DopplerOf, StaticSceneIsALineAtZero) {
+    for (const core::Scan& scan : {wall_scan(core::ScanPattern::Single), small_image()}) {
+        const auto capture = renderer::render(moving_scene(scan, 0.0),
+                                              scan,
+                                              {kAllLengths, core::VelocityAxis{}},
+                                              settings_for(GetParam(), 640, 5),
+                                              {})
+                                 .capture;
+        const core::VelocityAxis& axis = capture.velocity->axis;
+        const auto line = static_cast<std::size_t>(*axis.bin_of(0.0));
+        for (std::size_t pair = 0; pair < scan.num_pairs(); ++pair) {
+            const auto histogram = capture.velocity->values.histogram(pair);
+            EXPECT_FLOAT_EQ(histogram[line], capture.transient.histogram(pair)[0]);
+            EXPECT_FLOAT_EQ(static_cast<float>(sum_of(histogram)), histogram[line]);
+        }
+        EXPECT_GT(sum_of(capture.transient.values()), 0.0);
+    }
+}
+
+TEST_P(DopplerOf, PowerEqualsThatOfTheTimeHistogram) {
+    const core::TimeAxis time{1.2, 0.15, 12};
+    core::VelocityAxis axis{-20.0, 2.5, 16, true};
+    for (const core::Scan& scan : {wall_scan(core::ScanPattern::Confocal), small_image()}) {
+        const renderer::Scene scene = moving_scene(scan);
+        const auto settings = settings_for(GetParam(), 640, 5);
+        axis.with_time = true;
+        const auto joint = renderer::render(scene, scan, {time, axis}, settings, {}).capture;
+        axis.with_time = false;
+        const auto alone = renderer::render(scene, scan, {time, axis}, settings, {}).capture;
+        for (std::size_t pair = 0; pair < scan.num_pairs(); ++pair) {
+            for (std::size_t t = 0; t < 12; ++t) {
+                double sum = 0.0;
+                for (std::size_t v = 0; v < 16; ++v) {
+                    sum += double{joint.velocity->values.histogram(pair)[v * 12 + t]};
+                }
+                const double power = double{joint.transient.histogram(pair)[t]};
+                EXPECT_NEAR(sum, power, 1e-5 * power + 1e-20);
+            }
+            EXPECT_NEAR(sum_of(alone.velocity->values.histogram(pair)),
+                        sum_of(alone.transient.histogram(pair)),
+                        1e-5 * sum_of(alone.transient.histogram(pair)));
+        }
+    }
+}
+
+// What lies outside the velocity axis still belongs to H.
+TEST_P(DopplerOf, TimeHistogramKeepsWhatTheVelocityAxisLeavesOut) {
+    const core::Scan scan = wall_scan(core::ScanPattern::Single);
+    const renderer::Scene scene = moving_scene(scan);
+    const auto settings = settings_for(GetParam(), 6400, 3);
+    const auto wide =
+        renderer::render(scene, scan, {kAllLengths, core::VelocityAxis{}}, settings, {});
+    const core::VelocityAxis narrow{0.0, 0.5, 2};
+    const auto cut = renderer::render(scene, scan, {kAllLengths, narrow}, settings, {});
+    const double all = sum_of(wide.capture.transient.values());
+    EXPECT_NEAR(sum_of(cut.capture.transient.values()) / all, 1.0, 0.1);
+    EXPECT_LT(sum_of(cut.capture.velocity->values.values()), 0.8 * all);
+    EXPECT_GT(sum_of(cut.capture.velocity->values.values()), 0.05 * all);
+}
+
+// The spectrum of a moving surface, its third bounces summed over midpoints.
+TEST_P(DopplerOf, SpectrumOfAPlateIsTheQuadrature) {
+    const Parallelogram plate{Vec3(-0.3, -0.2, 0.55), Vec3(0.6, 0, 0.2), Vec3(0, 0.5, 0.1), 0.7};
+    const core::Scan scan = wall_scan(core::ScanPattern::Single);
+    renderer::Object object = test_support::parallelogram_object(plate);
+    object.velocity_m_per_s = kVelocity;
+    const renderer::Scene scene({{object}, {}}, scan, {});
+    const core::VelocityAxis axis{0.0, 0.25, 40};
+    const auto capture =
+        renderer::render(scene, scan, {kAllLengths, axis}, settings_for(GetParam(), 1 << 15, 3), {})
+            .capture;
+    constexpr int kSteps = 600;
+    const Vec3 area = plate.u.cross(plate.v);
+    const double level = test_support::sidak_level(1e-3, 4U * 40U);
+    for (std::size_t pair = 0; pair < scan.num_pairs(); ++pair) {
+        std::vector<double> expected(40);
+        const Vec3& l = scan.illumination.positions[0];
+        const Vec3& s = scan.sensing.positions[pair];
+        for (int i = 0; i < kSteps * kSteps; ++i) {
+            const Vec3 x = plate.corner + (i / kSteps + 0.5) / kSteps * plate.u +
+                           (i % kSteps + 0.5) / kSteps * plate.v;
+            const Vec3 to_l = (l - x).normalized();
+            const Vec3 to_s = (s - x).normalized();
+            const auto bin = axis.bin_of(-kVelocity.dot(to_l + to_s));
+            if (!bin) continue;
+            const double cosines = std::abs(to_l.z() * to_s.z() * area.dot(to_l) * area.dot(to_s)) /
+                                   area.squaredNorm();
+            expected[static_cast<std::size_t>(*bin)] +=
+                plate.albedo / (kPi * kPi * kPi) * cosines /
+                ((l - x).squaredNorm() * (s - x).squaredNorm()) * area.norm() / (kSteps * kSteps);
+        }
+        const double total = std::accumulate(expected.begin(), expected.end(), 0.0);
+        ASSERT_GT(total, 0.0);
+        for (std::size_t bin = 0; bin < expected.size(); ++bin) {
+            const double found = double{capture.velocity->values.histogram(pair)[bin]};
+            if (expected[bin] < 0.01 * total) {
+                EXPECT_LT(found, 0.02 * total) << pair << " " << bin;
+                continue;
+            }
+            const double sigma =
+                std::sqrt(double{capture.velocity->variance->histogram(pair)[bin]});
+            EXPECT_LT(sigma, 0.1 * expected[bin]);
+            const double z = (found - expected[bin]) / std::hypot(sigma, 3e-3 * expected[bin]);
+            EXPECT_GT(test_support::normal_tail(z), level)
+                << "pair " << pair << ", bin " << bin << ": " << found << " against "
+                << expected[bin];
+        }
+    }
+}
+
+TEST_P(DopplerOf, SameBitsForAnyNumberOfThreads) {
+    const core::Scan scan = wall_scan(core::ScanPattern::Confocal);
+    const renderer::Scene scene = moving_scene(scan);
+    core::VelocityAxis axis;
+    axis.with_time = true;
+    const auto render = [&](int num_threads) {
+        const core::ThreadLimit limit(num_threads);
+        return renderer::render(scene,
+                                scan,
+                                {core::TimeAxis{1.2, 0.15, 12}, axis},
+                                settings_for(GetParam(), 128, 4),
+                                {})
+            .capture;
+    };
+    const auto one = render(1);
+    const auto seven = render(7);
+    EXPECT_TRUE(std::ranges::equal(one.velocity->values.values(), seven.velocity->values.values()));
+    EXPECT_TRUE(
+        std::ranges::equal(one.velocity->variance->values(), seven.velocity->variance->values()));
+}
+
+INSTANTIATE_TEST_SUITE_P(Estimators,
+                         DopplerOf,
+                         testing::Values(Estimator::Path,
+                                         Estimator::Ellipsoidal,
+                                         Estimator::Restir),
+                         [](const auto& test) { return std::string(core::enum_name(test.param)); });
+
+struct Measured {
+    const char* name;
+    core::Scan scan;
+    core::HistogramAxes axes;
+    int max_bounces;
+};
+
+std::vector<Measured> measured() {
+    const core::VelocityAxis alone{-12.0, 1.5, 16};
+    const core::VelocityAxis joint{-12.0, 3.0, 8, true};
+    return {{"scan", wall_scan(core::ScanPattern::Confocal), {{1.2, 0.9, 2}, alone}, 5},
+            {"scan_with_time", wall_scan(core::ScanPattern::Single), {{1.2, 0.3, 6}, joint}, 4},
+            {"image", small_image(), {{1.8, 1.0, 2}, alone}, 4},
+            {"image_with_time", small_image(), {{1.8, 0.5, 4}, joint}, 3}};
+}
+
+class DopplerIn : public testing::TestWithParam<std::size_t> {};
+
+TEST_P(DopplerIn, EstimatorsAgreeBinByBin) {
+    const Measured setting = measured()[GetParam()];
+    const renderer::Scene scene = moving_scene(setting.scan);
+    const auto estimate = [&](const std::string& name, renderer::RenderSettings settings) {
+        settings.max_bounces = setting.max_bounces;
+        settings.variance = false;
+        return test_support::repeat(
+            [&](std::uint64_t seed) {
+                settings.seed = seed;
+                const auto capture =
+                    renderer::render(scene, setting.scan, setting.axes, settings, {}).capture;
+                test_support::Numbers numbers = test_support::sums_of(capture.transient);
+                const auto more = test_support::sums_of(capture.velocity->values);
+                numbers.insert(numbers.end(), more.begin(), more.end());
+                return numbers;
+            },
+            std::string("Doppler.") + setting.name + name);
+    };
+    const auto paths = estimate("paths", settings_for(Estimator::Path, 16384, 3));
+    const auto expect_the_same = [&](const std::string& name,
+                                     const renderer::RenderSettings& settings) {
+        SCOPED_TRACE(name);
+        test_support::expect_same_means(estimate(name, settings), paths, 0.04);
+    };
+    expect_the_same("ellipsoidal", settings_for(Estimator::Ellipsoidal, 4096, 3));
+    renderer::RenderSettings restir = settings_for(Estimator::Restir, 2080, 3);
+    expect_the_same("restir", restir);
+    restir.restir.rounds = 4;
+    expect_the_same("rounds", restir);
+    restir.restir.rounds = 1;
+    restir.restir.chart = renderer::Chart::Hemisphere;
+    expect_the_same("hemisphere", restir);
+    restir.restir.chart = renderer::Chart::Plane;
+    restir.restir.candidates = renderer::Candidates::Ellipsoidal;
+    restir.restir.walks = 16;
+    expect_the_same("plane", restir);
+    restir.restir.reuse = renderer::Reuse::Naive;
+    expect_the_same("naive", restir);
+}
+
+INSTANTIATE_TEST_SUITE_P(Measurements,
+                         DopplerIn,
+                         testing::Range<std::size_t>(0, 4),
+                         [](const auto& test) { return measured()[test.param].name; });
+
+// Objects move on between the frames, and paths with them.
+TEST(Doppler, FramesOfResampledPathsAgreeWithPathTracing) {
+    const core::Scan scan = wall_scan(core::ScanPattern::Confocal);
+    renderer::SceneDescription description;
+    description.time_axis = {1.2, 1.2, 1};
+    description.velocity_axis = core::VelocityAxis{-12.0, 2.0, 12};
+    description.frames = {5, 0.01, 0.005};
+    const auto sequence = [&](Estimator method, int samples) {
+        description.render = settings_for(method, samples, 4);
+        return test_support::repeat(
+            [&](std::uint64_t seed) {
+                description.render.seed = seed;
+                const auto scene = std::make_shared<const renderer::Scene>(moving_scene(scan));
+                const auto result =
+                    renderer::render_frames(scene,
+                                            scan,
+                                            description,
+                                            renderer::make_frame_renderer(scan, description.render),
+                                            {});
+                return test_support::sums_of(result.capture.velocity->values);
+            },
+            "Doppler.Frames");
+    };
+    test_support::expect_same_means(
+        sequence(Estimator::Restir, 1040), sequence(Estimator::Path, 8192), 0.04);
+}
+
+// A pixel so narrow that it sees a point: u = -v . (u_camera + u_light).
+TEST(Doppler, DirectLightOfAMovingSurfaceHasTheClosedForm) {
+    core::PinholeCamera camera;
+    camera.position_m = Vec3(0.1, -0.2, 1.5);
+    camera.look_at_m = Vec3(0.3, 0.2, 0.0);
+    camera.light_m = Vec3(-0.4, 0.3, 0.8);
+    camera.fov_y_deg = 1e-4;
+    camera.resolution = {1, 1};
+    const core::Scan scan = image_of(camera);
+    renderer::Object floor =
+        test_support::parallelogram_object({Vec3(-2, -2, 0), Vec3(4, 0, 0), Vec3(0, 4, 0), 0.6});
+    floor.velocity_m_per_s = kVelocity;
+    const renderer::Scene scene({{floor}, {}}, scan, {});
+    const core::VelocityAxis axis{-10.0, 1e-3, 20000};
+    const double expected = -kVelocity.dot((camera.position_m - camera.look_at_m).normalized() +
+                                           (*camera.light_m - camera.look_at_m).normalized());
+    for (const auto method : {Estimator::Path, Estimator::Ellipsoidal, Estimator::Restir}) {
+        const auto capture =
+            renderer::render(scene, scan, {kAllLengths, axis}, settings_for(method, 64, 1), {})
+                .capture;
+        EXPECT_NEAR(mean_velocity(*capture.velocity, 0), expected, 1e-3);
+    }
+}
+
+// The spot moves along with its surface, and with it the end of every path.
+TEST(Doppler, LitSpotMovesWithItsSurface) {
+    core::PinholeCamera camera;
+    camera.position_m = Vec3(0.0, 0.0, 1.5);
+    camera.look_at_m = Vec3(0.3, 0.2, 0.0);
+    camera.light_spot_m = Vec3(-0.4, 0.3, 0.0);
+    camera.fov_y_deg = 1e-4;
+    camera.resolution = {1, 1};
+    const core::Scan scan = image_of(camera);
+    renderer::Object floor =
+        test_support::parallelogram_object({Vec3(0, -2, 0), Vec3(2, 0, 0), Vec3(0, 4, 0), 0.6});
+    renderer::Object lit =
+        test_support::parallelogram_object({Vec3(-2, -2, 0), Vec3(1.9, 0, 0), Vec3(0, 4, 0), 0.6});
+    // A slope, so that floor and spot see each other.
+    for (Vec3& vertex : lit.mesh.vertices) vertex.z() -= 0.5 * (vertex.x() + 0.4);
+    lit.velocity_m_per_s = kVelocity;
+    const renderer::Scene scene({{floor, lit}, {}}, scan, {});
+    const core::VelocityAxis axis{-10.0, 1e-3, 20000};
+    const auto capture =
+        renderer::render(scene, scan, {kAllLengths, axis}, settings_for(Estimator::Path, 64, 2), {})
+            .capture;
+    const double expected = kVelocity.dot((*camera.light_spot_m - camera.look_at_m).normalized());
+    EXPECT_NEAR(mean_velocity(*capture.velocity, 0), expected, 1e-3);
+}
+
+TEST(Doppler, RefusesWhatKnowsNoVelocities) {
+    const core::Scan scan = wall_scan(core::ScanPattern::Confocal);
+    const core::HistogramAxes axes{kAllLengths, core::VelocityAxis{}};
+    EXPECT_ERROR_WITH(
+        renderer::render(
+            moving_scene(scan), scan, axes, settings_for(Estimator::ThirdBounce, 1, 3), {}),
+        "must be auto, path, ellipsoidal or restir");
+    renderer::RenderSettings shrinking = settings_for(Estimator::Restir, 1, 3);
+    shrinking.restir.shrink_fraction = 0.5;
+    EXPECT_ERROR_WITH(renderer::render(moving_scene(scan), scan, axes, shrinking, {}),
+                      "shrink_fraction: found 0.5 for 1 bins and a velocity axis");
+    renderer::Object wall =
+        test_support::parallelogram_object({Vec3(-1, -1, 0), Vec3(2, 0, 0), Vec3(0, 2, 0), 1.0});
+    wall.role = renderer::Role::RelayWall;
+    wall.velocity_m_per_s = Vec3(0, 0, 1);
+    const renderer::Scene moving_wall(
+        {{wall, small_patch(Vec3(0, 0, 1), kVelocity)}, {}}, scan, {});
+    EXPECT_ERROR_WITH(
+        renderer::render(moving_wall, scan, axes, settings_for(Estimator::Path, 1, 3), {}),
+        "a relay wall that moves");
+}
+
+}  // namespace
