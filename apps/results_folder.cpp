@@ -85,6 +85,16 @@ std::vector<Fact> capture_facts(const core::Capture& capture) {
                         short_number(1e3 * capture.sequence->gate_step_m),
                         short_number(capture.sequence->frame_s)));
     }
+    if (capture.velocity) {
+        const core::VelocityAxis& velocity = capture.velocity->axis;
+        facts.emplace_back("Path velocity",
+                           range_text(velocity.start_m_per_s, velocity.end_m_per_s(), "m/s"));
+        facts.emplace_back(
+            fmt::format("Frequency shift at {} GHz", short_number(1e-9 * velocity.carrier_hz)),
+            range_text(1e-3 * core::frequency_shift_hz(velocity.carrier_hz, velocity.start_m_per_s),
+                       1e-3 * core::frequency_shift_hz(velocity.carrier_hz, velocity.end_m_per_s()),
+                       "kHz"));
+    }
     facts.insert(
         facts.end(),
         {{"Bins",

@@ -206,6 +206,19 @@ std::vector<Panel> image_panels(const core::Capture& capture) {
     return panels;
 }
 
+/// Streak image, light over the wall and mean transient, as far as there are these.
+std::vector<Panel> scan_panels(const core::Capture& capture) {
+    const std::optional<WallGrid> grid = derive_wall_frame(capture.scan).grid;
+    const std::vector<double> mean = mean_transient(capture);
+    const std::array<std::size_t, 2> bins = shown_bins(mean);
+    const bool has_time = capture.transient.num_bins() > 1;
+    std::vector<Panel> panels;
+    if (has_time || !grid) panels.emplace_back(streak_panel(capture, grid, bins));
+    if (grid) panels.emplace_back(wall_panel(capture, capture.transient, *grid));
+    if (has_time) panels.emplace_back(curve_panel(capture, mean, bins));
+    return panels;
+}
+
 /// A few frames of a sequence, all on one scale; nothing for point lists, which make no image.
 std::vector<Panel> film_strip(const core::Capture& capture) {
     const core::FrameSequence& sequence = *capture.sequence;
@@ -258,19 +271,13 @@ std::string encode_preview_png(const core::Capture& capture) {
 }
 
 std::vector<Panel> capture_panels(const core::Capture& capture) {
-    if (capture.sequence) {
-        std::vector<Panel> strip = film_strip(capture);
-        if (!strip.empty()) return strip;
-    }
-    if (capture.scan.camera) return image_panels(capture);
-    const std::optional<WallGrid> grid = derive_wall_frame(capture.scan).grid;
-    const std::vector<double> mean = mean_transient(capture);
-    const std::array<std::size_t, 2> bins = shown_bins(mean);
-    const bool has_time = capture.transient.num_bins() > 1;
     std::vector<Panel> panels;
-    if (has_time || !grid) panels.emplace_back(streak_panel(capture, grid, bins));
-    if (grid) panels.emplace_back(wall_panel(capture, capture.transient, *grid));
-    if (has_time) panels.emplace_back(curve_panel(capture, mean, bins));
+    if (capture.sequence) panels = film_strip(capture);
+    if (panels.empty()) {
+        panels = capture.scan.camera ? image_panels(capture) : scan_panels(capture);
+    }
+    const std::vector<Panel> velocities = velocity_panels(capture);
+    panels.insert(panels.end(), velocities.begin(), velocities.end());
     return panels;
 }
 

@@ -20,8 +20,12 @@ std::vector<Panel> volume_panels(const Reconstruction& reconstruction);
 ///
 /// Point lists have no picture of the wall; a single time gate has nothing but that. Of a camera:
 /// the image of all light, the mean transient, and images in a few gates. Of a sequence: some of
-/// its frames on one scale.
+/// its frames on one scale. Behind them velocity_panels().
 std::vector<Panel> capture_panels(const core::Capture& capture);
+
+/// What a capture says of path velocities: the image of their mean, the spectrum and, where time is
+/// resolved too, power by both. Nothing without velocities; no image of lists and exhaustive scans.
+std::vector<Panel> velocity_panels(const core::Capture& capture);
 
 /// The image of a camera, all bins together, as a screen shows it: grey, gamma 2.2, one pixel in a
 /// hundred white, small images enlarged.

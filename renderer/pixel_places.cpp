@@ -79,7 +79,7 @@ PixelPlaces::PixelPlaces(const Measurement& measurement, std::size_t height)
     const core::Vec3 light = measurement.ends(0).light.position;
     core::parallel_for(opl_m_.size(), [&](std::size_t pixel) {
         const auto seen = measurement.first_vertex(pixel, {0.5, 0.5});
-        if (seen) opl_m_[pixel] = seen->opl_m + (light - seen->point.position).norm();
+        if (seen) opl_m_[pixel] = seen->extent.opl_m + (light - seen->point.position).norm();
     });
 }
 

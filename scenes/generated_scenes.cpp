@@ -13,7 +13,8 @@ std::vector<GeneratedScene> generated_scenes() {
             make_glossy(),
             make_curved(),
             make_box_room(),
-            make_diffuse_room()};
+            make_diffuse_room(),
+            make_traffic()};
 }
 
 void write_scene(const GeneratedScene& scene, const std::string& folder) {

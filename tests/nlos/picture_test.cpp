@@ -235,6 +235,35 @@ TEST(Pictures, EveryKindOfCaptureCanBeDrawn) {
     EXPECT_FALSE(encode_panels_png(capture_panels(gate), 3).empty());
 }
 
+TEST(Pictures, VelocitiesHaveAnImageOfTheirMeanAndASpectrum) {
+    core::Capture capture = test_support::example_image();
+    const core::VelocityAxis axis{-1.0, 0.5, 4};
+    capture.velocity = {axis, core::Transient(6, 4), std::nullopt};
+    // Pixel x = 1, y = 0 is pair 2: centres -0.75 and 0.75 m/s.
+    capture.velocity->values.histogram(2)[0] = 1.0F;
+    capture.velocity->values.histogram(2)[3] = 3.0F;
+    const std::vector<Panel> panels = velocity_panels(capture);
+    ASSERT_EQ(panels.size(), 2U);
+    EXPECT_FLOAT_EQ(image(panels[0]).values[1], 0.375F);
+    EXPECT_TRUE(std::isnan(image(panels[0]).values[0]));
+    const auto& spectrum = std::get<CurvePanel>(panels[1]);
+    // Steps from edge to edge, in decibels over a millionth of all light.
+    EXPECT_EQ(spectrum.x, (std::vector<double>{-1.0, -0.5, -0.5, 0.0, 0.0, 0.5, 0.5, 1.0}));
+    EXPECT_NEAR(spectrum.y.front(), 10.0 * std::log10(0.25e6), 1e-9);
+    EXPECT_EQ(spectrum.y[2], 0.0);
+    EXPECT_NEAR(spectrum.y.back(), 10.0 * std::log10(0.75e6), 1e-9);
+    EXPECT_EQ(capture_panels(capture).size(), 8U);
+    EXPECT_FALSE(encode_panels_png(capture_panels(capture), 3).empty());
+
+    capture.velocity->axis.with_time = true;
+    capture.velocity->values = core::Transient(6, 20);
+    capture.velocity->values.histogram(2)[3 * 5 + 1] = 1.0F;
+    const std::vector<Panel> joint = velocity_panels(capture);
+    ASSERT_EQ(joint.size(), 3U);
+    EXPECT_FLOAT_EQ(image(joint[0]).values[1], 0.75F);
+    EXPECT_FLOAT_EQ(image(joint[2]).values[1 * 4 + 3], 60.0F);
+}
+
 TEST(Pictures, ImagesAreDrawnFromTheTop) {
     const core::Capture capture = test_support::example_image();
     const std::vector<Panel> panels = capture_panels(capture);
