@@ -425,22 +425,46 @@ void bench_speed(int trials, FitBench& bench) {
     }
 }
 
+struct BenchPart {
+    std::string name;
+    std::function<void(int, FitBench&)> run;
+};
+
+const std::vector<BenchPart>& bench_parts() {
+    static const std::vector<BenchPart> kParts{
+        {"forward", [](int, FitBench& bench) { bench_forward(bench); }},
+        {"slopes", [](int, FitBench& bench) { bench_slopes(bench); }},
+        {"pose", bench_pose},
+        {"basin", bench_basin},
+        {"search", bench_search},
+        {"monte_carlo", bench_monte_carlo},
+        {"speed", bench_speed}};
+    return kParts;
+}
+
 }  // namespace
 
-FitBench bench_fit(int trials, const core::Progress& progress) {
+const std::vector<std::string>& fit_bench_parts() {
+    static const std::vector<std::string> kNames = [] {
+        std::vector<std::string> names;
+        for (const BenchPart& part : bench_parts()) names.push_back(part.name);
+        return names;
+    }();
+    return kNames;
+}
+
+FitBench bench_fit(int trials,
+                   const std::vector<std::string>& parts,
+                   const core::Progress& progress) {
     const core::ThreadLimit one(1);
     FitBench bench;
-    const std::vector<std::function<void()>> parts{[&] { bench_forward(bench); },
-                                                   [&] { bench_slopes(bench); },
-                                                   [&] { bench_pose(trials, bench); },
-                                                   [&] { bench_basin(trials, bench); },
-                                                   [&] { bench_search(trials, bench); },
-                                                   [&] { bench_monte_carlo(trials, bench); },
-                                                   [&] { bench_speed(trials, bench); }};
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-        progress.update(static_cast<double>(i) / static_cast<double>(parts.size()), "");
+    double done = 0.0;
+    for (const BenchPart& part : bench_parts()) {
+        progress.update(done++ / static_cast<double>(bench_parts().size()), part.name);
         if (progress.should_stop()) throw core::Failure("bench fit", "interrupted");
-        parts[i]();
+        const bool is_wanted =
+            parts.empty() || std::find(parts.begin(), parts.end(), part.name) != parts.end();
+        if (is_wanted) part.run(trials, bench);
     }
     return bench;
 }

@@ -55,9 +55,15 @@ void for_each_field(FitBench& bench, Visitor&& visit) {
     visit("points", bench.points, "speed against error");
 }
 
+/// Parts of the benchmark, in the order of its table.
+const std::vector<std::string>& fit_bench_parts();
+
 /// Measures fitting and calibration on simulated data, on one thread.
 ///
 /// trials     fits per row; 30 give the figures of calib/README.md
-FitBench bench_fit(int trials, const core::Progress& progress);
+/// parts      of fit_bench_parts(); empty: all
+FitBench bench_fit(int trials,
+                   const std::vector<std::string>& parts,
+                   const core::Progress& progress);
 
 }  // namespace apps

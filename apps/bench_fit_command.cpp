@@ -20,6 +20,7 @@ namespace fs = std::filesystem;
 struct BenchFitArguments {
     std::string folder;
     int trials = 30;
+    std::vector<std::string> parts;
 };
 
 std::string table_of(const FitBench& bench) {
@@ -50,7 +51,7 @@ void run(const BenchFitArguments& arguments) {
     fs::create_directories(arguments.folder, error);
     if (error) throw core::Error(arguments.folder, "cannot be made", "must be a writable folder");
     ProgressBar bar("bench fit");
-    const FitBench bench = bench_fit(arguments.trials, bar.progress());
+    const FitBench bench = bench_fit(arguments.trials, arguments.parts, bar.progress());
     const std::string stem = (fs::path(arguments.folder) / "bench_fit").string();
     core::Json json = core::write_value(bench);
     json["program"] = version_text();
@@ -61,7 +62,7 @@ void run(const BenchFitArguments& arguments) {
     for (const FitBenchPoint& point : bench.points) {
         plot.lines.push_back({point.choice, {point.cpu_seconds}, {point.position_rms_m}});
     }
-    if (!draw_plot(plot, stem)) {
+    if (!plot.lines.empty() && !draw_plot(plot, stem)) {
         fmt::print(stderr, "bench: gnuplot is not there, so no plot was drawn\n");
     }
     fmt::print("wrote {}\n", stem + ".json");
@@ -78,6 +79,8 @@ void add_bench_fit_command(CLI::App& bench) {
     command->add_option("--trials", arguments->trials, "Fits per row of the table")
         ->capture_default_str()
         ->check(CLI::Range(1, 10000));
+    command->add_option("--only", arguments->parts, "Parts of the table")
+        ->check(CLI::IsMember(fit_bench_parts()));
     command->footer(settings_footer({}, "nlos bench fit -o out/bench --trials 1"));
     command->callback([arguments] { run(*arguments); });
 }

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "calib/fit.h"
 
+#include "calib/alternatives.h"
+#include "calib/fit_checks.h"
 #include "calib/fit_driver.h"
 #include "calib/poisson_deviance.h"
+#include "calib/simulated_refits.h"
 #include "calib/uncertainty.h"
 #include "renderer/core/error.h"
 
@@ -11,6 +14,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 namespace calib {
 namespace {
@@ -33,17 +37,102 @@ void sort_by_cost(std::vector<Candidate>& candidates) {
     });
 }
 
-// All starts go through coarse stages with fewer and fewer of them; one reaches the last.
-Candidate run_stages(const FitDriver& driver,
-                     const FitInput& input,
-                     const core::Progress& progress,
-                     FitDriver::Stage& last,
-                     FitResult& result) {
+// What the final model says of every bin, and how well that agrees with the data.
+void store_fit(const FitDriver& driver,
+               const FitDriver::Stage& stage,
+               const SceneState& state,
+               FitResult& result) {
+    result.axis = stage.data->axis;
+    result.data = stage.data->values;
+    stage.model->update(state, core::Slopes::Without);
+    const auto bins = static_cast<double>(stage.model->settings().bins_per_ambient);
+    double variance = 0.0;
+    PairModel expected;
+    for (std::size_t pair = 0; pair < stage.objective->num_pairs(); ++pair) {
+        stage.model->evaluate(pair, expected);
+        for (double& value : expected.mean) {
+            if (!driver.is_poisson()) {
+                value = stage.objective->scale() * value + stage.objective->ambient();
+            }
+            const double counted = stage.data->values[result.model.size()];
+            result.model.push_back(value);
+            if (!driver.is_poisson()) {
+                result.deviance += (value - counted) * (value - counted);
+                continue;
+            }
+            const double mean = std::max(value, stage.data->least_mean);
+            const double residual = signed_deviance(mean, counted).value;
+            const DevianceMoments moments = deviance_moments(mean);
+            result.deviance += residual * residual;
+            result.expected_deviance += moments.mean;
+            variance += moments.variance;
+        }
+    }
+    result.expected_deviance_sigma = std::sqrt(variance);
+    if (!driver.is_poisson()) {
+        result.scale.value = stage.objective->scale();
+        result.ambient.value = stage.objective->ambient() / bins;
+        result.expected_deviance = result.deviance;
+    }
+}
+
+// A start that was given may also be solved without blur, where that merges what lies apart.
+void retry_without_blur(const FitDriver& driver,
+                        const FitInput& input,
+                        FitDriver::Stage& last,
+                        std::vector<Candidate>& candidates,
+                        FitResult& result) {
+    constexpr double kNotableExcess = 5.0;
+    const bool has_blur = input.settings.blur_schedule_m.size() > 1;
+    if (input.settings.start != "given" || !has_blur || !driver.is_poisson()) return;
+    FitResult explained;
+    store_fit(driver, last, candidates.front().state, explained);
+    const double excess = explained.deviance - explained.expected_deviance;
+    if (excess <= kNotableExcess * explained.expected_deviance_sigma) return;
+    Candidate direct{"given, without blur", driver.starts().front().second, {}};
+    direct.summary = driver.solve(last, direct.state, input.settings.max_iterations);
+    result.iterations += direct.summary.iterations;
+    candidates.push_back(std::move(direct));
+    sort_by_cost(candidates);
+}
+
+// Of sorted candidates, the best and others in other poses that blurred data tell from it no better
+// than noise.
+void keep_best(const SceneModel& model,
+               std::size_t most,
+               double tellable,
+               std::vector<Candidate>& candidates) {
+    const double limit = candidates.front().summary.cost + tellable;
+    std::vector<Candidate> kept;
+    for (Candidate& candidate : candidates) {
+        const bool is_new = std::all_of(kept.begin(), kept.end(), [&](const Candidate& other) {
+            return are_different_poses(model, other.state, candidate.state);
+        });
+        const bool is_good = kept.empty() || candidate.summary.cost < limit;
+        if (is_new && is_good && kept.size() < most) kept.push_back(std::move(candidate));
+    }
+    candidates = std::move(kept);
+}
+
+// All starts go through coarse stages with fewer and fewer of them; few reach the last. Sorted.
+std::vector<Candidate> run_stages(const FitDriver& driver,
+                                  const FitInput& input,
+                                  const core::Progress& progress,
+                                  FitDriver::Stage& last,
+                                  FitResult& result) {
+    constexpr double kAnyCost = std::numeric_limits<double>::infinity();
+    constexpr double kTellableCost = 5.0;
     std::vector<Candidate> candidates;
     for (auto& [name, state] : driver.starts()) candidates.push_back({name, state, {}});
+    if (input.settings.start == "given") driver.check_light(last, candidates.front().state);
+    const auto note_starts = [&] {
+        if (!result.starts.empty()) return;
+        for (const Candidate& c : candidates) result.starts.push_back({c.name, c.summary.cost});
+    };
     const auto& schedule = input.settings.blur_schedule_m;
     for (std::size_t s = 0; s + 1 < schedule.size(); ++s) {
         FitDriver::Stage stage = driver.make_stage(schedule[s]);
+        if (!driver.is_usable(stage)) continue;
         const bool is_scouting = candidates.size() > 1;
         for (Candidate& candidate : candidates) {
             progress.update(static_cast<double>(s) / static_cast<double>(schedule.size()),
@@ -55,21 +144,17 @@ Candidate run_stages(const FitDriver& driver,
             result.iterations += candidate.summary.iterations;
         }
         sort_by_cost(candidates);
-        if (result.starts.empty()) {
-            for (const Candidate& c : candidates) result.starts.push_back({c.name, c.summary.cost});
-        }
-        const std::size_t kept = s == 0 ? kKeptStarts : 1;
-        if (candidates.size() > kept) candidates.resize(kept);
+        note_starts();
+        keep_best(driver.model(), kKeptStarts, s == 0 ? kAnyCost : kTellableCost, candidates);
     }
     for (Candidate& candidate : candidates) {
         candidate.summary = driver.solve(last, candidate.state, input.settings.max_iterations);
         result.iterations += candidate.summary.iterations;
     }
     sort_by_cost(candidates);
-    if (result.starts.empty()) {
-        for (const Candidate& c : candidates) result.starts.push_back({c.name, c.summary.cost});
-    }
-    return candidates.front();
+    note_starts();
+    retry_without_blur(driver, input, last, candidates, result);
+    return candidates;
 }
 
 // Reads one column's standard deviation from where a block stands.
@@ -144,45 +229,6 @@ void store_rest(const FitInput& input,
     }
 }
 
-// What the final model says of every bin, and how well that agrees with the data.
-void store_fit(const FitDriver& driver,
-               const FitDriver::Stage& stage,
-               const SceneState& state,
-               FitResult& result) {
-    result.axis = stage.data.axis;
-    result.data = stage.data.values;
-    stage.model->update(state, core::Slopes::Without);
-    const auto bins = static_cast<double>(stage.model->settings().bins_per_ambient);
-    double variance = 0.0;
-    PairModel expected;
-    for (std::size_t pair = 0; pair < stage.objective->num_pairs(); ++pair) {
-        stage.model->evaluate(pair, expected);
-        for (double& value : expected.mean) {
-            if (!driver.is_poisson()) {
-                value = stage.objective->scale() * value + stage.objective->ambient();
-            }
-            const double counted = stage.data.values[result.model.size()];
-            result.model.push_back(value);
-            if (!driver.is_poisson()) {
-                result.deviance += (value - counted) * (value - counted);
-                continue;
-            }
-            const double mean = std::max(value, stage.data.least_mean);
-            const double residual = signed_deviance(mean, counted).value;
-            const DevianceMoments moments = deviance_moments(mean);
-            result.deviance += residual * residual;
-            result.expected_deviance += moments.mean;
-            variance += moments.variance;
-        }
-    }
-    result.expected_deviance_sigma = std::sqrt(variance);
-    if (!driver.is_poisson()) {
-        result.scale.value = stage.objective->scale();
-        result.ambient.value = stage.objective->ambient() / bins;
-        result.expected_deviance = result.deviance;
-    }
-}
-
 Eigen::MatrixXd information_of(const FitDriver& driver,
                                FitDriver::Stage& stage,
                                const SceneState& state) {
@@ -196,47 +242,71 @@ Eigen::MatrixXd information_of(const FitDriver& driver,
         const auto& rows = stage.objective->pair(i).jacobian;
         sum += (weights.empty() ? 1.0 : weights[i]) * (rows.transpose() * rows);
     }
-    const double freedom = std::max(1.0, static_cast<double>(stage.data.values.size()) - size);
+    const double freedom = std::max(1.0, static_cast<double>(stage.data->values.size()) - size);
     return sum * freedom / std::max(stage.objective->sum_of_squares(), 1e-300) + prior;
 }
 
-void add_warnings(const FitDriver& driver, const SceneState& state, FitResult& result) {
-    const core::TimeAxis& axis = driver.data().axis;
-    double most = 0.0;
-    double cut = 0.0;
-    const auto bins = static_cast<std::size_t>(result.axis.num_bins);
-    for (std::size_t i = 0; i < result.model.size(); i += bins) {
-        cut += result.model[i + bins - 1];
-        for (std::size_t b = 0; b < bins; ++b) most = std::max(most, result.model[i + b]);
+// Bodies that are nearly symmetric may have ended in the wrong one of several minima: the others
+// are tried, and named when the data cannot tell.
+void try_turns(const FitDriver& driver,
+               FitDriver::Stage& last,
+               int max_iterations,
+               std::vector<Candidate>& candidates,
+               FitResult& result) {
+    for (auto& [name, state] : turned_states(driver.model(), candidates.front().state)) {
+        Candidate turned{candidates.front().name + ", " + name, state, {}};
+        turned.summary = driver.solve(last, turned.state, max_iterations);
+        result.iterations += turned.summary.iterations;
+        candidates.push_back(std::move(turned));
     }
-    cut /= static_cast<double>(result.model.size() / bins);
-    if (cut - result.ambient.value > 0.05 * most) {
+    sort_by_cost(candidates);
+}
+
+// Twice the difference of costs is the difference of deviances: 9 is three standard deviations.
+void warn_of_ambiguity(const FitDriver& driver,
+                       const std::vector<Candidate>& candidates,
+                       FitResult& result) {
+    constexpr double kTellable = 9.0;
+    if (!driver.is_poisson() || !result.converged) return;
+    std::vector<SceneState> known{candidates.front().state};
+    for (const Candidate& other : candidates) {
+        const double excess = 2.0 * (other.summary.cost - candidates.front().summary.cost);
+        const bool is_other = std::all_of(known.begin(), known.end(), [&](const SceneState& state) {
+            return are_different_poses(driver.model(), state, other.state);
+        });
+        if (excess > kTellable || !is_other) continue;
+        known.push_back(other.state);
         result.warnings.push_back(fmt::format(
-            "the model's light reaches beyond the end of the time axis at {:.3f} m; what lies "
-            "there is not fitted",
-            axis.opl_end_m()));
+            "the data hardly tell this from another pose ({}; deviance {:.1f} more): the stated "
+            "errors hold for this one alone",
+            other.name,
+            excess));
     }
-    if (state.has_ambient &&
-        state.log_ambient < driver.solve_settings().lowest_log_ambient + 0.01) {
-        result.warnings.push_back("ambient: at its lower bound");
+}
+
+// Fisher information holds for many photons: with few, sigma grows to the scatter of refits.
+void widen_sigma(const FitDriver& driver,
+                 const FitDriver::Stage& last,
+                 const SceneState& state,
+                 Uncertainty& uncertainty,
+                 FitResult& result) {
+    constexpr double kManyPerParameter = 50.0;
+    const auto size = static_cast<double>(uncertainty.sigma.size());
+    const double photons = signal_photons(result);
+    if (!driver.is_poisson() || !(photons < kManyPerParameter * size)) return;
+    if (!uncertainty.sigma.allFinite()) return;
+    const Eigen::VectorXd scatter = scatter_of_refits(driver, last, state);
+    const Eigen::VectorXd grown = scatter.cwiseMax(uncertainty.sigma);
+    for (Eigen::Index i = 0; i < grown.size(); ++i) {
+        const double factor = grown[i] / uncertainty.sigma[i];
+        uncertainty.covariance.row(i) *= factor;
+        uncertainty.covariance.col(i) *= factor;
+        uncertainty.sigma[i] = grown[i];
     }
-    if (driver.is_poisson()) {
-        const double excess = (result.deviance - result.expected_deviance) /
-                              std::max(result.expected_deviance_sigma, 1e-300);
-        if (excess > 5.0) {
-            result.warnings.push_back(fmt::format(
-                "the deviance exceeds its expectation by {:.1f} standard deviations: the model "
-                "does not explain the data, and true errors exceed the stated ones",
-                excess));
-        }
-    }
-    if (driver.scale_is_unknown()) {
-        const std::string name =
-            driver.has_fixed_albedo() ? driver.fixed_albedo() : result.objects.front().name;
-        result.unidentifiable.push_back("scale with " + name +
-                                        ".albedo: counts of unknown scale; the albedo stays at "
-                                        "its start");
-    }
+    result.warnings.push_back(
+        fmt::format("only {:.0f} photons: the stated errors are those of refits to simulated data, "
+                    "and not normally distributed",
+                    photons));
 }
 
 }  // namespace
@@ -246,26 +316,34 @@ FitResult fit_scene(const FitInput& input, const core::Progress& progress) {
     const FitDriver driver(input, progress);
     FitResult result;
     FitDriver::Stage last = driver.make_stage(input.settings.blur_schedule_m.back());
-    Candidate best = run_stages(driver, input, progress, last, result);
+    std::vector<Candidate> candidates = run_stages(driver, input, progress, last, result);
+    try_turns(driver, last, input.settings.max_iterations, candidates, result);
+    const Candidate& best = candidates.front();
     last.model->refresh(best.state);
 
-    const Uncertainty uncertainty =
+    Uncertainty uncertainty =
         assess(information_of(driver, last, best.state), driver.model().column_names());
+    result.parameters = driver.model().column_names();
+    result.residual = driver.is_poisson() ? "poisson" : "least_squares";
+    store_fit(driver, last, best.state, result);
+    if (best.state.has_ambient) result.ambient.value = std::exp(best.state.log_ambient);
+    widen_sigma(driver, last, best.state, uncertainty, result);
     const Sigmas sigmas(driver.model(), uncertainty);
     store_objects(input, driver.model(), best.state, sigmas, result);
     store_rest(input, best.state, sigmas, result);
-    store_fit(driver, last, best.state, result);
     for (const Correlation& c : uncertainty.correlations) {
         result.correlations.push_back({c.a, c.b, c.value});
     }
     result.condition_number = uncertainty.condition_number;
     result.unidentifiable = uncertainty.unidentifiable;
-    result.residual = driver.is_poisson() ? "poisson" : "least_squares";
+    result.covariance = uncertainty.covariance;
     result.converged = best.summary.converged;
     result.message = best.summary.message;
     result.num_pieces = last.model->num_pieces();
     result.geometry = driver.model().posed(best.state);
-    add_warnings(driver, best.state, result);
+    check_dependence(driver.model(), uncertainty.sigma, result);
+    add_warnings(driver, last, best.state, result);
+    warn_of_ambiguity(driver, candidates, result);
     result.seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return result;

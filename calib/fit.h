@@ -73,6 +73,8 @@ struct FitResult {
     Estimate wall_scale{1.0};
     std::vector<FittedCorrelation> correlations;
     double condition_number = 1.0;
+    std::vector<std::string> parameters;  ///< names of the free ones
+    Eigen::MatrixXd covariance;           ///< of them; logarithms of sizes, albedos and widths
     std::vector<std::string> unidentifiable;
     std::vector<std::string> warnings;
     std::string residual;  ///< poisson or least_squares
@@ -108,12 +110,10 @@ struct FitInput {
 /// minimises Poisson deviances or squares, from blurred and coarse data to sharp ones.
 ///
 /// progress   asked between iterations whether to stop
-/// returns    the best state with its uncertainty; converged is false when the last solve ran out
-/// of
-///            iterations
+/// returns    the best state with its uncertainty and what casts doubt on it; converged is false
+///            when the last solve ran out of iterations or the model's light left the data
 /// throws     core::Error when model and data do not fit together; core::Failure when nothing can
-/// be
-///            started from, or the caller stops
+///            be started from, or the caller stops
 /// source     design by the authors; see README.md
 FitResult fit_scene(const FitInput& input, const core::Progress& progress);
 

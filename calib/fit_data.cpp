@@ -63,6 +63,42 @@ FitData coarsen(const FitData& data, double blur_m, int merged) {
     return result;
 }
 
+FitData trim(const FitData& data, int front, int back) {
+    FitData result = data;
+    result.axis.opl_start_m = data.axis.bin_begin_m(front);
+    result.axis.num_bins = std::max(0, data.axis.num_bins - front - back);
+    result.values.clear();
+    const auto bins = static_cast<std::size_t>(data.axis.num_bins);
+    for (std::size_t at = 0; at < data.values.size(); at += bins) {
+        const auto begin = data.values.begin() + static_cast<std::ptrdiff_t>(at) + front;
+        result.values.insert(result.values.end(), begin, begin + result.axis.num_bins);
+    }
+    return result;
+}
+
+std::array<bool, 2> light_is_cut(const FitData& data, double ambient) {
+    constexpr std::size_t kEdgeBins = 2;
+    constexpr double kShareOfBrightest = 0.05;
+    constexpr double kSignificance = 5.0;
+    const auto bins = static_cast<std::size_t>(data.axis.num_bins);
+    std::vector<double> sums(bins, 0.0);
+    for (std::size_t i = 0; i < data.values.size(); ++i) sums[i % bins] += data.values[i];
+    const double dark = ambient * static_cast<double>(data.values.size() / bins);
+    const double brightest = *std::max_element(sums.begin(), sums.end()) - dark;
+    const std::size_t width = std::min(kEdgeBins, bins);
+    const auto stands_out = [&](std::size_t first) {
+        double light = 0.0;
+        double counted = 0.0;
+        for (std::size_t b = first; b < first + width; ++b) {
+            light += sums[b] - dark;
+            counted += sums[b];
+        }
+        return light > kShareOfBrightest * static_cast<double>(width) * brightest &&
+               light > kSignificance * std::sqrt(counted);
+    };
+    return {stands_out(0), stands_out(bins - width)};
+}
+
 PairSubset thin(const core::Scan& scan, std::size_t most) {
     const bool is_exhaustive = scan.pattern == core::ScanPattern::Exhaustive;
     std::size_t step = 1;

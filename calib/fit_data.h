@@ -19,6 +19,15 @@ FitData crop(const core::Capture& capture, const std::optional<std::array<double
 /// merged    bins that become one; a rest at the end is left out
 FitData coarsen(const FitData& data, double blur_m, int merged);
 
+/// Data without some bins at the ends of the axis.
+FitData trim(const FitData& data, int front, int back);
+
+/// Whether light of the first and of the last bins stands out, so that some of it must lie beyond
+/// the axis.
+///
+/// ambient   light per bin that does not count
+std::array<bool, 2> light_is_cut(const FitData& data, double ambient);
+
 /// Some of a scan's pairs, spread evenly over the wall.
 struct PairSubset {
     core::Scan scan;

@@ -18,7 +18,12 @@ using core::Vec3;
 
 // Bins are merged while they stay this narrow against the response with its blur.
 constexpr double kBinPerSigma = 0.7;
-constexpr int kMostVisibilityRounds = 4;
+constexpr double kBlurReach = 2.0;  // standard deviations of blur that cut light spoils
+constexpr int kFewestBins = 8;      // of a stage that is worth solving
+// Solves alternate with looking anew at what is seen until the cost, half the deviance, settles.
+constexpr int kMostVisibilityRounds = 5;
+constexpr int kBlurredVisibilityRounds = 2;
+constexpr double kSettledCost = 0.02;
 constexpr std::size_t kPairsOfBlurredStages = 400;
 
 // Errors of pieces may be this large while a blurred stage leads the way.
@@ -84,6 +89,7 @@ FitDriver::FitDriver(const FitInput& input, const core::Progress& progress)
     model_ =
         std::make_unique<SceneModel>(input.geometry, settings_, scale_is_unknown_ && is_poisson_);
     ambient_guess_ = quietest_level(data_);
+    is_cut_ = light_is_cut(data_, ambient_guess_);
     tolerance_ = settings_.piece_tolerance.value_or(is_poisson_ ? tolerance_for(total)
                                                                 : kToleranceWithoutNoise);
 
@@ -95,7 +101,7 @@ FitDriver::FitDriver(const FitInput& input, const core::Progress& progress)
     solve_.stop_requested = progress.stop_requested;
 }
 
-FitDriver::Stage FitDriver::make_stage(double blur_m) const {
+FitDriver::Stage FitDriver::make_stage(const SceneModel& model, double blur_m) const {
     Stage stage;
     stage.blur_m = blur_m;
     ForwardSettings forward;
@@ -105,9 +111,12 @@ FitDriver::Stage FitDriver::make_stage(double blur_m) const {
     // Blurred stages only lead the way: they need few pairs.
     const PairSubset subset =
         thin(input_.capture.scan, blur_m > 0.0 ? kPairsOfBlurredStages : offset_m_.size());
-    stage.data = coarsen(select(data_, subset.pairs), blur_m, merged);
-    stage.data.least_mean = data_.least_mean * merged;
-    forward.axis = stage.data.axis;
+    const FitData coarse = coarsen(select(data_, subset.pairs), blur_m, merged);
+    const int spoilt = static_cast<int>(std::ceil(kBlurReach * blur_m / coarse.axis.bin_width_m));
+    stage.data =
+        std::make_unique<FitData>(trim(coarse, is_cut_[0] ? spoilt : 0, is_cut_[1] ? spoilt : 0));
+    stage.data->least_mean = data_.least_mean * merged;
+    forward.axis = stage.data->axis;
     forward.bins_per_ambient = merged;
     forward.sigma_m = sigma_m;
     forward.response_share =
@@ -125,8 +134,25 @@ FitDriver::Stage FitDriver::make_stage(double blur_m) const {
                               input_.capture.counts_per_radiance.value_or(1.0);
     forward.spot_m2 = input_.scene.render.laser_spot_m2;
     forward.tolerance = blur_m > 0.0 ? std::max(tolerance_, kBlurredTolerance) : tolerance_;
-    stage.model = std::make_unique<ForwardModel>(*model_, subset.scan, wall, std::move(forward));
+    stage.model = std::make_unique<ForwardModel>(model, subset.scan, wall, std::move(forward));
+    stage.objective = std::make_unique<FitObjective>(
+        *stage.model, *stage.data, is_poisson_, elimination_, model.num_columns());
     return stage;
+}
+
+bool FitDriver::is_usable(const Stage& stage) const {
+    return stage.data->axis.num_bins >= std::min(kFewestBins, data_.axis.num_bins);
+}
+
+void FitDriver::check_light(const Stage& stage, const SceneState& state) const {
+    stage.model->refresh(state);
+    if (light_of(stage, state) > 0.0) return;
+    throw core::Error("model: start",
+                      "found none of its light on the time axis",
+                      fmt::format("must have path lengths from {:.3f} to {:.3f} m, or use start: "
+                                  "search",
+                                  data_.axis.opl_start_m,
+                                  data_.axis.opl_end_m()));
 }
 
 void FitDriver::check_start(const SceneState& state) const {
@@ -233,8 +259,8 @@ std::vector<std::pair<std::string, SceneState>> FitDriver::starts() const {
     return result;
 }
 
-// The one factor that all light shares is set by the sums of data and model.
-void FitDriver::match_brightness(Stage& stage, SceneState& state) const {
+// All of a state's light in the data's bins, without ambient light.
+double FitDriver::light_of(const Stage& stage, const SceneState& state) const {
     SceneState dark = state;
     dark.has_ambient = false;
     stage.model->update(dark, core::Slopes::Without);
@@ -244,11 +270,17 @@ void FitDriver::match_brightness(Stage& stage, SceneState& state) const {
         stage.model->evaluate(pair, model);
         sums[pair] = std::accumulate(model.mean.begin(), model.mean.end(), 0.0);
     });
-    const double light = std::accumulate(sums.begin(), sums.end(), 0.0);
-    const double total = std::accumulate(stage.data.values.begin(), stage.data.values.end(), 0.0);
-    const double ambient = std::min(0.9 * total,
-                                    ambient_guess_ * static_cast<double>(stage.data.values.size()) *
-                                        stage.model->settings().bins_per_ambient);
+    return std::accumulate(sums.begin(), sums.end(), 0.0);
+}
+
+// The one factor that all light shares is set by the sums of data and model.
+void FitDriver::match_brightness(Stage& stage, SceneState& state) const {
+    const double light = light_of(stage, state);
+    const double total = std::accumulate(stage.data->values.begin(), stage.data->values.end(), 0.0);
+    const double ambient =
+        std::min(0.9 * total,
+                 ambient_guess_ * static_cast<double>(stage.data->values.size()) *
+                     stage.model->settings().bins_per_ambient);
     if (!(light > 0.0)) return;
     const double change = std::log((total - ambient) / light);
     if (!std::isfinite(change)) return;
@@ -263,18 +295,19 @@ void FitDriver::match_brightness(Stage& stage, SceneState& state) const {
 SolveSummary FitDriver::solve(Stage& stage, SceneState& state, int max_iterations) const {
     SolveSettings solve_settings = solve_;
     solve_settings.max_iterations = max_iterations;
+    const int rounds = stage.blur_m > 0.0 ? kBlurredVisibilityRounds : kMostVisibilityRounds;
     SolveSummary total;
-    for (int round = 0; round < kMostVisibilityRounds; ++round) {
+    for (int round = 0; round < rounds; ++round) {
         stage.model->refresh(state);
         if (round > 0 && !stage.model->visibility_changed()) break;
         if (round == 0) match_brightness(stage, state);
-        stage.objective = std::make_unique<FitObjective>(
-            *stage.model, stage.data, is_poisson_, elimination_, model_->num_columns());
         const SolveSummary summary = solve_stage(*model_, *stage.objective, solve_settings, state);
+        const bool is_settled = std::abs(total.cost - summary.cost) < kSettledCost;
         total.cost = summary.cost;
         total.converged = summary.converged;
         total.message = summary.message;
         total.iterations += summary.iterations;
+        if (round > 0 && is_settled) break;
     }
     return total;
 }

@@ -18,7 +18,7 @@ class FitDriver {
 
     /// Objective of one blur; the forward model inside is cut for it.
     struct Stage {
-        FitData data;
+        std::unique_ptr<FitData> data;
         std::unique_ptr<ForwardModel> model;
         std::unique_ptr<FitObjective> objective;
         double blur_m = 0.0;
@@ -29,18 +29,26 @@ class FitDriver {
     const SceneModel& model() const { return *model_; }
     const FitData& data() const { return data_; }
     const SolveSettings& solve_settings() const { return solve_; }
-    double response_sigma_m() const { return response_sigma_m_; }
+    const FitSettings& settings() const { return settings_; }
+    const renderer::SceneGeometry& geometry() const { return input_.geometry; }
     bool scale_is_unknown() const { return scale_is_unknown_; }
     bool has_fixed_albedo() const { return !fixed_albedo_.empty(); }
     const std::string& fixed_albedo() const { return fixed_albedo_; }
 
-    Stage make_stage(double blur_m) const;
+    Stage make_stage(double blur_m) const { return make_stage(*model_, blur_m); }
+    /// The same for a model that has other freedoms.
+    Stage make_stage(const SceneModel& model, double blur_m) const;
+    /// Whether blurred data are good for anything: light that the axis cuts off spoils its ends.
+    bool is_usable(const Stage& stage) const;
+    /// Throws core::Error when none of a start's light falls on the axis.
+    void check_light(const Stage& stage, const SceneState& state) const;
     /// The starts to try, by name.
     std::vector<std::pair<std::string, SceneState>> starts() const;
     /// Solves one stage from `state`; repeats while what is seen changes.
     SolveSummary solve(Stage& stage, SceneState& state, int max_iterations) const;
 
  private:
+    double light_of(const Stage& stage, const SceneState& state) const;
     void match_brightness(Stage& stage, SceneState& state) const;
     std::vector<std::pair<std::string, SceneState>> searched(const core::Vec3& center) const;
     void place_points(SceneState& state) const;
@@ -59,7 +67,8 @@ class FitDriver {
     std::vector<double> offset_m_;
     double response_sigma_m_ = 0.0;
     double ambient_guess_ = 0.0;
-    double tolerance_ = 0.02;  ///< of the last stage's pieces
+    std::array<bool, 2> is_cut_{};  ///< data at the axis' begin and end
+    double tolerance_ = 0.02;       ///< of the last stage's pieces
     SolveSettings solve_;
 };
 

@@ -4,7 +4,6 @@
 #include "calib/model_visibility.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 namespace calib {
@@ -131,12 +130,11 @@ ForwardModel::PosedPiece ForwardModel::pose(const ModelPiece& piece,
     return posed;
 }
 
-double ForwardModel::visible_share(std::size_t piece, std::size_t pair) const {
-    if (light_masks_.empty()) return 1.0;
+renderer::VisibilityMask ForwardModel::visible_part(std::size_t piece, std::size_t pair) const {
+    if (light_masks_.empty()) return renderer::kAllVisible;
     const std::size_t l = scan_.illumination_index(pair) * pieces_.size() + piece;
     const std::size_t s = scan_.sensing_index(pair) * pieces_.size() + piece;
-    const unsigned common = static_cast<unsigned>(light_masks_[l] & sensor_masks_[s]);
-    return std::popcount(common) / static_cast<double>(kVisibilityRays);
+    return light_masks_[l] & sensor_masks_[s];
 }
 
 void ForwardModel::evaluate(std::size_t pair, PairModel& result) const {
@@ -148,8 +146,8 @@ void ForwardModel::evaluate(std::size_t pair, PairModel& result) const {
     target.mean.assign(bins, 0.0);
     target.slopes.assign(slopes_ == Slopes::With ? bins * columns : 0, 0.0);
     for (std::size_t i = 0; i < posed_.size(); ++i) {
-        const double share = visible_share(i, pair);
-        if (share > 0.0) add_piece(posed_[i], share, pair, target);
+        const renderer::VisibilityMask mask = visible_part(i, pair);
+        if (mask != 0) add_piece(posed_[i], mask, pair, target);
     }
     for (std::size_t i = 0; i < state_.points.size(); ++i) add_point(i, pair, target);
     finish(target, result);

@@ -6,6 +6,7 @@
 #include "calib/wall_motion.h"
 #include "renderer/core/capture.h"
 #include "renderer/core/triangle_histogram.h"
+#include "renderer/visibility_mask.h"
 
 #include <optional>
 #include <span>
@@ -77,14 +78,14 @@ class ForwardModel {
 
     PosedPiece pose(const ModelPiece& piece, const FacetMotion& motion) const;
     void add_piece(const PosedPiece& piece,
-                   double visible_share,
+                   renderer::VisibilityMask mask,
                    std::size_t pair,
                    PairModel& result) const;
     void add_point(std::size_t point, std::size_t pair, PairModel& result) const;
     void add_response(const PairModel& fine, PairModel& result) const;
     void finish(PairModel& fine, PairModel& result) const;
     core::TimeAxis fine_axis() const;
-    double visible_share(std::size_t piece, std::size_t pair) const;
+    renderer::VisibilityMask visible_part(std::size_t piece, std::size_t pair) const;
 
     const SceneModel& model_;
     core::Scan scan_;
@@ -98,8 +99,8 @@ class ForwardModel {
     std::vector<PosedPiece> posed_;
     std::vector<MovedWallPoint> light_points_;
     std::vector<MovedWallPoint> sensor_points_;
-    std::vector<std::uint8_t> light_masks_;  ///< [point][piece]; empty: all is visible
-    std::vector<std::uint8_t> sensor_masks_;
+    std::vector<renderer::VisibilityMask> light_masks_;  ///< [point][piece]; empty: all is visible
+    std::vector<renderer::VisibilityMask> sensor_masks_;
     bool visibility_changed_ = false;
     /// Weights of the data's bins for each position of a fine bin within its bin.
     std::vector<std::vector<double>> phase_weights_;

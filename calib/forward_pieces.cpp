@@ -166,17 +166,72 @@ class KnotFit {
     bool is_clamped_ = false;
 };
 
+// The weights of a piece's visible part: the product of two linear functions, made linear again
+// with its integral kept, and how it changes with the weights.
+//
+// With W, S and P the sums of weights w, shares s and products w s, the integral of the product is
+// (W S + P)/12 times twice the area, that of linear corner values p is their sum over 6 times it.
+class VisibleWeights {
+ public:
+    VisibleWeights(const std::array<double, 3>& weight, renderer::VisibilityMask mask)
+        : is_whole_(mask == renderer::kAllVisible), weight_(weight) {
+        if (is_whole_) return;
+        share_ = renderer::visible_share(mask);
+        for (std::size_t j = 0; j < 3; ++j) {
+            weights_ += weight[j];
+            shares_ += share_[j];
+            products_ += weight[j] * share_[j];
+        }
+        factor_ = products_ > 0.0 ? 0.25 * (weights_ * shares_ / products_ + 1.0) : 0.0;
+    }
+
+    std::array<double, 3> values() const {
+        if (is_whole_) return weight_;
+        std::array<double, 3> result{};
+        for (std::size_t j = 0; j < 3; ++j) result[j] = factor_ * weight_[j] * share_[j];
+        return result;
+    }
+
+    void convert_change(std::array<double, 3>& change) const {
+        if (is_whole_) return;
+        if (!(products_ > 0.0)) {
+            change = {0.0, 0.0, 0.0};
+            return;
+        }
+        double weights = 0.0;
+        double products = 0.0;
+        for (std::size_t j = 0; j < 3; ++j) {
+            weights += change[j];
+            products += change[j] * share_[j];
+        }
+        const double factor =
+            0.25 * shares_ / products_ * (weights - weights_ * products / products_);
+        for (std::size_t j = 0; j < 3; ++j) {
+            change[j] = share_[j] * (factor_ * change[j] + factor * weight_[j]);
+        }
+    }
+
+ private:
+    bool is_whole_;
+    std::array<double, 3> weight_;
+    std::array<double, 3> share_{};
+    double weights_ = 0.0;
+    double shares_ = 0.0;
+    double products_ = 0.0;
+    double factor_ = 0.0;
+};
+
 }  // namespace
 
 void ForwardModel::add_piece(const PosedPiece& piece,
-                             double visible_share,
+                             renderer::VisibilityMask mask,
                              std::size_t pair,
                              PairModel& result) const {
     const PathEnds ends{&light_points_[scan_.illumination_index(pair)],
                         &sensor_points_[scan_.sensing_index(pair)]};
     const bool is_confocal = scan_.pattern == core::ScanPattern::Confocal;
     if (piece.is_retroreflective && !is_confocal) return;
-    const double constant = piece.weight * visible_share;
+    const double constant = piece.weight;
     const double extra = state_.time_zero_m + settings_.offset_m[pair];
     std::array<Path, 6> paths;
     std::array<double, 6> opl{};
@@ -196,8 +251,10 @@ void ForwardModel::add_piece(const PosedPiece& piece,
         weight[i] = constant * paths[i].factor;
     }
     const KnotFit fit(opl, weight);
+    const VisibleWeights visible(fit.knots().weight, mask);
     thread_local core::TriangleBins bins;
-    core::evaluate_triangle(fit.knots(), sigma_m_, fine_axis(), slopes_, bins);
+    core::evaluate_triangle(
+        {fit.knots().opl_m, visible.values()}, sigma_m_, fine_axis(), slopes_, bins);
     const auto first = static_cast<std::size_t>(bins.first_bin);
     for (std::size_t b = 0; b < bins.bins.size(); ++b) {
         result.mean[first + b] += bins.bins[b].slots[0];
@@ -212,6 +269,7 @@ void ForwardModel::add_piece(const PosedPiece& piece,
             weight[i] = constant * factor_slope(i);
         }
         changes.emplace_back(static_cast<std::size_t>(column), fit.change(opl, weight));
+        visible.convert_change(changes.back().second.weight);
     };
     for (std::size_t c = 0; c < piece.columns.size(); ++c) {
         add_change(

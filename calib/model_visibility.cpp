@@ -3,7 +3,6 @@
 
 #include "renderer/core/parallel.h"
 #include "renderer/scene.h"
-#include "renderer/visibility_mask.h"
 
 #include <cmath>
 
@@ -11,6 +10,60 @@ namespace calib {
 namespace {
 
 using core::Vec3;
+using renderer::VisibilityMask;
+
+constexpr std::uint32_t kParts = 16;
+
+// A piece in the world: the centres of its parts.
+struct Target {
+    std::array<Vec3, kParts> centers;
+    Vec3 normal;
+};
+
+std::vector<Target> make_targets(const SceneModel& model,
+                                 const SceneState& state,
+                                 const std::vector<ModelPiece>& pieces) {
+    std::vector<Target> targets;
+    targets.reserve(pieces.size());
+    for (const ModelPiece& piece : pieces) {
+        const auto corners = model.motion(state, piece.facet).corners;
+        Target& target = targets.emplace_back();
+        target.normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
+        for (std::uint32_t part = 0; part < kParts; ++part) {
+            const auto& share = renderer::center_of_bit(part);
+            const Vec3 weights = share[0] * piece.barycentric[0] + share[1] * piece.barycentric[1] +
+                                 share[2] * piece.barycentric[2];
+            target.centers[part] =
+                weights[0] * corners[0] + weights[1] * corners[1] + weights[2] * corners[2];
+        }
+    }
+    return targets;
+}
+
+VisibilityMask trace_mask(const renderer::Scene& scene,
+                          const core::WallPoints& points,
+                          std::size_t point,
+                          const Target& target) {
+    const auto trace = [&](std::uint32_t part) {
+        const bool is_blocked = scene.rays().is_blocked(
+            points.positions[point], points.normals[point], target.centers[part], target.normal);
+        return is_blocked ? 0U : 1U << part;
+    };
+    const auto is_quarter_center = [](std::uint32_t part) { return part % 4 == 3; };
+    std::uint32_t mask = 0;
+    std::uint32_t centers = 0;
+    for (std::uint32_t part = 0; part < kParts; ++part) {
+        if (!is_quarter_center(part)) continue;
+        mask |= trace(part);
+        centers |= 1U << part;
+    }
+    if (mask == 0) return 0;
+    if (mask == centers) return renderer::kAllVisible;
+    for (std::uint32_t part = 0; part < kParts; ++part) {
+        if (!is_quarter_center(part)) mask |= trace(part);
+    }
+    return static_cast<VisibilityMask>(mask);
+}
 
 }  // namespace
 
@@ -27,11 +80,11 @@ bool is_planar(const SceneModel& model, const SceneState& state) {
     return true;
 }
 
-std::vector<std::uint8_t> trace_masks(const SceneModel& model,
-                                      const SceneState& state,
-                                      const std::vector<ModelPiece>& pieces,
-                                      const core::Scan& scan,
-                                      const core::WallPoints& points) {
+std::vector<VisibilityMask> trace_masks(const SceneModel& model,
+                                        const SceneState& state,
+                                        const std::vector<ModelPiece>& pieces,
+                                        const core::Scan& scan,
+                                        const core::WallPoints& points) {
     // The wall itself hides nothing from its own points; leaving it out keeps curved walls simple.
     renderer::SceneGeometry geometry = model.posed(state);
     std::erase_if(geometry.objects, [](const renderer::Object& object) {
@@ -40,36 +93,11 @@ std::vector<std::uint8_t> trace_masks(const SceneModel& model,
     renderer::RelayWall nowhere;
     nowhere.center_m = Vec3(1e6, 1e6, 1e6);
     const renderer::Scene scene(std::move(geometry), scan, nowhere);
-
-    struct Target {
-        std::array<Vec3, kVisibilityRays> positions;
-        Vec3 normal;
-    };
-    std::vector<Target> targets;
-    for (const ModelPiece& piece : pieces) {
-        const auto corners = model.motion(state, piece.facet).corners;
-        Target& target = targets.emplace_back();
-        target.normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
-        for (std::size_t ray = 0; ray < kVisibilityRays; ++ray) {
-            const auto& share = renderer::center_of_bit(static_cast<std::uint32_t>(4 * ray + 3));
-            const Vec3 weights = share[0] * piece.barycentric[0] + share[1] * piece.barycentric[1] +
-                                 share[2] * piece.barycentric[2];
-            target.positions[ray] =
-                weights[0] * corners[0] + weights[1] * corners[1] + weights[2] * corners[2];
-        }
-    }
-    std::vector<std::uint8_t> masks(points.size() * pieces.size());
+    const std::vector<Target> targets = make_targets(model, state, pieces);
+    std::vector<VisibilityMask> masks(points.size() * targets.size());
     core::parallel_for(points.size(), [&](std::size_t p) {
         for (std::size_t i = 0; i < targets.size(); ++i) {
-            for (std::size_t ray = 0; ray < kVisibilityRays; ++ray) {
-                const bool blocked = scene.rays().is_blocked(points.positions[p],
-                                                             points.normals[p],
-                                                             targets[i].positions[ray],
-                                                             targets[i].normal);
-                if (blocked) continue;
-                std::uint8_t& mask = masks[p * pieces.size() + i];
-                mask = static_cast<std::uint8_t>(mask | 1U << ray);
-            }
+            masks[p * targets.size() + i] = trace_mask(scene, points, p, targets[i]);
         }
     });
     return masks;

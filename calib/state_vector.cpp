@@ -122,4 +122,24 @@ SceneState moved_by(const SceneModel& model, const SceneState& state, const Eige
     return moved;
 }
 
+Eigen::VectorXd difference(const SceneModel& model, const SceneState& from, const SceneState& to) {
+    Eigen::VectorXd step = Eigen::VectorXd::Zero(model.num_columns());
+    for (const ParameterBlock& block : model.blocks()) {
+        auto part = step.segment(block.first_column, block.columns);
+        if (block.kind == ParameterKind::Rotation) {
+            Eigen::Quaterniond turn =
+                to.bodies[block.item].rotation * from.bodies[block.item].rotation.conjugate();
+            if (turn.w() < 0.0) turn.coeffs() *= -1.0;
+            const Eigen::AngleAxisd angle_axis(turn);
+            part = angle_axis.angle() * angle_axis.axis();
+        } else {
+            Eigen::Index i = 0;
+            for_each_value(to, block, [&](double value) { part[i++] = value; });
+            i = 0;
+            for_each_value(from, block, [&](double value) { part[i++] -= value; });
+        }
+    }
+    return step;
+}
+
 }  // namespace calib

@@ -33,4 +33,8 @@ class StateVector {
 /// Moves a state by a step in the columns of the Jacobian.
 SceneState moved_by(const SceneModel& model, const SceneState& state, const Eigen::VectorXd& step);
 
+/// The step that moves one state to another: moved_by(model, from, difference(model, from, to)) is
+/// `to` as far as the free parameters go.
+Eigen::VectorXd difference(const SceneModel& model, const SceneState& from, const SceneState& to);
+
 }  // namespace calib
