@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "apps/bench_fit.h"
 
+#include "apps/bench_fit_parts.h"
 #include "apps/fit_trials.h"
-#include "calib/fit_objective.h"
-#include "calib/jet_model.h"
-#include "calib/state_vector.h"
-#include "renderer/core/exact_arcs.h"
 #include "renderer/core/parallel.h"
 #include "renderer/core/process.h"
 #include "renderer/render.h"
@@ -15,7 +12,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <numeric>
 
 namespace apps {
 namespace {
@@ -24,180 +20,6 @@ using core::Vec3;
 
 constexpr double kMillimetre = 1e-3;
 constexpr double kDegrees = 180.0 / core::kPi;
-
-FitBenchRow row_of(const std::string& name,
-                   const std::string& target,
-                   const std::string& ours,
-                   bool holds) {
-    return {name, target, ours, holds};
-}
-
-// The rectangle's forward model, without fitting anything.
-struct Bare {
-    renderer::SceneGeometry geometry;
-    core::Scan scan = trial_scan(16);
-    std::unique_ptr<calib::SceneModel> model;
-    std::unique_ptr<calib::ForwardModel> light;
-
-    Bare(const TrialPose& pose, int cells_x, int cells_y, double tolerance, bool is_filtered) {
-        geometry.objects = {trial_rectangle(pose, cells_x, cells_y)};
-        calib::FitSettings settings;
-        settings.free.objects = {{"target", true, true, false, true, false}};
-        model = std::make_unique<calib::SceneModel>(geometry, settings, true);
-        calib::ForwardSettings forward;
-        forward.axis = trial_axis();
-        forward.axis.num_bins = 288;
-        forward.sigma_m = core::sigma_m_from_fwhm_ps(94.0);
-        if (is_filtered) forward.measured = core::GaussianResponse{forward.sigma_m};
-        forward.offset_m.assign(scan.num_pairs(), 0.0);
-        forward.tolerance = tolerance;
-        light =
-            std::make_unique<calib::ForwardModel>(*model, scan, calib::WallMotion(scan), forward);
-        light->refresh(start());
-    }
-
-    calib::SceneState start() const {
-        calib::SceneState state = model->start();
-        state.has_ambient = false;
-        return state;
-    }
-
-    double milliseconds(core::Slopes slopes) const {
-        constexpr int kRepeats = 7;
-        std::vector<double> times;
-        calib::PairModel pair;
-        for (int i = 0; i < kRepeats; ++i) {
-            const double begin = core::cpu_seconds();
-            light->update(start(), slopes);
-            for (std::size_t p = 0; p < scan.num_pairs(); ++p) light->evaluate(p, pair);
-            times.push_back(1e3 * (core::cpu_seconds() - begin));
-        }
-        return *std::min_element(times.begin(), times.end());
-    }
-};
-
-double norm(const std::vector<double>& values) {
-    return std::sqrt(std::inner_product(values.begin(), values.end(), values.begin(), 0.0));
-}
-
-// The rectangle's transient by exact arcs, filtered on fine bins.
-std::vector<double> arcs_through_response(const renderer::Object& object,
-                                          const Vec3& wall_point,
-                                          const core::TimeAxis& axis,
-                                          double sigma_m) {
-    constexpr int kFine = 32;
-    core::TimeAxis fine = axis;
-    fine.bin_width_m /= kFine;
-    fine.num_bins *= kFine;
-    std::vector<double> sharp(static_cast<std::size_t>(fine.num_bins));
-    for (const auto& [a, b, c] : object.mesh.triangles) {
-        const auto& v = object.mesh.vertices;
-        const auto part = core::confocal_arcs({v[a], v[b], v[c]}, wall_point, Vec3::UnitZ(), fine);
-        for (std::size_t i = 0; i < sharp.size(); ++i) sharp[i] += 0.5 * part[i];  // albedo
-    }
-    std::vector<double> smooth(sharp.size());
-    core::apply_filter<double, double>(
-        core::sample_response(core::GaussianResponse{sigma_m}, fine.bin_width_m), sharp, smooth);
-    std::vector<double> result(static_cast<std::size_t>(axis.num_bins));
-    for (std::size_t i = 0; i < smooth.size(); ++i) result[i / kFine] += smooth[i];
-    return result;
-}
-
-struct ForwardError {
-    double shape = 0.0;
-    double energy = 0.0;
-};
-
-// Meshes of cells whose diagonals are `pieces` long, against arcs, for a few wall points.
-ForwardError forward_error(int cells_x, int cells_y) {
-    constexpr double kNoFurtherCut = 1e9;
-    const Bare bare(standard_pose(), cells_x, cells_y, kNoFurtherCut, false);
-    bare.light->update(bare.start(), core::Slopes::Without);
-    const renderer::Object whole = trial_rectangle(standard_pose(), 1, 1);
-    ForwardError worst;
-    const double sigma_m = bare.light->settings().sigma_m;
-    for (const std::size_t pair : {0U, 37U, 120U, 200U, 255U}) {
-        const auto exact = arcs_through_response(
-            whole, bare.scan.sensing.positions[pair], bare.light->settings().axis, sigma_m);
-        calib::PairModel model;
-        bare.light->evaluate(pair, model);
-        std::vector<double> difference = model.mean;
-        for (std::size_t b = 0; b < exact.size(); ++b) difference[b] -= exact[b];
-        worst.shape = std::max(worst.shape, norm(difference) / norm(exact));
-        const double sum = std::accumulate(exact.begin(), exact.end(), 0.0);
-        const double off = std::accumulate(difference.begin(), difference.end(), 0.0);
-        worst.energy = std::max(worst.energy, std::abs(off) / sum);
-    }
-    return worst;
-}
-
-void bench_forward(FitBench& bench) {
-    const ForwardError coarse = forward_error(5, 4);  // diagonals of 0.11 m, edges up to 0.08 m
-    const ForwardError fine = forward_error(11, 9);
-    bench.rows.push_back(row_of("forward against arcs, pieces <= 10 cm / <= 5 cm [relative L2]",
-                                "1.5e-2 / 1.5e-3",
-                                fmt::format("{:.1e} / {:.1e}", coarse.shape, fine.shape),
-                                coarse.shape < 1.5e-2 && fine.shape < 1.5e-3));
-    bench.rows.push_back(row_of("energy error, pieces <= 5 cm",
-                                "1e-5",
-                                fmt::format("{:.1e}", fine.energy),
-                                fine.energy < 1e-5));
-    const Bare bare(standard_pose(), 4, 3, 1e9, false);
-    const Bare filtered(standard_pose(), 4, 3, 1e9, true);
-    const double plain = bare.milliseconds(core::Slopes::Without);
-    const double slopes = bare.milliseconds(core::Slopes::With);
-    const double fir = filtered.milliseconds(core::Slopes::Without);
-    bench.rows.push_back(
-        row_of("forward / with Jacobian / filtered, 24 triangles x 256 points x 288 bins [ms]",
-               "12 / 20 / 3",
-               fmt::format("{:.1f} / {:.1f} / {:.1f}", plain, slopes, fir),
-               plain < 12.0 && slopes < 20.0 && fir < 3.0));
-}
-
-void bench_slopes(FitBench& bench) {
-    constexpr double kStep = 1e-6;
-    constexpr std::size_t kPair = 77;
-    const Bare bare(standard_pose(), 4, 3, 1e9, false);
-    const auto columns = static_cast<std::size_t>(bare.model->num_columns());
-    const calib::SceneState state = bare.start();
-    bare.light->update(state, core::Slopes::With);
-    calib::PairModel slopes;
-    bare.light->evaluate(kPair, slopes);
-    const auto jets = calib::jet_slopes(*bare.model,
-                                        state,
-                                        bare.light->pieces(),
-                                        bare.scan,
-                                        kPair,
-                                        bare.light->settings().axis,
-                                        bare.light->settings().sigma_m);
-    double from_jets = 0.0;
-    double from_differences = 0.0;
-    for (std::size_t c = 0; c < 6; ++c) {
-        std::vector<double> analytic;
-        std::vector<double> jet_error;
-        std::vector<double> difference_error;
-        Eigen::VectorXd step = Eigen::VectorXd::Zero(bare.model->num_columns());
-        step[static_cast<Eigen::Index>(c)] = kStep;
-        calib::PairModel above;
-        calib::PairModel below;
-        bare.light->update(calib::moved_by(*bare.model, state, step), core::Slopes::Without);
-        bare.light->evaluate(kPair, above);
-        bare.light->update(calib::moved_by(*bare.model, state, -step), core::Slopes::Without);
-        bare.light->evaluate(kPair, below);
-        for (std::size_t b = 0; b < above.mean.size(); ++b) {
-            analytic.push_back(slopes.slopes[b * columns + c]);
-            jet_error.push_back(0.5 * jets[b * 6 + c] - analytic.back());  // albedo
-            difference_error.push_back((above.mean[b] - below.mean[b]) / (2.0 * kStep) -
-                                       analytic.back());
-        }
-        from_jets = std::max(from_jets, norm(jet_error) / norm(analytic));
-        from_differences = std::max(from_differences, norm(difference_error) / norm(analytic));
-    }
-    bench.rows.push_back(row_of("Jacobian against Jets / differences [relative]",
-                                "1e-9 / 1e-5",
-                                fmt::format("{:.1e} / {:.1e}", from_jets, from_differences),
-                                from_jets < 1e-9 && from_differences < 1e-5));
-}
 
 // Root mean squares over fits of one pose.
 struct PoseSummary {
@@ -236,9 +58,10 @@ PoseSummary summarise(const TrialSetup& setup, int trials) {
         error2 += error.position_m.squaredNorm() / sigma.squaredNorm() +
                   error.turn_deg.squaredNorm() / turn_sigma.squaredNorm();
         bound2 += 2.0;
-        summary.normalised_square += (error.position_m.cwiseQuotient(sigma).squaredNorm() +
-                                      error.turn_deg.cwiseQuotient(turn_sigma).squaredNorm()) /
-                                     6.0;
+        Eigen::Matrix<double, 6, 1> all;
+        all << error.position_m, error.turn_deg / kDegrees;
+        const Eigen::MatrixXd covariance = fit.covariance.topLeftCorner<6, 6>();
+        summary.normalised_square += all.dot(covariance.ldlt().solve(all)) / 6.0;
         ++summary.count;
     }
     const double n = summary.count;
@@ -269,28 +92,28 @@ bool within(const PoseSummary& s, double lateral, double depth, double spin, dou
 void bench_pose(int trials, FitBench& bench) {
     TrialSetup setup;
     const PoseSummary many = summarise(setup, trials);
-    bench.rows.push_back(row_of("pose RMS, 1e5 photons: lateral / depth / spin / tilt",
-                                "0.9 mm / 0.25 mm / 0.5 deg / 0.1 deg",
-                                pose_text(many),
-                                within(many, 0.9, 0.25, 0.5, 0.1)));
+    bench.rows.push_back({"pose RMS, 1e5 photons: lateral / depth / spin / tilt",
+                          "0.9 mm / 0.25 mm / 0.5 deg / 0.1 deg",
+                          pose_text(many),
+                          within(many, 0.9, 0.25, 0.5, 0.1)});
     setup.photons = 1e4;
     const PoseSummary few = summarise(setup, trials);
-    bench.rows.push_back(row_of("pose RMS, 1e4 photons",
-                                "3 mm / 0.8 mm / 1.3 deg / 0.3 deg",
-                                pose_text(few),
-                                within(few, 3.0, 0.8, 1.3, 0.3)));
-    bench.rows.push_back(row_of("RMS over Cramer-Rao bound, 1e5 / 1e4 photons",
-                                "<= 1.3",
-                                fmt::format("{:.2f} / {:.2f}", many.over_bound, few.over_bound),
-                                many.over_bound <= 1.3 && few.over_bound <= 1.3));
+    bench.rows.push_back({"pose RMS, 1e4 photons",
+                          "3 mm / 0.8 mm / 1.3 deg / 0.3 deg",
+                          pose_text(few),
+                          within(few, 3.0, 0.8, 1.3, 0.3)});
+    bench.rows.push_back({"RMS over Cramer-Rao bound, 1e5 / 1e4 photons",
+                          "<= 1.3",
+                          fmt::format("{:.2f} / {:.2f}", many.over_bound, few.over_bound),
+                          many.over_bound <= 1.3 && few.over_bound <= 1.3});
     const auto consistent = [](const PoseSummary& s) {
         return s.normalised_square > 0.7 && s.normalised_square < 1.4;
     };
     bench.rows.push_back(
-        row_of("normalised squared error, 1e5 / 1e4 photons",
-               "0.7-1.4",
-               fmt::format("{:.2f} / {:.2f}", many.normalised_square, few.normalised_square),
-               consistent(many) && consistent(few)));
+        {"normalised squared error, 1e5 / 1e4 photons",
+         "0.7-1.4",
+         fmt::format("{:.2f} / {:.2f}", many.normalised_square, few.normalised_square),
+         consistent(many) && consistent(few)});
 }
 
 bool is_found(const TrialError& error) {
@@ -318,10 +141,10 @@ void bench_basin(int trials, FitBench& bench) {
     const double both = found_share(setup, 0.2, 45.0, trials);
     const double turned = found_share(setup, 0.0, 90.0, trials);
     const double far = found_share(setup, 0.3, 0.0, trials);
-    bench.rows.push_back(row_of("basin with the schedule: 20 cm + 45 deg / 90 deg / 30 cm [%]",
-                                "100 / >= 95 / >= 90",
-                                fmt::format("{:.0f} / {:.0f} / {:.0f}", both, turned, far),
-                                both == 100.0 && turned >= 95.0 && far >= 90.0));
+    bench.rows.push_back({"basin with the schedule: 20 cm + 45 deg / 90 deg / 30 cm [%]",
+                          "100 / >= 95 / >= 90",
+                          fmt::format("{:.0f} / {:.0f} / {:.0f}", both, turned, far),
+                          both == 100.0 && turned >= 95.0 && far >= 90.0});
 }
 
 void bench_search(int trials, FitBench& bench) {
@@ -342,11 +165,10 @@ void bench_search(int trials, FitBench& bench) {
         const TrialError error = trial_error(fit, truth);
         if (error.distance_m() < 0.03 && error.angle_deg() < 15.0) ++found;
     }
-    bench.rows.push_back(
-        row_of("from scratch, 3,000 photons",
-               ">= 29 of 30, <= 1 s each",
-               fmt::format("{} of {}, {:.2f} s each", found, trials, seconds / trials),
-               30 * found >= 29 * trials && seconds / trials <= 1.0));
+    bench.rows.push_back({"from scratch, 3,000 photons",
+                          ">= 29 of 30, <= 1 s each",
+                          fmt::format("{} of {}, {:.2f} s each", found, trials, seconds / trials),
+                          30 * found >= 29 * trials && seconds / trials <= 1.0});
 }
 
 // Data by Monte Carlo path tracing of another mesh behind a small occluder, with detector noise.
@@ -388,11 +210,10 @@ void bench_monte_carlo(int trials, FitBench& bench) {
          {&summary.lateral_m, &summary.depth_m, &summary.spin_deg, &summary.tilt_deg}) {
         *square = std::sqrt(*square);
     }
-    bench.rows.push_back(
-        row_of("Monte Carlo data, other mesh, occluder, 1e5 photons",
-               "0.9 mm / 0.25 mm / 0.5 deg / 0.1 deg",
-               pose_text(summary) + fmt::format(", deviance {:+.1f} %", 100.0 * excess),
-               within(summary, 0.9, 0.25, 0.5, 0.1)));
+    bench.rows.push_back({"Monte Carlo data, other mesh, occluder, 1e5 photons",
+                          "0.9 mm / 0.25 mm / 0.5 deg / 0.1 deg",
+                          pose_text(summary) + fmt::format(", deviance {:+.1f} %", 100.0 * excess),
+                          within(summary, 0.9, 0.25, 0.5, 0.1)});
 }
 
 void add_point(const std::string& choice, const TrialSetup& setup, int trials, FitBench& bench) {
@@ -438,6 +259,8 @@ const std::vector<BenchPart>& bench_parts() {
         {"basin", bench_basin},
         {"search", bench_search},
         {"monte_carlo", bench_monte_carlo},
+        {"heights", bench_heights},
+        {"direct_returns", bench_direct_returns},
         {"speed", bench_speed}};
     return kParts;
 }

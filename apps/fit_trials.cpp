@@ -97,12 +97,16 @@ TrialPose displaced(const TrialPose& pose,
 }
 
 core::Capture expected_light(const TrialSetup& setup, const TrialPose& truth) {
+    return expected_light(setup, trial_rectangle(truth, setup.cells_x, setup.cells_y));
+}
+
+core::Capture expected_light(const TrialSetup& setup, const renderer::Object& truth) {
     core::Capture capture;
     capture.scan = trial_scan(setup.scan_points);
     capture.time_axis = trial_axis();
     capture.transient = core::Transient(capture.scan.num_pairs(), capture.time_axis.num_bins);
     renderer::SceneGeometry geometry;
-    geometry.objects = {trial_rectangle(truth, setup.cells_x, setup.cells_y)};
+    geometry.objects = {truth};
     calib::FitSettings settings;
     settings.free.objects = {{"target", true, false, false, false, false}};
     const calib::SceneModel model(geometry, settings, false);
@@ -127,10 +131,10 @@ core::Capture expected_light(const TrialSetup& setup, const TrialPose& truth) {
                   result.mean.end(),
                   expected.begin() + static_cast<std::ptrdiff_t>(pair * bins));
     });
-    std::transform(expected.begin(),
-                   expected.end(),
-                   capture.transient.values().begin(),
-                   [](double value) { return static_cast<float>(std::max(0.0, value)); });
+    std::transform(
+        expected.begin(), expected.end(), capture.transient.values().begin(), [](double value) {
+            return static_cast<float>(std::max(0.0, value));
+        });
     return capture;
 }
 

@@ -48,6 +48,7 @@ TrialPose displaced(const TrialPose& pose, double distance_m, double angle_deg, 
 
 /// The light of a trial after the response, and counts that a detector records of light.
 core::Capture expected_light(const TrialSetup& setup, const TrialPose& truth);
+core::Capture expected_light(const TrialSetup& setup, const renderer::Object& truth);
 /// jitter_fwhm_ps   response that the light has not gone through yet; 0: none
 core::Capture counted_capture(const TrialSetup& setup,
                               const core::Capture& light,
