@@ -115,17 +115,21 @@ void LightVertices::store(const std::vector<Walked>& walks) {
     points_.clear();
     walk_of_.clear();
     walk_begin_.assign(1, 0);
-    for (auto* column : {&x_, &y_, &z_, &first_x_, &first_y_, &first_z_, &between_m_}) {
+    for (auto* column : {&x_, &y_, &z_, &first_x_, &first_y_, &first_z_, &to_light_m_}) {
         column->clear();
     }
     const Vec3& origin = scene_->rays().origin();
     for (std::size_t w = 0; w < walks.size(); ++w) {
-        double between = 0.0;
+        double to_light = 0.0;
         for (std::size_t i = 0; i < walks[w].points.size(); ++i) {
             const SurfacePoint& point = walks[w].points[i];
             const Vec3 first = (walks[w].points[0].position - origin);
             const Vec3 local = point.position - origin;
-            if (i > 0) between += (point.position - walks[w].points[i - 1].position).norm();
+            if (i > 0) {
+                to_light += (point.position - walks[w].points[i - 1].position).norm();
+            } else if (!by_area_) {
+                to_light = (point.position - light_.position).norm();
+            }
             points_.push_back(point);
             walk_of_.push_back(static_cast<std::uint32_t>(w));
             x_.push_back(static_cast<float>(local.x()));
@@ -134,7 +138,7 @@ void LightVertices::store(const std::vector<Walked>& walks) {
             first_x_.push_back(static_cast<float>(first.x()));
             first_y_.push_back(static_cast<float>(first.y()));
             first_z_.push_back(static_cast<float>(first.z()));
-            between_m_.push_back(static_cast<float>(between));
+            to_light_m_.push_back(static_cast<float>(to_light));
         }
         walk_begin_.push_back(static_cast<std::uint32_t>(points_.size()));
     }
@@ -161,15 +165,21 @@ void LightVertices::find(const PathDomain& domain,
             const float dx = x_[v + i] - start.x();
             const float dy = y_[v + i] - start.y();
             const float dz = z_[v + i] - start.z();
+            length[i] = std::sqrt(dx * dx + dy * dy + dz * dz) + to_light_m_[v + i];
+        }
+        for (std::uint32_t i = 0; by_area_ && i < count; ++i) {
             const float lx = first_x_[v + i] - light.x();
             const float ly = first_y_[v + i] - light.y();
             const float lz = first_z_[v + i] - light.z();
-            length[i] = std::sqrt(dx * dx + dy * dy + dz * dz) +
-                        std::sqrt(lx * lx + ly * ly + lz * lz) + between_m_[v + i];
+            length[i] += std::sqrt(lx * lx + ly * ly + lz * lz);
         }
-        for (std::uint32_t i = 0; i < count; ++i) {
-            if (length[i] >= low && length[i] < high) found.push_back(v + i);
+        std::array<std::uint32_t, kVerticesAtOnce> hits;
+        std::uint32_t num_hits = 0;
+        for (std::uint32_t i = 0; i < count; ++i) {  // without branches
+            hits[num_hits] = v + i;
+            num_hits += static_cast<std::uint32_t>((length[i] >= low) & (length[i] < high));
         }
+        found.insert(found.end(), hits.begin(), hits.begin() + num_hits);
         v += count;
     }
 }

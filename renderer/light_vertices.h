@@ -74,7 +74,8 @@ class LightVertices {
     // For the search, in single precision and relative to the ray caster's origin.
     std::vector<float> x_, y_, z_;                    ///< the vertex
     std::vector<float> first_x_, first_y_, first_z_;  ///< its walk's first vertex
-    std::vector<float> between_m_;                    ///< length of the walk between the two
+    /// Length of the walk from the vertex to its first one, for cameras on to their light.
+    std::vector<float> to_light_m_;
 };
 
 }  // namespace renderer

@@ -98,4 +98,14 @@ PixelPlaces::Band PixelPlaces::band(std::size_t pixel, const OplBand& wanted) co
     return {here - 0.5 * slopes.sum(), slopes, wanted};
 }
 
+OplBand PixelPlaces::around(std::size_t pixel) const {
+    OplBand lengths{opl_m_[pixel], opl_m_[pixel]};
+    for (const std::size_t other : {pixel - 1, pixel + 1, pixel - height_, pixel + height_}) {
+        if (other >= opl_m_.size()) continue;  // also below 0
+        lengths.low_m = std::min(lengths.low_m, opl_m_[other]);
+        lengths.high_m = std::max(lengths.high_m, opl_m_[other]);
+    }
+    return lengths;
+}
+
 }  // namespace renderer

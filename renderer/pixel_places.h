@@ -42,6 +42,9 @@ class PixelPlaces {
 
     Band band(std::size_t pixel, const OplBand& wanted) const;
 
+    /// Shortest and longest of the lengths at the middles of a pixel and of the four around it.
+    OplBand around(std::size_t pixel) const;
+
  private:
     std::vector<double> opl_m_;  ///< at the pixels' middles; infinite where nothing is seen
     std::size_t height_;

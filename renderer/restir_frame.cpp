@@ -157,14 +157,11 @@ RestirScene::RestirScene(std::shared_ptr<const Scene> scene_of_frames,
       shift(make_shift(*scene, settings.restir, quantity)) {
     if (!measurement.is_image()) return;
     pixel_normals.resize(measurement.num_pairs(), Vec3::Zero());
-    pixel_direct_opl_m.resize(measurement.num_pairs(), std::numeric_limits<double>::infinity());
-    const Vec3 light = measurement.ends(0).light.position;
     core::parallel_for(pixel_normals.size(), [&](std::size_t pixel) {
         const auto seen = measurement.first_vertex(pixel, {0.5, 0.5});
-        if (!seen) return;
-        pixel_normals[pixel] = seen->normal;
-        pixel_direct_opl_m[pixel] = seen->extent.opl_m + (light - seen->point.position).norm();
+        if (seen) pixel_normals[pixel] = seen->normal;
     });
+    pixel_places.emplace(measurement, scan.camera->height());
 }
 
 PathDomain pixel_domain(const Measurement& measurement,

@@ -4,6 +4,7 @@
 #include "renderer/packed_reservoirs.h"
 #include "renderer/path_candidates.h"
 #include "renderer/path_gate.h"
+#include "renderer/pixel_places.h"
 #include "renderer/resampling.h"
 #include "renderer/restir_counts.h"
 #include "renderer/shift_mapping.h"
@@ -30,10 +31,10 @@ struct RestirScene {
     SurfaceWalk walk;
     PathCandidates candidates;
     std::optional<ShiftMapping> shift;  ///< nothing: paths are reused as they are
-    /// Of an image, what is seen through the middle of its pixels: normals, 0 where that is
-    /// nothing, and lengths of the path straight to the light, infinite there.
+    /// Of an image: normals of what is seen through the middle of its pixels, 0 where that is
+    /// nothing.
     std::vector<core::Vec3> pixel_normals;
-    std::vector<double> pixel_direct_opl_m;
+    std::optional<PixelPlaces> pixel_places;
 };
 
 /// One frame's reservoirs, some per pair, and what they belong to.

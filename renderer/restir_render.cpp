@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <limits>
 
 namespace renderer {
@@ -66,55 +67,49 @@ void require_memory(double needed) {
             "reservoirs need {:.1f} GB, {:.1f} GB are free", needed * 1e-9, available * 1e-9));
 }
 
-// Whether the end of a bin may cross a pixel, judged by the middles of the pixels around it; those
-// of velocities may anywhere.
-bool bin_may_end_in(const RestirFrame& frame, std::size_t pixel, const core::Scan& scan) {
-    const core::TimeAxis& axis = frame.bins.axes().time;
-    const std::vector<double>& opl_m = frame.scene->pixel_direct_opl_m;
-    const std::size_t height = scan.camera->height();
-    double low = opl_m[pixel];
-    double high = opl_m[pixel];
-    for (const std::size_t other : {pixel - 1, pixel + 1, pixel - height, pixel + height}) {
-        if (other >= opl_m.size()) continue;  // also below 0
-        low = std::min(low, opl_m[other]);
-        high = std::max(high, opl_m[other]);
+// Whether the end of a bin may cross a pixel; those of velocities may anywhere.
+bool bin_may_end_in(const OplBand& lengths, const core::HistogramAxes& axes) {
+    if (lengths.low_m > axes.time.opl_end_m() || lengths.high_m < axes.time.opl_start_m) {
+        return false;
     }
-    if (low > axis.opl_end_m() || high < axis.opl_start_m) return false;
-    if (frame.bins.axes().velocity) return true;
-    const auto first = axis.bin_of(low);
-    return !first || first != axis.bin_of(high);
+    if (axes.velocity) return true;
+    const auto first = axes.time.bin_of(lengths.low_m);
+    return !first || first != axes.time.bin_of(lengths.high_m);
 }
 
-// What goes straight from the surface that a pixel sees to the light. A gate's edge that crosses a
-// pixel would be noise if one place of it stood for all.
+// What goes straight from the surface that a pixel sees to the light. Where the end of a bin
+// crosses a pixel one place of it would be noise; there they are the points of a lattice shifted at
+// random.
 void add_direct_light_of_pixel(const RestirFrame& frame,
                                std::size_t pixel,
-                               const core::Scan& scan,
                                const RenderSettings& settings,
                                PassHistogram& histogram) {
-    const int places_per_side = bin_may_end_in(frame, pixel, scan) ? 4 : 1;
-    const double weight = 1.0 / (places_per_side * places_per_side);
+    constexpr int kPlaces = 32;
+    constexpr double kGolden = 0.6180339887498949;
+    const PixelPlaces& places = *frame.scene->pixel_places;
+    const core::TimeAxis& axis = frame.bins.axes().time;
+    const TimeGate first = TimeGate::of_bin(axis, 0, settings.gate);
+    const TimeGate last = TimeGate::of_bin(axis, axis.num_bins - 1, settings.gate);
+    const PixelPlaces::Band band = places.band(pixel, {first.begin_m(), last.end_m()});
+    const int count = bin_may_end_in(places.around(pixel), frame.bins.axes()) ? kPlaces : 1;
     const PathDomain& domain = frame.domains[pixel];
-    const Measurement& measurement = frame.scene->measurement;
-    for (int i = 0; i < places_per_side; ++i) {
-        for (int j = 0; j < places_per_side; ++j) {
-            // One jitter for all: the places are a grid shifted at random.
-            const core::Vec2 place = (core::Vec2(i, j) + domain.pixel_u) / places_per_side;
-            auto seen = measurement.first_vertex(pixel, place);
-            if (!seen) continue;
-            seen->throughput = weight;
-            add_direct_light(*seen, domain.ends, frame.scene->walk, settings, histogram);
-        }
+    for (int i = 0; i < count; ++i) {
+        const double u2 = domain.pixel_u.y() + kGolden * i;
+        const core::Vec2 place =
+            band.sample({(i + domain.pixel_u.x()) / count, u2 - std::floor(u2)});
+        auto seen = frame.scene->measurement.first_vertex(pixel, place);
+        if (!seen) continue;
+        seen->throughput = 1.0 / (count * band.pdf(place));
+        add_direct_light(*seen, domain.ends, frame.scene->walk, settings, histogram);
     }
 }
 
 void add_paths_without_vertices(const RestirFrame& frame,
                                 std::size_t pair,
-                                const core::Scan& scan,
                                 const RenderSettings& settings,
                                 PassHistogram& histogram) {
     if (frame.scene->measurement.is_image()) {
-        add_direct_light_of_pixel(frame, pair, scan, settings, histogram);
+        add_direct_light_of_pixel(frame, pair, settings, histogram);
     } else {
         add_short_paths(*frame.scene->scene, frame.domains[pair].ends, settings, histogram);
     }
@@ -151,16 +146,13 @@ void add_reservoirs(const RestirFrame& frame, std::size_t pair, PassHistogram& h
 }
 
 // Adds what a frame's reservoirs estimate, and paths too short to be sampled, to the sums.
-void add_frame(const RestirFrame& frame,
-               const core::Scan& scan,
-               const RenderSettings& settings,
-               HistogramSums& sums) {
+void add_frame(const RestirFrame& frame, const RenderSettings& settings, HistogramSums& sums) {
     std::atomic<bool> is_finite{true};
     core::parallel_blocks(
         frame.domains.size(), kPairsPerBlock, [&](std::size_t begin, std::size_t end) {
             PassHistogram histogram(frame.bins.axes(), settings.gate, 1);
             for (std::size_t pair = begin; pair < end; ++pair) {
-                add_paths_without_vertices(frame, pair, scan, settings, histogram);
+                add_paths_without_vertices(frame, pair, settings, histogram);
                 add_reservoirs(frame, pair, histogram);
                 if (histogram.num_non_finite() > 0) is_finite = false;
                 sums.add_pass(pair, histogram);
@@ -223,7 +215,7 @@ RenderResult render_restir(std::shared_ptr<const Scene> scene,
     bool interrupted = false;
     while (done < num_frames) {
         const auto number = static_cast<std::uint64_t>(done);
-        add_frame(renderer.render({restir_scene, axes, nullptr, number}), scan, settings, sums);
+        add_frame(renderer.render({restir_scene, axes, nullptr, number}), settings, sums);
         ++done;
         const double elapsed = seconds_since(start);
         const double share =
@@ -272,7 +264,7 @@ FrameRenderer make_restir_frame_renderer(const core::Scan& scan, const RenderSet
                                          static_cast<std::uint64_t>(repeats);
             rendered = state->renderer.render(
                 {scene, frame.axes, is_first ? nullptr : &state->last, number});
-            add_frame(rendered, frame_scan, state->settings, sums);
+            add_frame(rendered, state->settings, sums);
             ++repeats;
         } while (state->settings.seconds && seconds_since(start) < *state->settings.seconds &&
                  repeats < static_cast<int>(kMostRepeats));
