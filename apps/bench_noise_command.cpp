@@ -1,20 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "apps/arguments.h"
 #include "apps/bench_noise.h"
+#include "apps/bench_output.h"
 #include "apps/commands.h"
 #include "apps/terminal.h"
-#include "apps/version.h"
-#include "renderer/core/output_file.h"
 
 #include <fmt/core.h>
 
-#include <filesystem>
 #include <memory>
 
 namespace apps {
 namespace {
-
-namespace fs = std::filesystem;
 
 struct NoiseBenchArguments {
     std::string folder;
@@ -23,18 +19,10 @@ struct NoiseBenchArguments {
 };
 
 void run(const NoiseBenchArguments& arguments) {
-    std::error_code error;
-    fs::create_directories(arguments.folder, error);
-    if (error) throw core::Error(arguments.folder, "cannot be made", "must be a writable folder");
+    const std::string stem = result_stem(arguments.folder, "bench_noise");
     ProgressBar bar("bench noise");
     const NoiseBench bench = bench_noise(arguments.scene, arguments.repeats, bar.progress());
-
-    const std::string stem = (fs::path(arguments.folder) / "bench_noise").string();
-    core::Json json = core::write_value(bench);
-    json["program"] = version_text();
-    core::write_text_file(stem + ".json", json.dump(2) + "\n");
-    core::write_text_file(stem + ".txt", noise_table(bench));
-    fmt::print("{}", noise_table(bench));
+    write_tables(stem, core::write_value(bench), noise_table(bench));
     if (!draw_noise_plots(bench, stem)) {
         fmt::print(stderr, "bench: gnuplot is not there, so no plot was drawn\n");
     }

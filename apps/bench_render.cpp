@@ -151,33 +151,41 @@ std::vector<EqualError> equal_errors(const BenchCurve& third_bounce, const Bench
     return result;
 }
 
-}  // namespace
-
-RenderBench bench_render(const std::string& scene_path,
-                         const std::string& camera_scene,
-                         const std::string& exclusion_scene,
-                         int repeats,
-                         const core::Progress& progress) {
-    const BenchScene bench(scene_path);
-    RenderBench result;
-    result.scene = scene_path;
-    result.repeats = repeats;
+void measure_curves(const RenderBenchSettings& settings,
+                    const core::Progress& progress,
+                    RenderBench& result) {
+    const BenchScene bench(settings.scene);
     const core::Capture reference = make_reference(bench, result);
     const core::ThreadLimit one_thread(1);
     for (const auto& [method, efforts] :
          {std::pair{"third_bounce", third_bounce_efforts(bench.settings())},
           std::pair{"path", path_efforts(bench.settings())}}) {
         result.curves.push_back(
-            measure_curve(bench, method, efforts, reference, repeats, progress));
+            measure_curve(bench, method, efforts, reference, settings.repeats, progress));
     }
     result.equal_error = equal_errors(result.curves[0], result.curves[1]);
-    for (const std::string& path : {scene_path, camera_scene}) {
-        result.gates.push_back(bench_gates(path, std::max(kFewestGateRuns, repeats), progress));
+}
+
+}  // namespace
+
+RenderBench bench_render(const RenderBenchSettings& settings, const core::Progress& progress) {
+    RenderBench result;
+    result.scene = settings.scene;
+    result.repeats = settings.repeats;
+    const int gate_runs = std::max(kFewestGateRuns, settings.repeats);
+    if (settings.has("curves")) measure_curves(settings, progress, result);
+    if (settings.has("gates")) {
+        for (const std::string& path : {settings.scene, settings.camera_scene}) {
+            result.gates.push_back(bench_gates(path, gate_runs, progress));
+        }
     }
-    for (const std::string& path : {scene_path, exclusion_scene}) {
-        const auto part = bench_exclusion(path, std::max(kFewestGateRuns, repeats));
-        result.exclusion.insert(result.exclusion.end(), part.begin(), part.end());
+    if (settings.has("exclusion")) {
+        for (const std::string& path : {settings.scene, settings.exclusion_scene}) {
+            const auto part = bench_exclusion(path, gate_runs);
+            result.exclusion.insert(result.exclusion.end(), part.begin(), part.end());
+        }
     }
+    if (settings.has("growth")) result.growth = bench_render_growth(progress);
     return result;
 }
 

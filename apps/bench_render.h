@@ -2,6 +2,7 @@
 #pragma once
 
 #include "apps/bench_gates.h"
+#include "apps/bench_growth.h"
 
 #include <string>
 #include <vector>
@@ -67,6 +68,7 @@ struct RenderBench {
     std::vector<EqualError> equal_error;
     std::vector<GateTable> gates;
     std::vector<ExclusionBench> exclusion;
+    std::vector<RenderGrowth> growth;
 };
 
 template <class Visitor>
@@ -80,17 +82,23 @@ void for_each_field(RenderBench& bench, Visitor&& visit) {
     visit("equal_error", bench.equal_error, "speed-up of third_bounce over path");
     visit("gates", bench.gates, "path and ellipsoidal in equal time");
     visit("exclusion", bench.exclusion, "ellipsoidal with and without excluded surfaces");
+    visit("growth", bench.growth, "time against sizes");
 }
 
-/// Measures every estimator on a scene at several efforts, on one thread.
-///
-/// camera_scene      where gates are tried beside the first scene
-/// exclusion_scene   where excluding a back wall from ellipsoidal connections is tried; excluding
-///                   the relay wall is tried on the first
-RenderBench bench_render(const std::string& scene_path,
-                         const std::string& camera_scene,
-                         const std::string& exclusion_scene,
-                         int repeats,
-                         const core::Progress& progress);
+/// What `nlos bench render` is to measure.
+struct RenderBenchSettings {
+    std::string scene = "scenes/bars/scene.json";
+    std::string camera_scene = "scenes/box/scene.json";  ///< where gates are tried, too
+    /// Where excluding a back wall from ellipsoidal connections is tried; excluding the relay wall
+    /// is tried on the first scene.
+    std::string exclusion_scene = "scenes/corner/scene.json";
+    std::string part = "all";  ///< or curves, gates, exclusion, growth
+    int repeats = 1;           ///< runs per point; gates and exclusion take at least three
+
+    bool has(const std::string& name) const { return part == "all" || part == name; }
+};
+
+/// Measures every estimator on a scene at several efforts, and the rest, on one thread.
+RenderBench bench_render(const RenderBenchSettings& settings, const core::Progress& progress);
 
 }  // namespace apps

@@ -22,8 +22,9 @@ void add_report_command(CLI::App& app);
 void add_demo_command(CLI::App& app);
 void add_bench_command(CLI::App& app);
 
-/// Adds `bench noise` to `bench`.
+// Subcommands of bench.
 void add_noise_bench(CLI::App& bench);
-void add_bench_fit_command(CLI::App& bench);  // a subcommand of bench
+void add_bench_render_command(CLI::App& bench);
+void add_bench_fit_command(CLI::App& bench);
 
 }  // namespace apps

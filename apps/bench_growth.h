@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/core/progress.h"
+#include "renderer/core/settings.h"
+
+#include <string>
+#include <vector>
+
+namespace apps {
+
+/// What one estimator costs at growing size of one kind, all else equal.
+struct RenderGrowth {
+    std::string method;
+    std::string of;  ///< what grows
+    std::vector<double> sizes;
+    std::vector<double> cpu_seconds;
+    double exponent = 0.0;  ///< time grows with this power of the size, fitted to all points
+    double last = 0.0;      ///< the same between the two largest sizes
+};
+
+template <class Visitor>
+void for_each_field(RenderGrowth& growth, Visitor&& visit) {
+    visit("method", growth.method, "estimator");
+    visit("of", growth.of, "what grows");
+    visit("sizes", growth.sizes, "sizes");
+    visit("cpu_seconds", growth.cpu_seconds, "CPU time at each [s]");
+    visit("exponent", growth.exponent, "fitted power of the size");
+    visit("last", growth.last, "power between the two largest sizes");
+}
+
+/// Growth of `third_bounce` (to 2 %) and of `path` (256 samples per pair) with triangles (512 to
+/// 500,000), wall points, bins and, `path` only, bounces: a wavy sheet of 0.8 m, 1 m behind a wall
+/// of 1 m, confocal. One thread.
+std::vector<RenderGrowth> bench_render_growth(const core::Progress& progress);
+
+}  // namespace apps
