@@ -3,6 +3,7 @@
 
 #include "apps/arguments.h"
 #include "apps/file_kind.h"
+#include "apps/fit_pictures.h"
 #include "apps/scene_truth.h"
 #include "calib/compare_fit.h"
 #include "calib/fit_file.h"
@@ -53,7 +54,10 @@ nlos::Metrics compare_volume_to_scene(const std::string& a,
 }
 
 // A fit's poses and, beside them, its surfaces as samples.
-nlos::Metrics compare_fit_to_scene(const std::string& a, const std::string& b, double threshold_m) {
+nlos::Metrics compare_fit_to_scene(const std::string& a,
+                                   const std::string& b,
+                                   const std::string& picture_path,
+                                   double threshold_m) {
     const calib::FitResult fit = calib::read_fit(a);
     const std::string geometry = with_suffix(a, ".glb");
     const auto errors =
@@ -63,6 +67,10 @@ nlos::Metrics compare_fit_to_scene(const std::string& a, const std::string& b, d
     nlos::Metrics metrics;
     if (!errors.fitted_points.positions.empty()) {
         metrics = nlos::compare_points(errors.fitted_points, errors.true_points, threshold_m);
+    }
+    const std::vector<nlos::Panel> overlay = overlay_panels(errors);
+    if (!picture_path.empty() && !overlay.empty()) {
+        nlos::write_panels_png(picture_path, overlay, 3);
     }
     metrics.position_error_m = errors.position_m;
     metrics.rotation_error_deg = errors.rotation_deg;
@@ -86,7 +94,7 @@ nlos::Metrics compare_kinds(const std::string& a,
         return compare_volume_to_scene(a, b, picture_path);
     }
     if (kind_a == FileKind::Fit && kind_b == FileKind::Scene) {
-        return compare_fit_to_scene(a, b, threshold_m);
+        return compare_fit_to_scene(a, b, picture_path, threshold_m);
     }
     if (is_surface(kind_a) && kind_b == FileKind::Scene) {
         return nlos::compare_points(

@@ -2,27 +2,22 @@
 #include "apps/fit_job.h"
 
 #include "apps/arguments.h"
+#include "apps/fit_pictures.h"
 #include "apps/terminal.h"
 #include "apps/version.h"
 #include "calib/calibrate.h"
 #include "calib/fit_file.h"
-#include "calib/poisson_deviance.h"
 #include "nlos/formats/capture_file.h"
 #include "nlos/formats/volume_file.h"
 #include "renderer/core/output_file.h"
 #include "renderer/gltf.h"
 
-#include <algorithm>
-#include <cmath>
 #include <filesystem>
 
 namespace apps {
 namespace {
 
 namespace fs = std::filesystem;
-
-// Rows of a picture; more wall points are averaged in groups.
-constexpr std::size_t kMostRows = 256;
 
 calib::FitInput make_input(const std::string& capture_path,
                            const std::string& model_path,
@@ -64,60 +59,7 @@ void write_results(const calib::FitInput& input,
     core::write_text_file(fit_path, json.dump(2) + "\n");
 }
 
-nlos::ImagePanel rows_panel(const calib::FitResult& result, const std::string& title) {
-    nlos::ImagePanel panel;
-    panel.title = title;
-    panel.width = static_cast<std::size_t>(result.axis.num_bins);
-    panel.x_range = {result.axis.opl_start_m, result.axis.opl_end_m()};
-    panel.x_label = "path length [m]";
-    panel.y_label = "pair";
-    panel.scale = nlos::AxisScale::Free;
-    return panel;
-}
-
 }  // namespace
-
-std::vector<nlos::Panel> fit_panels(const calib::FitResult& result) {
-    const auto bins = static_cast<std::size_t>(result.axis.num_bins);
-    const std::size_t pairs = result.data.size() / bins;
-    const std::size_t group = (pairs + kMostRows - 1) / kMostRows;
-    const std::size_t rows = (pairs + group - 1) / group;
-    nlos::ImagePanel data = rows_panel(result, "Data");
-    nlos::ImagePanel model = rows_panel(result, "Model");
-    nlos::ImagePanel residual = rows_panel(result, "Data - model");
-    const bool is_poisson = result.residual == "poisson";
-    for (std::size_t row = 0; row < rows; ++row) {
-        for (std::size_t bin = 0; bin < bins; ++bin) {
-            double counted = 0.0;
-            double expected = 0.0;
-            for (std::size_t i = row * group; i < std::min(pairs, (row + 1) * group); ++i) {
-                counted += result.data[i * bins + bin];
-                expected += result.model[i * bins + bin];
-            }
-            data.values.push_back(static_cast<float>(counted));
-            model.values.push_back(static_cast<float>(expected));
-            const double misfit = is_poisson && expected > 0.0
-                                      ? -calib::signed_deviance(expected, counted).value
-                                      : counted - expected;
-            residual.values.push_back(static_cast<float>(misfit));
-        }
-    }
-    const float most = *std::max_element(data.values.begin(), data.values.end());
-    double widest = 0.0;
-    for (const float value : residual.values) {
-        widest = std::max(widest, std::abs(static_cast<double>(value)));
-    }
-    for (nlos::ImagePanel* panel : {&data, &model, &residual}) {
-        panel->height = rows;
-        panel->y_range = {0.0, static_cast<double>(pairs)};
-    }
-    data.value_range = model.value_range = std::array{0.0, static_cast<double>(most)};
-    data.value_label = model.value_label = is_poisson ? "counts" : "value";
-    residual.value_label = is_poisson ? "standard deviations" : "value";
-    residual.colour_map = nlos::ColourMap::Diverging;
-    residual.value_range = std::array{-widest, widest};
-    return {data, model, residual};
-}
 
 calib::FitResult fit_to_file(const std::string& capture_path,
                              const std::string& model_path,

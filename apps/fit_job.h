@@ -2,7 +2,6 @@
 #pragma once
 
 #include "calib/fit.h"
-#include "nlos/formats/picture.h"
 
 #include <string>
 #include <vector>
@@ -21,8 +20,5 @@ calib::FitResult fit_to_file(const std::string& capture_path,
                              const std::vector<std::string>& overrides,
                              const std::string& calibration,
                              const std::string& fit_path);
-
-/// Data, model and their difference in standard deviations, a row per wall point.
-std::vector<nlos::Panel> fit_panels(const calib::FitResult& result);
 
 }  // namespace apps

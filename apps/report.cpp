@@ -44,8 +44,13 @@ std::string notes_html(const std::vector<std::string>& notes) {
 }
 
 std::string card_html(const ResultCard& card, const std::string& picture_of) {
-    return fmt::format("<article><h3>{}</h3>\n", escape_html(card.file)) + "<figure>" +
-           embedded_image(card.picture_png, kPng, picture_of + " of " + card.file) + "</figure>\n" +
+    std::string picture;
+    if (!card.picture_png.empty()) {
+        picture = "<figure>" +
+                  embedded_image(card.picture_png, kPng, picture_of + " of " + card.file) +
+                  "</figure>\n";
+    }
+    return fmt::format("<article><h3>{}</h3>\n", escape_html(card.file)) + picture +
            facts_html(card.facts) + notes_html(card.notes) +
            details_html("Settings and provenance", card.settings) + "</article>\n";
 }
@@ -74,9 +79,8 @@ std::string comparisons_html(const std::vector<ScoredResult>& scores) {
             caption += fmt::format(
                 ": {} against {}", escape_html(scored.result), escape_html(scored.reference));
         }
-        html += figure_html(
-            embedded_image(scored.picture_png, kPng, "True depth, reconstruction and error"),
-            caption);
+        html += figure_html(embedded_image(scored.picture_png, kPng, "Comparison with the truth"),
+                            caption);
     }
     return html;
 }
@@ -133,6 +137,7 @@ std::string contents_text(const ResultsFolder& results) {
     };
     add(results.captures.size(), "capture");
     add(results.volumes.size(), "reconstruction");
+    add(results.fits.size(), "fit");
     add(results.scores.size(), "comparison");
     add(results.unreadable.size(), "unreadable file");
     return text;
@@ -161,6 +166,7 @@ std::string render_report(const ResultsFolder& results) {
     html += section_html("captures", "Captures", cards_html(results.captures, "Streak image"));
     html += section_html(
         "reconstructions", "Reconstructions", cards_html(results.volumes, "Projections"));
+    html += section_html("fits", "Fits", cards_html(results.fits, "Data, model and residual"));
     html +=
         section_html("comparisons", "Comparison with the truth", comparisons_html(results.scores));
     html += section_html("figures", "Figures", figures_html(results.figures, FigureKind::Other));

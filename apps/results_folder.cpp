@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/results_folder.h"
 
+#include "calib/fit_file.h"
 #include "nlos/formats/capture_file.h"
 #include "nlos/formats/volume_file.h"
 #include "nlos/pictures.h"
@@ -158,6 +159,79 @@ ResultCard volume_card(const fs::path& path) {
     return card;
 }
 
+// ---- Fits --------------------------------------------------------------------------------------
+
+std::string with_sigma(double value, double sigma, double unit, const std::string& name) {
+    const std::string text = short_number(unit * value);
+    if (sigma == calib::kFixed) return text + name;
+    if (!std::isfinite(sigma)) return text + name + " (unknown)";
+    return text + " +- " + short_number(unit * sigma) + name;
+}
+
+std::string place_text(const core::Vec3& position_m, const core::Vec3& sigma_m) {
+    std::string text;
+    for (int a = 0; a < 3; ++a) {
+        text += (a == 0 ? "" : ", ") + with_sigma(position_m[a], sigma_m[a], 1e3, "");
+    }
+    return "(" + text + ") mm";
+}
+
+std::vector<Fact> fit_facts(const calib::FitResult& fit, const core::Json& json) {
+    std::vector<Fact> facts;
+    for (const calib::FittedObject& object : fit.objects) {
+        std::string text = place_text(object.position_m, object.position_sigma_m);
+        if (object.rotation_sigma_deg.norm() > 0.0) {
+            text += ", turned +- " + short_number(object.rotation_sigma_deg.norm()) + " deg";
+        }
+        text += ", size " + with_sigma(object.size, object.size_sigma, 1.0, "") + ", albedo " +
+                with_sigma(object.albedo, object.albedo_sigma, 1.0, "");
+        facts.emplace_back(object.name, text);
+    }
+    for (std::size_t i = 0; i < fit.points.size(); ++i) {
+        facts.emplace_back(fmt::format("Point {}", i),
+                           place_text(fit.points[i].position_m, fit.points[i].position_sigma_m));
+    }
+    const auto number = [&](const char* key) {
+        const auto it = json.find(key);
+        return it != json.end() && it->is_number() ? short_number(it->get<double>()) : "unknown";
+    };
+    facts.insert(
+        facts.end(),
+        {{"Time zero", number("time_zero_m") + " m"},
+         {"Ambient light per bin", number("ambient")},
+         {"Response", number("response_fwhm_ps") + " ps"},
+         {"Residual", json.value("residual", "unknown")},
+         {"Deviance, and expected", number("deviance") + ", " + number("expected_deviance")},
+         {"Condition number", number("condition_number")},
+         {"Iterations", number("iterations")},
+         {"Time", number("seconds") + " s"},
+         {"Converged", fit.converged ? "yes" : "no: " + json.value("message", "")}});
+    return facts;
+}
+
+ResultCard fit_card(const fs::path& path, const core::Json& json) {
+    ResultCard card;
+    card.file = path.filename().string();
+    card.facts = fit_facts(calib::read_fit(path.string()), json);
+    const fs::path picture = fs::path(path).replace_extension(".png");
+    if (fs::exists(picture)) card.picture_png = read_bytes(picture);
+    for (const char* key : {"warnings", "unidentifiable"}) {
+        for (const core::Json& text : json.value(key, core::Json::array())) {
+            const std::string prefix =
+                std::string(key) == "warnings" ? "Warning: " : "Unidentifiable: ";
+            card.notes.push_back(prefix + text.get<std::string>());
+        }
+    }
+    for (const core::Json& pair : json.value("correlations", core::Json::array())) {
+        card.notes.push_back(fmt::format("Correlated: {} with {} ({:.3f})",
+                                         pair.value("a", ""),
+                                         pair.value("b", ""),
+                                         pair.value("value", 0.0)));
+    }
+    card.settings = json;
+    return card;
+}
+
 // ---- JSON --------------------------------------------------------------------------------------
 
 bool is_metrics(const core::Json& json) {
@@ -222,6 +296,8 @@ void read_file(const fs::path& path, ResultsFolder& results) {
         core::Json json = core::read_json_file(path.string());
         if (is_metrics(json)) {
             results.scores.push_back(scored_result(path, json));
+        } else if (calib::is_fit_file(path.string())) {
+            results.fits.push_back(fit_card(path, json));
         } else {
             results.documents.push_back({name, std::move(json)});
         }
@@ -246,6 +322,7 @@ void drop_accompanying_figures(ResultsFolder& results) {
     const auto add = [&](const std::string& file) { stems.insert(fs::path(file).stem().string()); };
     for (const ResultCard& card : results.captures) add(card.file);
     for (const ResultCard& card : results.volumes) add(card.file);
+    for (const ResultCard& card : results.fits) add(card.file);
     for (const ScoredResult& scored : results.scores) add(scored.file);
     std::erase_if(results.figures, [&](const Figure& figure) {
         const fs::path file = figure.file;

@@ -13,7 +13,7 @@ namespace apps {
 /// A name and what it stands for, in words for people.
 using Fact = std::pair<std::string, std::string>;
 
-/// A capture or volume, reduced to what a page shows of it.
+/// A capture, volume or fit, reduced to what a page shows of it.
 struct ResultCard {
     std::string file;
     std::string picture_png;  ///< bytes of a PNG file
@@ -51,17 +51,18 @@ struct ResultsFolder {
     std::vector<ScoredResult> scores;
     std::vector<ResultCard> captures;
     std::vector<ResultCard> volumes;
-    std::vector<Figure> figures;  ///< but for those beside a volume, capture or METRICS.json
+    std::vector<ResultCard> fits;
+    std::vector<Figure> figures;  ///< but for those beside a volume, capture, fit or METRICS.json
     std::vector<JsonDocument> documents;
     std::vector<Fact> unreadable;  ///< file and what is wrong with it
 
     bool empty() const {
-        return scores.empty() && captures.empty() && volumes.empty() && figures.empty() &&
-               documents.empty() && unreadable.empty();
+        return scores.empty() && captures.empty() && volumes.empty() && fits.empty() &&
+               figures.empty() && documents.empty() && unreadable.empty();
     }
 };
 
-/// Reads every capture, volume, JSON file and picture of a folder (not of folders inside it).
+/// Reads every capture, volume, fit, JSON file and picture of a folder (not of folders inside it).
 ///
 /// returns   what was found; files that cannot be read are listed with their error
 /// throws    core::Error when the folder does not exist or holds nothing of these

@@ -15,6 +15,7 @@ namespace {
 using core::Vec3;
 
 constexpr std::size_t kSamples = 4000;
+constexpr std::size_t kCloudSamples = 40'000;
 constexpr std::uint64_t kSeed = 1;
 constexpr double kDegrees = 180.0 / core::kPi;
 
@@ -111,7 +112,7 @@ std::vector<core::Mat3> symmetries(const Shape& shape) {
 }
 
 void append_samples(const Shape& shape, core::PointCloud& cloud) {
-    const core::PointCloud samples = core::sample_surface(shape.mesh, kSamples, kSeed);
+    const core::PointCloud samples = core::sample_surface(shape.mesh, kCloudSamples, kSeed);
     cloud.positions.insert(
         cloud.positions.end(), samples.positions.begin(), samples.positions.end());
     cloud.normals.insert(cloud.normals.end(), samples.normals.begin(), samples.normals.end());
@@ -157,7 +158,8 @@ FitErrors compare_fit(const FitResult& fit,
                 nearest = std::min(nearest, (p - point.position_m).norm());
             }
         }
-        if (std::isfinite(nearest)) keep_worst(errors.position_m, nearest);
+        if (!std::isfinite(nearest)) continue;
+        keep_worst(errors.position_m, nearest);
     }
     if (!errors.position_m) {
         throw core::Error(

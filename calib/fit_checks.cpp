@@ -127,6 +127,32 @@ void check_for_light(double least_mean, FitResult& result) {
         gain);
 }
 
+// Least squares takes its noise from the residual, as if that were independent from bin to bin:
+// neighbours that agree come from the model.
+void warn_of_patterns(FitResult& result) {
+    constexpr double kNotableCorrelation = 0.3;
+    constexpr double kNotableShare = 1e-3;  // of the data's energy
+    const auto bins = static_cast<std::size_t>(result.axis.num_bins);
+    double energy = 0.0;
+    double squares = 0.0;
+    double products = 0.0;
+    double last = 0.0;
+    for (std::size_t i = 0; i < result.data.size(); ++i) {
+        const double residual = result.data[i] - result.model[i];
+        energy += result.data[i] * result.data[i];
+        squares += residual * residual;
+        if (i % bins != 0) products += residual * last;
+        last = residual;
+    }
+    if (products < kNotableCorrelation * squares || squares < kNotableShare * energy) return;
+    result.warnings.push_back(
+        fmt::format("the residual holds {:.1f} % of the data's energy and is alike from bin to bin "
+                    "(correlation {:.2f}): the model does not explain the data, and true errors "
+                    "exceed the stated ones",
+                    100.0 * squares / energy,
+                    products / squares));
+}
+
 // What is fixed but could be free.
 struct Freedom {
     ParameterKind kind;
@@ -211,10 +237,17 @@ void add_warnings(const FitDriver& driver,
             object.name,
             object.albedo));
     }
+    if (stage.model->has_shadow_edges()) {
+        result.warnings.push_back(
+            "surfaces shade one another: the stated errors leave out how the edges of shadows move "
+            "with them; in tests true errors were up to twice as large");
+    }
     if (driver.is_poisson()) {
         warn_of_deviance(driver, stage.data->least_mean, result);
         check_for_light(stage.data->least_mean, result);
         warn_of_misfits(driver, state, result);
+    } else {
+        warn_of_patterns(result);
     }
     if (driver.scale_is_unknown()) {
         const std::string name =

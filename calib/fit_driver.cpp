@@ -106,11 +106,16 @@ FitDriver::Stage FitDriver::make_stage(const SceneModel& model, double blur_m) c
     stage.blur_m = blur_m;
     ForwardSettings forward;
     const double sigma_m = std::hypot(response_sigma_m_, blur_m);
-    const double width = sigma_m > 0.0 ? sigma_m : data_.axis.bin_width_m;
+    // The edge of a response with a tail is as sharp as its core.
+    const double core_m = core::sigma_m_from_fwhm_ps(settings_.response.jitter_fwhm_ps);
+    const double sharpest_m = core_m > 0.0 ? std::hypot(core_m, blur_m) : sigma_m;
+    const double width = sigma_m > 0.0 ? sharpest_m : data_.axis.bin_width_m;
     const int merged = std::max(1, static_cast<int>(kBinPerSigma * width / data_.axis.bin_width_m));
     // Blurred stages only lead the way: they need few pairs.
+    const std::size_t most =
+        settings_.max_pairs ? static_cast<std::size_t>(*settings_.max_pairs) : offset_m_.size();
     const PairSubset subset =
-        thin(input_.capture.scan, blur_m > 0.0 ? kPairsOfBlurredStages : offset_m_.size());
+        thin(input_.capture.scan, blur_m > 0.0 ? std::min(most, kPairsOfBlurredStages) : most);
     const FitData coarse = coarsen(select(data_, subset.pairs), blur_m, merged);
     const int spoilt = static_cast<int>(std::ceil(kBlurReach * blur_m / coarse.axis.bin_width_m));
     stage.data =
@@ -201,21 +206,8 @@ std::vector<std::pair<std::string, SceneState>> FitDriver::searched(const Vec3& 
 void FitDriver::place_points(SceneState& state) const {
     if (state.points.empty()) return;
     std::vector<Vec3> positions;
-    if (!input_.start_points.empty()) {  // farthest-point sampling
-        positions.push_back(input_.start_points.front());
-        while (positions.size() < state.points.size()) {
-            double best = -1.0;
-            Vec3 farthest = positions.front();
-            for (const Vec3& p : input_.start_points) {
-                double nearest = 1e300;
-                for (const Vec3& q : positions) nearest = std::min(nearest, (p - q).norm());
-                if (nearest > best) {
-                    best = nearest;
-                    farthest = p;
-                }
-            }
-            positions.push_back(farthest);
-        }
+    if (!input_.start_points.empty()) {
+        positions = cluster_centers(input_.start_points, state.points.size());
     } else {
         const double blur = settings_.blur_schedule_m.size() > 1
                                 ? *(settings_.blur_schedule_m.end() - 2)

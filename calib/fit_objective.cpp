@@ -107,8 +107,12 @@ void FitObjective::eliminate(std::vector<MatrixXd>& grams, bool with_slopes) {
         right(i) = total(basis[static_cast<std::size_t>(i)], y);
         if (!elimination_.scale) right(i) -= total(one, m);
     }
-    const auto solver = normal.completeOrthogonalDecomposition();
-    const VectorXd linear = size > 0 ? VectorXd(solver.solve(right)) : VectorXd();
+    Eigen::CompleteOrthogonalDecomposition<MatrixXd> solver;
+    VectorXd linear;
+    if (size > 0) {
+        solver.compute(normal);
+        linear = solver.solve(right);
+    }
     Eigen::Index next = 0;
     scale_ = elimination_.scale ? linear(next++) : 1.0;
     ambient_ = elimination_.ambient ? linear(next) : 0.0;

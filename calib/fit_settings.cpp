@@ -157,6 +157,7 @@ void validate(const FitSettings& s, const std::string& where) {
     };
     positive(s.loss_scale, "loss_scale");
     if (s.piece_tolerance) positive(*s.piece_tolerance, "piece_tolerance");
+    if (s.max_pairs) positive(*s.max_pairs, "max_pairs");
     positive(s.max_iterations, "max_iterations");
     positive(s.search_rotations, "search_rotations");
     require(s.laplacian_weight >= 0.0,

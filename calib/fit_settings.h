@@ -52,6 +52,7 @@ struct FitSettings {
     double laplacian_weight = 1e-3;
     std::optional<double> piece_tolerance;
     std::optional<std::array<double, 2>> window_m;
+    std::optional<int> max_pairs;
     int search_rotations = 10;
     int max_iterations = 60;
 };
@@ -78,6 +79,7 @@ void for_each_field(FitSettings& s, Visitor&& visit) {
           s.piece_tolerance,
           "relative L2 error of the model's pieces; null: small against the data's noise");
     visit("window_m", s.window_m, "path lengths that count [m]; null: all");
+    visit("max_pairs", s.max_pairs, "pairs that are used, spread over the wall; null: all");
     visit("search_rotations", s.search_rotations, "rotations that start: search tries");
     visit("max_iterations", s.max_iterations, "of one stage");
 }

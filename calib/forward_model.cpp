@@ -67,6 +67,14 @@ void ForwardModel::refresh(const SceneState& state) {
     visibility_changed_ = old_light != light_masks_ || old_sensor != sensor_masks_;
 }
 
+bool ForwardModel::has_shadow_edges() const {
+    const auto is_edge = [](renderer::VisibilityMask mask) {
+        return mask != 0 && mask != renderer::kAllVisible;
+    };
+    return std::any_of(sensor_masks_.begin(), sensor_masks_.end(), is_edge) ||
+           std::any_of(light_masks_.begin(), light_masks_.end(), is_edge);
+}
+
 void ForwardModel::update(const SceneState& state, Slopes slopes) {
     state_ = state;
     slopes_ = slopes;

@@ -52,6 +52,9 @@ class ForwardModel {
     /// Whether the last refresh() saw other things than the one before.
     bool visibility_changed() const { return visibility_changed_; }
 
+    /// Whether the edge of a shadow fell on any piece at the last refresh().
+    bool has_shadow_edges() const;
+
     /// Moves everything to a state; visibility and cuts stay.
     void update(const SceneState& state, core::Slopes slopes);
     /// Thread-safe between updates.

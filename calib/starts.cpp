@@ -118,6 +118,41 @@ std::vector<Eigen::Quaterniond> spread_rotations(int count) {
     return chosen;
 }
 
+std::vector<Vec3> cluster_centers(const std::vector<Vec3>& points, std::size_t count) {
+    constexpr int kRounds = 30;
+    const auto nearest = [](const std::vector<Vec3>& centers, const Vec3& point) {
+        std::size_t best = 0;
+        for (std::size_t c = 1; c < centers.size(); ++c) {
+            const double distance = (centers[c] - point).squaredNorm();
+            if (distance < (centers[best] - point).squaredNorm()) best = c;
+        }
+        return best;
+    };
+    std::vector<Vec3> centers{points.front()};
+    while (centers.size() < count) {
+        const auto distance = [&](const Vec3& p) {
+            return (centers[nearest(centers, p)] - p).squaredNorm();
+        };
+        centers.push_back(
+            *std::max_element(points.begin(), points.end(), [&](const Vec3& a, const Vec3& b) {
+                return distance(a) < distance(b);
+            }));
+    }
+    for (int round = 0; round < kRounds; ++round) {
+        std::vector<Vec3> sums(count, Vec3::Zero());
+        std::vector<double> members(count, 0.0);
+        for (const Vec3& p : points) {
+            const std::size_t c = nearest(centers, p);
+            sums[c] += p;
+            members[c] += 1.0;
+        }
+        for (std::size_t c = 0; c < count; ++c) {
+            if (members[c] > 0.0) centers[c] = sums[c] / members[c];
+        }
+    }
+    return centers;
+}
+
 std::vector<Vec3> brightest_points(const core::Scan& scan,
                                    const FitData& data,
                                    double ambient,

@@ -22,6 +22,12 @@ core::Vec3 trilaterate(const core::Scan& scan,
 /// Rotations spread over all orientations, the first the identity; the same for the same count.
 std::vector<Eigen::Quaterniond> spread_rotations(int count);
 
+/// Centres of clusters that points fall into: the mean of the points nearest to each.
+///
+/// points   at least one
+/// source   farthest-point sampling, then the algorithm of [Lloyd1982]
+std::vector<core::Vec3> cluster_centers(const std::vector<core::Vec3>& points, std::size_t count);
+
 /// Points where a backprojection of the light not yet explained is largest, one after the other.
 ///
 /// returns   positions and what each adds per unit of model weight 1: see add_light() in starts.cpp

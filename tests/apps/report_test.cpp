@@ -3,6 +3,7 @@
 
 #include "apps/html.h"
 #include "apps/metrics_table.h"
+#include "calib/fit_file.h"
 #include "nlos/formats/capture_file.h"
 #include "nlos/formats/picture.h"
 #include "nlos/formats/volume_file.h"
@@ -60,6 +61,26 @@ void fill(const TemporaryFolder& folder) {
     core::write_text_file(folder.file("broken.h5"), "no <HDF5> at all");
     core::write_text_file(folder.file("plot.svg"), "<svg xmlns='http://www.w3.org/2000/svg'/>");
     core::write_text_file(folder.file("scene.json"), R"({"geometry": "<scene>.glb"})");
+}
+
+TEST(Report, ShowsFitsWithTheirErrorsAndDoubts) {
+    const TemporaryFolder folder;
+    calib::FitResult fit;
+    fit.objects.emplace_back();
+    fit.objects[0].name = "chart";
+    fit.objects[0].position_m = core::Vec3(0.01, 0.02, 0.4);
+    fit.objects[0].position_sigma_m = core::Vec3(0.001, 0.001, 0.0005);
+    fit.warnings = {"light <is> cut off"};
+    fit.unidentifiable = {"time_zero against chart.z"};
+    core::write_text_file(folder.file("fit.json"), calib::fit_json(fit).dump());
+    const ResultsFolder results = read_results_folder(folder.path().string());
+    ASSERT_EQ(results.fits.size(), 1U);
+    EXPECT_TRUE(results.documents.empty());
+    const std::string html = render_report(results);
+    EXPECT_TRUE(contains(html, "<h2>Fits</h2>"));
+    EXPECT_TRUE(contains(html, "400 +- 0.5"));
+    EXPECT_TRUE(contains(html, "Warning: light &lt;is&gt; cut off"));
+    EXPECT_TRUE(contains(html, "Unidentifiable: time_zero against chart.z"));
 }
 
 TEST(Report, NeedsNothingButItself) {

@@ -72,6 +72,32 @@ TEST(Fit, FindsThePoseOfNoiseFreeData) {
     EXPECT_NEAR(fit.ambient.value, 0.5, 5e-3);
 }
 
+TEST(Fit, FindsPoseAndAlbedoOfRadianceWithoutAmbientLight) {
+    core::Capture capture = expected_capture(truth(), confocal_grid(8), 1.0, 0.0);
+    capture.unit = core::TransientUnit::Radiance;
+    calib::FitInput input = fit_input(capture, displaced());
+    input.settings.free.ambient = false;
+    const calib::FitResult fit = calib::fit_scene(input, {});
+    ASSERT_TRUE(fit.converged);
+    EXPECT_EQ(fit.residual, "least_squares");
+    EXPECT_EQ(fit.scale.value, 1.0);
+    EXPECT_LT(*calib::compare_fit(fit, fit.geometry, truth()).position_m, 1e-3);
+    EXPECT_GT(fit.objects[0].albedo_sigma, 0.0);
+}
+
+TEST(Fit, FewerPairsCostAccuracyThatIsStated) {
+    const auto capture = counted(expected_capture(truth(), confocal_grid(16), 1e5, 1.0), "Fewer");
+    calib::FitInput input = fit_input(capture, displaced());
+    const calib::FitResult all = calib::fit_scene(input, {});
+    input.settings.max_pairs = 64;
+    const calib::FitResult few = calib::fit_scene(input, {});
+    EXPECT_EQ(4 * few.data.size(), all.data.size());
+    const double ratio =
+        few.objects[0].position_sigma_m.norm() / all.objects[0].position_sigma_m.norm();
+    EXPECT_NEAR(ratio, 2.0, 0.3);
+    EXPECT_LT(*calib::compare_fit(few, few.geometry, truth()).position_m, 0.006);
+}
+
 TEST(Fit, StatedErrorsMatchTrueOnesAndDevianceItsExpectation) {
     const auto expected = expected_capture(truth(), confocal_grid(8), 1e5, 5.0);
     double squared = 0.0;

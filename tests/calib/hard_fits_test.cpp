@@ -299,4 +299,28 @@ TEST(HardFit, AStartThroughTheWallThatLeavesTheDataDoesNotConverge) {
     EXPECT_FALSE(fit.message.empty());
 }
 
+TEST(HardFit, OverlappingObjectsThatHideOneAnotherAreFoundAndSaySo) {
+    Case two{"Overlapping", {}, {}, 2e5, 1.0, 4};
+    two.truth.objects = {
+        rectangle("front", Vec3(0.0, 0.0, 0.7), turn(20.0, Vec3(0.6, 0.8, 0.0))),
+        rectangle("back", Vec3(0.08, 0.05, 0.85), turn(-15.0, Vec3(0.8, -0.6, 0.0)), 0.3, 0.25)};
+    two.start.objects = {
+        rectangle("front", Vec3(0.02, -0.015, 0.71), turn(25.0, Vec3(0.7, 0.7, 0.0))),
+        rectangle("back", Vec3(0.065, 0.07, 0.835), turn(-19.0, Vec3(0.7, -0.7, 0.0)), 0.3, 0.25)};
+    two.adapt = [](calib::FitInput& input) {
+        input.settings.free.objects.push_back({"back", true, true, false, true, false});
+    };
+    double sum = 0.0;
+    const double mean = mean_square(two, [&](const calib::FitResult& fit) {
+        ASSERT_EQ(fit.warnings.size(), 1U);
+        EXPECT_TRUE(mentions(fit.warnings, "shade one another"));
+        for (std::size_t o = 0; o < 2; ++o) {
+            sum += (fit.objects[o].position_m - two.truth.objects[o].world_from_node.translation())
+                       .squaredNorm();
+        }
+    });
+    EXPECT_LT(std::sqrt(sum / (2.0 * two.seeds)), 0.006);
+    EXPECT_LT(mean, 6.0);
+}
+
 }  // namespace
