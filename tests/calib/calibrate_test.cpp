@@ -370,6 +370,70 @@ TEST(Calibrate, ResultServesRenderReconstructAndFit) {
     }
 }
 
+// Counts of a hidden rectangle as the true device records them.
+core::Capture counts_through(const Device& device,
+                             const std::vector<std::array<double, 2>>& commands,
+                             const renderer::SceneGeometry& hidden) {
+    std::vector<Vec3> spots;
+    for (const auto& command : commands) spots.push_back(spot_of(device, command));
+    const core::Scan scan = test_support::confocal_scan(spots);
+    calib::FitSettings settings;
+    settings.free.ambient = false;
+    settings.free.objects = {{"target", true, false, false, false, false}};
+    const calib::SceneModel model(hidden, settings, false);
+    calib::ForwardSettings forward;
+    forward.axis = {2.5, kBin_m, 400};
+    forward.sigma_m = kSigma_m;
+    forward.offset_m = ranges_of(device, commands);
+    calib::ForwardModel light(model, scan, calib::WallMotion(scan), forward);
+    light.refresh(model.start());
+    light.update(model.start(), core::Slopes::Without);
+    core::Capture capture;
+    capture.scan = test_support::confocal_grid(static_cast<int>(std::sqrt(commands.size())));
+    capture.time_axis = forward.axis;
+    capture.unit = core::TransientUnit::Counts;
+    capture.transient = core::Transient(commands.size(), forward.axis.num_bins);
+    std::mt19937_64 engine(test_support::seed_of("CountsThrough"));
+    calib::PairModel pair;
+    for (std::size_t p = 0; p < commands.size(); ++p) {
+        light.evaluate(p, pair);
+        for (std::size_t b = 0; b < pair.mean.size(); ++b) {
+            constexpr double kCountsPerLight = 2e4;
+            capture.transient.histogram(p)[b] = static_cast<float>(
+                std::poisson_distribution<int>(0.1 + kCountsPerLight * pair.mean[b])(engine));
+        }
+    }
+    return capture;
+}
+
+TEST(Calibrate, AFitThroughTheResultFindsTheHiddenScene) {
+    Device device;
+    device.tilt_x = 0.5;
+    const auto commands = command_grid(8, 0.4);
+    const auto peaks = direct_returns(ranges_of(device, commands), 5000.0, 0.0, "FitThrough");
+    const calib::Calibration calibration = calib::calibrate(setup_of(commands), peaks);
+    const test_support::TemporaryFolder folder;
+    core::write_text_file(folder.file("c.json"), calib::calibration_json(calibration).dump());
+    const calib::AppliedCalibration applied = calib::read_calibration(folder.file("c.json"));
+
+    const Vec3 center(0.05, -0.02, 0.7);
+    renderer::SceneGeometry hidden;
+    hidden.objects = {test_support::tilted_rectangle("target", center, 0.4)};
+    const core::Capture counts = counts_through(device, commands, hidden);
+    renderer::SceneGeometry start;
+    start.objects = {
+        test_support::tilted_rectangle("target", center + Vec3(0.03, -0.03, 0.04), 0.3)};
+    calib::FitInput input = test_support::fit_input(counts, start);
+    calib::replace_points(applied, input.capture.scan);
+    input.offset_m = calib::pair_offsets(applied, input.capture.scan);
+    input.settings.response = applied.response;
+    const calib::FitResult fit = calib::fit_scene(input, {});
+    ASSERT_TRUE(fit.converged) << fit.message;
+    EXPECT_LT((fit.objects[0].position_m - center).norm(), 0.002);
+    // Without the calibration the device's legs are missing, and the light is nowhere near.
+    EXPECT_ERROR_WITH(calib::fit_scene(test_support::fit_input(counts, start), {}), "time axis");
+}
+
 TEST(Calibrate, ListsOfDifferentLengthsAreNamed) {
     const auto commands = command_grid(3, 0.4);
     const auto capture = direct_returns({2.0, 2.1}, 100.0, 0.0, "Lengths");
