@@ -53,6 +53,14 @@ nlos::Metrics compare_volume_to_scene(const std::string& a,
     return nlos::compare_to_truth(result, truth);
 }
 
+// Surfaces reflect on both sides: their normals are those that the wall sees.
+void turn_to_wall(const core::Vec3& wall_center_m, core::PointCloud& cloud) {
+    for (std::size_t i = 0; i < cloud.normals.size(); ++i) {
+        core::Vec3& normal = cloud.normals[i];
+        if (normal.dot(wall_center_m - cloud.positions[i]) < 0.0) normal = -normal;
+    }
+}
+
 // A fit's poses and, beside them, its surfaces as samples.
 nlos::Metrics compare_fit_to_scene(const std::string& a,
                                    const std::string& b,
@@ -60,10 +68,11 @@ nlos::Metrics compare_fit_to_scene(const std::string& a,
                                    double threshold_m) {
     const calib::FitResult fit = calib::read_fit(a);
     const std::string geometry = with_suffix(a, ".glb");
-    const auto errors =
-        calib::compare_fit(fit,
-                           renderer::load_gltf(geometry),
-                           renderer::load_gltf(renderer::read_scene_description(b, {}).geometry));
+    const renderer::SceneDescription scene = renderer::read_scene_description(b, {});
+    calib::FitErrors errors =
+        calib::compare_fit(fit, renderer::load_gltf(geometry), renderer::load_gltf(scene.geometry));
+    turn_to_wall(scene.relay_wall.center_m, errors.fitted_points);
+    turn_to_wall(scene.relay_wall.center_m, errors.true_points);
     nlos::Metrics metrics;
     if (!errors.fitted_points.positions.empty()) {
         metrics = nlos::compare_points(errors.fitted_points, errors.true_points, threshold_m);
