@@ -120,6 +120,7 @@ void add_bench_command(CLI::App& app) {
     shift->footer(settings_footer({}, "nlos bench shift -o out/bench"));
     shift->callback([shift_arguments] { run_shift(*shift_arguments); });
     add_noise_bench(*command);
+    add_comparisons_bench(*command);
 }
 
 }  // namespace apps

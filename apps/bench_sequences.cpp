@@ -4,8 +4,6 @@
 #include "apps/bench_error.h"
 #include "renderer/core/parallel.h"
 #include "renderer/core/process.h"
-#include "renderer/frame_sequence.h"
-#include "renderer/scene_file.h"
 
 #include <fmt/core.h>
 
@@ -16,77 +14,14 @@
 namespace apps {
 namespace {
 
-constexpr int kReferenceSamples = 60'000;
-
 // Frames before this share of a sequence are left out of the means: reuse has to settle.
 constexpr double kSettlingShare = 1.0 / 6.0;
-
-using Frames = std::vector<core::Transient>;
-
-struct Setup {
-    renderer::SceneDescription description;
-    core::Scan scan;
-    std::shared_ptr<const renderer::Scene> scene;
-
-    Setup(const SequenceCase& sequence, const std::vector<std::string>& overrides)
-        : description(described(sequence, overrides)),
-          scan(renderer::make_scan(description)),
-          scene(std::make_shared<const renderer::Scene>(renderer::load_scene(description, scan))) {}
-
-    static renderer::SceneDescription described(const SequenceCase& sequence,
-                                                const std::vector<std::string>& overrides) {
-        std::vector<std::string> all = sequence.overrides;
-        all.insert(all.end(), overrides.begin(), overrides.end());
-        renderer::SceneDescription description =
-            renderer::read_scene_description(sequence.scene, all);
-        description.time_axis = {sequence.gate_start_m, 1e-3 * sequence.gate_width_mm, 1};
-        description.frames = {sequence.num_frames, 1e-3 * sequence.gate_step_mm, 0.0};
-        description.render.variance = false;
-        description.render.by_order = false;
-        return description;
-    }
-};
-
-// Gates as sums of the bins of one long histogram.
-Frames reference_frames(const SequenceCase& sequence, std::uint64_t seed) {
-    Setup setup(sequence, {});
-    renderer::RenderSettings settings = setup.description.render;
-    settings.seed = seed;
-    settings.samples = kReferenceSamples;
-    settings.target_error = 5e-3;
-    settings.method = setup.scan.camera || settings.max_bounces > 3
-                          ? renderer::Estimator::Restir
-                          : renderer::Estimator::ThirdBounce;
-    settings.restir.reuse = renderer::Reuse::None;
-    settings.restir.shared_walks = 2000;
-    settings.restir.walks = 16;
-    const double step_mm =
-        sequence.gate_step_mm > 0.0 ? sequence.gate_step_mm : sequence.gate_width_mm;
-    const int bins_per_gate = static_cast<int>(std::lround(sequence.gate_width_mm / step_mm));
-    const int bins_per_step = sequence.gate_step_mm > 0.0 ? 1 : 0;
-    const core::TimeAxis axis{sequence.gate_start_m,
-                              1e-3 * step_mm,
-                              bins_per_gate + bins_per_step * (sequence.num_frames - 1)};
-    const core::Transient histogram =
-        renderer::render(*setup.scene, setup.scan, axis, settings, {}).capture.transient;
-    Frames frames;
-    for (int f = 0; f < sequence.num_frames; ++f) {
-        core::Transient& frame = frames.emplace_back(histogram.num_pairs(), 1);
-        for (std::size_t pair = 0; pair < histogram.num_pairs(); ++pair) {
-            for (int bin = 0; bin < bins_per_gate; ++bin) {
-                frame.histogram(pair)[0] +=
-                    histogram.histogram(pair)[static_cast<std::size_t>(f * bins_per_step + bin)];
-            }
-        }
-    }
-    return frames;
-}
 
 SequenceBench run_method(const SequenceCase& sequence,
                          const SequenceMethod& method,
                          int num_seeds,
-                         const std::array<Frames, 2>& references) {
-    Setup setup(sequence, method.overrides);
+                         const std::array<SequenceFrames, 2>& references) {
+    SequenceSetup setup(sequence, method.overrides);
     SequenceBench bench;
     bench.sequence = sequence.name;
     bench.method = method.name;
@@ -125,13 +60,66 @@ SequenceBench run_method(const SequenceCase& sequence,
 
 }  // namespace
 
+SequenceSetup::SequenceSetup(const SequenceCase& sequence,
+                             const std::vector<std::string>& overrides) {
+    std::vector<std::string> all = sequence.overrides;
+    all.insert(all.end(), overrides.begin(), overrides.end());
+    description = renderer::read_scene_description(sequence.scene, all);
+    description.time_axis = {
+        sequence.gate_start_m, 1e-3 * sequence.gate_width_mm, sequence.num_bins};
+    description.frames = {sequence.num_frames, 1e-3 * sequence.gate_step_mm, 0.0};
+    description.render.variance = false;
+    description.render.by_order = false;
+    scan = renderer::make_scan(description);
+    scene = std::make_shared<const renderer::Scene>(renderer::load_scene(description, scan));
+}
+
+SequenceFrames reference_frames(const SequenceCase& sequence, std::uint64_t seed) {
+    SequenceSetup setup(sequence, {});
+    renderer::RenderSettings settings = setup.description.render;
+    settings.seed = seed;
+    settings.samples = sequence.reference_samples;
+    settings.target_error = 5e-3;
+    settings.method = setup.scan.camera || settings.max_bounces > 3
+                          ? renderer::Estimator::Restir
+                          : renderer::Estimator::ThirdBounce;
+    settings.restir.reuse = renderer::Reuse::None;
+    settings.restir.shared_walks = 2000;
+    settings.restir.walks = 16;
+    if (sequence.num_bins > 1) {
+        const core::TimeAxis& axis = setup.description.time_axis;
+        return {static_cast<std::size_t>(sequence.num_frames),
+                renderer::render(*setup.scene, setup.scan, axis, settings, {}).capture.transient};
+    }
+    const double step_mm =
+        sequence.gate_step_mm > 0.0 ? sequence.gate_step_mm : sequence.gate_width_mm;
+    const int bins_per_gate = static_cast<int>(std::lround(sequence.gate_width_mm / step_mm));
+    const int bins_per_step = sequence.gate_step_mm > 0.0 ? 1 : 0;
+    const core::TimeAxis axis{sequence.gate_start_m,
+                              1e-3 * step_mm,
+                              bins_per_gate + bins_per_step * (sequence.num_frames - 1)};
+    const core::Transient histogram =
+        renderer::render(*setup.scene, setup.scan, axis, settings, {}).capture.transient;
+    SequenceFrames frames;
+    for (int f = 0; f < sequence.num_frames; ++f) {
+        core::Transient& frame = frames.emplace_back(histogram.num_pairs(), 1);
+        for (std::size_t pair = 0; pair < histogram.num_pairs(); ++pair) {
+            for (int bin = 0; bin < bins_per_gate; ++bin) {
+                frame.histogram(pair)[0] +=
+                    histogram.histogram(pair)[static_cast<std::size_t>(f * bins_per_step + bin)];
+            }
+        }
+    }
+    return frames;
+}
+
 std::vector<SequenceBench> bench_sequence(const SequenceCase& sequence,
                                           const std::vector<SequenceMethod>& methods,
                                           int num_seeds,
                                           const core::Progress& progress) {
     const core::ThreadLimit one_thread(1);
-    const std::array<Frames, 2> references{reference_frames(sequence, 1),
-                                           reference_frames(sequence, 2)};
+    const std::array<SequenceFrames, 2> references{reference_frames(sequence, 1),
+                                                   reference_frames(sequence, 2)};
     std::vector<SequenceBench> benches;
     for (const SequenceMethod& method : methods) {
         if (progress.should_stop()) throw core::Failure("bench", "interrupted");

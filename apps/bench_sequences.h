@@ -3,7 +3,9 @@
 
 #include "renderer/core/progress.h"
 #include "renderer/core/settings.h"
+#include "renderer/frame_sequence.h"
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -18,7 +20,23 @@ struct SequenceCase {
     double gate_width_mm = 10.0;
     double gate_step_mm = 10.0;  ///< per frame; 0: the gate stands still
     int num_frames = 60;
+    int num_bins = 1;  ///< of that width; more of them stand still
+    int reference_samples = 60'000;
 };
+
+/// What is rendered of a sequence, with a method's overrides of scene.json.
+struct SequenceSetup {
+    SequenceSetup(const SequenceCase& sequence, const std::vector<std::string>& overrides);
+
+    renderer::SceneDescription description;
+    core::Scan scan;
+    std::shared_ptr<const renderer::Scene> scene;
+};
+
+using SequenceFrames = std::vector<core::Transient>;
+
+/// The frames of a sequence to little noise: gates as sums of the bins of one long histogram.
+SequenceFrames reference_frames(const SequenceCase& sequence, std::uint64_t seed);
 
 /// How one method does on a sequence, on one thread.
 struct SequenceBench {

@@ -26,5 +26,6 @@ void add_bench_command(CLI::App& app);
 void add_noise_bench(CLI::App& bench);
 void add_bench_render_command(CLI::App& bench);
 void add_bench_fit_command(CLI::App& bench);
+void add_comparisons_bench(CLI::App& bench);
 
 }  // namespace apps

@@ -14,6 +14,7 @@ std::vector<GeneratedScene> generated_scenes() {
             make_curved(),
             make_box_room(),
             make_diffuse_room(),
+            make_relief_room(),
             make_traffic()};
 }
 

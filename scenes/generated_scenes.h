@@ -22,6 +22,7 @@ GeneratedScene make_glossy();        ///< two GGX surfaces and a retroreflective
 GeneratedScene make_curved();        ///< a torus in front of a curved relay wall
 GeneratedScene make_box_room();      ///< a room with a mirror-like ball and a glossy block
 GeneratedScene make_diffuse_room();  ///< the same room, all diffuse, with a wavy ball
+GeneratedScene make_relief_room();   ///< a room, one half of it in fine wavy meshes
 GeneratedScene make_traffic();       ///< a road with three things that move
 
 std::vector<GeneratedScene> generated_scenes();
