@@ -323,4 +323,37 @@ TEST(HardFit, OverlappingObjectsThatHideOneAnotherAreFoundAndSaySo) {
     EXPECT_LT(mean, 6.0);
 }
 
+TEST(HardFit, RenderedLightBehindAnOccluderIsFittedByAnotherMesh) {
+    renderer::SceneGeometry truth = only(tilted(25.0));
+    truth.objects.push_back(
+        rectangle("occluder", Vec3(0.12, -0.1, 0.45), turn(0.0, Vec3::UnitX()), 0.1, 0.075));
+    const core::Scan scan = test_support::confocal_grid(8);
+    renderer::RenderSettings render_settings;
+    render_settings.method = renderer::Estimator::Path;
+    render_settings.samples = 8192;
+    core::Capture capture =
+        renderer::render(
+            renderer::Scene(truth, scan, {}), scan, test_support::kFitAxis, render_settings, {})
+            .capture;
+    const core::ResponseFilter response = core::sample_response(
+        core::GaussianResponse{core::sigma_m_from_fwhm_ps(test_support::kFitFwhm_ps)},
+        test_support::kFitAxis.bin_width_m);
+    double total = 0.0;
+    for (const float value : capture.transient.values()) total += value;
+    for (std::size_t pair = 0; pair < scan.num_pairs(); ++pair) {
+        const auto histogram = capture.transient.histogram(pair);
+        const std::vector<float> sharp(histogram.begin(), histogram.end());
+        core::apply_filter<float, float>(response, sharp, histogram);
+        for (float& value : histogram) value = static_cast<float>(value * 1e5 / total + 1.0);
+    }
+    capture.unit = core::TransientUnit::Counts;
+    renderer::SceneGeometry start = only(nearby_start(25.0));
+    start.objects.push_back(truth.objects[1]);
+    const calib::FitResult fit =
+        calib::fit_scene(test_support::fit_input(counted(capture, "Rendered"), start), {});
+    EXPECT_TRUE(fit.converged);
+    EXPECT_LT((fit.objects[0].position_m - kCenter).norm(), 0.0025);
+    EXPECT_NEAR(fit.deviance / fit.expected_deviance, 1.0, 0.05);
+}
+
 }  // namespace
