@@ -92,6 +92,7 @@ void add_bench_command(CLI::App& app) {
     command->footer(settings_footer({}, "nlos bench render -o out/bench"));
     add_bench_render_command(*command);
     add_bench_fit_command(*command);
+    add_bench_reconstruct_command(*command);
     const auto sequence = std::make_shared<SequenceArguments>();
     CLI::App* sequences =
         command->add_subcommand("sequences", "Frame sequences: reuse of paths against none");

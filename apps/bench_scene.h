@@ -5,14 +5,17 @@
 #include "renderer/scene_file.h"
 
 #include <string>
+#include <vector>
 
 namespace apps {
 
 /// A scene that benchmarks render again and again with other settings.
 class BenchScene {
  public:
-    explicit BenchScene(const std::string& scene_path)
-        : description_(renderer::read_scene_description(scene_path, {})),
+    /// overrides   `key.path=value` texts for the scene description
+    explicit BenchScene(const std::string& scene_path,
+                        const std::vector<std::string>& overrides = {})
+        : description_(renderer::read_scene_description(scene_path, overrides)),
           scan_(renderer::make_scan(description_)),
           scene_(renderer::load_scene(description_, scan_)) {}
 

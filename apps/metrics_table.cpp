@@ -25,13 +25,14 @@ struct MetricStyle {
     Better better;
 };
 
-constexpr std::array<MetricStyle, 20> kStyles{{
+constexpr std::array<MetricStyle, 21> kStyles{{
     {"depth_mae_m", "Depth error, mean", 1e3, "mm", Better::Lower},
     {"depth_median_m", "Depth error, median", 1e3, "mm", Better::Lower},
     {"depth_rmse_m", "Depth error, RMS", 1e3, "mm", Better::Lower},
     {"mask_iou", "Mask IoU at 20 %", 1e2, "%", Better::Higher},
     {"mask_iou_best", "Mask IoU, best threshold", 1e2, "%", Better::Higher},
     {"normal_mae_deg", "Normal error, mean", 1.0, "deg", Better::Lower},
+    {"normal_median_deg", "Normal error, median", 1.0, "deg", Better::Lower},
     {"chamfer_m", "Chamfer distance", 1e3, "mm", Better::Lower},
     {"fscore", "F-score", 1e2, "%", Better::Higher},
     {"fscore_threshold_m", "F-score threshold", 1e3, "mm", Better::Neither},

@@ -36,7 +36,6 @@ void run(const ReconstructArguments& arguments) {
         fmt::print(stderr, "warning: {}\n", warning);
     }
     const nlos::VolumeAxes& axes = result.volume.axes;
-    if (!result.reason.empty()) fmt::print("{}: {}\n", result.method, result.reason);
     fmt::print("wrote {}, {}{}{} ({}, {} x {} x {} voxels, {} surface points, {:.2f} s)\n",
                arguments.output,
                with_suffix(arguments.output, ".png"),

@@ -51,6 +51,10 @@ ProgressBar::~ProgressBar() {
 core::Progress ProgressBar::progress() {
     core::Progress progress;
     progress.report = [this](double share, const std::string& detail) { show(share, detail); };
+    progress.announce = [](const std::string& text) {
+        fmt::print("{}\n", text);
+        std::fflush(stdout);
+    };
     progress.stop_requested = interrupt_requested;
     return progress;
 }

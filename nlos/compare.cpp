@@ -2,6 +2,7 @@
 #include "nlos/compare.h"
 
 #include "nlos/compare_image.h"
+#include "nlos/compare_scores.h"
 #include "renderer/core/nearest_neighbours.h"
 
 #include <fmt/core.h>
@@ -88,12 +89,9 @@ void score_depth(const core::DepthMap& depth,
         squares += errors_m.back() * errors_m.back();
     }
     const auto count = static_cast<double>(errors_m.size());
-    std::sort(errors_m.begin(), errors_m.end());
-    const std::size_t half = errors_m.size() / 2;
     metrics.depth_mae_m = sum / count;
     metrics.depth_rmse_m = std::sqrt(squares / count);
-    metrics.depth_median_m =
-        errors_m.size() % 2 == 1 ? errors_m[half] : 0.5 * (errors_m[half - 1] + errors_m[half]);
+    metrics.depth_median_m = median(std::move(errors_m));
 }
 
 void score_normals(const Volume& volume,
@@ -102,17 +100,13 @@ void score_normals(const Volume& volume,
                    Metrics& metrics) {
     if (volume.normals.size() != truth.depth_m.size() || truth.normals.empty()) return;
     const core::Mat3 world_from_wall = volume.axes.world_from_wall.linear();
-    double sum_rad = 0.0;
-    std::size_t count = 0;
+    std::vector<double> angles_deg;
     for (const std::size_t i : columns) {
         const core::Vec3 normal = world_from_wall * volume.normals[i].cast<double>();
         if (!normal.allFinite() || !(normal.norm() > 0.0)) continue;
-        sum_rad += std::atan2(normal.cross(truth.normals[i]).norm(), normal.dot(truth.normals[i]));
-        ++count;
+        angles_deg.push_back(angle_deg(normal, truth.normals[i]));
     }
-    if (count > 0) {
-        metrics.normal_mae_deg = sum_rad / static_cast<double>(count) * 180.0 / core::kPi;
-    }
+    score_angles(angles_deg, metrics);
 }
 
 void score_image(const std::vector<float>& image,
@@ -134,7 +128,9 @@ void score_points(const core::PointCloud& result,
     metrics.chamfer_m = scores.chamfer_m;
     metrics.fscore = scores.fscore;
     metrics.fscore_threshold_m = scores.fscore_threshold_m;
-    if (!metrics.normal_mae_deg) metrics.normal_mae_deg = scores.normal_mae_deg;
+    if (metrics.normal_mae_deg) return;
+    metrics.normal_mae_deg = scores.normal_mae_deg;
+    metrics.normal_median_deg = scores.normal_median_deg;
 }
 
 /// World position of the brightest voxel; nothing when no value is positive.

@@ -19,6 +19,7 @@ struct Metrics {
     std::optional<double> mask_iou;       ///< foreground above 20 % of the maximum projection
     std::optional<double> mask_iou_best;  ///< at the best threshold of the maximum projection
     std::optional<double> normal_mae_deg;
+    std::optional<double> normal_median_deg;
     std::optional<double> chamfer_m;
     std::optional<double> fscore;
     std::optional<double> fscore_threshold_m;
@@ -43,6 +44,7 @@ void for_each_field(Metrics& m, Visitor&& visit) {
     visit("mask_iou", m.mask_iou, "intersection over union of the masks at 20 % of the maximum");
     visit("mask_iou_best", m.mask_iou_best, "the same at the best threshold");
     visit("normal_mae_deg", m.normal_mae_deg, "mean angle between normals [deg]");
+    visit("normal_median_deg", m.normal_median_deg, "median angle between normals [deg]");
     visit("chamfer_m", m.chamfer_m, "mean of the two mean nearest-neighbour distances [m]");
     visit("fscore", m.fscore, "harmonic mean of precision and recall at the threshold");
     visit("fscore_threshold_m", m.fscore_threshold_m, "distance that counts as a match [m]");

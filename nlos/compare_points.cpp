@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/compare.h"
+#include "nlos/compare_scores.h"
 #include "renderer/core/nearest_neighbours.h"
 
 #include <algorithm>
@@ -20,11 +21,23 @@ double share_within(const std::vector<double>& distances_m, double threshold_m) 
     return static_cast<double>(within) / static_cast<double>(distances_m.size());
 }
 
+}  // namespace
+
+double median(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    const std::size_t half = values.size() / 2;
+    return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
+}
+
 double angle_deg(const core::Vec3& a, const core::Vec3& b) {
     return std::atan2(a.cross(b).norm(), a.dot(b)) * 180.0 / core::kPi;
 }
 
-}  // namespace
+void score_angles(const std::vector<double>& angles_deg, Metrics& metrics) {
+    if (angles_deg.empty()) return;
+    metrics.normal_mae_deg = mean(angles_deg);
+    metrics.normal_median_deg = median(angles_deg);
+}
 
 Metrics compare_points(const core::PointCloud& result,
                        const core::PointCloud& truth,
@@ -51,7 +64,7 @@ Metrics compare_points(const core::PointCloud& result,
         for (std::size_t i = 0; i < result.normals.size(); ++i) {
             angles_deg.push_back(angle_deg(result.normals[i], truth.normals[to_truth.indices[i]]));
         }
-        metrics.normal_mae_deg = mean(angles_deg);
+        score_angles(angles_deg, metrics);
     }
     return metrics;
 }

@@ -19,10 +19,6 @@ constexpr std::size_t kSlabsPerBlock = 8;
 constexpr std::size_t kSquaredRangeBinsPerBin = 2;
 constexpr int kNormalReach = 2;  // voxels on either side of the brightest that give the normal
 
-double power_of(Falloff falloff) {
-    return falloff == Falloff::Diffuse ? 4.0 : 2.0;
-}
-
 /// Mean range of the data, each bin weighted by its light times range^power [m].
 double typical_depth_m(const MethodInput& input, const Cone& cone, double power) {
     const ConeData data(input, cone, power);
@@ -141,9 +137,18 @@ class VectorFilter {
 };
 
 /// Unit normal towards the wall from sums of rho n around the brightest voxel of a column.
+///
+/// One equation per frequency leaves two of three components to the filter, which takes the
+/// smallest: they come out as conj(K_c), and where the light of a smooth surface is, at the wall
+/// point d away that its normal points to, K_x / K = -dx / depth_m. So what the filter calls
+/// n_x / n_z is (z / depth_m)^2 of the truth dx / z.
+///
+/// depth_m   the filter's typical depth
 Eigen::Vector3f normal_at_peak(const float* albedo,
                                const std::array<const float*, 3>& field,
-                               std::size_t num_z) {
+                               const std::vector<double>& z_m,
+                               double depth_m) {
+    const std::size_t num_z = z_m.size();
     const auto peak = std::max_element(albedo, albedo + num_z) - albedo;
     const auto last = static_cast<std::ptrdiff_t>(num_z) - 1;
     Eigen::Vector3f sum = Eigen::Vector3f::Zero();
@@ -152,6 +157,10 @@ Eigen::Vector3f normal_at_peak(const float* albedo,
          ++i) {
         sum += Eigen::Vector3f(field[0][i], field[1][i], field[2][i]);
     }
+    const auto stretch =
+        static_cast<float>(std::pow(depth_m / z_m[static_cast<std::size_t>(peak)], 2));
+    sum.x() *= stretch;
+    sum.y() *= stretch;
     if (!(sum.z() > 0.0F)) return -Eigen::Vector3f::UnitZ();
     return -sum.normalized();
 }
@@ -160,7 +169,7 @@ Eigen::Vector3f normal_at_peak(const float* albedo,
 
 Volume directional_light_cone_transform(const MethodInput& input, Falloff falloff, double snr) {
     const Cone cone = make_cone(input, kSquaredRangeBinsPerBin);
-    const double power = power_of(falloff);
+    const double power = falloff_power(falloff);
     const double depth_m = typical_depth_m(input, cone, power);
     const std::size_t spectrum_floats = 2 * cone.num_frequencies() * cone.num_columns();
     Components components{
@@ -200,7 +209,8 @@ Volume directional_light_cone_transform(const MethodInput& input, Falloff fallof
         volume.normals[column] =
             normal_at_peak(volume.values.data() + first,
                            {x.data() + first, y.data() + first, z.data() + first},
-                           num_z);
+                           input.axes.z_m,
+                           depth_m);
     });
     return volume;
 }

@@ -116,4 +116,18 @@ core::Transient prepare_histograms(const core::Transient& transient, const Prepa
     return prepared;
 }
 
+void multiply_by_range(const core::Scan& scan,
+                       const core::TimeAxis& axis,
+                       double power,
+                       core::Transient& transient) {
+    core::parallel_for(transient.num_pairs(), [&](std::size_t pair) {
+        const double legs_m = scan.device_legs_m(pair);
+        const auto histogram = transient.histogram(pair);
+        for (std::size_t bin = 0; bin < histogram.size(); ++bin) {
+            const double opl = axis.bin_center_m(static_cast<double>(bin)) - legs_m;
+            histogram[bin] *= static_cast<float>(std::pow(std::max(0.0, 0.5 * opl), power));
+        }
+    });
+}
+
 }  // namespace nlos

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "renderer/core/capture.h"
 #include "renderer/core/time_axis.h"
 #include "renderer/core/transient.h"
 
@@ -35,5 +36,13 @@ struct PreparationPlan {
 
 /// Takes off ambient light, adds up neighbouring bins and drops those behind the plan's end.
 core::Transient prepare_histograms(const core::Transient& transient, const PreparationPlan& plan);
+
+/// Multiplies every bin by range^power, range being half its path length without device legs; bins
+/// before the wall become 0. The power of the light's falloff makes equal scatterers equally bright
+/// wherever they are, without moving them.
+void multiply_by_range(const core::Scan& scan,
+                       const core::TimeAxis& axis,
+                       double power,
+                       core::Transient& transient);
 
 }  // namespace nlos

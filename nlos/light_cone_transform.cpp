@@ -71,7 +71,7 @@ class SlabFilter {
 
 Volume light_cone_transform(const MethodInput& input, Falloff falloff, double snr) {
     const Cone cone = make_cone(input, kSquaredRangeBinsPerBin);
-    const double power = falloff == Falloff::Diffuse ? 4.0 : 2.0;
+    const double power = falloff_power(falloff);
     FftBuffer spectrum =
         cone_spectrum(input, cone, power, {input.progress, 0.0, 0.2, "time to depth"});
     const SlabFilter filter(cone, *input.wall.grid, snr);

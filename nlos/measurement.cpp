@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/measurement.h"
 
+#include "nlos/memory_limit.h"
 #include "nlos/midpoint_conversion.h"
 #include "renderer/core/error.h"
 
@@ -86,6 +87,8 @@ void crop_measurement(const core::Capture& capture,
     measurement.time_axis.opl_start_m = capture.time_axis.bin_begin_m(first_bin);
     measurement.time_axis.num_bins = end_bin - first_bin;
 
+    require_memory(4.0 * static_cast<double>(measurement.scan.num_pairs()) *
+                   measurement.time_axis.num_bins);
     measurement.own = core::Transient(measurement.scan.num_pairs(), measurement.time_axis.num_bins);
     for (std::size_t pair = 0; pair < measurement.own.num_pairs(); ++pair) {
         const std::size_t s = sensing.numbers[pair % sensing.numbers.size()];

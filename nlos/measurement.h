@@ -19,6 +19,7 @@ struct Measurement {
     WallFrame wall;
     std::string conversion;  ///< in words, when the scan was converted
 
+    double own_bytes() const { return 4.0 * static_cast<double>(own.values().size()); }
     const core::Transient& transient() const { return own.empty() ? *capture_transient : own; }
 };
 
@@ -26,12 +27,13 @@ struct Measurement {
 /// point becomes the single-laser scan that it equals by reciprocity.
 ///
 /// capture   must outlive the measurement
-/// throws    core::Error when nothing is left
+/// throws    core::Error when nothing is left; core::Failure when memory does not suffice
 Measurement select_measurement(const core::Capture& capture, const CropSettings& crop);
 
 /// Converts a single or exhaustive measurement to the confocal one it resembles.
 ///
 /// returns   false when its midpoints do not fill an even grid; the measurement is then unchanged
+/// throws    core::Failure when memory does not suffice
 bool convert_to_confocal(Measurement& measurement);
 
 }  // namespace nlos

@@ -2,6 +2,7 @@
 #include "nlos/midpoint_conversion.h"
 
 #include "nlos/conservative_resampling.h"
+#include "nlos/memory_limit.h"
 #include "nlos/wall_frame.h"
 #include "renderer/core/parallel.h"
 
@@ -42,6 +43,11 @@ std::optional<MidpointGrid> find_midpoint_grid(const core::Scan& scan, const Wal
         grid.size[axis] =
             static_cast<std::size_t>(std::llround((high[axis] - low[axis]) / grid.pitch_m[axis])) +
             1;
+    }
+    // Fewer pairs than points cannot fill the grid, which far-off points would make huge.
+    if (static_cast<double>(grid.size[0]) * static_cast<double>(grid.size[1]) >
+        static_cast<double>(midpoints.size())) {
+        return std::nullopt;
     }
     grid.pairs.resize(grid.size[0] * grid.size[1]);
     for (std::size_t pair = 0; pair < midpoints.size(); ++pair) {
@@ -113,6 +119,7 @@ std::optional<ConfocalData> convert_to_confocal(const core::Scan& scan,
     ConfocalData confocal;
     confocal.points = wall_points(*grid, wall);
     confocal.time_axis = confocal_axis(scan, axis);
+    require_memory(4.0 * static_cast<double>(grid->pairs.size()) * confocal.time_axis.num_bins);
     confocal.transient = core::Transient(grid->pairs.size(), confocal.time_axis.num_bins);
     const auto num_bins = static_cast<std::size_t>(confocal.time_axis.num_bins);
     const std::vector<double> edges = even_edges(0.0, confocal.time_axis.opl_end_m(), num_bins);

@@ -22,7 +22,7 @@ struct ConfocalData {
 /// scan      single or exhaustive; a single-laser scan becomes one of half the pitch and aperture
 /// returns   points on a grid and mean histograms; nothing when the midpoints do not fill an even
 ///           grid
-/// throws    nothing
+/// throws    core::Failure when memory does not suffice
 /// source    [Lindell2019], supplement
 std::optional<ConfocalData> convert_to_confocal(const core::Scan& scan,
                                                 const core::TimeAxis& axis,

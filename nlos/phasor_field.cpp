@@ -136,7 +136,8 @@ class PlanePropagator {
                                              i / wave_.size() * num_columns();
                     for (std::size_t column = 0; column < slab.size(); ++column) {
                         slab[column] =
-                            scale * values[grid_.point(column / grid_.size[1], column % grid_.size[1])];
+                            scale *
+                            values[grid_.point(column / grid_.size[1], column % grid_.size[1])];
                     }
                     plane_.load(slab.data(), work);
                     plane_.forward(work);
@@ -285,6 +286,10 @@ Volume propagate(const MethodInput& input, const PhasorSettings& settings) {
 
 Volume phasor_field(const MethodInput& input, const PhasorSettings& settings) {
     return is_planar(input) ? propagate(input, settings) : phasor_backprojection(input, settings);
+}
+
+std::size_t phasor_frequency_count(const MethodInput& input, const PhasorSettings& settings) {
+    return make_band(input, settings).wave.size();
 }
 
 double phasor_field_bytes(const MethodInput& input, const PhasorSettings& settings) {

@@ -22,6 +22,9 @@ namespace nlos {
 /// source     [Liu2019], [Liu2020]
 Volume phasor_field(const MethodInput& input, const PhasorSettings& settings);
 
+/// Number of frequencies that phasor_field() propagates.
+std::size_t phasor_frequency_count(const MethodInput& input, const PhasorSettings& settings);
+
 /// Memory that phasor_field() takes on top of its input, its volume included [bytes].
 double phasor_field_bytes(const MethodInput& input, const PhasorSettings& settings);
 

@@ -9,6 +9,7 @@
 #include "nlos/histogram_preparation.h"
 #include "nlos/light_cone_transform.h"
 #include "nlos/measurement.h"
+#include "nlos/memory_limit.h"
 #include "nlos/method_choice.h"
 #include "nlos/phasor_field.h"
 #include "nlos/surface.h"
@@ -79,6 +80,13 @@ PreparationPlan choose_preparation(const Measurement& measurement, ReconstructSe
 bool uses_wave(const ReconstructSettings& settings) {
     return settings.method == Method::Phasor ||
            (settings.method == Method::Fbp && settings.filter == FbpFilter::Phasor);
+}
+
+/// Whether histograms are multiplied by range^power against the falloff of light. A confocal scan
+/// lights every voxel from all over the wall; there the factor would only let far wall points
+/// outvote near ones.
+bool makes_up_for_falloff(const core::Scan& scan, const ReconstructSettings& settings) {
+    return uses_wave(settings) && scan.pattern != core::ScanPattern::Confocal;
 }
 
 /// Distance of voxels along z unless set: a bin's range, or what the virtual wave resolves.
@@ -153,17 +161,6 @@ void take_normals(const Volume& volume, core::DepthMap& depth) {
     }
 }
 
-void check_memory(double needed_bytes) {
-    const auto available = static_cast<double>(core::available_memory_bytes());
-    if (needed_bytes <= available) return;
-    throw core::Failure(
-        "reconstruct",
-        fmt::format("needs {:.2f} GB of memory and {:.2f} GB are available; fewer volume.voxels or "
-                    "larger merge_bins need less",
-                    1e-9 * needed_bytes,
-                    1e-9 * available));
-}
-
 double method_bytes(const MethodInput& input, const ReconstructSettings& settings) {
     switch (settings.method) {
         case Method::Lct:
@@ -184,6 +181,15 @@ double method_bytes(const MethodInput& input, const ReconstructSettings& setting
             break;
     }
     return backproject_bytes(input);
+}
+
+/// Says what will run and what it needs.
+void announce(const Reconstruction& result, const core::Progress& progress) {
+    if (!progress.announce) return;
+    progress.announce(fmt::format("{}: {}; needs {:.2f} GB of memory",
+                                  result.method,
+                                  result.reason,
+                                  1e-9 * result.stated_bytes));
 }
 
 Volume run_method(const MethodInput& input, const ReconstructSettings& settings) {
@@ -242,8 +248,9 @@ Reconstruction reconstruct(const core::Capture& capture,
     VolumeAxes axes;
     choose_axes(measurement.scan, axis, measurement.wall, result.settings, axes);
 
-    const bool is_ready =
-        plan.num_bins == measurement.time_axis.num_bins && plan.ambient_per_bin.empty();
+    const bool is_ready = plan.num_bins == measurement.time_axis.num_bins &&
+                          plan.ambient_per_bin.empty() &&
+                          !makes_up_for_falloff(measurement.scan, result.settings);
     const auto input_with = [&](const core::Transient& transient) {
         return MethodInput{measurement.scan,
                            axis,
@@ -255,11 +262,17 @@ Reconstruction reconstruct(const core::Capture& capture,
     };
     const double prepared_bytes =
         is_ready ? 0.0 : 4.0 * static_cast<double>(measurement.scan.num_pairs()) * axis.num_bins;
-    check_memory(prepared_bytes +
-                 method_bytes(input_with(measurement.transient()), result.settings));
+    const double work_bytes =
+        prepared_bytes + method_bytes(input_with(measurement.transient()), result.settings);
+    require_memory(work_bytes);
+    result.stated_bytes = work_bytes + measurement.own_bytes();
+    announce(result, progress);
     check_stop(progress);
-    const core::Transient prepared =
-        is_ready ? core::Transient() : prepare_histograms(measurement.transient(), plan);
+    core::Transient prepared;
+    if (!is_ready) prepared = prepare_histograms(measurement.transient(), plan);
+    if (makes_up_for_falloff(measurement.scan, result.settings)) {
+        multiply_by_range(measurement.scan, axis, falloff_power(settings.falloff), prepared);
+    }
     result.volume =
         run_method(input_with(is_ready ? measurement.transient() : prepared), result.settings);
 

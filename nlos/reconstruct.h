@@ -23,10 +23,12 @@ struct Reconstruction {
     ReconstructSettings settings;       ///< with every choice filled in
     std::vector<std::string> warnings;  ///< what looks wrong about the capture
     double seconds = 0.0;
+    double stated_bytes = 0.0;  ///< memory on top of the capture, announced before the run
     std::uint64_t peak_bytes = 0;
 };
 
-/// Reconstructs the hidden scene from a capture.
+/// Reconstructs the hidden scene from a capture. Before the work starts, `progress.announce` is
+/// told the method, why it was taken and how much memory it needs.
 ///
 /// returns   volume, depth map and points, in metres
 /// throws    core::Error when the method cannot serve this capture (names one that can) or a

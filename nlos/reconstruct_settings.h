@@ -13,6 +13,11 @@ enum class Method { Auto, Lct, Bp, Fbp, Fk, Phasor, Dlct };
 /// How hidden surfaces reflect: diffuse light falls off with r^4, retroreflected light with r^2.
 enum class Falloff { Diffuse, Retro };
 
+/// The power of range by which light falls off on its way there and back.
+constexpr double falloff_power(Falloff falloff) {
+    return falloff == Falloff::Diffuse ? 4.0 : 2.0;
+}
+
 /// What backprojection multiplies each term by, to make up for the light lost on its way.
 enum class Compensation { None, Diffuse, Retro };
 
@@ -102,7 +107,9 @@ template <class Visitor>
 void for_each_field(ReconstructSettings& s, Visitor&& visit) {
     visit("method", s.method, "reconstruction method");
     visit("volume", s.volume, "where to reconstruct");
-    visit("falloff", s.falloff, "how the hidden surface reflects (lct, dlct, fk)");
+    visit("falloff",
+          s.falloff,
+          "how the hidden surface reflects (lct, dlct, fk, phasor, fbp by phasor)");
     visit("prior", s.prior, "assumption about the hidden scene (lct)");
     visit("tv", s.tv, "the prior tv");
     visit("compensation",

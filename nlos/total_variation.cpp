@@ -71,6 +71,9 @@ class Solver {
         }
     }
 
+    /// Turns results back into the data's unit.
+    float unit() const { return largest_; }
+
     /// f inside the footprint, not negative: column (ix, iy), num_v() values.
     const float* column(std::size_t ix, std::size_t iy) { return row(f_.data(), ix, iy); }
 
@@ -119,8 +122,8 @@ class Solver {
         for (std::size_t column = 0; column < cone_.num_columns(); ++column) {
             data.fill(column, data_.data() + column * cone_.num_v());
         }
-        const float largest = *std::max_element(data_.begin(), data_.end());
-        for (float& value : data_) value = largest > 0.0F ? value / largest : 0.0F;
+        largest_ = std::max(0.0F, *std::max_element(data_.begin(), data_.end()));
+        for (float& value : data_) value = largest_ > 0.0F ? value / largest_ : 0.0F;
         multiplier_.assign(data_.size(), 0.0F);
         for (std::size_t column = 0; column < cone_.num_columns(); ++column) {
             std::copy_n(data_.data() + column * cone_.num_v(),
@@ -241,6 +244,7 @@ class Solver {
     Period period_;
     const TvSettings& settings_;
     double weight_ = 0.0, sparsity_ = 0.0;
+    float largest_ = 0.0F;  ///< of the data before they were scaled
     Fft transform_, inverse_;
     FftBuffer f_, residual_;
     std::vector<ComplexF> kernel_;
@@ -256,7 +260,7 @@ Volume total_variation_light_cone_transform(const MethodInput& input,
                                             Falloff falloff,
                                             const TvSettings& settings) {
     const Cone cone = make_cone(input, kSquaredRangeBinsPerBin);
-    Solver solver(input, cone, falloff == Falloff::Diffuse ? 4.0 : 2.0, settings);
+    Solver solver(input, cone, falloff_power(falloff), settings);
     solver.run();
     const ConservativeResampling to_depth = squared_range_to_depth(input, cone);
     const std::size_t num_z = input.axes.z_m.size();
@@ -264,7 +268,9 @@ Volume total_variation_light_cone_transform(const MethodInput& input,
     core::parallel_for(cone.num_columns(), [&](std::size_t column) {
         float* voxels = volume.values.data() + column * num_z;
         to_depth.apply(solver.column(column / cone.ny, column % cone.ny), voxels);
-        for (std::size_t iz = 0; iz < num_z; ++iz) voxels[iz] = std::max(0.0F, voxels[iz]);
+        for (std::size_t iz = 0; iz < num_z; ++iz) {
+            voxels[iz] = solver.unit() * std::max(0.0F, voxels[iz]);
+        }
     });
     input.progress.update(1.0, "to depth");
     return volume;

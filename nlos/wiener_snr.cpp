@@ -30,7 +30,7 @@ double wiener_snr(const core::Scan& scan,
                   const core::Transient& counts,
                   const PreparationPlan& plan,
                   Falloff falloff) {
-    const double power = falloff == Falloff::Diffuse ? 4.0 : 2.0;
+    const double power = falloff_power(falloff);
     const int merge = plan.merge_bins;
     const auto powers_of = [&](std::size_t pair) {
         const double legs_m = scan.device_legs_m(pair);

@@ -8,6 +8,7 @@ namespace scenes {
 
 std::vector<GeneratedScene> generated_scenes() {
     return {make_letter(),
+            make_animal(),
             make_bars(),
             make_corner(),
             make_glossy(),

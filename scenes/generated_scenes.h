@@ -16,6 +16,7 @@ struct GeneratedScene {
 };
 
 GeneratedScene make_letter();        ///< a flat F
+GeneratedScene make_animal();        ///< a smooth closed surface
 GeneratedScene make_bars();          ///< a smooth closed surface behind bars
 GeneratedScene make_corner();        ///< the corner of a room with two objects
 GeneratedScene make_glossy();        ///< two GGX surfaces and a retroreflective plate

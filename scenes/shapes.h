@@ -24,6 +24,9 @@ core::TriangleMesh make_quad(const core::Vec3& a,
 core::TriangleMesh make_radial_surface(int subdivisions,
                                        const std::function<double(const core::Vec3&)>& radius_m);
 
+/// An animal-like smooth surface around the origin, 0.33 m high: 5,120 triangles.
+core::TriangleMesh make_animal_mesh();
+
 /// Torus around the z axis.
 core::TriangleMesh make_torus(double ring_radius_m, double tube_radius_m, int around, int across);
 

@@ -3,6 +3,9 @@
 
 #include <sys/resource.h>
 #include <unistd.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 #include <fstream>
 #include <string>
@@ -13,6 +16,13 @@ std::uint64_t peak_rss_bytes() {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
     return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+void reset_peak_rss() {
+#ifdef __GLIBC__
+    malloc_trim(0);  // freed memory that the allocator keeps would count
+#endif
+    std::ofstream("/proc/self/clear_refs") << "5";
 }
 
 std::uint64_t available_memory_bytes() {

@@ -8,6 +8,9 @@ namespace core {
 
 /// How long work talks to its caller. Nothing below the program prints; it reports here.
 struct Progress {
+    /// Told before long work starts what it will be and need. May be empty.
+    std::function<void(const std::string& text)> announce;
+
     /// Called now and then from the calling thread: the share done in [0, 1] and a short text such
     /// as the rate. May be empty.
     std::function<void(double share, const std::string& detail)> report;

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace nlos {
 namespace {
 
@@ -43,6 +45,25 @@ TEST(HistogramPreparation, TakesOffAmbientLightAndAddsUpBins) {
         for (std::size_t bin = 0; bin < 20; ++bin) {
             EXPECT_FLOAT_EQ(prepared.histogram(pair)[bin], bin >= 10 ? 400.0F : 0.0F);
         }
+    }
+}
+
+TEST(HistogramPreparation, MultiplyingByRangeUndoesTheFalloff) {
+    core::Scan scan;
+    scan.pattern = core::ScanPattern::Confocal;
+    scan.sensing.positions = {core::Vec3(0.0, 0.0, 0.0), core::Vec3(0.3, 0.0, 0.0)};
+    scan.sensing.normals.assign(2, core::Vec3::UnitZ());
+    scan.illumination = scan.sensing;
+    scan.opl_origin = core::OplOrigin::Device;
+    scan.laser_position = scan.detector_position = core::Vec3(0.0, 0.0, -0.4);
+    const core::TimeAxis axis{0.5, 0.1, 30};
+    core::Transient transient(2, axis.num_bins);
+    for (float& value : transient.values()) value = 2.0F;
+    multiply_by_range(scan, axis, 4.0, transient);
+    for (const int bin : {0, 1, 5, 29}) {
+        const double range = 0.5 * (0.55 + 0.1 * bin - 1.0);  // legs of 2 x 0.5 m
+        const double expected = range > 0.0 ? 2.0 * std::pow(range, 4.0) : 0.0;
+        EXPECT_NEAR(transient.histogram(1)[static_cast<std::size_t>(bin)], expected, 1e-6) << bin;
     }
 }
 

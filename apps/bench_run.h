@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "nlos/reconstruct.h"
+
+#include <string>
+#include <vector>
+
+namespace apps {
+
+using Overrides = std::vector<std::string>;  ///< `key.path=value` texts
+
+/// One reconstruction and what it took.
+struct ReconstructRun {
+    nlos::Reconstruction result;
+    double cpu_seconds = 0.0;
+    double bytes = 0.0;       ///< on top of what was held before
+    double peak_bytes = 0.0;  ///< of the whole process
+};
+
+ReconstructRun run_reconstruction(const core::Capture& capture, const Overrides& overrides);
+
+}  // namespace apps

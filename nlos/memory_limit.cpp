@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+#include "nlos/memory_limit.h"
+
+#include "renderer/core/error.h"
+#include "renderer/core/process.h"
+
+#include <fmt/format.h>
+
+namespace nlos {
+
+void require_memory(double needed_bytes) {
+    const auto available = static_cast<double>(core::available_memory_bytes());
+    if (needed_bytes <= available) return;
+    throw core::Failure(
+        "reconstruct",
+        fmt::format("needs {:.2f} GB of memory and {:.2f} GB are available; fewer volume.voxels, "
+                    "larger merge_bins or a smaller crop need less",
+                    1e-9 * needed_bytes,
+                    1e-9 * available));
+}
+
+}  // namespace nlos
