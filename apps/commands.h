@@ -26,10 +26,7 @@ void add_bench_command(CLI::App& app);
 void add_noise_bench(CLI::App& bench);
 void add_bench_render_command(CLI::App& bench);
 void add_bench_fit_command(CLI::App& bench);
-<<<<<<< HEAD
 void add_comparisons_bench(CLI::App& bench);
-=======
 void add_bench_reconstruct_command(CLI::App& bench);
->>>>>>> 80ffe52 (nlos bench reconstruct: time against FFTs and sums, memory, accuracy, growth. Normals of dlct at every depth; the phasor field makes up for falloff; hard captures and more laws for every method; animal scene; nlos/README)
 
 }  // namespace apps
