@@ -73,7 +73,7 @@ void run_sequences(const SequenceArguments& arguments) {
     core::Json json;
     json["sequences"] = core::write_value(benches);
     write_tables(stem, json, sequences_text(benches));
-    fmt::print("wrote {}\n", stem + ".json");
+    report_results(stem, true);
 }
 
 void run_shift(const ShiftBenchArguments& arguments) {
@@ -81,7 +81,7 @@ void run_shift(const ShiftBenchArguments& arguments) {
     ProgressBar bar("bench shift");
     const ShiftBench bench = bench_shift(arguments.scenes, arguments.shifts, bar.progress());
     write_tables(stem, core::write_value(bench), table_of(bench));
-    fmt::print("wrote {}\n", stem + ".json");
+    report_results(stem, true);
 }
 
 }  // namespace

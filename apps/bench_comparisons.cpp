@@ -154,7 +154,8 @@ MethodComparison compare_method(const Comparison& comparison,
     MethodComparison result;
     result.method = method.name;
     result.effort = effort_for(sequence, method, comparison.seconds_per_frame);
-    std::vector<ErrorSums> of_frames(a.size());
+    SequenceErrors errors(a.size());
+    const auto first_settled = static_cast<std::size_t>(comparison.first_settled_frame);
     PixelErrors pixels(planes.size());
     renderer::ShiftCounts shifts;
     for (int seed = 0; seed < num_seeds; ++seed) {
@@ -162,27 +163,20 @@ MethodComparison compare_method(const Comparison& comparison,
             run_sequence(sequence, method, result.effort, 1000 + static_cast<std::uint64_t>(seed));
         result.seconds_per_frame += run.seconds_per_frame / num_seeds;
         shifts += run.shifts;
-        for (std::size_t f = 0; f < a.size(); ++f) {
-            of_frames[f] += errors_of(run.frames[f], a[f], b[f]);
-            if (static_cast<int>(f) < comparison.first_settled_frame) continue;
+        errors.add(run.frames, a, b);
+        for (std::size_t f = first_settled; f < a.size(); ++f) {
             pixels.add(run.frames[f], a[f], b[f]);
         }
         if (seed == 0) result.frames = std::move(run.frames);
     }
-    ErrorSums settled;
-    for (std::size_t f = 0; f < of_frames.size(); ++f) {
-        result.rel_mse_of_frames.push_back(of_frames[f].rel_mse());
-        if (static_cast<int>(f) >= comparison.first_settled_frame) settled += of_frames[f];
-    }
+    const ErrorSums settled = errors.settled(first_settled);
+    result.rel_mse_of_frames = errors.rel_mse_of_frames();
     result.rel_mse = settled.rel_mse();
     result.trimmed_rel_mse = settled.trimmed_rel_mse();
     result.planes_rel_mse = pixels.rel_mse(planes, true);
     result.meshes_rel_mse = pixels.rel_mse(planes, false);
     result.error_map = pixels.map();
-    if (shifts.tried() > 0) {
-        result.accepted_share =
-            static_cast<double>(shifts.accepted) / static_cast<double>(shifts.tried());
-    }
+    result.accepted_share = shifts.accepted_share();
     return result;
 }
 

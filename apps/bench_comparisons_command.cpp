@@ -298,6 +298,7 @@ void run(const ComparisonArguments& arguments) {
     ProgressBar bar("bench comparisons");
     core::Json json;
     std::string text;
+    bool has_plot = true;
     for (const FigurePlan& plan : plan_figures(arguments)) {
         const std::string& name = plan.sequence.name;
         if (!arguments.only.empty() && name != arguments.only) continue;
@@ -308,14 +309,13 @@ void run(const ComparisonArguments& arguments) {
             stem + "_" + name + ".png",
             shows_progress ? progress_panels(comparison) : error_panels(comparison),
             shows_progress ? 5 : 3);
-        if (shows_progress && !draw_plot(progress_plot(comparison), stem + "_progress_error")) {
-            fmt::print(stderr, "bench: gnuplot is not there, so no plot was drawn\n");
-        }
+        if (shows_progress)
+            has_plot = draw_plot(progress_plot(comparison), stem + "_progress_error");
         json["comparisons"].push_back(core::write_value(comparison));
         text += table_of(comparison);
     }
     write_tables(stem, json, text);
-    fmt::print("wrote {}\n", stem + ".json");
+    report_results(stem, has_plot);
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 #include "apps/bench_error.h"
 
 #include <algorithm>
-#include <vector>
 
 namespace apps {
 
@@ -26,6 +25,26 @@ ErrorSums errors_of(const core::Transient& x, const core::Transient& a, const co
         sums.squared += squares[i];
         if (static_cast<std::ptrdiff_t>(i) < kept) sums.trimmed += squares[i];
     }
+    return sums;
+}
+
+void SequenceErrors::add(std::span<const core::Transient> frames,
+                         std::span<const core::Transient> a,
+                         std::span<const core::Transient> b) {
+    for (std::size_t f = 0; f < of_frames_.size(); ++f) {
+        of_frames_[f] += errors_of(frames[f], a[f], b[f]);
+    }
+}
+
+std::vector<double> SequenceErrors::rel_mse_of_frames() const {
+    std::vector<double> result;
+    for (const ErrorSums& frame : of_frames_) result.push_back(frame.rel_mse());
+    return result;
+}
+
+ErrorSums SequenceErrors::settled(std::size_t first_frame) const {
+    ErrorSums sums;
+    for (std::size_t f = first_frame; f < of_frames_.size(); ++f) sums += of_frames_[f];
     return sums;
 }
 

@@ -3,6 +3,10 @@
 
 #include "renderer/core/transient.h"
 
+#include <cstddef>
+#include <span>
+#include <vector>
+
 namespace apps {
 
 /// Sums over values that errors against a truth known twice, by independent estimates a and b, are
@@ -28,5 +32,23 @@ struct ErrorSums {
 
 /// All of the same shape.
 ErrorSums errors_of(const core::Transient& x, const core::Transient& a, const core::Transient& b);
+
+/// Errors of the frames of a sequence, over several runs.
+class SequenceErrors {
+ public:
+    explicit SequenceErrors(std::size_t num_frames) : of_frames_(num_frames) {}
+
+    /// Adds a run; frame by frame, truth by way of two references.
+    void add(std::span<const core::Transient> frames,
+             std::span<const core::Transient> a,
+             std::span<const core::Transient> b);
+
+    std::vector<double> rel_mse_of_frames() const;
+    /// All frames from one on together: reuse has to settle.
+    ErrorSums settled(std::size_t first_frame) const;
+
+ private:
+    std::vector<ErrorSums> of_frames_;
+};
 
 }  // namespace apps

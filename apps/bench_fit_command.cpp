@@ -1,21 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "apps/arguments.h"
 #include "apps/bench_fit.h"
+#include "apps/bench_output.h"
 #include "apps/commands.h"
 #include "apps/gnuplot.h"
 #include "apps/terminal.h"
-#include "apps/version.h"
-#include "renderer/core/output_file.h"
 
 #include <fmt/core.h>
 
-#include <filesystem>
 #include <memory>
 
 namespace apps {
 namespace {
-
-namespace fs = std::filesystem;
 
 struct BenchFitArguments {
     std::string folder;
@@ -47,25 +43,15 @@ std::string table_of(const FitBench& bench) {
 }
 
 void run(const BenchFitArguments& arguments) {
-    std::error_code error;
-    fs::create_directories(arguments.folder, error);
-    if (error) throw core::Error(arguments.folder, "cannot be made", "must be a writable folder");
+    const std::string stem = result_stem(arguments.folder, "bench_fit");
     ProgressBar bar("bench fit");
     const FitBench bench = bench_fit(arguments.trials, arguments.parts, bar.progress());
-    const std::string stem = (fs::path(arguments.folder) / "bench_fit").string();
-    core::Json json = core::write_value(bench);
-    json["program"] = version_text();
-    core::write_text_file(stem + ".json", json.dump(2) + "\n");
-    core::write_text_file(stem + ".txt", table_of(bench));
-    fmt::print("{}", table_of(bench));
+    write_tables(stem, core::write_value(bench), table_of(bench));
     LogPlot plot{"Error against time of fits", "CPU time [s]", "position error [m]", {}};
     for (const FitBenchPoint& point : bench.points) {
         plot.lines.push_back({point.choice, {point.cpu_seconds}, {point.position_rms_m}});
     }
-    if (!plot.lines.empty() && !draw_plot(plot, stem)) {
-        fmt::print(stderr, "bench: gnuplot is not there, so no plot was drawn\n");
-    }
-    fmt::print("wrote {}\n", stem + ".json");
+    report_results(stem, plot.lines.empty() || draw_plot(plot, stem));
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/bench_growth.h"
 
+#include "apps/power_law.h"
 #include "renderer/core/parallel.h"
 #include "renderer/core/process.h"
 #include "renderer/render.h"
@@ -8,8 +9,8 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace apps {
 namespace {
@@ -65,24 +66,6 @@ double seconds_of(Estimator method, const Sizes& sizes) {
     return core::cpu_seconds() - start;
 }
 
-// Slope of the least squares line through the logarithms.
-double fitted_exponent(const std::vector<double>& sizes, const std::vector<double>& seconds) {
-    const double n = static_cast<double>(sizes.size());
-    double x = 0.0;
-    double y = 0.0;
-    for (std::size_t i = 0; i < sizes.size(); ++i) {
-        x += std::log(sizes[i]) / n;
-        y += std::log(seconds[i]) / n;
-    }
-    double xx = 0.0;
-    double xy = 0.0;
-    for (std::size_t i = 0; i < sizes.size(); ++i) {
-        xx += (std::log(sizes[i]) - x) * (std::log(sizes[i]) - x);
-        xy += (std::log(sizes[i]) - x) * (std::log(seconds[i]) - y);
-    }
-    return xy / xx;
-}
-
 struct Series {
     std::string of;
     std::vector<Sizes> steps;
@@ -117,9 +100,10 @@ std::vector<RenderGrowth> bench_render_growth(const core::Progress& progress) {
                 growth.sizes.push_back(series.size(sizes));
                 growth.cpu_seconds.push_back(seconds_of(method, sizes));
             }
-            growth.exponent = fitted_exponent(growth.sizes, growth.cpu_seconds);
-            growth.last = fitted_exponent({growth.sizes.end() - 2, growth.sizes.end()},
-                                          {growth.cpu_seconds.end() - 2, growth.cpu_seconds.end()});
+            growth.exponent = fit_power_law(growth.sizes, growth.cpu_seconds).exponent;
+            growth.last = fit_power_law(std::span(growth.sizes).last(2),
+                                        std::span(growth.cpu_seconds).last(2))
+                              .exponent;
             result.push_back(std::move(growth));
         }
     }

@@ -23,10 +23,7 @@ void run(const NoiseBenchArguments& arguments) {
     ProgressBar bar("bench noise");
     const NoiseBench bench = bench_noise(arguments.scene, arguments.repeats, bar.progress());
     write_tables(stem, core::write_value(bench), noise_table(bench));
-    if (!draw_noise_plots(bench, stem)) {
-        fmt::print(stderr, "bench: gnuplot is not there, so no plot was drawn\n");
-    }
-    fmt::print("wrote {}\n", stem + ".json");
+    report_results(stem, draw_noise_plots(bench, stem));
 }
 
 }  // namespace

@@ -24,4 +24,11 @@ void write_tables(const std::string& stem, core::Json json, const std::string& t
     fmt::print("{}", table);
 }
 
+void report_results(const std::string& stem, bool has_plots) {
+    if (!has_plots) {
+        fmt::print(stderr, "bench: gnuplot is not there, so no plot was drawn\n");
+    }
+    fmt::print("wrote {}\n", stem + ".json");
+}
+
 }  // namespace apps

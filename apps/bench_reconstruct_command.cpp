@@ -22,10 +22,7 @@ void run(const Arguments& arguments) {
     ProgressBar bar("bench reconstruct");
     const ReconstructBench bench = bench_reconstruct(arguments.settings, bar.progress());
     write_tables(stem, core::write_value(bench), reconstruct_tables(bench));
-    if (!draw_reconstruct_plots(bench, stem)) {
-        fmt::print(stderr, "bench: gnuplot is not there, so no plot was drawn\n");
-    }
-    fmt::print("wrote {}\n", stem + ".json");
+    report_results(stem, draw_reconstruct_plots(bench, stem));
 }
 
 }  // namespace

@@ -2,12 +2,12 @@
 #include "apps/bench_reconstruct.h"
 #include "apps/bench_run.h"
 #include "apps/bench_scene.h"
+#include "apps/power_law.h"
 
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 namespace apps {
 namespace {
@@ -17,27 +17,18 @@ constexpr double kShortest_s = 0.02;
 constexpr double kSmallest_bytes = 1e7;
 const std::string kSlices = "volume.z_range_m=[0.45,1.05]";
 
-/// Slope of a straight line through the logarithms of values above `smallest`; 0 for fewer than
-/// two.
-double log_slope(const std::vector<GrowthPoint>& points,
-                 double GrowthPoint::*value,
-                 double smallest) {
-    double x = 0.0;
-    double y = 0.0;
-    double xx = 0.0;
-    double xy = 0.0;
-    double n = 0.0;
-    for (const GrowthPoint& point : points) n += point.*value > smallest ? 1.0 : 0.0;
+// Growth of what lies above `smallest`; 0 for fewer than two points.
+double exponent_of(const std::vector<GrowthPoint>& points,
+                   double GrowthPoint::*value,
+                   double smallest) {
+    std::vector<double> sizes;
+    std::vector<double> values;
     for (const GrowthPoint& point : points) {
         if (point.*value <= smallest) continue;
-        const double log_x = std::log(point.values);
-        const double log_y = std::log(point.*value);
-        x += log_x / n;
-        y += log_y / n;
-        xx += log_x * log_x / n;
-        xy += log_x * log_y / n;
+        sizes.push_back(point.values);
+        values.push_back(point.*value);
     }
-    return n > 1.0 ? (xy - x * y) / (xx - x * x) : 0.0;
+    return fit_power_law(sizes, values).exponent;
 }
 
 struct GrowthSize {
@@ -85,8 +76,8 @@ std::vector<ReconstructGrowth> measure_growth(const ReconstructBenchSettings& se
         }
     }
     for (ReconstructGrowth& curve : curves) {
-        curve.time_exponent = log_slope(curve.points, &GrowthPoint::cpu_seconds, kShortest_s);
-        curve.memory_exponent = log_slope(curve.points, &GrowthPoint::bytes, kSmallest_bytes);
+        curve.time_exponent = exponent_of(curve.points, &GrowthPoint::cpu_seconds, kShortest_s);
+        curve.memory_exponent = exponent_of(curve.points, &GrowthPoint::bytes, kSmallest_bytes);
     }
     return curves;
 }

@@ -2,6 +2,7 @@
 #include "apps/bench_render.h"
 
 #include "apps/bench_scene.h"
+#include "apps/power_law.h"
 #include "nlos/compare.h"
 #include "renderer/core/parallel.h"
 #include "renderer/core/process.h"
@@ -77,23 +78,16 @@ BenchPoint measure(const BenchScene& bench,
     return point;
 }
 
-// Least squares line through the logarithms.
 void fit_line(BenchCurve& curve) {
-    const double n = static_cast<double>(curve.points.size());
-    double x = 0.0;
-    double y = 0.0;
-    double xx = 0.0;
-    double xy = 0.0;
+    std::vector<double> seconds;
+    std::vector<double> errors;
     for (const BenchPoint& point : curve.points) {
-        const double log_time = std::log(point.cpu_seconds);
-        const double log_error = std::log(std::max(1e-12, point.rel_l2));
-        x += log_time / n;
-        y += log_error / n;
-        xx += log_time * log_time / n;
-        xy += log_time * log_error / n;
+        seconds.push_back(point.cpu_seconds);
+        errors.push_back(std::max(1e-12, point.rel_l2));
     }
-    curve.slope = (xy - x * y) / (xx - x * x);
-    curve.coefficient = std::exp(y - curve.slope * x);
+    const PowerLaw law = fit_power_law(seconds, errors);
+    curve.slope = law.exponent;
+    curve.coefficient = law.coefficient;
 }
 
 // Runs one estimator at rising effort.

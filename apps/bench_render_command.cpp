@@ -176,10 +176,7 @@ void run_render(const BenchArguments& arguments) {
         const std::string name = fs::path(table.scene).parent_path().filename().string();
         drawn = draw_plot(gate_plot(table), stem + "_gates_" + name) && drawn;
     }
-    if (!drawn) {
-        fmt::print(stderr, "bench: gnuplot is not there, so no plot was drawn\n");
-    }
-    fmt::print("wrote {}\n", stem + ".json");
+    report_results(stem, drawn);
 }
 
 }  // namespace

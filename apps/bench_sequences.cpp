@@ -25,7 +25,7 @@ SequenceBench run_method(const SequenceCase& sequence,
     SequenceBench bench;
     bench.sequence = sequence.name;
     bench.method = method.name;
-    std::vector<ErrorSums> of_frames(static_cast<std::size_t>(sequence.num_frames));
+    SequenceErrors errors(static_cast<std::size_t>(sequence.num_frames));
     renderer::ShiftCounts shifts;
     for (int seed = 0; seed < num_seeds; ++seed) {
         setup.description.render.seed = 1000 + static_cast<std::uint64_t>(seed);
@@ -38,23 +38,16 @@ SequenceBench run_method(const SequenceCase& sequence,
             {});
         bench.seconds_per_frame += (core::cpu_seconds() - start) / num_seeds / sequence.num_frames;
         shifts += result.restir_counts.shifts;
-        for (std::size_t f = 0; f < of_frames.size(); ++f) {
-            of_frames[f] +=
-                errors_of(result.capture.sequence->frames[f], references[0][f], references[1][f]);
-        }
+        errors.add(result.capture.sequence->frames, references[0], references[1]);
     }
-    ErrorSums settled;
-    for (std::size_t f = 0; f < of_frames.size(); ++f) {
-        bench.rel_mse_of_frames.push_back(of_frames[f].rel_mse());
-        if (static_cast<double>(f) >= kSettlingShare * sequence.num_frames) settled += of_frames[f];
-    }
+    const auto first_settled =
+        static_cast<std::size_t>(std::ceil(kSettlingShare * sequence.num_frames));
+    const ErrorSums settled = errors.settled(first_settled);
+    bench.rel_mse_of_frames = errors.rel_mse_of_frames();
     bench.rel_mse = settled.rel_mse();
     bench.trimmed_rel_mse = settled.trimmed_rel_mse();
     bench.sum_ratio = settled.sum / settled.reference_sum;
-    if (shifts.tried() > 0) {
-        bench.accepted_share =
-            static_cast<double>(shifts.accepted) / static_cast<double>(shifts.tried());
-    }
+    bench.accepted_share = shifts.accepted_share();
     return bench;
 }
 

@@ -75,11 +75,15 @@ double PixelPlaces::Band::pdf(const Vec2& place) const {
 }
 
 PixelPlaces::PixelPlaces(const Measurement& measurement, std::size_t height)
-    : opl_m_(measurement.num_pairs(), std::numeric_limits<double>::infinity()), height_(height) {
+    : opl_m_(measurement.num_pairs(), std::numeric_limits<double>::infinity()),
+      normals_(measurement.num_pairs(), core::Vec3::Zero()),
+      height_(height) {
     const core::Vec3 light = measurement.ends(0).light.position;
     core::parallel_for(opl_m_.size(), [&](std::size_t pixel) {
         const auto seen = measurement.first_vertex(pixel, {0.5, 0.5});
-        if (seen) opl_m_[pixel] = seen->extent.opl_m + (light - seen->point.position).norm();
+        if (!seen) return;
+        opl_m_[pixel] = seen->extent.opl_m + (light - seen->point.position).norm();
+        normals_[pixel] = seen->normal;
     });
 }
 

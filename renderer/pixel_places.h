@@ -45,8 +45,12 @@ class PixelPlaces {
     /// Shortest and longest of the lengths at the middles of a pixel and of the four around it.
     OplBand around(std::size_t pixel) const;
 
+    /// Normals of what is seen through the pixels' middles, 0 where that is nothing.
+    const std::vector<core::Vec3>& normals() const { return normals_; }
+
  private:
     std::vector<double> opl_m_;  ///< at the pixels' middles; infinite where nothing is seen
+    std::vector<core::Vec3> normals_;
     std::size_t height_;
 };
 

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/restir_frame.h"
 
-#include "renderer/core/parallel.h"
-
-#include <limits>
-
 namespace renderer {
 namespace {
 
@@ -155,13 +151,7 @@ RestirScene::RestirScene(std::shared_ptr<const Scene> scene_of_frames,
       walk(*scene, settings.laser_spot_m2),
       candidates(*scene, scan, measurement, walk, settings),
       shift(make_shift(*scene, settings.restir, quantity)) {
-    if (!measurement.is_image()) return;
-    pixel_normals.resize(measurement.num_pairs(), Vec3::Zero());
-    core::parallel_for(pixel_normals.size(), [&](std::size_t pixel) {
-        const auto seen = measurement.first_vertex(pixel, {0.5, 0.5});
-        if (seen) pixel_normals[pixel] = seen->normal;
-    });
-    pixel_places.emplace(measurement, scan.camera->height());
+    if (measurement.is_image()) pixel_places.emplace(measurement, scan.camera->height());
 }
 
 PathDomain pixel_domain(const Measurement& measurement,

@@ -30,11 +30,8 @@ struct RestirScene {
     Measurement measurement;
     SurfaceWalk walk;
     PathCandidates candidates;
-    std::optional<ShiftMapping> shift;  ///< nothing: paths are reused as they are
-    /// Of an image: normals of what is seen through the middle of its pixels, 0 where that is
-    /// nothing.
-    std::vector<core::Vec3> pixel_normals;
-    std::optional<PixelPlaces> pixel_places;
+    std::optional<ShiftMapping> shift;        ///< nothing: paths are reused as they are
+    std::optional<PixelPlaces> pixel_places;  ///< of an image
 };
 
 /// One frame's reservoirs, some per pair, and what they belong to.

@@ -87,10 +87,8 @@ void add_direct_light_of_pixel(const RestirFrame& frame,
     constexpr int kPlaces = 32;
     constexpr double kGolden = 0.6180339887498949;
     const PixelPlaces& places = *frame.scene->pixel_places;
-    const core::TimeAxis& axis = frame.bins.axes().time;
-    const TimeGate first = TimeGate::of_bin(axis, 0, settings.gate);
-    const TimeGate last = TimeGate::of_bin(axis, axis.num_bins - 1, settings.gate);
-    const PixelPlaces::Band band = places.band(pixel, {first.begin_m(), last.end_m()});
+    const TimeGate lengths = frame.bins.lengths();
+    const PixelPlaces::Band band = places.band(pixel, {lengths.begin_m(), lengths.end_m()});
     const int count = bin_may_end_in(places.around(pixel), frame.bins.axes()) ? kPlaces : 1;
     const PathDomain& domain = frame.domains[pixel];
     for (int i = 0; i < count; ++i) {

@@ -209,8 +209,8 @@ void RestirRenderer::reuse_neighbours(const FrameInput& input, int round, Restir
         neighbours_.pick(pair, settings_.restir.neighbours, worker.rng, worker.neighbours);
         // Which neighbours count depends on nothing that is random in their reservoirs: not on
         // where in the pixels their paths start, either.
-        const std::vector<core::Vec3>& normals = frame.scene->pixel_normals;
-        if (!normals.empty()) {
+        if (frame.scene->pixel_places) {
+            const std::vector<core::Vec3>& normals = frame.scene->pixel_places->normals();
             std::erase_if(worker.neighbours, [&](std::size_t other) {
                 return std::abs(normals[other].dot(normals[pair])) < kLeastNormalCosine;
             });

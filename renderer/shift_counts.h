@@ -60,6 +60,11 @@ struct ShiftCounts {
         for (const std::uint64_t count : rejected) sum += count;
         return sum;
     }
+    /// 0 when none was tried.
+    double accepted_share() const {
+        const std::uint64_t all = tried();
+        return all > 0 ? static_cast<double>(accepted) / static_cast<double>(all) : 0.0;
+    }
     std::uint64_t count_of(ShiftRejection reason) const {
         return rejected[static_cast<std::size_t>(reason)];
     }

@@ -331,15 +331,19 @@ TEST(Boards, CameraResolvesWhatDirectReturnsCannot) {
     EXPECT_LT(std::sqrt(squared / static_cast<double>(commands.size())), 0.001);
 }
 
+calib::AppliedCalibration read_back(const calib::Calibration& calibration) {
+    const test_support::TemporaryFolder folder;
+    core::write_text_file(folder.file("c.json"), calib::calibration_json(calibration).dump());
+    return calib::read_calibration(folder.file("c.json"));
+}
+
 TEST(Calibrate, ResultServesRenderReconstructAndFit) {
     Device device;
     device.tilt_x = 0.5;
     const auto commands = command_grid(6, 0.4);
     const auto capture = direct_returns(ranges_of(device, commands), 5000.0, 0.0, "Serves");
     const calib::Calibration result = calib::calibrate(setup_of(commands), capture);
-    const test_support::TemporaryFolder folder;
-    core::write_text_file(folder.file("c.json"), calib::calibration_json(result).dump());
-    const calib::AppliedCalibration applied = calib::read_calibration(folder.file("c.json"));
+    const calib::AppliedCalibration applied = read_back(result);
 
     // Recording and undoing it leaves the light where it was, up to the response.
     core::Capture rendered;
@@ -412,9 +416,7 @@ TEST(Calibrate, AFitThroughTheResultFindsTheHiddenScene) {
     const auto commands = command_grid(8, 0.4);
     const auto peaks = direct_returns(ranges_of(device, commands), 5000.0, 0.0, "FitThrough");
     const calib::Calibration calibration = calib::calibrate(setup_of(commands), peaks);
-    const test_support::TemporaryFolder folder;
-    core::write_text_file(folder.file("c.json"), calib::calibration_json(calibration).dump());
-    const calib::AppliedCalibration applied = calib::read_calibration(folder.file("c.json"));
+    const calib::AppliedCalibration applied = read_back(calibration);
 
     const Vec3 center(0.05, -0.02, 0.7);
     renderer::SceneGeometry hidden;

@@ -17,12 +17,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 namespace {
 
 using core::Vec3;
 using test_support::confocal_grid;
+using test_support::counted;
 using test_support::expected_capture;
 using test_support::fit_input;
 using test_support::tilted_rectangle;
@@ -41,16 +41,6 @@ const renderer::SceneGeometry& truth() {
 const renderer::SceneGeometry& displaced() {
     static const renderer::SceneGeometry kStart = scene_at(Vec3(0.0, 0.04, 0.72), 0.15);
     return kStart;
-}
-
-core::Capture counted(const core::Capture& expected, const char* seed) {
-    core::Capture capture = expected;
-    std::mt19937_64 engine(test_support::seed_of(seed));
-    for (float& value : capture.transient.values()) {
-        value =
-            static_cast<float>(std::poisson_distribution<int>(static_cast<double>(value))(engine));
-    }
-    return capture;
 }
 
 bool mentions(const std::vector<std::string>& lines, const std::string& part) {
@@ -103,7 +93,7 @@ TEST(Fit, StatedErrorsMatchTrueOnesAndDevianceItsExpectation) {
     double squared = 0.0;
     constexpr int kFits = 12;
     for (int i = 0; i < kFits; ++i) {
-        const auto capture = counted(expected, ("StatedErrors" + std::to_string(i)).c_str());
+        const auto capture = counted(expected, ("StatedErrors" + std::to_string(i)));
         calib::FitInput input = fit_input(capture, truth());
         input.settings.blur_schedule_m = {0.0};
         const calib::FitResult fit = calib::fit_scene(input, {});

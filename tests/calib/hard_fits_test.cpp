@@ -10,9 +10,10 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <random>
 
 namespace {
+
+using test_support::counted;
 
 using core::Vec3;
 
@@ -53,16 +54,6 @@ renderer::Object nearby_start(double degrees, double width_m = 0.4) {
                      kCenter + Vec3(-0.02, 0.02, -0.02),
                      turn(degrees - 5.0, Vec3(0.7, 0.7, 0.0)),
                      width_m);
-}
-
-core::Capture counted(const core::Capture& expected, const std::string& seed) {
-    core::Capture capture = expected;
-    std::mt19937_64 engine(test_support::seed_of(seed));
-    for (float& value : capture.transient.values()) {
-        value =
-            static_cast<float>(std::poisson_distribution<int>(static_cast<double>(value))(engine));
-    }
-    return capture;
 }
 
 core::Capture light_of(const renderer::SceneGeometry& geometry, double photons, double ambient) {

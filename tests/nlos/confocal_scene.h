@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/core/capture.h"
+#include "nlos/reconstruct.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
@@ -54,6 +55,15 @@ inline void add_scatterer(core::Capture& capture, const core::Vec3& position, do
         histogram[i] += static_cast<float>(value * (1.0 - (bin - first)));
         histogram[i + 1] += static_cast<float>(value * (bin - first));
     }
+}
+
+/// The surface point of the brightest column.
+inline core::Vec3 brightest_point(const nlos::Reconstruction& result) {
+    const std::vector<float> projection = nlos::max_projection(result.volume);
+    const auto column = static_cast<std::size_t>(
+        std::max_element(projection.begin(), projection.end()) - projection.begin());
+    const std::size_t ny = result.volume.axes.y_m.size();
+    return result.depth.point_world(column / ny, column % ny);
 }
 
 }  // namespace nlos_test

@@ -15,6 +15,7 @@ namespace nlos {
 namespace {
 
 using core::Vec3;
+using nlos_test::brightest_point;
 
 struct HardCase {
     std::string name;
@@ -46,14 +47,6 @@ class HardCapture : public testing::TestWithParam<HardCase> {
             std::ranges::all_of(result.volume.values, [](float v) { return std::isfinite(v); });
         EXPECT_TRUE(is_finite) << what;
         return result;
-    }
-
-    static Vec3 peak(const Reconstruction& result) {
-        const std::vector<float> projection = max_projection(result.volume);
-        const auto column = static_cast<std::size_t>(
-            std::max_element(projection.begin(), projection.end()) - projection.begin());
-        const std::size_t ny = result.volume.axes.y_m.size();
-        return result.depth.point_world(column / ny, column % ny);
     }
 };
 
@@ -151,7 +144,7 @@ TEST_P(HardCapture, UnequalPitchOnATurnedWallElsewhere) {
     core::Capture capture = dark_capture({12, 20}, {0.06, 0.03}, {0.0, 0.02, 96}, pose);
     const Vec3 place = pose * Vec3(0.03, -0.045, 0.42);
     nlos_test::add_scatterer(capture, place, 4.0);
-    EXPECT_LT((peak(expect_finite(capture, "unequal pitch")) - place).norm(), 0.01);
+    EXPECT_LT((brightest_point(expect_finite(capture, "unequal pitch")) - place).norm(), 0.01);
 }
 
 INSTANTIATE_TEST_SUITE_P(

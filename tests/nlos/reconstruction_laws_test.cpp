@@ -18,6 +18,7 @@ namespace {
 
 using core::ScanPattern;
 using core::Vec3;
+using nlos_test::brightest_point;
 
 constexpr std::size_t kColumns = 24;
 constexpr double kPitch_m = 0.04;
@@ -60,14 +61,6 @@ class ReconstructionLaw : public testing::TestWithParam<LawCase> {
 
     static double depth_tolerance_m() { return GetParam().depth_tolerance * kAxis.bin_width_m; }
 
-    static Vec3 peak(const Reconstruction& result) {
-        const std::vector<float> projection = max_projection(result.volume);
-        const auto column = static_cast<std::size_t>(
-            std::max_element(projection.begin(), projection.end()) - projection.begin());
-        const std::size_t ny = result.volume.axes.y_m.size();
-        return result.depth.point_world(column / ny, column % ny);
-    }
-
     /// A random place straight before a wall point, some columns away from the wall's edges.
     static Vec3 random_place(std::mt19937_64& generator) {
         std::uniform_int_distribution<int> column(5, kColumns - 6);
@@ -94,7 +87,7 @@ TEST_P(ReconstructionLaw, APointIsBrightestAtItsPlace) {
         const Vec3 place = random_place(generator);
         core::Capture capture = dark_capture();
         nlos_test::add_scatterer(capture, place, 4.0);
-        const Vec3 found = peak(run(capture));
+        const Vec3 found = brightest_point(run(capture));
         EXPECT_NEAR(found.x(), place.x(), 1e-6) << place.transpose();
         EXPECT_NEAR(found.y(), place.y(), 1e-6) << place.transpose();
         EXPECT_NEAR(found.z(), place.z(), depth_tolerance_m()) << place.transpose();
@@ -111,7 +104,7 @@ TEST_P(ReconstructionLaw, APointBetweenColumnsIsBrightestInTheNearest) {
         const Vec3 place(x, y, depth(generator));
         core::Capture capture = dark_capture();
         nlos_test::add_scatterer(capture, place, 4.0);
-        const Vec3 found = peak(run(capture));
+        const Vec3 found = brightest_point(run(capture));
         // Half a voxel; midway between two columns either may win.
         EXPECT_NEAR(found.x(), place.x(), 0.6 * kPitch_m) << place.transpose();
         EXPECT_NEAR(found.y(), place.y(), 0.6 * kPitch_m) << place.transpose();
@@ -131,7 +124,8 @@ TEST_P(ReconstructionLaw, AMovedPointMovesItsImage) {
     core::Capture after = dark_capture();
     nlos_test::add_scatterer(before, place, 4.0);
     nlos_test::add_scatterer(after, place + step, 4.0);
-    EXPECT_LT((peak(run(after)) - peak(run(before)) - step).norm(), depth_tolerance_m());
+    EXPECT_LT((brightest_point(run(after)) - brightest_point(run(before)) - step).norm(),
+              depth_tolerance_m());
 }
 
 TEST_P(ReconstructionLaw, AWallElsewhereGivesTheSameVolume) {
@@ -144,7 +138,7 @@ TEST_P(ReconstructionLaw, AWallElsewhereGivesTheSameVolume) {
     nlos_test::add_scatterer(here, place, 4.0);
     nlos_test::add_scatterer(there, pose * place, 4.0);
     const Reconstruction result = run(there);
-    EXPECT_LT((peak(result) - pose * peak(run(here))).norm(), 1e-4);
+    EXPECT_LT((brightest_point(result) - pose * brightest_point(run(here))).norm(), 1e-4);
 }
 
 TEST_P(ReconstructionLaw, TheAxisMayStartLate) {
@@ -156,7 +150,8 @@ TEST_P(ReconstructionLaw, TheAxisMayStartLate) {
     late.transient = core::Transient(late.scan.num_pairs(), 100);
     nlos_test::add_scatterer(whole, place, 4.0);
     nlos_test::add_scatterer(late, place, 4.0);
-    EXPECT_LT((peak(run(late)) - peak(run(whole))).norm(), depth_tolerance_m());
+    EXPECT_LT((brightest_point(run(late)) - brightest_point(run(whole))).norm(),
+              depth_tolerance_m());
 }
 
 TEST_P(ReconstructionLaw, DeviceLegsAreTakenOff) {
@@ -167,7 +162,7 @@ TEST_P(ReconstructionLaw, DeviceLegsAreTakenOff) {
     capture.time_axis.opl_start_m = 0.8;
     const Vec3 place(0.06, -0.1, 0.55);
     nlos_test::add_scatterer(capture, place, 4.0);
-    EXPECT_LT((peak(run(capture)) - place).norm(), 0.2 * kAxis.bin_width_m);
+    EXPECT_LT((brightest_point(run(capture)) - place).norm(), 0.2 * kAxis.bin_width_m);
 }
 
 TEST_P(ReconstructionLaw, TwiceTheLightIsTwiceTheVolume) {

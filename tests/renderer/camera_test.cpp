@@ -15,6 +15,7 @@ namespace {
 
 using core::kPi;
 using core::Vec3;
+using test_support::image_of;
 using test_support::Parallelogram;
 
 const Parallelogram kFloor{Vec3(-2, -2, 0), Vec3(4, 0, 0), Vec3(0, 4, 0), 0.6};
@@ -33,14 +34,6 @@ core::PinholeCamera narrow_camera(const Vec3& position, const Vec3& look_at) {
     camera.fov_y_deg = 1e-4;
     camera.resolution = {1, 1};
     return camera;
-}
-
-core::Scan image_of(const core::PinholeCamera& camera) {
-    core::Scan scan;
-    scan.pattern = core::ScanPattern::Single;
-    scan.opl_origin = core::OplOrigin::Device;
-    scan.camera = camera;
-    return scan;
 }
 
 renderer::RenderSettings settings_with(int samples, int max_bounces) {

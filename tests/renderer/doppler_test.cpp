@@ -19,6 +19,7 @@ namespace {
 using core::kPi;
 using core::Vec3;
 using renderer::Estimator;
+using test_support::image_of;
 using test_support::Parallelogram;
 
 const core::TimeAxis kAllLengths{0.0, 30.0, 1};
@@ -34,23 +35,9 @@ renderer::Object small_patch(const Vec3& center, const Vec3& velocity) {
     return patch;
 }
 
-core::Scan image_of(const core::PinholeCamera& camera) {
-    core::Scan scan;
-    scan.pattern = core::ScanPattern::Single;
-    scan.opl_origin = core::OplOrigin::Device;
-    scan.camera = camera;
-    return scan;
-}
-
 // Two surfaces that light each other and move apart, an occluder at rest before them.
 renderer::Scene moving_scene(const core::Scan& scan, double speed = 1.0) {
-    std::vector<renderer::Object> objects{
-        test_support::parallelogram_object(
-            {Vec3(-0.25, -0.2, 0.75), Vec3(0.45, 0.05, 0.15), Vec3(-0.05, 0.4, -0.1), 0.8}),
-        test_support::parallelogram_object(
-            {Vec3(0.3, -0.3, 0.5), Vec3(0.05, 0.6, 0.05), Vec3(0.0, 0.1, 0.4), 0.7}),
-        test_support::parallelogram_object(
-            {Vec3(-0.05, -0.1, 0.4), Vec3(0.15, 0, 0.02), Vec3(0.02, 0.2, 0), 0.5})};
+    std::vector<renderer::Object> objects = test_support::facing_surfaces();
     objects[0].velocity_m_per_s = speed * Vec3(1.0, 0.5, -2.0);
     objects[1].velocity_m_per_s = speed * Vec3(-2.0, 0.0, 1.0);
     return renderer::Scene({objects, {}}, scan, {});

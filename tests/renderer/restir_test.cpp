@@ -29,13 +29,7 @@ using test_support::sums_of;
 constexpr double kVelocity = 0.2;
 
 std::vector<renderer::Object> make_objects() {
-    std::vector<renderer::Object> objects{
-        test_support::parallelogram_object(
-            {Vec3(-0.25, -0.2, 0.75), Vec3(0.45, 0.05, 0.15), Vec3(-0.05, 0.4, -0.1), 0.8}),
-        test_support::parallelogram_object(
-            {Vec3(0.3, -0.3, 0.5), Vec3(0.05, 0.6, 0.05), Vec3(0.0, 0.1, 0.4), 0.7}),
-        test_support::parallelogram_object(
-            {Vec3(-0.05, -0.1, 0.4), Vec3(0.15, 0, 0.02), Vec3(0.02, 0.2, 0), 0.5})};
+    std::vector<renderer::Object> objects = test_support::facing_surfaces();
     objects[1].role = renderer::Role::BackWall;
     objects[0].velocity_m_per_s = Vec3(0.0, 0.1, -kVelocity);
     return objects;

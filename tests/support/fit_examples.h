@@ -3,10 +3,13 @@
 
 #include "calib/fit.h"
 #include "calib/forward_model.h"
+#include "tests/support/statistics.h"
 #include "tests/support/test_scenes.h"
 
 #include <numeric>
+#include <random>
 #include <string>
+#include <string_view>
 
 namespace test_support {
 
@@ -68,6 +71,17 @@ inline core::Capture expected_capture(const renderer::SceneGeometry& geometry,
         capture.transient.values()[i] = static_cast<float>(photons * expected[i] / sum + ambient);
     }
     capture.unit = core::TransientUnit::Counts;
+    return capture;
+}
+
+/// Photon counts around expected ones; `seed` names them.
+inline core::Capture counted(const core::Capture& expected, std::string_view seed) {
+    core::Capture capture = expected;
+    std::mt19937_64 engine(seed_of(seed));
+    for (float& value : capture.transient.values()) {
+        value =
+            static_cast<float>(std::poisson_distribution<int>(static_cast<double>(value))(engine));
+    }
     return capture;
 }
 

@@ -102,6 +102,23 @@ core::Scan exhaustive_scan(const std::vector<Vec3>& illumination,
     return scan;
 }
 
+core::Scan image_of(const core::PinholeCamera& camera) {
+    core::Scan scan;
+    scan.pattern = core::ScanPattern::Single;
+    scan.opl_origin = core::OplOrigin::Device;
+    scan.camera = camera;
+    return scan;
+}
+
+std::vector<renderer::Object> facing_surfaces() {
+    return {parallelogram_object(
+                {Vec3(-0.25, -0.2, 0.75), Vec3(0.45, 0.05, 0.15), Vec3(-0.05, 0.4, -0.1), 0.8}),
+            parallelogram_object(
+                {Vec3(0.3, -0.3, 0.5), Vec3(0.05, 0.6, 0.05), Vec3(0.0, 0.1, 0.4), 0.7}),
+            parallelogram_object(
+                {Vec3(-0.05, -0.1, 0.4), Vec3(0.15, 0, 0.02), Vec3(0.02, 0.2, 0), 0.5})};
+}
+
 std::vector<float> third_bounce_by_quadrature(const Parallelogram& hidden,
                                               const Parallelogram& occluder,
                                               const core::Scan& scan,

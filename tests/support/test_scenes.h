@@ -32,6 +32,12 @@ core::Scan single_scan(const core::Vec3& illumination, const std::vector<core::V
 core::Scan exhaustive_scan(const std::vector<core::Vec3>& illumination,
                            const std::vector<core::Vec3>& sensing);
 
+/// What a camera records, one image.
+core::Scan image_of(const core::PinholeCamera& camera);
+
+/// Two surfaces that light each other, and an occluder before them.
+std::vector<renderer::Object> facing_surfaces();
+
 /// Third bounce of a parallelogram behind an opaque one, by brute force: `steps` x `steps`
 /// midpoints with exact visibility. Written apart from the renderer, in plain double precision.
 ///
