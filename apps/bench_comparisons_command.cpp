@@ -3,8 +3,6 @@
 #include "apps/bench_comparisons.h"
 #include "apps/bench_output.h"
 #include "apps/commands.h"
-#include "apps/gnuplot.h"
-#include "apps/terminal.h"
 #include "nlos/formats/picture.h"
 
 #include <fmt/core.h>
@@ -20,7 +18,7 @@ using nlos::ImagePanel;
 using nlos::Panel;
 
 struct ComparisonArguments {
-    std::string folder;
+    BenchOutput output;
     std::string chart_scene = "scenes/relief/scene.json";
     std::string progress_scene = "scenes/room/scene.json";
     std::string only;
@@ -293,29 +291,22 @@ std::vector<FigurePlan> plan_figures(const ComparisonArguments& arguments) {
             {resting_histogram(arguments), progress_methods(), per_frame}};
 }
 
-void run(const ComparisonArguments& arguments) {
-    const std::string stem = result_stem(arguments.folder, "bench_comparisons");
-    ProgressBar bar("bench comparisons");
-    core::Json json;
-    std::string text;
-    bool has_plot = true;
+BenchResult measure(const ComparisonArguments& arguments, const core::Progress& progress) {
+    BenchResult result;
     for (const FigurePlan& plan : plan_figures(arguments)) {
         const std::string& name = plan.sequence.name;
         if (!arguments.only.empty() && name != arguments.only) continue;
         const Comparison comparison = compare_methods(
-            plan.sequence, plan.methods, plan.seconds_per_frame, arguments.repeats, bar.progress());
+            plan.sequence, plan.methods, plan.seconds_per_frame, arguments.repeats, progress);
         const bool shows_progress = name == "progress";
-        nlos::write_panels_png(
-            stem + "_" + name + ".png",
-            shows_progress ? progress_panels(comparison) : error_panels(comparison),
-            shows_progress ? 5 : 3);
-        if (shows_progress)
-            has_plot = draw_plot(progress_plot(comparison), stem + "_progress_error");
-        json["comparisons"].push_back(core::write_value(comparison));
-        text += table_of(comparison);
+        result.pictures["_" + name] = shows_progress
+                                          ? nlos::encode_panels_png(progress_panels(comparison), 5)
+                                          : nlos::encode_panels_png(error_panels(comparison), 3);
+        if (shows_progress) result.plots["_progress_error"] = progress_plot(comparison);
+        result.figures["comparisons"].push_back(core::write_value(comparison));
+        result.table += table_of(comparison);
     }
-    write_tables(stem, json, text);
-    report_results(stem, has_plot);
+    return result;
 }
 
 }  // namespace
@@ -324,8 +315,7 @@ void add_comparisons_bench(CLI::App& bench) {
     const auto arguments = std::make_shared<ComparisonArguments>();
     CLI::App* comparisons = bench.add_subcommand(
         "comparisons", "Equal-time pictures: charts, gauges, progress from frame to frame");
-    comparisons->add_option("-o,--output", arguments->folder, "Folder for JSON, table and pictures")
-        ->required();
+    add_output_options(*comparisons, arguments->output);
     comparisons->add_option("--only", arguments->only, "One of them")
         ->check(CLI::IsMember({"charts", "gauges", "progress"}));
     comparisons->add_option("--chart-scene", arguments->chart_scene, "Image for charts and gauges")
@@ -349,7 +339,11 @@ void add_comparisons_bench(CLI::App& bench) {
         ->capture_default_str()
         ->check(CLI::Range(1, 100'000'000));
     comparisons->footer(settings_footer({}, "nlos bench comparisons -o out/bench --only charts"));
-    comparisons->callback([arguments] { run(*arguments); });
+    comparisons->callback([arguments] {
+        run_benchmark(arguments->output, "comparisons", [&](const core::Progress& progress) {
+            return measure(*arguments, progress);
+        });
+    });
 }
 
 }  // namespace apps

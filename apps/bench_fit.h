@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/core/progress.h"
-#include "renderer/core/settings.h"
+#include "apps/bench_output.h"
 
 #include <string>
 #include <vector>
@@ -65,5 +64,8 @@ const std::vector<std::string>& fit_bench_parts();
 FitBench bench_fit(int trials,
                    const std::vector<std::string>& parts,
                    const core::Progress& progress);
+
+/// Tables and plot of it.
+BenchResult fit_result(const FitBench& bench);
 
 }  // namespace apps

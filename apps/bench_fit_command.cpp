@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/arguments.h"
 #include "apps/bench_fit.h"
-#include "apps/bench_output.h"
 #include "apps/commands.h"
-#include "apps/gnuplot.h"
-#include "apps/terminal.h"
 
 #include <fmt/core.h>
 
@@ -14,7 +11,7 @@ namespace apps {
 namespace {
 
 struct BenchFitArguments {
-    std::string folder;
+    BenchOutput output;
     int trials = 30;
     std::vector<std::string> parts;
 };
@@ -42,33 +39,36 @@ std::string table_of(const FitBench& bench) {
     return text;
 }
 
-void run(const BenchFitArguments& arguments) {
-    const std::string stem = result_stem(arguments.folder, "bench_fit");
-    ProgressBar bar("bench fit");
-    const FitBench bench = bench_fit(arguments.trials, arguments.parts, bar.progress());
-    write_tables(stem, core::write_value(bench), table_of(bench));
+}  // namespace
+
+BenchResult fit_result(const FitBench& bench) {
+    BenchResult result{core::write_value(bench), table_of(bench), {}, {}};
+    if (bench.points.empty()) return result;
     LogPlot plot{"Error against time of fits", "CPU time [s]", "position error [m]", {}};
     for (const FitBenchPoint& point : bench.points) {
         plot.lines.push_back({point.choice, {point.cpu_seconds}, {point.position_rms_m}});
     }
-    report_results(stem, plot.lines.empty() || draw_plot(plot, stem));
+    plot.lines.push_back(pareto_front(plot.lines));
+    result.plots[""] = plot;
+    return result;
 }
-
-}  // namespace
 
 void add_bench_fit_command(CLI::App& bench) {
     const auto arguments = std::make_shared<BenchFitArguments>();
     CLI::App* command =
         bench.add_subcommand("fit", "Fitting and calibration against their targets");
-    command->add_option("-o,--output", arguments->folder, "Folder for JSON, table and plot")
-        ->required();
+    add_output_options(*command, arguments->output);
     command->add_option("--trials", arguments->trials, "Fits per row of the table")
         ->capture_default_str()
         ->check(CLI::Range(1, 10000));
     command->add_option("--only", arguments->parts, "Parts of the table")
         ->check(CLI::IsMember(fit_bench_parts()));
     command->footer(settings_footer({}, "nlos bench fit -o out/bench --trials 1"));
-    command->callback([arguments] { run(*arguments); });
+    command->callback([arguments] {
+        run_benchmark(arguments->output, "fit", [&](const core::Progress& progress) {
+            return fit_result(bench_fit(arguments->trials, arguments->parts, progress));
+        });
+    });
 }
 
 }  // namespace apps

@@ -4,9 +4,12 @@
 #include "nlos/light_cone.h"
 #include "nlos/padded_plane.h"
 #include "nlos/phasor_field.h"
+#include "renderer/area_sampler.h"
 #include "renderer/core/process.h"
+#include "renderer/core/random.h"
 
 #include <algorithm>
+#include <vector>
 
 namespace apps {
 namespace {
@@ -95,6 +98,31 @@ double multiply_add_seconds(double pairs) {
         weight = -weight;
     });
     return seconds * pairs / (static_cast<double>(runs) * kCount);
+}
+
+double shadow_ray_seconds(const renderer::Scene& scene, const core::Scan& scan) {
+    constexpr std::size_t kPoints = 64;
+    constexpr std::size_t kRays = 2048;  // per point
+    const renderer::AreaSampler sampler(scene);
+    std::vector<renderer::SegmentPacket> packets;
+    for (std::size_t p = 0; p < kPoints; ++p) {
+        const std::size_t point = p * scan.sensing.size() / kPoints;
+        core::Rng rng(0, p, 0);
+        std::size_t hint = 0;
+        for (std::size_t i = 0; i < kRays; ++i) {
+            const double u = (static_cast<double>(i) + rng.uniform()) / kRays;
+            const renderer::SurfacePoint place = sampler.sample(u, rng.uniform(), hint);
+            if (packets.empty() || packets.back().full() || i == 0) packets.emplace_back();
+            scene.rays().add_segment(packets.back(),
+                                     scan.sensing.positions[point],
+                                     scan.sensing.normals[point],
+                                     place.position,
+                                     scene.facet(place.facet).normal);
+        }
+    }
+    const double start = core::cpu_seconds();
+    for (renderer::SegmentPacket& packet : packets) scene.rays().trace(packet);
+    return (core::cpu_seconds() - start) / static_cast<double>(kPoints * kRays);
 }
 
 }  // namespace apps

@@ -3,6 +3,7 @@
 
 #include "nlos/method_input.h"
 #include "nlos/reconstruct_settings.h"
+#include "renderer/scene.h"
 
 namespace apps {
 
@@ -22,5 +23,9 @@ double phasor_fft_seconds(const nlos::MethodInput& input, const nlos::PhasorSett
 
 /// Two multiply-adds for every pair of histogram and voxel.
 double multiply_add_seconds(double pairs);
+
+/// One shadow ray from a scan's points to hidden surfaces, in packets from one point to places in
+/// the order of the file: the lower limit of every path of `path`.
+double shadow_ray_seconds(const renderer::Scene& scene, const core::Scan& scan);
 
 }  // namespace apps

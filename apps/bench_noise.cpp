@@ -2,7 +2,6 @@
 #include "apps/bench_noise.h"
 
 #include "apps/bench_scene.h"
-#include "apps/gnuplot.h"
 #include "apps/scene_truth.h"
 #include "nlos/compare.h"
 #include "nlos/detector.h"
@@ -115,10 +114,7 @@ SnrSearch search_snr(const Range& range, double peak_counts, int repeats) {
     return search;
 }
 
-bool draw(const NoiseBench& bench,
-          const std::string& title,
-          double NoiseScore::*value,
-          const std::string& path) {
+LogPlot plot_of(const NoiseBench& bench, const std::string& title, double NoiseScore::*value) {
     LogPlot plot{title + ", " + bench.scene, "counts in the brightest bin", title, {}};
     for (const NoiseCurve& curve : bench.curves) {
         PlotLine& line = plot.lines.emplace_back();
@@ -128,32 +124,7 @@ bool draw(const NoiseBench& bench,
             line.y.push_back(score.*value);
         }
     }
-    return draw_plot(plot, path);
-}
-
-}  // namespace
-
-NoiseBench bench_noise(const std::string& scene_path, int repeats, const core::Progress& progress) {
-    const Range range(scene_path);
-    NoiseBench bench;
-    bench.scene = scene_path;
-    bench.repeats = repeats;
-    const std::vector<Contender> all = contenders();
-    const auto stages = static_cast<double>(all.size() + 1);
-    for (const Contender& contender : all) {
-        NoiseCurve& curve = bench.curves.emplace_back();
-        curve.method = contender.name;
-        for (const double peak : kPeaks) {
-            if (progress.should_stop()) throw core::Failure("bench", "interrupted");
-            curve.scores.push_back(score_at(range, peak, contender.overrides, repeats).first);
-        }
-        progress.update(static_cast<double>(bench.curves.size()) / stages, contender.name);
-    }
-    for (const double peak : kPeaks) {
-        if (progress.should_stop()) throw core::Failure("bench", "interrupted");
-        bench.searches.push_back(search_snr(range, peak, repeats));
-    }
-    return bench;
+    return plot;
 }
 
 std::string noise_table(const NoiseBench& bench) {
@@ -199,11 +170,38 @@ std::string noise_table(const NoiseBench& bench) {
     return text;
 }
 
-bool draw_noise_plots(const NoiseBench& bench, const std::string& stem) {
-    return draw(
-               bench, "mean absolute depth error [m]", &NoiseScore::depth_mae_m, stem + "_depth") &&
-           draw(
-               bench, "mask IoU at the best threshold", &NoiseScore::mask_iou_best, stem + "_mask");
+}  // namespace
+
+NoiseBench bench_noise(const std::string& scene_path, int repeats, const core::Progress& progress) {
+    const Range range(scene_path);
+    NoiseBench bench;
+    bench.scene = scene_path;
+    bench.repeats = repeats;
+    const std::vector<Contender> all = contenders();
+    const auto stages = static_cast<double>(all.size() + 1);
+    for (const Contender& contender : all) {
+        NoiseCurve& curve = bench.curves.emplace_back();
+        curve.method = contender.name;
+        for (const double peak : kPeaks) {
+            if (progress.should_stop()) throw core::Failure("bench", "interrupted");
+            curve.scores.push_back(score_at(range, peak, contender.overrides, repeats).first);
+        }
+        progress.update(static_cast<double>(bench.curves.size()) / stages, contender.name);
+    }
+    for (const double peak : kPeaks) {
+        if (progress.should_stop()) throw core::Failure("bench", "interrupted");
+        bench.searches.push_back(search_snr(range, peak, repeats));
+    }
+    return bench;
+}
+
+BenchResult noise_result(const NoiseBench& bench) {
+    return {
+        core::write_value(bench),
+        noise_table(bench),
+        {{"_depth", plot_of(bench, "mean absolute depth error [m]", &NoiseScore::depth_mae_m)},
+         {"_mask", plot_of(bench, "mask IoU at the best threshold", &NoiseScore::mask_iou_best)}},
+        {}};
 }
 
 }  // namespace apps

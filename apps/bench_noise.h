@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/core/progress.h"
-#include "renderer/core/settings.h"
+#include "apps/bench_output.h"
 
 #include <string>
 #include <vector>
@@ -82,10 +81,7 @@ void for_each_field(NoiseBench& bench, Visitor&& visit) {
 /// repeats      seeds per figure
 NoiseBench bench_noise(const std::string& scene_path, int repeats, const core::Progress& progress);
 
-/// The tables for people.
-std::string noise_table(const NoiseBench& bench);
-
-/// Draws stem_depth and stem_mask as .svg and .png; false without gnuplot.
-bool draw_noise_plots(const NoiseBench& bench, const std::string& stem);
+/// Tables and plots of it.
+BenchResult noise_result(const NoiseBench& bench);
 
 }  // namespace apps

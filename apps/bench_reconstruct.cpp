@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "apps/bench_reconstruct.h"
 
-#include "apps/gnuplot.h"
 #include "renderer/core/parallel.h"
 
 #include <fmt/core.h>
@@ -91,10 +90,9 @@ std::string growth_text(const ReconstructBench& bench) {
     return text;
 }
 
-bool draw(const ReconstructBench& bench,
-          const std::string& title,
-          double GrowthPoint::*value,
-          const std::string& path) {
+LogPlot growth_plot(const ReconstructBench& bench,
+                    const std::string& title,
+                    double GrowthPoint::*value) {
     LogPlot plot{title + " against size", "values of the capture", title, {}};
     for (const ReconstructGrowth& curve : bench.growth) {
         PlotLine& line = plot.lines.emplace_back();
@@ -104,7 +102,7 @@ bool draw(const ReconstructBench& bench,
             line.y.push_back(point.*value);
         }
     }
-    return draw_plot(plot, path);
+    return plot;
 }
 
 }  // namespace
@@ -124,14 +122,17 @@ ReconstructBench bench_reconstruct(const ReconstructBenchSettings& settings,
     return bench;
 }
 
-std::string reconstruct_tables(const ReconstructBench& bench) {
-    return costs_text(bench) + "\n" + accuracies_text(bench) + "\n" + growth_text(bench);
-}
-
-bool draw_reconstruct_plots(const ReconstructBench& bench, const std::string& stem) {
-    if (bench.growth.empty()) return true;
-    return draw(bench, "CPU time [s]", &GrowthPoint::cpu_seconds, stem + "_time") &&
-           draw(bench, "memory [bytes]", &GrowthPoint::bytes, stem + "_memory");
+BenchResult reconstruct_result(const ReconstructBench& bench) {
+    BenchResult result{
+        core::write_value(bench),
+        costs_text(bench) + "\n" + accuracies_text(bench) + "\n" + growth_text(bench),
+        {},
+        {}};
+    if (!bench.growth.empty()) {
+        result.plots["_time"] = growth_plot(bench, "CPU time [s]", &GrowthPoint::cpu_seconds);
+        result.plots["_memory"] = growth_plot(bench, "memory [bytes]", &GrowthPoint::bytes);
+    }
+    return result;
 }
 
 }  // namespace apps

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/core/progress.h"
-#include "renderer/core/settings.h"
+#include "apps/bench_output.h"
 
 #include <string>
 #include <vector>
@@ -144,10 +143,7 @@ std::vector<ReconstructGrowth> measure_growth(const ReconstructBenchSettings& se
 ReconstructBench bench_reconstruct(const ReconstructBenchSettings& settings,
                                    const core::Progress& progress);
 
-/// The tables for people.
-std::string reconstruct_tables(const ReconstructBench& bench);
-
-/// Draws stem_time, stem_memory as .svg and .png; false without gnuplot.
-bool draw_reconstruct_plots(const ReconstructBench& bench, const std::string& stem);
+/// Tables and plots of it.
+BenchResult reconstruct_result(const ReconstructBench& bench);
 
 }  // namespace apps

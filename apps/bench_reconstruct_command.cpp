@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/arguments.h"
-#include "apps/bench_output.h"
 #include "apps/bench_reconstruct.h"
 #include "apps/commands.h"
-#include "apps/terminal.h"
-
-#include <fmt/core.h>
 
 #include <memory>
 
@@ -13,16 +9,14 @@ namespace apps {
 namespace {
 
 struct Arguments {
-    std::string folder;
+    BenchOutput output;
     ReconstructBenchSettings settings;
 };
 
 void run(const Arguments& arguments) {
-    const std::string stem = result_stem(arguments.folder, "bench_reconstruct");
-    ProgressBar bar("bench reconstruct");
-    const ReconstructBench bench = bench_reconstruct(arguments.settings, bar.progress());
-    write_tables(stem, core::write_value(bench), reconstruct_tables(bench));
-    report_results(stem, draw_reconstruct_plots(bench, stem));
+    run_benchmark(arguments.output, "reconstruct", [&](const core::Progress& progress) {
+        return reconstruct_result(bench_reconstruct(arguments.settings, progress));
+    });
 }
 
 }  // namespace
@@ -32,8 +26,7 @@ void add_bench_reconstruct_command(CLI::App& bench) {
     ReconstructBenchSettings& settings = arguments->settings;
     CLI::App* command =
         bench.add_subcommand("reconstruct", "Time, memory and accuracy of every method");
-    command->add_option("-o,--output", arguments->folder, "Folder for JSON, table and plots")
-        ->required();
+    add_output_options(*command, arguments->output);
     command->add_option("--scenes", settings.scenes_folder, "Folder of the scenes")
         ->capture_default_str();
     command->add_option("--capture", settings.capture, "Also score this capture of the letter T");

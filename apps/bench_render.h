@@ -3,6 +3,7 @@
 
 #include "apps/bench_gates.h"
 #include "apps/bench_growth.h"
+#include "apps/bench_output.h"
 
 #include <string>
 #include <vector>
@@ -12,17 +13,23 @@ namespace apps {
 /// One run of an estimator.
 struct BenchPoint {
     std::string effort;        ///< "samples=64", "target_error=0.01"
+    int samples = 0;           ///< 0: the method takes none
     double cpu_seconds = 0.0;  ///< median over repeats
     double cpu_spread = 0.0;   ///< largest minus smallest
-    double rel_l2 = 0.0;       ///< against the reference
+    double rel_l2 = 0.0;       ///< against the reference, root mean square over repeats
+    double rel_l2_spread = 0.0;
+    bool is_on_front = false;  ///< no other run is faster and more accurate
 };
 
 template <class Visitor>
 void for_each_field(BenchPoint& point, Visitor&& visit) {
     visit("effort", point.effort, "setting that was varied");
+    visit("samples", point.samples, "per pair; 0: the method takes none");
     visit("cpu_seconds", point.cpu_seconds, "CPU time, median over repeats [s]");
     visit("cpu_spread", point.cpu_spread, "largest minus smallest CPU time [s]");
     visit("rel_l2", point.rel_l2, "relative L2 error over all of H");
+    visit("rel_l2_spread", point.rel_l2_spread, "largest minus smallest error");
+    visit("is_on_front", point.is_on_front, "no other run is faster and more accurate");
 }
 
 /// Error against time of one estimator and the line error = coefficient * seconds^slope.
@@ -41,20 +48,24 @@ void for_each_field(BenchCurve& curve, Visitor&& visit) {
     visit("coefficient", curve.coefficient, "error after one CPU second on the fitted line");
 }
 
-/// How much longer one estimator takes than the other for the same error.
+/// One estimator against `path`, which is continued along its fitted line.
 struct EqualError {
-    double rel_l2 = 0.0;
-    double path_seconds = 0.0;          ///< from its fitted line
-    double third_bounce_seconds = 0.0;  ///< of its cheapest run below the error
-    double ratio = 0.0;
+    std::string method;
+    double at_rel_l2 = 0.0;
+    double cpu_seconds = 0.0;  ///< see seconds_to() in bench_render.cpp
+    double path_seconds = 0.0;
+    double time_ratio = 0.0;   ///< of path's time to the method's, at this error
+    double error_ratio = 0.0;  ///< of path's error to this one, at the method's time
 };
 
 template <class Visitor>
 void for_each_field(EqualError& equal, Visitor&& visit) {
-    visit("rel_l2", equal.rel_l2, "relative L2 error");
+    visit("method", equal.method, "estimator");
+    visit("at_rel_l2", equal.at_rel_l2, "relative L2 error");
+    visit("cpu_seconds", equal.cpu_seconds, "CPU time of the method [s]");
     visit("path_seconds", equal.path_seconds, "CPU time of path, on its fitted line [s]");
-    visit("third_bounce_seconds", equal.third_bounce_seconds, "cheapest run below the error [s]");
-    visit("ratio", equal.ratio, "the first over the second");
+    visit("time_ratio", equal.time_ratio, "of path's time to the method's at this error");
+    visit("error_ratio", equal.error_ratio, "of path's error to this one at the method's time");
 }
 
 /// What `nlos bench render` measured.
@@ -64,6 +75,7 @@ struct RenderBench {
     double check_distance = 0.0;  ///< relative L2 distance of a long run of path from it
     double check_noise = 0.0;     ///< the noise of that run
     int repeats = 0;
+    double ray_limit_seconds = 0.0;  ///< CPU time of the shadow rays of `path`, per sample
     std::vector<BenchCurve> curves;
     std::vector<EqualError> equal_error;
     std::vector<GateTable> gates;
@@ -78,8 +90,11 @@ void for_each_field(RenderBench& bench, Visitor&& visit) {
     visit("check_distance", bench.check_distance, "distance of a long run of path from it");
     visit("check_noise", bench.check_noise, "noise of that run");
     visit("repeats", bench.repeats, "runs per point");
+    visit("ray_limit_seconds",
+          bench.ray_limit_seconds,
+          "CPU time of the shadow rays alone per sample of all pairs [s]");
     visit("curves", bench.curves, "error against time");
-    visit("equal_error", bench.equal_error, "speed-up of third_bounce over path");
+    visit("equal_error", bench.equal_error, "every estimator against path");
     visit("gates", bench.gates, "path and ellipsoidal in equal time");
     visit("exclusion", bench.exclusion, "ellipsoidal with and without excluded surfaces");
     visit("growth", bench.growth, "time against sizes");
@@ -93,12 +108,16 @@ struct RenderBenchSettings {
     /// is tried on the first scene.
     std::string exclusion_scene = "scenes/corner/scene.json";
     std::string part = "all";  ///< or curves, gates, exclusion, growth
-    int repeats = 1;           ///< runs per point; gates and exclusion take at least three
+    int repeats = 3;           ///< runs per point; those that take long are not repeated
+    bool quick = false;        ///< leaves out what takes longest
 
     bool has(const std::string& name) const { return part == "all" || part == name; }
 };
 
 /// Measures every estimator on a scene at several efforts, and the rest, on one thread.
 RenderBench bench_render(const RenderBenchSettings& settings, const core::Progress& progress);
+
+/// Tables and plots of it.
+BenchResult render_result(const RenderBench& bench);
 
 }  // namespace apps

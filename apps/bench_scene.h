@@ -21,6 +21,8 @@ class BenchScene {
 
     const renderer::RenderSettings& settings() const { return description_.render; }
     const core::TimeAxis& axis() const { return description_.time_axis; }
+    const core::Scan& scan() const { return scan_; }
+    const renderer::Scene& scene() const { return scene_; }
     bool is_image() const { return scan_.camera.has_value(); }
 
     core::Capture render(const core::TimeAxis& axis,

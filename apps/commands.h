@@ -24,6 +24,8 @@ void add_bench_command(CLI::App& app);
 
 // Subcommands of bench.
 void add_noise_bench(CLI::App& bench);
+void add_sequences_bench(CLI::App& bench);
+void add_shift_bench(CLI::App& bench);
 void add_bench_render_command(CLI::App& bench);
 void add_bench_fit_command(CLI::App& bench);
 void add_comparisons_bench(CLI::App& bench);

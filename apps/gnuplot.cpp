@@ -5,7 +5,9 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cstdio>
+#include <utility>
 
 namespace apps {
 namespace {
@@ -29,9 +31,11 @@ std::string script_of(const LogPlot& plot, const std::string& terminal, const st
             data += fmt::format("{} {}\n", line.x[j], line.y[j]);
         }
         data += "EOD\n";
-        curves += fmt::format("{}$line{} with linespoints lw 2 pt 7 title '{}'",
+        curves += fmt::format("{}$line{} with {} title '{}'",
                               i == 0 ? "plot " : ", ",
                               i,
+                              line.style == LineStyle::Measured ? "linespoints lw 2 pt 7"
+                                                                : "lines lw 3 dt 2",
                               line.title);
     }
     return script + data + curves + "\n";
@@ -52,6 +56,21 @@ bool draw_as(const LogPlot& plot, const std::string& terminal, const std::string
 }
 
 }  // namespace
+
+PlotLine pareto_front(const std::vector<PlotLine>& lines) {
+    std::vector<std::pair<double, double>> points;
+    for (const PlotLine& line : lines) {
+        for (std::size_t i = 0; i < line.x.size(); ++i) points.emplace_back(line.x[i], line.y[i]);
+    }
+    std::sort(points.begin(), points.end());
+    PlotLine front{"Pareto front", {}, {}, LineStyle::Limit};
+    for (const auto& [x, y] : points) {
+        if (!front.y.empty() && y >= front.y.back()) continue;
+        front.x.push_back(x);
+        front.y.push_back(y);
+    }
+    return front;
+}
 
 bool draw_plot(const LogPlot& plot, const std::string& path) {
     return draw_as(plot, "svg size 800,500 dynamic noenhanced", path + ".svg") &&

@@ -6,11 +6,17 @@
 
 namespace apps {
 
+enum class LineStyle {
+    Measured,  ///< points on a line
+    Limit,     ///< dashed: what the machine or theory allows
+};
+
 /// Points of one line of a plot.
 struct PlotLine {
     std::string title;
     std::vector<double> x;
     std::vector<double> y;
+    LineStyle style = LineStyle::Measured;
 };
 
 /// A plot with logarithmic axes.
@@ -20,6 +26,9 @@ struct LogPlot {
     std::string y_label;
     std::vector<PlotLine> lines;
 };
+
+/// The points of all lines that no other point beats in both coordinates, by rising x.
+PlotLine pareto_front(const std::vector<PlotLine>& lines);
 
 /// Draws `plot` as path.svg and path.png by gnuplot.
 /// returns   false when gnuplot is not installed or fails; nothing is written then

@@ -86,4 +86,17 @@ std::string embedded_image(std::string_view bytes,
                        escape_html(alternative));
 }
 
+std::string figure_html(const std::string& image, const std::string& caption) {
+    return fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n", image, caption);
+}
+
+std::string facts_html(const std::vector<std::pair<std::string, std::string>>& facts) {
+    std::string html = "<dl>";
+    for (const auto& [name, value] : facts) {
+        html +=
+            fmt::format("<div><dt>{}</dt><dd>{}</dd></div>", escape_html(name), escape_html(value));
+    }
+    return html + "</dl>\n";
+}
+
 }  // namespace apps

@@ -3,6 +3,8 @@
 
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 namespace apps {
 
@@ -20,5 +22,11 @@ std::string encode_base64(std::string_view bytes);
 std::string embedded_image(std::string_view bytes,
                            std::string_view mime_type,
                            std::string_view alternative);
+
+/// A picture with words under it; both are HTML.
+std::string figure_html(const std::string& image, const std::string& caption);
+
+/// Names and what they stand for, as a list.
+std::string facts_html(const std::vector<std::pair<std::string, std::string>>& facts);
 
 }  // namespace apps

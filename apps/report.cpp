@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/report.h"
 
+#include "apps/bench_card.h"
 #include "apps/html.h"
 #include "apps/metrics_table.h"
 #include "apps/report_style.h"
@@ -15,19 +16,6 @@ namespace apps {
 namespace {
 
 constexpr const char* kPng = "image/png";
-
-std::string figure_html(const std::string& image, const std::string& caption) {
-    return fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n", image, caption);
-}
-
-std::string facts_html(const std::vector<Fact>& facts) {
-    std::string html = "<dl>";
-    for (const auto& [name, value] : facts) {
-        html +=
-            fmt::format("<div><dt>{}</dt><dd>{}</dd></div>", escape_html(name), escape_html(value));
-    }
-    return html + "</dl>\n";
-}
 
 std::string details_html(const std::string& title, const core::Json& json) {
     if (json.is_null()) return "";
@@ -139,6 +127,7 @@ std::string contents_text(const ResultsFolder& results) {
     add(results.volumes.size(), "reconstruction");
     add(results.fits.size(), "fit");
     add(results.scores.size(), "comparison");
+    add(results.benches.size(), "benchmark");
     add(results.unreadable.size(), "unreadable file");
     return text;
 }
@@ -169,6 +158,8 @@ std::string render_report(const ResultsFolder& results) {
     html += section_html("fits", "Fits", cards_html(results.fits, "Data, model and residual"));
     html +=
         section_html("comparisons", "Comparison with the truth", comparisons_html(results.scores));
+    html += section_html("benchmarks", "Speed against error", benches_html(results.benches));
+    html += section_html("hard-cases", "Hard cases", hard_cases_html(results.hard_cases));
     html += section_html("figures", "Figures", figures_html(results.figures, FigureKind::Other));
     html += section_html("files", "Other files", documents_html(results.documents));
     html += section_html(

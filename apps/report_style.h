@@ -57,6 +57,7 @@ th:first-child { text-align: left; }
 tbody th { font-weight: 400; }
 thead th { vertical-align: bottom; font-weight: 600; }
 thead small { display: block; white-space: normal; color: var(--soft); font-weight: 400; }
+.words td, .words th { padding: 9px 12px; text-align: left; white-space: normal; vertical-align: top; min-width: 6em; }
 .unit { margin-left: 8px; color: var(--soft); font-size: 0.85rem; }
 .best { background: var(--best); color: var(--accent); font-weight: 650; }
 .none { color: var(--soft); }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/results_folder.h"
 
+#include "apps/bench_card.h"
 #include "calib/fit_file.h"
 #include "nlos/formats/capture_file.h"
 #include "nlos/formats/volume_file.h"
@@ -298,7 +299,11 @@ void read_file(const fs::path& path, ResultsFolder& results) {
             results.scores.push_back(scored_result(path, json));
         } else if (calib::is_fit_file(path.string())) {
             results.fits.push_back(fit_card(path, json));
-        } else {
+        } else if (is_bench(json)) {
+            results.benches.push_back(read_bench_card(path.string(), json));
+        } else if (json.contains("hard_cases")) {
+            results.hard_cases = json["hard_cases"];
+        } else if (!is_collection_of_benches(json)) {
             results.documents.push_back({name, std::move(json)});
         }
     } else if (suffix == ".png" || suffix == ".svg") {
@@ -356,6 +361,7 @@ ResultsFolder read_results_folder(const std::string& folder) {
         }
     }
     drop_accompanying_figures(results);
+    give_figures_to_benches(results);
     if (results.empty()) {
         throw core::Error(folder,
                           "holds no result",

@@ -39,6 +39,14 @@ struct Figure {
     std::string bytes;
 };
 
+/// What a benchmark found, see bench_output.h.
+struct BenchCard {
+    std::string file;
+    std::vector<Fact> facts;
+    std::string table;  ///< the text beside the JSON file; empty: none
+    std::vector<Figure> figures;
+};
+
 /// Any other JSON file.
 struct JsonDocument {
     std::string file;
@@ -52,13 +60,16 @@ struct ResultsFolder {
     std::vector<ResultCard> captures;
     std::vector<ResultCard> volumes;
     std::vector<ResultCard> fits;
-    std::vector<Figure> figures;  ///< but for those beside a volume, capture, fit or METRICS.json
+    std::vector<BenchCard> benches;
+    core::Json hard_cases;        ///< the table that hard_cases_tests --report writes; null: none
+    std::vector<Figure> figures;  ///< but for those that belong to a file shown
     std::vector<JsonDocument> documents;
     std::vector<Fact> unreadable;  ///< file and what is wrong with it
 
     bool empty() const {
         return scores.empty() && captures.empty() && volumes.empty() && fits.empty() &&
-               figures.empty() && documents.empty() && unreadable.empty();
+               benches.empty() && hard_cases.empty() && figures.empty() && documents.empty() &&
+               unreadable.empty();
     }
 };
 

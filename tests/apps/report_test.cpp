@@ -117,6 +117,39 @@ TEST(Report, ShowsEveryResultOnce) {
     EXPECT_TRUE(contains(html, "1 capture, 1 reconstruction, 2 comparisons, 1 unreadable file"));
 }
 
+TEST(Report, ShowsBenchmarksWithTheirPlotsAndTable) {
+    const TemporaryFolder folder;
+    core::write_text_file(folder.file("bench_render.json"),
+                          R"({"curves": [], "program": "nlos 1", "machine": "a <processor>"})");
+    core::write_text_file(folder.file("bench_all.json"),
+                          R"({"render": {"program": "nlos 1", "machine": "a <processor>"}})");
+    core::write_text_file(folder.file("bench_render.txt"), "error < time");
+    core::write_text_file(folder.file("bench_render.svg"), "<svg/>");
+    core::write_text_file(folder.file("bench_render.png"), "the same");
+    core::write_text_file(folder.file("bench_render_growth.svg"), "<svg/>");
+    const ResultsFolder results = read_results_folder(folder.path().string());
+    ASSERT_EQ(results.benches.size(), 1U);
+    EXPECT_EQ(results.benches[0].figures.size(), 2U);
+    EXPECT_TRUE(results.figures.empty());
+    EXPECT_TRUE(results.documents.empty());
+    const std::string html = render_report(results);
+    EXPECT_TRUE(contains(html, "error &lt; time"));
+    EXPECT_TRUE(contains(html, "a &lt;processor&gt;"));
+    EXPECT_TRUE(contains(html, "1 benchmark"));
+}
+
+TEST(Report, ShowsHardCases) {
+    const TemporaryFolder folder;
+    core::write_text_file(
+        folder.file("hard_cases.json"),
+        R"({"hard_cases": [{"name": "sliver", "group": "geometry", "why": "thin & long",
+            "must_hold": "area", "worst": 1e-9, "bound": 1e-6, "explanation": ""}]})");
+    const std::string html = render_report(read_results_folder(folder.path().string()));
+    EXPECT_TRUE(contains(html, "geometry: sliver"));
+    EXPECT_TRUE(contains(html, "thin &amp; long"));
+    EXPECT_TRUE(contains(html, "1.00e-09"));
+}
+
 TEST(Report, EscapesEveryText) {
     const TemporaryFolder folder;
     fill(folder);
