@@ -4,10 +4,14 @@
 #include "nlos/conservative_resampling.h"
 #include "nlos/memory_limit.h"
 #include "nlos/wall_frame.h"
+#include "renderer/core/error.h"
 #include "renderer/core/parallel.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace nlos {
 namespace {
@@ -81,15 +85,23 @@ core::WallPoints wall_points(const MidpointGrid& grid, const WallFrame& wall) {
     return points;
 }
 
-/// The confocal axis starts at 0 and ends where the last bin can land.
-core::TimeAxis confocal_axis(const core::Scan& scan, core::TimeAxis axis) {
+/// The confocal axis starts at 0 and ends where the last bin can land. An axis that starts far from
+/// the wall fills much with darkness: refused before it is made.
+core::TimeAxis confocal_axis(const core::Scan& scan, core::TimeAxis axis, std::size_t num_points) {
     double shortest = scan.device_legs_m(0);
     for (std::size_t pair = 1; pair < scan.num_pairs(); ++pair) {
         shortest = std::min(shortest, scan.device_legs_m(pair));
     }
     const double end = std::max(axis.bin_width_m, axis.opl_end_m() - shortest);
+    const double num_bins = std::ceil(end / axis.bin_width_m - 1e-6);
+    require_memory(4.0 * static_cast<double>(num_points) * num_bins);
+    if (num_bins > std::numeric_limits<int>::max()) {
+        throw core::Error("capture",
+                          fmt::format("the time axis ends {:.4g} m behind the wall", end),
+                          "must end nearer for its midpoints' axis, which starts at the wall");
+    }
     axis.opl_start_m = 0.0;
-    axis.num_bins = static_cast<int>(std::ceil(end / axis.bin_width_m - 1e-6));
+    axis.num_bins = static_cast<int>(num_bins);
     return axis;
 }
 
@@ -118,8 +130,7 @@ std::optional<ConfocalData> convert_to_confocal(const core::Scan& scan,
     if (!grid) return std::nullopt;
     ConfocalData confocal;
     confocal.points = wall_points(*grid, wall);
-    confocal.time_axis = confocal_axis(scan, axis);
-    require_memory(4.0 * static_cast<double>(grid->pairs.size()) * confocal.time_axis.num_bins);
+    confocal.time_axis = confocal_axis(scan, axis, grid->pairs.size());
     confocal.transient = core::Transient(grid->pairs.size(), confocal.time_axis.num_bins);
     const auto num_bins = static_cast<std::size_t>(confocal.time_axis.num_bins);
     const std::vector<double> edges = even_edges(0.0, confocal.time_axis.opl_end_m(), num_bins);

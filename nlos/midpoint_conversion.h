@@ -22,7 +22,8 @@ struct ConfocalData {
 /// scan      single or exhaustive; a single-laser scan becomes one of half the pitch and aperture
 /// returns   points on a grid and mean histograms; nothing when the midpoints do not fill an even
 ///           grid
-/// throws    core::Failure when memory does not suffice
+/// throws    core::Failure when memory does not suffice, as for an axis that starts very late;
+///           core::Error when such an axis has more bins than can be counted
 /// source    [Lindell2019], supplement
 std::optional<ConfocalData> convert_to_confocal(const core::Scan& scan,
                                                 const core::TimeAxis& axis,

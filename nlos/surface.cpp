@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace nlos {
@@ -11,16 +12,19 @@ namespace {
 
 using core::Vec3;
 
-/// Position of the maximum in voxels: vertex of the parabola through the highest three values.
+/// Position of the maximum in voxels: vertex of the parabola through the logarithms of the highest
+/// three values, right for a Gaussian of any width where a parabola through the values themselves
+/// leans towards the highest voxel by up to a tenth; through the values where one is not positive.
 double peak_position(const float* values, std::size_t count, std::size_t highest) {
     const auto center = static_cast<double>(highest);
     if (highest == 0 || highest + 1 == count) return center;
-    const double before = values[highest - 1];
-    const double at = values[highest];
-    const double after = values[highest + 1];
-    const double curvature = before - 2.0 * at + after;
+    std::array<double, 3> three{values[highest - 1], values[highest], values[highest + 1]};
+    if (three[0] > 0.0 && three[2] > 0.0) {
+        for (double& value : three) value = std::log(value);
+    }
+    const double curvature = three[0] - 2.0 * three[1] + three[2];
     if (!(curvature < 0.0)) return center;
-    return center + std::clamp(0.5 * (before - after) / curvature, -0.5, 0.5);
+    return center + std::clamp(0.5 * (three[0] - three[2]) / curvature, -0.5, 0.5);
 }
 
 /// Depth at a position between evenly spaced voxel centres.

@@ -9,8 +9,9 @@ namespace nlos {
 
 /// The surface that a volume shows from the wall: where each column is brightest.
 ///
-/// The depth between voxels is the vertex of a parabola through the brightest voxel and its two
-/// neighbours. Normals are those of planes fitted to neighbouring foreground columns.
+/// The depth between voxels is the vertex of a parabola through the logarithms of the brightest
+/// voxel and its two neighbours. Normals are those of planes fitted to neighbouring foreground
+/// columns.
 ///
 /// mask_threshold   share of the volume's maximum from which on a column is foreground, in (0, 1)
 /// returns          depth in the wall's frame, NaN = background; normals in world, zero where

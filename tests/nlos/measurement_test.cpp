@@ -126,9 +126,31 @@ TEST(MidpointConversion, IsExactForPointsEquallyFarFromBoth) {
 
 TEST(MidpointConversion, MidpointsThatLeaveGapsAreRefused) {
     core::Capture capture = numbered_capture(ScanPattern::Exhaustive);
-    capture.scan.illumination = nlos_test::wall_grid({2, 2}, {1.0, 1.0});
+    capture.scan.sensing = nlos_test::wall_grid({4, 4}, {0.1, 0.1});
+    // Midpoints in rows 0 to 3 and 8 to 11 of 12: 144 pairs for 48 points, none in the middle.
+    for (core::Vec3& position : capture.scan.illumination.positions) position.setZero();
+    capture.scan.illumination.positions.back().x() = 0.8;
     capture.transient = core::Transient(capture.scan.num_pairs(), 20);
     EXPECT_FALSE(convert_to_confocal(capture.scan, capture.time_axis, capture.transient));
+}
+
+TEST(MidpointConversion, GridsOfMorePointsThanPairsAreRefusedBeforeTheyAreMade) {
+    core::Capture capture = numbered_capture(ScanPattern::Exhaustive);
+    for (const double distance_m : {1.0, 1e6, 1e9}) {  // 1e9: 4e20 points
+        capture.scan.illumination = nlos_test::wall_grid({2, 2}, {distance_m, distance_m});
+        capture.transient = core::Transient(capture.scan.num_pairs(), 20);
+        EXPECT_FALSE(convert_to_confocal(capture.scan, capture.time_axis, capture.transient));
+    }
+}
+
+TEST(MidpointConversion, AnAxisThatStartsFarBehindTheWallIsRefusedBeforeItIsMade) {
+    core::Capture capture = numbered_capture(ScanPattern::Single);
+    capture.scan.illumination = nlos_test::wall_grid({1, 1}, {0.1, 0.1});
+    for (const double start_m : {1e9, 1e15}) {  // 1e11 and 1e17 bins from the wall on
+        capture.time_axis.opl_start_m = start_m;
+        EXPECT_THROW(convert_to_confocal(capture.scan, capture.time_axis, capture.transient),
+                     core::Failure);
+    }
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 namespace nlos {
 namespace {
 
-/// A plane z = 0.5 + slope x, as a parabola in z in every column but the first row, which is dark.
+/// A plane z = 0.5 + slope x, as a Gaussian in z in every column but the first row, which is dark.
 Volume sloped_plane(double slope) {
     Volume volume;
     volume.axes.x_m = cell_centers(-0.1, 0.1, 10);
@@ -19,7 +19,7 @@ Volume sloped_plane(double slope) {
         for (std::size_t iy = 0; iy < 8; ++iy) {
             for (const double z : volume.axes.z_m) {
                 const double steps = (z - 0.5 - slope * volume.axes.x_m[ix]) / 0.01;
-                const double value = iy == 0 ? 0.1 : std::max(0.0, 1.0 - 0.1 * steps * steps);
+                const double value = iy == 0 ? 0.1 : std::exp(-0.5 * steps * steps);
                 volume.values.push_back(static_cast<float>(value));
             }
         }
@@ -35,6 +35,19 @@ TEST(Surface, FindsDepthsBetweenVoxels) {
         for (std::size_t iy = 1; iy < 8; ++iy) {
             EXPECT_NEAR(depth.depth_m[depth.index(ix, iy)], 0.5 + 0.3 * volume.axes.x_m[ix], 1e-5);
         }
+    }
+}
+
+TEST(Surface, FindsDepthsBetweenVoxelsBesideDarkness) {
+    Volume volume = sloped_plane(0.0);
+    for (std::size_t column = 0; column < 80; ++column) {
+        std::fill_n(volume.values.begin() + static_cast<std::ptrdiff_t>(20 * column), 20, 0.0F);
+        volume.values[20 * column + 7] = 0.5F;
+        volume.values[20 * column + 8] = 1.0F;
+    }
+    // The parabola through 0.5, 1 and 0.
+    for (const double z : extract_depth_map(volume, 0.2).depth_m) {
+        EXPECT_NEAR(z, volume.axes.z_m[8] - 0.01 / 6.0, 1e-9);
     }
 }
 
