@@ -26,7 +26,7 @@ double seconds_since(Clock::time_point start) {
 // Passes are long enough to keep shadow rays coherent and short enough to give a variance.
 constexpr int kPasses = 8;
 constexpr int kMostSamplesPerPass = 256;
-constexpr int kSamplesPerTimedPass = 32;
+constexpr int kSamplesPerTimedPass = 32;  ///< also when an error is to be reached
 constexpr std::size_t kPairsPerBlock = 16;
 
 struct PassPlan {
@@ -34,9 +34,14 @@ struct PassPlan {
     int num_passes = 1;
 };
 
+// Every pair then must get the same number of samples.
+bool is_open_ended(const RenderSettings& settings) {
+    return settings.seconds || settings.target_error;
+}
+
 PassPlan plan_passes(const RenderSettings& settings, const PassWork& work) {
     if (!work.estimate) return {0, 1};
-    if (settings.seconds) return {kSamplesPerTimedPass, std::numeric_limits<int>::max()};
+    if (is_open_ended(settings)) return {kSamplesPerTimedPass, std::numeric_limits<int>::max()};
     int per_pass = std::clamp(settings.samples / kPasses, 1, kMostSamplesPerPass);
     // Multiples of 4 split into the path tracer's two kinds of samples without rounding noise.
     if (per_pass > 4) per_pass -= per_pass % 4;
@@ -63,7 +68,7 @@ std::size_t pairs_per_tile(const core::Scan& scan,
                            const core::HistogramAxes& axes,
                            const RenderSettings& settings,
                            double most_sums_bytes) {
-    if (settings.seconds) return scan.num_pairs();  // every pair must get the same time
+    if (is_open_ended(settings)) return scan.num_pairs();
     const double pairs = std::floor(most_sums_bytes / sums_bytes_per_pair(axes, settings));
     return static_cast<std::size_t>(std::clamp(pairs, 1.0, static_cast<double>(scan.num_pairs())));
 }
@@ -135,6 +140,7 @@ class PassLoop {
     int num_channels_;
     Measurement measurement_;
     std::atomic<std::uint64_t> num_rays_{0};
+    TransientAccumulator::SquaredNorms norms_;  ///< of all tiles so far
 };
 
 std::uint64_t PassLoop::trace_pair(std::size_t pair,
@@ -210,21 +216,26 @@ void PassLoop::run(const Tile& tile, const core::Progress& progress, RenderResul
     const auto start = Clock::now();
     const PassPlan plan = plan_passes(settings_, work_);
     HistogramSums sums(tile.count, axes_, num_channels_, settings_.variance);
+    StoppingRule rule(settings_, plan.num_passes, work_.known);
     int pass = 0;
-    while (pass < plan.num_passes) {
+    for (bool enough = false; !enough;) {
         run_pass(tile, pass, plan.samples_per_pass, sums);
         ++pass;
         const double elapsed = seconds_since(start);
-        const double share = settings_.seconds ? elapsed / *settings_.seconds
-                                               : static_cast<double>(pass) / plan.num_passes;
+        const double share = work_.estimate ? rule.share_done(pass, elapsed, sums.time) : 1.0;
         const double paths = static_cast<double>(tile.count) * plan.samples_per_pass * pass;
-        progress.update(std::min(1.0, share),
-                        fmt::format("{:.2f} M paths/s", paths / elapsed * 1e-6));
-        if (settings_.seconds && elapsed >= *settings_.seconds) break;
-        if (pass < plan.num_passes && progress.should_stop()) {
+        progress.update(share, fmt::format("{:.2f} M paths/s", paths / elapsed * 1e-6));
+        enough = share >= 1.0;
+        if (!enough && progress.should_stop()) {
             result.interrupted = true;
             break;
         }
+    }
+    if (work_.estimate && pass > 1) {
+        const auto norms = sums.time.squared_norms(pass, work_.known.transient);
+        norms_.noise += norms.noise;
+        norms_.signal += norms.signal;
+        result.estimated_error = relative_error(norms_, work_.known);
     }
     fill_capture(tile, sums, pass, result.capture);
     result.samples_per_pair =

@@ -3,12 +3,14 @@
 
 #include "renderer/pair_estimator.h"
 #include "renderer/render.h"
+#include "renderer/stopping_rule.h"
 
 namespace renderer {
 
 /// What render_passes() is asked for beside the settings.
 struct PassWork {
     PairEstimator estimate;  ///< empty: no paths are traced
+    KnownPart known;         ///< of H, for its error and when to stop
 
     /// Memory for running sums [bytes]. Passes go over all pairs at once when their sums fit;
     /// larger scans are traced tile by tile, with the same result.

@@ -6,10 +6,12 @@
 #include "renderer/restir_render.h"
 #include "renderer/third_bounce.h"
 #include "renderer/third_bounce_pieces.h"
+#include "renderer/worthwhile_orders.h"
 
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace renderer {
 namespace {
@@ -103,8 +105,9 @@ RenderResult trace_paths(const Scene& scene,
                          const core::HistogramAxes& axes,
                          const RenderSettings& settings,
                          PathShare share,
+                         const KnownPart& known,
                          const core::Progress& progress) {
-    PassWork work;
+    PassWork work{{}, known};
     if (share != PathShare::Nothing && (scan.camera || settings.max_bounces >= 3)) {
         work.estimate =
             path_estimator(scene,
@@ -116,42 +119,70 @@ RenderResult trace_paths(const Scene& scene,
     return render_passes(scene, scan, axes, settings, work, progress);
 }
 
-}  // namespace
+// `auto` needs not compute orders that are far below the error asked for. What it leaves out goes
+// into the error.
+double leave_out_orders(const Scene& scene,
+                        const core::Scan& scan,
+                        const core::HistogramAxes& axes,
+                        RenderSettings& settings,
+                        std::vector<std::string>& warnings) {
+    constexpr double kShareOfTarget = 0.5;
+    const bool may = settings.method == Estimator::Auto && settings.target_error &&
+                     !settings.by_order && settings.max_bounces > 3;
+    if (!may) return 0.0;
+    const WorthwhileOrders orders = find_worthwhile_orders(
+        scene, scan, axes, settings, kShareOfTarget * *settings.target_error);
+    if (orders.last == settings.max_bounces) return 0.0;
+    warnings.push_back(fmt::format("orders {} to {} are left out: below {:.2g} of H (relative L2)",
+                                   orders.last + 1,
+                                   settings.max_bounces,
+                                   orders.left_out));
+    settings.max_bounces = orders.last;
+    return orders.left_out;
+}
 
-RenderResult render(const Scene& scene,
-                    const core::Scan& scan,
-                    const core::HistogramAxes& axes,
-                    const RenderSettings& settings,
-                    const core::Progress& progress) {
-    if (axes.velocity) require_velocities(scene, scan, settings);
-    if (settings.method == Estimator::Ellipsoidal) {
-        return render_ellipsoidal(scene, scan, axes, settings, progress);
-    }
-    if (settings.method == Estimator::Restir) {
-        return render_restir(
-            {std::shared_ptr<const Scene>(), &scene}, scan, axes, settings, progress);
-    }
+double squared_norm(const core::Transient& transient) {
+    double sum = 0.0;
+    for (const float value : transient.values()) sum += double{value} * double{value};
+    return sum;
+}
+
+// Third bounces by the integrator, what is left by paths. When both are needed, the integrator,
+// which converges faster, gets half of the error or a quarter of the time.
+RenderResult integrate_and_trace(const Scene& scene,
+                                 const core::Scan& scan,
+                                 const core::HistogramAxes& axes,
+                                 const RenderSettings& settings,
+                                 double left_out,
+                                 const core::Progress& progress) {
+    constexpr double kShareOfTarget = 0.5;
+    constexpr double kShareOfTime = 0.25;
     const Surfaces surfaces = surfaces_of(scene);
-    if (settings.method == Estimator::ThirdBounce) {
-        require_wall(scan);
-        require_integrable(surfaces);
-    }
-    const bool integrates = settings.method != Estimator::Path && !scan.camera && !axes.velocity &&
-                            settings.max_bounces >= 3 && settings.gate == GateShape::Box &&
-                            surfaces.integrable;
-    if (!integrates) {
-        RenderResult result =
-            trace_paths(scene, scan, axes, settings, PathShare::Everything, progress);
-        list_path_orders(scan, settings, PathShare::Everything, result);
-        return result;
-    }
     const PathShare share = share_of_paths(settings, surfaces);
-    const double done = share == PathShare::Nothing ? 1.0 : 0.1;
+    const bool is_all = share == PathShare::Nothing;
+    RenderSettings integration = settings;
+    RenderSettings tracing = settings;
+    if (settings.target_error) {
+        const double allowed =
+            std::sqrt(std::max(0.0, std::pow(*settings.target_error, 2) - left_out * left_out));
+        integration.target_error = is_all ? allowed : kShareOfTarget * *settings.target_error;
+    }
+    if (settings.seconds && !is_all) integration.seconds = kShareOfTime * *settings.seconds;
+    const double done = is_all ? 1.0 : 0.1;
     const ThirdBounce third =
-        integrate_third_bounce(scene, scan, axes.time, settings, progress.part(0.0, done));
-    RenderResult result = trace_paths(scene, scan, axes, settings, share, progress.part(done, 1.0));
+        integrate_third_bounce(scene, scan, axes.time, integration, progress.part(0.0, done));
+    if (settings.seconds) {
+        tracing.seconds =
+            std::max((1.0 - kShareOfTime) * *settings.seconds, *settings.seconds - third.seconds);
+    }
+    const KnownPart known{&third.transient,
+                          std::pow(third.estimated_error, 2) * squared_norm(third.transient),
+                          left_out};
+    RenderResult result =
+        trace_paths(scene, scan, axes, tracing, share, known, progress.part(done, 1.0));
     add(third.transient, result.capture.transient);
     if (settings.by_order) add(third.transient, result.capture.by_order[2]);
+    if (is_all) result.estimated_error = std::hypot(third.estimated_error, left_out);
     OrderSource integrated{3, 3, Estimator::ThirdBounce, "all"};
     if (surfaces.others) integrated.surfaces = "all but narrow glossy lobes";
     result.sources.push_back(integrated);
@@ -159,10 +190,46 @@ RenderResult render(const Scene& scene,
         result.sources.push_back({3, 3, Estimator::Path, "narrow glossy lobes"});
     }
     list_path_orders(scan, settings, share, result);
-    result.estimated_error = third.estimated_error;
     result.num_rays += third.num_rays;
     result.seconds += third.seconds;
     result.interrupted = result.interrupted || third.interrupted;
+    return result;
+}
+
+}  // namespace
+
+RenderResult render(const Scene& scene,
+                    const core::Scan& scan,
+                    const core::HistogramAxes& axes,
+                    const RenderSettings& asked,
+                    const core::Progress& progress) {
+    if (axes.velocity) require_velocities(scene, scan, asked);
+    if (asked.method == Estimator::Ellipsoidal) {
+        return render_ellipsoidal(scene, scan, axes, asked, progress);
+    }
+    if (asked.method == Estimator::Restir) {
+        return render_restir({std::shared_ptr<const Scene>(), &scene}, scan, axes, asked, progress);
+    }
+    const Surfaces surfaces = surfaces_of(scene);
+    if (asked.method == Estimator::ThirdBounce) {
+        require_wall(scan);
+        require_integrable(surfaces);
+    }
+    RenderSettings settings = asked;
+    std::vector<std::string> warnings;
+    const double left_out = leave_out_orders(scene, scan, axes, settings, warnings);
+    const bool integrates = settings.method != Estimator::Path && !scan.camera && !axes.velocity &&
+                            settings.max_bounces >= 3 && settings.gate == GateShape::Box &&
+                            surfaces.integrable;
+    RenderResult result;
+    if (integrates) {
+        result = integrate_and_trace(scene, scan, axes, settings, left_out, progress);
+    } else {
+        result = trace_paths(
+            scene, scan, axes, settings, PathShare::Everything, {nullptr, 0.0, left_out}, progress);
+        list_path_orders(scan, settings, PathShare::Everything, result);
+    }
+    result.warnings.insert(result.warnings.end(), warnings.begin(), warnings.end());
     return result;
 }
 

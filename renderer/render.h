@@ -26,7 +26,7 @@ struct OrderSource {
 struct RenderResult {
     core::Capture capture;
     std::vector<OrderSource> sources;       ///< orders 1 and 2 need no estimator
-    std::optional<double> estimated_error;  ///< of third_bounce: relative L2 of its part of H
+    std::optional<double> estimated_error;  ///< relative L2 over all of H; empty: not known
     std::uint64_t samples_per_pair = 0;     ///< candidate paths used, whole passes
     std::uint64_t num_rays = 0;
     double seconds = 0.0;

@@ -5,6 +5,7 @@
 #include "renderer/core/process.h"
 #include "renderer/restir_renderer.h"
 #include "renderer/short_paths.h"
+#include "renderer/stopping_rule.h"
 #include "renderer/transient_accumulator.h"
 
 #include <fmt/core.h>
@@ -36,7 +37,8 @@ int candidates_per_frame(const RestirSettings& settings) {
 // Settings whose frames take no more candidates than are asked for in all.
 RenderSettings with_fitting_frames(RenderSettings settings) {
     RestirSettings& restir = settings.restir;
-    if (settings.seconds || candidates_per_frame(restir) <= settings.samples) return settings;
+    const bool is_open_ended = settings.seconds || settings.target_error;
+    if (is_open_ended || candidates_per_frame(restir) <= settings.samples) return settings;
     restir.walks = std::min(restir.walks, settings.samples);
     restir.shared_walks = settings.samples - restir.walks;
     return settings;
@@ -206,26 +208,26 @@ RenderResult render_restir(std::shared_ptr<const Scene> scene,
     const auto restir_scene =
         std::make_shared<RestirScene>(std::move(scene), scan, settings, kept_quantity(axes));
     const int per_frame = candidates_per_frame(settings.restir);
-    const int num_frames = settings.seconds ? std::numeric_limits<int>::max()
-                                            : (settings.samples + per_frame - 1) / per_frame;
+    StoppingRule rule(settings, (settings.samples + per_frame - 1) / per_frame, {});
     HistogramSums sums = empty_sums(scan, axes, settings);
     int done = 0;
     bool interrupted = false;
-    while (done < num_frames) {
+    for (bool enough = false; !enough;) {
         const auto number = static_cast<std::uint64_t>(done);
         add_frame(renderer.render({restir_scene, axes, nullptr, number}), settings, sums);
         ++done;
-        const double elapsed = seconds_since(start);
-        const double share =
-            settings.seconds ? elapsed / *settings.seconds : static_cast<double>(done) / num_frames;
-        progress.update(std::min(1.0, share), fmt::format("{} frames", done));
-        if (settings.seconds && elapsed >= *settings.seconds) break;
-        if (done < num_frames && progress.should_stop()) {
+        const double share = rule.share_done(done, seconds_since(start), sums.time);
+        progress.update(share, fmt::format("{} frames", done));
+        enough = share >= 1.0;
+        if (!enough && progress.should_stop()) {
             interrupted = true;
             break;
         }
     }
     RenderResult result = result_of(sums, done, scan, axes, settings);
+    if (done > 1) {
+        result.estimated_error = relative_error(sums.time.squared_norms(done, nullptr), {});
+    }
     result.interrupted = interrupted;
     result.num_rays = renderer.counts().num_rays;
     result.restir_counts = renderer.counts();
@@ -234,6 +236,11 @@ RenderResult render_restir(std::shared_ptr<const Scene> scene,
 }
 
 FrameRenderer make_restir_frame_renderer(const core::Scan& scan, const RenderSettings& settings) {
+    if (settings.target_error) {
+        throw core::Error("render.target_error",
+                          "found one for a sequence of frames by restir",
+                          "must be null: frames share their past, so their spread tells no error");
+    }
     struct State {
         State(const core::Scan& scan_of_frames, const RenderSettings& settings_of_frames)
             : settings(settings_of_frames), renderer(scan_of_frames, settings_of_frames) {}

@@ -19,6 +19,10 @@ constexpr double kAreaShareBetweenSurfaces = 0.25;
 constexpr int kFirstRouletteOrder = 5;
 constexpr double kLeastSurvival = 0.1;
 
+// Steps within the plane of a surface, up to rounding. On which side of it they lie would be
+// chance, and differ between a lobe and its density.
+constexpr double kLeastCosine = 1e-12;
+
 }  // namespace
 
 double SurfaceWalk::evaluate(const PathVertex& vertex, const Vec3& outgoing) const {
@@ -70,10 +74,11 @@ std::optional<SurfaceWalk::Step> SurfaceWalk::step_to(const PathVertex& vertex,
     Step step;
     step.distance_m = std::sqrt(distance2);
     step.direction = offset / step.distance_m;
-    const double per_area =
-        std::abs(scene_->facet(next.facet).normal.dot(step.direction)) / distance2;
-    step.transport =
-        evaluate(vertex, step.direction) * std::abs(vertex.normal.dot(step.direction)) * per_area;
+    const double cosine = std::abs(vertex.normal.dot(step.direction));
+    const double next_cosine = std::abs(scene_->facet(next.facet).normal.dot(step.direction));
+    if (cosine < kLeastCosine || next_cosine < kLeastCosine) return std::nullopt;
+    const double per_area = next_cosine / distance2;
+    step.transport = evaluate(vertex, step.direction) * cosine * per_area;
     if (!(step.transport > 0.0)) return std::nullopt;
 
     const core::Mat3 facet_from_world =

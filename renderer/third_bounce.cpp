@@ -15,6 +15,11 @@ namespace renderer {
 namespace {
 
 using core::Transient;
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 constexpr double kDefaultTargetError = 0.01;
 
@@ -101,6 +106,7 @@ class Integrator {
           trial_scan_(trial_scan(scan, axis.num_bins)),
           axis_(axis),
           target_(settings.target_error.value_or(kDefaultTargetError)),
+          seconds_(settings.seconds),
           cutter_(scene, scan, axis, settings.laser_spot_m2) {}
 
     ThirdBounce run(const core::Progress& progress);
@@ -113,6 +119,7 @@ class Integrator {
     const Transient& try_out(int fineness);
     double error_of(int fineness);
     int choose_fineness(const core::Progress& progress);
+    int finest_in_time();
     int integrate(int fineness,
                   int first_part,
                   const core::Progress& progress,
@@ -123,22 +130,26 @@ class Integrator {
     core::Scan trial_scan_;
     core::TimeAxis axis_;
     double target_;
+    std::optional<double> seconds_;
     PieceCutter cutter_;
     double norm_per_pair_ = 0.0;
     std::map<int, Transient> trials_;
     std::map<int, double> shadow_errors_;  // expected ones, absolute
     std::map<int, double> errors_;
+    std::map<int, double> trial_seconds_;  // without cutting
     std::uint64_t num_rays_ = 0;
 };
 
 const Transient& Integrator::try_out(int fineness) {
     if (const auto it = trials_.find(fineness); it != trials_.end()) return it->second;
     const PieceSet pieces = cut(fineness);
+    const auto start = Clock::now();
     ThirdBounceScan trial(scene_, trial_scan_, axis_, pieces, negligible_error(fineness));
     Transient& result =
         trials_.try_emplace(fineness, trial_scan_.num_pairs(), axis_.num_bins).first->second;
     trial.integrate(
         0, [](double) { return true; }, result);
+    trial_seconds_[fineness] = seconds_since(start);
     shadow_errors_[fineness] = std::sqrt(trial.squared_shadow_error());
     num_rays_ += trial.num_rays();
     if (norm_per_pair_ == 0.0) {
@@ -161,9 +172,25 @@ double Integrator::error_of(int fineness) {
     return error;
 }
 
+// The finest that will be done in time if all pairs take as long as those of the trials.
+int Integrator::finest_in_time() {
+    const double trials_to_all =
+        static_cast<double>(scan_.num_pairs()) / static_cast<double>(trial_scan_.num_pairs());
+    const auto start = Clock::now();
+    int fineness = kCoarsest;
+    while (fineness > kFinest) {
+        try_out(fineness - 1);
+        const double predicted = trial_seconds_[fineness - 1] * trials_to_all;
+        if (seconds_since(start) + predicted > *seconds_) break;
+        --fineness;
+    }
+    return fineness;
+}
+
 // The coarsest fineness that meets the target, or simply the coarsest when the caller will not
 // wait.
 int Integrator::choose_fineness(const core::Progress& progress) {
+    if (seconds_) return finest_in_time();
     int fineness = 0;
     if (error_of(fineness) > target_) {
         while (fineness > kFinest && error_of(--fineness) > target_) {
@@ -217,10 +244,9 @@ ThirdBounce integrate_third_bounce(const Scene& scene,
                                    const core::TimeAxis& axis,
                                    const RenderSettings& settings,
                                    const core::Progress& progress) {
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = Clock::now();
     ThirdBounce result = Integrator(scene, scan, axis, settings).run(progress);
-    result.seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    result.seconds = seconds_since(start);
     return result;
 }
 

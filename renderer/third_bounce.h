@@ -27,7 +27,8 @@ struct ThirdBounce {
 /// only combines two tables. A few pairs, computed at several finenesses, tell how fine is fine
 /// enough for the target.
 ///
-/// settings   target_error, laser_spot_m2; the gate is a box
+/// settings   target_error; or seconds, then as fine as that time allows; laser_spot_m2; the gate
+///            is a box
 /// progress   asked now and then whether to stop; then pairs that are left are integrated in the
 ///            coarsest way, so that every pair has a result
 /// returns    the radiance of order 3 that comes from surfaces with is_integrable() materials

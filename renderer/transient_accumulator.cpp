@@ -15,6 +15,7 @@ TransientAccumulator::TransientAccumulator(std::size_t num_pairs,
       num_bins_(static_cast<std::size_t>(num_bins)),
       num_channels_(static_cast<std::size_t>(num_channels)),
       sums_(num_pairs_ * num_channels_ * num_bins_),
+      squared_norms_(num_pairs_),
       squares_(variance ? num_pairs_ * num_bins_ : 0) {}
 
 core::Transient TransientAccumulator::mean(int channel, int num_passes) const {
@@ -56,6 +57,38 @@ core::Transient TransientAccumulator::variance(int num_passes) const {
         }
     });
     return result;
+}
+
+// With x_p the estimate of pass p and m their mean, sum_p |x_p - m|^2 = sum_p |x_p|^2 - n |m|^2,
+// and |known + m|^2 expects |known + H|^2 and the noise of m.
+TransientAccumulator::SquaredNorms TransientAccumulator::squared_norms(
+    int num_passes, const core::Transient* known) const {
+    struct Sums {
+        double mean = 0.0;
+        double all = 0.0;
+        double passes = 0.0;
+        Sums& operator+=(const Sums& other) {
+            mean += other.mean;
+            all += other.all;
+            passes += other.passes;
+            return *this;
+        }
+    };
+    const double n = num_passes;
+    const Sums sums = core::parallel_sum<Sums>(num_pairs_, {}, [&](std::size_t pair) {
+        Sums part{0.0, 0.0, squared_norms_[pair]};
+        const double* const values = sums_.data() + pair * num_channels_ * num_bins_;
+        for (std::size_t bin = 0; bin < num_bins_; ++bin) {
+            double mean = 0.0;
+            for (std::size_t c = 0; c < num_channels_; ++c) mean += values[c * num_bins_ + bin] / n;
+            const double all = known == nullptr ? mean : mean + double{known->histogram(pair)[bin]};
+            part.mean += mean * mean;
+            part.all += all * all;
+        }
+        return part;
+    });
+    const double noise = std::max(0.0, sums.passes - n * sums.mean) / (n * (n - 1.0));
+    return {noise, std::max(0.0, sums.all - noise)};
 }
 
 }  // namespace renderer

@@ -26,10 +26,13 @@ class TransientAccumulator {
     void add_pass(std::size_t pair, Histogram& histogram) {
         double* const sums = sums_.data() + pair * num_channels_ * num_bins_;
         double* const squares = squares_.empty() ? nullptr : squares_.data() + pair * num_bins_;
+        double squared_norm = 0.0;
         histogram.drain([&](std::size_t index, double value) { sums[index] += value; },
                         [&](std::size_t bin, double total) {
+                            squared_norm += total * total;
                             if (squares != nullptr) squares[bin] += total * total;
                         });
+        squared_norms_[pair] += squared_norm;
     }
 
     /// Mean over passes of one channel.
@@ -39,12 +42,23 @@ class TransientAccumulator {
     /// Variance of mean_of_all(); needs two passes and sums of squares.
     core::Transient variance(int num_passes) const;
 
+    /// Squared L2 norms over all pairs and bins.
+    struct SquaredNorms {
+        double noise = 0.0;   ///< expected, of mean_of_all() about H
+        double signal = 0.0;  ///< of `known` + H
+    };
+    /// Estimates both from the spread of at least two passes, without the arrays of squares.
+    ///
+    /// known   what is to be added to H from elsewhere, of its shape; null: nothing
+    SquaredNorms squared_norms(int num_passes, const core::Transient* known) const;
+
  private:
     std::size_t num_pairs_;
     std::size_t num_bins_;
     std::size_t num_channels_;
-    std::vector<double> sums_;     ///< [pair][channel][bin]
-    std::vector<double> squares_;  ///< [pair][bin] of the sum over channels; empty: not kept
+    std::vector<double> sums_;           ///< [pair][channel][bin]
+    std::vector<double> squared_norms_;  ///< [pair], summed over passes
+    std::vector<double> squares_;        ///< [pair][bin] of the sum over channels; empty: not kept
 };
 
 /// The sums of all that a pass histogram collects.

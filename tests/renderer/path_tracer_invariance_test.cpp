@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What must not change when a set-up is described in another way.
 #include "renderer/pass_render.h"
+#include "renderer/surface_walk.h"
 #include "tests/support/statistics.h"
 #include "tests/support/test_scenes.h"
 
@@ -178,6 +179,34 @@ TEST(PathTracer, SwappingLightAndSensorGivesTheSameEnergyPerOrder) {
         const double b = double{back.by_order[order - 1].values()[0]};
         EXPECT_GT(a, 0.0) << order;
         EXPECT_NEAR(a / b, 1.0, order == 3 ? 0.005 : 0.03) << order;
+    }
+}
+
+// Which side of a plane a point within it lies on is rounding; a lobe and its density, each in its
+// own frame, must not be asked.
+TEST(SurfaceWalk, StepsWithinAPlaneCarryNothing) {
+    core::Rng rng(test_support::seed_of("SurfaceWalk"), 0, 0);
+    const core::Scan scan = test_support::confocal_scan(kPoints);
+    for (int i = 0; i < 100; ++i) {
+        const Parallelogram shape{Vec3(-0.3, -0.2, 0.6),
+                                  Vec3(0.5, rng.uniform(), 0.4 * rng.uniform()),
+                                  Vec3(-0.1, 0.5, rng.uniform())};
+        const renderer::Scene scene(
+            {{test_support::parallelogram_object(shape)}, {}}, scan, renderer::RelayWall{});
+        const renderer::SurfaceWalk walk(scene, 1e-4);
+        const auto point = [&] {
+            const double u = rng.uniform();
+            return renderer::SurfacePoint{scene.facet(0).point(u, (1.0 - u) * rng.uniform()), 0};
+        };
+        renderer::PathVertex vertex;
+        vertex.point = point();
+        vertex.normal = scene.facet(0).normal;
+        vertex.to_previous = vertex.normal;
+        vertex.bsdf = scene.bsdf_at(vertex.point);
+        vertex.throughput = 1.0;
+        EXPECT_FALSE(walk.step_to(vertex, point()).has_value());
+        const renderer::SurfacePoint above{vertex.point.position + 0.1 * vertex.normal, 1};
+        EXPECT_TRUE(walk.step_to(vertex, above).has_value());
     }
 }
 

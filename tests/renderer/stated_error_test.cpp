@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: MIT
+// Errors that renders state of themselves, and that they are asked to reach.
+#include "renderer/frame_sequence.h"
+#include "renderer/stopping_rule.h"
+#include "renderer/worthwhile_orders.h"
+#include "tests/support/error_message.h"
+#include "tests/support/test_scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace {
+
+using core::Vec3;
+using renderer::Estimator;
+
+const core::TimeAxis kAxis{1.0, 0.02, 96};
+
+core::Scan scan_of(int points) {
+    std::vector<Vec3> positions;
+    for (int i = 0; i < points; ++i) {
+        for (int j = 0; j < points; ++j) {
+            positions.emplace_back(
+                0.8 * (i + 0.5) / points - 0.4, 0.8 * (j + 0.5) / points - 0.4, 0.0);
+        }
+    }
+    return test_support::confocal_scan(positions);
+}
+
+renderer::Scene facing_scene(const core::Scan& scan) {
+    return {{test_support::facing_surfaces(), {}}, scan, {}};
+}
+
+double squared_norm(const core::Transient& a) {
+    double sum = 0.0;
+    for (const float value : a.values()) sum += double{value} * double{value};
+    return sum;
+}
+
+double relative_distance(const core::Transient& a, const core::Transient& b) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < a.values().size(); ++i) {
+        sum += std::pow(double{a.values()[i]} - double{b.values()[i]}, 2);
+    }
+    return std::sqrt(sum / squared_norm(b));
+}
+
+core::Transient reference_of(const renderer::Scene& scene, const core::Scan& scan) {
+    renderer::RenderSettings settings;
+    settings.method = Estimator::ThirdBounce;
+    settings.target_error = 2e-3;
+    return renderer::render(scene, scan, {kAxis, {}}, settings, {}).capture.transient;
+}
+
+TEST(StatedError, NoiseFromSumsIsThatFromEveryVariance) {
+    constexpr int kBins = 5;
+    constexpr int kPasses = 6;
+    renderer::TransientAccumulator sums(3, kBins, 2, true);
+    core::TimeAxis axis{0.0, 1.0, kBins};
+    core::Rng rng(7, 0, 0);
+    for (int pass = 0; pass < kPasses; ++pass) {
+        for (std::size_t pair = 0; pair < 3; ++pair) {
+            renderer::PassHistogram histogram({axis, {}}, renderer::GateShape::Box, 2);
+            for (int i = 0; i < 4; ++i) {
+                histogram.add_to_bin(
+                    i % 2, static_cast<int>(rng.uniform() * kBins), 0.0, rng.uniform());
+            }
+            sums.add_pass(pair, histogram);
+        }
+    }
+    double noise = 0.0;
+    const core::Transient variance = sums.variance(kPasses);
+    for (const float value : variance.values()) noise += double{value};
+    core::Transient known(3, kBins);
+    for (float& value : known.values()) value = 2.0F;
+    double all = 0.0;
+    const core::Transient mean = sums.mean_of_all(kPasses);
+    for (const float value : mean.values()) all += std::pow(2.0 + double{value}, 2);
+    const auto norms = sums.squared_norms(kPasses, &known);
+    EXPECT_NEAR(norms.noise, noise, 1e-6 * noise);  // variances are stored as float
+    EXPECT_NEAR(norms.signal, all - noise, 1e-6 * all);
+}
+
+class SampledEstimator : public testing::TestWithParam<Estimator> {};
+
+// 512 histograms of 96 bins know their own noise to a few percent; the spread of few passes and
+// the heavy tails of narrow connections leave a quarter.
+TEST_P(SampledEstimator, ReachesItsTargetAndKnowsItsError) {
+    constexpr double kTarget = 0.1;
+    const core::Scan scan = scan_of(16);
+    const renderer::Scene scene = facing_scene(scan);
+    renderer::RenderSettings settings;
+    settings.method = GetParam();
+    settings.target_error = kTarget;
+    const auto result = renderer::render(scene, scan, {kAxis, {}}, settings, {});
+    const double error = relative_distance(result.capture.transient, reference_of(scene, scan));
+    EXPECT_LT(error, 1.25 * kTarget);
+    ASSERT_TRUE(result.estimated_error.has_value());
+    EXPECT_LE(*result.estimated_error, kTarget);
+    EXPECT_NEAR(*result.estimated_error, error, 0.25 * error);
+}
+
+INSTANTIATE_TEST_SUITE_P(StatedError,
+                         SampledEstimator,
+                         testing::Values(Estimator::Path,
+                                         Estimator::Ellipsoidal,
+                                         Estimator::Restir),
+                         [](const auto& test) { return std::string(core::enum_name(test.param)); });
+
+TEST(StatedError, AutoReachesItWithHigherOrders) {
+    constexpr double kTarget = 0.05;
+    const core::Scan scan = scan_of(8);
+    const renderer::Scene scene = facing_scene(scan);
+    renderer::RenderSettings settings;
+    settings.max_bounces = 5;
+    settings.target_error = 0.01;
+    settings.method = Estimator::Path;
+    const auto reference = renderer::render(scene, scan, {kAxis, {}}, settings, {});
+    settings.method = Estimator::Auto;
+    settings.target_error = kTarget;
+    settings.seed = 1;
+    const auto result = renderer::render(scene, scan, {kAxis, {}}, settings, {});
+    EXPECT_LE(*result.estimated_error, kTarget);
+    EXPECT_LT(relative_distance(result.capture.transient, reference.capture.transient),
+              std::hypot(1.25 * kTarget, 0.0125));
+}
+
+TEST(StatedError, OrdersAreLeftOutWhenTheyAreBelowWhatIsAllowed) {
+    const core::Scan scan = scan_of(8);
+    const renderer::Scene scene = facing_scene(scan);
+    renderer::RenderSettings settings;
+    settings.max_bounces = 6;
+    settings.by_order = true;
+    settings.samples = 20'000;
+    settings.method = Estimator::Path;
+    // The product of two independent truths has no bias from their noise.
+    std::array<core::Capture, 2> truths;
+    for (core::Capture& truth : truths) {
+        truth = renderer::render(scene, scan, {kAxis, {}}, settings, {}).capture;
+        ++settings.seed;
+    }
+    const auto tail_from = [&](std::size_t order) {
+        double product = 0.0;
+        for (std::size_t i = 0; i < truths[0].transient.values().size(); ++i) {
+            std::array<double, 2> tails{};
+            for (std::size_t k = order; k <= 6; ++k) {
+                for (std::size_t t = 0; t < 2; ++t) {
+                    tails[t] += double{truths[t].by_order[k - 1].values()[i]};
+                }
+            }
+            product += tails[0] * tails[1];
+        }
+        return std::sqrt(product);
+    };
+    for (int order = 6; order > 3; --order) {
+        const double share = tail_from(static_cast<std::size_t>(order)) / tail_from(1);
+        const auto [last, left_out] =
+            renderer::find_worthwhile_orders(scene, scan, {kAxis, {}}, settings, 2.5 * share);
+        EXPECT_LT(last, order) << "share " << share;
+        EXPECT_GE(left_out, 0.95 * share);
+        EXPECT_LE(left_out, 2.5 * share);
+    }
+    EXPECT_EQ(renderer::find_worthwhile_orders(scene, scan, {kAxis, {}}, settings, 0.0).last, 6);
+}
+
+TEST(StatedError, AutoSaysWhichOrdersItLeavesOut) {
+    const core::Scan scan = scan_of(4);
+    // A single plane lights nothing but the wall: there is no order 4 to 6 without the wall.
+    const renderer::Scene scene({{test_support::parallelogram_object(
+                                     {{-0.1, -0.1, 0.8}, {0.2, 0.0, 0.0}, {0.0, 0.2, 0.0}})},
+                                 {}},
+                                scan,
+                                {});
+    renderer::RenderSettings settings;
+    settings.max_bounces = 6;
+    settings.target_error = 0.05;
+    const auto result = renderer::render(scene, scan, {kAxis, {}}, settings, {});
+    ASSERT_EQ(result.warnings.size(), 1U);
+    EXPECT_NE(result.warnings[0].find("to 6 are left out"), std::string::npos)
+        << result.warnings[0];
+    settings.target_error.reset();
+    EXPECT_TRUE(renderer::render(scene, scan, {kAxis, {}}, settings, {}).warnings.empty());
+}
+
+TEST(StatedError, FramesThatShareTheirPastRefuseOne) {
+    const core::Scan scan = scan_of(2);
+    renderer::RenderSettings settings;
+    settings.method = Estimator::Restir;
+    settings.target_error = 0.1;
+    EXPECT_ERROR_WITH(renderer::make_frame_renderer(scan, settings), "render.target_error");
+}
+
+}  // namespace
