@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/capture_check.h"
 
+#include "nlos/first_light.h"
 #include "nlos/histogram_preparation.h"
 
 #include <fmt/format.h>
@@ -13,10 +14,13 @@ namespace nlos {
 namespace {
 
 constexpr double kEarlyShare = 0.01;    // of all light; less may be noise
-constexpr double kOnsetShare = 0.3;     // of a histogram's maximum
 constexpr double kFastestOnset = 1.25;  // of what is possible, for half of all neighbours
 constexpr std::size_t kFewestPoints = 16;
 constexpr std::size_t kSteps = 8;  // neighbours are so many to a side: noise moves onsets little
+constexpr double kStrongestBend = 1.15;  // of first light: 1 is what a path allows
+constexpr double kWeakestBend = 0.7;     // edges and tips reach 1
+constexpr double kBendOfAPlane = 0.1;    // says nothing
+constexpr double kSignificance = 3.0;    // standard deviations
 
 const core::Vec3& illumination_point(const core::Scan& scan, std::size_t pair) {
     return scan.illumination.positions[scan.illumination_index(pair)];
@@ -65,21 +69,6 @@ std::optional<std::string> early_light(const core::Capture& capture,
         earliest_m);
 }
 
-/// Path length, from and to the wall, at which a pair's first light arrives.
-std::optional<double> onset_m(const core::Capture& capture, std::size_t pair, double ambient) {
-    const auto histogram = capture.transient.histogram(pair);
-    const auto excess = [&](std::size_t bin) {
-        return static_cast<double>(histogram[bin]) - ambient;
-    };
-    const double largest =
-        static_cast<double>(*std::max_element(histogram.begin(), histogram.end())) - ambient;
-    if (!(largest > 0.0)) return std::nullopt;
-    std::size_t bin = 0;
-    while (excess(bin) < kOnsetShare * largest) ++bin;
-    return capture.time_axis.bin_center_m(static_cast<double>(bin)) -
-           capture.scan.device_legs_m(pair);
-}
-
 /// First light that moves along the wall faster than path lengths can.
 std::optional<std::string> fast_onset(const core::Capture& capture,
                                       const std::vector<double>& ambient) {
@@ -89,7 +78,7 @@ std::optional<std::string> fast_onset(const core::Capture& capture,
     if (nx < kFewestPoints || ny < kFewestPoints) return std::nullopt;
     std::vector<std::optional<double>> onsets(nx * ny);
     for (std::size_t i = 0; i < onsets.size(); ++i) {
-        onsets[i] = onset_m(capture, i, ambient[i]);
+        onsets[i] = first_light_m(capture, i, ambient[i]);
     }
     const double most = scan.pattern == core::ScanPattern::Confocal ? 2.0 : 1.0;
     std::vector<double> speeds;
@@ -116,6 +105,35 @@ std::optional<std::string> fast_onset(const core::Capture& capture,
         capture.time_axis.bin_width_m);
 }
 
+/// First light that bends over the wall otherwise than that of points, edges and tips does.
+std::optional<std::string> bent_onset(const core::Capture& capture,
+                                      const std::vector<double>& ambient) {
+    const auto bend = bend_of_first_light(capture, ambient);
+    if (!bend || bend->k < kBendOfAPlane) return std::nullopt;
+    const double fitting_m = capture.time_axis.bin_width_m / std::sqrt(bend->k);
+    if (bend->k - kSignificance * bend->uncertainty > kStrongestBend) {
+        return fmt::format(
+            "first light bends over the wall {:.2f} times as much as a path length can; bins look "
+            "narrower than {:.4g} m: {:.4g} m would fit (capture.bin_width_m sets them), or a wall "
+            "{:.2f} times as large",
+            bend->k,
+            capture.time_axis.bin_width_m,
+            fitting_m,
+            std::sqrt(bend->k));
+    }
+    if (bend->k + kSignificance * bend->uncertainty < kWeakestBend) {
+        return fmt::format(
+            "first light bends over the wall {:.2f} times as much as that of points, edges and "
+            "tips; bins look wider than {:.4g} m: {:.4g} m would fit (capture.bin_width_m sets "
+            "them), or a wall {:.2f} times as large, unless all that is hidden is round and large",
+            bend->k,
+            capture.time_axis.bin_width_m,
+            fitting_m,
+            std::sqrt(bend->k));
+    }
+    return std::nullopt;
+}
+
 }  // namespace
 
 std::vector<std::string> timing_warnings(const core::Capture& capture) {
@@ -123,7 +141,11 @@ std::vector<std::string> timing_warnings(const core::Capture& capture) {
     const std::vector<double> ambient = ambient_of(capture);
     std::vector<std::string> warnings;
     if (auto warning = early_light(capture, ambient)) warnings.push_back(*warning);
-    if (auto warning = fast_onset(capture, ambient)) warnings.push_back(*warning);
+    if (auto warning = fast_onset(capture, ambient)) {
+        warnings.push_back(*warning);
+    } else if (auto other = bent_onset(capture, ambient)) {
+        warnings.push_back(*other);
+    }
     return warnings;
 }
 

@@ -13,7 +13,10 @@ namespace nlos {
 /// - light that arrives before the shortest possible path, |l - s| plus device legs: time zero is
 ///   late;
 /// - first light that moves along the wall faster than any path length can change (1 m per metre of
-///   sensing point, 2 if confocal): bins are narrower than stated.
+///   sensing point, 2 if confocal): bins are narrower than stated;
+/// - first light of a confocal scan that bends over the wall more than any path length can, or less
+///   than that of points, edges and tips: bins are narrower or wider than stated, or the wall's
+///   size is wrong, see bend_of_first_light().
 ///
 /// returns   empty when nothing does; never for captures too small or dark to tell, nor for images
 /// throws    nothing

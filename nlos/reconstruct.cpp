@@ -45,7 +45,7 @@ PreparationPlan choose_preparation(const Measurement& measurement, ReconstructSe
     const core::TimeAxis& axis = measurement.time_axis;
     const bool is_counts = measurement.unit == core::TransientUnit::Counts;
     if (settings.ambient == Ambient::Auto) {
-        settings.ambient = is_counts ? Ambient::Subtract : Ambient::Keep;
+        settings.ambient = is_counts || settings.noise_floor ? Ambient::Subtract : Ambient::Keep;
     }
     if (!settings.merge_bins) settings.merge_bins = default_merge_bins(axis, measurement.wall);
     PreparationPlan plan;
@@ -64,6 +64,9 @@ PreparationPlan choose_preparation(const Measurement& measurement, ReconstructSe
                 plan.num_bins =
                     std::clamp(end, std::min(kFewestBins, plan.num_bins), plan.num_bins);
             }
+        }
+        if (settings.noise_floor) {
+            plan.ambient_per_bin.assign(measurement.scan.num_pairs(), *settings.noise_floor);
         }
     }
     const bool has_filter = settings.method == Method::Dlct ||

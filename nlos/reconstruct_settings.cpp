@@ -53,6 +53,16 @@ void validate(const ReconstructSettings& settings) {
             "mask_threshold",
             fmt::format("{}", settings.mask_threshold),
             "must lie between 0 and 1");
+    if (settings.noise_floor) {
+        require(*settings.noise_floor >= 0.0 && std::isfinite(*settings.noise_floor),
+                "noise_floor",
+                fmt::format("{}", *settings.noise_floor),
+                "must not be negative");
+        require(settings.ambient != Ambient::Keep,
+                "noise_floor",
+                fmt::format("{} with ambient=keep", *settings.noise_floor),
+                "is taken off with ambient=auto or subtract");
+    }
     if (settings.merge_bins) {
         require(*settings.merge_bins >= 1,
                 "merge_bins",

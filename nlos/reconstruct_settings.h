@@ -70,6 +70,8 @@ struct ReconstructSettings {
     CropSettings crop;
     std::optional<double> snr;  ///< Wiener filter of lct, dlct; empty: see wiener_snr()
     Ambient ambient = Ambient::Auto;
+    std::optional<double>
+        noise_floor;                ///< background per bin; empty: each pair's, see find_signal()
     std::optional<int> merge_bins;  ///< neighbouring bins added up first; empty: from the pitch
     double mask_threshold = 0.2;    ///< of the maximum: foreground of depth map and points
 };
@@ -126,6 +128,10 @@ void for_each_field(ReconstructSettings& s, Visitor&& visit) {
     visit("ambient",
           s.ambient,
           "constant background light, and bins behind the signal's end; auto: taken off counts");
+    visit("noise_floor",
+          s.noise_floor,
+          "background light and dark counts in every bin, in the histograms' unit, to take off; "
+          "null: each pair's own, from the darkest quarter of the axis");
     visit("merge_bins",
           s.merge_bins,
           "neighbouring bins added up first; null: as many as keep a bin's range within a quarter "

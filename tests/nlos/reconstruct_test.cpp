@@ -135,7 +135,25 @@ TEST(Reconstruct, TakesAmbientLightOffCountsAndStopsWhereTheSignalEnds) {
     EXPECT_LT((result.points.positions[0] - Vec3(0.075, -0.125, 0.5)).norm(), 0.01);
 }
 
+TEST(Reconstruct, TakesANoiseFloorOffWhateverTheUnit) {
+    core::Capture clean = example();
+    core::Capture noisy = example();
+    for (float& value : clean.transient.values()) value = std::round(50.0F * value);
+    for (float& value : noisy.transient.values()) value = std::round(50.0F * value) + 2.0F;
+    const std::vector<float> expected = reconstruct(clean, {}, {}).volume.values;
+    const std::string all = "volume.z_range_m=[0,1.024]";  // else the volume ends with the signal
+    EXPECT_EQ(reconstruct(noisy, with({"noise_floor=2", all}), {}).volume.values, expected);
+    EXPECT_NE(reconstruct(noisy, with({"noise_floor=1", all}), {}).volume.values, expected);
+    noisy.unit = core::TransientUnit::Counts;
+    const Reconstruction estimated = reconstruct(noisy, with({"snr=1", all}), {});
+    EXPECT_EQ(estimated.volume.values, expected);
+    EXPECT_FALSE(estimated.settings.noise_floor);
+}
+
 TEST(Reconstruct, NamesSettingsOutOfRange) {
+    EXPECT_ERROR_WITH(reconstruct(example(), with({"noise_floor=-1"}), {}), "noise_floor: -1");
+    EXPECT_ERROR_WITH(reconstruct(example(), with({"noise_floor=1", "ambient=keep"}), {}),
+                      "ambient=auto or subtract");
     EXPECT_ERROR_WITH(reconstruct(example(), with({"snr=0"}), {}), "snr: 0");
     EXPECT_ERROR_WITH(reconstruct(example(), with({"mask_threshold=1.5"}), {}), "mask_threshold");
     EXPECT_ERROR_WITH(reconstruct(example(), with({"merge_bins=500"}), {}), "128 bins");

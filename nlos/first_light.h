@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/core/capture.h"
+
+#include <optional>
+#include <vector>
+
+namespace nlos {
+
+/// Path length, from and to the wall, at which a pair's first light arrives: where its histogram
+/// passes 0.3 of its maximum, between bins.
+///
+/// ambient   background per bin, not counted
+/// returns   nothing for a dark histogram
+std::optional<double> first_light_m(const core::Capture& capture, std::size_t pair, double ambient);
+
+/// By what factor the bins of a confocal capture look too wide for its wall, from how first light
+/// bends over the wall.
+///
+/// First light of a confocal point x comes from the nearest hidden point: its range is
+/// r(x) = min |p - x|, so that r^2 - |x|^2 = min (|p|^2 - 2 p.x) bends downwards everywhere, and
+/// r^2 bends upwards by 2 per metre squared at most, k = 1 in units of that. A point, an edge
+/// across and a tip reach it; a plane has k = 0, a ball of radius R seen from d has at most 1 - R /
+/// d. Bins stated s times too wide give s^2 k, and so does a wall stated s times too small.
+///
+/// Quadratics are fitted to r^2 in windows of a quarter of the wall's sides, every half window; k
+/// is the larger bend. Windows whose residual exceeds a bin, or whose bend is uncertain by more
+/// than 0.05, are left out: they see several surfaces, or noise. What nine in ten of the others
+/// stay below is s^2, as far as edges and tips are in view.
+struct BendOfFirstLight {
+    double k = 0.0;            ///< s^2
+    double uncertainty = 0.0;  ///< one standard deviation of k in its window
+};
+
+/// capture   confocal, points on an even planar grid
+/// ambient   background per bin of every pair
+/// returns   nothing for other captures, grids of fewer than 16 points a side, or when fewer than
+///           half of all windows are of use
+/// throws    nothing
+std::optional<BendOfFirstLight> bend_of_first_light(const core::Capture& capture,
+                                                    const std::vector<double>& ambient);
+
+}  // namespace nlos
