@@ -5,6 +5,7 @@
 #include "calib/fit_checks.h"
 #include "calib/fit_driver.h"
 #include "calib/poisson_deviance.h"
+#include "calib/shadow_refinement.h"
 #include "calib/simulated_refits.h"
 #include "calib/uncertainty.h"
 #include "renderer/core/error.h"
@@ -229,23 +230,6 @@ void store_rest(const FitInput& input,
     }
 }
 
-Eigen::MatrixXd information_of(const FitDriver& driver,
-                               FitDriver::Stage& stage,
-                               const SceneState& state) {
-    stage.objective->evaluate(state, core::Slopes::With);
-    const std::vector<double> weights = loss_weights(*stage.objective, driver.solve_settings());
-    const Eigen::MatrixXd prior = prior_information(driver.model(), driver.solve_settings());
-    if (driver.is_poisson()) return stage.objective->fisher(state, weights) + prior;
-    const auto size = driver.model().num_columns();
-    Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(size, size);
-    for (std::size_t i = 0; i < stage.objective->num_pairs(); ++i) {
-        const auto& rows = stage.objective->pair(i).jacobian;
-        sum += (weights.empty() ? 1.0 : weights[i]) * (rows.transpose() * rows);
-    }
-    const double freedom = std::max(1.0, static_cast<double>(stage.data->values.size()) - size);
-    return sum * freedom / std::max(stage.objective->sum_of_squares(), 1e-300) + prior;
-}
-
 // Bodies that are nearly symmetric may have ended in the wrong one of several minima: the others
 // are tried, and named when the data cannot tell.
 void try_turns(const FitDriver& driver,
@@ -318,11 +302,9 @@ FitResult fit_scene(const FitInput& input, const core::Progress& progress) {
     FitDriver::Stage last = driver.make_stage(input.settings.blur_schedule_m.back());
     std::vector<Candidate> candidates = run_stages(driver, input, progress, last, result);
     try_turns(driver, last, input.settings.max_iterations, candidates, result);
-    const Candidate& best = candidates.front();
-    last.model->refresh(best.state);
-
-    Uncertainty uncertainty =
-        assess(information_of(driver, last, best.state), driver.model().column_names());
+    Candidate& best = candidates.front();
+    const RefinedSolution refined = refine(driver, last, best.state);
+    Uncertainty uncertainty = assess(refined.information, driver.model().column_names());
     result.parameters = driver.model().column_names();
     result.residual = driver.is_poisson() ? "poisson" : "least_squares";
     store_fit(driver, last, best.state, result);
@@ -343,6 +325,11 @@ FitResult fit_scene(const FitInput& input, const core::Progress& progress) {
     result.geometry = driver.model().posed(best.state);
     check_dependence(driver.model(), uncertainty.sigma, result);
     add_warnings(driver, last, best.state, result);
+    if (!refined.is_settled) {
+        result.warnings.push_back(
+            "the edges of shadows on the model's pieces did not settle: true errors exceed the "
+            "stated ones");
+    }
     warn_of_ambiguity(driver, candidates, result);
     result.seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

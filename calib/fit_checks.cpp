@@ -178,7 +178,7 @@ void warn_of_misfits(const FitDriver& driver, const SceneState& state, FitResult
     settings.free = with_all_freedoms(driver);
     const SceneModel model(
         driver.geometry(), settings, driver.model().find(ParameterKind::Scale) != nullptr);
-    const FitDriver::Stage stage = driver.make_stage(model, 0.0);
+    const FitDriver::Stage stage = driver.make_stage(model);
     stage.model->refresh(state);
     stage.objective->evaluate(state, core::Slopes::With);
     Eigen::VectorXd score = Eigen::VectorXd::Zero(model.num_columns());
@@ -236,11 +236,6 @@ void add_warnings(const FitDriver& driver,
             "{}: its albedo of {:.3f} is above 1: data or units are not what the model assumes",
             object.name,
             object.albedo));
-    }
-    if (stage.model->has_shadow_edges()) {
-        result.warnings.push_back(
-            "surfaces shade one another: the stated errors leave out how the edges of shadows move "
-            "with them; in tests true errors were up to twice as large");
     }
     if (driver.is_poisson()) {
         warn_of_deviance(driver, stage.data->least_mean, result);

@@ -21,7 +21,7 @@ constexpr double kBinPerSigma = 0.7;
 constexpr double kBlurReach = 2.0;  // standard deviations of blur that cut light spoils
 constexpr int kFewestBins = 8;      // of a stage that is worth solving
 // Solves alternate with looking anew at what is seen until the cost, half the deviance, settles.
-constexpr int kMostVisibilityRounds = 5;
+constexpr int kMostVisibilityRounds = 3;
 constexpr int kBlurredVisibilityRounds = 2;
 constexpr double kSettledCost = 0.02;
 constexpr std::size_t kPairsOfBlurredStages = 400;
@@ -101,7 +101,9 @@ FitDriver::FitDriver(const FitInput& input, const core::Progress& progress)
     solve_.stop_requested = progress.stop_requested;
 }
 
-FitDriver::Stage FitDriver::make_stage(const SceneModel& model, double blur_m) const {
+FitDriver::Stage FitDriver::make_stage(const SceneModel& model,
+                                       double blur_m,
+                                       double tolerance) const {
     Stage stage;
     stage.blur_m = blur_m;
     ForwardSettings forward;
@@ -138,7 +140,7 @@ FitDriver::Stage FitDriver::make_stage(const SceneModel& model, double blur_m) c
     forward.radiance_factor = albedo * albedo / (core::kPi * core::kPi * core::kPi) *
                               input_.capture.counts_per_radiance.value_or(1.0);
     forward.spot_m2 = input_.scene.render.laser_spot_m2;
-    forward.tolerance = blur_m > 0.0 ? std::max(tolerance_, kBlurredTolerance) : tolerance_;
+    forward.tolerance = blur_m > 0.0 ? std::max(tolerance, kBlurredTolerance) : tolerance;
     stage.model = std::make_unique<ForwardModel>(model, subset.scan, wall, std::move(forward));
     stage.objective = std::make_unique<FitObjective>(
         *stage.model, *stage.data, is_poisson_, elimination_, model.num_columns());

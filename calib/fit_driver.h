@@ -35,9 +35,13 @@ class FitDriver {
     bool has_fixed_albedo() const { return !fixed_albedo_.empty(); }
     const std::string& fixed_albedo() const { return fixed_albedo_; }
 
-    Stage make_stage(double blur_m) const { return make_stage(*model_, blur_m); }
-    /// The same for a model that has other freedoms.
-    Stage make_stage(const SceneModel& model, double blur_m) const;
+    Stage make_stage(double blur_m) const { return make_stage(*model_, blur_m, tolerance_); }
+    /// The last one for a model that has other freedoms.
+    Stage make_stage(const SceneModel& model) const { return make_stage(model, 0.0, tolerance_); }
+    /// The last one with this many times as many pieces.
+    Stage make_fine_stage(double factor) const {
+        return make_stage(*model_, 0.0, tolerance_ / factor);
+    }
     /// Whether blurred data are good for anything: light that the axis cuts off spoils its ends.
     bool is_usable(const Stage& stage) const;
     /// Throws core::Error when none of a start's light falls on the axis.
@@ -48,6 +52,7 @@ class FitDriver {
     SolveSummary solve(Stage& stage, SceneState& state, int max_iterations) const;
 
  private:
+    Stage make_stage(const SceneModel& model, double blur_m, double tolerance) const;
     double light_of(const Stage& stage, const SceneState& state) const;
     void match_brightness(Stage& stage, SceneState& state) const;
     std::vector<std::pair<std::string, SceneState>> searched(const core::Vec3& center) const;

@@ -55,24 +55,10 @@ void ForwardModel::refresh(const SceneState& state) {
     const auto old_sensor = std::move(sensor_masks_);
     light_masks_.clear();
     sensor_masks_.clear();
+    edge_slopes_.clear();
     pieces_ = cut_pieces(model_, state, scan_, smear, settings_.tolerance);
-    if (!is_planar(model_, state)) {
-        const auto trace = [&](const core::WallPoints& points) {
-            return trace_masks(model_, state, pieces_, scan_, wall_.moved_points(points, state));
-        };
-        sensor_masks_ = trace(scan_.sensing);
-        light_masks_ = scan_.pattern == core::ScanPattern::Confocal ? sensor_masks_
-                                                                    : trace(scan_.illumination);
-    }
+    if (!is_planar(model_, state)) trace(state);
     visibility_changed_ = old_light != light_masks_ || old_sensor != sensor_masks_;
-}
-
-bool ForwardModel::has_shadow_edges() const {
-    const auto is_edge = [](renderer::VisibilityMask mask) {
-        return mask != 0 && mask != renderer::kAllVisible;
-    };
-    return std::any_of(sensor_masks_.begin(), sensor_masks_.end(), is_edge) ||
-           std::any_of(light_masks_.begin(), light_masks_.end(), is_edge);
 }
 
 void ForwardModel::update(const SceneState& state, Slopes slopes) {
@@ -159,6 +145,7 @@ void ForwardModel::evaluate(std::size_t pair, PairModel& result) const {
     }
     for (std::size_t i = 0; i < state_.points.size(); ++i) add_point(i, pair, target);
     finish(target, result);
+    if (slopes_ == Slopes::With) add_shadow_edges(pair, result);
 }
 
 // Every fine bin's light goes to the bins that the response delays it to.

@@ -54,6 +54,10 @@ class ForwardModel {
 
     /// Whether the edge of a shadow fell on any piece at the last refresh().
     bool has_shadow_edges() const;
+    /// From now on slopes include how the data change because the edges of shadows move, which
+    /// they otherwise leave out; until the next refresh().
+    /// state   of the last refresh()
+    void find_shadow_edges(const SceneState& state);
 
     /// Moves everything to a state; visibility and cuts stay.
     void update(const SceneState& state, core::Slopes slopes);
@@ -88,6 +92,10 @@ class ForwardModel {
     void add_response(const PairModel& fine, PairModel& result) const;
     void finish(PairModel& fine, PairModel& result) const;
     core::TimeAxis fine_axis() const;
+    void trace(const SceneState& state);
+    std::vector<double> vertex_speeds(const SceneState& state) const;
+    std::vector<double> evaluate_all() const;
+    void add_shadow_edges(std::size_t pair, PairModel& result) const;
     renderer::VisibilityMask visible_part(std::size_t piece, std::size_t pair) const;
 
     const SceneModel& model_;
@@ -105,6 +113,7 @@ class ForwardModel {
     std::vector<renderer::VisibilityMask> light_masks_;  ///< [point][piece]; empty: all is visible
     std::vector<renderer::VisibilityMask> sensor_masks_;
     bool visibility_changed_ = false;
+    std::vector<double> edge_slopes_;  ///< [pair][bin][column]; or {}
     /// Weights of the data's bins for each position of a fine bin within its bin.
     std::vector<std::vector<double>> phase_weights_;
     int first_delay_ = 0;  ///< in fine bins

@@ -88,17 +88,23 @@ Vec3 turn_error(const Eigen::Quaterniond& fitted, const Eigen::Quaterniond& trut
     return least;
 }
 
-// Squared error of an object's pose in units of the reported covariance: chi-square with 6 degrees
-// of freedom when that is honest.
-double normalised_square(const calib::FitResult& fit, const renderer::Object& truth) {
+// Errors of position [m] and turn about the world's axes [rad].
+Eigen::Matrix<double, 6, 1> pose_error(const calib::FitResult& fit, const renderer::Object& truth) {
     const auto object = std::find_if(fit.objects.begin(), fit.objects.end(), [&](const auto& o) {
         return o.name == truth.name;
     });
-    const auto first = std::find(fit.parameters.begin(), fit.parameters.end(), truth.name + ".x") -
-                       fit.parameters.begin();
     Eigen::Matrix<double, 6, 1> error;
     error << object->position_m - truth.world_from_node.translation(),
         turn_error(object->rotation, Eigen::Quaterniond(truth.world_from_node.rotation()));
+    return error;
+}
+
+// Squared error of an object's pose in units of the reported covariance: chi-square with 6 degrees
+// of freedom when that is honest.
+double normalised_square(const calib::FitResult& fit, const renderer::Object& truth) {
+    const auto first = std::find(fit.parameters.begin(), fit.parameters.end(), truth.name + ".x") -
+                       fit.parameters.begin();
+    const Eigen::Matrix<double, 6, 1> error = pose_error(fit, truth);
     const Eigen::MatrixXd covariance = fit.covariance.block(first, first, 6, 6);
     return error.dot(covariance.ldlt().solve(error));
 }
@@ -290,28 +296,65 @@ TEST(HardFit, AStartThroughTheWallThatLeavesTheDataDoesNotConverge) {
     EXPECT_FALSE(fit.message.empty());
 }
 
-TEST(HardFit, OverlappingObjectsThatHideOneAnotherAreFoundAndSaySo) {
-    Case two{"Overlapping", {}, {}, 2e5, 1.0, 4};
+// A rectangle partly behind another.
+Case overlapping(const std::string& name, int seeds) {
+    Case two{name, {}, {}, 2e5, 1.0, seeds};
     two.truth.objects = {
         rectangle("front", Vec3(0.0, 0.0, 0.7), turn(20.0, Vec3(0.6, 0.8, 0.0))),
         rectangle("back", Vec3(0.08, 0.05, 0.85), turn(-15.0, Vec3(0.8, -0.6, 0.0)), 0.3, 0.25)};
     two.start.objects = {
         rectangle("front", Vec3(0.02, -0.015, 0.71), turn(25.0, Vec3(0.7, 0.7, 0.0))),
         rectangle("back", Vec3(0.065, 0.07, 0.835), turn(-19.0, Vec3(0.7, -0.7, 0.0)), 0.3, 0.25)};
+    return two;
+}
+
+TEST(HardFit, OverlappingObjectsThatHideOneAnotherAreFound) {
+    Case two = overlapping("Overlapping", 2);
     two.adapt = [](calib::FitInput& input) {
         input.settings.free.objects.push_back({"back", true, true, false, true, false});
     };
     double sum = 0.0;
     const double mean = mean_square(two, [&](const calib::FitResult& fit) {
-        ASSERT_EQ(fit.warnings.size(), 1U);
-        EXPECT_TRUE(mentions(fit.warnings, "shade one another"));
+        expect_no_warning(fit);
         for (std::size_t o = 0; o < 2; ++o) {
             sum += (fit.objects[o].position_m - two.truth.objects[o].world_from_node.translation())
                        .squaredNorm();
         }
     });
-    EXPECT_LT(std::sqrt(sum / (2.0 * two.seeds)), 0.006);
-    EXPECT_LT(mean, 6.0);
+    EXPECT_LT(std::sqrt(sum / (2.0 * two.seeds)), 0.0016);
+    EXPECT_GT(chi_square_p(mean, 24.0), 1e-3) << mean;
+}
+
+// With visibility frozen the errors are up to three times the stated ones, and the fits four times
+// as far off.
+TEST(HardFit, MovingShadowEdgesCountInFitsAndTheirErrors) {
+    Case one = overlapping("ShadowEdges", 20);
+    const renderer::Object back = one.truth.objects[1];
+    one.start.objects = {
+        one.truth.objects[0],
+        rectangle("back", Vec3(0.075, 0.055, 0.845), turn(-17.0, Vec3(0.8, -0.6, 0.0)), 0.3, 0.25)};
+    const core::Capture light = test_support::expected_capture(
+        one.truth, test_support::confocal_grid(6), one.photons, one.ambient);
+    Eigen::Matrix<double, 6, 1> squares = Eigen::Matrix<double, 6, 1>::Zero();
+    Eigen::Matrix<double, 6, 1> variances = squares;
+    for (int seed = 0; seed < one.seeds; ++seed) {
+        calib::FitInput input =
+            test_support::fit_input(counted(light, one.name + std::to_string(seed)), one.start);
+        input.settings.free.objects = {{"back", true, true, false, true, false}};
+        input.settings.blur_schedule_m = {0.0};
+        const calib::FitResult fit = calib::fit_scene(input, {});
+        expect_no_warning(fit);
+        squares += pose_error(fit, back).cwiseAbs2();
+        variances += fit.covariance.topLeftCorner<6, 6>().diagonal();
+    }
+    for (int i = 0; i < 6; ++i) {
+        const double ratio = std::sqrt(squares[i] / variances[i]);
+        EXPECT_GT(ratio, 0.6) << i;  // 2.5 standard deviations of 20 fits
+        EXPECT_LT(ratio, 1.4) << i;
+    }
+    const double all = std::sqrt(squares.cwiseQuotient(variances).mean());
+    EXPECT_GT(all, 0.75);
+    EXPECT_LT(all, 1.25);
 }
 
 TEST(HardFit, RenderedLightBehindAnOccluderIsFittedByAnotherMesh) {
