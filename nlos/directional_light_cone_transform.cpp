@@ -36,7 +36,7 @@ double typical_depth_m(const MethodInput& input, const Cone& cone, double power)
     return sum > 0.0 ? moment / sum : std::sqrt(cone.v_edges.back());
 }
 
-/// The three components' spectra, stored [frequency][x][y] each.
+/// The three components' spectra of one slab, stored [frequency][x][y] each.
 struct Components {
     FftBuffer x, y, z;
 };
@@ -64,13 +64,13 @@ class VectorFilter {
                 FftBuffer(2 * kernel_.qx() * kernel_.qy())};
     }
 
-    /// Turns the data at frequency k, in `components.z`, into the three components.
-    void apply(std::size_t k, Components& components, Workspace& work) const {
+    /// Turns the data at frequency k, the n-th of `components.z`, into the three components.
+    void apply(std::size_t k, std::size_t n, Components& components, Workspace& work) const {
         fill_kernels(k, work);
         kernel_plane_.forward(work.x);
         kernel_plane_.forward(work.y);
         kernel_plane_.forward(work.z);
-        const std::size_t offset = k * cone_.num_columns();
+        const std::size_t offset = n * cone_.num_columns();
         data_plane_.load(components.z.complex() + offset, work.data);
         data_plane_.forward(work.data);
         multiply_by_filters(work);
@@ -167,31 +167,42 @@ Eigen::Vector3f normal_at_peak(const float* albedo,
 
 }  // namespace
 
-Volume directional_light_cone_transform(const MethodInput& input, Falloff falloff, double snr) {
+Volume directional_light_cone_transform(const MethodInput& input,
+                                        Falloff falloff,
+                                        double snr,
+                                        std::size_t num_slabs) {
     const Cone cone = make_cone(input, kSquaredRangeBinsPerBin);
     const double power = falloff_power(falloff);
     const double depth_m = typical_depth_m(input, cone, power);
-    const std::size_t spectrum_floats = 2 * cone.num_frequencies() * cone.num_columns();
-    Components components{
-        FftBuffer(spectrum_floats),
-        FftBuffer(spectrum_floats),
-        cone_spectrum(input, cone, power, {input.progress, 0.0, 0.1, "time to depth"})};
     const VectorFilter filter(cone, *input.wall.grid, depth_m, snr);
-    parallel_blocks_with_progress(cone.num_frequencies(),
-                                  kSlabsPerBlock,
-                                  {input.progress, 0.1, 0.8, "deconvolution"},
-                                  [&](std::size_t begin, std::size_t end) {
-                                      VectorFilter::Workspace work = filter.make_workspace();
-                                      for (std::size_t k = begin; k < end; ++k)
-                                          filter.apply(k, components, work);
-                                  });
     // 2 z f_x z_0 / z_0 and 2 z f_z / z: both rho n, up to a common factor.
-    std::vector<float> x =
-        cone_spectrum_to_depth(input, cone, components.x, {input.progress, 0.8, 0.87, "to depth"});
-    std::vector<float> y =
-        cone_spectrum_to_depth(input, cone, components.y, {input.progress, 0.87, 0.94, "to depth"});
-    std::vector<float> z =
-        cone_spectrum_to_depth(input, cone, components.z, {input.progress, 0.94, 1.0, "to depth"});
+    std::vector<float> x(input.axes.num_voxels()), y(x.size()), z(x.size());
+    const std::vector<FrequencySlab> slabs = frequency_slabs(cone, num_slabs);
+    for (std::size_t i = 0; i < num_slabs; ++i) {
+        const FrequencySlab& slab = slabs[i];
+        const auto span = [&](double begin, double end, const char* what) {
+            const auto share = [&](double done) {
+                return (static_cast<double>(i) + done) / static_cast<double>(num_slabs);
+            };
+            return ProgressSpan{input.progress, share(begin), share(end), what};
+        };
+        const std::size_t spectrum_floats = 2 * slab.size() * cone.num_columns();
+        Components components{
+            FftBuffer(spectrum_floats),
+            FftBuffer(spectrum_floats),
+            cone_spectrum(input, cone, power, slab, span(0.0, 0.1, "time to depth"))};
+        parallel_blocks_with_progress(slab.size(),
+                                      kSlabsPerBlock,
+                                      span(0.1, 0.8, "deconvolution"),
+                                      [&](std::size_t begin, std::size_t end) {
+                                          VectorFilter::Workspace work = filter.make_workspace();
+                                          for (std::size_t n = begin; n < end; ++n)
+                                              filter.apply(slab.begin + n, n, components, work);
+                                      });
+        add_spectrum_to_depth(input, cone, components.x, slab, x, span(0.8, 0.87, "to depth"));
+        add_spectrum_to_depth(input, cone, components.y, slab, y, span(0.87, 0.94, "to depth"));
+        add_spectrum_to_depth(input, cone, components.z, slab, z, span(0.94, 1.0, "to depth"));
+    }
 
     const std::size_t num_z = input.axes.z_m.size();
     Volume volume{input.axes, std::vector<float>(z.size()), {}};
@@ -215,11 +226,12 @@ Volume directional_light_cone_transform(const MethodInput& input, Falloff fallof
     return volume;
 }
 
-double directional_light_cone_transform_bytes(const MethodInput& input) {
+double directional_light_cone_transform_bytes(const MethodInput& input, std::size_t num_slabs) {
     const Cone cone = make_cone(input, kSquaredRangeBinsPerBin);
     const auto columns = static_cast<double>(cone.num_columns());
     const auto padded = static_cast<double>(cone.px * (cone.py + 8));
-    const double spectra = 24.0 * static_cast<double>(cone.num_frequencies()) * columns;
+    const double spectra =
+        24.0 * static_cast<double>(cone.num_frequencies() / num_slabs + 1) * columns;
     const double volumes = 16.0 * columns * static_cast<double>(input.axes.z_m.size());
     return spectra + volumes +
            (36.0 * padded + 64.0 * static_cast<double>(cone.length)) * core::thread_count();

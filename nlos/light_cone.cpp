@@ -123,15 +123,25 @@ void ConeKernel::fill(std::size_t k, ComplexF* quadrant) const {
     }
 }
 
+std::vector<FrequencySlab> frequency_slabs(const Cone& cone, std::size_t num_slabs) {
+    std::vector<FrequencySlab> slabs;
+    for (std::size_t i = 0; i < num_slabs; ++i) {
+        slabs.push_back(
+            {i * cone.num_frequencies() / num_slabs, (i + 1) * cone.num_frequencies() / num_slabs});
+    }
+    return slabs;
+}
+
 FftBuffer cone_spectrum(const MethodInput& input,
                         const Cone& cone,
                         double power,
+                        const FrequencySlab& slab,
                         const ProgressSpan& span) {
     const std::size_t num_columns = cone.num_columns();
     const std::size_t row_floats = cone.length + 2;
     const Fft forward = Fft::real_to_complex(cone.length, kColumnsPerBlock);
     const ConeData data(input, cone, power);
-    FftBuffer out(2 * cone.num_frequencies() * num_columns);
+    FftBuffer out(2 * slab.size() * num_columns);
     parallel_blocks_with_progress(
         num_columns, kColumnsPerBlock, span, [&](std::size_t begin, std::size_t end) {
             FftBuffer rows(kColumnsPerBlock * row_floats);
@@ -139,9 +149,9 @@ FftBuffer cone_spectrum(const MethodInput& input,
                 data.fill(column, rows.data() + (column - begin) * row_floats);
             }
             forward.run(rows);
-            for (std::size_t k = 0; k < cone.num_frequencies(); ++k) {
+            for (std::size_t k = slab.begin; k < slab.end; ++k) {
                 for (std::size_t column = begin; column < end; ++column) {
-                    out.complex()[k * num_columns + column] =
+                    out.complex()[(k - slab.begin) * num_columns + column] =
                         rows.complex()[(column - begin) * (row_floats / 2) + k];
                 }
             }
@@ -149,32 +159,34 @@ FftBuffer cone_spectrum(const MethodInput& input,
     return out;
 }
 
-std::vector<float> cone_spectrum_to_depth(const MethodInput& input,
-                                          const Cone& cone,
-                                          FftBuffer& spectrum,
-                                          const ProgressSpan& span) {
+void add_spectrum_to_depth(const MethodInput& input,
+                           const Cone& cone,
+                           FftBuffer& spectrum,
+                           const FrequencySlab& slab,
+                           std::vector<float>& values,
+                           const ProgressSpan& span) {
     const std::size_t num_columns = cone.num_columns();
     const std::size_t row_floats = cone.length + 2;
     const std::size_t nz = input.axes.z_m.size();
     const Fft inverse = Fft::complex_to_real(cone.length, kColumnsPerBlock);
     const ConservativeResampling to_depth = squared_range_to_depth(input, cone);
-    std::vector<float> values(num_columns * nz);
     parallel_blocks_with_progress(
         num_columns, kColumnsPerBlock, span, [&](std::size_t begin, std::size_t end) {
             FftBuffer rows(kColumnsPerBlock * row_floats);
-            for (std::size_t k = 0; k < cone.num_frequencies(); ++k) {
+            for (std::size_t k = slab.begin; k < slab.end; ++k) {
                 for (std::size_t column = begin; column < end; ++column) {
                     rows.complex()[(column - begin) * (row_floats / 2) + k] =
-                        spectrum.complex()[k * num_columns + column];
+                        spectrum.complex()[(k - slab.begin) * num_columns + column];
                 }
             }
             inverse.run(rows);
+            std::vector<float> share(nz);
             for (std::size_t column = begin; column < end; ++column) {
-                to_depth.apply(rows.data() + (column - begin) * row_floats,
-                               values.data() + column * nz);
+                to_depth.apply(rows.data() + (column - begin) * row_floats, share.data());
+                float* voxels = values.data() + column * nz;
+                for (std::size_t iz = 0; iz < nz; ++iz) voxels[iz] += share[iz];
             }
         });
-    return values;
 }
 
 }  // namespace nlos

@@ -16,12 +16,17 @@ namespace nlos {
 ///
 /// input     confocal scan with input.wall.grid; x and y of input.axes at the grid's points
 /// falloff   of the hidden surface; snr: power of signal over noise, positive
+/// num_slabs of frequencies, worked on one after the other: the result is the same up to rounding,
+///           memory shrinks, and the transforms along time are repeated for each
 /// returns   albedo per metre of depth, up to a common factor
 /// throws    core::Failure when asked to stop
 /// source    [OToole2018]
-Volume light_cone_transform(const MethodInput& input, Falloff falloff, double snr);
+Volume light_cone_transform(const MethodInput& input,
+                            Falloff falloff,
+                            double snr,
+                            std::size_t num_slabs = 1);
 
 /// Memory that light_cone_transform() takes on top of its input, its volume included [bytes].
-double light_cone_transform_bytes(const MethodInput& input);
+double light_cone_transform_bytes(const MethodInput& input, std::size_t num_slabs = 1);
 
 }  // namespace nlos

@@ -27,6 +27,7 @@ namespace nlos {
 namespace {
 
 constexpr std::size_t kDefaultColumns = 64;
+constexpr std::size_t kMostSlabs = 64;  // each repeats the transforms along time
 
 /// As many bins as keep the range they cover within a quarter of the wall points' distance: finer
 /// depth than that no aperture of this sampling resolves, and noise and work shrink with the bins.
@@ -164,13 +165,16 @@ void take_normals(const Volume& volume, core::DepthMap& depth) {
     }
 }
 
-double method_bytes(const MethodInput& input, const ReconstructSettings& settings) {
+/// num_slabs   of lct and dlct; others work on everything at once
+double method_bytes(const MethodInput& input,
+                    const ReconstructSettings& settings,
+                    std::size_t num_slabs) {
     switch (settings.method) {
         case Method::Lct:
             return settings.prior == Prior::Tv ? total_variation_bytes(input)
-                                               : light_cone_transform_bytes(input);
+                                               : light_cone_transform_bytes(input, num_slabs);
         case Method::Dlct:
-            return directional_light_cone_transform_bytes(input);
+            return directional_light_cone_transform_bytes(input, num_slabs);
         case Method::Fk:
             return fk_migration_bytes(input);
         case Method::Phasor:
@@ -186,23 +190,39 @@ double method_bytes(const MethodInput& input, const ReconstructSettings& setting
     return backproject_bytes(input);
 }
 
-/// Says what will run and what it needs.
-void announce(const Reconstruction& result, const core::Progress& progress) {
-    if (!progress.announce) return;
-    progress.announce(fmt::format("{}: {}; needs {:.2f} GB of memory",
-                                  result.method,
-                                  result.reason,
-                                  1e-9 * result.stated_bytes));
+/// As few slabs as fit into memory; 1 when none do.
+std::size_t choose_slabs(const MethodInput& input,
+                         const ReconstructSettings& settings,
+                         double other_bytes) {
+    const auto available = static_cast<double>(core::available_memory_bytes());
+    for (std::size_t num_slabs = 1; num_slabs <= kMostSlabs; ++num_slabs) {
+        if (other_bytes + method_bytes(input, settings, num_slabs) <= available) return num_slabs;
+    }
+    return 1;
 }
 
-Volume run_method(const MethodInput& input, const ReconstructSettings& settings) {
+/// Says what will run and what it needs.
+void announce(const Reconstruction& result, std::size_t num_slabs, const core::Progress& progress) {
+    if (!progress.announce) return;
+    progress.announce(
+        fmt::format("{}: {}; needs {:.2f} GB of memory{}",
+                    result.method,
+                    result.reason,
+                    1e-9 * result.stated_bytes,
+                    num_slabs > 1 ? fmt::format(" in {} slabs of frequencies", num_slabs) : ""));
+}
+
+Volume run_method(const MethodInput& input,
+                  const ReconstructSettings& settings,
+                  std::size_t num_slabs) {
     switch (settings.method) {
         case Method::Lct:
             return settings.prior == Prior::Tv
                        ? total_variation_light_cone_transform(input, settings.falloff, settings.tv)
-                       : light_cone_transform(input, settings.falloff, *settings.snr);
+                       : light_cone_transform(input, settings.falloff, *settings.snr, num_slabs);
         case Method::Dlct:
-            return directional_light_cone_transform(input, settings.falloff, *settings.snr);
+            return directional_light_cone_transform(
+                input, settings.falloff, *settings.snr, num_slabs);
         case Method::Fk:
             return fk_migration(input, settings.falloff);
         case Method::Phasor:
@@ -265,19 +285,20 @@ Reconstruction reconstruct(const core::Capture& capture,
     };
     const double prepared_bytes =
         is_ready ? 0.0 : 4.0 * static_cast<double>(measurement.scan.num_pairs()) * axis.num_bins;
-    const double work_bytes =
-        prepared_bytes + method_bytes(input_with(measurement.transient()), result.settings);
+    const MethodInput unprepared = input_with(measurement.transient());
+    const std::size_t num_slabs = choose_slabs(unprepared, result.settings, prepared_bytes);
+    const double work_bytes = prepared_bytes + method_bytes(unprepared, result.settings, num_slabs);
     require_memory(work_bytes);
     result.stated_bytes = work_bytes + measurement.own_bytes();
-    announce(result, progress);
+    announce(result, num_slabs, progress);
     check_stop(progress);
     core::Transient prepared;
     if (!is_ready) prepared = prepare_histograms(measurement.transient(), plan);
     if (makes_up_for_falloff(measurement.scan, result.settings)) {
         multiply_by_range(measurement.scan, axis, falloff_power(settings.falloff), prepared);
     }
-    result.volume =
-        run_method(input_with(is_ready ? measurement.transient() : prepared), result.settings);
+    result.volume = run_method(
+        input_with(is_ready ? measurement.transient() : prepared), result.settings, num_slabs);
 
     result.depth = extract_depth_map(result.volume, settings.mask_threshold);
     take_normals(result.volume, result.depth);
