@@ -137,8 +137,8 @@ template <class T>
 T scaled_normal_cdf(const T& z) {
     using std::erfc;
     using std::exp;
-    if (z > T(-10.0)) return exp(T(0.5) * z * z) * T(0.5) * erfc(-z / T(std::sqrt(2.0)));
-    const T y = T(1.0) / (z * z);  // asymptotic series; the first term left out is 1e-9
+    if (z > T(-25.0)) return exp(T(0.5) * z * z) * T(0.5) * erfc(-z / T(std::sqrt(2.0)));
+    const T y = T(1.0) / (z * z);  // asymptotic series; the first term left out is 1e-11
     const T series = T(1.0) - y * (T(1.0) - y * (T(3.0) - y * (T(15.0) - y * T(105.0))));
     return series * T(-1.0 / std::sqrt(2.0 * kPi)) / z;
 }

@@ -96,9 +96,9 @@ TEST(InstrumentResponse, ExponentialCoreIsTheConvolutionOfItsParts) {
 }
 
 TEST(InstrumentResponse, ScaledProbabilityIsContinuousWhereItsFormsMeet) {
-    const double below = scaled_normal_cdf(-10.0 - 1e-9);
-    const double above = scaled_normal_cdf(-10.0 + 1e-9);
-    EXPECT_NEAR(below / above, 1.0, 1e-7);
+    const double below = scaled_normal_cdf(-25.0 - 1e-12);
+    const double above = scaled_normal_cdf(-25.0 + 1e-12);
+    EXPECT_NEAR(below / above, 1.0, 3e-11);
 }
 
 TEST(InstrumentResponse, FilterMovesLightByItsDelays) {

@@ -20,9 +20,7 @@ struct StressCounts {
 inline StressCounts stress_ellipsoid(std::uint64_t count, std::uint64_t seed) {
     core::Rng rng(seed, 0, 0);
     StressCounts counts;
-    const auto power = [&](double from, double to) {
-        return std::pow(10.0, from + (to - from) * rng.uniform());
-    };
+    const auto power = [&](double from, double to) { return power_of_ten(rng, from, to); };
     for (std::uint64_t i = 0; i < count; ++i) {
         const double size = power(-3.0, 2.0);
         renderer::FocusPair foci{size * random_point(rng), core::Vec3::Zero()};

@@ -4,6 +4,8 @@
 #include "renderer/core/random.h"
 #include "renderer/scene.h"
 
+#include <cmath>
+
 namespace test_support {
 
 /// A point uniform in the cube [-1, 1]^3.
@@ -11,6 +13,11 @@ inline core::Vec3 random_point(core::Rng& rng) {
     const double x = 2.0 * rng.uniform() - 1.0;
     const double y = 2.0 * rng.uniform() - 1.0;
     return {x, y, 2.0 * rng.uniform() - 1.0};
+}
+
+/// 10^x with x uniform between two exponents.
+inline double power_of_ten(core::Rng& rng, double from, double to) {
+    return std::pow(10.0, from + (to - from) * rng.uniform());
 }
 
 /// A facet that belongs to no scene.
