@@ -72,6 +72,7 @@ double expected_deviance_from_dark_to_bright();
 double first_photons_of_a_saturated_detector();
 double rates_behind_pile_up();
 double steady_light_on_a_blind_detector();
+double bright_peaks_on_a_blind_detector();
 double detections_within_a_blind_time();
 double budgets_from_one_photon_to_a_quadrillion();
 double a_single_photon_in_ten_thousand_bins();

@@ -46,6 +46,32 @@ std::vector<Quad> first_photons(const std::vector<double>& rates) {
     return counts;
 }
 
+// Detections d per bin of a ring of periods: d_i + p_i (d_i-1 + .. + d_i-b) = p_i, by elimination.
+std::vector<Quad> steady_detections(const std::vector<Quad>& p, std::size_t blind) {
+    const std::size_t n = p.size();
+    std::vector<std::vector<Quad>> rows(n, std::vector<Quad>(n + 1, 0));
+    for (std::size_t i = 0; i < n; ++i) {
+        rows[i][i] = 1;
+        rows[i][n] = p[i];
+        for (std::size_t k = 1; k <= blind; ++k) rows[i][(i + n * blind - k) % n] += p[i];
+    }
+    for (std::size_t pivot = 0; pivot < n; ++pivot) {
+        const auto larger = [&](const auto& a, const auto& b) {
+            return truth::abs(a[pivot]) < truth::abs(b[pivot]);
+        };
+        const auto from = rows.begin() + static_cast<std::ptrdiff_t>(pivot);
+        std::iter_swap(from, std::max_element(from, rows.end(), larger));
+        for (std::size_t i = 0; i < n; ++i) {
+            const Quad factor = rows[i][pivot] / rows[pivot][pivot];
+            if (i == pivot || factor == 0) continue;
+            for (std::size_t k = pivot; k <= n; ++k) rows[i][k] -= factor * rows[pivot][k];
+        }
+    }
+    std::vector<Quad> detections;
+    for (std::size_t i = 0; i < n; ++i) detections.push_back(rows[i][n] / rows[i][i]);
+    return detections;
+}
+
 core::Capture flat_capture(std::size_t pairs, float value) {
     core::Capture capture;
     capture.scan = test_support::confocal_scan(std::vector<core::Vec3>(pairs, core::Vec3::Zero()));
@@ -136,6 +162,29 @@ double steady_light_on_a_blind_detector() {
             const Quad p = -truth::expm1q(-Quad(rate));
             const Quad expected = p / (1 + Quad(static_cast<double>(blind)) * p);
             for (const double count : counts) worst.add(truth::relative_error(count, expected));
+        }
+    }
+    return worst.value();
+}
+
+double bright_peaks_on_a_blind_detector() {
+    // A peak of up to 2 photons per bin on a period of 60 bins.
+    Worst worst;
+    for (const double peak : {0.01, 0.3, 2.0}) {
+        std::vector<double> rates;
+        std::vector<Quad> p;
+        for (int i = 0; i < 60; ++i) {
+            const double rate = 0.02 + peak * std::exp(-0.05 * (i - 20) * (i - 20));
+            if (i < 40) rates.push_back(rate);
+            p.push_back(-truth::expm1q(-Quad(i < 40 ? rate : 0.02)));
+        }
+        for (const std::size_t blind : {1, 30, 59, 61, 150}) {
+            const std::vector<double> counts =
+                nlos::count_with_dead_time(rates, {1, 20, 0.02, blind, false}, nullptr);
+            const std::vector<Quad> expected = steady_detections(p, blind);
+            for (std::size_t i = 0; i < counts.size(); ++i) {
+                worst.add(truth::relative_error(counts[i], expected[i]));
+            }
         }
     }
     return worst.value();
