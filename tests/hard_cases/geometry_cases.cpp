@@ -106,7 +106,7 @@ double transport_at_grazing_angles() {
             walk.connection_value(vertex, ends),
             Quad(0.6) / truth::pi() * cosines * Quad(ends.light.strength) / distance2));
     }
-    return worst.value();
+    return worst.value(400);
 }
 
 double distances_of_grazing_rays_far_away() {
@@ -130,7 +130,7 @@ double distances_of_grazing_rays_far_away() {
             worst.add(truth::relative_error(hit->distance_m, expected));
         }
     }
-    return worst.value();
+    return worst.value(700);
 }
 
 double coplanar_and_touching_facets_in_the_way() {

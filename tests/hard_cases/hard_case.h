@@ -20,16 +20,19 @@ struct HardCase {
 /// All cases, group by group.
 const std::vector<HardCase>& catalogue();
 
-/// The largest of some errors; what is no number is infinitely wrong.
+/// The largest of some errors; what is no number is infinitely wrong, and so is too little tried.
 class Worst {
  public:
     void add(double error) {
         if (!(error <= value_)) value_ = error >= 0.0 ? error : HUGE_VAL;
+        ++count_;
     }
-    double value() const { return value_; }
+    /// at_least   errors that must have been added
+    double value(int at_least = 1) const { return count_ >= at_least ? value_ : HUGE_VAL; }
 
  private:
     double value_ = 0.0;
+    int count_ = 0;
 };
 
 }  // namespace hard_cases

@@ -204,7 +204,7 @@ double smeared_kernel_at_all_widths() {
                                             mean_weight(knots)));
         }
     }
-    return worst.value();
+    return worst.value(100);
 }
 
 double slopes_of_the_smeared_kernel() {
@@ -230,7 +230,7 @@ double slopes_of_the_smeared_kernel() {
                 bins.bins[k].slots[1 + j], slope, mean_weight(knots) / sigma));
         }
     }
-    return worst.value();
+    return worst.value(100);
 }
 
 }  // namespace hard_cases

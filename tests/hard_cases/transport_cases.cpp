@@ -47,7 +47,7 @@ double tangent_point_error(std::string_view seed, double from, double to) {
         const double reach = test_support::power_of_ten(rng, from, to);
         add_density_error(foci, facet, tangent + reach * offset, worst);
     }
-    return worst.value();
+    return worst.value(2500);
 }
 
 // At 10^from .. 10^to from the segment between foci 1 m apart, in a plane that holds it or crosses
@@ -65,7 +65,7 @@ double segment_error(std::string_view seed, double from, double to) {
         const double middle = i % 2 == 0 ? 0.8 * rng.uniform() - 0.4 : 0.0;
         add_density_error(foci, facet, middle * along + reach * Vec3::UnitY(), worst);
     }
-    return worst.value();
+    return worst.value(2500);
 }
 
 struct LengthErrors {
@@ -108,7 +108,7 @@ double density_with_nearly_coincident_foci() {
         const double b1 = 0.5 * rng.uniform();
         add_density_error(foci, facet, facet.point(b1, 0.5 * rng.uniform()), worst);
     }
-    return worst.value();
+    return worst.value(2500);
 }
 
 double density_near_the_tangent_point() {
@@ -140,7 +140,7 @@ double density_beside_a_focus_on_the_surface() {
             focus + reach * (std::cos(angle) * facet.edge1 + std::sin(angle) * facet.edge2);
         add_density_error(foci, facet, x, worst);
     }
-    return worst.value();
+    return worst.value(2000);
 }
 
 double drawn_length_of_kilometre_legs() {
@@ -155,7 +155,7 @@ double drawn_length_of_kilometre_legs() {
         if (!drawn) continue;
         worst.add(truth::relative_error(truth::opl_of(foci, drawn->position), opl));
     }
-    return worst.value();
+    return worst.value(2000);
 }
 
 double random_connections_that_are_wrong() {
