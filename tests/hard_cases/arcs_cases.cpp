@@ -141,4 +141,25 @@ double exact_arcs_of_coplanar_triangles() {
     return worst.value();
 }
 
+double exact_arcs_of_a_facet_of_kilometres() {
+    // As good as a plane: with z its distance, 2 pi z^4 r^-7 per range, so pi z^4 (z^-6 - R^-6)/3
+    // up to the range R.
+    Worst worst;
+    for (const double z : {0.5, 1.0, 3.0}) {
+        const std::array<Vec3, 3> corners{Vec3(-4e3, -3e3, z), Vec3(5e3, -3e3, z), Vec3(0, 4e3, z)};
+        const TimeAxis axis{0.0, 0.04 * z, 1000};
+        double found = 0.0;
+        for (const double value : core::confocal_arcs(corners, Vec3::Zero(), Vec3::UnitZ(), axis)) {
+            found += value;
+        }
+        const Quad z2 = Quad(z) * Quad(z);
+        const Quad end = Quad(axis.bin_width_m) * 500;
+        const Quad end2 = end * end;
+        const Quad expected =
+            truth::pi() * z2 * z2 / 3 * (1 / (z2 * z2 * z2) - 1 / (end2 * end2 * end2));
+        worst.add(truth::relative_error(found, expected));
+    }
+    return worst.value();
+}
+
 }  // namespace hard_cases

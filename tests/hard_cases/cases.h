@@ -14,6 +14,7 @@ double density_near_the_segment_of_the_foci();
 double density_on_the_segment_of_the_foci();
 double density_beside_a_focus_on_the_surface();
 double drawn_length_of_kilometre_legs();
+double inverse_of_drawn_vertices();
 double random_connections_that_are_wrong();
 double slopes_of_the_length_beside_a_focus();
 double slope_of_the_length_between_the_foci();
@@ -46,6 +47,7 @@ double edges_of_the_velocity_axis();
 double bounds_of_lengths_over_facets();
 double light_before_the_first_arrival();
 double energy_of_tiny_and_huge_bins();
+double third_bounce_in_all_units();
 
 // histogram_cases.cpp
 double box_kernel_of_small_and_large_triangles();
@@ -56,6 +58,7 @@ double slopes_of_the_smeared_kernel();
 // arcs_cases.cpp
 double exact_arcs_of_tiny_triangles();
 double kernel_of_tiny_triangles_and_slivers();
+double exact_arcs_of_a_facet_of_kilometres();
 double exact_arcs_of_coplanar_triangles();
 
 // response_cases.cpp
@@ -86,6 +89,7 @@ double neighbours_of_duplicate_points();
 
 // fit_cases.cpp
 double errors_of_nearly_collinear_parameters();
+double slopes_of_the_light_of_tiny_and_large_objects();
 double direct_returns_of_few_and_of_many_counts();
 
 }  // namespace hard_cases

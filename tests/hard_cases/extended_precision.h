@@ -3,6 +3,8 @@
 
 #include "renderer/core/types.h"
 
+#include <cmath>
+
 // Truth for the hard cases: closed forms of the design, written out once more in numbers of 113
 // bits. Their rounding, 1e-34, stays below that of a double through condition numbers of 1e18.
 

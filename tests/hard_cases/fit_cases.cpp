@@ -2,21 +2,21 @@
 // Ill-posed fits. Grazing tilts, nearly symmetric objects, few photons, hidden and missing objects:
 // tests/calib/hard_fits_test.cpp; set-ups that the data cannot determine: calibrate_test.cpp.
 #include "calib/direct_returns.h"
+#include "calib/forward_model.h"
+#include "calib/jet_model.h"
 #include "calib/uncertainty.h"
 #include "renderer/core/instrument_response.h"
 #include "renderer/core/random.h"
 #include "tests/hard_cases/cases.h"
 #include "tests/hard_cases/extended_precision.h"
 #include "tests/hard_cases/hard_case.h"
+#include "tests/support/fit_examples.h"
 #include "tests/support/statistics.h"
 #include "tests/support/test_scenes.h"
 
 namespace hard_cases {
-namespace {
-
+using core::Vec3;
 using truth::Quad;
-
-}  // namespace
 
 double errors_of_nearly_collinear_parameters() {
     core::Rng rng(test_support::seed_of("errors_of_nearly_collinear_parameters"), 0, 0);
@@ -50,8 +50,7 @@ double direct_returns_of_few_and_of_many_counts() {
     constexpr double kSigma = 0.012;
     const std::vector<double> counts{30.0, 1e3, 1e6, 1e9};
     core::Capture capture;
-    capture.scan =
-        test_support::confocal_scan(std::vector<core::Vec3>(counts.size(), core::Vec3::Zero()));
+    capture.scan = test_support::confocal_scan(std::vector<Vec3>(counts.size(), Vec3::Zero()));
     capture.time_axis = {1.0, 0.008, 128};
     capture.unit = core::TransientUnit::Counts;
     capture.transient = core::Transient(counts.size(), 128);
@@ -72,6 +71,51 @@ double direct_returns_of_few_and_of_many_counts() {
         worst.add(std::abs(found.points[i].opl_m - length(i)) / 0.008);
     }
     worst.add(std::abs(found.sigma_m / kSigma - 1.0));
+    return worst.value();
+}
+
+double slopes_of_the_light_of_tiny_and_large_objects() {
+    // Written by hand, against automatic derivatives of another program text; relative L2 over all
+    // bins, for each of the pose's six parameters.
+    const core::Scan scan = test_support::confocal_grid(2);
+    calib::FitSettings settings;
+    settings.free.ambient = false;
+    settings.free.objects = {{"target", true, true, false, false, false}};
+    Worst worst;
+    for (const double size : {1e-6, 1e-3, 0.1, 2.0}) {
+        renderer::Object object = test_support::parallelogram_object(
+            {Vec3(0.05, -0.02, 0.8), size * Vec3(1, 0.2, 0.3), size * Vec3(-0.1, 1, 0.2), 1.0});
+        object.name = "target";
+        object.world_from_node.translation() = object.mesh.vertices[0];
+        renderer::SceneGeometry geometry;
+        geometry.objects = {object};
+        const calib::SceneModel model(geometry, settings, false);
+        calib::ForwardSettings forward;
+        forward.axis = {0.9, 0.0192, 400};
+        forward.sigma_m = 0.012;
+        forward.offset_m.assign(scan.num_pairs(), 0.0);
+        calib::ForwardModel light(model, scan, calib::WallMotion(scan), forward);
+        const calib::SceneState state = model.start();
+        light.refresh(state);
+        light.update(state, core::Slopes::With);
+        const auto columns = static_cast<std::size_t>(model.num_columns());
+        for (std::size_t pair = 0; pair < scan.num_pairs(); ++pair) {
+            calib::PairModel found;
+            light.evaluate(pair, found);
+            const std::vector<double> jets = calib::jet_slopes(
+                model, state, light.pieces(), scan, pair, forward.axis, forward.sigma_m);
+            for (std::size_t c = 0; c < 6; ++c) {
+                double square = 0.0;
+                double error = 0.0;
+                for (std::size_t bin = 0; bin < 400; ++bin) {
+                    const double slope = jets[bin * 6 + c];
+                    square += slope * slope;
+                    error += std::pow(found.slopes[bin * columns + c] - slope, 2);
+                }
+                worst.add(std::sqrt(error / square));
+            }
+        }
+    }
     return worst.value();
 }
 

@@ -158,6 +158,24 @@ double drawn_length_of_kilometre_legs() {
     return worst.value(2000);
 }
 
+double inverse_of_drawn_vertices() {
+    core::Rng rng(test_support::seed_of("inverse_of_drawn_vertices"), 0, 0);
+    Worst worst;
+    for (int i = 0; i < 5000; ++i) {
+        const double apart = i % 3 == 0 ? 0.0 : test_support::power_of_ten(rng, -16.0, 0.3);
+        const Vec3 a = test_support::random_point(rng);
+        const FocusPair foci{a, a + apart * test_support::random_point(rng)};
+        const Facet facet = facet_before(rng);
+        const double u = rng.uniform();
+        const auto drawn =
+            renderer::sample_ellipsoid(foci, foci.opl_m(facet.point(0.3, 0.3)), facet, u);
+        const auto again =
+            drawn ? renderer::invert_ellipsoid(foci, facet, drawn->position) : std::nullopt;
+        worst.add(again ? std::abs(*again - u) : HUGE_VAL);
+    }
+    return worst.value();
+}
+
 double random_connections_that_are_wrong() {
     return static_cast<double>(
         test_support::stress_ellipsoid(100'000,
