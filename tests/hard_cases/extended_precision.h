@@ -17,7 +17,6 @@ extern "C" {
 Quad sqrtq(Quad) noexcept;
 Quad expq(Quad) noexcept;
 Quad expm1q(Quad) noexcept;
-Quad logq(Quad) noexcept;
 Quad log1pq(Quad) noexcept;
 Quad erfcq(Quad) noexcept;
 Quad sinq(Quad) noexcept;
@@ -25,8 +24,6 @@ Quad cosq(Quad) noexcept;
 Quad atan2q(Quad, Quad) noexcept;
 Quad floorq(Quad) noexcept;
 }
-
-inline constexpr double kRounding = 0x1p-53;  ///< of a double, relative
 
 inline Quad pi() {
     return 4 * atan2q(1, 1);
