@@ -78,6 +78,7 @@ double steady_light_on_a_blind_detector();
 double bright_peaks_on_a_blind_detector();
 double detections_within_a_blind_time();
 double budgets_from_one_photon_to_a_quadrillion();
+double differences_of_dim_and_bright_captures();
 double a_single_photon_in_ten_thousand_bins();
 
 // scan_cases.cpp

@@ -2,6 +2,7 @@
 // Counts: none, one, a great many, and detectors that see no more. Darkness, negative and
 // saturated values in reconstruction: tests/nlos/reconstruction_hard_cases_test.cpp.
 #include "calib/poisson_deviance.h"
+#include "nlos/compare_image.h"
 #include "nlos/dead_time.h"
 #include "nlos/detector.h"
 #include "renderer/core/random.h"
@@ -239,6 +240,29 @@ double a_single_photon_in_ten_thousand_bins() {
         }
     }
     worst.add(std::abs(all - 100.0) / std::sqrt(100.0));
+    return worst.value();
+}
+
+double differences_of_dim_and_bright_captures() {
+    // Relative mean square error of values 1e-30 to 1e30, negative ones too, differing by 1e-6.
+    core::Rng rng(test_support::seed_of("differences_of_dim_and_bright_captures"), 0, 0);
+    Worst worst;
+    for (const double size : {1e-30, 1e-6, 1.0, 1e30}) {
+        std::vector<float> reference;
+        std::vector<float> result;
+        Quad above = 0;
+        Quad below = 0;
+        for (int i = 0; i < 1000; ++i) {
+            const double value = size * (2.0 * rng.uniform() - 1.0);
+            reference.push_back(static_cast<float>(value));
+            result.push_back(static_cast<float>(value * (1.0 + 1e-6)));
+            const Quad error = Quad(result.back()) - Quad(reference.back());
+            above += error * error;
+            below += Quad(reference.back()) * Quad(reference.back());
+        }
+        const auto found = nlos::relative_mse(result, reference);
+        worst.add(found ? truth::relative_error(*found, above / below) : HUGE_VAL);
+    }
     return worst.value();
 }
 
