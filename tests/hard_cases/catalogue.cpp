@@ -356,7 +356,7 @@ const std::vector<HardCase>& catalogue() {
          "signal",
          "squares of 1e-30 and of 1e30, negative values, differences of 1e-6",
          "relative mean square error, relative",
-         1e-12,
+         1e-14,
          differences_of_dim_and_bright_captures},
         {"a_single_photon_in_ten_thousand_bins",
          "signal",
