@@ -76,6 +76,7 @@ BenchPoint measure(const BenchScene& bench,
     }
     std::sort(seconds.begin(), seconds.end());
     BenchPoint point;
+    point.runs = static_cast<int>(seconds.size());
     point.cpu_seconds = seconds[seconds.size() / 2];
     point.cpu_spread = seconds.back() - seconds.front();
     const double squared = std::inner_product(errors.begin(), errors.end(), errors.begin(), 0.0);

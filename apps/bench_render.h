@@ -14,6 +14,7 @@ namespace apps {
 struct BenchPoint {
     std::string effort;        ///< "samples=64", "target_error=0.01"
     int samples = 0;           ///< 0: the method takes none
+    int runs = 1;              ///< that were made
     double cpu_seconds = 0.0;  ///< median over repeats
     double cpu_spread = 0.0;   ///< largest minus smallest
     double rel_l2 = 0.0;       ///< against the reference, root mean square over repeats
@@ -25,6 +26,7 @@ template <class Visitor>
 void for_each_field(BenchPoint& point, Visitor&& visit) {
     visit("effort", point.effort, "setting that was varied");
     visit("samples", point.samples, "per pair; 0: the method takes none");
+    visit("runs", point.runs, "runs that were made");
     visit("cpu_seconds", point.cpu_seconds, "CPU time, median over repeats [s]");
     visit("cpu_spread", point.cpu_spread, "largest minus smallest CPU time [s]");
     visit("rel_l2", point.rel_l2, "relative L2 error over all of H");

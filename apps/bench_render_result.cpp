@@ -89,13 +89,14 @@ std::string curves_text(const RenderBench& bench) {
         "{:<14} {:<20} {:>10} {:>10} {:>10}\n", "method", "effort", "CPU s", "rel. L2", "spread");
     for (const BenchCurve& curve : bench.curves) {
         for (const BenchPoint& point : curve.points) {
-            text += fmt::format("{:<14} {:<20} {:>10.3f} {:>10.2e} {:>10.2e}{}\n",
-                                curve.method,
-                                point.effort,
-                                point.cpu_seconds,
-                                point.rel_l2,
-                                point.rel_l2_spread,
-                                point.is_on_front ? "  front" : "");
+            text +=
+                fmt::format("{:<14} {:<20} {:>10.3f} {:>10.2e} {:>10}{}\n",
+                            curve.method,
+                            point.effort,
+                            point.cpu_seconds,
+                            point.rel_l2,
+                            point.runs > 1 ? fmt::format("{:.2e}", point.rel_l2_spread) : "one run",
+                            point.is_on_front ? "  front" : "");
         }
         text += fmt::format(
             "{:<14} error = {:.3g} seconds^{:.3f}\n", curve.method, curve.coefficient, curve.slope);

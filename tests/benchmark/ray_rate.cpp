@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
-// How close the path tracer comes to the ray tracer's own speed: renders a scene on one thread,
+// How close an estimator comes to the ray tracer's own speed: renders a scene on one thread,
 // records the rays by wrapping Embree's entry points at link time, and replays exactly these rays
 // with nothing in between.
-//   ray_rate SCENE.json [SAMPLES] [MAX_BOUNCES] [REPEATS]
+//   ray_rate SCENE.json [SAMPLES] [MAX_BOUNCES] [REPEATS] [METHOD]
 #include <embree3/rtcore.h>
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <string>
 #include <vector>
 
 #include "renderer/core/parallel.h"
@@ -121,11 +122,12 @@ int argument(int argc, char** argv, int index, int otherwise) {
 
 int main(int argc, char** argv) {
     if (argc < 2) {
-        fmt::print(stderr, "usage: ray_rate SCENE.json [SAMPLES] [MAX_BOUNCES] [REPEATS]\n");
+        fmt::print(stderr, "usage: ray_rate SCENE.json [SAMPLES] [MAX_BOUNCES] [REPEATS] [METHOD]\n");
         return 2;
     }
     const core::ThreadLimit one_thread(1);
-    auto description = renderer::read_scene_description(argv[1], {"render.method=path"});
+    const std::string method = argc > 5 ? argv[5] : "path";
+    auto description = renderer::read_scene_description(argv[1], {"render.method=" + method});
     description.render.samples = argument(argc, argv, 2, 256);
     description.render.max_bounces = argument(argc, argv, 3, 3);
     const core::Scan scan = renderer::make_scan(description);
