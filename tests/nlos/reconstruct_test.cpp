@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/reconstruct.h"
 
+#include "renderer/core/parallel.h"
+#include "renderer/core/process.h"
 #include "tests/nlos/confocal_scene.h"
 #include "tests/support/error_message.h"
 #include "tests/support/example_capture.h"
@@ -170,6 +172,30 @@ TEST(Reconstruct, RefusesMoreMemoryThanThereIs) {
         FAIL() << "864 TB were found";
     } catch (const core::Failure& failure) {
         EXPECT_NE(std::string(failure.what()).find("GB"), std::string::npos);
+    }
+}
+
+TEST(Reconstruct, TakesNoMoreMemoryThanItStates) {
+    core::Capture capture = nlos_test::confocal_capture(
+        nlos_test::wall_grid({48, 48}, {0.02, 0.02}), {0.0, 0.008, 320});
+    nlos_test::add_scatterer(capture, Vec3(0.075, -0.125, 0.5), 4.0);
+    const core::ThreadLimit limit(1);
+    constexpr double kSlack_bytes = 16e6;  // of code, plans, depth map and the allocator
+    for (const std::vector<std::string>& overrides :
+         {std::vector<std::string>{"method=bp"},
+          {"method=fbp"},
+          {"method=phasor"},
+          {"method=lct"},
+          {"method=fk"},
+          {"method=fbp", "filter=phasor"},
+          {"method=dlct"},
+          {"method=lct", "prior=tv", "tv.iterations=2"}}) {
+        core::reset_peak_rss();
+        const auto before = static_cast<double>(core::peak_rss_bytes());
+        const Reconstruction result = reconstruct(capture, with(overrides), {});
+        const double taken = static_cast<double>(core::peak_rss_bytes()) - before;
+        EXPECT_LT(taken, result.stated_bytes + kSlack_bytes) << overrides[0];
+        EXPECT_GT(result.stated_bytes, 4.0 * static_cast<double>(result.volume.values.size()));
     }
 }
 
