@@ -13,10 +13,8 @@ namespace {
 
 using core::Vec3;
 
-// Vertices that meet others this closely, over the extent, cover them; this far, they do not even
-// nearly.
+// Vertices that meet others this closely, over the extent, cover them.
 constexpr double kSame = 1e-6;
-constexpr double kNearlySame = 0.2;
 constexpr std::size_t kMostVertices = 2000;
 
 std::vector<Vec3> vertices_of(const SceneModel& model, const SceneState& state, std::size_t body) {
@@ -71,7 +69,8 @@ bool are_different_poses(const SceneModel& model, const SceneState& a, const Sce
 }
 
 std::vector<std::pair<std::string, SceneState>> turned_states(const SceneModel& model,
-                                                              const SceneState& state) {
+                                                              const SceneState& state,
+                                                              double most_distance) {
     std::vector<std::pair<std::string, SceneState>> result;
     for (std::size_t b = 0; b < model.bodies().size(); ++b) {
         const ModelBody& body = model.bodies()[b];
@@ -94,7 +93,7 @@ std::vector<std::pair<std::string, SceneState>> turned_states(const SceneModel& 
                 }
                 const std::vector<Vec3> moved = vertices_of(model, turned, b);
                 const double distance = farthest_vertex(moved, vertices);
-                if (distance < kSame || distance > kNearlySame) continue;
+                if (distance < kSame || distance > most_distance) continue;
                 const bool is_known = std::any_of(found.begin(), found.end(), [&](const auto& f) {
                     return farthest_vertex(moved, f) < kSame;
                 });

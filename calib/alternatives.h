@@ -17,8 +17,10 @@ bool are_different_poses(const SceneModel& model, const SceneState& a, const Sce
 /// quarters and halves about its principal axes, which is where a solve of a nearly symmetric
 /// body may end by mistake. Exact symmetries are left out.
 ///
-/// returns   names, such as "target turned by 90 degrees", and states
+/// most_distance   between vertices of body and turned body that still nearly meet, over the extent
+/// returns         names, such as "target turned by 90 degrees", and states
 std::vector<std::pair<std::string, SceneState>> turned_states(const SceneModel& model,
-                                                              const SceneState& state);
+                                                              const SceneState& state,
+                                                              double most_distance);
 
 }  // namespace calib

@@ -237,7 +237,7 @@ void try_turns(const FitDriver& driver,
                int max_iterations,
                std::vector<Candidate>& candidates,
                FitResult& result) {
-    for (auto& [name, state] : turned_states(driver.model(), candidates.front().state)) {
+    for (auto& [name, state] : driver.turned(candidates.front().state)) {
         Candidate turned{candidates.front().name + ", " + name, state, {}};
         turned.summary = driver.solve(last, turned.state, max_iterations);
         result.iterations += turned.summary.iterations;
@@ -274,11 +274,7 @@ void widen_sigma(const FitDriver& driver,
                  const SceneState& state,
                  Uncertainty& uncertainty,
                  FitResult& result) {
-    constexpr double kManyPerParameter = 50.0;
-    const auto size = static_cast<double>(uncertainty.sigma.size());
-    const double photons = signal_photons(result);
-    if (!driver.is_poisson() || !(photons < kManyPerParameter * size)) return;
-    if (!uncertainty.sigma.allFinite()) return;
+    if (!driver.has_few_photons() || !uncertainty.sigma.allFinite()) return;
     const Eigen::VectorXd scatter = scatter_of_refits(driver, last, state);
     const Eigen::VectorXd grown = scatter.cwiseMax(uncertainty.sigma);
     for (Eigen::Index i = 0; i < grown.size(); ++i) {
@@ -290,7 +286,7 @@ void widen_sigma(const FitDriver& driver,
     result.warnings.push_back(
         fmt::format("only {:.0f} photons: the stated errors are those of refits to simulated data, "
                     "and not normally distributed",
-                    photons));
+                    signal_photons(result)));
 }
 
 }  // namespace

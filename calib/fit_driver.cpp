@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "calib/fit_driver.h"
 
+#include "calib/alternatives.h"
 #include "calib/starts.h"
 #include "renderer/core/error.h"
 #include "renderer/core/parallel.h"
@@ -35,6 +36,8 @@ double tolerance_for(double counts) {
     return std::clamp(8.0 / std::sqrt(counts), 0.005, 0.1);
 }
 constexpr double kToleranceWithoutNoise = 0.02;
+// Blurred data leave many heights open: kept smooth, they lead to fewer wrong minima.
+constexpr double kBlurredSmoothness = 100.0;
 
 Vec3 surface_center(const ModelBody& body) {
     Vec3 sum = Vec3::Zero();
@@ -253,6 +256,19 @@ std::vector<std::pair<std::string, SceneState>> FitDriver::starts() const {
     return result;
 }
 
+bool FitDriver::has_few_photons() const {
+    constexpr double kManyPerParameter = 50.0;
+    const double total = std::accumulate(data_.values.begin(), data_.values.end(), 0.0);
+    const double ambient = ambient_guess_ * static_cast<double>(data_.values.size());
+    return is_poisson_ && total - ambient < kManyPerParameter * model_->num_columns();
+}
+
+std::vector<std::pair<std::string, SceneState>> FitDriver::turned(const SceneState& state) const {
+    constexpr double kNearlySame = 0.2;
+    constexpr double kNearlySameInNoise = 0.6;
+    return turned_states(*model_, state, has_few_photons() ? kNearlySameInNoise : kNearlySame);
+}
+
 // All of a state's light in the data's bins, without ambient light.
 double FitDriver::light_of(const Stage& stage, const SceneState& state) const {
     SceneState dark = state;
@@ -289,6 +305,7 @@ void FitDriver::match_brightness(Stage& stage, SceneState& state) const {
 SolveSummary FitDriver::solve(Stage& stage, SceneState& state, int max_iterations) const {
     SolveSettings solve_settings = solve_;
     solve_settings.max_iterations = max_iterations;
+    if (stage.blur_m > 0.0) solve_settings.laplacian_weight *= kBlurredSmoothness;
     const int rounds = stage.blur_m > 0.0 ? kBlurredVisibilityRounds : kMostVisibilityRounds;
     SolveSummary total;
     for (int round = 0; round < rounds; ++round) {

@@ -24,6 +24,10 @@ class FitDriver {
         double blur_m = 0.0;
     };
 
+    /// Poisson data with so few photons that the Fisher information says too little.
+    bool has_few_photons() const;
+    /// The best state turned so that its bodies nearly cover themselves, as the data may confuse.
+    std::vector<std::pair<std::string, SceneState>> turned(const SceneState& state) const;
     bool is_poisson() const { return is_poisson_; }
     bool scale_is_eliminated() const { return elimination_.scale; }
     const SceneModel& model() const { return *model_; }

@@ -10,7 +10,7 @@
 namespace calib {
 namespace {
 
-constexpr int kRefits = 16;
+constexpr int kRefits = 24;
 constexpr int kRefitIterations = 20;
 constexpr std::uint64_t kSeed = 0x7265666974;
 
@@ -40,6 +40,7 @@ Eigen::VectorXd scatter_of_refits(const FitDriver& driver,
         means.insert(means.end(), pair.mean.begin(), pair.mean.end());
     }
     Eigen::VectorXd squares = Eigen::VectorXd::Zero(driver.model().num_columns());
+    const auto others = driver.turned(state);
     SolveSettings settings = driver.solve_settings();
     settings.max_iterations = kRefitIterations;
     for (std::uint64_t refit = 0; refit < kRefits; ++refit) {
@@ -51,7 +52,13 @@ Eigen::VectorXd scatter_of_refits(const FitDriver& driver,
         FitObjective objective(
             *stage.model, data, true, Elimination{}, driver.model().num_columns());
         SceneState moved = state;
-        solve_stage(driver.model(), objective, settings, moved);
+        double least = solve_stage(driver.model(), objective, settings, moved).cost;
+        for (const auto& [name, turned] : others) {
+            SceneState other = turned;
+            const double cost = solve_stage(driver.model(), objective, settings, other).cost;
+            if (cost < least) moved = other;
+            least = std::min(least, cost);
+        }
         squares += difference(driver.model(), state, moved).cwiseAbs2();
     }
     return (squares / kRefits).cwiseSqrt();

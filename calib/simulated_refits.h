@@ -9,7 +9,7 @@ namespace calib {
 /// for many photons, understates when there are few.
 ///
 /// stage    the last one, of Poisson data
-/// state    the fit; every refit starts from it
+/// state    the fit; every refit starts from it and from its turned bodies, and keeps the best
 /// returns  root mean square change per column
 /// source   parametric bootstrap [Efron1993]
 Eigen::VectorXd scatter_of_refits(const FitDriver& driver,

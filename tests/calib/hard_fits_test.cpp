@@ -188,7 +188,7 @@ TEST(HardFit, ANearlySquareObjectWithFewPhotonsIsCalledAmbiguous) {
 TEST(HardFit, OneHundredPhotonsGiveWideErrorsAndSayWhy) {
     const core::Capture light = light_of(only(tilted(25.0)), 100.0, 0.005);
     const renderer::Object truth = tilted(25.0);
-    constexpr int kFits = 8;
+    constexpr int kFits = 12;
     double squares = 0.0;
     for (int seed = 0; seed < kFits; ++seed) {
         const calib::FitResult fit = calib::fit_scene(
@@ -205,8 +205,8 @@ TEST(HardFit, OneHundredPhotonsGiveWideErrorsAndSayWhy) {
         squares += error.cwiseQuotient(object.position_sigma_m).squaredNorm() +
                    turned.cwiseQuotient(object.rotation_sigma_deg).squaredNorm();
     }
-    EXPECT_LT(squares / (6.0 * kFits), 2.5);
-    EXPECT_GT(squares / (6.0 * kFits), 0.3);
+    EXPECT_LT(squares / (6.0 * kFits), 1.7);
+    EXPECT_GT(squares / (6.0 * kFits), 0.4);
 }
 
 TEST(HardFit, AWrongResponseWidthIsNamed) {
