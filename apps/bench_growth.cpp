@@ -58,7 +58,7 @@ double seconds_of(Estimator method, const Sizes& sizes) {
     description.render.method = method;
     description.render.max_bounces = sizes.bounces;
     description.render.samples = 256;
-    description.render.target_error = 0.02;
+    if (method == Estimator::ThirdBounce) description.render.target_error = 0.02;
     const core::Scan scan = renderer::make_scan(description);
     const renderer::Scene scene({{sheet(sizes.cells)}, {}}, scan, {});
     const double start = core::cpu_seconds();

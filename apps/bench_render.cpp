@@ -44,6 +44,7 @@ core::Capture make_reference(const BenchScene& bench, bool quick, RenderBench& r
     const core::Capture reference = bench.render(settings);
 
     settings.method = renderer::Estimator::Path;
+    settings.target_error.reset();
     settings.samples = quick ? kQuickCheckSamples : kCheckSamples;
     settings.seed = kCheckSeed;
     core::Capture check = bench.render(settings);

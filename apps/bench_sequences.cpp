@@ -72,10 +72,9 @@ SequenceFrames reference_frames(const SequenceCase& sequence, std::uint64_t seed
     renderer::RenderSettings settings = setup.description.render;
     settings.seed = seed;
     settings.samples = sequence.reference_samples;
-    settings.target_error = 5e-3;
-    settings.method = setup.scan.camera || settings.max_bounces > 3
-                          ? renderer::Estimator::Restir
-                          : renderer::Estimator::ThirdBounce;
+    const bool integrable = !setup.scan.camera && settings.max_bounces == 3;
+    settings.method = integrable ? renderer::Estimator::ThirdBounce : renderer::Estimator::Restir;
+    if (integrable) settings.target_error = 5e-3;
     settings.restir.reuse = renderer::Reuse::None;
     settings.restir.shared_walks = 2000;
     settings.restir.walks = 16;

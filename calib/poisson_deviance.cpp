@@ -32,8 +32,9 @@ Residual signed_deviance(double expected, double counted) {
 DevianceMoments deviance_moments(double expected) {
     if (expected <= 0.0) return {};
     if (expected > 50.0) {  // Lawley's expansion
-        const double mean = 1.0 + 1.0 / (6.0 * expected);
-        return {mean, 2.0 + 2.0 / (3.0 * expected)};
+        const double inverse = 1.0 / expected;
+        return {1.0 + inverse * (1.0 + inverse * (1.0 + 1.9 * inverse)) / 6.0,
+                2.0 + inverse * (2.0 + 4.0 * inverse) / 3.0};
     }
     double mean = 0.0;
     double square = 0.0;

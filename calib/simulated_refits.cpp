@@ -10,7 +10,7 @@
 namespace calib {
 namespace {
 
-constexpr int kRefits = 24;
+constexpr int kRefits = 40;
 constexpr int kRefitIterations = 20;
 constexpr std::uint64_t kSeed = 0x7265666974;
 

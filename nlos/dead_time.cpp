@@ -34,6 +34,24 @@ void follow_pulse(const std::vector<double>& probabilities,
     }
 }
 
+/// Fills a history with what is exact for steady light: a detector sees with the probability
+/// 1 / (1 + expected detections within a blind time). The closer to the steady state, the less
+/// there is to forget; detectors that are blind in step with the pulses forget slowly.
+void start_steadily(const std::vector<double>& probabilities,
+                    std::size_t blind_bins,
+                    std::vector<double>& history) {
+    const std::size_t period = probabilities.size();
+    double before = 0.0;  // probabilities of the last `blind_bins` bins
+    for (std::size_t i = 0; i < blind_bins; ++i) before += probabilities[period - 1 - i % period];
+    for (std::size_t i = 0; i < history.size(); ++i) {
+        const std::size_t bin = i % period;
+        history[i] = probabilities[bin] / (1.0 + before);
+        const std::size_t expired =
+            (bin + (blind_bins / period + 1) * period - blind_bins) % period;
+        if (blind_bins > 0) before += probabilities[bin] - probabilities[expired];
+    }
+}
+
 /// Detections of one detector, per pulse, once its start is forgotten: a fixed point. Mixing each
 /// step with the one before damps the swing of detectors that are blind in step.
 std::vector<double> find_steady_state(const std::vector<double>& probabilities,
@@ -42,7 +60,8 @@ std::vector<double> find_steady_state(const std::vector<double>& probabilities,
     constexpr int kMostSteps = 1000;
     constexpr double kTolerance = 1e-9;  // of all detections
     const auto period = static_cast<std::ptrdiff_t>(probabilities.size());
-    std::vector<double> history((history_periods + 1) * probabilities.size(), 0.0);
+    std::vector<double> history((history_periods + 1) * probabilities.size());
+    start_steadily(probabilities, train.blind_bins, history);
     const auto keep_probability = [](double seeing, double p) { return seeing * p; };
     for (int step = 0; step < kMostSteps; ++step) {
         if (step > 0) std::rotate(history.begin(), history.begin() + period, history.end());

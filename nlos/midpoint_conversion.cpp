@@ -115,7 +115,7 @@ std::vector<double> moved_edges(const core::Scan& scan,
     std::vector<double> edges(static_cast<std::size_t>(axis.num_bins) + 1);
     for (std::size_t bin = 0; bin < edges.size(); ++bin) {
         const double opl = axis.bin_begin_m(static_cast<double>(bin)) - scan.device_legs_m(pair);
-        edges[bin] = opl > offset ? std::sqrt(opl * opl - offset * offset) : 0.0;
+        edges[bin] = opl > offset ? std::sqrt((opl - offset) * (opl + offset)) : 0.0;
     }
     return edges;
 }

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 
@@ -91,7 +92,8 @@ double relative_difference(const Transient& a, const Transient& b) {
         sum += difference * difference;
     }
     const double norm = squared_norm(b);
-    return norm > 0.0 ? std::sqrt(sum / norm) : 0.0;
+    if (sum == 0.0) return 0.0;
+    return norm > 0.0 ? std::sqrt(sum / norm) : std::numeric_limits<double>::infinity();
 }
 
 // Finds the fineness that meets the target, and integrates with it.

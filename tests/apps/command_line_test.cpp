@@ -102,6 +102,49 @@ TEST_F(CommandLine, SceneToScoredReconstruction) {
     }
 }
 
+TEST_F(CommandLine, CalibrationsServeRenderReconstructAndFit) {
+    const std::string scene = make_scene("scene.json", {{"scan", {{"sensing_points", {8, 8}}}}});
+    ASSERT_EQ(run("render " + scene + " -o " + file("plain.h5")).status, 0);
+    const core::Scan scan = nlos::read_capture(file("plain.h5")).scan;
+    core::Json calibration = {{"response", {{"jitter_fwhm_ps", 60.0}}}};
+    for (std::size_t i = 0; i < scan.num_pairs(); ++i) {
+        const core::Vec3& p = scan.sensing.positions[i];
+        calibration["points_m"].push_back({p.x(), p.y(), p.z()});
+        calibration["normals"].push_back({0.0, 0.0, 1.0});
+        calibration["opl_offset_m"].push_back(1.0 + 0.003 * static_cast<double>(i));
+    }
+    write_file_bytes(file("calibration.json"), calibration.dump());
+    const std::string option = " --calibration " + file("calibration.json");
+    const std::string capture = file("capture.h5");
+    const Outcome render = run("render " + scene + " -o " + capture + option);
+    EXPECT_EQ(render.status, 0) << render.err;
+
+    // Only with the calibration is the letter where it is.
+    const std::string reconstruct = "reconstruct " + capture + " -o " + file("volume.h5") +
+                                    " --method bp --set volume.z_range_m=[0.5,0.9]";
+    EXPECT_EQ(run(reconstruct + option).status, 0);
+    EXPECT_EQ(run("compare " + file("volume.h5") + " " + scene + " -o " + file("m.json")).status,
+              0);
+    EXPECT_LT(core::read_json_file(file("m.json"))["depth_mae_m"].get<double>(), 0.02);
+
+    const core::Json model = {{"scene", "scene.json"}, {"free", {{"letter", {"pose", "albedo"}}}}};
+    write_file_bytes(file("model.json"), model.dump());
+    const std::string fit = "fit " + capture + " " + file("model.json") + " -o " + file("fit.json");
+    const Outcome fitted = run(fit + option);
+    EXPECT_EQ(fitted.status, 0) << fitted.err;
+    EXPECT_EQ(run("compare " + file("fit.json") + " " + scene + " -o " + file("f.json")).status, 0);
+    const core::Json scores = core::read_json_file(file("f.json"));
+    EXPECT_LT(scores["position_error_m"].get<double>(), 0.003) << scores.dump(1);
+    const Outcome misled = run(fit);
+    EXPECT_NE(misled.err.find("does not explain the data"), std::string::npos) << misled.err;
+
+    calibration.erase("response");
+    write_file_bytes(file("calibration.json"), calibration.dump());
+    for (const std::string& command : {"render " + scene + " -o " + capture, reconstruct, fit}) {
+        expect_bad_input(command + option, "has no response");
+    }
+}
+
 TEST_F(CommandLine, EqualSeedsGiveEqualFilesWhateverTheThreads) {
     const std::string scene = make_scene("scene.json", core::Json::object());
     std::vector<core::Capture> captures;

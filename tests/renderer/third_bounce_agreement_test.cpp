@@ -77,6 +77,7 @@ TEST_P(ThirdBounceOfScenes, AgreesWithPathTracingBinByBin) {
     EXPECT_EQ(deterministic.sources[0].estimator, Estimator::ThirdBounce);
 
     settings.method = Estimator::Path;
+    settings.target_error.reset();
     settings.variance = true;
     const auto paths =
         renderer::render(scene, scan, description.time_axis, settings, core::Progress{});
@@ -130,11 +131,12 @@ TEST(AutoMethod, AddsPathsForNarrowLobesAndHigherOrders) {
     settings.samples = 400'000;
     settings.variance = true;
     settings.by_order = true;
-    settings.target_error = 1e-3;
+    settings.target_error = 5e-3;  // half of it for the integrator
     const core::TimeAxis axis{1.0, 0.02, 60};
     const auto mixed = renderer::render(scene, scan, axis, settings, core::Progress{});
     ASSERT_EQ(mixed.sources.size(), 3U);
     settings.method = Estimator::Path;
+    settings.target_error.reset();
     settings.seed = 1;
     const auto paths = renderer::render(scene, scan, axis, settings, core::Progress{});
     ASSERT_EQ(paths.sources.size(), 1U);
@@ -150,7 +152,7 @@ TEST(AutoMethod, AddsPathsForNarrowLobesAndHigherOrders) {
     for (std::size_t i = 0; i < both.variance->values().size(); ++i) {
         both.variance->values()[i] += mixed.capture.variance->values()[i];
     }
-    expect_bins_agree(mixed.capture, both, 1e-3);
+    expect_bins_agree(mixed.capture, both, 2.5e-3);
 }
 
 // Spheres and parallelograms at random, which hide and touch one another.
