@@ -31,12 +31,12 @@ std::string script_of(const LogPlot& plot, const std::string& terminal, const st
             data += fmt::format("{} {}\n", line.x[j], line.y[j]);
         }
         data += "EOD\n";
-        curves += fmt::format("{}$line{} with {} title '{}'",
-                              i == 0 ? "plot " : ", ",
-                              i,
-                              line.style == LineStyle::Measured ? "linespoints lw 2 pt 7"
-                                                                : "lines lw 3 dt 2",
-                              line.title);
+        curves += fmt::format(
+            "{}$line{} with {} title '{}'",
+            i == 0 ? "plot " : ", ",
+            i,
+            line.style == LineStyle::Measured ? "linespoints lw 2 pt 7" : "lines lw 3 dt 2",
+            line.title);
     }
     return script + data + curves + "\n";
 }

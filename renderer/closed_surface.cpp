@@ -54,8 +54,7 @@ int visible_side(const Object& object, const core::Scan& scan) {
     Eigen::AlignedBox3d box;
     for (const Vec3& vertex : object.mesh.vertices) box.extend(vertex);
     const auto inside = [&](const Vec3& point) { return box.contains(point); };
-    if (scan.camera &&
-        (inside(scan.camera->position_m) || inside(scan.camera->light_position()))) {
+    if (scan.camera && (inside(scan.camera->position_m) || inside(scan.camera->light_position()))) {
         return 0;
     }
     if (std::any_of(scan.sensing.positions.begin(), scan.sensing.positions.end(), inside) ||

@@ -45,14 +45,18 @@ void for_each_field(RenderSettings& s, Visitor&& visit) {
     visit("method", s.method, "estimator");
     visit("max_bounces", s.max_bounces, "bounces counted, both on the relay wall included");
     visit("samples", s.samples, "candidate paths per measurement pair");
-    visit("seconds", s.seconds, "render for this long instead of a number of samples or an error [s]");
+    visit("seconds",
+          s.seconds,
+          "render for this long instead of a number of samples or an error [s]");
     visit("target_error",
           s.target_error,
           "relative L2 error over all of H to stay below, instead of a number of samples; null: "
           "0.01 for third_bounce");
     visit("seed", s.seed, "seed of the random numbers");
     visit("gate", s.gate, "shape of the gate of a one-bin axis");
-    visit("exclude", s.exclude, "excluded surfaces: mis leaves them to paths, drop ignores them, none excludes nothing");
+    visit("exclude",
+          s.exclude,
+          "excluded surfaces: mis leaves them to paths, drop ignores them, none excludes nothing");
     visit("exclude_area_above_m2",
           s.exclude_area_above_m2,
           "exclude triangles above this area from ellipsoidal connections [m^2]");

@@ -3,6 +3,11 @@
 // records the rays by wrapping Embree's entry points at link time, and replays exactly these rays
 // with nothing in between.
 //   ray_rate SCENE.json [SAMPLES] [MAX_BOUNCES] [REPEATS] [METHOD]
+#include "renderer/core/parallel.h"
+#include "renderer/core/process.h"
+#include "renderer/render.h"
+#include "renderer/scene_file.h"
+
 #include <embree3/rtcore.h>
 #include <fmt/core.h>
 
@@ -11,11 +16,6 @@
 #include <cstdlib>
 #include <string>
 #include <vector>
-
-#include "renderer/core/parallel.h"
-#include "renderer/core/process.h"
-#include "renderer/render.h"
-#include "renderer/scene_file.h"
 
 namespace {
 
@@ -110,7 +110,8 @@ double replay(Recording recording) {
 }
 
 double median(std::vector<double> values) {
-    std::nth_element(values.begin(), values.begin() + std::ptrdiff_t(values.size() / 2), values.end());
+    std::nth_element(
+        values.begin(), values.begin() + std::ptrdiff_t(values.size() / 2), values.end());
     return values[values.size() / 2];
 }
 
@@ -122,7 +123,8 @@ int argument(int argc, char** argv, int index, int otherwise) {
 
 int main(int argc, char** argv) {
     if (argc < 2) {
-        fmt::print(stderr, "usage: ray_rate SCENE.json [SAMPLES] [MAX_BOUNCES] [REPEATS] [METHOD]\n");
+        fmt::print(stderr,
+                   "usage: ray_rate SCENE.json [SAMPLES] [MAX_BOUNCES] [REPEATS] [METHOD]\n");
         return 2;
     }
     const core::ThreadLimit one_thread(1);
