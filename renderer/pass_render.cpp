@@ -4,24 +4,18 @@
 #include "renderer/core/parallel.h"
 #include "renderer/core/process.h"
 #include "renderer/short_paths.h"
+#include "renderer/stopwatch.h"
 #include "renderer/transient_accumulator.h"
 
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <limits>
 
 namespace renderer {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 // Passes are long enough to keep shadow rays coherent and short enough to give a variance.
 constexpr int kPasses = 8;
@@ -213,7 +207,7 @@ void PassLoop::fill_capture(const Tile& tile,
 }
 
 void PassLoop::run(const Tile& tile, const core::Progress& progress, RenderResult& result) {
-    const auto start = Clock::now();
+    const Stopwatch watch;
     const PassPlan plan = plan_passes(settings_, work_);
     HistogramSums sums(tile.count, axes_, num_channels_, settings_.variance);
     StoppingRule rule(settings_, plan.num_passes, work_.known);
@@ -221,7 +215,7 @@ void PassLoop::run(const Tile& tile, const core::Progress& progress, RenderResul
     for (bool enough = false; !enough;) {
         run_pass(tile, pass, plan.samples_per_pass, sums);
         ++pass;
-        const double elapsed = seconds_since(start);
+        const double elapsed = watch.seconds();
         const double share = work_.estimate ? rule.share_done(pass, elapsed, sums.time) : 1.0;
         const double paths = static_cast<double>(tile.count) * plan.samples_per_pass * pass;
         progress.update(share, fmt::format("{:.2f} M paths/s", paths / elapsed * 1e-6));
@@ -272,7 +266,7 @@ RenderResult render_passes(const Scene& scene,
                            const RenderSettings& settings,
                            const PassWork& work,
                            const core::Progress& progress) {
-    const auto start = Clock::now();
+    const Stopwatch watch;
     const std::size_t num_pairs = scan.num_pairs();
     const std::size_t tile_pairs = pairs_per_tile(scan, axes, settings, work.most_sums_bytes);
     require_memory(scan, axes, settings, tile_pairs);
@@ -292,7 +286,7 @@ RenderResult render_passes(const Scene& scene,
             throw core::Failure("render", "interrupted before every part of the scan was traced");
         }
     }
-    result.seconds = seconds_since(start);
+    result.seconds = watch.seconds();
     return result;
 }
 

@@ -6,29 +6,23 @@
 #include "renderer/restir_renderer.h"
 #include "renderer/short_paths.h"
 #include "renderer/stopping_rule.h"
+#include "renderer/stopwatch.h"
 #include "renderer/transient_accumulator.h"
 
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <limits>
 
 namespace renderer {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 constexpr std::size_t kPairsPerBlock = 64;
 
 // Estimates of one frame of a sequence, at most: each has random numbers of its own.
 constexpr std::uint64_t kMostRepeats = 1 << 16;
-
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 int candidates_per_frame(const RestirSettings& settings) {
     return settings.walks + (settings.candidates == Candidates::Shared ? settings.shared_walks : 0);
@@ -200,7 +194,7 @@ RenderResult render_restir(std::shared_ptr<const Scene> scene,
                            const core::HistogramAxes& axes,
                            const RenderSettings& asked,
                            const core::Progress& progress) {
-    const auto start = Clock::now();
+    const Stopwatch watch;
     require_gate_to_shrink_to(axes, asked);
     const RenderSettings settings = with_fitting_frames(asked);
     RestirRenderer renderer(scan, settings);
@@ -216,7 +210,7 @@ RenderResult render_restir(std::shared_ptr<const Scene> scene,
         const auto number = static_cast<std::uint64_t>(done);
         add_frame(renderer.render({restir_scene, axes, nullptr, number}), settings, sums);
         ++done;
-        const double share = rule.share_done(done, seconds_since(start), sums.time);
+        const double share = rule.share_done(done, watch.seconds(), sums.time);
         progress.update(share, fmt::format("{} frames", done));
         enough = share >= 1.0;
         if (!enough && progress.should_stop()) {
@@ -231,7 +225,7 @@ RenderResult render_restir(std::shared_ptr<const Scene> scene,
     result.interrupted = interrupted;
     result.num_rays = renderer.counts().num_rays;
     result.restir_counts = renderer.counts();
-    result.seconds = seconds_since(start);
+    result.seconds = watch.seconds();
     return result;
 }
 
@@ -250,7 +244,7 @@ FrameRenderer make_restir_frame_renderer(const core::Scan& scan, const RenderSet
     };
     const auto state = std::make_shared<State>(scan, settings);
     return [state](const Frame& frame, const core::Scan& frame_scan, const core::Progress&) {
-        const auto start = Clock::now();
+        const Stopwatch watch;
         require_gate_to_shrink_to(frame.axes, state->settings);
         if (frame.index == 0) require_memory(state->renderer.bytes_needed(frame.axes));
         const bool is_first = state->last.scene == nullptr;
@@ -271,13 +265,13 @@ FrameRenderer make_restir_frame_renderer(const core::Scan& scan, const RenderSet
                 {scene, frame.axes, is_first ? nullptr : &state->last, number});
             add_frame(rendered, state->settings, sums);
             ++repeats;
-        } while (state->settings.seconds && seconds_since(start) < *state->settings.seconds &&
+        } while (state->settings.seconds && watch.seconds() < *state->settings.seconds &&
                  repeats < static_cast<int>(kMostRepeats));
         state->last = std::move(rendered);
         RenderResult result = result_of(sums, repeats, frame_scan, frame.axes, state->settings);
         result.num_rays = state->renderer.counts().num_rays - rays_before;
         result.restir_counts = state->renderer.counts();
-        result.seconds = seconds_since(start);
+        result.seconds = watch.seconds();
         return result;
     };
 }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/third_bounce.h"
 
+#include "renderer/stopwatch.h"
 #include "renderer/third_bounce_scan.h"
 
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -16,12 +16,6 @@ namespace renderer {
 namespace {
 
 using core::Transient;
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
 constexpr double kDefaultTargetError = 0.01;
 
 // The pairs that are computed at several finenesses.
@@ -145,13 +139,13 @@ class Integrator {
 const Transient& Integrator::try_out(int fineness) {
     if (const auto it = trials_.find(fineness); it != trials_.end()) return it->second;
     const PieceSet pieces = cut(fineness);
-    const auto start = Clock::now();
+    const Stopwatch watch;
     ThirdBounceScan trial(scene_, trial_scan_, axis_, pieces, negligible_error(fineness));
     Transient& result =
         trials_.try_emplace(fineness, trial_scan_.num_pairs(), axis_.num_bins).first->second;
     trial.integrate(
         0, [](double) { return true; }, result);
-    trial_seconds_[fineness] = seconds_since(start);
+    trial_seconds_[fineness] = watch.seconds();
     shadow_errors_[fineness] = std::sqrt(trial.squared_shadow_error());
     num_rays_ += trial.num_rays();
     if (norm_per_pair_ == 0.0) {
@@ -178,12 +172,12 @@ double Integrator::error_of(int fineness) {
 int Integrator::finest_in_time() {
     const double trials_to_all =
         static_cast<double>(scan_.num_pairs()) / static_cast<double>(trial_scan_.num_pairs());
-    const auto start = Clock::now();
+    const Stopwatch watch;
     int fineness = kCoarsest;
     while (fineness > kFinest) {
         try_out(fineness - 1);
         const double predicted = trial_seconds_[fineness - 1] * trials_to_all;
-        if (seconds_since(start) + predicted > *seconds_) break;
+        if (watch.seconds() + predicted > *seconds_) break;
         --fineness;
     }
     return fineness;
@@ -246,9 +240,9 @@ ThirdBounce integrate_third_bounce(const Scene& scene,
                                    const core::TimeAxis& axis,
                                    const RenderSettings& settings,
                                    const core::Progress& progress) {
-    const auto start = Clock::now();
+    const Stopwatch watch;
     ThirdBounce result = Integrator(scene, scan, axis, settings).run(progress);
-    result.seconds = seconds_since(start);
+    result.seconds = watch.seconds();
     return result;
 }
 
