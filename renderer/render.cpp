@@ -141,12 +141,6 @@ double leave_out_orders(const Scene& scene,
     return orders.left_out;
 }
 
-double squared_norm(const core::Transient& transient) {
-    double sum = 0.0;
-    for (const float value : transient.values()) sum += double{value} * double{value};
-    return sum;
-}
-
 // Third bounces by the integrator, what is left by paths. When both are needed, the integrator,
 // which converges faster, gets half of the error or a quarter of the time.
 RenderResult integrate_and_trace(const Scene& scene,
@@ -175,9 +169,7 @@ RenderResult integrate_and_trace(const Scene& scene,
         tracing.seconds =
             std::max((1.0 - kShareOfTime) * *settings.seconds, *settings.seconds - third.seconds);
     }
-    const KnownPart known{&third.transient,
-                          std::pow(third.estimated_error, 2) * squared_norm(third.transient),
-                          left_out};
+    const KnownPart known{&third.transient, third.squared_error, left_out};
     RenderResult result =
         trace_paths(scene, scan, axes, tracing, share, known, progress.part(done, 1.0));
     add(third.transient, result.capture.transient);

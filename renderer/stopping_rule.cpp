@@ -40,10 +40,13 @@ double StoppingRule::share_done(int passes, double elapsed_s, const TransientAcc
 double StoppingRule::share_of_target(int passes, const TransientAccumulator& sums) {
     if (passes >= next_look_) {
         const auto norms = sums.squared_norms(passes, known_.transient);
-        if (relative_error(norms, known_) <= *target_) return 1.0;
-        // Noise falls with the number of passes, the rest of the error stays.
+        // Noise falls with the number of passes, the rest of the error stays. Where that alone is
+        // above the target, more passes than the target itself asks for would be in vain.
         const double rest = relative_error({0.0, norms.signal}, known_);
-        const double allowed = (*target_ * *target_ - rest * rest) * norms.signal;
+        const double share =
+            rest < *target_ ? *target_ * *target_ - rest * rest : *target_ * *target_;
+        const double allowed = share * norms.signal;
+        if (norms.noise <= allowed) return 1.0;
         const double needed =
             allowed > 0.0 ? passes * norms.noise / allowed : std::numeric_limits<double>::max();
         predicted_passes_ =

@@ -16,6 +16,7 @@ namespace renderer {
 namespace {
 
 using core::Transient;
+
 constexpr double kDefaultTargetError = 0.01;
 
 // The pairs that are computed at several finenesses.
@@ -230,6 +231,8 @@ ThirdBounce Integrator::run(const core::Progress& progress) {
     result.num_rays = num_rays_;
     const double wall = scene_.wall_albedo() / core::kPi;
     for (float& value : result.transient.values()) value = static_cast<float>(value * wall * wall);
+    const double norm = squared_norm(result.transient);
+    if (norm > 0.0) result.squared_error = std::pow(result.estimated_error, 2) * norm;
     return result;
 }
 

@@ -14,6 +14,7 @@ namespace renderer {
 struct ThirdBounce {
     core::Transient transient;
     double estimated_error = 0.0;  ///< relative L2 over all of H
+    double squared_error = 0.0;    ///< the same, absolute, squared
     std::size_t num_pieces = 0;    ///< that the surfaces were cut into
     std::uint64_t num_rays = 0;
     double seconds = 0.0;

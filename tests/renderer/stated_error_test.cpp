@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 namespace {
 
@@ -181,6 +182,25 @@ TEST(StatedError, AutoSaysWhichOrdersItLeavesOut) {
         << result.warnings[0];
     settings.target_error.reset();
     EXPECT_TRUE(renderer::render(scene, scan, {kAxis, {}}, settings, {}).warnings.empty());
+}
+
+// More passes would not help.
+TEST(StatedError, AnErrorThatIsKnownToBeLargerDoesNotKeepPassesGoing) {
+    renderer::RenderSettings settings;
+    settings.target_error = 0.1;
+    const core::TimeAxis axis{0.0, 1.0, 1};
+    for (const double known_error : {4.0, std::numeric_limits<double>::infinity()}) {
+        renderer::TransientAccumulator sums(1, 1, 1, false);
+        renderer::StoppingRule rule(settings, 1, {nullptr, known_error, 0.0});
+        double share = 0.0;
+        for (int pass = 1; pass <= 64 && share < 1.0; ++pass) {
+            renderer::PassHistogram histogram({axis, {}}, renderer::GateShape::Box, 1);
+            histogram.add_to_bin(0, 0, 0.0, pass % 2 == 0 ? 1.1 : 0.9);
+            sums.add_pass(0, histogram);
+            share = rule.share_done(pass, 0.0, sums);
+        }
+        EXPECT_EQ(share, 1.0) << known_error;
+    }
 }
 
 TEST(StatedError, FramesThatShareTheirPastRefuseOne) {
