@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/report.h"
 
-#include "apps/bench_card.h"
+#include "apps/bench/card.h"
 #include "apps/html.h"
 #include "apps/metrics_table.h"
 #include "apps/report_style.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/results_folder.h"
 
-#include "apps/bench_card.h"
+#include "apps/bench/card.h"
 #include "calib/fit_file.h"
 #include "nlos/formats/capture_file.h"
 #include "nlos/formats/volume_file.h"

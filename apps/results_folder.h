@@ -39,7 +39,7 @@ struct Figure {
     std::string bytes;
 };
 
-/// What a benchmark found, see bench_output.h.
+/// What a benchmark found, see bench/output.h.
 struct BenchCard {
     std::string file;
     std::vector<Fact> facts;

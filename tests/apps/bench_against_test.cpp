@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "apps/bench_against.h"
-
-#include "apps/gnuplot.h"
+#include "apps/bench/against.h"
+#include "apps/bench/gnuplot.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "apps/power_law.h"
+#include "apps/bench/power_law.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: MIT
+#include "apps/bench/gates.h"
+
+#include "apps/bench/error.h"
+#include "apps/bench/scene.h"
+#include "renderer/core/parallel.h"
+#include "renderer/core/process.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace apps {
+namespace {
+
+constexpr double kGates_mm[] = {0.0, 100.0, 30.0, 10.0, 3.0, 1.0};
+constexpr double kRunSeconds = 0.3;       ///< of one measured run, about
+constexpr double kReferenceFactor = 8.0;  ///< a reference takes this many runs
+constexpr int kPilotSamples = 64;
+constexpr std::uint64_t kReferenceSeed = 1'000'000;
+
+// A method at work on one axis.
+struct Case {
+    const BenchScene& scene;
+    core::TimeAxis axis;
+    renderer::RenderSettings settings;
+};
+
+struct TimedCapture {
+    core::Capture capture;
+    double cpu_seconds = 0.0;
+};
+
+TimedCapture run(const Case& c, int samples, std::uint64_t seed) {
+    renderer::RenderSettings settings = c.settings;
+    settings.samples = samples;
+    settings.seed = seed;
+    const double start = core::cpu_seconds();
+    TimedCapture timed{c.scene.render(c.axis, settings), 0.0};
+    timed.cpu_seconds = core::cpu_seconds() - start;
+    return timed;
+}
+
+// Samples that take about `seconds`.
+int samples_for(const Case& c, double seconds) {
+    const double pilot = std::max(1e-3, run(c, kPilotSamples, kReferenceSeed - 1).cpu_seconds);
+    return static_cast<int>(std::clamp(kPilotSamples * seconds / pilot, 16.0, 1e7));
+}
+
+// Mean and its standard deviation.
+struct Mean {
+    double value = 0.0;
+    double sigma = 0.0;
+};
+
+Mean mean_of(const std::vector<double>& values) {
+    const double n = static_cast<double>(values.size());
+    Mean mean;
+    for (const double v : values) mean.value += v / n;
+    double squares = 0.0;
+    for (const double v : values) squares += (v - mean.value) * (v - mean.value);
+    if (n > 1.0) mean.sigma = std::sqrt(squares / (n - 1.0) / n);
+    return mean;
+}
+
+// Relative MSE times CPU seconds, which is what is left after one second.
+struct Cost {
+    Mean all;
+    Mean trimmed;
+};
+
+Cost cost(const Case& c, const core::Capture& a, const core::Capture& b, int repeats) {
+    const int samples = samples_for(c, kRunSeconds);
+    std::vector<double> all;
+    std::vector<double> trimmed;
+    for (int i = 0; i < repeats; ++i) {
+        const TimedCapture timed = run(c, samples, static_cast<std::uint64_t>(i));
+        const ErrorSums errors = errors_of(timed.capture.transient, a.transient, b.transient);
+        all.push_back(errors.rel_mse() * timed.cpu_seconds);
+        trimmed.push_back(errors.trimmed_rel_mse() * timed.cpu_seconds);
+    }
+    return {mean_of(all), mean_of(trimmed)};
+}
+
+// Length before which half of the signal arrives; with Exclusion::Drop, of that by way of surfaces
+// that are not excluded.
+double middle_of_signal_m(const BenchScene& scene, renderer::Exclusion exclude) {
+    renderer::RenderSettings settings = scene.settings();
+    settings.method = renderer::Estimator::Ellipsoidal;
+    settings.exclude = exclude;
+    settings.samples = kPilotSamples;
+    const core::Capture capture = scene.render(settings);
+    const int num_bins = scene.axis().num_bins;
+    std::vector<double> bins(static_cast<std::size_t>(num_bins));
+    double total = 0.0;
+    for (std::size_t i = 0; i < capture.transient.values().size(); ++i) {
+        bins[i % bins.size()] += double{capture.transient.values()[i]};
+        total += double{capture.transient.values()[i]};
+    }
+    double sum = 0.0;
+    int bin = 0;
+    while (bin + 1 < num_bins && sum + bins[static_cast<std::size_t>(bin)] < 0.5 * total) {
+        sum += bins[static_cast<std::size_t>(bin++)];
+    }
+    return scene.axis().bin_center_m(bin);
+}
+
+core::TimeAxis gate_axis(const BenchScene& scene, double center_m, double gate_mm) {
+    if (gate_mm == 0.0) return scene.axis();
+    return {center_m - 0.5e-3 * gate_mm, 1e-3 * gate_mm, 1};
+}
+
+// Where the ratio passes 1, the histogram left out.
+double crossing_mm(const std::vector<GateBench>& gates) {
+    for (std::size_t i = 1; i + 1 < gates.size(); ++i) {
+        const GateBench& wide = gates[i];
+        const GateBench& narrow = gates[i + 1];
+        if ((wide.ratio > 1.0) == (narrow.ratio > 1.0)) continue;
+        const double share = std::log(wide.ratio) / std::log(wide.ratio / narrow.ratio);
+        return wide.gate_mm * std::pow(narrow.gate_mm / wide.gate_mm, share);
+    }
+    return 0.0;
+}
+
+// Two independent long runs.
+std::array<core::Capture, 2> references(const Case& c) {
+    const int samples = samples_for(c, kReferenceFactor * kRunSeconds);
+    return {run(c, samples, kReferenceSeed).capture, run(c, samples, kReferenceSeed + 1).capture};
+}
+
+GateBench bench_gate(const BenchScene& scene, double center_m, double gate_mm, int repeats) {
+    Case ellipsoidal{scene, gate_axis(scene, center_m, gate_mm), scene.settings()};
+    ellipsoidal.settings.method = renderer::Estimator::Ellipsoidal;
+    Case path = ellipsoidal;
+    path.settings.method = renderer::Estimator::Path;
+    const auto [a, b] = references(ellipsoidal);
+    const Cost by_path = cost(path, a, b, repeats);
+    const Cost by_ellipsoid = cost(ellipsoidal, a, b, repeats);
+    const double ratio = by_path.all.value / by_ellipsoid.all.value;
+    const double sigma = ratio * std::hypot(by_path.all.sigma / by_path.all.value,
+                                            by_ellipsoid.all.sigma / by_ellipsoid.all.value);
+    return {gate_mm,
+            by_path.all.value,
+            by_ellipsoid.all.value,
+            ratio,
+            sigma,
+            by_path.trimmed.value / by_ellipsoid.trimmed.value};
+}
+
+}  // namespace
+
+GateTable bench_gates(const std::string& scene_path, int repeats, const core::Progress& progress) {
+    const BenchScene scene(scene_path);
+    const core::ThreadLimit one_thread(1);
+    GateTable table{scene_path, middle_of_signal_m(scene, renderer::Exclusion::None), {}, 0.0};
+    for (const double gate_mm : kGates_mm) {
+        if (progress.should_stop()) throw core::Failure("bench", "interrupted");
+        progress.update(double(table.gates.size()) / double(std::size(kGates_mm)), "gates");
+        table.gates.push_back(bench_gate(scene, table.center_m, gate_mm, repeats));
+    }
+    table.crossing_mm = crossing_mm(table.gates);
+    return table;
+}
+
+std::vector<ExclusionBench> bench_exclusion(const std::string& scene_path, int repeats) {
+    using renderer::Exclusion;
+    const BenchScene scene(scene_path);
+    const core::ThreadLimit one_thread(1);
+    const double all_m = middle_of_signal_m(scene, Exclusion::None);
+    const double kept_m = middle_of_signal_m(scene, Exclusion::Drop);
+    std::vector<ExclusionBench> result;
+    for (const int max_bounces : {3, 5}) {
+        for (const auto& [gate_mm, center_m] :
+             {std::pair{0.0, all_m}, std::pair{10.0, all_m}, std::pair{10.0, kept_m}}) {
+            double none = 0.0;
+            for (const Exclusion mode : {Exclusion::None, Exclusion::Mis, Exclusion::Drop}) {
+                Case c{scene, gate_axis(scene, center_m, gate_mm), scene.settings()};
+                c.settings.method = renderer::Estimator::Ellipsoidal;
+                c.settings.max_bounces = max_bounces;
+                c.settings.exclude = mode;
+                const auto [a, b] = references(c);
+                const double cost_s = cost(c, a, b, repeats).all.value;
+                if (mode == Exclusion::None) none = cost_s;
+                result.push_back({scene_path,
+                                  std::string(core::enum_name(mode)),
+                                  max_bounces,
+                                  gate_mm,
+                                  center_m,
+                                  cost_s,
+                                  none / cost_s});
+            }
+        }
+    }
+    return result;
+}
+
+}  // namespace apps

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+#include "apps/bench/power_law.h"
+#include "apps/bench/reconstruct.h"
+#include "apps/bench/run.h"
+#include "apps/bench/scene.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+
+namespace apps {
+namespace {
+
+// Below these, fixed costs say nothing about growth.
+constexpr double kShortest_s = 0.02;
+constexpr double kSmallest_bytes = 1e7;
+const std::string kSlices = "volume.z_range_m=[0.45,1.05]";
+
+// Growth of what lies above `smallest`; 0 for fewer than two points.
+double exponent_of(const std::vector<GrowthPoint>& points,
+                   double GrowthPoint::*value,
+                   double smallest) {
+    std::vector<double> sizes;
+    std::vector<double> values;
+    for (const GrowthPoint& point : points) {
+        if (point.*value <= smallest) continue;
+        sizes.push_back(point.values);
+        values.push_back(point.*value);
+    }
+    return fit_power_law(sizes, values).exponent;
+}
+
+struct GrowthSize {
+    int points = 0;
+    int bins = 0;
+};
+
+}  // namespace
+
+std::vector<ReconstructGrowth> measure_growth(const ReconstructBenchSettings& settings,
+                                              const core::Progress& progress) {
+    constexpr std::array kSizes{GrowthSize{32, 256},
+                                GrowthSize{64, 512},
+                                GrowthSize{128, 512},
+                                GrowthSize{128, 1024},
+                                GrowthSize{256, 1024}};
+    constexpr double kAxis_m = 4.096;
+    std::vector<ReconstructGrowth> curves(5);
+    const std::array names{"lct", "dlct", "fk", "phasor, 64 slices", "bp, 64 slices"};
+    const std::array methods{"lct", "dlct", "fk", "phasor", "bp"};
+    for (std::size_t size = 0; size < kSizes.size(); ++size) {
+        const auto [points, bins] = kSizes[size];
+        if (points > settings.largest) break;
+        const BenchScene scene(
+            settings.scenes_folder + "/letter/scene.json",
+            {fmt::format("scan.sensing_points=[{0},{0}]", points),
+             fmt::format("time_axis={{\"opl_start_m\":0,\"bin_width_m\":{},\"num_bins\":{}}}",
+                         kAxis_m / bins,
+                         bins)});
+        const core::Capture capture = scene.render(scene.settings());
+        for (std::size_t i = 0; i < curves.size(); ++i) {
+            if (progress.should_stop()) throw core::Failure("bench", "interrupted");
+            progress.update(static_cast<double>(size) / kSizes.size(), names[i]);
+            Overrides overrides{std::string("method=") + methods[i], "merge_bins=1"};
+            if (i >= 3) {
+                overrides.push_back(kSlices);
+                overrides.push_back(fmt::format("volume.voxels=[{0},{0},64]", points));
+            }
+            const ReconstructRun one = run_reconstruction(capture, overrides);
+            curves[i].method = names[i];
+            curves[i].points.push_back({fmt::format("{0}x{0}x{1}", points, bins),
+                                        static_cast<double>(capture.transient.values().size()),
+                                        one.cpu_seconds,
+                                        one.bytes});
+        }
+    }
+    for (ReconstructGrowth& curve : curves) {
+        curve.time_exponent = exponent_of(curve.points, &GrowthPoint::cpu_seconds, kShortest_s);
+        curve.memory_exponent = exponent_of(curve.points, &GrowthPoint::bytes, kSmallest_bytes);
+    }
+    return curves;
+}
+
+}  // namespace apps

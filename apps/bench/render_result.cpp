@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+#include "apps/bench/render.h"
+
+#include <fmt/core.h>
+
+#include <filesystem>
+
+namespace apps {
+namespace {
+
+std::string gate_name(double gate_mm) {
+    return gate_mm > 0.0 ? fmt::format("{:g} mm", gate_mm) : "histogram";
+}
+
+std::string gates_text(const GateTable& table) {
+    std::string text =
+        fmt::format("\n{}, gates about {:.3f} m: relative MSE after one CPU second\n",
+                    table.scene,
+                    table.center_m);
+    text += fmt::format("{:<12} {:>11} {:>12} {:>9} {:>20}\n",
+                        "gate",
+                        "path",
+                        "ellipsoidal",
+                        "ratio",
+                        "trimmed ratio");
+    for (const GateBench& gate : table.gates) {
+        text += fmt::format("{:<12} {:>11.2e} {:>12.2e} {:>9.3g} +- {:<7.2g} {:>9.3g}\n",
+                            gate_name(gate.gate_mm),
+                            gate.path_rel_mse,
+                            gate.ellipsoidal_rel_mse,
+                            gate.ratio,
+                            gate.ratio_sigma,
+                            gate.trimmed_ratio);
+    }
+    if (table.crossing_mm > 0.0) {
+        text += fmt::format("they cross at {:.3g} mm\n", table.crossing_mm);
+    } else {
+        text += "they do not cross between these gates\n";
+    }
+    return text;
+}
+
+std::string growth_text(const std::vector<RenderGrowth>& growths) {
+    if (growths.empty()) return "";
+    std::string text = "\ngrowth: CPU seconds at each size, fitted exponent, exponent at the end\n";
+    for (const RenderGrowth& growth : growths) {
+        text += fmt::format("{:<14} {:<12}", growth.method, growth.of);
+        for (std::size_t i = 0; i < growth.sizes.size(); ++i) {
+            text += fmt::format(" {:>7}: {:<8.3g}", growth.sizes[i], growth.cpu_seconds[i]);
+        }
+        text += fmt::format(" {:>5.2f} {:>5.2f}\n", growth.exponent, growth.last);
+    }
+    return text;
+}
+
+std::string exclusion_text(const std::vector<ExclusionBench>& benches) {
+    if (benches.empty()) return "";
+    std::string text = "\nellipsoidal, excluded surfaces: relative variance after one CPU second\n";
+    text += fmt::format("{:<28} {:>7} {:<10} {:>8} {:>5} {:>10} {:>7}\n",
+                        "scene",
+                        "bounces",
+                        "gate",
+                        "at",
+                        "mode",
+                        "variance",
+                        "gain");
+    for (const ExclusionBench& bench : benches) {
+        text += fmt::format("{:<28} {:>7} {:<10} {:>6.2f} m {:>5} {:>10.2e} {:>7.2f}\n",
+                            bench.scene,
+                            bench.max_bounces,
+                            gate_name(bench.gate_mm),
+                            bench.center_m,
+                            bench.mode,
+                            bench.variance_seconds,
+                            bench.gain);
+    }
+    return text;
+}
+
+std::string curves_text(const RenderBench& bench) {
+    if (bench.curves.empty()) return "";
+    std::string text = fmt::format(
+        "{}\nreference: {}; a long run of path is {:.2e} away, its own noise {:.2e}\n\n",
+        bench.scene,
+        bench.reference,
+        bench.check_distance,
+        bench.check_noise);
+    text += fmt::format(
+        "{:<14} {:<20} {:>10} {:>10} {:>10}\n", "method", "effort", "CPU s", "rel. L2", "spread");
+    for (const BenchCurve& curve : bench.curves) {
+        for (const BenchPoint& point : curve.points) {
+            text +=
+                fmt::format("{:<14} {:<20} {:>10.3f} {:>10.2e} {:>10}{}\n",
+                            curve.method,
+                            point.effort,
+                            point.cpu_seconds,
+                            point.rel_l2,
+                            point.runs > 1 ? fmt::format("{:.2e}", point.rel_l2_spread) : "one run",
+                            point.is_on_front ? "  front" : "");
+        }
+        text += fmt::format(
+            "{:<14} error = {:.3g} seconds^{:.3f}\n", curve.method, curve.coefficient, curve.slope);
+    }
+    const BenchPoint& path = bench.curves.front().points.back();
+    text += fmt::format("the shadow rays of path alone would take {:.3g} of its time\n",
+                        bench.ray_limit_seconds * path.samples / path.cpu_seconds);
+    text += fmt::format("\n{:<14} {:>9} {:>10} {:>10} {:>12} {:>12}\n",
+                        "against path",
+                        "rel. L2",
+                        "CPU s",
+                        "path s",
+                        "times faster",
+                        "less error");
+    for (const EqualError& equal : bench.equal_error) {
+        text += fmt::format("{:<14} {:>9} {:>10.3g} {:>10.3g} {:>12.3g} {:>12.3g}\n",
+                            equal.method,
+                            equal.at_rel_l2,
+                            equal.cpu_seconds,
+                            equal.path_seconds,
+                            equal.time_ratio,
+                            equal.error_ratio);
+    }
+    return text;
+}
+
+std::string table_of(const RenderBench& bench) {
+    std::string text = curves_text(bench);
+    for (const GateTable& table : bench.gates) text += gates_text(table);
+    return text + exclusion_text(bench.exclusion) + growth_text(bench.growth);
+}
+
+LogPlot gate_plot(const GateTable& table) {
+    LogPlot plot{"Equal time, " + table.scene, "gate width [mm]", "relative MSE after 1 s", {}};
+    PlotLine path{"path", {}, {}};
+    PlotLine ellipsoidal{"ellipsoidal", {}, {}};
+    for (const GateBench& gate : table.gates) {
+        if (gate.gate_mm == 0.0) continue;
+        path.x.push_back(gate.gate_mm);
+        path.y.push_back(gate.path_rel_mse);
+        ellipsoidal.x.push_back(gate.gate_mm);
+        ellipsoidal.y.push_back(gate.ellipsoidal_rel_mse);
+    }
+    plot.lines = {path, ellipsoidal};
+    return plot;
+}
+
+LogPlot growth_plot(const RenderBench& bench) {
+    LogPlot plot{"Growth", "triangles, wall points, bins, bounces", "CPU time [s]", {}};
+    for (const RenderGrowth& growth : bench.growth) {
+        plot.lines.push_back(
+            {fmt::format("{}, {}", growth.method, growth.of), growth.sizes, growth.cpu_seconds});
+    }
+    return plot;
+}
+
+LogPlot curves_plot(const RenderBench& bench) {
+    LogPlot plot{"Error against time, " + bench.scene, "CPU time [s]", "relative L2 error", {}};
+    for (const BenchCurve& curve : bench.curves) {
+        PlotLine& line = plot.lines.emplace_back();
+        line.title = curve.method;
+        for (const BenchPoint& point : curve.points) {
+            line.x.push_back(point.cpu_seconds);
+            line.y.push_back(point.rel_l2);
+        }
+    }
+    PlotLine limit{"path, its rays alone", {}, {}, LineStyle::Limit};
+    for (const BenchPoint& point : bench.curves.front().points) {
+        limit.x.push_back(bench.ray_limit_seconds * point.samples);
+        limit.y.push_back(point.rel_l2);
+    }
+    const PlotLine front = pareto_front(plot.lines);
+    plot.lines.push_back(limit);
+    plot.lines.push_back(front);
+    return plot;
+}
+
+}  // namespace
+
+BenchResult render_result(const RenderBench& bench) {
+    BenchResult result{core::write_value(bench), table_of(bench), {}, {}};
+    if (!bench.curves.empty()) result.plots[""] = curves_plot(bench);
+    if (!bench.growth.empty()) result.plots["_growth"] = growth_plot(bench);
+    for (const GateTable& table : bench.gates) {
+        const auto scene = std::filesystem::path(table.scene).parent_path().filename();
+        result.plots["_gates_" + scene.string()] = gate_plot(table);
+    }
+    return result;
+}
+
+}  // namespace apps
