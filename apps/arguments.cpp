@@ -33,6 +33,12 @@ void add_set_option(CLI::App& command, std::vector<std::string>& overrides) {
         ->allow_extra_args(false);
 }
 
+void add_threads_option(CLI::App& command, int& threads) {
+    command.add_option("--threads", threads, "Threads; 0 takes all processors")
+        ->capture_default_str()
+        ->check(CLI::Range(0, 1024));
+}
+
 std::string settings_footer(const std::vector<core::SettingHelp>& settings,
                             const std::string& example) {
     std::string text;

@@ -16,6 +16,9 @@ std::vector<std::string> expand_set_arguments(const std::vector<std::string>& ar
 /// Declares the repeatable `--set key.path=value`; its texts go to `overrides`.
 void add_set_option(CLI::App& command, std::vector<std::string>& overrides);
 
+/// Declares `--threads`; 0 takes all processors.
+void add_threads_option(CLI::App& command, int& threads);
+
 /// The settings as help text: key, default, meaning.
 std::string settings_footer(const std::vector<core::SettingHelp>& settings,
                             const std::string& example);

@@ -23,12 +23,12 @@ void add_demo_command(CLI::App& app);
 void add_bench_command(CLI::App& app);
 
 // Subcommands of bench.
-void add_noise_bench(CLI::App& bench);
-void add_sequences_bench(CLI::App& bench);
-void add_shift_bench(CLI::App& bench);
+void add_bench_noise_command(CLI::App& bench);
+void add_bench_sequences_command(CLI::App& bench);
+void add_bench_shift_command(CLI::App& bench);
 void add_bench_render_command(CLI::App& bench);
 void add_bench_fit_command(CLI::App& bench);
-void add_comparisons_bench(CLI::App& bench);
+void add_bench_comparisons_command(CLI::App& bench);
 void add_bench_reconstruct_command(CLI::App& bench);
 
 }  // namespace apps

@@ -7,12 +7,13 @@
 
 namespace apps {
 
-/// Scores file A against file B: a volume, mesh, point cloud or capture against a scene.json (its
-/// ray-traced truth) or another of its kind.
+/// Scores file A against file B: a volume, mesh, point cloud or fit against a scene.json (its
+/// ray-traced truth; for a fit, its objects), or a volume, mesh, point cloud or capture against
+/// another.
 ///
 /// metrics_path         METRICS.json to write; empty: none. A picture goes beside it when a volume
-///                      is scored against a scene.
-/// fscore_threshold_m   distance that counts as a match for meshes and clouds; volumes take their
+///                      or fit is scored against a scene.
+/// fscore_threshold_m   distance that counts as a match for surfaces and clouds; volumes take their
 ///                      voxel diagonal
 /// throws               core::Error when the two cannot be compared
 nlos::Metrics compare_files(const std::string& a,

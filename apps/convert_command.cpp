@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "apps/arguments.h"
+#include "apps/capture_options.h"
 #include "apps/commands.h"
 #include "nlos/formats/capture_file.h"
 #include "nlos/gated_capture.h"
@@ -21,22 +22,10 @@ struct ConvertArguments {
     std::vector<std::string> overrides;
 };
 
-/// What `--set` of convert reaches.
-struct ConvertOptions {
-    nlos::CaptureReadSettings capture;
-};
-
-template <class Visitor>
-void for_each_field(ConvertOptions& options, Visitor&& visit) {
-    visit("capture", options.capture, "what the capture file leaves open");
-}
-
 void run(const ConvertArguments& arguments) {
     nlos::check_capture_suffix(arguments.output);
     const core::OutputFile probe(arguments.output);
-    ConvertOptions options;
-    for (const std::string& text : arguments.overrides) core::apply_override(options, text);
-    core::Capture capture = nlos::read_capture(arguments.input, options.capture);
+    core::Capture capture = read_capture(arguments.input, arguments.overrides);
     const core::TimeAxis axis = capture.time_axis;
     if (arguments.steady) {
         capture = nlos::gated_capture(capture, axis.opl_start_m, axis.num_bins * axis.bin_width_m);
@@ -80,7 +69,7 @@ void add_convert_command(CLI::App& app) {
                       arguments->write.for_ytal,
                       "HDF5 without the group /nlos, with which y-tal refuses files");
     add_set_option(*command, arguments->overrides);
-    command->footer(settings_footer(core::settings_help(ConvertOptions{}),
+    command->footer(settings_footer(core::settings_help(CaptureOptions{}),
                                     "nlos convert letter.h5 letter.exr"));
     command->callback([arguments] { run(*arguments); });
 }

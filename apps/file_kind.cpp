@@ -12,7 +12,7 @@ namespace apps {
 FileKind kind_of_file(const std::string& path) {
     if (!std::filesystem::exists(path)) {
         throw core::Error(
-            path, "does not exist", "must be a capture, volume, scene.json, glTF or PLY file");
+            path, "does not exist", "must be a capture, volume, fit, scene.json, glTF or PLY file");
     }
     const std::string suffix = std::filesystem::path(path).extension().string();
     if (suffix == ".json") return calib::is_fit_file(path) ? FileKind::Fit : FileKind::Scene;

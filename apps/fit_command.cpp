@@ -102,9 +102,7 @@ void add_fit_command(CLI::App& app) {
         ->required();
     command->add_option(
         "--calibration", arguments->calibration, "Calibration of the set-up (.json)");
-    command->add_option("--threads", arguments->threads, "Threads; 0 takes all processors")
-        ->capture_default_str()
-        ->check(CLI::Range(0, 1024));
+    add_threads_option(*command, arguments->threads);
     add_set_option(*command, arguments->overrides);
     command->footer(settings_footer(core::settings_help(calib::FitSettings{}),
                                     "nlos fit capture.h5 scenes/letter/model.json -o fit.json"));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "apps/arguments.h"
+#include "apps/capture_options.h"
 #include "apps/commands.h"
 #include "apps/file_kind.h"
 #include "apps/file_picture.h"
@@ -23,16 +24,6 @@ struct InfoArguments {
     std::string picture;
     std::vector<std::string> overrides;
 };
-
-// What `--set` of info reaches.
-struct InfoOptions {
-    nlos::CaptureReadSettings capture;
-};
-
-template <class Visitor>
-void for_each_field(InfoOptions& options, Visitor&& visit) {
-    visit("capture", options.capture, "what the capture file leaves open");
-}
 
 void print_range(const char* axis, const std::vector<double>& centers_m) {
     if (centers_m.empty()) return;
@@ -91,9 +82,7 @@ void describe_point_cloud(const std::string& path) {
 }
 
 void describe_capture_file(const std::string& path, const std::vector<std::string>& overrides) {
-    InfoOptions options;
-    for (const std::string& text : overrides) core::apply_override(options, text);
-    const core::Capture capture = nlos::read_capture(path, options.capture);
+    const core::Capture capture = read_capture(path, overrides);
     fmt::print("format: {}\n", nlos::capture_format(path).value_or("unknown"));
     for (const std::string& line : nlos::describe_capture(capture)) fmt::print("{}\n", line);
     for (const std::string& warning : nlos::timing_warnings(capture)) {
@@ -152,14 +141,14 @@ void run(const InfoArguments& arguments) {
 void add_info_command(CLI::App& app) {
     CLI::App* command = app.add_subcommand("info", "Say what a file is and what it holds");
     const auto arguments = std::make_shared<InfoArguments>();
-    command->add_option("FILE", arguments->file, "Capture, volume, scene.json, glTF or PLY")
+    command->add_option("FILE", arguments->file, "Capture, volume, fit, scene.json, glTF or PLY")
         ->required();
     command->add_option("--picture",
                         arguments->picture,
                         "Also draw it (.png): a scene as the wall sees it, a capture, a volume");
     add_set_option(*command, arguments->overrides);
-    command->footer(
-        settings_footer(core::settings_help(InfoOptions{}), "nlos info scenes/letter/scene.json"));
+    command->footer(settings_footer(core::settings_help(CaptureOptions{}),
+                                    "nlos info scenes/letter/scene.json"));
     command->callback([arguments] { run(*arguments); });
 }
 

@@ -68,9 +68,7 @@ void add_reconstruct_command(CLI::App& app) {
     command->add_option("--glb", arguments->glb, "Also write the surface as a mesh (.glb)");
     command->add_option(
         "--calibration", arguments->calibration, "Calibration of the set-up (.json)");
-    command->add_option("--threads", arguments->threads, "Threads; 0 takes all processors")
-        ->capture_default_str()
-        ->check(CLI::Range(0, 1024));
+    add_threads_option(*command, arguments->threads);
     add_set_option(*command, arguments->overrides);
     command->footer(settings_footer(core::settings_help(ReconstructOptions{}),
                                     "nlos reconstruct letter.h5 -o volume.h5 --method lct"));

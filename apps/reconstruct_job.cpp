@@ -33,7 +33,10 @@ nlos::Reconstruction reconstruct_to_file(const std::string& capture_path,
                                          const std::string& glb_path,
                                          const std::string& calibration_path) {
     // A target that cannot be written is found before the work, not after it.
-    const core::OutputFile probe(volume_path);
+    for (const std::string& target : {volume_path, ply_path, glb_path}) {
+        if (target.empty()) continue;
+        const core::OutputFile probe(target);
+    }
     ReconstructOptions options;
     for (const std::string& text : overrides) core::apply_override(options, text);
     core::Capture capture = nlos::read_capture(capture_path, options.capture);

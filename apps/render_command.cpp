@@ -78,7 +78,8 @@ void add_render_command(CLI::App& app) {
     CLI::App* command = app.add_subcommand("render", "Simulate the transients a scan records");
     const auto arguments = std::make_shared<RenderArguments>();
     command->add_option("SCENE", arguments->scene, "Scene description (.json)")->required();
-    command->add_option("-o,--output", arguments->output, "Capture to write (.h5)")->required();
+    command->add_option("-o,--output", arguments->output, "Capture to write (.h5, .exr, .mat)")
+        ->required();
     add_shorthand(*command, *arguments, "--method", "render.method", "NAME", "Estimator");
     add_shorthand(
         *command, *arguments, "--samples", "render.samples", "N", "Candidate paths per pair");
@@ -89,7 +90,7 @@ void add_render_command(CLI::App& app) {
                   "--target-error",
                   "render.target_error",
                   "E",
-                  "Relative L2 error that third_bounce stays below");
+                  "Render until the relative L2 error over all of H is below this");
     add_shorthand(*command,
                   *arguments,
                   "--max-bounces",
@@ -100,9 +101,7 @@ void add_render_command(CLI::App& app) {
     command->add_option("--calibration",
                         arguments->calibration,
                         "Calibration of the set-up to record with (.json)");
-    command->add_option("--threads", arguments->threads, "Threads; 0 takes all processors")
-        ->capture_default_str()
-        ->check(CLI::Range(0, 1024));
+    add_threads_option(*command, arguments->threads);
     command->add_flag("--verbose",
                       arguments->verbose,
                       "Also print what the run did: estimators, excluded objects, shifts and why "

@@ -18,7 +18,7 @@ struct RenderJob {
     std::string pattern;
     std::string estimator;
     std::uint64_t samples_per_pair = 0;     ///< 0 when no paths were traced
-    std::optional<double> estimated_error;  ///< of the deterministic part
+    std::optional<double> estimated_error;  ///< relative L2 over all of H, when known
     double seconds = 0.0;
     bool interrupted = false;
     std::vector<std::string> warnings;

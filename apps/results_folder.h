@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "apps/result_cards.h"
 #include "nlos/compare.h"
 #include "renderer/core/settings.h"
 
@@ -9,18 +10,6 @@
 #include <vector>
 
 namespace apps {
-
-/// A name and what it stands for, in words for people.
-using Fact = std::pair<std::string, std::string>;
-
-/// A capture, volume or fit, reduced to what a page shows of it.
-struct ResultCard {
-    std::string file;
-    std::string picture_png;  ///< bytes of a PNG file
-    std::vector<Fact> facts;
-    std::vector<std::string> notes;
-    core::Json settings;  ///< how it was made; null when unknown
-};
 
 /// A METRICS.json.
 struct ScoredResult {
@@ -78,8 +67,5 @@ struct ResultsFolder {
 /// returns   what was found; files that cannot be read are listed with their error
 /// throws    core::Error when the folder does not exist or holds nothing of these
 ResultsFolder read_results_folder(const std::string& folder);
-
-/// A number with three significant digits and no exponent where it can be avoided.
-std::string short_number(double value);
 
 }  // namespace apps

@@ -83,6 +83,7 @@ void add_shorthands(CLI::App& command, const std::shared_ptr<NoiseArguments>& ar
 
 void run(const NoiseArguments& arguments) {
     const core::ThreadLimit threads(arguments.threads);
+    nlos::check_capture_suffix(arguments.output);
     const core::OutputFile probe(arguments.output);
     NoiseOptions options;
     for (const auto* texts : {&arguments.overrides, &arguments.shorthands}) {
@@ -92,7 +93,9 @@ void run(const NoiseArguments& arguments) {
     core::Capture noisy = nlos::detect(capture, options.detector);
     noisy.scene_info["detector"]["program"] = version_text();
     noisy.scene_info["detector"]["command"] = command_line();
-    nlos::write_capture(arguments.output, noisy);
+    for (const std::string& loss : nlos::write_capture(arguments.output, noisy)) {
+        fmt::print("not kept: {}\n", loss);
+    }
 
     const auto values = noisy.transient.values();
     const double sum = std::accumulate(values.begin(), values.end(), 0.0);
@@ -113,11 +116,10 @@ void add_simulate_noise_command(CLI::App& app) {
     const auto arguments = std::make_shared<NoiseArguments>();
     command->add_option("CAPTURE", arguments->capture, "Capture in any readable format")
         ->required();
-    command->add_option("-o,--output", arguments->output, "Capture to write (.h5)")->required();
+    command->add_option("-o,--output", arguments->output, "Capture to write (.h5, .exr, .mat)")
+        ->required();
     add_shorthands(*command, arguments);
-    command->add_option("--threads", arguments->threads, "Threads; 0 takes all processors")
-        ->capture_default_str()
-        ->check(CLI::Range(0, 1024));
+    add_threads_option(*command, arguments->threads);
     add_set_option(*command, arguments->overrides);
     command->footer(settings_footer(
         core::settings_help(NoiseOptions{}),

@@ -69,10 +69,10 @@ void add_bench_command(CLI::App& app) {
         "--quick", arguments->quick, "Fewer and smaller runs: minutes instead of an hour");
     all->footer(settings_footer({}, "nlos bench all -o out/bench --quick"));
     all->callback([arguments] { run_all(*arguments); });
-    add_noise_bench(*command);
-    add_comparisons_bench(*command);
-    add_sequences_bench(*command);
-    add_shift_bench(*command);
+    add_bench_noise_command(*command);
+    add_bench_comparisons_command(*command);
+    add_bench_sequences_command(*command);
+    add_bench_shift_command(*command);
 }
 
 }  // namespace apps

@@ -2,7 +2,7 @@
 #include "apps/bench/fit.h"
 
 #include "apps/bench/fit_parts.h"
-#include "apps/fit_trials.h"
+#include "apps/bench/fit_trials.h"
 #include "renderer/core/parallel.h"
 #include "renderer/core/process.h"
 #include "renderer/render.h"
@@ -31,7 +31,19 @@ struct PoseSummary {
     double normalised_square = 0.0;
     double cpu_seconds = 0.0;
     double iterations = 0.0;
-    int count = 0;
+
+    void add(const TrialError& error, int trials) {
+        lateral_m += error.lateral_m * error.lateral_m / trials;
+        depth_m += error.depth_m * error.depth_m / trials;
+        spin_deg += error.spin_deg * error.spin_deg / trials;
+        tilt_deg += error.tilt_deg * error.tilt_deg / trials;
+    }
+
+    void take_roots() {
+        for (double* square : {&lateral_m, &depth_m, &spin_deg, &tilt_deg}) {
+            *square = std::sqrt(*square);
+        }
+    }
 };
 
 PoseSummary summarise(const TrialSetup& setup, int trials) {
@@ -49,10 +61,7 @@ PoseSummary summarise(const TrialSetup& setup, int trials) {
         summary.cpu_seconds += core::cpu_seconds() - begin;
         summary.iterations += fit.iterations;
         const TrialError error = trial_error(fit, truth);
-        summary.lateral_m += error.lateral_m * error.lateral_m;
-        summary.depth_m += error.depth_m * error.depth_m;
-        summary.spin_deg += error.spin_deg * error.spin_deg;
-        summary.tilt_deg += error.tilt_deg * error.tilt_deg;
+        summary.add(error, trials);
         const Vec3 sigma = fit.objects[0].position_sigma_m;
         const Vec3 turn_sigma = fit.objects[0].rotation_sigma_deg;
         error2 += error.position_m.squaredNorm() / sigma.squaredNorm() +
@@ -62,17 +71,12 @@ PoseSummary summarise(const TrialSetup& setup, int trials) {
         all << error.position_m, error.turn_deg / kDegrees;
         const Eigen::MatrixXd covariance = fit.covariance.topLeftCorner<6, 6>();
         summary.normalised_square += all.dot(covariance.ldlt().solve(all)) / 6.0;
-        ++summary.count;
     }
-    const double n = summary.count;
-    for (double* square :
-         {&summary.lateral_m, &summary.depth_m, &summary.spin_deg, &summary.tilt_deg}) {
-        *square = std::sqrt(*square / n);
-    }
+    summary.take_roots();
     summary.over_bound = std::sqrt(error2 / bound2);
-    summary.normalised_square /= n;
-    summary.cpu_seconds /= n;
-    summary.iterations /= n;
+    summary.normalised_square /= trials;
+    summary.cpu_seconds /= trials;
+    summary.iterations /= trials;
     return summary;
 }
 
@@ -200,16 +204,10 @@ void bench_monte_carlo(int trials, FitBench& bench) {
         input.geometry.objects.push_back(occluder);
         const calib::FitResult fit = calib::fit_scene(input, {});
         const TrialError error = trial_error(fit, truth);
-        summary.lateral_m += error.lateral_m * error.lateral_m / trials;
-        summary.depth_m += error.depth_m * error.depth_m / trials;
-        summary.spin_deg += error.spin_deg * error.spin_deg / trials;
-        summary.tilt_deg += error.tilt_deg * error.tilt_deg / trials;
+        summary.add(error, trials);
         excess += (fit.deviance / fit.expected_deviance - 1.0) / trials;
     }
-    for (double* square :
-         {&summary.lateral_m, &summary.depth_m, &summary.spin_deg, &summary.tilt_deg}) {
-        *square = std::sqrt(*square);
-    }
+    summary.take_roots();
     bench.rows.push_back({"Monte Carlo data, other mesh, occluder, 1e5 photons",
                           "0.9 mm / 0.25 mm / 0.5 deg / 0.1 deg",
                           pose_text(summary) + fmt::format(", deviance {:+.1f} %", 100.0 * excess),

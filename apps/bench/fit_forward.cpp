@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "apps/bench/fit_parts.h"
-#include "apps/fit_trials.h"
+#include "apps/bench/fit_trials.h"
 #include "calib/fit_objective.h"
 #include "calib/jet_model.h"
 #include "calib/state_vector.h"

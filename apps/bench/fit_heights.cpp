@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/bench/fit_parts.h"
-#include "apps/fit_trials.h"
+#include "apps/bench/fit_trials.h"
+#include "nlos/compare_scores.h"
 
 #include <fmt/core.h>
 
@@ -39,12 +40,6 @@ renderer::Object raised(const renderer::Object& flat, const std::vector<double>&
         object.mesh.vertices[v] += heights[v] * normal;
     }
     return object;
-}
-
-double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
 }
 
 struct HeightErrors {
@@ -99,11 +94,11 @@ void bench_heights(int trials, FitBench& bench) {
                          "bound",
                          vertices),
              fmt::format("bound {:.2f} mm, {:.2f} mm, <= 1.3",
-                         median(found.bounds_m) / kMillimetre,
-                         median(found.corner_bounds_m) / kMillimetre),
+                         nlos::median(found.bounds_m) / kMillimetre,
+                         nlos::median(found.corner_bounds_m) / kMillimetre),
              fmt::format("{:.2f} mm, {:.2f} mm, {:.2f}",
-                         median(found.errors_m) / kMedianOverSigma / kMillimetre,
-                         median(found.corner_errors_m) / kMedianOverSigma / kMillimetre,
+                         nlos::median(found.errors_m) / kMedianOverSigma / kMillimetre,
+                         nlos::median(found.corner_errors_m) / kMedianOverSigma / kMillimetre,
                          over_bound),
              over_bound <= 1.3});
     }

@@ -22,7 +22,7 @@ void run(const NoiseBenchArguments& arguments) {
 
 }  // namespace
 
-void add_noise_bench(CLI::App& bench) {
+void add_bench_noise_command(CLI::App& bench) {
     const auto arguments = std::make_shared<NoiseBenchArguments>();
     CLI::App* noise =
         bench.add_subcommand("noise", "Every reconstruction method against the number of photons");

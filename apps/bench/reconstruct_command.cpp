@@ -36,9 +36,7 @@ void add_bench_reconstruct_command(CLI::App& bench) {
     command->add_option("--repeats", settings.repeats, "Runs per median")
         ->capture_default_str()
         ->check(CLI::Range(1, 1000));
-    command->add_option("--threads", settings.threads, "Threads; 0 takes all processors")
-        ->capture_default_str()
-        ->check(CLI::Range(0, 1024));
+    add_threads_option(*command, settings.threads);
     command->add_option("--largest", settings.largest, "Largest side of the growth curves")
         ->capture_default_str()
         ->check(CLI::Range(32, 256));

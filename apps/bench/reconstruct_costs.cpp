@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "apps/bench/limits.h"
 #include "apps/bench/reconstruct.h"
-#include "apps/bench/run.h"
+#include "apps/bench/reconstruct_run.h"
 #include "apps/bench/scene.h"
+#include "nlos/compare_scores.h"
 
 #include <fmt/core.h>
 
@@ -15,11 +16,6 @@ using Limit = std::function<double(const nlos::MethodInput&, const nlos::Reconst
 
 constexpr double kLongEnough_s = 10.0;  // of repeats
 const std::string kSlices = "volume.z_range_m=[0.45,1.05]";
-
-double median(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
-    return values[values.size() / 2];
-}
 
 /// CPU time of the limit on the sizes of a finished run.
 double limit_seconds(const Limit& limit,
@@ -160,10 +156,10 @@ ReconstructCost measure_cost(const CostCase& job, int repeats) {
                                 static_cast<double>(one.result.volume.axes.num_voxels());
         }
     }
-    cost.cpu_seconds = median(cpu_seconds);
-    cost.seconds = median(seconds);
+    cost.cpu_seconds = nlos::median(cpu_seconds);
+    cost.seconds = nlos::median(seconds);
     if (!limits.empty()) {
-        cost.limit_seconds = median(limits);
+        cost.limit_seconds = nlos::median(limits);
         cost.ratio = cost.cpu_seconds / cost.limit_seconds;
     }
     cost.gpairs_per_s /= cost.cpu_seconds;

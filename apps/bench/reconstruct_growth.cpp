@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/bench/power_law.h"
 #include "apps/bench/reconstruct.h"
-#include "apps/bench/run.h"
+#include "apps/bench/reconstruct_run.h"
 #include "apps/bench/scene.h"
 
 #include <fmt/core.h>

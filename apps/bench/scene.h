@@ -23,7 +23,6 @@ class BenchScene {
     const core::TimeAxis& axis() const { return description_.time_axis; }
     const core::Scan& scan() const { return scan_; }
     const renderer::Scene& scene() const { return scene_; }
-    bool is_image() const { return scan_.camera.has_value(); }
 
     core::Capture render(const core::TimeAxis& axis,
                          const renderer::RenderSettings& settings) const {

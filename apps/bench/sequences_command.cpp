@@ -85,7 +85,7 @@ BenchResult measure(const SequenceArguments& arguments, const core::Progress& pr
 
 }  // namespace
 
-void add_sequences_bench(CLI::App& bench) {
+void add_bench_sequences_command(CLI::App& bench) {
     const auto sequence = std::make_shared<SequenceArguments>();
     CLI::App* sequences =
         bench.add_subcommand("sequences", "Frame sequences: reuse of paths against none");

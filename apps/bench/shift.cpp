@@ -11,8 +11,6 @@
 #include "renderer/shift_mapping.h"
 #include "renderer/shift_side.h"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -323,57 +321,6 @@ ShiftBench bench_shift(const std::vector<std::string>& scene_paths,
         result.costs = measure_costs(bench);
     }
     return result;
-}
-
-std::string table_of(ShiftBench bench) {
-    std::string text =
-        fmt::format("gauges on {}\n{:<11} {:<16} {:>8} {:>10} {:>6} {:>8} {:>8} {:>9} {:>9}\n",
-                    bench.gauge_scene,
-                    "chart",
-                    "gauge",
-                    "success",
-                    "no return",
-                    "steps",
-                    "ns",
-                    "checked",
-                    "det. err",
-                    "95 %");
-    for (const GaugeRow& row : bench.gauges) {
-        text += fmt::format(
-            "{:<11} {:<16} {:>7.2f}% {:>9.3f}% {:>6.2f} {:>8.0f} {:>8.0f} {:>9.1e} {:>9.1e}\n",
-            row.chart,
-            row.gauge,
-            100.0 * row.success,
-            100.0 * row.no_return,
-            row.iterations,
-            row.ns,
-            row.ns_checked,
-            row.error_median,
-            row.error_p95);
-    }
-    text += fmt::format("\n{:<26} {:<11} {:>8} {:>8} {:>8}  rejected\n",
-                        "scene",
-                        "chart",
-                        "accepted",
-                        "by ray",
-                        "ns");
-    for (const ChartRow& row : bench.charts) {
-        text += fmt::format("{:<26} {:<11} {:>7.2f}% {:>7.2f}% {:>8.0f} ",
-                            row.scene,
-                            row.chart,
-                            100.0 * row.accepted,
-                            100.0 * row.by_ray,
-                            row.ns);
-        for (const ShiftShare& share : row.rejected) {
-            text += fmt::format(" {} {:.2f}%", share.name, 100.0 * share.share);
-        }
-        text += "\n";
-    }
-    text += fmt::format("\n{:<40} {:>8}\n", "part of a shift", "ns");
-    for (const ShiftCost& cost : bench.costs) {
-        text += fmt::format("{:<40} {:>8.0f}\n", cost.operation, cost.ns);
-    }
-    return text;
 }
 
 }  // namespace apps

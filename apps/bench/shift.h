@@ -107,7 +107,4 @@ ShiftBench bench_shift(const std::vector<std::string>& scene_paths,
                        int num_shifts,
                        const core::Progress& progress);
 
-/// The three tables as text.
-std::string table_of(ShiftBench bench);
-
 }  // namespace apps

@@ -4,6 +4,8 @@
 #include "apps/bench/shift.h"
 #include "apps/commands.h"
 
+#include <fmt/core.h>
+
 #include <memory>
 
 namespace apps {
@@ -16,6 +18,57 @@ struct ShiftBenchArguments {
     int shifts = 20'000;
 };
 
+std::string table_of(const ShiftBench& bench) {
+    std::string text =
+        fmt::format("gauges on {}\n{:<11} {:<16} {:>8} {:>10} {:>6} {:>8} {:>8} {:>9} {:>9}\n",
+                    bench.gauge_scene,
+                    "chart",
+                    "gauge",
+                    "success",
+                    "no return",
+                    "steps",
+                    "ns",
+                    "checked",
+                    "det. err",
+                    "95 %");
+    for (const GaugeRow& row : bench.gauges) {
+        text += fmt::format(
+            "{:<11} {:<16} {:>7.2f}% {:>9.3f}% {:>6.2f} {:>8.0f} {:>8.0f} {:>9.1e} {:>9.1e}\n",
+            row.chart,
+            row.gauge,
+            100.0 * row.success,
+            100.0 * row.no_return,
+            row.iterations,
+            row.ns,
+            row.ns_checked,
+            row.error_median,
+            row.error_p95);
+    }
+    text += fmt::format("\n{:<26} {:<11} {:>8} {:>8} {:>8}  rejected\n",
+                        "scene",
+                        "chart",
+                        "accepted",
+                        "by ray",
+                        "ns");
+    for (const ChartRow& row : bench.charts) {
+        text += fmt::format("{:<26} {:<11} {:>7.2f}% {:>7.2f}% {:>8.0f} ",
+                            row.scene,
+                            row.chart,
+                            100.0 * row.accepted,
+                            100.0 * row.by_ray,
+                            row.ns);
+        for (const ShiftShare& share : row.rejected) {
+            text += fmt::format(" {} {:.2f}%", share.name, 100.0 * share.share);
+        }
+        text += "\n";
+    }
+    text += fmt::format("\n{:<40} {:>8}\n", "part of a shift", "ns");
+    for (const ShiftCost& cost : bench.costs) {
+        text += fmt::format("{:<40} {:>8.0f}\n", cost.operation, cost.ns);
+    }
+    return text;
+}
+
 void run(const ShiftBenchArguments& arguments) {
     run_benchmark(arguments.output, "shift", [&](const core::Progress& progress) {
         const ShiftBench bench = bench_shift(arguments.scenes, arguments.shifts, progress);
@@ -25,7 +78,7 @@ void run(const ShiftBenchArguments& arguments) {
 
 }  // namespace
 
-void add_shift_bench(CLI::App& bench) {
+void add_bench_shift_command(CLI::App& bench) {
     const auto arguments = std::make_shared<ShiftBenchArguments>();
     CLI::App* shift =
         bench.add_subcommand("shift", "Gauges and charts of the path-length-aware shift");

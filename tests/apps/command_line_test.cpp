@@ -313,6 +313,12 @@ TEST_F(CommandLine, BadCapturesAreOneLineAndKeepOlderResults) {
         "reconstruct " + file("capture.h5") + " -o " + out + " --method fish", "", out);
     expect_bad_input(
         "reconstruct " + file("capture.h5") + " -o " + out + " --set snr=-1", "snr", out);
+    for (const std::string option : {" --ply ", " --glb "}) {
+        expect_bad_input(
+            "reconstruct " + file("capture.h5") + " -o " + out + option + file("none/points"),
+            "folder does not exist",
+            out);
+    }
 
     // NaN written behind the writer's back: the first four bytes of the brightest value.
     const core::Capture capture = nlos::read_capture(file("capture.h5"));
@@ -347,6 +353,9 @@ TEST_F(CommandLine, NoisyCapturesAreCountsOfTheirSeed) {
     for (const float count : a.transient.values()) sum += count;
     const double wanted = 5000.0 + 0.01 * static_cast<double>(a.transient.values().size());
     EXPECT_NEAR(sum, wanted, 6.0 * std::sqrt(wanted));
+    const Outcome lossy = run(noise + file("a.mat") + settings);
+    EXPECT_EQ(lossy.status, 0) << lossy.err;
+    EXPECT_NE(lossy.out.find("not kept: "), std::string::npos) << lossy.out;
     expect_bad_input(noise + file("d.h5"), "photons", file("d.h5"));
     expect_bad_input(noise + file("d.h5") + " --photons -1", "photons", file("d.h5"));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "apps/bench/run.h"
+#include "apps/bench/reconstruct_run.h"
 
 #include "renderer/core/process.h"
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "apps/fit_trials.h"
+#include "apps/bench/fit_trials.h"
 
 #include "nlos/detector.h"
 #include "renderer/core/parallel.h"
 #include "renderer/core/random.h"
+#include "renderer/core/sampling.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,10 +19,7 @@ constexpr double kHeight_m = 0.3;
 constexpr double kDegrees = 180.0 / core::kPi;
 
 Vec3 random_direction(core::Rng& rng) {
-    const double z = 2.0 * rng.uniform() - 1.0;
-    const double phi = 2.0 * core::kPi * rng.uniform();
-    const double r = std::sqrt(1.0 - z * z);
-    return {r * std::cos(phi), r * std::sin(phi), z};
+    return core::sample_sphere({1.0 - rng.uniform(), rng.uniform()});
 }
 
 Eigen::Quaterniond turn(double angle, const Vec3& axis) {

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "nlos/formats/capture_file.h"
+
+#include <string>
+#include <vector>
+
+namespace apps {
+
+/// What `--set` reaches of commands that do no more with a capture than read it.
+struct CaptureOptions {
+    nlos::CaptureReadSettings capture;
+};
+
+template <class Visitor>
+void for_each_field(CaptureOptions& options, Visitor&& visit) {
+    visit("capture", options.capture, "what the capture file leaves open");
+}
+
+/// Reads a capture in any known format.
+///
+/// overrides   `key.path=value` texts for CaptureOptions
+/// throws      core::Error as nlos::read_capture() does, and for unknown keys
+inline core::Capture read_capture(const std::string& path,
+                                  const std::vector<std::string>& overrides) {
+    CaptureOptions options;
+    for (const std::string& text : overrides) core::apply_override(options, text);
+    return nlos::read_capture(path, options.capture);
+}
+
+}  // namespace apps

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/core/settings.h"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace apps {
+
+/// A name and what it stands for, in words for people.
+using Fact = std::pair<std::string, std::string>;
+
+/// A capture, volume or fit, reduced to what a page shows of it.
+struct ResultCard {
+    std::string file;
+    std::string picture_png;  ///< bytes of a PNG file
+    std::vector<Fact> facts;
+    std::vector<std::string> notes;
+    core::Json settings;  ///< how it was made; null when unknown
+};
+
+/// What a page shows of a capture, a volume, a fit.
+///
+/// json     content of the fit's file
+/// throws   core::Error as reading them does
+ResultCard capture_card(const std::string& path);
+ResultCard volume_card(const std::string& path);
+ResultCard fit_card(const std::string& path, const core::Json& json);
+
+/// A number with three significant digits and no exponent where it can be avoided.
+std::string short_number(double value);
+
+/// A whole file. Throws core::Error when it cannot be opened.
+std::string read_bytes(const std::string& path);
+
+}  // namespace apps
