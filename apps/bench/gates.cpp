@@ -12,6 +12,8 @@
 namespace apps {
 namespace {
 
+using renderer::Estimator;
+
 constexpr double kGates_mm[] = {0.0, 100.0, 30.0, 10.0, 3.0, 1.0};
 constexpr double kRunSeconds = 0.3;       ///< of one measured run, about
 constexpr double kReferenceFactor = 8.0;  ///< a reference takes this many runs
@@ -85,7 +87,7 @@ Cost cost(const Case& c, const core::Capture& a, const core::Capture& b, int rep
 // that are not excluded.
 double middle_of_signal_m(const BenchScene& scene, renderer::Exclusion exclude) {
     renderer::RenderSettings settings = scene.settings();
-    settings.method = renderer::Estimator::Ellipsoidal;
+    settings.method = Estimator::Ellipsoidal;
     settings.exclude = exclude;
     settings.samples = kPilotSamples;
     const core::Capture capture = scene.render(settings);
@@ -109,14 +111,16 @@ core::TimeAxis gate_axis(const BenchScene& scene, double center_m, double gate_m
     return {center_m - 0.5e-3 * gate_mm, 1e-3 * gate_mm, 1};
 }
 
-// Where the ratio passes 1, the histogram left out.
+// Where the gain of `ellipsoidal` passes 1, the histogram left out.
 double crossing_mm(const std::vector<GateBench>& gates) {
-    for (std::size_t i = 1; i + 1 < gates.size(); ++i) {
-        const GateBench& wide = gates[i];
-        const GateBench& narrow = gates[i + 1];
-        if ((wide.ratio > 1.0) == (narrow.ratio > 1.0)) continue;
-        const double share = std::log(wide.ratio) / std::log(wide.ratio / narrow.ratio);
-        return wide.gate_mm * std::pow(narrow.gate_mm / wide.gate_mm, share);
+    const GateBench* wider = nullptr;
+    for (const GateBench& gate : gates) {
+        if (gate.gate_mm == 0.0 || gate.method != "ellipsoidal") continue;
+        if (wider != nullptr && (wider->gain > 1.0) != (gate.gain > 1.0)) {
+            const double share = std::log(wider->gain) / std::log(wider->gain / gate.gain);
+            return wider->gate_mm * std::pow(gate.gate_mm / wider->gate_mm, share);
+        }
+        wider = &gate;
     }
     return 0.0;
 }
@@ -127,35 +131,55 @@ std::array<core::Capture, 2> references(const Case& c) {
     return {run(c, samples, kReferenceSeed).capture, run(c, samples, kReferenceSeed + 1).capture};
 }
 
-GateBench bench_gate(const BenchScene& scene, double center_m, double gate_mm, int repeats) {
-    Case ellipsoidal{scene, gate_axis(scene, center_m, gate_mm), scene.settings()};
-    ellipsoidal.settings.method = renderer::Estimator::Ellipsoidal;
-    Case path = ellipsoidal;
-    path.settings.method = renderer::Estimator::Path;
-    const auto [a, b] = references(ellipsoidal);
-    const Cost by_path = cost(path, a, b, repeats);
-    const Cost by_ellipsoid = cost(ellipsoidal, a, b, repeats);
-    const double ratio = by_path.all.value / by_ellipsoid.all.value;
-    const double sigma = ratio * std::hypot(by_path.all.sigma / by_path.all.value,
-                                            by_ellipsoid.all.sigma / by_ellipsoid.all.value);
-    return {gate_mm,
-            by_path.all.value,
-            by_ellipsoid.all.value,
-            ratio,
-            sigma,
-            by_path.trimmed.value / by_ellipsoid.trimmed.value};
+std::vector<Estimator> estimators_for(const BenchScene& scene, int max_bounces) {
+    std::vector<Estimator> estimators{Estimator::Path, Estimator::Ellipsoidal, Estimator::Restir};
+    if (!scene.is_image() && max_bounces == 3) estimators.push_back(Estimator::ThirdBounce);
+    return estimators;
+}
+
+std::vector<GateBench> bench_gate(Case c, double gate_mm, int repeats) {
+    c.settings.method = Estimator::Ellipsoidal;
+    const auto [a, b] = references(c);
+    std::vector<GateBench> rows;
+    Cost path;
+    for (const Estimator method : estimators_for(c.scene, c.settings.max_bounces)) {
+        c.settings.method = method;
+        const Cost found = cost(c, a, b, repeats);
+        if (method == Estimator::Path) path = found;
+        const double gain = path.all.value / found.all.value;
+        rows.push_back(
+            {gate_mm,
+             std::string(core::enum_name(method)),
+             found.all.value,
+             gain,
+             gain * std::hypot(path.all.sigma / path.all.value, found.all.sigma / found.all.value),
+             path.trimmed.value / found.trimmed.value});
+    }
+    return rows;
 }
 
 }  // namespace
 
-GateTable bench_gates(const std::string& scene_path, int repeats, const core::Progress& progress) {
+GateTable bench_gates(const std::string& scene_path,
+                      int max_bounces,
+                      int repeats,
+                      const core::Progress& progress) {
     const BenchScene scene(scene_path);
     const core::ThreadLimit one_thread(1);
-    GateTable table{scene_path, middle_of_signal_m(scene, renderer::Exclusion::None), {}, 0.0};
+    renderer::RenderSettings settings = scene.settings();
+    if (max_bounces > 0) settings.max_bounces = max_bounces;
+    GateTable table{scene_path,
+                    settings.max_bounces,
+                    middle_of_signal_m(scene, renderer::Exclusion::None),
+                    {},
+                    0.0};
+    double done = 0.0;
     for (const double gate_mm : kGates_mm) {
         if (progress.should_stop()) throw core::Failure("bench", "interrupted");
-        progress.update(double(table.gates.size()) / double(std::size(kGates_mm)), "gates");
-        table.gates.push_back(bench_gate(scene, table.center_m, gate_mm, repeats));
+        progress.update(done++ / std::size(kGates_mm), "gates");
+        const Case c{scene, gate_axis(scene, table.center_m, gate_mm), settings};
+        const auto rows = bench_gate(c, gate_mm, repeats);
+        table.gates.insert(table.gates.end(), rows.begin(), rows.end());
     }
     table.crossing_mm = crossing_mm(table.gates);
     return table;
@@ -174,7 +198,7 @@ std::vector<ExclusionBench> bench_exclusion(const std::string& scene_path, int r
             double none = 0.0;
             for (const Exclusion mode : {Exclusion::None, Exclusion::Mis, Exclusion::Drop}) {
                 Case c{scene, gate_axis(scene, center_m, gate_mm), scene.settings()};
-                c.settings.method = renderer::Estimator::Ellipsoidal;
+                c.settings.method = Estimator::Ellipsoidal;
                 c.settings.max_bounces = max_bounces;
                 c.settings.exclude = mode;
                 const auto [a, b] = references(c);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/bench/growth.h"
 
+#include "apps/bench/limits.h"
 #include "apps/bench/power_law.h"
 #include "renderer/core/parallel.h"
 #include "renderer/core/process.h"
@@ -9,6 +10,7 @@
 
 #include <fmt/core.h>
 
+#include <chrono>
 #include <cmath>
 #include <span>
 
@@ -26,6 +28,7 @@ struct Sizes {
     int points = 16;
     int bins = 256;
     int bounces = 3;
+    int threads = 1;
 };
 
 // A sheet of 0.8 m with waves of 4 cm, 1 m behind the wall.
@@ -51,7 +54,13 @@ renderer::Object sheet(int cells) {
     return object;
 }
 
-double seconds_of(Estimator method, const Sizes& sizes) {
+struct Figures {
+    double seconds = 0.0;
+    double limit_seconds = 0.0;
+    double peak_bytes = 0.0;
+};
+
+Figures measure(Estimator method, const Sizes& sizes) {
     renderer::SceneDescription description;
     description.scan.sensing_points = {sizes.points, sizes.points};
     description.time_axis = {1.4, kSpan_m / sizes.bins, sizes.bins};
@@ -61,50 +70,94 @@ double seconds_of(Estimator method, const Sizes& sizes) {
     if (method == Estimator::ThirdBounce) description.render.target_error = 0.02;
     const core::Scan scan = renderer::make_scan(description);
     const renderer::Scene scene({{sheet(sizes.cells)}, {}}, scan, {});
-    const double start = core::cpu_seconds();
-    renderer::render(scene, scan, description.time_axis, description.render, {});
-    return core::cpu_seconds() - start;
+    const core::ThreadLimit limit(sizes.threads);
+    core::reset_peak_rss();
+    const double cpu_start = core::cpu_seconds();
+    const renderer::RenderResult result =
+        renderer::render(scene, scan, description.time_axis, description.render, {});
+    Figures figures;
+    figures.seconds = core::cpu_seconds() - cpu_start;
+    figures.peak_bytes = static_cast<double>(core::peak_rss_bytes());
+    figures.limit_seconds = static_cast<double>(result.num_rays) * shadow_ray_seconds(scene, scan);
+    return figures;
+}
+
+// Elapsed time instead of CPU time; the limit is that of one thread, shared.
+Figures measure_threads(Estimator method, const Sizes& sizes, double one_thread_seconds) {
+    const auto start = std::chrono::steady_clock::now();
+    Figures figures = measure(method, sizes);
+    figures.seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    figures.limit_seconds =
+        (sizes.threads == 1 ? figures.seconds : one_thread_seconds) / sizes.threads;
+    return figures;
 }
 
 struct Series {
     std::string of;
+    std::vector<Estimator> methods;
     std::vector<Sizes> steps;
     double (*size)(const Sizes&);
 };
 
 std::vector<Series> all_series() {
+    const std::vector<Estimator> both{Estimator::ThirdBounce, Estimator::Path};
     std::vector<Series> series{
-        {"triangles", {}, [](const Sizes& s) { return 2.0 * s.cells * s.cells; }},
-        {"wall points", {}, [](const Sizes& s) { return 1.0 * s.points * s.points; }},
-        {"bins", {}, [](const Sizes& s) { return 1.0 * s.bins; }},
-        {"bounces", {}, [](const Sizes& s) { return 1.0 * s.bounces; }}};
+        {"triangles", both, {}, [](const Sizes& s) { return 2.0 * s.cells * s.cells; }},
+        {"wall points", both, {}, [](const Sizes& s) { return 1.0 * s.points * s.points; }},
+        {"bins", both, {}, [](const Sizes& s) { return 1.0 * s.bins; }},
+        {"bounces",
+         {Estimator::Path, Estimator::Restir},
+         {},
+         [](const Sizes& s) { return 1.0 * s.bounces; }},
+        {"threads",
+         {Estimator::ThirdBounce, Estimator::Path, Estimator::Restir},
+         {},
+         [](const Sizes& s) { return 1.0 * s.threads; }}};
     for (const int cells : {16, 50, 158, 500}) series[0].steps.push_back({.cells = cells});
     for (const int points : {8, 16, 32, 64}) series[1].steps.push_back({.points = points});
     for (const int bins : {64, 256, 1024, 4096}) series[2].steps.push_back({.bins = bins});
     for (const int bounces : {3, 4, 6, 10}) series[3].steps.push_back({.bounces = bounces});
+    const int most_threads = core::thread_count();
+    for (int threads = 1; threads < most_threads; threads *= 2) {
+        series[4].steps.push_back({.points = 32, .threads = threads});
+    }
+    series[4].steps.push_back({.points = 32, .threads = most_threads});
     return series;
+}
+
+RenderGrowth measure_series(const Series& series, Estimator method) {
+    RenderGrowth growth{std::string(core::enum_name(method)), series.of, {}, {}, {}, {}, 0.0, 0.0};
+    for (const Sizes& sizes : series.steps) {
+        const Figures figures =
+            series.of == "threads"
+                ? measure_threads(
+                      method, sizes, growth.cpu_seconds.empty() ? 0.0 : growth.cpu_seconds.front())
+                : measure(method, sizes);
+        growth.sizes.push_back(series.size(sizes));
+        growth.cpu_seconds.push_back(figures.seconds);
+        growth.limit_seconds.push_back(figures.limit_seconds);
+        growth.peak_bytes.push_back(figures.peak_bytes);
+    }
+    if (growth.sizes.size() < 2) return growth;
+    growth.exponent = fit_power_law(growth.sizes, growth.cpu_seconds).exponent;
+    growth.last =
+        fit_power_law(std::span(growth.sizes).last(2), std::span(growth.cpu_seconds).last(2))
+            .exponent;
+    return growth;
 }
 
 }  // namespace
 
 std::vector<RenderGrowth> bench_render_growth(const core::Progress& progress) {
-    const core::ThreadLimit one_thread(1);
     std::vector<RenderGrowth> result;
-    for (const Series& series : all_series()) {
-        for (const Estimator method : {Estimator::ThirdBounce, Estimator::Path}) {
-            if (method == Estimator::ThirdBounce && series.of == "bounces") continue;
-            RenderGrowth growth{std::string(core::enum_name(method)), series.of, {}, {}, 0.0, 0.0};
-            for (const Sizes& sizes : series.steps) {
-                if (progress.should_stop()) throw core::Failure("bench", "interrupted");
-                progress.update(double(result.size()) / 7.0, "growth with " + series.of);
-                growth.sizes.push_back(series.size(sizes));
-                growth.cpu_seconds.push_back(seconds_of(method, sizes));
-            }
-            growth.exponent = fit_power_law(growth.sizes, growth.cpu_seconds).exponent;
-            growth.last = fit_power_law(std::span(growth.sizes).last(2),
-                                        std::span(growth.cpu_seconds).last(2))
-                              .exponent;
-            result.push_back(std::move(growth));
+    const std::vector<Series> all = all_series();
+    for (const Series& series : all) {
+        for (const Estimator method : series.methods) {
+            if (progress.should_stop()) throw core::Failure("bench", "interrupted");
+            progress.update(double(&series - all.data()) / double(all.size()),
+                            "growth with " + series.of);
+            result.push_back(measure_series(series, method));
         }
     }
     return result;

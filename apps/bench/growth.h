@@ -15,6 +15,8 @@ struct RenderGrowth {
     std::string of;  ///< what grows
     std::vector<double> sizes;
     std::vector<double> cpu_seconds;
+    std::vector<double> limit_seconds;
+    std::vector<double> peak_bytes;
     double exponent = 0.0;  ///< time grows with this power of the size, fitted to all points
     double last = 0.0;      ///< the same between the two largest sizes
 };
@@ -24,14 +26,18 @@ void for_each_field(RenderGrowth& growth, Visitor&& visit) {
     visit("method", growth.method, "estimator");
     visit("of", growth.of, "what grows");
     visit("sizes", growth.sizes, "sizes");
-    visit("cpu_seconds", growth.cpu_seconds, "CPU time at each [s]");
+    visit("cpu_seconds", growth.cpu_seconds, "CPU time at each, with threads elapsed time [s]");
+    visit("limit_seconds",
+          growth.limit_seconds,
+          "that of as many shadow rays alone; with threads the first time over their number [s]");
+    visit("peak_bytes", growth.peak_bytes, "largest memory of the process at each [B]");
     visit("exponent", growth.exponent, "fitted power of the size");
     visit("last", growth.last, "power between the two largest sizes");
 }
 
 /// Growth of `third_bounce` (to 2 %) and of `path` (256 samples per pair) with triangles (512 to
-/// 500,000), wall points, bins and, `path` only, bounces: a wavy sheet of 0.8 m, 1 m behind a wall
-/// of 1 m, confocal. One thread.
+/// 500,000), wall points, bins, bounces (`path` and `restir` on shared points) and threads (all
+/// three): a wavy sheet of 0.8 m, 1 m behind a wall of 1 m, confocal. One thread but for the last.
 std::vector<RenderGrowth> bench_render_growth(const core::Progress& progress);
 
 }  // namespace apps

@@ -236,9 +236,9 @@ RenderBench bench_render(const RenderBenchSettings& settings, const core::Progre
     const int gate_runs = std::max(kFewestGateRuns, settings.repeats);
     if (settings.has("curves")) measure_curves(settings, progress, result);
     if (settings.has("gates")) {
-        for (const std::string& path : {settings.scene, settings.camera_scene}) {
-            result.gates.push_back(bench_gates(path, gate_runs, progress));
-        }
+        result.gates.push_back(bench_gates(settings.scene, 3, gate_runs, progress));
+        result.gates.push_back(bench_gates(settings.scene, 5, gate_runs, progress));
+        result.gates.push_back(bench_gates(settings.camera_scene, 0, gate_runs, progress));
     }
     if (settings.has("exclusion")) {
         for (const std::string& path : {settings.scene, settings.exclusion_scene}) {

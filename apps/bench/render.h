@@ -97,7 +97,7 @@ void for_each_field(RenderBench& bench, Visitor&& visit) {
           "CPU time of the shadow rays alone per sample of all pairs [s]");
     visit("curves", bench.curves, "error against time");
     visit("equal_error", bench.equal_error, "every estimator against path");
-    visit("gates", bench.gates, "path and ellipsoidal in equal time");
+    visit("gates", bench.gates, "every estimator in equal time");
     visit("exclusion", bench.exclusion, "ellipsoidal with and without excluded surfaces");
     visit("growth", bench.growth, "time against sizes");
 }

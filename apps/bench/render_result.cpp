@@ -3,6 +3,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <filesystem>
 
 namespace apps {
@@ -13,40 +14,43 @@ std::string gate_name(double gate_mm) {
 }
 
 std::string gates_text(const GateTable& table) {
-    std::string text =
-        fmt::format("\n{}, gates about {:.3f} m: relative MSE after one CPU second\n",
-                    table.scene,
-                    table.center_m);
-    text += fmt::format("{:<12} {:>11} {:>12} {:>9} {:>20}\n",
-                        "gate",
-                        "path",
-                        "ellipsoidal",
-                        "ratio",
-                        "trimmed ratio");
+    std::string text = fmt::format(
+        "\n{}, {} bounces, gates about {:.3f} m: relative MSE times CPU seconds, gain over path\n",
+        table.scene,
+        table.max_bounces,
+        table.center_m);
+    text += fmt::format(
+        "{:<12} {:<14} {:>11} {:>8} {:>20}\n", "gate", "method", "MSE s", "gain", "trimmed gain");
     for (const GateBench& gate : table.gates) {
-        text += fmt::format("{:<12} {:>11.2e} {:>12.2e} {:>9.3g} +- {:<7.2g} {:>9.3g}\n",
+        text += fmt::format("{:<12} {:<14} {:>11.2e} {:>8.3g} +- {:<7.2g} {:>9.3g}\n",
                             gate_name(gate.gate_mm),
-                            gate.path_rel_mse,
-                            gate.ellipsoidal_rel_mse,
-                            gate.ratio,
-                            gate.ratio_sigma,
-                            gate.trimmed_ratio);
+                            gate.method,
+                            gate.rel_mse,
+                            gate.gain,
+                            gate.gain_sigma,
+                            gate.trimmed_gain);
     }
     if (table.crossing_mm > 0.0) {
-        text += fmt::format("they cross at {:.3g} mm\n", table.crossing_mm);
+        text += fmt::format("path and ellipsoidal cross at {:.3g} mm\n", table.crossing_mm);
     } else {
-        text += "they do not cross between these gates\n";
+        text += "path and ellipsoidal do not cross between these gates\n";
     }
     return text;
 }
 
 std::string growth_text(const std::vector<RenderGrowth>& growths) {
     if (growths.empty()) return "";
-    std::string text = "\ngrowth: CPU seconds at each size, fitted exponent, exponent at the end\n";
+    std::string text =
+        "\ngrowth: size: CPU seconds (with threads elapsed), as many rays alone (with threads the "
+        "first shared), memory; fitted exponent, exponent at the end\n";
     for (const RenderGrowth& growth : growths) {
-        text += fmt::format("{:<14} {:<12}", growth.method, growth.of);
+        text += fmt::format("{:<13} {:<12}", growth.method, growth.of);
         for (std::size_t i = 0; i < growth.sizes.size(); ++i) {
-            text += fmt::format(" {:>7}: {:<8.3g}", growth.sizes[i], growth.cpu_seconds[i]);
+            text += fmt::format(" {:>6}: {:<7.3g} {:<8.2g} {:>4.0f} MB",
+                                growth.sizes[i],
+                                growth.cpu_seconds[i],
+                                growth.limit_seconds[i],
+                                1e-6 * growth.peak_bytes[i]);
         }
         text += fmt::format(" {:>5.2f} {:>5.2f}\n", growth.exponent, growth.last);
     }
@@ -130,25 +134,35 @@ std::string table_of(const RenderBench& bench) {
 }
 
 LogPlot gate_plot(const GateTable& table) {
-    LogPlot plot{"Equal time, " + table.scene, "gate width [mm]", "relative MSE after 1 s", {}};
-    PlotLine path{"path", {}, {}};
-    PlotLine ellipsoidal{"ellipsoidal", {}, {}};
+    LogPlot plot{fmt::format("Equal time, {}, {} bounces", table.scene, table.max_bounces),
+                 "gate width [mm]",
+                 "relative MSE after 1 s",
+                 {}};
     for (const GateBench& gate : table.gates) {
         if (gate.gate_mm == 0.0) continue;
-        path.x.push_back(gate.gate_mm);
-        path.y.push_back(gate.path_rel_mse);
-        ellipsoidal.x.push_back(gate.gate_mm);
-        ellipsoidal.y.push_back(gate.ellipsoidal_rel_mse);
+        const auto same =
+            std::find_if(plot.lines.begin(), plot.lines.end(), [&](const PlotLine& line) {
+                return line.title == gate.method;
+            });
+        PlotLine& line = same != plot.lines.end()
+                             ? *same
+                             : plot.lines.emplace_back(PlotLine{gate.method, {}, {}});
+        line.x.push_back(gate.gate_mm);
+        line.y.push_back(gate.rel_mse);
     }
-    plot.lines = {path, ellipsoidal};
     return plot;
 }
 
 LogPlot growth_plot(const RenderBench& bench) {
-    LogPlot plot{"Growth", "triangles, wall points, bins, bounces", "CPU time [s]", {}};
+    LogPlot plot{"Growth", "triangles, wall points, bins, bounces, threads", "time [s]", {}};
     for (const RenderGrowth& growth : bench.growth) {
-        plot.lines.push_back(
-            {fmt::format("{}, {}", growth.method, growth.of), growth.sizes, growth.cpu_seconds});
+        const std::string title = fmt::format("{}, {}", growth.method, growth.of);
+        plot.lines.push_back({title, growth.sizes, growth.cpu_seconds});
+        if (growth.of != "wall points" && growth.of != "threads") continue;
+        plot.lines.push_back({growth.of == "threads" ? title + ", shared" : title + ", rays alone",
+                              growth.sizes,
+                              growth.limit_seconds,
+                              LineStyle::Limit});
     }
     return plot;
 }
@@ -182,7 +196,8 @@ BenchResult render_result(const RenderBench& bench) {
     if (!bench.growth.empty()) result.plots["_growth"] = growth_plot(bench);
     for (const GateTable& table : bench.gates) {
         const auto scene = std::filesystem::path(table.scene).parent_path().filename();
-        result.plots["_gates_" + scene.string()] = gate_plot(table);
+        result.plots[fmt::format("_gates_{}_{}", scene.string(), table.max_bounces)] =
+            gate_plot(table);
     }
     return result;
 }

@@ -5,13 +5,14 @@
 #include "renderer/core/settings.h"
 #include "renderer/frame_sequence.h"
 
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
 
 namespace apps {
 
-/// A gate that moves over a scene, as frames.
+/// A gate that moves over a scene, or stands still before one that moves, as frames.
 struct SequenceCase {
     std::string name;
     std::string scene;
@@ -20,8 +21,11 @@ struct SequenceCase {
     double gate_width_mm = 10.0;
     double gate_step_mm = 10.0;  ///< per frame; 0: the gate stands still
     int num_frames = 60;
-    int num_bins = 1;  ///< of that width; more of them stand still
+    int num_bins = 1;      ///< of that width; more of them stand still
+    double frame_s = 0.0;  ///< time between frames, in which objects move [s]
     int reference_samples = 60'000;
+
+    bool is_static() const { return gate_step_mm == 0.0 && frame_s == 0.0; }
 };
 
 /// What is rendered of a sequence, with a method's overrides of scene.json.
@@ -35,7 +39,8 @@ struct SequenceSetup {
 
 using SequenceFrames = std::vector<core::Transient>;
 
-/// The frames of a sequence to little noise: gates as sums of the bins of one long histogram.
+/// The frames of a sequence to little noise: third bounces integrated frame by frame, others as
+/// sums of the bins of one long histogram, or frame by frame where objects move.
 SequenceFrames reference_frames(const SequenceCase& sequence, std::uint64_t seed);
 
 /// How one method does on a sequence, on one thread.
@@ -49,6 +54,8 @@ struct SequenceBench {
     double gain = 0.0;
     double trimmed_gain = 0.0;
     double accepted_share = 0.0;
+    double shifts_per_frame = 0.0;
+    double merges_per_frame = 0.0;
     std::vector<double> rel_mse_of_frames;
 };
 
@@ -63,6 +70,8 @@ void for_each_field(SequenceBench& bench, Visitor&& visit) {
     visit("gain", bench.gain, "relative MSE times seconds of the first method over this one's");
     visit("trimmed_gain", bench.trimmed_gain, "the same for the trimmed error");
     visit("accepted_share", bench.accepted_share, "of shifts; 0: none was tried");
+    visit("shifts_per_frame", bench.shifts_per_frame, "shifts tried in a frame");
+    visit("merges_per_frame", bench.merges_per_frame, "merges of two reservoirs in a frame");
     visit("rel_mse_of_frames", bench.rel_mse_of_frames, "frame by frame");
 }
 
@@ -73,7 +82,7 @@ struct SequenceMethod {
 };
 
 /// Runs methods over a sequence and measures them against two independent references, whose
-/// product has no bias from their noise: long histograms of which every gate is a sum of bins.
+/// product has no bias from their noise.
 ///
 /// methods     the first is what gains are counted against
 /// num_seeds   runs per method
@@ -82,10 +91,17 @@ std::vector<SequenceBench> bench_sequence(const SequenceCase& sequence,
                                           int num_seeds,
                                           const core::Progress& progress);
 
+/// What the standard table is made of.
+struct SequenceScenes {
+    std::string scan = "scenes/bars/scene.json";
+    std::string image = "scenes/room/scene.json";
+    std::array<int, 2> image_resolution{128, 96};
+    std::string moving_scan = "scenes/traffic/scan.json";
+    std::string moving_image = "scenes/traffic/scene.json";
+};
+
 /// The sequences and methods of the standard table.
-std::vector<SequenceCase> standard_sequences(const std::string& scan_scene,
-                                             const std::string& image_scene,
-                                             int num_frames);
-std::vector<SequenceMethod> standard_methods(bool is_image, bool is_static);
+std::vector<SequenceCase> standard_sequences(const SequenceScenes& scenes, int num_frames);
+std::vector<SequenceMethod> standard_methods(const SequenceCase& sequence);
 
 }  // namespace apps

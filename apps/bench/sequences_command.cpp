@@ -14,27 +14,29 @@ namespace {
 
 struct SequenceArguments {
     BenchOutput output;
-    std::string scene = "scenes/bars/scene.json";
-    std::string image_scene = "scenes/room/scene.json";
+    SequenceScenes scenes;
     std::string only;
     int frames = 60;
     int repeats = 4;
 };
 
 std::string sequences_text(const std::vector<SequenceBench>& benches) {
-    std::string text = fmt::format("{:<30} {:<20} {:>9} {:>10} {:>10} {:>7} {:>8} {:>8} {:>8}\n",
-                                   "sequence",
-                                   "method",
-                                   "ms/frame",
-                                   "relMSE",
-                                   "trimmed",
-                                   "sum",
-                                   "gain",
-                                   "trimmed",
-                                   "accepted");
+    std::string text =
+        fmt::format("{:<36} {:<20} {:>9} {:>10} {:>10} {:>7} {:>8} {:>8} {:>8} {:>9}\n",
+                    "sequence",
+                    "method",
+                    "ms/frame",
+                    "relMSE",
+                    "trimmed",
+                    "sum",
+                    "gain",
+                    "trimmed",
+                    "accepted",
+                    "merges");
     for (const SequenceBench& bench : benches) {
         text += fmt::format(
-            "{:<30} {:<20} {:>9.1f} {:>10.3e} {:>10.3e} {:>7.4f} {:>8.2f} {:>8.2f} {:>8.2f}\n",
+            "{:<36} {:<20} {:>9.1f} {:>10.3e} {:>10.3e} {:>7.4f} {:>8.2f} {:>8.2f} {:>8.2f} "
+            "{:>9.0f}\n",
             bench.sequence,
             bench.method,
             1e3 * bench.seconds_per_frame,
@@ -43,7 +45,8 @@ std::string sequences_text(const std::vector<SequenceBench>& benches) {
             bench.sum_ratio,
             bench.gain,
             bench.trimmed_gain,
-            bench.accepted_share);
+            bench.accepted_share,
+            bench.merges_per_frame);
     }
     return text;
 }
@@ -67,14 +70,10 @@ void add_plot(const SequenceBench& bench, std::map<std::string, LogPlot>& plots)
 
 BenchResult measure(const SequenceArguments& arguments, const core::Progress& progress) {
     std::vector<SequenceBench> benches;
-    for (const SequenceCase& sequence :
-         standard_sequences(arguments.scene, arguments.image_scene, arguments.frames)) {
+    for (const SequenceCase& sequence : standard_sequences(arguments.scenes, arguments.frames)) {
         if (sequence.name.find(arguments.only) == std::string::npos) continue;
-        const auto found = bench_sequence(
-            sequence,
-            standard_methods(sequence.scene == arguments.image_scene, sequence.gate_step_mm == 0.0),
-            arguments.repeats,
-            progress);
+        const auto found =
+            bench_sequence(sequence, standard_methods(sequence), arguments.repeats, progress);
         benches.insert(benches.end(), found.begin(), found.end());
     }
     BenchResult result{core::Json::object(), sequences_text(benches), {}, {}};
@@ -90,8 +89,16 @@ void add_bench_sequences_command(CLI::App& bench) {
     CLI::App* sequences =
         bench.add_subcommand("sequences", "Frame sequences: reuse of paths against none");
     add_output_options(*sequences, sequence->output);
-    sequences->add_option("--scene", sequence->scene, "Scan")->capture_default_str();
-    sequences->add_option("--image-scene", sequence->image_scene, "Camera")->capture_default_str();
+    SequenceScenes& scenes = sequence->scenes;
+    sequences->add_option("--scene", scenes.scan, "Scan")->capture_default_str();
+    sequences->add_option("--image-scene", scenes.image, "Camera")->capture_default_str();
+    sequences->add_option("--image-resolution", scenes.image_resolution, "Pixels, width and height")
+        ->capture_default_str()
+        ->check(CLI::Range(1, 10'000));
+    sequences->add_option("--moving-scene", scenes.moving_scan, "Scan of objects that move")
+        ->capture_default_str();
+    sequences->add_option("--moving-image-scene", scenes.moving_image, "Camera on such objects")
+        ->capture_default_str();
     sequences->add_option("--only", sequence->only, "Sequences whose names contain this");
     sequences->add_option("--frames", sequence->frames, "Frames of a sequence")
         ->capture_default_str()
