@@ -3,6 +3,8 @@
 
 #include "nlos/count_sampling.h"
 
+#include <Eigen/SparseLU>
+
 #include <algorithm>
 #include <cmath>
 
@@ -52,12 +54,53 @@ void start_steadily(const std::vector<double>& probabilities,
     }
 }
 
+/// The same, where detectors that are blind in step with bright pulses would take very long to
+/// forget their start: as linear equations. With s_i the probability to see in bin i, of detections
+/// p_i s_i, and b = q periods + r bins of blindness,
+///     s_(i+1) = s_i - p_i s_i + p_(i-r) s_(i-r)     what was detected is blind, what expires sees;
+///     1 = s_0 + sum of the last b of p s            a detector that does not see has detected.
+/// The band is narrow where detectors are in step: r is small or close to the period.
+///
+/// returns   detections in each bin of one period; empty where light is so bright that detectors
+///           never forget, to rounding
+std::vector<double> solve_steady_state(const std::vector<double>& probabilities,
+                                       const PulseTrain& train) {
+    constexpr double kRounding = 1e-9;
+    const int period = static_cast<int>(probabilities.size());
+    const int whole = static_cast<int>(train.blind_bins) / period;
+    const int rest = static_cast<int>(train.blind_bins) % period;
+    const auto p = [&](int bin) { return probabilities[static_cast<std::size_t>(bin)]; };
+    std::vector<Eigen::Triplet<double>> entries;
+    for (int i = 0; i + 1 < period; ++i) {
+        entries.emplace_back(i, i + 1, 1.0);
+        entries.emplace_back(i, i, p(i) - 1.0);
+        // After the first photon of a pulse nothing follows until the next.
+        if (train.first_photon_only && whole == 0 && i >= rest) continue;
+        const int expired = (i - rest + period) % period;
+        entries.emplace_back(i, expired, -p(expired));
+    }
+    const int last = period - 1;
+    entries.emplace_back(last, 0, 1.0);
+    for (int i = 0; i < period; ++i) {
+        entries.emplace_back(last, i, (whole + (i >= period - rest ? 1 : 0)) * p(i));
+    }
+    Eigen::SparseMatrix<double> equations(period, period);
+    equations.setFromTriplets(entries.begin(), entries.end());
+    const Eigen::SparseLU<Eigen::SparseMatrix<double>> solver(equations);
+    if (solver.info() != Eigen::Success) return {};
+    const Eigen::VectorXd seeing = solver.solve(Eigen::VectorXd::Unit(period, last));
+    if (!(seeing.minCoeff() > -kRounding && seeing.maxCoeff() < 1.0 + kRounding)) return {};
+    std::vector<double> detections;
+    for (int i = 0; i < period; ++i) detections.push_back(std::max(0.0, p(i) * seeing[i]));
+    return detections;
+}
+
 /// Detections of one detector, per pulse, once its start is forgotten: a fixed point. Mixing each
 /// step with the one before damps the swing of detectors that are blind in step.
 std::vector<double> find_steady_state(const std::vector<double>& probabilities,
                                       const PulseTrain& train,
                                       std::size_t history_periods) {
-    constexpr int kMostSteps = 1000;
+    constexpr int kMostSteps = 1000;     // from here on solving is quicker
     constexpr double kTolerance = 1e-9;  // of all detections
     const auto period = static_cast<std::ptrdiff_t>(probabilities.size());
     std::vector<double> history((history_periods + 1) * probabilities.size());
@@ -66,7 +109,7 @@ std::vector<double> find_steady_state(const std::vector<double>& probabilities,
     for (int step = 0; step < kMostSteps; ++step) {
         if (step > 0) std::rotate(history.begin(), history.begin() + period, history.end());
         follow_pulse(probabilities, train, 1.0, history, keep_probability);
-        if (train.blind_bins == 0) break;
+        if (train.blind_bins == 0) return history;
         double change = 0.0;
         double sum = 0.0;
         for (auto now = history.end() - period; now != history.end(); ++now) {
@@ -75,8 +118,11 @@ std::vector<double> find_steady_state(const std::vector<double>& probabilities,
             sum += *now;
             *now = 0.5 * (*now + before);
         }
-        if (change <= kTolerance * sum) break;
+        if (change <= kTolerance * sum) return history;
     }
+    const std::vector<double> solved = solve_steady_state(probabilities, train);
+    if (solved.empty()) return history;
+    for (std::size_t i = 0; i < history.size(); ++i) history[i] = solved[i % solved.size()];
     return history;
 }
 

@@ -25,7 +25,9 @@ struct PulseTrain {
 ///
 /// Every pulse is followed as if it had a detector of its own, in the state that many earlier
 /// pulses leave it in. Of A detectors that can see, each detects in a bin of rate r with
-/// probability 1 - exp(-r): a binomial number of them, and these are blind from there on.
+/// probability 1 - exp(-r): a binomial number of them, and these are blind from there on. Detectors
+/// in light so bright that they never forget when they were first hit, stay as they began: hit as
+/// often as in steady light.
 ///
 /// rates     expected photons per pulse in each bin of the axis
 /// rng       null: expected counts

@@ -133,7 +133,7 @@ std::array<core::Capture, 2> references(const Case& c) {
 
 std::vector<Estimator> estimators_for(const BenchScene& scene, int max_bounces) {
     std::vector<Estimator> estimators{Estimator::Path, Estimator::Ellipsoidal, Estimator::Restir};
-    if (!scene.is_image() && max_bounces == 3) estimators.push_back(Estimator::ThirdBounce);
+    if (!scene.scan().camera && max_bounces == 3) estimators.push_back(Estimator::ThirdBounce);
     return estimators;
 }
 

@@ -23,7 +23,7 @@ struct SequenceCase {
     int num_frames = 60;
     int num_bins = 1;      ///< of that width; more of them stand still
     double frame_s = 0.0;  ///< time between frames, in which objects move [s]
-    int reference_samples = 60'000;
+    int reference_samples = 20'000;
 
     bool is_static() const { return gate_step_mm == 0.0 && frame_s == 0.0; }
 };

@@ -169,9 +169,10 @@ double steady_light_on_a_blind_detector() {
 }
 
 double bright_peaks_on_a_blind_detector() {
-    // A peak of up to 2 photons per bin on a period of 60 bins.
+    // A peak of up to 10 photons per bin on a period of 60 bins, detectors in step with it
+    // included.
     Worst worst;
-    for (const double peak : {0.01, 0.3, 2.0}) {
+    for (const double peak : {0.01, 0.3, 2.0, 5.0, 10.0}) {
         std::vector<double> rates;
         std::vector<Quad> p;
         for (int i = 0; i < 60; ++i) {
@@ -179,7 +180,7 @@ double bright_peaks_on_a_blind_detector() {
             if (i < 40) rates.push_back(rate);
             p.push_back(-truth::expm1q(-Quad(i < 40 ? rate : 0.02)));
         }
-        for (const std::size_t blind : {1, 30, 59, 61, 150}) {
+        for (const std::size_t blind : {1, 30, 59, 60, 61, 62, 123, 150}) {
             const std::vector<double> counts =
                 nlos::count_with_dead_time(rates, {1, 20, 0.02, blind, false}, nullptr);
             const std::vector<Quad> expected = steady_detections(p, blind);

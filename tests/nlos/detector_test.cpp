@@ -275,7 +275,8 @@ TEST(Detector, CountsAgreeWithASimulationPhotonByPhoton) {
                                          {100'000, 6, 0.03, 3, false},
                                          {100'000, 6, 0.03, 12, false},
                                          {100'000, 2, 0.03, 29, false},
-                                         {100'000, 6, 0.0, 9, true}};
+                                         {100'000, 6, 0.0, 9, true},
+                                         {100'000, 6, 0.0, 18, true}};
     core::Rng rng(seed_of("CountsAgreeWithASimulationPhotonByPhoton"), 0, 0);
     for (std::size_t t = 0; t < trains.size(); ++t) {
         const std::vector<double> expected = count_with_dead_time(rates, trains[t], nullptr);
