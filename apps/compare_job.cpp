@@ -24,7 +24,7 @@ namespace {
 constexpr std::size_t kSurfaceSamples = 100'000;
 constexpr std::uint64_t kSurfaceSeed = 0;
 
-core::PointCloud surface_points(const std::string& path) {
+core::PointCloud points_of_file(const std::string& path) {
     core::TriangleMesh mesh;
     if (std::filesystem::path(path).extension() == ".ply") {
         mesh = nlos::read_ply(path);
@@ -107,13 +107,13 @@ nlos::Metrics compare_kinds(const std::string& a,
     }
     if (is_surface(kind_a) && kind_b == FileKind::Scene) {
         return nlos::compare_points(
-            surface_points(a), renderer::visible_points(SceneTruth(b).depth_map()), threshold_m);
+            points_of_file(a), core::surface_points(SceneTruth(b).depth_map()), threshold_m);
     }
     if (kind_a == FileKind::Volume && kind_b == FileKind::Volume) {
         return nlos::compare_volumes(nlos::read_volume(a), nlos::read_volume(b));
     }
     if (is_surface(kind_a) && is_surface(kind_b)) {
-        return nlos::compare_points(surface_points(a), surface_points(b), threshold_m);
+        return nlos::compare_points(points_of_file(a), points_of_file(b), threshold_m);
     }
     if (kind_a == FileKind::Capture && kind_b == FileKind::Capture) {
         return nlos::compare_captures(nlos::read_capture(a), nlos::read_capture(b));

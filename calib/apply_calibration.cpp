@@ -24,6 +24,15 @@ core::Transient delayed(const core::Transient& transient,
     return result;
 }
 
+// Everything beside the transient itself, which would no longer belong to it.
+void drop_other_histograms(core::Capture& capture) {
+    capture.variance.reset();
+    capture.orders.clear();
+    capture.by_order.clear();
+    capture.velocity.reset();
+    capture.sequence.reset();
+}
+
 }  // namespace
 
 std::vector<double> pair_offsets(const AppliedCalibration& calibration, const core::Scan& scan) {
@@ -59,6 +68,7 @@ void replace_points(const AppliedCalibration& calibration, core::Scan& scan) {
 core::Capture apply_calibration(const AppliedCalibration& calibration,
                                 const core::Capture& capture) {
     core::Capture result = capture;
+    drop_other_histograms(result);
     replace_points(calibration, result.scan);
     std::vector<double> delays = pair_offsets(calibration, result.scan);
     const double first = *std::min_element(delays.begin(), delays.end());
@@ -97,9 +107,7 @@ core::Capture record_with(const AppliedCalibration& calibration,
     const core::Transient smeared =
         core::apply_filter(core::sample_response(response, axis.bin_width_m), rendered.transient);
     const core::Transient moved = delayed(smeared, rendered.time_axis, delays);
-    result.variance.reset();
-    result.orders.clear();
-    result.by_order.clear();
+    drop_other_histograms(result);
     result.time_axis = axis;
     result.transient = core::Transient(rendered.transient.num_pairs(), axis.num_bins);
     for (std::size_t pair = 0; pair < moved.num_pairs(); ++pair) {

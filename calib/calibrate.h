@@ -94,6 +94,7 @@ std::vector<double> pair_offsets(const AppliedCalibration& calibration, const co
 void replace_points(const AppliedCalibration& calibration, core::Scan& scan);
 
 /// A capture between wall points: histograms moved by a part of a bin and more, points replaced.
+/// Variance, orders, velocities and frames are left out.
 core::Capture apply_calibration(const AppliedCalibration& calibration,
                                 const core::Capture& capture);
 

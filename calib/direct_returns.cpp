@@ -141,13 +141,19 @@ double mean_outside(const core::Capture& capture, const std::vector<Peak>& peaks
     return count > 0.0 ? std::max(sum / count, 1e-6) : 1e-3;
 }
 
-// Fisher information, points first: [log counts, opl] of each, then the shared three.
-Eigen::MatrixXd schur_of_shared(const core::Capture& capture,
+// Fisher information of one point's [log counts, opl], and its coupling to the shared three.
+struct PointInformation {
+    Eigen::Matrix2d own;
+    Eigen::Matrix<double, 2, 3> coupling;
+};
+
+// Fisher information of the shared three, points eliminated; stores what the points' own errors
+// need, and the deviance.
+Eigen::Matrix3d schur_of_shared(const core::Capture& capture,
                                 const std::vector<Peak>& peaks,
                                 const Shared& shared,
                                 ResponseShape shape,
-                                std::vector<Eigen::Matrix2d>& point_information,
-                                std::vector<Eigen::Matrix<double, 2, 3>>& couplings,
+                                std::vector<PointInformation>& points,
                                 DirectReturns& result) {
     using Jet = ceres::Jet<double, 5>;
     Eigen::Matrix3d total = Eigen::Matrix3d::Zero();
@@ -167,11 +173,10 @@ Eigen::MatrixXd schur_of_shared(const core::Capture& capture,
             result.deviance += residual * residual;
             result.expected_deviance += deviance_moments(safe).mean;
         }
-        point_information.push_back(information.topLeftCorner<2, 2>());
-        couplings.push_back(information.topRightCorner<2, 3>());
-        total += information.bottomRightCorner<3, 3>() - couplings.back().transpose() *
-                                                             point_information.back().inverse() *
-                                                             couplings.back();
+        const PointInformation& point = points.emplace_back(PointInformation{
+            information.topLeftCorner<2, 2>(), information.topRightCorner<2, 3>()});
+        total += information.bottomRightCorner<3, 3>() -
+                 point.coupling.transpose() * point.own.inverse() * point.coupling;
     }
     if (shape == ResponseShape::Gaussian) total(1, 1) += 1.0;  // no tail to know
     return total;
@@ -182,16 +187,15 @@ void store_errors(const core::Capture& capture,
                   const Shared& shared,
                   ResponseShape shape,
                   DirectReturns& result) {
-    std::vector<Eigen::Matrix2d> information;
-    std::vector<Eigen::Matrix<double, 2, 3>> couplings;
+    std::vector<PointInformation> points;
     const Eigen::Matrix3d covariance =
-        schur_of_shared(capture, peaks, shared, shape, information, couplings, result).inverse();
+        schur_of_shared(capture, peaks, shared, shape, points, result).inverse();
     result.sigma_error_m = result.sigma_m * std::sqrt(covariance(0, 0));
     result.tail_error_m = result.tail_m * std::sqrt(covariance(1, 1));
     result.ambient_error = result.ambient * std::sqrt(covariance(2, 2));
     for (std::size_t p = 0; p < peaks.size(); ++p) {
-        const Eigen::Matrix2d own = information[p].inverse();
-        const Eigen::Matrix<double, 2, 3> lever = own * couplings[p];
+        const Eigen::Matrix2d own = points[p].own.inverse();
+        const Eigen::Matrix<double, 2, 3> lever = own * points[p].coupling;
         const Eigen::Matrix2d whole = own + lever * covariance * lever.transpose();
         result.points.push_back(
             {peaks[p].opl_m, std::sqrt(whole(1, 1)), std::exp(peaks[p].log_counts)});

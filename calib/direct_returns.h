@@ -33,9 +33,10 @@ struct DirectReturns {
 /// Fits a peak per point and one response for all by maximum likelihood, far below a bin's width.
 ///
 /// capture   counts with one direct return per histogram
-/// throws    core::Error when a histogram holds no peak; core::Failure when the fit does not
-/// converge source    likelihood of Poisson counts; the response's cumulative distributions are
-/// core's
+/// shape     of the response
+/// throws    core::Error when a histogram holds no light; core::Failure when the fit does not
+///           converge
+/// source    likelihood of Poisson counts; the response's cumulative distributions are core's
 DirectReturns fit_direct_returns(const core::Capture& capture, ResponseShape shape);
 
 }  // namespace calib

@@ -309,9 +309,7 @@ FitResult fit_scene(const FitInput& input, const core::Progress& progress) {
     const Sigmas sigmas(driver.model(), uncertainty);
     store_objects(input, driver.model(), best.state, sigmas, result);
     store_rest(input, best.state, sigmas, result);
-    for (const Correlation& c : uncertainty.correlations) {
-        result.correlations.push_back({c.a, c.b, c.value});
-    }
+    result.correlations = uncertainty.correlations;
     result.condition_number = uncertainty.condition_number;
     result.unidentifiable = uncertainty.unidentifiable;
     result.covariance = uncertainty.covariance;

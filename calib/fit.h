@@ -2,6 +2,7 @@
 #pragma once
 
 #include "calib/fit_settings.h"
+#include "calib/uncertainty.h"
 #include "renderer/core/capture.h"
 #include "renderer/core/progress.h"
 #include "renderer/geometry.h"
@@ -48,13 +49,6 @@ struct Estimate {
     double sigma = kFixed;
 };
 
-/// A pair of parameters that the data hardly tell apart.
-struct FittedCorrelation {
-    std::string a;
-    std::string b;
-    double value = 0.0;
-};
-
 /// What one start of several led to.
 struct FitStart {
     std::string name;
@@ -71,7 +65,7 @@ struct FitResult {
     Estimate response_fwhm_ps;
     Estimate wall_bow_m;
     Estimate wall_scale{1.0};
-    std::vector<FittedCorrelation> correlations;
+    std::vector<Correlation> correlations;
     double condition_number = 1.0;
     std::vector<std::string> parameters;  ///< names of the free ones
     Eigen::MatrixXd covariance;           ///< of them; logarithms of sizes, albedos and widths

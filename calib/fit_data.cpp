@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "calib/fit_data.h"
 
+#include "renderer/core/instrument_response.h"
 #include "renderer/core/parallel.h"
 
 #include <fmt/core.h>

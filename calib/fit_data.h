@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "calib/fit_objective.h"
 #include "renderer/core/capture.h"
 
 #include <array>
@@ -9,6 +8,13 @@
 #include <vector>
 
 namespace calib {
+
+/// Data of a stage, as the residuals want it.
+struct FitData {
+    std::vector<double> values;  ///< [pair][bin]
+    core::TimeAxis axis;
+    double least_mean = 1e-12;  ///< expected counts are kept above it
+};
 
 /// The part of a capture's histograms whose bins lie in a window of path lengths.
 FitData crop(const core::Capture& capture, const std::optional<std::array<double, 2>>& window_m);

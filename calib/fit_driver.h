@@ -29,7 +29,6 @@ class FitDriver {
     /// The best state turned so that its bodies nearly cover themselves, as the data may confuse.
     std::vector<std::pair<std::string, SceneState>> turned(const SceneState& state) const;
     bool is_poisson() const { return is_poisson_; }
-    bool scale_is_eliminated() const { return elimination_.scale; }
     const SceneModel& model() const { return *model_; }
     const FitData& data() const { return data_; }
     const SolveSettings& solve_settings() const { return solve_; }

@@ -95,7 +95,7 @@ Json fit_json(const FitResult& result) {
     json["wall"] = {{"bow_m", result.wall_bow_m.value}, {"scale", result.wall_scale.value}};
     json["sigma"] = sigma_json(result);
     json["correlations"] = Json::array();
-    for (const FittedCorrelation& c : result.correlations) {
+    for (const Correlation& c : result.correlations) {
         json["correlations"].push_back({{"a", c.a}, {"b", c.b}, {"value", number(c.value)}});
     }
     json["condition_number"] = number(result.condition_number);

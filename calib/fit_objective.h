@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "calib/fit_data.h"
 #include "calib/forward_model.h"
 
 #include <Eigen/Dense>
@@ -8,13 +9,6 @@
 #include <vector>
 
 namespace calib {
-
-/// Data of a stage, as the residuals want it.
-struct FitData {
-    std::vector<double> values;  ///< [pair][bin]
-    core::TimeAxis axis;
-    double least_mean = 1e-12;  ///< expected counts are kept above it
-};
 
 /// Which linear factors least squares solves for in closed form.
 struct Elimination {

@@ -55,14 +55,14 @@ std::array<Jet, 3> knots_of(const std::array<Jet, 6>& v) {
 
 std::vector<double> jet_slopes(const SceneModel& model,
                                const SceneState& state,
-                               const std::vector<ModelPiece>& pieces,
-                               const core::Scan& scan,
-                               std::size_t pair,
-                               const core::TimeAxis& axis,
-                               double sigma_m) {
+                               const ForwardModel& light,
+                               std::size_t pair) {
+    const core::Scan& scan = light.scan();
+    const core::TimeAxis& axis = light.settings().axis;
+    const double sigma_m = light.settings().sigma_m;
     const auto bins = static_cast<std::size_t>(axis.num_bins);
     std::vector<double> slopes(bins * 6, 0.0);
-    for (const ModelPiece& piece : pieces) {
+    for (const ModelPiece& piece : light.pieces()) {
         const auto start = model.motion(state, piece.facet).corners;
         std::array<JetVec3, 3> corners;
         for (std::size_t i = 0; i < 3; ++i) {

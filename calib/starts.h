@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "calib/fit_objective.h"
+#include "calib/fit_data.h"
 #include "renderer/core/capture.h"
 
 #include <vector>
@@ -30,7 +30,9 @@ std::vector<core::Vec3> cluster_centers(const std::vector<core::Vec3>& points, s
 
 /// Points where a backprojection of the light not yet explained is largest, one after the other.
 ///
-/// returns   positions and what each adds per unit of model weight 1: see add_light() in starts.cpp
+/// ambient    light per bin to be ignored
+/// sigma_m    width of the response with its blur, within which a point's light is explained [m]
+/// offset_m   per pair, part of the path lengths
 std::vector<core::Vec3> brightest_points(const core::Scan& scan,
                                          const FitData& data,
                                          double ambient,

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/formats/canvas.h"
+#include "nlos/image_layout.h"
 #include "nlos/pictures.h"
 #include "nlos/wall_frame.h"
 
@@ -23,11 +24,6 @@ constexpr std::size_t kMostFrames = 12;  // of a sequence, drawn one by one
 constexpr std::size_t kMostGates = 4;    // of an image's histogram, drawn one by one
 
 using Range = std::array<double, 2>;
-
-/// Outer edges of `count` cells of width `pitch` whose first centre is `first`.
-Range cell_edges(double first, double pitch, std::size_t count) {
-    return {first - 0.5 * pitch, first + (static_cast<double>(count) - 0.5) * pitch};
-}
 
 std::string unit_of(const core::Capture& capture) {
     return capture.unit == core::TransientUnit::Counts ? "counts" : "radiance";
@@ -110,29 +106,17 @@ ImagePanel streak_panel(const core::Capture& capture,
 }
 
 /// All light of every sensing point, the wall seen like every front view.
-ImagePanel wall_panel(const core::Capture& capture,
-                      const core::Transient& transient,
-                      const WallGrid& grid) {
+ImagePanel light_panel(const core::Capture& capture,
+                       const core::Transient& transient,
+                       const WallGrid& grid) {
     std::vector<double> light(capture.scan.sensing.size(), 0.0);
     for (std::size_t pair = 0; pair < capture.scan.num_pairs(); ++pair) {
         double& sum = light[capture.scan.sensing_index(pair)];
         for (const float value : transient.histogram(pair)) sum += value;
     }
-    ImagePanel panel;
+    ImagePanel panel = wall_panel(grid, {light.begin(), light.end()});
     panel.title = "Light over the wall, all bins";
-    panel.width = grid.size[0];
-    panel.height = grid.size[1];
-    for (std::size_t iy = 0; iy < panel.height; ++iy) {
-        for (std::size_t ix = 0; ix < panel.width; ++ix) {
-            panel.values.push_back(static_cast<float>(light[grid.point(ix, iy)]));
-        }
-    }
-    panel.x_range = cell_edges(grid.first_m[0], grid.pitch_m[0], panel.width);
-    panel.y_range = cell_edges(grid.first_m[1], grid.pitch_m[1], panel.height);
-    panel.x_label = "wall x [m]";
-    panel.y_label = "wall y [m]";
     panel.value_label = unit_of(capture);
-    panel.x_direction = AxisDirection::Reversed;
     return panel;
 }
 
@@ -155,21 +139,12 @@ CurvePanel curve_panel(const core::Capture& capture,
 ImagePanel gated_panel(const core::PinholeCamera& camera,
                        const core::Transient& transient,
                        const std::array<std::size_t, 2>& bins) {
-    ImagePanel panel;
-    panel.width = camera.width();
-    panel.height = camera.height();
-    for (std::size_t y = 0; y < panel.height; ++y) {
-        for (std::size_t x = 0; x < panel.width; ++x) {
-            const auto histogram = transient.histogram(x * panel.height + y);
-            const auto gate = histogram.subspan(bins[0], bins[1] - bins[0]);
-            panel.values.push_back(std::accumulate(gate.begin(), gate.end(), 0.0F));
-        }
+    std::vector<float> sums;
+    for (std::size_t pixel = 0; pixel < transient.num_pairs(); ++pixel) {
+        const auto gate = transient.histogram(pixel).subspan(bins[0], bins[1] - bins[0]);
+        sums.push_back(std::accumulate(gate.begin(), gate.end(), 0.0F));
     }
-    panel.x_range = {0.0, static_cast<double>(panel.width)};
-    panel.y_range = {0.0, static_cast<double>(panel.height)};
-    panel.x_label = "x [pixel]";
-    panel.y_label = "y [pixel]";
-    panel.y_direction = AxisDirection::Reversed;
+    ImagePanel panel = camera_panel(camera, sums);
     panel.value_range = light_range(panel.values, kBrightestPixels);
     return panel;
 }
@@ -214,7 +189,7 @@ std::vector<Panel> scan_panels(const core::Capture& capture) {
     const bool has_time = capture.transient.num_bins() > 1;
     std::vector<Panel> panels;
     if (has_time || !grid) panels.emplace_back(streak_panel(capture, grid, bins));
-    if (grid) panels.emplace_back(wall_panel(capture, capture.transient, *grid));
+    if (grid) panels.emplace_back(light_panel(capture, capture.transient, *grid));
     if (has_time) panels.emplace_back(curve_panel(capture, mean, bins));
     return panels;
 }
@@ -233,7 +208,7 @@ std::vector<Panel> film_strip(const core::Capture& capture) {
         const std::size_t frame = num_shown > 1 ? i * (count - 1) / (num_shown - 1) : 0;
         const core::Transient& transient = sequence.frames[frame];
         ImagePanel image =
-            grid ? wall_panel(capture, transient, *grid)
+            grid ? light_panel(capture, transient, *grid)
                  : gated_panel(*capture.scan.camera, transient, {0, transient.num_bins()});
         core::TimeAxis axis = capture.time_axis;
         axis.opl_start_m -= static_cast<double>(count - 1 - frame) * sequence.gate_step_m;

@@ -166,19 +166,6 @@ std::vector<float> albedo_image(const core::DepthMap& map) {
     return image;
 }
 
-core::PointCloud surface_samples(const core::DepthMap& map) {
-    core::PointCloud cloud;
-    for (std::size_t ix = 0; ix < map.x_m.size(); ++ix) {
-        for (std::size_t iy = 0; iy < map.y_m.size(); ++iy) {
-            const std::size_t index = map.index(ix, iy);
-            if (!map.is_foreground(index)) continue;
-            cloud.positions.push_back(map.point_world(ix, iy));
-            if (!map.normals.empty()) cloud.normals.push_back(map.normals[index]);
-        }
-    }
-    return cloud;
-}
-
 }  // namespace
 
 Metrics compare_to_truth(const Reconstruction& result, const core::DepthMap& truth) {
@@ -187,7 +174,7 @@ Metrics compare_to_truth(const Reconstruction& result, const core::DepthMap& tru
     const Mask mask = mask_above_share(projection, kMaskShare);
     const Mask true_mask = foreground_of(truth);
     const std::vector<std::size_t> columns = common_columns(mask, result.depth, truth);
-    const core::PointCloud true_points = surface_samples(truth);
+    const core::PointCloud true_points = surface_points(truth);
 
     Metrics metrics;
     score_depth(result.depth, truth, columns, metrics);

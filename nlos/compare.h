@@ -55,7 +55,7 @@ void for_each_field(Metrics& m, Visitor&& visit) {
     visit("rotation_error_deg", m.rotation_error_deg, "of a fitted object, modulo symmetry [deg]");
     visit("size_error", m.size_error, "relative, of a fitted object");
     visit("albedo_error", m.albedo_error, "relative, of a fitted object");
-    visit("rel_l2", m.rel_l2, "relative L2 distance of two captures");
+    visit("rel_l2", m.rel_l2, "relative L2 distance of two captures or volumes");
     visit("rel_mse", m.rel_mse, "mean square distance over mean square reference");
     visit("seconds", m.seconds, "time the result took [s]");
     visit("peak_rss_bytes", m.peak_rss_bytes, "memory the result took [bytes]");

@@ -62,7 +62,10 @@ void validate(const DetectorSettings& s) {
             s.radiometry.efficiency,
             "must be above 0 and at most 1");
     const double pulses = s.repetition_hz * s.exposure_s.value_or(1.0);
-    require(pulses <= kMostPulses, "exposure_s", pulses, "must give at most 1e15 pulses");
+    require(pulses <= kMostPulses,
+            "exposure_s",
+            s.exposure_s.value_or(1.0),
+            fmt::format("must be at most {:g}: 1e15 pulses", kMostPulses / s.repetition_hz));
     const double blind_periods = 1e-9 * s.dead_time_ns * s.repetition_hz;
     require(blind_periods <= kLongestBlindPeriods,
             "dead_time_ns",

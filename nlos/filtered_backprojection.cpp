@@ -89,7 +89,7 @@ Volume laplacian_backprojection(const MethodInput& input, Compensation compensat
 Volume phasor_backprojection(const MethodInput& input, const PhasorSettings& settings) {
     const FilteredHistograms filtered = filter_histograms(input, settings);
     const auto run = [&](const core::Transient& transient, double begin, double end) {
-        const core::Progress progress = part_of(input.progress, begin, end);
+        const core::Progress progress = input.progress.part(begin, end);
         return backproject({input.scan,
                             filtered.time_axis,
                             transient,

@@ -6,7 +6,6 @@
 #include "nlos/unit_phasor.h"
 
 #include <cmath>
-#include <limits>
 #include <vector>
 
 // Frequencies f are cycles per metre of range r = path length / 2. The data's phase is taken
@@ -45,13 +44,7 @@ struct Grids {
 
 Grids make_grids(const MethodInput& input) {
     const core::TimeAxis& axis = input.time_axis;
-    double shortest = std::numeric_limits<double>::max();
-    double longest = 0.0;
-    for (std::size_t pair = 0; pair < input.scan.num_pairs(); ++pair) {
-        const double leg = input.scan.device_legs_m(pair);
-        shortest = std::min(shortest, leg);
-        longest = std::max(longest, leg);
-    }
+    const auto [shortest, longest] = core::device_leg_range_m(input.scan);
     const double begin = std::max(0.0, 0.5 * (axis.opl_start_m - longest));
     const double end = std::max(begin + axis.bin_width_m, 0.5 * (axis.opl_end_m() - shortest));
     Grids grids;

@@ -44,7 +44,7 @@ core::Capture gated_capture(const core::Capture& capture,
         gate_start_m >= axis.opl_start_m - tolerance_m && end_m <= axis.opl_end_m() + tolerance_m;
     if (!(gate_width_m > 0.0) || !is_within) {
         throw core::Error("gate",
-                          fmt::format("from {} to {} m", gate_start_m, end_m),
+                          fmt::format("found {} to {} m", gate_start_m, end_m),
                           fmt::format("must be wider than 0 and lie between {} and {} m",
                                       axis.opl_start_m,
                                       axis.opl_end_m()));

@@ -4,7 +4,6 @@
 #include "nlos/padded_plane.h"
 
 #include <cmath>
-#include <limits>
 
 namespace nlos {
 namespace {
@@ -35,17 +34,12 @@ ConservativeResampling path_length_to_squared_range(const core::TimeAxis& axis,
 
 Cone make_cone(const MethodInput& input, std::size_t bins_per_bin) {
     Cone cone;
-    cone.min_leg_m = std::numeric_limits<double>::max();
-    cone.max_leg_m = 0.0;
-    for (std::size_t pair = 0; pair < input.scan.num_pairs(); ++pair) {
-        const double leg = input.scan.device_legs_m(pair);
-        cone.min_leg_m = std::min(cone.min_leg_m, leg);
-        cone.max_leg_m = std::max(cone.max_leg_m, leg);
-    }
+    const auto [shortest_leg, longest_leg] = core::device_leg_range_m(input.scan);
+    cone.min_leg_m = shortest_leg;
     const core::TimeAxis& axis = input.time_axis;
-    cone.is_same_for_all = cone.max_leg_m - cone.min_leg_m < 1e-6 * axis.bin_width_m;
-    const double begin = std::max(0.0, 0.5 * (axis.opl_start_m - cone.max_leg_m));
-    const double end = 0.5 * (axis.opl_end_m() - cone.min_leg_m);
+    cone.is_same_for_all = longest_leg - shortest_leg < 1e-6 * axis.bin_width_m;
+    const double begin = std::max(0.0, 0.5 * (axis.opl_start_m - longest_leg));
+    const double end = 0.5 * (axis.opl_end_m() - shortest_leg);
     const double num_bins = std::ceil((end - begin) / (0.5 * axis.bin_width_m) - 1e-6);
     if (!(num_bins >= 4.0)) {
         throw core::Error("method",

@@ -17,7 +17,7 @@ struct Cone {
     std::size_t px = 0, py = 0;   ///< padded to at least twice
     std::size_t length = 0;       ///< padded number of v bins
     bool is_same_for_all = true;  ///< device legs are the same for every pair
-    double min_leg_m = 0.0, max_leg_m = 0.0;
+    double min_leg_m = 0.0;       ///< the shortest device legs
 
     std::size_t num_v() const { return v_edges.size() - 1; }
     double v_width() const { return v_edges[1] - v_edges[0]; }

@@ -39,16 +39,6 @@ struct ProgressSpan {
     const char* detail = "";
 };
 
-/// Reports into a part of another progress.
-inline core::Progress part_of(const core::Progress& whole, double begin, double end) {
-    core::Progress part;
-    part.report = [&whole, begin, end](double share, const std::string& detail) {
-        whole.update(begin + share * (end - begin), detail);
-    };
-    part.stop_requested = whole.stop_requested;
-    return part;
-}
-
 /// Calls `body(begin, end)` for blocks of [0, count) in parallel, reporting and listening in
 /// between. The blocks depend on `count` and `block` only.
 inline void parallel_blocks_with_progress(

@@ -88,10 +88,7 @@ core::WallPoints wall_points(const MidpointGrid& grid, const WallFrame& wall) {
 /// The confocal axis starts at 0 and ends where the last bin can land. An axis that starts far from
 /// the wall fills much with darkness: refused before it is made.
 core::TimeAxis confocal_axis(const core::Scan& scan, core::TimeAxis axis, std::size_t num_points) {
-    double shortest = scan.device_legs_m(0);
-    for (std::size_t pair = 1; pair < scan.num_pairs(); ++pair) {
-        shortest = std::min(shortest, scan.device_legs_m(pair));
-    }
+    const double shortest = core::device_leg_range_m(scan)[0];
     const double end = std::max(axis.bin_width_m, axis.opl_end_m() - shortest);
     const double num_bins = std::ceil(end / axis.bin_width_m - 1e-6);
     require_memory(4.0 * static_cast<double>(num_points) * num_bins);

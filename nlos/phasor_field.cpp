@@ -6,8 +6,8 @@
 #include "nlos/unit_phasor.h"
 #include "nlos/virtual_wave.h"
 
+#include <array>
 #include <cmath>
-#include <limits>
 
 namespace nlos {
 namespace {
@@ -59,13 +59,9 @@ struct Band {
 
 Band make_band(const MethodInput& input, const PhasorSettings& settings) {
     const core::TimeAxis& axis = input.time_axis;
-    double shortest_leg = std::numeric_limits<double>::max();
-    double longest_leg = 0.0;
-    for (std::size_t pair = 0; pair < input.scan.num_pairs(); ++pair) {
-        const double leg = input.scan.device_legs_m(pair);
-        shortest_leg = std::min(shortest_leg, leg);
-        longest_leg = std::max(longest_leg, leg);
-    }
+    const std::array<double, 2> legs = core::device_leg_range_m(input.scan);
+    const double shortest_leg = legs[0];
+    const double longest_leg = legs[1];
     const double reach = 4.0 * settings.cycles * *settings.wavelength_m / 6.0;
     const auto [shortest, longest] = path_lengths(input);
     const auto bin_at = [&](double opl) {

@@ -53,7 +53,7 @@ PreparationPlan choose_preparation(const Measurement& measurement, ReconstructSe
     plan.merge_bins = *settings.merge_bins;
     if (plan.merge_bins > axis.num_bins) {
         throw core::Error("merge_bins",
-                          fmt::format("{}", plan.merge_bins),
+                          fmt::format("found {}", plan.merge_bins),
                           fmt::format("must not exceed the capture's {} bins", axis.num_bins));
     }
     plan.num_bins = axis.num_bins / plan.merge_bins;
@@ -101,13 +101,7 @@ double default_depth_step_m(const core::TimeAxis& axis, const ReconstructSetting
 
 /// Half the path lengths that the axis covers once device legs are taken off.
 std::array<double, 2> default_z_range(const core::Scan& scan, const core::TimeAxis& axis) {
-    double shortest_leg = scan.device_legs_m(0);
-    double longest_leg = shortest_leg;
-    for (std::size_t pair = 1; pair < scan.num_pairs(); ++pair) {
-        const double leg = scan.device_legs_m(pair);
-        shortest_leg = std::min(shortest_leg, leg);
-        longest_leg = std::max(longest_leg, leg);
-    }
+    const auto [shortest_leg, longest_leg] = core::device_leg_range_m(scan);
     const double begin = std::max(0.0, 0.5 * (axis.opl_start_m - longest_leg));
     const double end = 0.5 * (axis.opl_end_m() - shortest_leg);
     if (!(end > begin)) {

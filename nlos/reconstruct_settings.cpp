@@ -11,7 +11,7 @@ namespace nlos {
 namespace {
 
 void require(bool holds, const char* key, const std::string& found, const std::string& allowed) {
-    if (!holds) throw core::Error(key, found, allowed);
+    if (!holds) throw core::Error(key, "found " + found, allowed);
 }
 
 void validate(const TvSettings& settings) {

@@ -19,7 +19,4 @@ namespace nlos {
 /// throws           nothing
 core::DepthMap extract_depth_map(const Volume& volume, double mask_threshold);
 
-/// The foreground of a depth map as points with normals, in world coordinates.
-core::PointCloud surface_points(const core::DepthMap& depth);
-
 }  // namespace nlos

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "nlos/image_layout.h"
 #include "nlos/pictures.h"
 #include "nlos/wall_frame.h"
 
@@ -73,41 +74,11 @@ Range symmetric_range(const std::vector<float>& values) {
 
 ImagePanel velocity_image(const core::Scan& scan, const core::VelocityHistogram& velocity) {
     const std::vector<float> means = mean_velocities(velocity);
-    ImagePanel panel;
+    ImagePanel panel = scan.camera ? camera_panel(*scan.camera, means)
+                                   : wall_panel(*derive_wall_frame(scan).grid, means);
     panel.title = "Mean path velocity";
     panel.value_label = "m/s";
     panel.colour_map = ColourMap::Diverging;
-    if (scan.camera) {
-        panel.width = scan.camera->width();
-        panel.height = scan.camera->height();
-        panel.x_range = {0.0, static_cast<double>(panel.width)};
-        panel.y_range = {0.0, static_cast<double>(panel.height)};
-        panel.x_label = "x [pixel]";
-        panel.y_label = "y [pixel]";
-        panel.y_direction = AxisDirection::Reversed;
-        for (std::size_t y = 0; y < panel.height; ++y) {
-            for (std::size_t x = 0; x < panel.width; ++x) {
-                panel.values.push_back(means[x * panel.height + y]);
-            }
-        }
-    } else {
-        const WallGrid grid = *derive_wall_frame(scan).grid;
-        panel.width = grid.size[0];
-        panel.height = grid.size[1];
-        const auto edges = [](double first, double pitch, std::size_t count) {
-            return Range{first - 0.5 * pitch, first + (static_cast<double>(count) - 0.5) * pitch};
-        };
-        panel.x_range = edges(grid.first_m[0], grid.pitch_m[0], panel.width);
-        panel.y_range = edges(grid.first_m[1], grid.pitch_m[1], panel.height);
-        panel.x_label = "wall x [m]";
-        panel.y_label = "wall y [m]";
-        panel.x_direction = AxisDirection::Reversed;
-        for (std::size_t iy = 0; iy < panel.height; ++iy) {
-            for (std::size_t ix = 0; ix < panel.width; ++ix) {
-                panel.values.push_back(means[grid.point(ix, iy)]);
-            }
-        }
-    }
     panel.value_range = symmetric_range(panel.values);
     return panel;
 }

@@ -64,17 +64,4 @@ core::DepthMap trace_ground_truth(const Scene& scene, const SceneDescription& de
                            cell_centers(wall.size_m[1], ny));
 }
 
-core::PointCloud visible_points(const core::DepthMap& map) {
-    core::PointCloud cloud;
-    for (std::size_t ix = 0; ix < map.x_m.size(); ++ix) {
-        for (std::size_t iy = 0; iy < map.y_m.size(); ++iy) {
-            const std::size_t i = map.index(ix, iy);
-            if (!map.is_foreground(i)) continue;
-            cloud.positions.push_back(map.point_world(ix, iy));
-            cloud.normals.push_back(map.normals[i]);
-        }
-    }
-    return cloud;
-}
-
 }  // namespace renderer

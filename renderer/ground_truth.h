@@ -22,7 +22,4 @@ core::DepthMap trace_depth_map(const Scene& scene,
 /// The same with the wall's own frame, over its whole size, at cell centres.
 core::DepthMap trace_ground_truth(const Scene& scene, const SceneDescription& description);
 
-/// The hidden surface that a depth map shows, as points with normals [world].
-core::PointCloud visible_points(const core::DepthMap& map);
-
 }  // namespace renderer

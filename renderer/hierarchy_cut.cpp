@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/hierarchy_cut.h"
 
+#include "renderer/core/sampling.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -125,7 +127,7 @@ std::optional<FacetChoice> HierarchyCut::sample(double u, std::size_t& hint) con
         return choice;
     }
     const double begin = entry.end - choice.probability;
-    const double rest = std::clamp((u - begin) / choice.probability, 0.0, 1.0 - 0x1.0p-53);
+    const double rest = std::clamp((u - begin) / choice.probability, 0.0, core::kBelowOne);
     const auto position = hierarchy_->descend(entry.child, query_, rest, choice.probability);
     if (!position) return std::nullopt;
     choice.facet = hierarchy_->order_[*position];

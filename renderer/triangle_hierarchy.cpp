@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/triangle_hierarchy.h"
 
+#include "renderer/core/sampling.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -248,7 +250,7 @@ std::optional<std::uint32_t> TriangleHierarchy::descend(std::int32_t node,
         std::size_t chosen = 0;
         for (std::size_t i = 1; i < kWidth; ++i) chosen += ends[i] <= below ? 1 : 0;
         const double share = double{ends[chosen + 1]} - double{ends[chosen]};
-        u = std::clamp((target - double{ends[chosen]}) / share, 0.0, 1.0 - 0x1.0p-53);
+        u = std::clamp((target - double{ends[chosen]}) / share, 0.0, core::kBelowOne);
         probability *= share / double{sum};
         node = at.child[chosen];
     }

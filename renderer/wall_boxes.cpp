@@ -26,12 +26,8 @@ WallBoxes::WallBoxes(const core::Scan& scan, const Vec3& origin)
             slack_m_ = std::max(slack_m_, box.bounds.diagonal().norm());
         }
     }
-    device_legs_ = {std::numeric_limits<double>::infinity(), 0.0};
-    for (std::size_t pair = 0; pair < scan.num_pairs(); ++pair) {
-        const double legs = scan.device_legs_m(pair);
-        device_legs_.least_m = std::min(device_legs_.least_m, legs);
-        device_legs_.most_m = std::max(device_legs_.most_m, legs);
-    }
+    const auto [least, most] = core::device_leg_range_m(scan);
+    device_legs_ = {least, most};
     find_planes(scan.sensing, origin);
     if (!confocal_) find_planes(scan.illumination, origin);
     if (planes_.size() == 1) plane_ = planes_.front();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "apps/bench/comparison_pictures.h"
 
+#include "nlos/image_layout.h"
+
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -18,18 +20,10 @@ constexpr std::size_t kBlock = 4;      ///< pixels either way, over which differ
 ImagePanel image_panel(const core::PinholeCamera& camera,
                        const std::string& title,
                        const std::vector<float>& values) {
-    ImagePanel panel;
+    ImagePanel panel = nlos::camera_panel(camera, values);
     panel.title = title;
-    panel.width = camera.width();
-    panel.height = camera.height();
-    for (std::size_t y = 0; y < panel.height; ++y) {
-        for (std::size_t x = 0; x < panel.width; ++x) {
-            panel.values.push_back(values[x * panel.height + y]);
-        }
-    }
-    panel.x_range = {0.0, static_cast<double>(panel.width)};
-    panel.y_range = {0.0, static_cast<double>(panel.height)};
-    panel.y_direction = nlos::AxisDirection::Reversed;
+    panel.x_label.clear();
+    panel.y_label.clear();
     return panel;
 }
 

@@ -177,13 +177,7 @@ void bench_slopes(FitBench& bench) {
     bare.light->update(state, core::Slopes::With);
     calib::PairModel slopes;
     bare.light->evaluate(kPair, slopes);
-    const auto jets = calib::jet_slopes(*bare.model,
-                                        state,
-                                        bare.light->pieces(),
-                                        bare.scan,
-                                        kPair,
-                                        bare.light->settings().axis,
-                                        bare.light->settings().sigma_m);
+    const auto jets = calib::jet_slopes(*bare.model, state, *bare.light, kPair);
     double from_jets = 0.0;
     double from_differences = 0.0;
     for (std::size_t c = 0; c < 6; ++c) {

@@ -33,4 +33,7 @@ struct CaptureFormat {
 /// All formats, in the order in which a file is tried.
 const std::vector<CaptureFormat>& capture_formats();
 
+/// The coordinates of points, one point after the other, in the precision of the files.
+std::vector<float> to_floats(const std::vector<core::Vec3>& points);
+
 }  // namespace nlos

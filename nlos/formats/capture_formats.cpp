@@ -15,4 +15,13 @@ const std::vector<CaptureFormat>& capture_formats() {
     return formats;
 }
 
+std::vector<float> to_floats(const std::vector<core::Vec3>& points) {
+    std::vector<float> values;
+    values.reserve(3 * points.size());
+    for (const core::Vec3& point : points) {
+        for (const double coordinate : point) values.push_back(static_cast<float>(coordinate));
+    }
+    return values;
+}
+
 }  // namespace nlos

@@ -31,8 +31,7 @@ class ContainedProcess {
     /// Sends a request and waits for the answer.
     ///
     /// throws   core::Error or core::Failure as the child does; core::Error when the child crashed
-    /// or
-    ///          did not end in time
+    ///          or did not end in time
     std::string ask(const std::string& request);
 
  private:

@@ -45,15 +45,6 @@ constexpr const char* kValues = "Y";
 constexpr const char* kVariance = "variance";
 constexpr const char* kOrder = "order.";
 
-std::vector<float> to_floats(const std::vector<Vec3>& vectors) {
-    std::vector<float> values;
-    values.reserve(3 * vectors.size());
-    for (const Vec3& vector : vectors) {
-        for (const double coordinate : vector) values.push_back(static_cast<float>(coordinate));
-    }
-    return values;
-}
-
 void put_points(ExrTable& table, const std::string& device, const WallPoints& points) {
     table.lists["nlos" + device + "PointsM"] = to_floats(points.positions);
     table.lists["nlos" + device + "Normals"] = to_floats(points.normals);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/formats/capture_file.h"
+#include "nlos/formats/capture_format.h"
 #include "nlos/formats/hdf5_writer.h"
 #include "nlos/formats/ytal_layout.h"
 
@@ -7,7 +7,6 @@ namespace nlos {
 namespace {
 
 using core::Capture;
-using core::Vec3;
 using core::WallPoints;
 
 /// How the points of a capture stand in the file.
@@ -34,15 +33,6 @@ Shape extents_of(const WallPoints& points, const Layout& layout) {
     if (!layout.grids) return {points.size()};
     const auto grid = points.grid.value_or(std::array<std::size_t, 2>{1, 1});
     return {grid[0], grid[1]};
-}
-
-std::vector<float> to_floats(const std::vector<Vec3>& vectors) {
-    std::vector<float> values;
-    values.reserve(3 * vectors.size());
-    for (const Vec3& vector : vectors) {
-        for (const double coordinate : vector) values.push_back(static_cast<float>(coordinate));
-    }
-    return values;
 }
 
 void write_no_points(Hdf5Writer& file, const std::string& device) {

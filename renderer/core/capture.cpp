@@ -3,6 +3,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace core {
@@ -51,6 +52,15 @@ void validate_histograms(const Capture& capture,
 }
 
 }  // namespace
+
+std::array<double, 2> device_leg_range_m(const Scan& scan) {
+    std::array<double, 2> range{scan.device_legs_m(0), scan.device_legs_m(0)};
+    for (std::size_t pair = 1; pair < scan.num_pairs(); ++pair) {
+        const double leg = scan.device_legs_m(pair);
+        range = {std::min(range[0], leg), std::max(range[1], leg)};
+    }
+    return range;
+}
 
 void validate(const Capture& capture, const std::string& where) {
     validate(capture.time_axis, where + ": time axis");

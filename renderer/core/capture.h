@@ -88,6 +88,9 @@ struct Scan {
     }
 };
 
+/// The shortest and the longest device_legs_m() of a scan with at least one pair [m].
+std::array<double, 2> device_leg_range_m(const Scan& scan);
+
 /// Frames of a gate and of objects that move on from one to the next.
 struct FrameSequence {
     std::vector<Transient> frames;  ///< the last one is the capture's own transient

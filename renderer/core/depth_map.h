@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "renderer/core/mesh.h"
 #include "renderer/core/types.h"
 
 #include <cmath>
@@ -35,5 +36,8 @@ struct DepthMap {
         return world_from_wall * Vec3(x_m[ix], y_m[iy], depth_m[index(ix, iy)]);
     }
 };
+
+/// The foreground of a depth map as points, with normals where they are known [world].
+PointCloud surface_points(const DepthMap& depth);
 
 }  // namespace core

@@ -160,9 +160,8 @@ InstrumentResponse make_response(const ResponseSettings& settings, const std::st
     const auto check = [&](const char* key, double value) {
         constexpr double kLargest = 1e9;  // [ps], 300 km
         if (!(value >= 0.0 && value <= kLargest)) {
-            throw Error(join_key(where, key),
-                        fmt::format("found {}", value),
-                        "must be finite and not negative [ps]");
+            throw Error(
+                join_key(where, key), fmt::format("found {}", value), "must be from 0 to 1e9 [ps]");
         }
     };
     check("jitter_fwhm_ps", settings.jitter_fwhm_ps);
@@ -209,11 +208,6 @@ ResponseMoments moments(const InstrumentResponse& response) {
                                      return m;
                                  }},
                       response);
-}
-
-bool is_ideal(const InstrumentResponse& response) {
-    const ResponseMoments m = moments(response);
-    return m.mean_m == 0.0 && m.variance_m2 == 0.0;
 }
 
 ResponseFilter sample_response(const InstrumentResponse& response, double bin_width_m) {

@@ -70,9 +70,6 @@ struct ResponseMoments {
 };
 ResponseMoments moments(const InstrumentResponse& response);
 
-/// True when every delay is 0.
-bool is_ideal(const InstrumentResponse& response);
-
 /// The response on a time axis: output[i] = sum over k of weights[k] input[i - first_delay - k].
 struct ResponseFilter {
     int first_delay = 0;          ///< [bins], may be negative

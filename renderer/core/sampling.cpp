@@ -8,8 +8,6 @@
 namespace core {
 namespace {
 
-constexpr double kBelowOne = 0x1.fffffffffffffp-1;
-
 double azimuth_share(double x, double y) {
     const double share = std::atan2(y, x) / (2.0 * kPi);
     return std::min(share < 0.0 ? share + 1.0 : share, kBelowOne);

@@ -11,6 +11,9 @@
 
 namespace core {
 
+/// The largest double below 1.
+inline constexpr double kBelowOne = 1.0 - 0x1.0p-53;
+
 /// Warps of the unit square, each with its density and its inverse (source [Osada2002] for the
 /// triangle; the others follow from their cumulative distributions).
 
@@ -65,8 +68,6 @@ class DiscreteDistribution {
         return std::clamp((u - begin) / (cumulative_[index] - begin), 0.0, kBelowOne);
     }
     std::size_t next_index(std::size_t hint, double u) const;
-
-    static constexpr double kBelowOne = 1.0 - 0x1.0p-53;
 
     std::vector<double> cumulative_;  ///< upper end of each index's share, last is 1
     double sum_ = 0.0;

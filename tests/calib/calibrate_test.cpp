@@ -357,8 +357,10 @@ TEST(Calibrate, ResultServesRenderReconstructAndFit) {
         const int bin = *rendered.time_axis.bin_of(kPath_m);
         rendered.transient.histogram(p)[static_cast<std::size_t>(bin)] = 1.0F;
     }
-    const core::Capture recorded = calib::record_with(applied, rendered, axis);
+    core::Capture recorded = calib::record_with(applied, rendered, axis);
+    recorded.variance = recorded.transient;  // of light where it was
     const core::Capture undone = calib::apply_calibration(applied, recorded);
+    EXPECT_FALSE(undone.variance.has_value());
     for (const std::size_t p : {0U, 20U, 35U}) {
         double sum = 0.0;
         double moment = 0.0;

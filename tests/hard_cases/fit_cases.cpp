@@ -102,8 +102,7 @@ double slopes_of_the_light_of_tiny_and_large_objects() {
         for (std::size_t pair = 0; pair < scan.num_pairs(); ++pair) {
             calib::PairModel found;
             light.evaluate(pair, found);
-            const std::vector<double> jets = calib::jet_slopes(
-                model, state, light.pieces(), scan, pair, forward.axis, forward.sigma_m);
+            const std::vector<double> jets = calib::jet_slopes(model, state, light, pair);
             for (std::size_t c = 0; c < 6; ++c) {
                 double square = 0.0;
                 double error = 0.0;

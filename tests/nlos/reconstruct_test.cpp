@@ -153,10 +153,11 @@ TEST(Reconstruct, TakesANoiseFloorOffWhateverTheUnit) {
 }
 
 TEST(Reconstruct, NamesSettingsOutOfRange) {
-    EXPECT_ERROR_WITH(reconstruct(example(), with({"noise_floor=-1"}), {}), "noise_floor: -1");
+    EXPECT_ERROR_WITH(reconstruct(example(), with({"noise_floor=-1"}), {}),
+                      "noise_floor: found -1");
     EXPECT_ERROR_WITH(reconstruct(example(), with({"noise_floor=1", "ambient=keep"}), {}),
                       "ambient=auto or subtract");
-    EXPECT_ERROR_WITH(reconstruct(example(), with({"snr=0"}), {}), "snr: 0");
+    EXPECT_ERROR_WITH(reconstruct(example(), with({"snr=0"}), {}), "snr: found 0");
     EXPECT_ERROR_WITH(reconstruct(example(), with({"mask_threshold=1.5"}), {}), "mask_threshold");
     EXPECT_ERROR_WITH(reconstruct(example(), with({"merge_bins=500"}), {}), "128 bins");
     EXPECT_ERROR_WITH(reconstruct(example(), with({"volume.voxels=[0,4,4]"}), {}), "volume.voxels");

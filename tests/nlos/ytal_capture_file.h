@@ -42,6 +42,13 @@ inline void expect_same(const core::Capture& a, const core::Capture& b) {
     }
 }
 
+/// 0, 1, 2, ...
+inline std::vector<float> ramp(std::size_t count) {
+    std::vector<float> values;
+    for (std::size_t i = 0; i < count; ++i) values.push_back(static_cast<float>(i));
+    return values;
+}
+
 /// A written capture whose datasets a test replaces through the HDF5 library itself.
 class CaptureFile {
  public:

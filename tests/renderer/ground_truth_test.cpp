@@ -40,7 +40,7 @@ TEST(GroundTruth, TiltedPlaneHasItsDepthNormalAndAlbedo) {
             EXPECT_EQ(map.albedo[i], 0.3);
         }
     }
-    EXPECT_EQ(renderer::visible_points(map).positions.size(), 400U);
+    EXPECT_EQ(surface_points(map).positions.size(), 400U);
 }
 
 TEST(GroundTruth, FollowsThePoseOfTheWall) {

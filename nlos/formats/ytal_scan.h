@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "nlos/formats/hdf5_reader.h"
+#include "renderer/core/capture.h"
+
+namespace nlos {
+
+/// Reads camera or wall points, how they pair up and where the devices stand from a capture in
+/// y-tal's layout; scene_info must be in the capture. What is missing and assumed is noted there.
+///
+/// Throws core::Error when something needed is missing, not finite, or H does not have one
+/// histogram per pair.
+void read_ytal_scan(const Hdf5Reader& file, core::Capture& capture);
+
+}  // namespace nlos
