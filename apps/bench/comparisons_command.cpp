@@ -31,28 +31,27 @@ const char* const kWalks = "render.restir.walks";
 // A gate that moves by a quarter of its width per frame: history is worth something, if the shift
 // can take it along.
 SequenceCase moving_gate(const std::string& name, const ComparisonArguments& arguments) {
-    return {name,
-            arguments.chart_scene,
-            {},
-            4.0,
-            20.0,
-            5.0,
-            arguments.frames,
-            1,
-            arguments.reference_samples};
+    return {.name = name,
+            .scene = arguments.chart_scene,
+            .overrides = {},
+            .gate_start_m = 4.0,
+            .gate_width_mm = 20.0,
+            .gate_step_mm = 5.0,
+            .num_frames = arguments.frames,
+            .reference_samples = arguments.reference_samples};
 }
 
 // The late light of a scene at rest, as a histogram, frame by frame.
 SequenceCase resting_histogram(const ComparisonArguments& arguments) {
-    return {"progress",
-            arguments.progress_scene,
-            {"camera.resolution=[64,48]", "render.max_bounces=4"},
-            3.8,
-            20.0,
-            0.0,
-            kProgressFrames,
-            24,
-            arguments.reference_samples};
+    return {.name = "progress",
+            .scene = arguments.progress_scene,
+            .overrides = {"camera.resolution=[64,48]", "render.max_bounces=4"},
+            .gate_start_m = 3.8,
+            .gate_width_mm = 20.0,
+            .gate_step_mm = 0.0,
+            .num_frames = kProgressFrames,
+            .num_bins = 24,
+            .reference_samples = arguments.reference_samples};
 }
 
 ComparedMethod restir_with(const std::string& name, const std::vector<std::string>& overrides) {
