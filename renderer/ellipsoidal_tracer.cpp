@@ -123,19 +123,17 @@ std::uint64_t EllipsoidalTracer::trace(const PathEnds& ends,
                                        int num_samples,
                                        core::Rng& rng,
                                        PassHistogram& histogram) const {
-    // Numbers of each kind are rounded at random, so that their means are the shares that the
-    // weights assume.
-    const auto rounded = [&](double expected, int most) {
-        return std::min(most, static_cast<int>(expected + rng.uniform()));
-    };
     Walk walk(*this, ends, rng, histogram);
     const double share = walk.cut_hierarchy(num_samples);
-    const int num_connections = rounded(num_samples * share, num_samples);
-    const double area_share = (1.0 - share) * kAreaShare;
-    const int num_area = rounded(num_samples * area_share, num_samples - num_connections);
+    // Numbers of each kind are rounded at random, so that their means are the shares that the
+    // weights assume: all by the same number, so that none takes from another.
+    const double u = rng.uniform();
+    const auto rounded = [&](double expected) { return static_cast<int>(expected + u); };
+    const int num_connections = rounded(num_samples * share);
+    const int num_chosen = rounded(num_samples * (share + (1.0 - share) * kAreaShare));
     walk.trace_connections(num_connections);
-    walk.trace_area_samples(num_area);
-    walk.trace_directions(num_samples - num_connections - num_area);
+    walk.trace_area_samples(num_chosen - num_connections);
+    walk.trace_directions(num_samples - num_chosen);
     return walk.num_rays();
 }
 

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace {
 
@@ -130,6 +131,26 @@ TEST(EllipsoidalTracer, GatesOfAllShapesAgreeWithPaths) {
         ellipsoidal.gate = gate;
         ellipsoidal.exclude = Exclusion::None;
         expect_agreement(few.render(ellipsoidal), few.render(path));
+    }
+}
+
+// Eight samples come one by one: then, too, every kind of them has its share in the mean.
+TEST(EllipsoidalTracer, FewSamplesHaveNoBias) {
+    FewPairs few("letter");
+    few.scan = renderer::make_scan(few.description);
+    const core::Capture integrated = few.render(few.settings(Estimator::ThirdBounce, 3, 1));
+    const auto sum_of = [](const core::Capture& capture) {
+        const auto values = capture.transient.values();
+        return std::accumulate(values.begin(), values.end(), 0.0);
+    };
+    const double expected = sum_of(integrated);
+    for (const int samples : {8, 16}) {
+        const core::Capture sampled = few.render(few.settings(Estimator::Ellipsoidal, 3, samples));
+        const auto variances = sampled.variance->values();
+        const double sigma = std::sqrt(std::accumulate(variances.begin(), variances.end(), 0.0));
+        const double off = std::max(0.0, std::abs(sum_of(sampled) - expected) - 2e-3 * expected);
+        EXPECT_GT(test_support::normal_tail(off / sigma), 1e-4)
+            << sum_of(sampled) / expected << " +- " << sigma / expected;
     }
 }
 
