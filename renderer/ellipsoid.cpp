@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/ellipsoid.h"
 
+#include "renderer/core/sampling.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -212,7 +214,7 @@ double EllipsoidArcs::invert(const Vec2& angle) const {
         }
         before += arcs_[i].length_rad;
     }
-    return std::min(result / total_rad_, 1.0 - 0x1.0p-53);
+    return std::min(result / total_rad_, core::kBelowOne);
 }
 
 std::optional<EllipsoidalConnection> sample_ellipsoid(const FocusPair& foci,

@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 namespace renderer {
@@ -166,12 +165,7 @@ std::vector<ThirdBounceScan::Masks> ThirdBounceScan::look_from(
     std::vector<double>& squared_errors) {
     VisibilityRules rules;
     rules.negligible_error = negligible_error_;
-    double least_legs = std::numeric_limits<double>::infinity();
-    double most_legs = 0.0;
-    for (std::size_t pair = 0; pair < scan_.num_pairs(); ++pair) {
-        least_legs = std::min(least_legs, scan_.device_legs_m(pair));
-        most_legs = std::max(most_legs, scan_.device_legs_m(pair));
-    }
+    const auto [least_legs, most_legs] = core::device_leg_range_m(scan_);
     rules.opl_begin_m = axis_.opl_start_m - most_legs;
     rules.opl_end_m = axis_.opl_end_m() - least_legs;
     rules.other_end = {Vec3::Zero(), Vec3::Zero()};
