@@ -9,11 +9,11 @@
 #include "calib/simulated_refits.h"
 #include "calib/uncertainty.h"
 #include "renderer/core/error.h"
+#include "renderer/core/stopwatch.h"
 
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 
@@ -292,7 +292,7 @@ void widen_sigma(const FitDriver& driver,
 }  // namespace
 
 FitResult fit_scene(const FitInput& input, const core::Progress& progress) {
-    const auto begin = std::chrono::steady_clock::now();
+    const core::Stopwatch watch;
     const FitDriver driver(input, progress);
     FitResult result;
     FitDriver::Stage last = driver.make_stage(input.settings.blur_schedule_m.back());
@@ -325,8 +325,7 @@ FitResult fit_scene(const FitInput& input, const core::Progress& progress) {
             "stated ones");
     }
     warn_of_ambiguity(driver, candidates, result);
-    result.seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    result.seconds = watch.seconds();
     return result;
 }
 

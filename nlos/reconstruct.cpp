@@ -17,10 +17,10 @@
 #include "nlos/virtual_wave.h"
 #include "nlos/wiener_snr.h"
 #include "renderer/core/process.h"
+#include "renderer/core/stopwatch.h"
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cmath>
 
 namespace nlos {
@@ -237,7 +237,7 @@ Volume run_method(const MethodInput& input,
 Reconstruction reconstruct(const core::Capture& capture,
                            const ReconstructSettings& settings,
                            const core::Progress& progress) {
-    const auto start = std::chrono::steady_clock::now();
+    const core::Stopwatch watch;
     validate(settings);
     core::validate(capture, "capture");
     if (capture.scan.camera) {
@@ -297,8 +297,7 @@ Reconstruction reconstruct(const core::Capture& capture,
     result.depth = extract_depth_map(result.volume, settings.mask_threshold);
     take_normals(result.volume, result.depth);
     result.points = surface_points(result.depth);
-    result.seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    result.seconds = watch.seconds();
     result.peak_bytes = core::peak_rss_bytes();
     return result;
 }

@@ -91,9 +91,9 @@ RenderResult render_ellipsoidal(const Scene& scene,
                                 const RenderSettings& settings,
                                 const core::Progress& progress) {
     const bool drops = settings.exclude == Exclusion::Drop;
-    const int first_order = Measurement(scene, scan).first_order();
+    const int first = first_order(scan);
     PassWork work;
-    if (settings.max_bounces >= first_order) {
+    if (settings.max_bounces >= first) {
         work.estimate = ellipsoidal_estimator(
             scene, scan, axes.time, settings, drops ? ConnectionScope::Kept : ConnectionScope::All);
     }
@@ -108,7 +108,7 @@ RenderResult render_ellipsoidal(const Scene& scene,
         const double kept = kept_signal(result.capture, dropped.pairs);
         result.warnings.push_back(drop_warning(dropped, kept, result.excluded_objects));
     }
-    result.sources.push_back({first_order, settings.max_bounces, Estimator::Ellipsoidal, surfaces});
+    result.sources.push_back({first, settings.max_bounces, Estimator::Ellipsoidal, surfaces});
     return result;
 }
 

@@ -43,13 +43,17 @@ std::optional<SurfacePoint> surface_point(const Scene& scene, const Vec3& point)
 
 }  // namespace
 
+int first_order(const core::Scan& scan) {
+    if (!scan.camera) return 3;
+    return scan.camera->light_spot_m ? 2 : 1;
+}
+
 Measurement::Measurement(const Scene& scene, const core::Scan& scan)
     : scene_(&scene), scan_(&scan) {
     if (!scan.camera) return;
     world_from_image_ = scan.camera->world_from_image();
     if (scan.camera->light_spot_m) {
         light_ = spot_light(*scan.camera->light_spot_m);
-        first_order_ = 2;
     } else {
         light_.position = scan.camera->light_position();
         light_.isotropic = true;
@@ -109,7 +113,7 @@ std::optional<PathVertex> Measurement::first_vertex(std::size_t pixel, const cor
     vertex.throughput = 1.0;
     vertex.extent.add_segment(
         hit->position - camera.position_m, Vec3::Zero(), scene_->velocity_m_per_s(hit->facet));
-    vertex.order = first_order_;
+    vertex.order = first_order();
     return vertex;
 }
 

@@ -10,6 +10,9 @@
 
 namespace renderer {
 
+/// Bounces of the shortest paths that a scan samples.
+int first_order(const core::Scan& scan);
+
 /// The pairs of a scan as light paths know them: where they start and where they end.
 ///
 /// Paths of a wall pair run between two wall points. Paths of a pixel start with the surface point
@@ -24,8 +27,7 @@ class Measurement {
     std::size_t num_pairs() const { return scan_->num_pairs(); }
     bool is_image() const { return scan_->camera.has_value(); }
 
-    /// Bounces of the shortest paths that are sampled.
-    int first_order() const { return is_image() ? first_order_ : 3; }
+    int first_order() const { return renderer::first_order(*scan_); }
 
     /// The fixed ends of a pair's paths; the sensor of a pixel is the pinhole.
     PathEnds ends(std::size_t pair) const;
@@ -43,7 +45,6 @@ class Measurement {
     const Scene* scene_;
     const core::Scan* scan_;
     PathEnd light_;  ///< of images
-    int first_order_ = 1;
     core::Mat3 world_from_image_ = core::Mat3::Identity();
 };
 

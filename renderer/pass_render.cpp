@@ -3,8 +3,8 @@
 
 #include "renderer/core/parallel.h"
 #include "renderer/core/process.h"
+#include "renderer/core/stopwatch.h"
 #include "renderer/short_paths.h"
-#include "renderer/stopwatch.h"
 #include "renderer/transient_accumulator.h"
 
 #include <fmt/core.h>
@@ -207,7 +207,7 @@ void PassLoop::fill_capture(const Tile& tile,
 }
 
 void PassLoop::run(const Tile& tile, const core::Progress& progress, RenderResult& result) {
-    const Stopwatch watch;
+    const core::Stopwatch watch;
     const PassPlan plan = plan_passes(settings_, work_);
     HistogramSums sums(tile.count, axes_, num_channels_, settings_.variance);
     StoppingRule rule(settings_, plan.num_passes, work_.known);
@@ -266,7 +266,7 @@ RenderResult render_passes(const Scene& scene,
                            const RenderSettings& settings,
                            const PassWork& work,
                            const core::Progress& progress) {
-    const Stopwatch watch;
+    const core::Stopwatch watch;
     const std::size_t num_pairs = scan.num_pairs();
     const std::size_t tile_pairs = pairs_per_tile(scan, axes, settings, work.most_sums_bytes);
     require_memory(scan, axes, settings, tile_pairs);

@@ -2,6 +2,7 @@
 #include "renderer/render.h"
 
 #include "renderer/ellipsoidal_render.h"
+#include "renderer/measurement.h"
 #include "renderer/pass_render.h"
 #include "renderer/restir_render.h"
 #include "renderer/third_bounce.h"
@@ -86,8 +87,7 @@ void list_path_orders(const core::Scan& scan,
                       PathShare share,
                       RenderResult& result) {
     if (scan.camera) {
-        const int first = scan.camera->light_spot_m ? 2 : 1;
-        result.sources.push_back({first, settings.max_bounces, Estimator::Path, "all"});
+        result.sources.push_back({first_order(scan), settings.max_bounces, Estimator::Path, "all"});
         return;
     }
     if (share == PathShare::Nothing || settings.max_bounces < 3) return;

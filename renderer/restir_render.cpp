@@ -3,10 +3,11 @@
 
 #include "renderer/core/parallel.h"
 #include "renderer/core/process.h"
+#include "renderer/core/stopwatch.h"
+#include "renderer/measurement.h"
 #include "renderer/restir_renderer.h"
 #include "renderer/short_paths.h"
 #include "renderer/stopping_rule.h"
-#include "renderer/stopwatch.h"
 #include "renderer/transient_accumulator.h"
 
 #include <fmt/core.h>
@@ -174,8 +175,7 @@ RenderResult result_of(const HistogramSums& sums,
             *axes.velocity, sums.velocity->mean_of_all(num_frames), std::nullopt};
         if (has_variance) result.capture.velocity->variance = sums.velocity->variance(num_frames);
     }
-    const int first_order = !scan.camera ? 3 : scan.camera->light_spot_m ? 2 : 1;
-    result.sources.push_back({first_order, settings.max_bounces, Estimator::Restir, "all"});
+    result.sources.push_back({first_order(scan), settings.max_bounces, Estimator::Restir, "all"});
     result.samples_per_pair = static_cast<std::uint64_t>(num_frames) *
                               static_cast<std::uint64_t>(candidates_per_frame(settings.restir));
     return result;
@@ -194,7 +194,7 @@ RenderResult render_restir(std::shared_ptr<const Scene> scene,
                            const core::HistogramAxes& axes,
                            const RenderSettings& asked,
                            const core::Progress& progress) {
-    const Stopwatch watch;
+    const core::Stopwatch watch;
     require_gate_to_shrink_to(axes, asked);
     const RenderSettings settings = with_fitting_frames(asked);
     RestirRenderer renderer(scan, settings);
@@ -244,7 +244,7 @@ FrameRenderer make_restir_frame_renderer(const core::Scan& scan, const RenderSet
     };
     const auto state = std::make_shared<State>(scan, settings);
     return [state](const Frame& frame, const core::Scan& frame_scan, const core::Progress&) {
-        const Stopwatch watch;
+        const core::Stopwatch watch;
         require_gate_to_shrink_to(frame.axes, state->settings);
         if (frame.index == 0) require_memory(state->renderer.bytes_needed(frame.axes));
         const bool is_first = state->last.scene == nullptr;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/third_bounce.h"
 
-#include "renderer/stopwatch.h"
+#include "renderer/core/stopwatch.h"
 #include "renderer/third_bounce_scan.h"
 
 #include <fmt/core.h>
@@ -140,7 +140,7 @@ class Integrator {
 const Transient& Integrator::try_out(int fineness) {
     if (const auto it = trials_.find(fineness); it != trials_.end()) return it->second;
     const PieceSet pieces = cut(fineness);
-    const Stopwatch watch;
+    const core::Stopwatch watch;
     ThirdBounceScan trial(scene_, trial_scan_, axis_, pieces, negligible_error(fineness));
     Transient& result =
         trials_.try_emplace(fineness, trial_scan_.num_pairs(), axis_.num_bins).first->second;
@@ -173,7 +173,7 @@ double Integrator::error_of(int fineness) {
 int Integrator::finest_in_time() {
     const double trials_to_all =
         static_cast<double>(scan_.num_pairs()) / static_cast<double>(trial_scan_.num_pairs());
-    const Stopwatch watch;
+    const core::Stopwatch watch;
     int fineness = kCoarsest;
     while (fineness > kFinest) {
         try_out(fineness - 1);
@@ -243,7 +243,7 @@ ThirdBounce integrate_third_bounce(const Scene& scene,
                                    const core::TimeAxis& axis,
                                    const RenderSettings& settings,
                                    const core::Progress& progress) {
-    const Stopwatch watch;
+    const core::Stopwatch watch;
     ThirdBounce result = Integrator(scene, scan, axis, settings).run(progress);
     result.seconds = watch.seconds();
     return result;

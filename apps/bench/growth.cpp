@@ -5,12 +5,12 @@
 #include "apps/bench/power_law.h"
 #include "renderer/core/parallel.h"
 #include "renderer/core/process.h"
+#include "renderer/core/stopwatch.h"
 #include "renderer/render.h"
 #include "renderer/scene_file.h"
 
 #include <fmt/core.h>
 
-#include <chrono>
 #include <cmath>
 #include <span>
 
@@ -84,10 +84,9 @@ Figures measure(Estimator method, const Sizes& sizes) {
 
 // Elapsed time instead of CPU time; the limit is that of one thread, shared.
 Figures measure_threads(Estimator method, const Sizes& sizes, double one_thread_seconds) {
-    const auto start = std::chrono::steady_clock::now();
+    const core::Stopwatch watch;
     Figures figures = measure(method, sizes);
-    figures.seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    figures.seconds = watch.seconds();
     figures.limit_seconds =
         (sizes.threads == 1 ? figures.seconds : one_thread_seconds) / sizes.threads;
     return figures;

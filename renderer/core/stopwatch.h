@@ -3,7 +3,7 @@
 
 #include <chrono>
 
-namespace renderer {
+namespace core {
 
 /// Measures wall-clock time from its construction on.
 class Stopwatch {
@@ -15,4 +15,4 @@ class Stopwatch {
     Clock::time_point start_ = Clock::now();
 };
 
-}  // namespace renderer
+}  // namespace core
