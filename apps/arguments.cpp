@@ -2,7 +2,9 @@
 #include "apps/arguments.h"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <filesystem>
 
 namespace apps {
@@ -52,6 +54,15 @@ std::string settings_footer(const std::vector<core::SettingHelp>& settings,
 std::string& command_line() {
     static std::string text;
     return text;
+}
+
+void require_suffix(const std::string& path, const std::vector<std::string>& suffixes) {
+    const std::string found = std::filesystem::path(path).extension().string();
+    if (path.empty() || std::find(suffixes.begin(), suffixes.end(), found) != suffixes.end())
+        return;
+    throw core::Error(path,
+                      "has the suffix '" + found + "'",
+                      fmt::format("must be one of {}", fmt::join(suffixes, ", ")));
 }
 
 std::string with_suffix(const std::string& path, const std::string& suffix) {

@@ -26,6 +26,9 @@ std::string settings_footer(const std::vector<core::SettingHelp>& settings,
 /// The command line as it was typed, for provenance; set once by main().
 std::string& command_line();
 
+/// Throws core::Error when `path`, unless it is empty, ends in none of the suffixes.
+void require_suffix(const std::string& path, const std::vector<std::string>& suffixes);
+
 /// Replaces the suffix of `path`, or appends it where there is none.
 std::string with_suffix(const std::string& path, const std::string& suffix);
 

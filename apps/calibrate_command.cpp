@@ -20,7 +20,8 @@ struct CalibrateArguments {
 };
 
 void run(const CalibrateArguments& arguments) {
-    const core::OutputFile probe(arguments.output);
+    require_suffix(arguments.output, {".json"});
+    core::check_targets({arguments.output}, {arguments.setup});
     const calib::SetupSettings settings = calib::read_setup(arguments.setup, arguments.overrides);
     const core::Capture capture = nlos::read_capture(settings.direct_returns);
     const calib::Calibration calibration = calib::calibrate(settings, capture);
@@ -57,7 +58,7 @@ void add_calibrate_command(CLI::App& app) {
         ->required();
     add_set_option(*command, arguments->overrides);
     command->footer(settings_footer(core::settings_help(calib::SetupSettings{}),
-                                    "nlos calibrate setup.json -o calibration.json"));
+                                    "nlos calibrate data/setup.json -o calibration.json"));
     command->callback([arguments] { run(*arguments); });
 }
 

@@ -2,9 +2,11 @@
 #include "apps/arguments.h"
 #include "apps/commands.h"
 #include "apps/compare_job.h"
+#include "renderer/core/error.h"
 
 #include <fmt/core.h>
 
+#include <cmath>
 #include <memory>
 
 namespace apps {
@@ -18,6 +20,11 @@ struct CompareArguments {
 };
 
 void run(const CompareArguments& arguments) {
+    if (!(arguments.fscore_threshold_m > 0.0 && std::isfinite(arguments.fscore_threshold_m))) {
+        throw core::Error("--fscore-threshold-m",
+                          fmt::format("found {}", arguments.fscore_threshold_m),
+                          "must be positive and finite [m]");
+    }
     const nlos::Metrics metrics =
         compare_files(arguments.a, arguments.b, arguments.output, arguments.fscore_threshold_m);
     nlos::Metrics copy = metrics;
@@ -45,10 +52,9 @@ void add_compare_command(CLI::App& app) {
         ->add_option("--fscore-threshold-m",
                      arguments->fscore_threshold_m,
                      "Distance that counts as a match for clouds and meshes [m]")
-        ->capture_default_str()
-        ->check(CLI::PositiveNumber);
-    command->footer(
-        settings_footer({}, "nlos compare volume.h5 scenes/letter/scene.json -o metrics.json"));
+        ->capture_default_str();
+    command->footer(settings_footer(
+        {}, "nlos compare scenes/letter/scene.glb scenes/letter/scene.json -o metrics.json"));
     command->callback([arguments] { run(*arguments); });
 }
 

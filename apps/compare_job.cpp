@@ -16,7 +16,6 @@
 #include "renderer/gltf.h"
 
 #include <filesystem>
-#include <optional>
 
 namespace apps {
 namespace {
@@ -53,26 +52,20 @@ nlos::Metrics compare_volume_to_scene(const std::string& a,
     return nlos::compare_to_truth(result, truth);
 }
 
-// Surfaces reflect on both sides: their normals are those that the wall sees.
-void turn_to_wall(const core::Vec3& wall_center_m, core::PointCloud& cloud) {
-    for (std::size_t i = 0; i < cloud.normals.size(); ++i) {
-        core::Vec3& normal = cloud.normals[i];
-        if (normal.dot(wall_center_m - cloud.positions[i]) < 0.0) normal = -normal;
-    }
-}
-
-// A fit's poses and, beside them, its surfaces as samples.
+// A fit's poses and, beside them, its surfaces as samples; `b` is a scene, or a fit and its scene.
 nlos::Metrics compare_fit_to_scene(const std::string& a,
                                    const std::string& b,
                                    const std::string& picture_path,
                                    double threshold_m) {
     const calib::FitResult fit = calib::read_fit(a);
-    const std::string geometry = with_suffix(a, ".glb");
-    const renderer::SceneDescription scene = renderer::read_scene_description(b, {});
-    calib::FitErrors errors =
-        calib::compare_fit(fit, renderer::load_gltf(geometry), renderer::load_gltf(scene.geometry));
-    turn_to_wall(scene.relay_wall.center_m, errors.fitted_points);
-    turn_to_wall(scene.relay_wall.center_m, errors.true_points);
+    const bool is_fit = kind_of_file(b) == FileKind::Fit;
+    const renderer::SceneDescription scene =
+        renderer::read_scene_description(is_fit ? with_suffix(b, ".scene.json") : b, {});
+    const calib::FitErrors errors =
+        calib::compare_fit(fit,
+                           renderer::load_gltf(with_suffix(a, ".glb")),
+                           renderer::load_gltf(scene.geometry),
+                           is_fit ? calib::read_fit(b).points : std::vector<calib::FittedPoint>());
     nlos::Metrics metrics;
     if (!errors.fitted_points.positions.empty()) {
         metrics = nlos::compare_points(errors.fitted_points, errors.true_points, threshold_m);
@@ -102,7 +95,7 @@ nlos::Metrics compare_kinds(const std::string& a,
     if (kind_a == FileKind::Volume && kind_b == FileKind::Scene) {
         return compare_volume_to_scene(a, b, picture_path);
     }
-    if (kind_a == FileKind::Fit && kind_b == FileKind::Scene) {
+    if (kind_a == FileKind::Fit && (kind_b == FileKind::Scene || kind_b == FileKind::Fit)) {
         return compare_fit_to_scene(a, b, picture_path, threshold_m);
     }
     if (is_surface(kind_a) && kind_b == FileKind::Scene) {
@@ -131,9 +124,9 @@ nlos::Metrics compare_files(const std::string& a,
                             const std::string& b,
                             const std::string& metrics_path,
                             double fscore_threshold_m) {
-    std::optional<core::OutputFile> probe;
-    if (!metrics_path.empty()) probe.emplace(metrics_path);
     const std::string picture = metrics_path.empty() ? "" : with_suffix(metrics_path, ".png");
+    require_suffix(metrics_path, {".json"});
+    core::check_targets({metrics_path, picture}, {a, b});
     const nlos::Metrics metrics = compare_kinds(a, b, picture, fscore_threshold_m);
     if (!metrics_path.empty()) {
         core::Json json = core::write_value(metrics);

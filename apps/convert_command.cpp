@@ -24,7 +24,7 @@ struct ConvertArguments {
 
 void run(const ConvertArguments& arguments) {
     nlos::check_capture_suffix(arguments.output);
-    const core::OutputFile probe(arguments.output);
+    core::check_targets({arguments.output}, {arguments.input});
     core::Capture capture = read_capture(arguments.input, arguments.overrides);
     const core::TimeAxis axis = capture.time_axis;
     if (arguments.steady) {
@@ -70,7 +70,7 @@ void add_convert_command(CLI::App& app) {
                       "HDF5 without the group /nlos, with which y-tal refuses files");
     add_set_option(*command, arguments->overrides);
     command->footer(settings_footer(core::settings_help(CaptureOptions{}),
-                                    "nlos convert letter.h5 letter.exr"));
+                                    "nlos convert data/letter.h5 letter.exr"));
     command->callback([arguments] { run(*arguments); });
 }
 

@@ -3,11 +3,28 @@
 
 #include "calib/fit_file.h"
 #include "nlos/formats/volume_file.h"
-#include "renderer/core/error.h"
+#include "renderer/core/settings.h"
 
 #include <filesystem>
 
 namespace apps {
+
+namespace {
+
+FileKind kind_of_json(const std::string& path) {
+    const core::Json json = core::read_json_file(path);
+    const auto has = [&](const char* a, const char* b) {
+        return json.is_object() && json.contains(a) && json.contains(b);
+    };
+    if (calib::is_fit_file(path)) return FileKind::Fit;
+    if (has("depth_mae_m", "rel_l2")) return FileKind::Metrics;
+    if (has("scene", "free")) return FileKind::Model;
+    if (has("direct_returns", "commands")) return FileKind::Setup;
+    if (has("points_m", "opl_offset_m")) return FileKind::Calibration;
+    return FileKind::Scene;
+}
+
+}  // namespace
 
 FileKind kind_of_file(const std::string& path) {
     if (!std::filesystem::exists(path)) {
@@ -15,7 +32,7 @@ FileKind kind_of_file(const std::string& path) {
             path, "does not exist", "must be a capture, volume, fit, scene.json, glTF or PLY file");
     }
     const std::string suffix = std::filesystem::path(path).extension().string();
-    if (suffix == ".json") return calib::is_fit_file(path) ? FileKind::Fit : FileKind::Scene;
+    if (suffix == ".json") return kind_of_json(path);
     if (suffix == ".glb" || suffix == ".gltf") return FileKind::Geometry;
     if (suffix == ".ply") return FileKind::PointCloud;
     return nlos::is_volume_file(path) ? FileKind::Volume : FileKind::Capture;

@@ -5,10 +5,22 @@
 
 namespace apps {
 
-enum class FileKind { Scene, Fit, Volume, Geometry, PointCloud, Capture };
+enum class FileKind {
+    Scene,
+    Fit,
+    Metrics,
+    Model,
+    Setup,
+    Calibration,
+    Volume,
+    Geometry,
+    PointCloud,
+    Capture
+};
 
-/// What a file is, by suffix and content; anything unknown counts as a capture, whose readers then
-/// say what they expect. Throws core::Error when there is no such file.
+/// What a file is, by suffix and content; JSON that is nothing else counts as a scene and any other
+/// unknown file as a capture, whose readers then say what they expect. Throws core::Error when
+/// there is no such file.
 FileKind kind_of_file(const std::string& path);
 
 }  // namespace apps

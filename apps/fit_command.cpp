@@ -7,7 +7,6 @@
 
 #include <fmt/core.h>
 
-#include <filesystem>
 #include <memory>
 
 namespace apps {
@@ -59,12 +58,20 @@ void run(const FitArguments& arguments) {
                    1e3 * s.y(),
                    1e3 * s.z());
     }
-    for (const std::string& text : result.unidentifiable) {
-        fmt::print(stderr, "unidentifiable: {}\n", text);
-    }
-    for (const std::string& text : result.warnings) fmt::print(stderr, "warning: {}\n", text);
-    const std::string stem = std::filesystem::path(arguments.output).replace_extension().string();
+    fmt::print(
+        "wrote {}, {}, {}, {} ({}, deviance {:.4g} of {:.4g} expected, {} iterations, "
+        "{:.2f} s)\n",
+        arguments.output,
+        with_suffix(arguments.output, ".scene.json"),
+        with_suffix(arguments.output, ".glb"),
+        with_suffix(arguments.output, ".png"),
+        result.residual,
+        result.deviance,
+        result.expected_deviance,
+        result.iterations,
+        result.seconds);
     if (!result.converged) {
+        // One line, as for every failure; the warnings stand in the file.
         throw core::Failure("fit",
                             fmt::format("not converged after {} iterations ({}); {} holds the "
                                         "state reached",
@@ -72,18 +79,10 @@ void run(const FitArguments& arguments) {
                                         result.message,
                                         arguments.output));
     }
-    fmt::print(
-        "wrote {}, {}, {}, {} ({}, deviance {:.4g} of {:.4g} expected, {} iterations, "
-        "{:.2f} s)\n",
-        arguments.output,
-        stem + ".scene.json",
-        stem + ".glb",
-        stem + ".png",
-        result.residual,
-        result.deviance,
-        result.expected_deviance,
-        result.iterations,
-        result.seconds);
+    for (const std::string& text : result.unidentifiable) {
+        fmt::print(stderr, "unidentifiable: {}\n", text);
+    }
+    for (const std::string& text : result.warnings) fmt::print(stderr, "warning: {}\n", text);
 }
 
 }  // namespace
@@ -104,8 +103,9 @@ void add_fit_command(CLI::App& app) {
         "--calibration", arguments->calibration, "Calibration of the set-up (.json)");
     add_threads_option(*command, arguments->threads);
     add_set_option(*command, arguments->overrides);
-    command->footer(settings_footer(core::settings_help(calib::FitSettings{}),
-                                    "nlos fit capture.h5 scenes/letter/model.json -o fit.json"));
+    command->footer(
+        settings_footer(core::settings_help(calib::FitSettings{}),
+                        "nlos fit data/letter.h5 scenes/letter/model.json -o fit.json"));
     command->callback([arguments] { run(*arguments); });
 }
 

@@ -27,7 +27,17 @@ calib::FitInput make_input(const std::string& capture_path,
     input.capture = nlos::read_capture(capture_path);
     input.scene = renderer::read_scene_description(input.settings.scene, {});
     input.geometry = renderer::load_gltf(input.scene.geometry);
+    if (input.capture.scan.camera || input.scene.camera) {
+        throw core::Error(input.scene.camera ? input.settings.scene : capture_path,
+                          "has a camera in place of a relay wall",
+                          "must be a scan of a relay wall");
+    }
     if (input.settings.start != "given" && input.settings.start != "search") {
+        if (!fs::exists(input.settings.start)) {
+            throw core::Error(model_path + ": start",
+                              "found '" + input.settings.start + "', which does not exist",
+                              "must be given, search or a VOLUME.h5");
+        }
         input.start_points = nlos::read_volume(input.settings.start).points.positions;
     }
     return input;
@@ -66,9 +76,18 @@ calib::FitResult fit_to_file(const std::string& capture_path,
                              const std::vector<std::string>& overrides,
                              const std::string& calibration,
                              const std::string& fit_path) {
-    // A target that cannot be written is found before the work, not after it.
-    const core::OutputFile probe(fit_path);
+    require_suffix(fit_path, {".json"});
     calib::FitInput input = make_input(capture_path, model_path, overrides);
+    core::check_targets({fit_path,
+                         with_suffix(fit_path, ".scene.json"),
+                         with_suffix(fit_path, ".glb"),
+                         with_suffix(fit_path, ".png")},
+                        {capture_path,
+                         model_path,
+                         calibration,
+                         input.settings.scene,
+                         input.scene.geometry,
+                         input.settings.start});
     if (!calibration.empty()) use_calibration(calib::read_calibration(calibration), input);
     ProgressBar bar("fit");
     calib::FitResult result = calib::fit_scene(input, bar.progress());

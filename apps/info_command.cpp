@@ -34,6 +34,36 @@ void print_range(const char* axis, const std::vector<double>& centers_m) {
                centers_m.back());
 }
 
+// One line per key: texts and numbers as they are, lists by their length.
+void print_keys(const core::Json& json, const std::string& indent) {
+    for (const auto& [key, value] : json.items()) {
+        if (value.is_object() && !value.empty() && key != "settings") {
+            fmt::print("{}{}:\n", indent, key);
+            print_keys(value, indent + "  ");
+        } else if (value.is_array() && (value.size() > 4 || value.flatten().size() > 4)) {
+            fmt::print("{}{}: {} items\n", indent, key, value.size());
+        } else if (value.is_string()) {
+            fmt::print("{}{}: {}\n", indent, key, value.get<std::string>());
+        } else if (!value.is_null()) {
+            fmt::print("{}{}: {}\n",
+                       indent,
+                       key,
+                       value.dump(-1, ' ', false, core::Json::error_handler_t::replace));
+        }
+    }
+}
+
+void print_provenance(const core::Json& made) {
+    if (!made.is_object() || made.empty()) return;
+    fmt::print("provenance:\n");
+    print_keys(made, "  ");
+}
+
+void describe_json(const std::string& path, const char* format) {
+    fmt::print("format: {}\n", format);
+    print_keys(core::read_json_file(path), "");
+}
+
 void describe_volume(const std::string& path) {
     const nlos::Reconstruction volume = nlos::read_volume(path);
     fmt::print("format: reconstructed volume (HDF5)\n");
@@ -46,6 +76,7 @@ void describe_volume(const std::string& path) {
                volume.seconds,
                static_cast<double>(volume.peak_bytes) * 1e-9);
     fmt::print("settings: {}\n", core::write_value(volume.settings).dump());
+    print_provenance(volume.provenance);
 }
 
 void describe_scene(const std::string& path) {
@@ -85,6 +116,7 @@ void describe_capture_file(const std::string& path, const std::vector<std::strin
     const core::Capture capture = read_capture(path, overrides);
     fmt::print("format: {}\n", nlos::capture_format(path).value_or("unknown"));
     for (const std::string& line : nlos::describe_capture(capture)) fmt::print("{}\n", line);
+    print_provenance(capture.scene_info);
     for (const std::string& warning : nlos::timing_warnings(capture)) {
         fmt::print("warning: {}\n", warning);
     }
@@ -118,6 +150,18 @@ void run(const InfoArguments& arguments) {
         case FileKind::Fit:
             describe_fit(arguments.file);
             break;
+        case FileKind::Metrics:
+            describe_json(arguments.file, "metrics");
+            break;
+        case FileKind::Model:
+            describe_json(arguments.file, "model of a fit");
+            break;
+        case FileKind::Setup:
+            describe_json(arguments.file, "set-up to calibrate");
+            break;
+        case FileKind::Calibration:
+            describe_json(arguments.file, "calibration");
+            break;
         case FileKind::Geometry:
             describe_geometry(arguments.file);
             break;
@@ -141,7 +185,10 @@ void run(const InfoArguments& arguments) {
 void add_info_command(CLI::App& app) {
     CLI::App* command = app.add_subcommand("info", "Say what a file is and what it holds");
     const auto arguments = std::make_shared<InfoArguments>();
-    command->add_option("FILE", arguments->file, "Capture, volume, fit, scene.json, glTF or PLY")
+    command
+        ->add_option("FILE",
+                     arguments->file,
+                     "Capture, volume, scene.json, glTF, PLY, fit, metrics or calibration")
         ->required();
     command->add_option("--picture",
                         arguments->picture,

@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <span>
 
 namespace {
 
@@ -23,15 +24,19 @@ int fail(int status, std::string message) {
 }
 
 // CLI11 would only say that a command is missing.
-void reject_unknown_command(const CLI::App& app, const std::vector<std::string>& arguments) {
-    if (arguments.empty() || arguments.front().starts_with('-')) return;
+void reject_unknown_command(const CLI::App& app, std::span<const std::string> arguments) {
+    const auto commands = app.get_subcommands({});
+    if (commands.empty() || arguments.empty() || arguments.front().starts_with('-')) return;
     std::string known;
-    for (const CLI::App* command : app.get_subcommands({})) {
-        if (command->get_name() == arguments.front()) return;
+    for (const CLI::App* command : commands) {
+        if (command->get_name() == arguments.front()) {
+            return reject_unknown_command(*command, arguments.subspan(1));
+        }
         known += (known.empty() ? "" : ", ") + command->get_name();
     }
-    throw core::Error(
-        "nlos", "found unknown command '" + arguments.front() + "'", "known are " + known);
+    throw core::Error(app.get_parent() ? "nlos " + app.get_name() : app.get_name(),
+                      "found unknown command '" + arguments.front() + "'",
+                      "known are " + known);
 }
 
 int run(const std::vector<std::string>& arguments) {

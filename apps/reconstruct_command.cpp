@@ -71,7 +71,7 @@ void add_reconstruct_command(CLI::App& app) {
     add_threads_option(*command, arguments->threads);
     add_set_option(*command, arguments->overrides);
     command->footer(settings_footer(core::settings_help(ReconstructOptions{}),
-                                    "nlos reconstruct letter.h5 -o volume.h5 --method lct"));
+                                    "nlos reconstruct data/letter.h5 -o volume.h5 --method lct"));
     command->callback([arguments] { run(*arguments); });
 }
 

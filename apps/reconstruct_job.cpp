@@ -3,6 +3,7 @@
 
 #include "apps/arguments.h"
 #include "apps/terminal.h"
+#include "apps/version.h"
 #include "calib/calibrate.h"
 #include "nlos/formats/picture.h"
 #include "nlos/formats/ply_file.h"
@@ -32,11 +33,11 @@ nlos::Reconstruction reconstruct_to_file(const std::string& capture_path,
                                          const std::string& ply_path,
                                          const std::string& glb_path,
                                          const std::string& calibration_path) {
-    // A target that cannot be written is found before the work, not after it.
-    for (const std::string& target : {volume_path, ply_path, glb_path}) {
-        if (target.empty()) continue;
-        const core::OutputFile probe(target);
-    }
+    require_suffix(volume_path, {".h5", ".hdf5"});
+    require_suffix(ply_path, {".ply"});
+    require_suffix(glb_path, {".glb"});
+    core::check_targets({volume_path, with_suffix(volume_path, ".png"), ply_path, glb_path},
+                        {capture_path, calibration_path});
     ReconstructOptions options;
     for (const std::string& text : overrides) core::apply_override(options, text);
     core::Capture capture = nlos::read_capture(capture_path, options.capture);
@@ -46,6 +47,8 @@ nlos::Reconstruction reconstruct_to_file(const std::string& capture_path,
 
     ProgressBar bar("reconstruct");
     nlos::Reconstruction result = nlos::reconstruct(capture, options.reconstruct, bar.progress());
+    result.provenance = {
+        {"program", version_text()}, {"command", command_line()}, {"capture", capture_path}};
     nlos::write_volume(volume_path, result);
     nlos::write_panels_png(with_suffix(volume_path, ".png"), nlos::volume_panels(result), 2);
     if (!ply_path.empty()) nlos::write_ply(ply_path, result.points);

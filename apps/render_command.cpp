@@ -80,11 +80,24 @@ void add_render_command(CLI::App& app) {
     command->add_option("SCENE", arguments->scene, "Scene description (.json)")->required();
     command->add_option("-o,--output", arguments->output, "Capture to write (.h5, .exr, .mat)")
         ->required();
-    add_shorthand(*command, *arguments, "--method", "render.method", "NAME", "Estimator");
-    add_shorthand(
-        *command, *arguments, "--samples", "render.samples", "N", "Candidate paths per pair");
-    add_shorthand(
-        *command, *arguments, "--seconds", "render.seconds", "S", "Render for this long instead");
+    add_shorthand(*command,
+                  *arguments,
+                  "--method",
+                  "render.method",
+                  "NAME",
+                  "Estimator: auto, third_bounce, path, ellipsoidal or restir (default auto)");
+    add_shorthand(*command,
+                  *arguments,
+                  "--samples",
+                  "render.samples",
+                  "N",
+                  "Candidate paths per pair (default 256)");
+    add_shorthand(*command,
+                  *arguments,
+                  "--seconds",
+                  "render.seconds",
+                  "S",
+                  "Render for this long instead [s]; of a sequence, each frame");
     add_shorthand(*command,
                   *arguments,
                   "--target-error",
@@ -96,8 +109,13 @@ void add_render_command(CLI::App& app) {
                   "--max-bounces",
                   "render.max_bounces",
                   "K",
-                  "Bounces, both on the relay wall included");
-    add_shorthand(*command, *arguments, "--seed", "render.seed", "N", "Seed of the random numbers");
+                  "Bounces, both on the relay wall included (default 3)");
+    add_shorthand(*command,
+                  *arguments,
+                  "--seed",
+                  "render.seed",
+                  "N",
+                  "Seed of the random numbers (default 0)");
     command->add_option("--calibration",
                         arguments->calibration,
                         "Calibration of the set-up to record with (.json)");

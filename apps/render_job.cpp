@@ -94,9 +94,8 @@ RenderJob render_to_file(const std::string& scene_path,
                          const std::vector<std::string>& overrides,
                          const std::string& capture_path,
                          const std::string& calibration_path) {
-    // A target that cannot be written is found before the work, not after it.
     nlos::check_capture_suffix(capture_path);
-    const core::OutputFile probe(capture_path);
+    core::check_targets({capture_path}, {scene_path, calibration_path});
     const renderer::SceneDescription description =
         renderer::read_scene_description(scene_path, overrides);
     core::Scan scan = renderer::make_scan(description);

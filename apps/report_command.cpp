@@ -24,8 +24,9 @@ void add_report_command(CLI::App& app) {
     command->add_option("DIR", arguments->folder, "Folder of captures, volumes and metrics")
         ->required();
     command->add_option("-o,--output", arguments->output, "Page to write (.html)")->required();
-    command->footer(settings_footer({}, "nlos report out/demo -o report.html"));
+    command->footer(settings_footer({}, "nlos report data -o report.html"));
     command->callback([arguments] {
+        require_suffix(arguments->output, {".html", ".htm"});
         write_report(arguments->folder, arguments->output);
         fmt::print("wrote {}\n", arguments->output);
     });

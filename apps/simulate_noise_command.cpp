@@ -84,7 +84,7 @@ void add_shorthands(CLI::App& command, const std::shared_ptr<NoiseArguments>& ar
 void run(const NoiseArguments& arguments) {
     const core::ThreadLimit threads(arguments.threads);
     nlos::check_capture_suffix(arguments.output);
-    const core::OutputFile probe(arguments.output);
+    core::check_targets({arguments.output}, {arguments.capture});
     NoiseOptions options;
     for (const auto* texts : {&arguments.overrides, &arguments.shorthands}) {
         for (const std::string& text : *texts) core::apply_override(options, text);
@@ -121,9 +121,9 @@ void add_simulate_noise_command(CLI::App& app) {
     add_shorthands(*command, arguments);
     add_threads_option(*command, arguments->threads);
     add_set_option(*command, arguments->overrides);
-    command->footer(settings_footer(
-        core::settings_help(NoiseOptions{}),
-        "nlos simulate-noise letter.h5 -o noisy.h5 --photons-per-point 1000 --jitter-fwhm-ps 60"));
+    command->footer(settings_footer(core::settings_help(NoiseOptions{}),
+                                    "nlos simulate-noise data/letter.h5 -o noisy.h5 "
+                                    "--photons-per-point 1000 --jitter-fwhm-ps 60"));
     command->callback([arguments] { run(*arguments); });
 }
 

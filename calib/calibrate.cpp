@@ -16,6 +16,7 @@ SetupSettings read_setup(const std::string& path, const std::vector<std::string>
         throw core::Error(path + ": direct_returns", "found nothing", "must name a capture");
     }
     settings.direct_returns = (folder / settings.direct_returns).string();
+    if (settings.boards && settings.boards->images.empty()) settings.boards.reset();
     if (settings.boards) {
         for (std::string& image : settings.boards->images) image = (folder / image).string();
     }

@@ -77,7 +77,7 @@ Json calibration_json(const Calibration& calibration) {
     json["range_rms_m"] = setup.range_rms_m;
     json["condition_number"] = setup.uncertainty.condition_number;
     json["unidentifiable"] = setup.uncertainty.unidentifiable;
-    if (calibration.camera) json["camera"] = camera_json(*calibration.camera);
+    json["camera"] = calibration.camera ? camera_json(*calibration.camera) : Json();
     return json;
 }
 

@@ -143,7 +143,8 @@ void compare_shapes(const Shape& fitted, const Shape& truth, FitErrors& errors) 
 
 FitErrors compare_fit(const FitResult& fit,
                       const renderer::SceneGeometry& fitted,
-                      const renderer::SceneGeometry& truth) {
+                      const renderer::SceneGeometry& truth,
+                      const std::vector<FittedPoint>& true_points) {
     FitErrors errors;
     for (const FittedObject& object : fit.objects) {
         const auto shape = shape_of(fitted, object.name);
@@ -152,6 +153,9 @@ FitErrors compare_fit(const FitResult& fit,
     }
     for (const FittedPoint& point : fit.points) {
         double nearest = std::numeric_limits<double>::infinity();
+        for (const FittedPoint& other : true_points) {
+            nearest = std::min(nearest, (other.position_m - point.position_m).norm());
+        }
         for (const renderer::Object& object : truth.objects) {
             if (object.role == renderer::Role::RelayWall) continue;
             for (const Vec3& p : core::sample_surface(object.mesh, kSamples, kSeed).positions) {

@@ -6,6 +6,7 @@
 #include "renderer/geometry.h"
 
 #include <optional>
+#include <vector>
 
 namespace calib {
 
@@ -21,11 +22,13 @@ struct FitErrors {
 
 /// Compares fitted objects and points with the scene's nodes of the same names.
 ///
-/// fitted   geometry of the fit, posed
-/// returns  positions alone for point scatterers: each to the nearest surface of the scene
-/// throws   core::Error when no name agrees
+/// fitted        geometry of the fit, posed
+/// true_points   point scatterers of the truth, beside its surfaces
+/// returns       positions alone for point scatterers: each to the nearest surface of the scene
+/// throws        core::Error when no name agrees
 FitErrors compare_fit(const FitResult& fit,
                       const renderer::SceneGeometry& fitted,
-                      const renderer::SceneGeometry& truth);
+                      const renderer::SceneGeometry& truth,
+                      const std::vector<FittedPoint>& true_points = {});
 
 }  // namespace calib

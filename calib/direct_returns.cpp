@@ -252,6 +252,10 @@ DirectReturns fit_direct_returns(const core::Capture& capture, ResponseShape sha
     result.tail_m = shape == ResponseShape::Gaussian ? 0.0 : std::exp(shared.log_tail);
     result.ambient = std::exp(shared.log_ambient);
     store_errors(capture, peaks, shared, shape, result);
+    if (shape != ResponseShape::Gaussian && !(result.tail_error_m < result.tail_m)) {
+        // A tail shorter than its own error is none; its delay would only blur the peaks' places.
+        return fit_direct_returns(capture, ResponseShape::Gaussian);
+    }
     return result;
 }
 

@@ -76,7 +76,8 @@ Metrics compare_to_truth(const Reconstruction& result, const core::DepthMap& tru
 
 /// Scores surface points against surface samples of the truth (Chamfer, F-score, normals).
 ///
-/// result, truth  points in the same frame; normals are compared at nearest neighbours
+/// result, truth  points in the same frame; normals are compared at nearest neighbours,
+///                whichever side they point to
 /// threshold_m    distance that counts as a match [m]
 /// returns        no score when either has no point
 /// source         F-score [Knapitsch2017]

@@ -62,7 +62,9 @@ Metrics compare_points(const core::PointCloud& result,
     if (both_have_normals) {
         std::vector<double> angles_deg;
         for (std::size_t i = 0; i < result.normals.size(); ++i) {
-            angles_deg.push_back(angle_deg(result.normals[i], truth.normals[to_truth.indices[i]]));
+            // Surfaces reflect on both sides: which one a mesh calls its front says nothing.
+            const double angle = angle_deg(result.normals[i], truth.normals[to_truth.indices[i]]);
+            angles_deg.push_back(std::min(angle, 180.0 - angle));
         }
         score_angles(angles_deg, metrics);
     }

@@ -16,6 +16,7 @@ namespace {
 
 constexpr double kPlanck_J_s = 6.62607015e-34;
 constexpr double kMostPulses = 1e15;
+constexpr double kMostCounts = 1e15;  // expected in all pairs; sums of counts stay exact in double
 constexpr double kLongestBlindPeriods = 16.0;
 
 void require(bool holds, const std::string& key, double found, const std::string& allowed) {
@@ -138,9 +139,17 @@ Detector make_detector(const core::Capture& capture, const DetectorSettings& s) 
     const core::TimeAxis& axis = capture.time_axis;
     Detector detector;
     detector.counts_per_value = counts_per_value(capture, s);
+    const double signal = detector.counts_per_value * sum_of(capture);
+    require(signal <= kMostCounts, "photons", signal, "must give at most 1e15 counts");
     const double open_s = axis.bin_width_m / core::kSpeedOfLight * s.repetition_hz *
                           s.exposure_s.value_or(1.0);  // time per bin over all pulses
     detector.background = s.ambient + s.dark_counts_hz * open_s;
+    const double background =
+        detector.background * static_cast<double>(capture.transient.values().size());
+    require(background <= kMostCounts,
+            "ambient and dark_counts_hz",
+            background,
+            "must give at most 1e15 counts");
     detector.filter =
         core::sample_response(core::make_response(s.response, "response"), axis.bin_width_m);
     detector.is_blind_at_times = is_blind_at_times(s);

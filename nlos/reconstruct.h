@@ -22,6 +22,7 @@ struct Reconstruction {
     std::string reason;       ///< why `auto` took it
     ReconstructSettings settings;       ///< with every choice filled in
     std::vector<std::string> warnings;  ///< what looks wrong about the capture
+    core::Json provenance;              ///< who made it from what, as the caller says
     double seconds = 0.0;
     double stated_bytes = 0.0;  ///< memory on top of the capture, announced before the run
     std::uint64_t peak_bytes = 0;

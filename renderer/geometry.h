@@ -46,6 +46,7 @@ struct Camera {
     core::Vec3 forward = -core::Vec3::UnitZ();  ///< unit
     core::Vec3 up = core::Vec3::UnitY();        ///< unit, perpendicular to forward
     double fov_y_rad = 0.0;                     ///< full vertical angle of view
+    std::string lens_name;                      ///< of the glTF camera, which nodes may share
 };
 
 /// What a glTF file holds, flattened to world coordinates.

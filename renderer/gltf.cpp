@@ -222,6 +222,7 @@ class SceneReader {
         camera.up =
             (linear.col(1) - linear.col(1).dot(camera.forward) * camera.forward).normalized();
         camera.fov_y_rad = source.perspective.yfov;
+        camera.lens_name = source.name;
         if (!(linear.determinant() != 0.0)) {
             throw core::Error(document_.where(fmt::format("nodes[{}]", visit.node)),
                               "its camera's transform is singular",

@@ -114,6 +114,25 @@ Vec2 texture_coordinates(const Object& object, const Facet& facet, const Vec3& p
     return (1.0 - b1 - b2) * object.uv[i0] + b1 * object.uv[i1] + b2 * object.uv[i2];
 }
 
+// A grid lies on the rectangle of `relay_wall`; a mesh in its place has to be there as well.
+void require_on_wall_mesh(const Scene& scene,
+                          const core::WallPoints& points,
+                          const std::string& key) {
+    constexpr double kTolerance_m = 1e-3;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const Vec3& normal = points.normals[i];
+        const Vec3 above = points.positions[i] + kTolerance_m * normal;
+        const auto hit = scene.first_hit(above, -normal, -normal);
+        if (hit && !scene.is_hidden(hit->facet) &&
+            (hit->position - points.positions[i]).norm() < kTolerance_m) {
+            continue;
+        }
+        throw core::Error("scan." + key,
+                          "found a grid that does not lie on the mesh with the role relay_wall",
+                          "must be given as explicit points: " + key + "_m and normals");
+    }
+}
+
 }  // namespace
 
 Scene::Scene(SceneGeometry geometry, const core::Scan& scan, const RelayWall& wall)
@@ -173,7 +192,18 @@ Scene load_scene(const SceneDescription& description, const core::Scan& scan) {
                           "found no hidden surface in front of the relay wall",
                           "must have one on the side that the wall's normal points to");
     }
-    return Scene(std::move(geometry), scan, description.relay_wall);
+    const bool has_wall_mesh = relay_wall_mesh(geometry) != nullptr;
+    Scene scene(std::move(geometry), scan, description.relay_wall);
+    if (has_wall_mesh && !scan.camera) {
+        const ScanSettings& asked = description.scan;
+        if (asked.sensing_points_m.empty()) {
+            require_on_wall_mesh(scene, scan.sensing, "sensing_points");
+        }
+        if (asked.pattern == core::ScanPattern::Exhaustive && asked.illumination_points_m.empty()) {
+            require_on_wall_mesh(scene, scan.illumination, "illumination_points");
+        }
+    }
+    return scene;
 }
 
 }  // namespace renderer

@@ -84,7 +84,8 @@ class Scene {
 
 /// Loads the description's glTF and sets the scene up for its scan.
 ///
-/// throws   core::Error for a bad file, or when all hidden geometry lies behind the scan's points
+/// throws   core::Error for a bad file, when all hidden geometry lies behind the scan's points, or
+///          when a grid of points does not lie on the mesh that is the relay wall
 Scene load_scene(const SceneDescription& description, const core::Scan& scan);
 
 }  // namespace renderer

@@ -94,6 +94,14 @@ void validate_size(const SceneDescription& scene, const std::string& where) {
     } else if (scan.pattern == core::ScanPattern::Exhaustive) {
         pairs *= count(scan.illumination_points_m, scan.illumination_points);
     }
+    const double available = static_cast<double>(core::available_memory_bytes());
+    const auto& [columns, rows] = scene.ground_truth.depth_resolution;
+    const double depth_map_bytes = sizeof(double) * static_cast<double>(columns) * rows;
+    if (depth_map_bytes > available) {
+        throw Error(where + "ground_truth.depth_resolution",
+                    fmt::format("found {} x {}", columns, rows),
+                    fmt::format("must fit into {:.1f} GB of memory", available * 1e-9));
+    }
     double values = pairs * scene.time_axis.num_bins * (scene.frames ? scene.frames->count : 1);
     if (scene.velocity_axis) {
         const double time_bins = scene.velocity_axis->with_time ? scene.time_axis.num_bins : 1.0;
@@ -104,7 +112,6 @@ void validate_size(const SceneDescription& scene, const std::string& where) {
                 fmt::format("at most {}", std::numeric_limits<int>::max()));
         values += pairs * per_pair;
     }
-    const double available = static_cast<double>(core::available_memory_bytes());
     if (values * sizeof(float) > available) {
         throw Error(where + (scene.camera ? "camera.resolution" : "scan.sensing_points") +
                         " and time_axis.num_bins",
@@ -168,7 +175,7 @@ void look_up_camera(const std::string& geometry, const std::string& where, Camer
     std::string known;
     for (const Camera& candidate : load_gltf(geometry).cameras) {
         known += (known.empty() ? "" : ", ") + candidate.name;
-        if (candidate.name != camera.name) continue;
+        if (candidate.name != camera.name && candidate.lens_name != camera.name) continue;
         camera.position_m = candidate.position;
         camera.look_at_m = candidate.position + candidate.forward;
         camera.up = candidate.up;

@@ -41,7 +41,7 @@ void add_bench_render_command(CLI::App& bench) {
         ->capture_default_str()
         ->check(CLI::Range(1, 1000));
     render->add_flag("--quick", settings.quick, "Leave out what takes longest");
-    render->footer(settings_footer({}, "nlos bench render -o out/bench"));
+    render->footer(settings_footer({}, "nlos bench render -o out/bench --quick"));
     render->callback([arguments] { run(*arguments); });
 }
 

@@ -150,6 +150,7 @@ void write_volume(const std::string& path, const Reconstruction& reconstruction)
     file.write_attribute("/", "method", reconstruction.method);
     file.write_attribute("/", "reason", reconstruction.reason);
     file.write_attribute("/", "settings", core::write_value(reconstruction.settings).dump());
+    file.write_attribute("/", "provenance", reconstruction.provenance.dump());
     const auto peak_bytes = static_cast<double>(reconstruction.peak_bytes);
     file.write_attribute("/", "seconds", {}, {&reconstruction.seconds, 1});
     file.write_attribute("/", "peak_bytes", {}, {&peak_bytes, 1});
@@ -177,6 +178,8 @@ Reconstruction read_volume(const std::string& path) {
     result.method = file.text_attribute("/", "method").value_or("");
     result.reason = file.text_attribute("/", "reason").value_or("");
     result.settings = read_settings(file);
+    const std::string made = file.text_attribute("/", "provenance").value_or("");
+    if (core::Json::accept(made)) result.provenance = core::Json::parse(made);
     result.seconds = read_number(file, "seconds");
     result.peak_bytes =
         static_cast<std::uint64_t>(std::min(read_number(file, "peak_bytes"), 0x1p63));

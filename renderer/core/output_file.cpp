@@ -3,8 +3,10 @@
 
 #include "renderer/core/error.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <filesystem>
 #include <fstream>
 
@@ -18,12 +20,18 @@ OutputFile::OutputFile(std::string target) : target_(std::move(target)) {
         throw Error(target_, "its folder does not exist", "must be in an existing folder");
     }
     if (fs::is_directory(path)) throw Error(target_, "is a folder", "must be a file name");
-    if (::access(folder.c_str(), W_OK) != 0) {
-        throw Error(target_, "its folder cannot be written", "must be in a writable folder");
-    }
     const std::string name = "." + path.stem().string() + "." + std::to_string(::getpid()) +
                              ".partial" + path.extension().string();
     temporary_ = (folder / name).string();
+    // Only trying tells: root may write where the file system does not.
+    const int file = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+    if (file < 0 && (errno == ENOSPC || errno == EDQUOT)) {
+        throw Failure(target_, "cannot be written (disk full)");
+    }
+    if (file < 0) {
+        throw Error(target_, "its folder cannot be written", "must be in a writable folder");
+    }
+    ::close(file);
 }
 
 OutputFile::~OutputFile() {
@@ -36,6 +44,19 @@ void OutputFile::commit() {
     fs::rename(temporary_, target_, error);
     if (error) throw Failure(target_, "cannot be written (" + error.message() + ")");
     committed_ = true;
+}
+
+void check_targets(const std::vector<std::string>& targets,
+                   const std::vector<std::string>& inputs) {
+    for (const std::string& target : targets) {
+        if (target.empty()) continue;
+        const OutputFile probe(target);
+        for (const std::string& input : inputs) {
+            std::error_code is_missing;
+            if (!fs::equivalent(target, input, is_missing)) continue;
+            throw Error(target, "is read as well", "must be another file");
+        }
+    }
 }
 
 void write_text_file(const std::string& path, const std::string& text) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace core {
 
@@ -26,6 +27,13 @@ class OutputFile {
     std::string temporary_;
     bool committed_ = false;
 };
+
+/// Looks at targets before the work: a run shall not find out at its end that it cannot write.
+///
+/// targets   files to be written; empty names are skipped
+/// inputs    files that are read
+/// throws    Error when a target cannot be written, or is one of the inputs
+void check_targets(const std::vector<std::string>& targets, const std::vector<std::string>& inputs);
 
 /// Writes a whole text file by way of OutputFile.
 void write_text_file(const std::string& path, const std::string& text);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <limits>
 
@@ -22,7 +23,10 @@ std::string shortened(const Json& json) {
 }  // namespace
 
 void throw_wrong_type(const std::string& where, const Json& found, const std::string& allowed) {
-    throw Error(where, "found " + shortened(found), "must be " + allowed);
+    // Of a whole file no key is to name.
+    throw Error(where.ends_with(": ") ? where.substr(0, where.size() - 2) : where,
+                "found " + shortened(found),
+                "must be " + allowed);
 }
 
 std::string join_key(const std::string& where, const std::string& key) {
@@ -40,8 +44,10 @@ void read_value(const Json& json, const std::string& where, int& value) {
     const bool whole =
         json.is_number_integer() ||
         (json.is_number_float() && std::trunc(json.get<double>()) == json.get<double>());
-    if (!whole || std::abs(json.get<double>()) > std::numeric_limits<int>::max()) {
-        throw_wrong_type(where, json, "a whole number");
+    if (!whole) throw_wrong_type(where, json, "a whole number");
+    constexpr int kLargest = std::numeric_limits<int>::max();
+    if (std::abs(json.get<double>()) > kLargest) {
+        throw_wrong_type(where, json, fmt::format("between -{} and {}", kLargest, kLargest));
     }
     value = static_cast<int>(json.get<double>());
 }
@@ -104,12 +110,17 @@ Json parse_override(const std::string& text) {
 }
 
 Json read_json_file(const std::string& path) {
+    if (std::filesystem::is_directory(path)) {
+        throw Error(path, "is a folder", "must be a readable JSON file");
+    }
     std::ifstream file(path);
     if (!file) throw Error(path, "cannot be opened", "must be a readable JSON file");
     try {
         return Json::parse(file);
     } catch (const Json::exception& error) {
-        const std::string message = error.what();
+        std::string message = error.what();  // may quote bytes of a file that is no text at all
+        std::replace_if(
+            message.begin(), message.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
         const std::size_t start = message.find("] ");
         throw Error(path,
                     "is not valid JSON (" +

@@ -32,9 +32,9 @@ class CommandLine : public testing::Test {
  protected:
     std::string file(const std::string& name) const { return folder_.file(name); }
 
-    // Runs the program in the source folder.
-    Outcome run(const std::string& arguments) const {
-        const std::string command = "cd '" NLOS_SOURCE_DIR "' && '" NLOS_PROGRAM "' " + arguments +
+    // Runs the program in a folder.
+    Outcome run(const std::string& arguments, const std::string& folder = NLOS_SOURCE_DIR) const {
+        const std::string command = "cd '" + folder + "' && '" NLOS_PROGRAM "' " + arguments +
                                     " >'" + file("out.txt") + "' 2>'" + file("err.txt") + "'";
         const int raw = std::system(command.c_str());
         return {WEXITSTATUS(raw), file_bytes(file("out.txt")), file_bytes(file("err.txt"))};
@@ -175,23 +175,90 @@ TEST_F(CommandLine, CaptureRemembersHowItWasMade) {
     EXPECT_NE(info["program"].get<std::string>().find("nlos 0."), std::string::npos);
 }
 
-TEST_F(CommandLine, HelpOnEveryLevelEndsWithAnExample) {
-    EXPECT_NE(run("--help").out.find("Example:"), std::string::npos);
+TEST_F(CommandLine, HelpOnEveryLevelEndsWithAnExampleThatWorks) {
+    EXPECT_TRUE(run("--help").out.ends_with("Example:\n  nlos demo -o out/demo\n"));
     EXPECT_NE(run("--version").out.find("nlos 0."), std::string::npos);
-    for (const std::string name : {"render",
-                                   "reconstruct",
-                                   "compare",
-                                   "info",
-                                   "report",
-                                   "bench",
-                                   "demo",
-                                   "simulate-noise",
-                                   "convert"}) {
-        const Outcome outcome = run(name + " --help");
-        EXPECT_EQ(outcome.status, 0) << name;
-        EXPECT_NE(outcome.out.find("Example:\n  nlos " + name), std::string::npos) << name;
+    for (const std::string name : {"scenes", "data"}) {
+        fs::create_directory_symlink(NLOS_SOURCE_DIR "/" + name, file(name));
     }
+    for (const std::string name : {"render",
+                                   "simulate-noise",
+                                   "reconstruct",
+                                   "fit",
+                                   "calibrate",
+                                   "compare",
+                                   "convert",
+                                   "info",
+                                   "bench",
+                                   "report"}) {
+        const Outcome help = run(name + " --help");
+        EXPECT_EQ(help.status, 0) << name;
+        const std::string start = "Example:\n  nlos ";
+        const std::size_t at = help.out.rfind(start + name);
+        ASSERT_NE(at, std::string::npos) << help.out;
+        const std::string example = help.out.substr(at + start.size());
+        EXPECT_EQ(example.find('\n') + 1, example.size()) << example;
+        const Outcome outcome = run(example.substr(0, example.size() - 1), folder_.path().string());
+        EXPECT_EQ(outcome.status, 0) << example << outcome.err;
+    }
+    EXPECT_NE(run("demo --help").out.find("Example:\n  nlos demo"), std::string::npos);
     EXPECT_NE(run("render --help").out.find("time_axis.bin_width_m = 0.008"), std::string::npos);
+}
+
+TEST_F(CommandLine, TargetsAreLookedAtBeforeTheWork) {
+    const std::string letter = "data/letter.h5";
+    const std::string copy = file("copy.h5");
+    fs::copy_file(NLOS_SOURCE_DIR "/" + letter, copy);
+    const std::string bytes = file_bytes(copy);
+    for (const std::string& command : {"simulate-noise " + copy + " --photons 9 -o ",
+                                       "reconstruct " + copy + " -o ",
+                                       "convert " + copy + " ",
+                                       "reconstruct " + copy + " -o " + file("v.h5") + " --ply "}) {
+        expect_bad_input(command + (command.ends_with("ply ") ? letter : copy), "must be");
+    }
+    EXPECT_EQ(file_bytes(copy), bytes);
+    expect_bad_input("reconstruct " + letter + " -o " + file("v.txt"), "must be one of .h5, .hdf5");
+    expect_bad_input("reconstruct " + letter + " -o /proc/v.h5", "writable folder");
+    expect_bad_input("compare " + copy + " " + letter + " -o " + file("m.txt"), ".json");
+    expect_bad_input("info " + letter + " --picture " + file("p.jpg"), ".png");
+    expect_bad_input("bench unknown", "known are render");
+    expect_bad_input("render scenes -o " + file("x.h5"), "is a folder");
+    expect_bad_input("compare " + copy + " " + letter + " --fscore-threshold-m nan", "positive");
+    expect_bad_input("render scenes/curved/scene.json -o " + file("x.h5") +
+                         " --set scan.sensing_points_m=[] scan.sensing_normals=[]",
+                     "does not lie on the mesh with the role relay_wall");
+}
+
+TEST_F(CommandLine, InfoSaysWhereResultsComeFrom) {
+    EXPECT_NE(run("info data/letter.h5").out.find("  command: nlos render scenes/letter"),
+              std::string::npos);
+    ASSERT_EQ(run("reconstruct data/letter.h5 -o " + file("v.h5")).status, 0);
+    EXPECT_NE(run("info " + file("v.h5")).out.find("  capture: data/letter.h5"), std::string::npos);
+    EXPECT_NE(run("info data/setup.json").out.find("commands: 64 items"), std::string::npos);
+    EXPECT_NE(run("info scenes/letter/model.json").out.find("start: search"), std::string::npos);
+    ASSERT_EQ(run("calibrate data/setup.json -o " + file("c.json")).status, 0);
+    EXPECT_NE(run("info " + file("c.json")).out.find("format: calibration"), std::string::npos);
+    EXPECT_TRUE(core::read_json_file(file("c.json")).at("camera").is_null());
+}
+
+TEST_F(CommandLine, FitsAreComparedWithOneAnother) {
+    const std::string model = make_scene("scene.json", core::Json::object());
+    write_file_bytes(file("model.json"),
+                     R"({"scene": "scene.json", "free": {"letter": ["pose", "albedo"]}})");
+    const std::string fit = "fit data/letter.h5 " + file("model.json") + " -o ";
+    ASSERT_EQ(run(fit + file("a.json")).status, 0);
+    const Outcome stopped =
+        run(fit + file("b.json") + " --set max_iterations=1 response.jitter_fwhm_ps=300");
+    EXPECT_EQ(stopped.status, 1);
+    EXPECT_EQ(std::count(stopped.err.begin(), stopped.err.end(), '\n'), 1) << stopped.err;
+    EXPECT_FALSE(core::read_json_file(file("b.json"))["converged"]);
+    EXPECT_NE(stopped.out.find("wrote " + file("b.json")), std::string::npos);
+    ASSERT_EQ(
+        run("compare " + file("a.json") + " " + file("b.json") + " -o " + file("m.json")).status,
+        0);
+    EXPECT_LT(core::read_json_file(file("m.json"))["position_error_m"], 0.1);
+    expect_bad_input(fit + file("scene.json"), "is read as well");
+    expect_bad_input(fit + file("c.json") + " --set start=nothing", "VOLUME.h5");
 }
 
 TEST_F(CommandLine, BadUsageIsOneLine) {
@@ -313,11 +380,11 @@ TEST_F(CommandLine, BadCapturesAreOneLineAndKeepOlderResults) {
         "reconstruct " + file("capture.h5") + " -o " + out + " --method fish", "", out);
     expect_bad_input(
         "reconstruct " + file("capture.h5") + " -o " + out + " --set snr=-1", "snr", out);
-    for (const std::string option : {" --ply ", " --glb "}) {
-        expect_bad_input(
-            "reconstruct " + file("capture.h5") + " -o " + out + option + file("none/points"),
-            "folder does not exist",
-            out);
+    for (const std::string option : {"ply", "glb"}) {
+        expect_bad_input("reconstruct " + file("capture.h5") + " -o " + out + " --" + option + " " +
+                             file("none/points." + option),
+                         "folder does not exist",
+                         out);
     }
 
     // NaN written behind the writer's back: the first four bytes of the brightest value.

@@ -132,6 +132,18 @@ TEST(DirectReturns, TailIsSeparatedFromTheCore) {
     EXPECT_NEAR(result.deviance, result.expected_deviance, 0.15 * result.expected_deviance);
 }
 
+TEST(DirectReturns, ATailThatIsNotThereCostsNothing) {
+    const std::vector<double> opl(30, 2.0);
+    const core::Capture capture = direct_returns(opl, 1000.0, 0.0, "no tail");
+    const auto gaussian = calib::fit_direct_returns(capture, calib::ResponseShape::Gaussian);
+    const auto tailed =
+        calib::fit_direct_returns(capture, calib::ResponseShape::GaussianExponential);
+    for (std::size_t p = 0; p < opl.size(); ++p) {
+        EXPECT_LT(tailed.points[p].sigma_m, 6.0 * gaussian.points[p].sigma_m) << p;
+        EXPECT_NEAR(tailed.points[p].opl_m, opl[p], 5.0 * tailed.points[p].sigma_m) << p;
+    }
+}
+
 TEST(DirectReturns, AnEmptyHistogramIsNamed) {
     auto capture = direct_returns({2.0, 2.1}, 100.0, 0.0, "Empty");
     for (float& value : capture.transient.histogram(1)) value = 0.0F;
@@ -436,6 +448,13 @@ TEST(Calibrate, AFitThroughTheResultFindsTheHiddenScene) {
     EXPECT_LT((fit.objects[0].position_m - center).norm(), 0.002);
     // Without the calibration the device's legs are missing, and the light is nowhere near.
     EXPECT_ERROR_WITH(calib::fit_scene(test_support::fit_input(counts, start), {}), "time axis");
+}
+
+TEST(Calibrate, BoardsWithoutImagesAreNoCamera) {
+    const test_support::TemporaryFolder folder;
+    core::write_text_file(folder.file("setup.json"),
+                          R"({"direct_returns": "d.h5", "boards": {"images": []}})");
+    EXPECT_FALSE(calib::read_setup(folder.file("setup.json"), {}).boards);
 }
 
 TEST(Calibrate, ListsOfDifferentLengthsAreNamed) {

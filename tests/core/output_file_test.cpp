@@ -45,4 +45,16 @@ TEST(OutputFile, ImpossibleTargetsAreNamed) {
     EXPECT_THROW(core::OutputFile(folder.path().string()), core::Error);
 }
 
+TEST(OutputFile, TargetsAreNoInputs) {
+    const test_support::TemporaryFolder folder;
+    core::write_text_file(folder.file("input.txt"), "old");
+    fs::create_symlink(folder.file("input.txt"), folder.file("link.txt"));
+    const std::vector<std::string> inputs{folder.file("input.txt"), ""};
+    EXPECT_NO_THROW(core::check_targets({folder.file("result.txt"), ""}, inputs));
+    EXPECT_THROW(core::check_targets({folder.file("link.txt")}, inputs), core::Error);
+    EXPECT_THROW(core::check_targets({"/proc/result.txt"}, {}), core::Error);
+    EXPECT_EQ(test_support::file_bytes(folder.file("input.txt")), "old");
+    EXPECT_FALSE(fs::exists(folder.file("result.txt")));
+}
+
 }  // namespace

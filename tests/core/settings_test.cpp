@@ -1,7 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/core/settings.h"
 
+#include "tests/support/error_message.h"
+#include "tests/support/file_bytes.h"
+#include "tests/support/temporary_folder.h"
+
 #include <gtest/gtest.h>
+
+#include <algorithm>
 
 namespace {
 
@@ -89,6 +95,9 @@ TEST(Settings, WrongTypesNameKeyValueAndWhatIsAllowed) {
               "file.json: count: found \"many\"; must be a whole number");
     EXPECT_EQ(message_of(R"({"count": 1.5})"),
               "file.json: count: found 1.5; must be a whole number");
+    EXPECT_EQ(message_of(R"({"count": 2147483648})"),
+              "file.json: count: found 2147483648; must be between -2147483647 and 2147483647");
+    EXPECT_EQ(message_of("[1]"), "file.json: found [1]; must be an object with named fields");
     EXPECT_EQ(message_of(R"({"on": 1})"), "file.json: on: found 1; must be true or false");
     EXPECT_EQ(message_of(R"({"colour": "blue"})"),
               "file.json: colour: found \"blue\"; must be one of red|green");
@@ -98,6 +107,17 @@ TEST(Settings, WrongTypesNameKeyValueAndWhatIsAllowed) {
               "file.json: inner.shape: found [1]; must be a list of 2 numbers");
     EXPECT_EQ(message_of(R"({"inner": {"width_m": null}})"),
               "file.json: inner.width_m: found null; must be a finite number");
+}
+
+TEST(Settings, FilesThatAreNoTextAreNamedInPrintableLines) {
+    const test_support::TemporaryFolder folder;
+    test_support::write_file_bytes(folder.file("image.json"), "\x89HDF\n");
+    const std::string found =
+        test_support::error_message([&] { core::read_json_file(folder.file("image.json")); });
+    EXPECT_TRUE(std::all_of(found.begin(), found.end(), [](char c) {
+        return c >= ' ' && c <= '~';
+    })) << found;
+    EXPECT_ERROR_WITH(core::read_json_file(folder.path().string()), "is a folder");
 }
 
 TEST(Settings, OverridesReachNestedFields) {

@@ -133,6 +133,8 @@ TEST(Compare, NormalsOfPointsAreComparedAtNearestNeighbours) {
     const core::PointCloud result{{{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}}, {straight, straight}};
     const core::PointCloud truth{{{1.0, 0.0, 0.1}, {0.0, 0.0, 0.1}}, {tilted, straight}};
     EXPECT_NEAR(compare_points(result, truth, 0.2).normal_mae_deg.value(), 15.0, 1e-9);
+    const core::PointCloud turned{truth.positions, {-tilted, -straight}};
+    EXPECT_NEAR(compare_points(result, turned, 0.2).normal_mae_deg.value(), 15.0, 1e-9);
 }
 
 TEST(Compare, NormalsOfColumnsAreTurnedIntoTheWorld) {

@@ -321,6 +321,11 @@ TEST(Detector, BadSettingsAreNamed) {
     expect(settings, "photons_per_point");
     settings = with_photons_per_point(-1.0);
     expect(settings, "must be positive");
+    settings = with_photons_per_point(1e300);
+    expect(settings, "at most 1e15 counts");
+    settings = with_photons_per_point(10.0);
+    settings.ambient = 1e300;
+    expect(settings, "at most 1e15 counts");
     settings = with_photons_per_point(10.0);
     settings.photons = 10.0;
     expect(settings, "one of the two");

@@ -21,7 +21,7 @@ renderer::SceneDescription read_text(const std::string& json,
 // One triangle, and a camera of 0.5 rad at (1, 2, 3) that looks along -z.
 const std::string kTriangleAndCamera = R"({"asset": {"version": "2.0"},
     "nodes": [{"mesh": 0}, {"name": "eye", "camera": 0, "translation": [1, 2, 3]}],
-    "cameras": [{"type": "perspective", "perspective": {"yfov": 0.5, "znear": 0.1}}],
+    "cameras": [{"name": "lens", "type": "perspective", "perspective": {"yfov": 0.5, "znear": 0.1}}],
     "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
     "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
                    "min": [0, 0, 0], "max": [1, 1, 0]}],
@@ -155,6 +155,9 @@ TEST(SceneFile, CameraMayBeNamedInTheGeometryFile) {
     EXPECT_LT((scene.camera->look_at_m - Vec3(1, 2, 2)).norm(), 1e-12);
     EXPECT_NEAR(scene.camera->fov_y_deg, 0.5 * 180.0 / core::kPi, 1e-9);
     EXPECT_EQ(renderer::make_scan(scene).num_pairs(), 20U);
+    const auto by_lens =
+        renderer::read_scene_description(folder.file("scene.json"), {"camera=lens"});
+    EXPECT_EQ(by_lens.camera->position_m, scene.camera->position_m);
     EXPECT_ERROR_WITH(renderer::read_scene_description(folder.file("scene.json"), {"camera=nose"}),
                       "camera: found \"nose\"; must be one of eye");
 }
