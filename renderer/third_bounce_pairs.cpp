@@ -15,9 +15,8 @@ constexpr std::size_t kSize = PieceBlock::kSize;
 
 // Lengths and weights of all pieces of a block, before and after fitting the knots.
 struct alignas(64) BlockKnots {
-    std::array<PieceBlock::Lanes, 3> opl_m;
     std::array<PieceBlock::Lanes, 6> node_weight;
-    std::array<PieceBlock::Lanes, 3> weight;
+    core::TriangleLanes fitted;
 };
 
 Vec3 node_of(const PieceBlock& block, std::size_t node, std::size_t i) {
@@ -53,7 +52,7 @@ void weigh_nodes(const PieceBlock& block,
                  BlockKnots& knots) {
     for (std::size_t j = 0; j < 3; ++j) {
         for (std::size_t i = 0; i < kSize; ++i) {
-            knots.opl_m[j][i] = light.table->leg_m[j][i] + sensor.table->leg_m[j][i];
+            knots.fitted.opl_m[j][i] = light.table->leg_m[j][i] + sensor.table->leg_m[j][i];
         }
     }
     if (block.kind == PieceKind::Glossy) {
@@ -82,9 +81,9 @@ void fit_weights(BlockKnots& knots) {
         const double corner_mean = (k[0][i] + k[1][i] + k[2][i]) * (1.0 / 3.0);
         const double lowest = std::min(k[0][i], std::min(k[1][i], k[2][i])) - corner_mean;
         const double spread = lowest < -mean ? mean / -lowest : 1.0;
-        knots.weight[0][i] = mean + spread * (k[0][i] - corner_mean);
-        knots.weight[1][i] = mean + spread * (k[1][i] - corner_mean);
-        knots.weight[2][i] = mean + spread * (k[2][i] - corner_mean);
+        knots.fitted.weight[0][i] = mean + spread * (k[0][i] - corner_mean);
+        knots.fitted.weight[1][i] = mean + spread * (k[1][i] - corner_mean);
+        knots.fitted.weight[2][i] = mean + spread * (k[2][i] - corner_mean);
     }
 }
 
@@ -155,13 +154,14 @@ void add_pair(const PieceBlock& block,
     BlockKnots knots;
     weigh_nodes(block, light, sensor, knots);
     fit_weights(knots);
+    auto& weight = knots.fitted.weight;
     for (std::size_t i = 0; i < block.count; ++i) {
-        if (mask[i] == 0) continue;
-        core::TriangleKnots triangle{{knots.opl_m[0][i], knots.opl_m[1][i], knots.opl_m[2][i]},
-                                     {knots.weight[0][i], knots.weight[1][i], knots.weight[2][i]}};
-        if (mask[i] != kAllVisible) triangle.weight = visible_weights(triangle.weight, mask[i]);
-        core::add_triangle(triangle, block.area_m2[i], axis, histogram);
+        if (mask[i] == kAllVisible) continue;
+        const std::array<double, 3> all{weight[0][i], weight[1][i], weight[2][i]};
+        const auto visible = mask[i] != 0 ? visible_weights(all, mask[i]) : std::array<double, 3>{};
+        for (std::size_t j = 0; j < 3; ++j) weight[j][i] = visible[j];
     }
+    core::add_triangles(knots.fitted, {block.area_m2.data(), block.count}, axis, histogram);
 }
 
 }  // namespace renderer

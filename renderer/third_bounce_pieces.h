@@ -2,6 +2,7 @@
 #pragma once
 
 #include "renderer/core/capture.h"
+#include "renderer/core/triangle_histogram.h"
 #include "renderer/scene.h"
 #include "renderer/wall_boxes.h"
 
@@ -30,8 +31,8 @@ struct Piece {
 
 /// Pieces of one kind in the layout of vectorised loops. Nodes 0-2 are corners, 3-5 midpoints.
 struct alignas(64) PieceBlock {
-    static constexpr std::size_t kSize = 64;
-    using Lanes = std::array<double, kSize>;
+    static constexpr std::size_t kSize = core::TriangleLanes::kSize;
+    using Lanes = core::TriangleLanes::Lanes;
 
     std::array<Lanes, 3> x, y, z;  ///< corners, relative to PieceSet::origin [m]
     Lanes normal_x, normal_y, normal_z;

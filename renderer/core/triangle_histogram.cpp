@@ -5,10 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace core {
 namespace {
+
+constexpr double kThird = 1.0 / 3.0;
 
 // Corners sorted by position along the axis; positions in any unit.
 //
@@ -24,53 +25,98 @@ namespace {
 struct SortedTriangle {
     double p0, p1, p2;
     double k0, k1, k2;
-    double per_01, per_02, per_12;  // reciprocal lengths; infinite ones are never used
 
-    SortedTriangle(const std::array<double, 3>& position, const std::array<double, 3>& weight)
-        : p0(position[0]),
-          p1(position[1]),
-          p2(position[2]),
-          k0(weight[0]),
-          k1(weight[1]),
-          k2(weight[2]) {
-        order(p0, p1, k0, k1);
-        order(p1, p2, k1, k2);
-        order(p0, p1, k0, k1);
-        per_01 = 1.0 / (p1 - p0);
-        per_02 = 1.0 / (p2 - p0);
-        per_12 = 1.0 / (p2 - p1);
-    }
+    double mean() const { return (k0 + k1 + k2) * kThird; }
+};
 
-    double mean() const { return (k0 + k1 + k2) / 3.0; }
+class Cumulative {
+ public:
+    explicit Cumulative(const SortedTriangle& triangle)
+        : t_(triangle),
+          per_01_(1.0 / (t_.p1 - t_.p0)),
+          per_02_(1.0 / (t_.p2 - t_.p0)),
+          per_12_(1.0 / (t_.p2 - t_.p1)) {}
 
     // For p0 < e < p2.
     double below(double e) const {
-        if (e < p1) {
-            const double a = (e - p0) * per_01;
-            const double b = (e - p0) * per_02;
-            return a * b * (k0 + (a * (k1 - k0) + b * (k2 - k0)) / 3.0);
+        if (e < t_.p1) {
+            const double a = (e - t_.p0) * per_01_;
+            const double b = (e - t_.p0) * per_02_;
+            return a * b * (t_.k0 + (a * (t_.k1 - t_.k0) + b * (t_.k2 - t_.k0)) * kThird);
         }
-        const double a = (p2 - e) * per_12;
-        const double b = (p2 - e) * per_02;
-        return mean() - a * b * (k2 + (a * (k1 - k2) + b * (k0 - k2)) / 3.0);
+        const double a = (t_.p2 - e) * per_12_;
+        const double b = (t_.p2 - e) * per_02_;
+        return t_.mean() - a * b * (t_.k2 + (a * (t_.k1 - t_.k2) + b * (t_.k0 - t_.k2)) * kThird);
     }
 
  private:
-    static void order(double& a, double& b, double& ka, double& kb) {
-        const bool swapped = b < a;
-        const double low = swapped ? b : a;
-        const double high = swapped ? a : b;
-        const double k_low = swapped ? kb : ka;
-        const double k_high = swapped ? ka : kb;
-        a = low;
-        b = high;
-        ka = k_low;
-        kb = k_high;
-    }
+    SortedTriangle t_;
+    double per_01_, per_02_, per_12_;  // reciprocal lengths; infinite ones are never used
 };
 
+// Sorts corners a and b of the first lanes. No branches: neither is the likely order.
+void order_corners(TriangleLanes& lanes, std::size_t a, std::size_t b, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) {
+        const double pa = lanes.opl_m[a][i];
+        const double pb = lanes.opl_m[b][i];
+        const double ka = lanes.weight[a][i];
+        const double kb = lanes.weight[b][i];
+        lanes.opl_m[a][i] = pb < pa ? pb : pa;
+        lanes.opl_m[b][i] = pb < pa ? pa : pb;
+        lanes.weight[a][i] = pb < pa ? kb : ka;
+        lanes.weight[b][i] = pb < pa ? ka : kb;
+    }
+}
+
+void sort_corners(TriangleLanes& lanes, std::size_t count) {
+    order_corners(lanes, 0, 1, count);
+    order_corners(lanes, 1, 2, count);
+    order_corners(lanes, 0, 1, count);
+}
+
+SortedTriangle lane_of(const TriangleLanes& lanes, std::size_t i) {
+    return {lanes.opl_m[0][i],
+            lanes.opl_m[1][i],
+            lanes.opl_m[2][i],
+            lanes.weight[0][i],
+            lanes.weight[1][i],
+            lanes.weight[2][i]};
+}
+
+TriangleLanes one_lane(const TriangleKnots& knots) {
+    TriangleLanes lanes;
+    for (std::size_t j = 0; j < 3; ++j) {
+        lanes.opl_m[j][0] = knots.opl_m[j];
+        lanes.weight[j][0] = knots.weight[j];
+    }
+    return lanes;
+}
+
+// Corners at positions in bins.
+void add_sorted(const SortedTriangle& triangle, double area_m2, std::span<double> histogram) {
+    const auto num_bins = static_cast<double>(histogram.size());
+    if (!(triangle.p2 >= 0.0) || !(triangle.p0 < num_bins)) return;
+
+    const double mean = triangle.mean();
+    const double last = std::floor(triangle.p2);
+    if (triangle.p0 >= last) {
+        if (last < num_bins) histogram[static_cast<std::size_t>(last)] += area_m2 * mean;
+        return;
+    }
+    const Cumulative cumulative(triangle);
+    double edge = std::max(0.0, std::floor(triangle.p0));
+    double below = edge > triangle.p0 ? cumulative.below(edge) : 0.0;
+    auto bin = static_cast<std::size_t>(edge);
+    for (edge += 1.0; edge <= last && edge <= num_bins; edge += 1.0, ++bin) {
+        const double next = edge < triangle.p2 ? cumulative.below(edge) : mean;
+        histogram[bin] += area_m2 * (next - below);
+        below = next;
+    }
+    if (last < num_bins) histogram[bin] += area_m2 * (mean - below);
+}
+
 double mean_of(const std::array<double, 3>& values) {
-    return (values[0] + values[1] + values[2]) / 3.0;
+    return (values[0] + values[1] + values[2]) * kThird;
 }
 
 // The Gaussian response is cut off this many standard deviations away: beyond, it holds 1e-11.
@@ -124,37 +170,35 @@ TriangleKnots match_midpoints(const TriangleKnots& at_corners, const TriangleKno
 }
 
 double triangle_cumulative(const TriangleKnots& knots, double opl_m) {
-    const SortedTriangle triangle(knots.opl_m, knots.weight);
+    TriangleLanes lanes = one_lane(knots);
+    sort_corners(lanes, 1);
+    const SortedTriangle triangle = lane_of(lanes, 0);
     if (opl_m <= triangle.p0) return 0.0;
-    return opl_m < triangle.p2 ? triangle.below(opl_m) : triangle.mean();
+    return opl_m < triangle.p2 ? Cumulative(triangle).below(opl_m) : triangle.mean();
+}
+
+void add_triangles(TriangleLanes& lanes,
+                   std::span<const double> area_m2,
+                   const TimeAxis& axis,
+                   std::span<double> histogram) {
+    const std::size_t count = area_m2.size();
+    const double per_m = 1.0 / axis.bin_width_m;
+    for (TriangleLanes::Lanes& lane : lanes.opl_m) {
+        for (std::size_t i = 0; i < count; ++i) lane[i] = (lane[i] - axis.opl_start_m) * per_m;
+    }
+    sort_corners(lanes, count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const SortedTriangle triangle = lane_of(lanes, i);
+        if (triangle.mean() != 0.0) add_sorted(triangle, area_m2[i], histogram);
+    }
 }
 
 void add_triangle(const TriangleKnots& knots,
                   double area_m2,
                   const TimeAxis& axis,
                   std::span<double> histogram) {
-    const double per_m = 1.0 / axis.bin_width_m;
-    const auto position = [&](double opl_m) { return (opl_m - axis.opl_start_m) * per_m; };
-    const SortedTriangle triangle(
-        {position(knots.opl_m[0]), position(knots.opl_m[1]), position(knots.opl_m[2])},
-        knots.weight);
-    const double num_bins = axis.num_bins;
-    if (!(triangle.p2 >= 0.0) || !(triangle.p0 < num_bins)) return;
-
-    const double last = std::floor(triangle.p2);
-    if (triangle.p0 >= last) {
-        if (last < num_bins) histogram[static_cast<std::size_t>(last)] += area_m2 * triangle.mean();
-        return;
-    }
-    double edge = std::max(0.0, std::floor(triangle.p0));
-    double below = edge > triangle.p0 ? triangle.below(edge) : 0.0;
-    auto bin = static_cast<std::size_t>(edge);
-    for (edge += 1.0; edge <= last && edge <= num_bins; edge += 1.0, ++bin) {
-        const double next = edge < triangle.p2 ? triangle.below(edge) : triangle.mean();
-        histogram[bin] += area_m2 * (next - below);
-        below = next;
-    }
-    if (last < num_bins) histogram[bin] += area_m2 * (triangle.mean() - below);
+    TriangleLanes lanes = one_lane(knots);
+    add_triangles(lanes, {&area_m2, 1}, axis, histogram);
 }
 
 void evaluate_triangle(const TriangleKnots& knots,

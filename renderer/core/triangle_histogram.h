@@ -43,6 +43,25 @@ void add_triangle(const TriangleKnots& knots,
                   const TimeAxis& axis,
                   std::span<double> histogram);
 
+/// Triangles side by side, one lane each, so that the compiler fills vector units.
+struct TriangleLanes {
+    static constexpr std::size_t kSize = 64;
+    using Lanes = std::array<double, kSize>;
+
+    alignas(64) std::array<Lanes, 3> opl_m;
+    alignas(64) std::array<Lanes, 3> weight;  ///< 0 at all corners: the lane adds nothing
+};
+
+/// add_triangle() for the first lanes.
+///
+/// lanes       overwritten: corners are sorted by length, which become positions in bins
+/// area_m2     of each triangle, as many as lanes are used
+/// histogram   axis.num_bins values
+void add_triangles(TriangleLanes& lanes,
+                   std::span<const double> area_m2,
+                   const TimeAxis& axis,
+                   std::span<double> histogram);
+
 /// The bins that a triangle of unit area reaches, and how they change with its knots.
 struct TriangleBins {
     /// Value; derivatives by the three lengths, by the three weights, and by the logarithm of the
