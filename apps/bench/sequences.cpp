@@ -121,12 +121,13 @@ SequenceFrames reference_frames(const SequenceCase& sequence, std::uint64_t seed
     if (is_integrable(setup)) {
         settings.method = renderer::Estimator::ThirdBounce;
         settings.target_error = 2e-3;
-        return frames_of(setup);
+    } else {
+        settings.method =
+            setup.scan.camera ? renderer::Estimator::Restir : renderer::Estimator::Auto;
+        settings.restir.reuse = renderer::Reuse::None;
+        settings.restir.shared_walks = 2000;
+        settings.restir.walks = 16;
     }
-    settings.method = setup.scan.camera ? renderer::Estimator::Restir : renderer::Estimator::Auto;
-    settings.restir.reuse = renderer::Reuse::None;
-    settings.restir.shared_walks = 2000;
-    settings.restir.walks = 16;
     if (sequence.frame_s > 0.0) return frames_of(setup);
     return gates_of_histogram(setup, sequence);
 }

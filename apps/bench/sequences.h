@@ -21,9 +21,9 @@ struct SequenceCase {
     double gate_width_mm = 10.0;
     double gate_step_mm = 10.0;  ///< per frame; 0: the gate stands still
     int num_frames = 60;
-    int num_bins = 1;      ///< of that width; more of them stand still
-    double frame_s = 0.0;  ///< time between frames, in which objects move [s]
+    int num_bins = 1;  ///< of that width; more of them stand still
     int reference_samples = 20'000;
+    double frame_s = 0.0;  ///< time between frames, in which objects move [s]
 
     bool is_static() const { return gate_step_mm == 0.0 && frame_s == 0.0; }
 };
@@ -39,8 +39,8 @@ struct SequenceSetup {
 
 using SequenceFrames = std::vector<core::Transient>;
 
-/// The frames of a sequence to little noise: third bounces integrated frame by frame, others as
-/// sums of the bins of one long histogram, or frame by frame where objects move.
+/// The frames of a sequence to little noise, third bounces of scans integrated: sums of the bins of
+/// one long histogram, or frame by frame where objects move.
 SequenceFrames reference_frames(const SequenceCase& sequence, std::uint64_t seed);
 
 /// How one method does on a sequence, on one thread.
