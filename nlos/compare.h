@@ -93,7 +93,8 @@ Metrics compare_points(const core::PointCloud& result,
 /// throws    core::Error when the grids or the walls differ
 Metrics compare_volumes(const Reconstruction& result, const Reconstruction& reference);
 
-/// Relative differences of two captures; rel_l2 = |a-b|/|b|, rel_mse its square.
+/// Relative differences of two captures; rel_l2 = |a-b|/|b|, rel_mse its square. Pairs are those of
+/// the same wall points, in whatever order they stand; where the points differ, those of one index.
 ///
 /// throws    core::Error when shapes, units or time axes differ
 Metrics compare_captures(const core::Capture& result, const core::Capture& reference);

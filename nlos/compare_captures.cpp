@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/compare.h"
 #include "nlos/compare_image.h"
+#include "renderer/core/nearest_neighbours.h"
 
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace nlos {
 namespace {
@@ -43,6 +45,37 @@ void check_same_bins(const core::TimeAxis& found, const core::TimeAxis& wanted) 
                       "both captures must have the same bins");
 }
 
+/// Which of the points are the wanted ones; as they stand unless all of them are there, reordered.
+std::vector<std::size_t> counterparts(const std::vector<core::Vec3>& wanted,
+                                      const std::vector<core::Vec3>& points) {
+    constexpr double kRounding_m = 1e-5;  // files hold points in single precision
+    std::vector<std::size_t> indices(wanted.size());
+    std::iota(indices.begin(), indices.end(), std::size_t{0});
+    const auto agree = [&](std::size_t i) { return (wanted[i] - points[i]).norm() <= kRounding_m; };
+    if (wanted.size() != points.size() || std::ranges::all_of(indices, agree)) return indices;
+    const core::NearestNeighbours nearest = core::nearest_neighbours(wanted, points);
+    const bool all_are_there = *std::ranges::max_element(nearest.distances_m) <= kRounding_m;
+    return all_are_there ? nearest.indices : indices;
+}
+
+/// The result's histograms in the order of the reference's pairs: formats run through the wall's
+/// points in different directions.
+core::Transient in_order_of(const core::Capture& reference, const core::Capture& result) {
+    const core::Scan& scan = reference.scan;
+    if (scan.camera || scan.pattern != result.scan.pattern) return result.transient;
+    const auto sensing = counterparts(scan.sensing.positions, result.scan.sensing.positions);
+    const auto lit = counterparts(scan.illumination.positions, result.scan.illumination.positions);
+    core::Transient ordered = result.transient;
+    for (std::size_t pair = 0; pair < scan.num_pairs(); ++pair) {
+        std::size_t from = sensing[scan.sensing_index(pair)];
+        if (scan.pattern == core::ScanPattern::Exhaustive) {
+            from += lit[scan.illumination_index(pair)] * sensing.size();
+        }
+        std::ranges::copy(result.transient.histogram(from), ordered.histogram(pair).begin());
+    }
+    return ordered;
+}
+
 }  // namespace
 
 Metrics compare_captures(const core::Capture& result, const core::Capture& reference) {
@@ -50,7 +83,8 @@ Metrics compare_captures(const core::Capture& result, const core::Capture& refer
     check_same_unit(result.unit, reference.unit);
     check_same_bins(result.time_axis, reference.time_axis);
     Metrics metrics;
-    metrics.rel_mse = relative_mse(result.transient.values(), reference.transient.values());
+    const core::Transient ordered = in_order_of(reference, result);
+    metrics.rel_mse = relative_mse(ordered.values(), reference.transient.values());
     if (metrics.rel_mse) metrics.rel_l2 = std::sqrt(*metrics.rel_mse);
     return metrics;
 }

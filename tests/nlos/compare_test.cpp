@@ -259,6 +259,24 @@ TEST(Compare, CapturesDifferByTheirRelativeNorm) {
     EXPECT_TRUE(scored_names(compare_captures(result, reference)).empty());
 }
 
+TEST(Compare, OrderOfWallPointsDoesNotMatter) {
+    for (const auto pattern : {core::ScanPattern::Confocal, core::ScanPattern::Exhaustive}) {
+        const core::Capture reference = test_support::example_capture(pattern);
+        core::Capture turned = reference;
+        std::ranges::reverse(turned.scan.sensing.positions);
+        std::ranges::reverse(turned.scan.illumination.positions);
+        // With both lists reversed, pairs run backwards, too.
+        const std::size_t last = turned.transient.num_pairs() - 1;
+        for (std::size_t pair = 0; pair <= last; ++pair) {
+            std::ranges::copy(reference.transient.histogram(pair),
+                              turned.transient.histogram(last - pair).begin());
+        }
+        EXPECT_EQ(compare_captures(turned, reference).rel_l2.value(), 0.0);
+        for (core::Vec3& point : turned.scan.sensing.positions) point.x() += 0.01;
+        EXPECT_GT(compare_captures(turned, reference).rel_l2.value(), 0.0);
+    }
+}
+
 TEST(Compare, CapturesThatDoNotMatchAreRefused) {
     const core::Capture reference = test_support::example_capture(core::ScanPattern::Confocal);
     EXPECT_ERROR_WITH(
