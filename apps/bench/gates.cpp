@@ -131,18 +131,12 @@ std::array<core::Capture, 2> references(const Case& c) {
     return {run(c, samples, kReferenceSeed).capture, run(c, samples, kReferenceSeed + 1).capture};
 }
 
-std::vector<Estimator> estimators_for(const BenchScene& scene, int max_bounces) {
-    std::vector<Estimator> estimators{Estimator::Path, Estimator::Ellipsoidal, Estimator::Restir};
-    if (!scene.scan().camera && max_bounces == 3) estimators.push_back(Estimator::ThirdBounce);
-    return estimators;
-}
-
 std::vector<GateBench> bench_gate(Case c, double gate_mm, int repeats) {
     c.settings.method = Estimator::Ellipsoidal;
     const auto [a, b] = references(c);
     std::vector<GateBench> rows;
     Cost path;
-    for (const Estimator method : estimators_for(c.scene, c.settings.max_bounces)) {
+    for (const Estimator method : {Estimator::Path, Estimator::Ellipsoidal, Estimator::Restir}) {
         c.settings.method = method;
         const Cost found = cost(c, a, b, repeats);
         if (method == Estimator::Path) path = found;

@@ -74,8 +74,7 @@ void for_each_field(ExclusionBench& bench, Visitor&& visit) {
 }
 
 /// Relative MSE in equal time at gates around the middle of the signal, on one thread: `path`,
-/// `ellipsoidal`, `restir` in frames that know nothing of each other, and where it can
-/// `third_bounce`, whose error does not fall with the square root of time. Errors are against two
+/// `ellipsoidal`, and `restir` in frames that know nothing of each other. Errors are against two
 /// independent long runs of `ellipsoidal` (their product has no bias from the references' noise).
 ///
 /// max_bounces   0: as the scene says
