@@ -116,7 +116,7 @@ class Integrator {
     const Transient& try_out(int fineness);
     double error_of(int fineness);
     int choose_fineness(const core::Progress& progress);
-    int finest_in_time();
+    int finest_in_time(const core::Progress& progress);
     int integrate(int fineness,
                   int first_part,
                   const core::Progress& progress,
@@ -133,13 +133,17 @@ class Integrator {
     std::map<int, Transient> trials_;
     std::map<int, double> shadow_errors_;  // expected ones, absolute
     std::map<int, double> errors_;
-    std::map<int, double> trial_seconds_;  // without cutting
+    // What trials took, and cutting the surfaces for them.
+    std::map<int, double> trial_seconds_;
+    std::map<int, double> cut_seconds_;
     std::uint64_t num_rays_ = 0;
 };
 
 const Transient& Integrator::try_out(int fineness) {
     if (const auto it = trials_.find(fineness); it != trials_.end()) return it->second;
+    const core::Stopwatch cutting;
     const PieceSet pieces = cut(fineness);
+    cut_seconds_[fineness] = cutting.seconds();
     const core::Stopwatch watch;
     ThirdBounceScan trial(scene_, trial_scan_, axis_, pieces, negligible_error(fineness));
     Transient& result =
@@ -169,17 +173,25 @@ double Integrator::error_of(int fineness) {
     return error;
 }
 
-// The finest that will be done in time if all pairs take as long as those of the trials.
-int Integrator::finest_in_time() {
+// The finest that will be done in time, its error known, if all pairs take as long as those of the
+// trials, and a finer trial longer by as much as the last ones did.
+int Integrator::finest_in_time(const core::Progress& progress) {
     const double trials_to_all =
         static_cast<double>(scan_.num_pairs()) / static_cast<double>(trial_scan_.num_pairs());
     const core::Stopwatch watch;
     int fineness = kCoarsest;
-    while (fineness > kFinest) {
-        try_out(fineness - 1);
-        const double predicted = trial_seconds_[fineness - 1] * trials_to_all;
-        if (watch.seconds() + predicted > *seconds_) break;
-        --fineness;
+    error_of(fineness);
+    for (; fineness > kFinest && !progress.should_stop(); --fineness) {
+        const int next = fineness - 1;
+        const int finest = trials_.begin()->first;
+        const auto trial_and_cut = [&](int k) { return trial_seconds_[k] + cut_seconds_[k]; };
+        const double growth =
+            std::max(1.0, trial_and_cut(finest) / trial_and_cut(finest + kReferenceSteps));
+        const double reference = std::pow(growth, 1.0 / kReferenceSteps) * trial_and_cut(finest);
+        if (watch.seconds() + reference > *seconds_) break;
+        error_of(next);
+        const double all = trial_seconds_[next] * trials_to_all + cut_seconds_[next];
+        if (watch.seconds() + all > *seconds_) break;
     }
     return fineness;
 }
@@ -187,7 +199,7 @@ int Integrator::finest_in_time() {
 // The coarsest fineness that meets the target, or simply the coarsest when the caller will not
 // wait.
 int Integrator::choose_fineness(const core::Progress& progress) {
-    if (seconds_) return finest_in_time();
+    if (seconds_) return finest_in_time(progress);
     int fineness = 0;
     if (error_of(fineness) > target_) {
         while (fineness > kFinest && error_of(--fineness) > target_) {
