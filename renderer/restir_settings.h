@@ -32,7 +32,7 @@ struct RestirSettings {
     int neighbours = 3;
     int confidence_cap = 20;
     double shrink_fraction = 0.0;
-    bool reuse_bins = true;
+    bool reuse_bins = false;  // costs more than it gives, see the README
     bool reverse_check = true;
 };
 

@@ -78,10 +78,8 @@ std::vector<ComparedMethod> methods_with(const std::string& key,
 }
 
 std::vector<ComparedMethod> progress_methods() {
-    // Bins beside one's own cost shifts and tell little that the own past does not.
     const std::vector<std::string> memory{"render.restir.confidence_cap=20",
-                                          "render.restir.neighbours=1",
-                                          "render.restir.reuse_bins=false"};
+                                          "render.restir.neighbours=1"};
     std::vector<std::string> naive = memory;
     naive.emplace_back("render.restir.reuse=naive");
     return {{"path", {"render.method=path"}, "render.samples"},

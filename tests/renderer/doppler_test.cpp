@@ -67,6 +67,7 @@ renderer::RenderSettings settings_for(Estimator method, int samples, int max_bou
     settings.seed = test_support::seed_of("Doppler");
     settings.restir.shared_walks = 64;
     settings.restir.neighbours = 2;
+    settings.restir.reuse_bins = true;
     return settings;
 }
 

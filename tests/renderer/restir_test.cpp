@@ -84,6 +84,7 @@ renderer::RenderSettings settings_for(Estimator method, int samples, int max_bou
     settings.max_bounces = max_bounces;
     settings.restir.shared_walks = 64;
     settings.restir.neighbours = 2;
+    settings.restir.reuse_bins = true;
     return settings;
 }
 
