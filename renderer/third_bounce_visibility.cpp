@@ -132,7 +132,11 @@ std::uint64_t VisibilityTracer::lanes_within_axis(std::uint32_t b,
     const LengthBounds others = exact ? LengthBounds{} : rules.other_legs[b];
     alignas(64) PieceBlock::Lanes shortest;
     alignas(64) PieceBlock::Lanes longest;
-    shortest.fill(std::numeric_limits<double>::infinity());
+    alignas(64) PieceBlock::Lanes shortest_leg;
+    alignas(64) PieceBlock::Lanes shortest_other_leg;
+    for (auto* lanes : {&shortest, &shortest_leg, &shortest_other_leg}) {
+        lanes->fill(std::numeric_limits<double>::infinity());
+    }
     longest.fill(0.0);
     for (std::size_t corner = 0; corner < 3; ++corner) {
         const auto distance = [&](const Vec3& from, std::size_t i) {
@@ -142,19 +146,30 @@ std::uint64_t VisibilityTracer::lanes_within_axis(std::uint32_t b,
             return std::sqrt(x * x + y * y + z * z);
         };
         for (std::size_t i = 0; i < kSize; ++i) {
+            const double leg = distance(point_.position, i);
             const double other = exact ? distance(rules.other_end.position, i) : 0.0;
-            const double length = distance(point_.position, i) + other;
-            shortest[i] = std::min(shortest[i], length);
-            longest[i] = std::max(longest[i], length);
+            shortest[i] = std::min(shortest[i], leg + other);
+            longest[i] = std::max(longest[i], leg + other);
+            shortest_leg[i] = std::min(shortest_leg[i], leg);
+            shortest_other_leg[i] = std::min(shortest_other_leg[i], other);
         }
     }
-    // Lengths bend by at most edge^2/(8 d) per leg between corners.
-    const double edge2 = block.longest_edge_m * block.longest_edge_m;
+    // For a point x = sum of l_c c over corners c, |x-w|^2 = sum of l_c |c-w|^2 - sum of l_c
+    // |c-x|^2, and the last term is at most edge^2/3 ([Jung1901]): a leg falls below the mean of
+    // those of the corners by no more than it would from the shortest one.
+    const double most_below2 = block.longest_edge_m * block.longest_edge_m / 3.0;
+    const auto sag = [&](double leg) {
+        return leg - std::sqrt(std::max(0.0, leg * leg - most_below2));
+    };
+    for (std::size_t i = 0; i < kSize; ++i) {
+        shortest[i] += others.least_m - sag(shortest_leg[i]);
+        if (exact) shortest[i] -= sag(shortest_other_leg[i]);
+    }
     std::uint64_t lanes = 0;
     for (std::size_t i = 0; i < block.count; ++i) {
-        const double least = shortest[i] + others.least_m - edge2 / shortest[i];
         const double most = longest[i] + others.most_m;
-        lanes |= std::uint64_t{most >= rules.opl_begin_m && least <= rules.opl_end_m} << i;
+        const bool within = most >= rules.opl_begin_m && shortest[i] <= rules.opl_end_m;
+        lanes |= std::uint64_t{within} << i;
     }
     return lanes;
 }
