@@ -173,13 +173,14 @@ void LightVertices::find(const PathDomain& domain,
             const float lz = first_z_[v + i] - light.z();
             length[i] += std::sqrt(lx * lx + ly * ly + lz * lz);
         }
-        std::array<std::uint32_t, kVerticesAtOnce> hits;
+        // In a narrow gate most blocks have no hit.
         std::uint32_t num_hits = 0;
-        for (std::uint32_t i = 0; i < count; ++i) {  // without branches
-            hits[num_hits] = v + i;
+        for (std::uint32_t i = 0; i < count; ++i) {
             num_hits += static_cast<std::uint32_t>((length[i] >= low) & (length[i] < high));
         }
-        found.insert(found.end(), hits.begin(), hits.begin() + num_hits);
+        for (std::uint32_t i = 0; num_hits > 0 && i < count; ++i) {
+            if (length[i] >= low && length[i] < high) found.push_back(v + i);
+        }
         v += count;
     }
 }
