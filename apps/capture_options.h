@@ -18,15 +18,12 @@ void for_each_field(CaptureOptions& options, Visitor&& visit) {
     visit("capture", options.capture, "what the capture file leaves open");
 }
 
-/// Reads a capture in any known format.
-///
-/// overrides   `key.path=value` texts for CaptureOptions
-/// throws      core::Error as nlos::read_capture() does, and for unknown keys
-inline core::Capture read_capture(const std::string& path,
-                                  const std::vector<std::string>& overrides) {
+/// overrides   `key.path=value` texts
+/// throws      core::Error for unknown keys and wrong values
+inline CaptureOptions capture_options(const std::vector<std::string>& overrides) {
     CaptureOptions options;
     for (const std::string& text : overrides) core::apply_override(options, text);
-    return nlos::read_capture(path, options.capture);
+    return options;
 }
 
 }  // namespace apps

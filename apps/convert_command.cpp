@@ -25,7 +25,8 @@ struct ConvertArguments {
 void run(const ConvertArguments& arguments) {
     nlos::check_capture_suffix(arguments.output);
     core::check_targets({arguments.output}, {arguments.input});
-    core::Capture capture = read_capture(arguments.input, arguments.overrides);
+    core::Capture capture =
+        nlos::read_capture(arguments.input, capture_options(arguments.overrides).capture);
     const core::TimeAxis axis = capture.time_axis;
     if (arguments.steady) {
         capture = nlos::gated_capture(capture, axis.opl_start_m, axis.num_bins * axis.bin_width_m);

@@ -113,10 +113,22 @@ void describe_point_cloud(const std::string& path) {
 }
 
 void describe_capture_file(const std::string& path, const std::vector<std::string>& overrides) {
-    const core::Capture capture = read_capture(path, overrides);
+    nlos::CaptureReadSettings settings = capture_options(overrides).capture;
+    const bool in_steps = nlos::lacks_scale(path) && !(settings.pitch_m && settings.bin_width_m);
+    if (in_steps) {
+        settings.pitch_m = settings.pitch_m.value_or(1.0);
+        settings.bin_width_m = settings.bin_width_m.value_or(1.0);
+    }
+    const core::Capture capture = nlos::read_capture(path, settings);
     fmt::print("format: {}\n", nlos::capture_format(path).value_or("unknown"));
     for (const std::string& line : nlos::describe_capture(capture)) fmt::print("{}\n", line);
     print_provenance(capture.scene_info);
+    if (in_steps) {
+        fmt::print(
+            "warning: the file holds neither the grid's pitch nor the bin width; what is not given "
+            "as --set capture.pitch_m=... capture.bin_width_m=... stands as 1 m above\n");
+        return;
+    }
     for (const std::string& warning : nlos::timing_warnings(capture)) {
         fmt::print("warning: {}\n", warning);
     }

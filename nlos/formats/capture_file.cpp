@@ -161,6 +161,11 @@ std::optional<std::string> capture_format(const std::string& path) {
     return format->name;
 }
 
+bool lacks_scale(const std::string& path) {
+    const CaptureFormat* format = find_format(path);
+    return format != nullptr && format->lacks_scale;
+}
+
 std::vector<std::string> write_capture(const std::string& path,
                                        const core::Capture& capture,
                                        const CaptureWriteSettings& settings) {

@@ -34,6 +34,10 @@ core::Capture read_capture(const std::string& path, const CaptureReadSettings& s
 /// The name of the format of a file that read_capture() reads, or nothing.
 std::optional<std::string> capture_format(const std::string& path);
 
+/// Whether files of this format hold neither bin width nor distances, so that read_capture() must
+/// be told both.
+bool lacks_scale(const std::string& path);
+
 /// A capture in a few lines for people: wall, points, bins, depth range, unit.
 std::vector<std::string> describe_capture(const core::Capture& capture);
 

@@ -28,6 +28,8 @@ struct CaptureFormat {
 
     /// Leading bins that the format's authors drop; null: none.
     int (*default_zero_bins)(const core::Capture& capture) = nullptr;
+
+    bool lacks_scale = false;  ///< see lacks_scale()
 };
 
 /// All formats, in the order in which a file is tried.

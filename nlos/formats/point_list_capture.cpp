@@ -197,10 +197,12 @@ Capture read(const std::string& path, const CaptureReadSettings& settings) {
 }  // namespace
 
 CaptureFormat point_list_format() {
-    return {"general-NLOS point lists .mat",
-            "a folder or MATLAB v5 file with sub_Sig, C_i and C_d",
-            recognise,
-            read};
+    CaptureFormat format{"general-NLOS point lists .mat",
+                         "a folder or MATLAB v5 file with sub_Sig, C_i and C_d",
+                         recognise,
+                         read};
+    format.lacks_scale = true;
+    return format;
 }
 
 }  // namespace nlos

@@ -117,6 +117,7 @@ TEST(PointListCapture, TheFolderAndTheSignalFileReadTheSame) {
 TEST(PointListCapture, AsksForTheSettingsItNeeds) {
     const PointLists lists(one_detector());
     CaptureReadSettings settings;
+    EXPECT_TRUE(lacks_scale(lists.path()));
     EXPECT_ERROR_WITH(read_capture(lists.path(), settings), "--set capture.pitch_m=");
     settings.pitch_m = 0.01;
     EXPECT_ERROR_WITH(read_capture(lists.path(), settings), "--set capture.bin_width_m=");
