@@ -5,7 +5,6 @@
 #include "apps/bench/power_law.h"
 #include "renderer/core/parallel.h"
 #include "renderer/core/process.h"
-#include "renderer/core/stopwatch.h"
 #include "renderer/render.h"
 #include "renderer/scene_file.h"
 
@@ -55,7 +54,8 @@ renderer::Object sheet(int cells) {
 }
 
 struct Figures {
-    double seconds = 0.0;
+    double cpu_seconds = 0.0;
+    double elapsed_seconds = 0.0;
     double limit_seconds = 0.0;
     double peak_bytes = 0.0;
 };
@@ -76,19 +76,10 @@ Figures measure(Estimator method, const Sizes& sizes) {
     const renderer::RenderResult result =
         renderer::render(scene, scan, description.time_axis, description.render, {});
     Figures figures;
-    figures.seconds = core::cpu_seconds() - cpu_start;
+    figures.cpu_seconds = core::cpu_seconds() - cpu_start;
+    figures.elapsed_seconds = result.seconds;
     figures.peak_bytes = static_cast<double>(core::peak_rss_bytes());
     figures.limit_seconds = static_cast<double>(result.num_rays) * shadow_ray_seconds(scene, scan);
-    return figures;
-}
-
-// Elapsed time instead of CPU time; the limit is that of one thread, shared.
-Figures measure_threads(Estimator method, const Sizes& sizes, double one_thread_seconds) {
-    const core::Stopwatch watch;
-    Figures figures = measure(method, sizes);
-    figures.seconds = watch.seconds();
-    figures.limit_seconds =
-        (sizes.threads == 1 ? figures.seconds : one_thread_seconds) / sizes.threads;
     return figures;
 }
 
@@ -127,15 +118,13 @@ std::vector<Series> all_series() {
 
 RenderGrowth measure_series(const Series& series, Estimator method) {
     RenderGrowth growth{std::string(core::enum_name(method)), series.of, {}, {}, {}, {}, 0.0, 0.0};
+    const bool by_threads = series.of == "threads";
     for (const Sizes& sizes : series.steps) {
-        const Figures figures =
-            series.of == "threads"
-                ? measure_threads(
-                      method, sizes, growth.cpu_seconds.empty() ? 0.0 : growth.cpu_seconds.front())
-                : measure(method, sizes);
+        const Figures figures = measure(method, sizes);
         growth.sizes.push_back(series.size(sizes));
-        growth.cpu_seconds.push_back(figures.seconds);
-        growth.limit_seconds.push_back(figures.limit_seconds);
+        growth.cpu_seconds.push_back(by_threads ? figures.elapsed_seconds : figures.cpu_seconds);
+        growth.limit_seconds.push_back(by_threads ? growth.cpu_seconds.front() / sizes.threads
+                                                  : figures.limit_seconds);
         growth.peak_bytes.push_back(figures.peak_bytes);
     }
     if (growth.sizes.size() < 2) return growth;
