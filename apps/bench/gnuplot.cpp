@@ -32,10 +32,11 @@ std::string script_of(const LogPlot& plot, const std::string& terminal, const st
         }
         data += "EOD\n";
         curves += fmt::format(
-            "{}$line{} with {} title '{}'",
+            "{}$line{} with {} lc {} title '{}'",
             i == 0 ? "plot " : ", ",
             i,
             line.style == LineStyle::Measured ? "linespoints lw 2 pt 7" : "lines lw 3 dt 2",
+            line.limit_of < 0 ? static_cast<int>(i) + 1 : line.limit_of + 1,
             line.title);
     }
     return script + data + curves + "\n";

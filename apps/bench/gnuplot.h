@@ -17,6 +17,7 @@ struct PlotLine {
     std::vector<double> x;
     std::vector<double> y;
     LineStyle style = LineStyle::Measured;
+    int limit_of = -1;  ///< the line of the plot whose limit this is and whose colour it takes
 };
 
 /// A plot with logarithmic axes.

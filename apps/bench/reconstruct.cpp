@@ -75,19 +75,31 @@ std::string accuracies_text(const ReconstructBench& bench) {
 
 std::string growth_text(const ReconstructBench& bench) {
     if (bench.growth.empty()) return "";
-    std::string text = fmt::format("{:<20}", "growth: CPU s, GB");
+    std::string text = fmt::format("{:<32}", "growth: CPU s, of the limit, GB");
     for (const GrowthPoint& point : bench.growth.front().points) {
-        text += fmt::format("{:>18}", point.size);
+        text += fmt::format("{:>23}", point.size);
     }
     text += fmt::format("{:>16}\n", "exponents");
     for (const ReconstructGrowth& curve : bench.growth) {
-        text += fmt::format("{:<20}", curve.method);
+        text += fmt::format("{:<32}", curve.method);
         for (const GrowthPoint& point : curve.points) {
-            text += fmt::format("{:>10.3f} {:>7.3f}", point.cpu_seconds, 1e-9 * point.bytes);
+            text += fmt::format("{:>10.3f} {:>4.1f} {:>7.3f}",
+                                point.cpu_seconds,
+                                point.cpu_seconds / point.limit_seconds,
+                                1e-9 * point.bytes);
         }
         text += fmt::format("{:>10.2f} {:>5.2f}\n", curve.time_exponent, curve.memory_exponent);
     }
     return text;
+}
+
+PlotLine growth_line(const ReconstructGrowth& curve, double GrowthPoint::*value) {
+    PlotLine line{curve.method, {}, {}};
+    for (const GrowthPoint& point : curve.points) {
+        line.x.push_back(point.values);
+        line.y.push_back(point.*value);
+    }
+    return line;
 }
 
 LogPlot growth_plot(const ReconstructBench& bench,
@@ -95,14 +107,19 @@ LogPlot growth_plot(const ReconstructBench& bench,
                     double GrowthPoint::*value) {
     LogPlot plot{title + " against size", "values of the capture", title, {}};
     for (const ReconstructGrowth& curve : bench.growth) {
-        PlotLine& line = plot.lines.emplace_back();
-        line.title = curve.method;
-        for (const GrowthPoint& point : curve.points) {
-            line.x.push_back(point.values);
-            line.y.push_back(point.*value);
-        }
+        plot.lines.push_back(growth_line(curve, value));
     }
     return plot;
+}
+
+void add_limits(const ReconstructBench& bench, LogPlot& plot) {
+    for (std::size_t i = 0; i < bench.growth.size(); ++i) {
+        PlotLine& line =
+            plot.lines.emplace_back(growth_line(bench.growth[i], &GrowthPoint::limit_seconds));
+        line.title += ", FFTs or sums alone";
+        line.style = LineStyle::Limit;
+        line.limit_of = static_cast<int>(i);
+    }
 }
 
 }  // namespace
@@ -129,7 +146,9 @@ BenchResult reconstruct_result(const ReconstructBench& bench) {
         {},
         {}};
     if (!bench.growth.empty()) {
-        result.plots["_time"] = growth_plot(bench, "CPU time [s]", &GrowthPoint::cpu_seconds);
+        LogPlot& time = result.plots["_time"];
+        time = growth_plot(bench, "CPU time [s]", &GrowthPoint::cpu_seconds);
+        add_limits(bench, time);
         result.plots["_memory"] = growth_plot(bench, "memory [bytes]", &GrowthPoint::bytes);
     }
     return result;

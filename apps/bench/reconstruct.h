@@ -71,6 +71,7 @@ struct GrowthPoint {
     std::string size;
     double values = 0.0;
     double cpu_seconds = 0.0;
+    double limit_seconds = 0.0;  ///< CPU time of its FFTs or multiply-adds alone
     double bytes = 0.0;
 };
 
@@ -79,6 +80,7 @@ void for_each_field(GrowthPoint& point, Visitor&& visit) {
     visit("size", point.size, "wall points x bins");
     visit("values", point.values, "histogram values of the capture");
     visit("cpu_seconds", point.cpu_seconds, "CPU time [s]");
+    visit("limit_seconds", point.limit_seconds, "CPU time of its FFTs or multiply-adds alone [s]");
     visit("bytes", point.bytes, "memory on top of the capture [bytes]");
 }
 

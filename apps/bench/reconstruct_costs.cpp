@@ -12,26 +12,8 @@
 namespace apps {
 namespace {
 
-using Limit = std::function<double(const nlos::MethodInput&, const nlos::ReconstructSettings&)>;
-
 constexpr double kLongEnough_s = 10.0;  // of repeats
 const std::string kSlices = "volume.z_range_m=[0.45,1.05]";
-
-/// CPU time of the limit on the sizes of a finished run.
-double limit_seconds(const Limit& limit,
-                     const core::Capture& capture,
-                     const nlos::Reconstruction& result) {
-    const nlos::WallFrame wall = nlos::derive_wall_frame(capture.scan);
-    const core::Progress progress;
-    return limit({capture.scan,
-                  capture.time_axis,
-                  capture.transient,
-                  wall,
-                  result.volume.axes,
-                  *result.settings.volume.z_range_m,
-                  progress},
-                 result.settings);
-}
 
 struct CostTarget {
     double max_ratio = 0.0;
@@ -63,7 +45,6 @@ struct CostCase {
     std::string scene;
     Overrides scene_overrides;
     Overrides overrides;
-    Limit limit;
     bool counts_pairs = false;
     CostTarget target;
 };
@@ -76,61 +57,40 @@ std::vector<CostCase> cost_cases(const std::string& folder) {
                                "scan.sensing_points=[16,16]",
                                "scan.illumination_points=[16,16]"};
     const std::string cube = "volume.voxels=[64,64,64]";
-    const Limit light_cone = [](const auto& input, const auto&) {
-        return light_cone_fft_seconds(input);
-    };
-    const Limit fk = [](const auto& input, const auto&) { return fk_fft_seconds(input); };
-    const Limit phasor = [](const auto& input, const auto& settings) {
-        return phasor_fft_seconds(input, settings.phasor);
-    };
-    const Limit sums = [](const auto& input, const auto&) {
-        return multiply_add_seconds(static_cast<double>(input.scan.num_pairs()) *
-                                    static_cast<double>(input.axes.num_voxels()));
-    };
     const std::string size = "64x64x512";
     return {
-        {"lct " + size, letter, {}, {"method=lct"}, light_cone, false, {2.0, 0.4e9, 0.0}},
-        {"lct 128x128x512", letter, wide, {"method=lct"}, light_cone, false, {2.0, 1.6e9, 0.0}},
-        {"lct, prior tv " + size, letter, {}, {"method=lct", "prior=tv"}, {}, false, {}},
-        {"dlct " + size, letter, {}, {"method=dlct"}, {}, false, {}},
-        {"fk " + size, letter, {}, {"method=fk"}, fk, false, {0.0, 0.6e9, 0.0}},
-        {"fk 128x128x512", letter, wide, {"method=fk"}, fk, false, {}},
+        {"lct " + size, letter, {}, {"method=lct"}, false, {2.0, 0.4e9, 0.0}},
+        {"lct 128x128x512", letter, wide, {"method=lct"}, false, {2.0, 1.6e9, 0.0}},
+        {"lct, prior tv " + size, letter, {}, {"method=lct", "prior=tv"}, false, {}},
+        {"dlct " + size, letter, {}, {"method=dlct"}, false, {}},
+        {"fk " + size, letter, {}, {"method=fk"}, false, {0.0, 0.6e9, 0.0}},
+        {"fk 128x128x512", letter, wide, {"method=fk"}, false, {}},
         {"bp confocal, 64^3 voxels",
          letter,
          {},
          {"method=bp", kSlices, cube},
-         sums,
          true,
          {0.0, 0.0, 5.0}},
         {"bp single laser, 64^3 voxels",
          letter,
          single,
          {"method=bp", kSlices, cube},
-         sums,
          true,
          {0.0, 0.0, 0.3}},
         {"bp exhaustive 16^4, 32^3 voxels",
          letter,
          exhaustive,
          {"method=bp", kSlices, "volume.voxels=[32,32,32]"},
-         sums,
          true,
          {0.0, 0.0, 0.3}},
-        {"fbp confocal, 64^3 voxels", letter, {}, {"method=fbp", kSlices, cube}, sums, true, {}},
+        {"fbp confocal, 64^3 voxels", letter, {}, {"method=fbp", kSlices, cube}, true, {}},
         {"phasor single laser, 64 slices",
          letter,
          single,
          {"method=phasor", kSlices, cube},
-         phasor,
          false,
          {}},
-        {"phasor confocal, 64 slices",
-         letter,
-         {},
-         {"method=phasor", kSlices, cube},
-         phasor,
-         false,
-         {}},
+        {"phasor confocal, 64 slices", letter, {}, {"method=phasor", kSlices, cube}, false, {}},
     };
 }
 
@@ -150,7 +110,7 @@ ReconstructCost measure_cost(const CostCase& job, int repeats) {
         spent += one.result.seconds;
         cost.peak_bytes = std::max(cost.peak_bytes, one.peak_bytes);
         cost.stated_bytes = one.result.stated_bytes;
-        if (job.limit) limits.push_back(limit_seconds(job.limit, capture, one.result));
+        limits.push_back(reconstruction_limit_seconds(capture, one.result));
         if (job.counts_pairs) {
             cost.gpairs_per_s = 1e-9 * static_cast<double>(capture.scan.num_pairs()) *
                                 static_cast<double>(one.result.volume.axes.num_voxels());
@@ -158,10 +118,8 @@ ReconstructCost measure_cost(const CostCase& job, int repeats) {
     }
     cost.cpu_seconds = nlos::median(cpu_seconds);
     cost.seconds = nlos::median(seconds);
-    if (!limits.empty()) {
-        cost.limit_seconds = nlos::median(limits);
-        cost.ratio = cost.cpu_seconds / cost.limit_seconds;
-    }
+    cost.limit_seconds = nlos::median(limits);
+    if (cost.limit_seconds > 0.0) cost.ratio = cost.cpu_seconds / cost.limit_seconds;
     cost.gpairs_per_s /= cost.cpu_seconds;
     judge(job.target, cost);
     return cost;

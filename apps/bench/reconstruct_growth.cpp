@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "apps/bench/limits.h"
 #include "apps/bench/power_law.h"
 #include "apps/bench/reconstruct.h"
 #include "apps/bench/reconstruct_run.h"
@@ -72,6 +73,7 @@ std::vector<ReconstructGrowth> measure_growth(const ReconstructBenchSettings& se
             curves[i].points.push_back({fmt::format("{0}x{0}x{1}", points, bins),
                                         static_cast<double>(capture.transient.values().size()),
                                         one.cpu_seconds,
+                                        reconstruction_limit_seconds(capture, one.result),
                                         one.bytes});
         }
     }

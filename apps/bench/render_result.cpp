@@ -162,7 +162,8 @@ LogPlot growth_plot(const RenderBench& bench) {
         plot.lines.push_back({growth.of == "threads" ? title + ", shared" : title + ", rays alone",
                               growth.sizes,
                               growth.limit_seconds,
-                              LineStyle::Limit});
+                              LineStyle::Limit,
+                              static_cast<int>(plot.lines.size()) - 1});
     }
     return plot;
 }
@@ -177,7 +178,7 @@ LogPlot curves_plot(const RenderBench& bench) {
             line.y.push_back(point.rel_l2);
         }
     }
-    PlotLine limit{"path, its rays alone", {}, {}, LineStyle::Limit};
+    PlotLine limit{"path, its rays alone", {}, {}, LineStyle::Limit, 0};
     for (const BenchPoint& point : bench.curves.front().points) {
         limit.x.push_back(bench.ray_limit_seconds * point.samples);
         limit.y.push_back(point.rel_l2);
