@@ -116,7 +116,7 @@ EllipsoidalTracer::EllipsoidalTracer(const Scene& scene,
       facet_traits_(scene, hidden_objects(scene)),
       excluded_(ExcludedFacets::of(scene, settings)),
       technique_(scene, excluded_, scan) {
-    if (scan.camera) pixel_places_.emplace(Measurement(scene, scan), scan.camera->height());
+    if (scan.camera) pixel_places_.emplace(Measurement(scene, scan), *scan.camera);
 }
 
 std::uint64_t EllipsoidalTracer::trace(const PathEnds& ends,

@@ -151,7 +151,7 @@ RestirScene::RestirScene(std::shared_ptr<const Scene> scene_of_frames,
       walk(*scene, settings.laser_spot_m2),
       candidates(*scene, scan, measurement, walk, settings),
       shift(make_shift(*scene, settings.restir, quantity)) {
-    if (measurement.is_image()) pixel_places.emplace(measurement, scan.camera->height());
+    if (measurement.is_image()) pixel_places.emplace(measurement, *scan.camera);
 }
 
 PathDomain pixel_domain(const Measurement& measurement,
