@@ -18,6 +18,12 @@ struct ConnectionDraw {
     double pdf_area = 0.0;  ///< [1/m^2]
 };
 
+/// A vertex's narrow lobe and the facet that it meets.
+struct LobeOnFacet {
+    std::uint32_t facet = 0;
+    ConnectionLobe lobe;
+};
+
 /// Which facets ellipsoidal connections leave out, and why that is known.
 ///
 /// Excluded are, unless the mode is `none`, objects with the role of a wall, objects that say so,
@@ -36,7 +42,8 @@ ConnectionEnds connection_ends(const PathEnds& ends);
 
 /// Draws the vertex between two others so that the path has a wanted length (source
 /// [Pediredla2019]): a facet from the hierarchy, a length within what the interval and the facet
-/// allow, a point where the ellipsoid of that length cuts the facet.
+/// allow, a point where the ellipsoid of that length cuts the facet. Where the first of the two has
+/// a narrow lobe, half of the draws take the facet that its middle meets and stay near it.
 class ConnectionTechnique {
  public:
     /// scene      must outlive the technique
@@ -48,15 +55,27 @@ class ConnectionTechnique {
 
     /// ends      neighbours of the vertex
     /// lengths   interval of the length of its two legs [m]
+    /// lobe      of focus a, see lobe_of()
     /// returns   nothing where the draw finds no point; that happens with the probability that
     ///           pdf_area() lacks to 1
     std::optional<ConnectionDraw> sample(const ConnectionEnds& ends,
                                          const OplBand& lengths,
-                                         core::Rng& rng) const;
+                                         core::Rng& rng,
+                                         const std::optional<LobeOnFacet>& lobe = {}) const;
     /// Density of sample() at a point [1/m^2].
     double pdf_area(const ConnectionEnds& ends,
                     const OplBand& lengths,
-                    const SurfacePoint& point) const;
+                    const SurfacePoint& point,
+                    const std::optional<LobeOnFacet>& lobe = {}) const;
+
+    /// The lobe of a glossy vertex: about where it would mirror what comes from before it.
+    ///
+    /// num_rays  raised by the rays traced
+    /// returns   nothing for wide lobes, and where the facet met is excluded or does not reflect
+    ///           towards `light`
+    std::optional<LobeOnFacet> lobe_of(const PathVertex& vertex,
+                                       const core::Vec3& light,
+                                       std::uint64_t& num_rays) const;
 
     /// The same for ends whose cut is known; `u` and `hint` as in HierarchyCut::sample().
     std::optional<ConnectionDraw> sample(const HierarchyCut& cut,
@@ -68,12 +87,18 @@ class ConnectionTechnique {
  private:
     std::optional<ConnectionDraw> place(const FocusPair& foci,
                                         const std::optional<FacetChoice>& choice,
-                                        core::Rng& rng) const;
+                                        core::Rng& rng,
+                                        const ConnectionLobe* lobe = nullptr) const;
     double pdf_of(const FocusPair& foci,
                   const FacetChoice& choice,
-                  const SurfacePoint& point) const;
+                  const SurfacePoint& point,
+                  const ConnectionLobe* lobe = nullptr) const;
+    FacetChoice choice_by_lobe(const ConnectionEnds& ends,
+                               const OplBand& lengths,
+                               const std::optional<LobeOnFacet>& lobe) const;
 
     const Scene* scene_;
+    std::vector<bool> is_excluded_;
     TriangleHierarchy hierarchy_;
 };
 

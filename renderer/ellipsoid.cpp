@@ -143,11 +143,14 @@ Vec2 EllipsoidSection::angle_of(const Vec3& x) const {
     return Vec2(q.dot(e1_), q.dot(e2_)).normalized();
 }
 
+Vec3 EllipsoidSection::tangent(const Vec2& angle) const {
+    return radius_ * to_world(e2_ * angle.x() - e1_ * angle.y());
+}
+
 double EllipsoidSection::area_per_opl_and_angle(const Vec3& x, const Vec2& angle) const {
-    const Vec3 along = to_world(e2_ * angle.x() - e1_ * angle.y());
     const Vec3 gradient = (x - foci_.a).normalized() + (x - foci_.b).normalized();
     const Vec3 in_plane = gradient - normal_ * normal_.dot(gradient);
-    return radius_ * std::sqrt(along.squaredNorm() / in_plane.squaredNorm());
+    return std::sqrt(tangent(angle).squaredNorm() / in_plane.squaredNorm());
 }
 
 EllipsoidArcs::EllipsoidArcs(const EllipsoidSection& section, const Facet& facet) {
@@ -217,31 +220,86 @@ double EllipsoidArcs::invert(const Vec2& angle) const {
     return std::min(result / total_rad_, core::kBelowOne);
 }
 
-std::optional<EllipsoidalConnection> sample_ellipsoid(const FocusPair& foci,
-                                                      double opl_m,
-                                                      const Facet& facet,
-                                                      double u) {
+namespace {
+
+// Density over the shares of all arcs: uniform, or a Cauchy distribution cut off at 0 and 1.
+class ArcDensity {
+ public:
+    ArcDensity(const FocusPair& foci,
+               const EllipsoidSection& section,
+               const EllipsoidArcs& arcs,
+               const ConnectionLobe* lobe) {
+        if (lobe == nullptr) return;
+        const Vec2 nearest = section.angle_of(lobe->point);
+        const Vec3 leg = section.point(nearest) - foci.a;
+        const double distance = leg.norm();
+        const Vec3 direction = leg / distance;
+        const Vec3 tangent = section.tangent(nearest);
+        const double turn_per_share =  // as seen from the focus [rad]
+            arcs.total_rad() * (tangent - direction * direction.dot(tangent)).norm() / distance;
+        const double width_rad = std::hypot(lobe->width_rad, (direction - lobe->direction).norm());
+        scale_ = std::max(kNarrowest, width_rad / turn_per_share);
+        if (!(scale_ < kWidest)) return;
+        is_uniform_ = false;
+        middle_ = arcs.invert(nearest);
+        begin_ = std::atan(-middle_ / scale_);
+        span_ = std::atan((1.0 - middle_) / scale_) - begin_;
+    }
+
+    double sample(double u) const {
+        if (is_uniform_) return u;
+        return std::clamp(middle_ + scale_ * std::tan(begin_ + u * span_), 0.0, core::kBelowOne);
+    }
+    double pdf(double share) const {
+        if (is_uniform_) return 1.0;
+        const double off = (share - middle_) / scale_;
+        return 1.0 / (scale_ * span_ * (1.0 + off * off));
+    }
+
+ private:
+    static constexpr double kNarrowest = 1e-4;
+    static constexpr double kWidest = 1.0;  // a lobe as wide as all arcs decides nothing
+
+    bool is_uniform_ = true;
+    double middle_ = 0.0;
+    double scale_ = 1.0;
+    double begin_ = 0.0;  ///< of the angle whose tangent is the distance from the middle
+    double span_ = 0.0;
+};
+
+}  // namespace
+
+std::optional<EllipsoidalConnection> sample_ellipsoid(
+    const FocusPair& foci, double opl_m, const Facet& facet, double u, const ConnectionLobe* lobe) {
     const auto section = EllipsoidSection::cut(foci, opl_m, facet);
     if (!section) return std::nullopt;
     const EllipsoidArcs arcs(*section, facet);
     if (!(arcs.total_rad() > 0.0)) return std::nullopt;
-    const Vec2 angle = arcs.sample(u);
+    const ArcDensity density(foci, *section, arcs, lobe);
+    const double share = density.sample(u);
+    const Vec2 angle = arcs.sample(share);
     EllipsoidalConnection connection;
     connection.position = section->point(angle);
     connection.pdf_area_per_pdf_opl =
-        1.0 / (arcs.total_rad() * section->area_per_opl_and_angle(connection.position, angle));
+        density.pdf(share) /
+        (arcs.total_rad() * section->area_per_opl_and_angle(connection.position, angle));
     if (!(connection.pdf_area_per_pdf_opl > 0.0)) return std::nullopt;
     return connection;
 }
 
-double pdf_ellipsoid(const FocusPair& foci, const Facet& facet, const Vec3& x) {
+double pdf_ellipsoid(const FocusPair& foci,
+                     const Facet& facet,
+                     const Vec3& x,
+                     const ConnectionLobe* lobe) {
     const auto section = EllipsoidSection::cut(foci, foci.opl_m(x), facet);
     if (!section) return 0.0;
     const EllipsoidArcs arcs(*section, facet);
     if (!(arcs.total_rad() > 0.0)) return 0.0;
-    const double pdf =
-        1.0 / (arcs.total_rad() * section->area_per_opl_and_angle(x, section->angle_of(x)));
-    return std::isfinite(pdf) ? pdf : 0.0;
+    const Vec2 angle = section->angle_of(x);
+    const double pdf = 1.0 / (arcs.total_rad() * section->area_per_opl_and_angle(x, angle));
+    if (!std::isfinite(pdf)) return 0.0;
+    if (lobe == nullptr) return pdf;
+    return pdf * ArcDensity(foci, *section, arcs, lobe).pdf(arcs.invert(angle));
 }
 
 std::optional<double> invert_ellipsoid(const FocusPair& foci, const Facet& facet, const Vec3& x) {

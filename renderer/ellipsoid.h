@@ -51,6 +51,9 @@ class EllipsoidSection {
     /// (cos theta, sin theta) of a point of the curve.
     core::Vec2 angle_of(const core::Vec3& x) const;
 
+    /// dx/dtheta at an angle [m/rad].
+    core::Vec3 tangent(const core::Vec2& angle) const;
+
     /// dA/(dtau dtheta) at a point of the curve: area of the plane per length and angle [m/rad].
     ///
     /// The curve of the next length lies dtau / |grad_T l| away, grad_T l being the part of the
@@ -109,24 +112,38 @@ struct EllipsoidalConnection {
     double pdf_area_per_pdf_opl = 0.0;
 };
 
+/// A narrow lobe at focus a, towards which vertices are placed more often.
+struct ConnectionLobe {
+    core::Vec3 direction;    ///< unit, from focus a along the middle of the lobe
+    core::Vec3 point;        ///< where that meets the facet's plane
+    double width_rad = 0.0;  ///< angle at which the lobe has fallen to about a half
+};
+
 /// Samples a vertex on a facet whose two legs have exactly the requested length.
 ///
 /// foci      fixed neighbours of the vertex
 /// opl_m     required |a - x| + |x - b| [m]
 /// facet     triangle to stay in
 /// u         uniform random number in [0, 1)
+/// lobe      null: uniformly along the curve's angle. Else by a Cauchy distribution about the angle
+///           nearest to the lobe, as wide as the lobe and its distance from the curve
 /// returns   vertex and density; nothing if the ellipsoid misses the triangle
 /// source    [Pediredla2019]; measure derived in REFERENCES.md
 std::optional<EllipsoidalConnection> sample_ellipsoid(const FocusPair& foci,
                                                       double opl_m,
                                                       const Facet& facet,
-                                                      double u);
+                                                      double u,
+                                                      const ConnectionLobe* lobe = nullptr);
 
 /// Density of sample_ellipsoid() at a point `x` of the facet, given its own length [1/m]; 0 where
 /// no sample can fall.
-double pdf_ellipsoid(const FocusPair& foci, const Facet& facet, const core::Vec3& x);
+double pdf_ellipsoid(const FocusPair& foci,
+                     const Facet& facet,
+                     const core::Vec3& x,
+                     const ConnectionLobe* lobe = nullptr);
 
-/// The u for which sample_ellipsoid() at the length of `x` gives `x`; nothing where it cannot.
+/// The u for which sample_ellipsoid() at the length of `x` gives `x`, without a lobe; nothing where
+/// it cannot.
 std::optional<double> invert_ellipsoid(const FocusPair& foci,
                                        const Facet& facet,
                                        const core::Vec3& x);

@@ -84,7 +84,10 @@ class EllipsoidalTracer::Walk {
     void weigh(int index, double ellipsoidal_pdf);
     void connect_seen();
     void extend(PathVertex vertex);
-    void connect(const PathVertex& vertex, const ConnectionEnds& ends, const OplBand& lengths);
+    void connect(const PathVertex& vertex,
+                 const ConnectionEnds& ends,
+                 const OplBand& lengths,
+                 const std::optional<LobeOnFacet>& lobe);
     void deposit(const PathVertex& vertex, double value);
     OplBand lengths_left(const PathVertex& vertex) const;
     double opl_to_light(const PathVertex& vertex) const;
@@ -219,9 +222,9 @@ void EllipsoidalTracer::Walk::trace_pixel_samples(const Measurement& measurement
                                                   int count) {
     const SurfaceWalk& walk = tracer_.surface_walk_;
     const PixelPlaces::Band places = tracer_.pixel_places_->band(pixel, tracer_.lengths_);
+    const Vec2 shift(rng_.uniform(), rng_.uniform());
     for (int i = 0; i < count; ++i) {
-        const double u1 = (i + rng_.uniform()) / count;
-        const Vec2 place = places.sample({u1, rng_.uniform()});
+        const Vec2 place = places.sample(core::lattice_point(i, count, shift));
         auto vertex = measurement.first_vertex(pixel, place);
         ++num_rays_;
         if (!vertex || vertex->order > tracer_.max_order_) continue;
@@ -305,13 +308,14 @@ void EllipsoidalTracer::Walk::extend(PathVertex vertex) {
         const OplBand lengths = lengths_left(vertex);
         // Every longer path from here takes at least the way straight to the light.
         if (lengths.high_m < (ends.foci.a - ends.foci.b).norm()) return;
-        connect(vertex, ends, lengths);
+        const auto lobe = tracer_.technique_.lobe_of(vertex, ends_.light.position, num_rays_);
+        connect(vertex, ends, lengths, lobe);
         const auto pdf = walk.draw_next(vertex, rng_, num_rays_);
         if (!pdf) return;
         if (!tracer_.in_scope(vertex.point.facet)) continue;
         const double value = walk.connection_value(vertex, ends_);
         if (!(value > 0.0) || !histogram_.lets_through(opl_to_light(vertex))) continue;
-        const double other = tracer_.technique_.pdf_area(ends, lengths, vertex.point);
+        const double other = tracer_.technique_.pdf_area(ends, lengths, vertex.point, lobe);
         ++num_rays_;
         if (!walk.light_is_hidden(vertex, ends_)) deposit(vertex, value * *pdf / (*pdf + other));
     }
@@ -320,9 +324,10 @@ void EllipsoidalTracer::Walk::extend(PathVertex vertex) {
 // Draws the vertex between `vertex` and the light on an ellipsoid.
 void EllipsoidalTracer::Walk::connect(const PathVertex& vertex,
                                       const ConnectionEnds& ends,
-                                      const OplBand& lengths) {
+                                      const OplBand& lengths,
+                                      const std::optional<LobeOnFacet>& lobe) {
     const SurfaceWalk& walk = tracer_.surface_walk_;
-    const auto draw = tracer_.technique_.sample(ends, lengths, rng_);
+    const auto draw = tracer_.technique_.sample(ends, lengths, rng_, lobe);
     if (!draw || !tracer_.in_scope(draw->point.facet)) return;
     const auto step = walk.step_to(vertex, draw->point);
     if (!step) return;

@@ -178,8 +178,10 @@ void PathCandidates::connect_by_ellipsoid(Job& job,
                                           ReusablePath path) const {
     if (!connections_ || path.num_vertices == max_vertices_) return;
     const PathVertex* const vertex = leaving(job.domain(), from);
-    const auto draw = connections_->sample(
-        ends_of(job.domain(), vertex), remaining(job.request, vertex), job.rng);
+    const auto draw = connections_->sample(ends_of(job.domain(), vertex),
+                                           remaining(job.request, vertex),
+                                           job.rng,
+                                           lobe_of(job, vertex));
     if (!draw) return;
     path.append(draw->point);
     const auto value = value_within(job, path);
@@ -224,7 +226,7 @@ std::optional<PathValue> PathCandidates::value_within(const Job& job,
     return value;
 }
 
-double PathCandidates::density(const Job& job, const ReusablePath& path) const {
+double PathCandidates::density(Job& job, const ReusablePath& path) const {
     const PathCandidates::Effort& effort = job.request.effort;
     double total = 0.0;
     if (effort.walks > 0) {
@@ -254,12 +256,17 @@ double PathCandidates::density(const Job& job, const ReusablePath& path) const {
     return total;
 }
 
-double PathCandidates::ellipsoidal_pdf(const Job& job,
+double PathCandidates::ellipsoidal_pdf(Job& job,
                                        const PathVertex* from,
                                        const SurfacePoint& point) const {
     const PathVertex* const vertex = leaving(job.domain(), from);
     return connections_->pdf_area(
-        ends_of(job.domain(), vertex), remaining(job.request, vertex), point);
+        ends_of(job.domain(), vertex), remaining(job.request, vertex), point, lobe_of(job, vertex));
+}
+
+std::optional<LobeOnFacet> PathCandidates::lobe_of(Job& job, const PathVertex* vertex) const {
+    if (vertex == nullptr) return std::nullopt;  // walls are diffuse
+    return connections_->lobe_of(*vertex, job.ends().light.position, job.num_rays);
 }
 
 }  // namespace renderer

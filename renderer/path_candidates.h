@@ -64,8 +64,9 @@ class PathCandidates {
     std::optional<SurfaceWalk::Step> first_step(const PathDomain& domain,
                                                 const SurfacePoint& next) const;
     std::optional<PathValue> value_within(const Job& job, const ReusablePath& path) const;
-    double density(const Job& job, const ReusablePath& path) const;
-    double ellipsoidal_pdf(const Job& job, const PathVertex* from, const SurfacePoint& point) const;
+    double density(Job& job, const ReusablePath& path) const;
+    double ellipsoidal_pdf(Job& job, const PathVertex* from, const SurfacePoint& point) const;
+    std::optional<LobeOnFacet> lobe_of(Job& job, const PathVertex* vertex) const;
 
     const Scene* scene_;
     const SurfaceWalk* walk_;

@@ -141,9 +141,9 @@ void PathTracer::Walk::trace_bsdf_samples(int count) {
 void PathTracer::Walk::trace_pixel_samples(const Measurement& measurement,
                                            std::size_t pixel,
                                            int count) {
+    const core::Vec2 shift(rng_.uniform(), rng_.uniform());
     for (int i = 0; i < count; ++i) {
-        const double u1 = (i + rng_.uniform()) / count;
-        auto vertex = measurement.first_vertex(pixel, {u1, rng_.uniform()});
+        auto vertex = measurement.first_vertex(pixel, core::lattice_point(i, count, shift));
         ++num_rays_;
         if (!vertex) continue;
         vertex->throughput *= weight_;

@@ -3,6 +3,7 @@
 
 #include "renderer/core/parallel.h"
 #include "renderer/core/process.h"
+#include "renderer/core/sampling.h"
 #include "renderer/core/stopwatch.h"
 #include "renderer/measurement.h"
 #include "renderer/restir_renderer.h"
@@ -82,16 +83,13 @@ void add_direct_light_of_pixel(const RestirFrame& frame,
                                const RenderSettings& settings,
                                PassHistogram& histogram) {
     constexpr int kPlaces = 32;
-    constexpr double kGolden = 0.6180339887498949;
     const PixelPlaces& places = *frame.scene->pixel_places;
     const TimeGate lengths = frame.bins.lengths();
     const PixelPlaces::Band band = places.band(pixel, {lengths.begin_m(), lengths.end_m()});
     const int count = bin_may_end_in(places.around(pixel), frame.bins.axes()) ? kPlaces : 1;
     const PathDomain& domain = frame.domains[pixel];
     for (int i = 0; i < count; ++i) {
-        const double u2 = domain.pixel_u.y() + kGolden * i;
-        const core::Vec2 place =
-            band.sample({(i + domain.pixel_u.x()) / count, u2 - std::floor(u2)});
+        const core::Vec2 place = band.sample(core::lattice_point(i, count, domain.pixel_u));
         auto seen = frame.scene->measurement.first_vertex(pixel, place);
         if (!seen) continue;
         seen->throughput = 1.0 / (count * band.pdf(place));

@@ -14,6 +14,16 @@ namespace core {
 /// The largest double below 1.
 inline constexpr double kBelowOne = 1.0 - 0x1.0p-53;
 
+/// The i-th of `count` points of a lattice spread evenly over the unit square, each of them uniform
+/// when `shift` is.
+///
+/// source   Fibonacci lattice; shifted at random [Cranley1976]
+inline Vec2 lattice_point(int i, int count, const Vec2& shift) {
+    constexpr double kGolden = 0.6180339887498949;  // (sqrt(5) - 1) / 2
+    const double v = shift.y() + kGolden * i;
+    return {(i + shift.x()) / count, v - std::floor(v)};
+}
+
 /// Warps of the unit square, each with its density and its inverse (source [Osada2002] for the
 /// triangle; the others follow from their cumulative distributions).
 

@@ -185,6 +185,50 @@ TEST(EllipsoidalConnection, DensityOfASampleIsThatOfThePoint) {
     }
 }
 
+// Draws towards a lobe: their density is that of the point, integrates to 1 over the curve, and
+// keeps them near the lobe.
+TEST(EllipsoidalConnection, LobesDrawNearTheirMiddle) {
+    core::Rng rng(test_support::seed_of("LobesDraw"), 0, 0);
+    constexpr int kDraws = 2000;
+    int near_lobe = 0;
+    int near_without = 0;
+    int curves = 0;
+    for (const Configuration& c : configurations("LobesDraw")) {
+        if (c.name != "random" && c.name != "coincident" && c.name != "narrow") continue;
+        const Vec2 b = core::sample_triangle({rng.uniform(), rng.uniform()});
+        const Vec3 aim = c.facet.point(b.x(), b.y());
+        const double opl_m = c.foci.opl_m(aim);  // the curve passes the lobe's middle
+        const renderer::ConnectionLobe lobe{(aim - c.foci.a).normalized(), aim, 0.02};
+        if (!sample_ellipsoid(c.foci, opl_m, c.facet, 0.5)) continue;
+        ++curves;
+        double normalisation = 0.0;
+        double squares = 0.0;
+        for (int i = 0; i < kDraws; ++i) {
+            const double u = (i + rng.uniform()) / kDraws;
+            const auto turn_of = [&](const Vec3& x) {
+                return std::acos(std::min(1.0, lobe.direction.dot((x - c.foci.a).normalized())));
+            };
+            const auto uniform = sample_ellipsoid(c.foci, opl_m, c.facet, u);
+            const auto draw = sample_ellipsoid(c.foci, opl_m, c.facet, u, &lobe);
+            ASSERT_TRUE(uniform && draw);
+            near_without += turn_of(uniform->position) < 0.04 ? 1 : 0;
+            near_lobe += turn_of(draw->position) < 0.04 ? 1 : 0;
+            const double pdf = pdf_ellipsoid(c.foci, c.facet, draw->position, &lobe);
+            EXPECT_NEAR(pdf / draw->pdf_area_per_pdf_opl, 1.0, 1e-3) << c.name;
+            const double ratio =
+                pdf_ellipsoid(c.foci, c.facet, draw->position) / draw->pdf_area_per_pdf_opl;
+            normalisation += ratio / kDraws;
+            squares += ratio * ratio / kDraws;
+        }
+        const double sigma = std::sqrt(std::max(0.0, squares - normalisation * normalisation));
+        EXPECT_NEAR(normalisation, 1.0, 5.0 * sigma / std::sqrt(kDraws) + 1e-6) << c.name;
+    }
+    EXPECT_GT(curves, 15);
+    // A Cauchy distribution has 0.70 of its mass within twice its width.
+    EXPECT_GT(near_lobe, 0.6 * kDraws * curves);
+    EXPECT_LT(near_without, 0.3 * kDraws * curves);
+}
+
 // The point as a function of (length, angle), by central differences.
 TEST(EllipsoidSection, AreaElementMatchesFiniteDifferences) {
     core::Rng rng(test_support::seed_of("AreaElement"), 0, 0);

@@ -14,6 +14,7 @@
 
 namespace {
 
+using core::Vec3;
 using renderer::Estimator;
 using renderer::Exclusion;
 using renderer::RenderSettings;
@@ -192,8 +193,8 @@ TEST(EllipsoidalTracer, DropLosesExactlyTheSignalOfTheExcludedSurfaces) {
 }
 
 // A camera inside an open box with a ball, its light beside it or a spot on the floor.
-TEST(EllipsoidalTracer, ImagesAgreeWithPaths) {
-    using core::Vec3;
+// Three walls and a ball.
+std::vector<renderer::Object> walls_and_ball() {
     std::vector<renderer::Object> objects;
     for (const auto& side :
          {test_support::Parallelogram{Vec3(-1, -1, -1), Vec3(2, 0, 0), Vec3(0, 0, 2), 0.7},
@@ -202,6 +203,12 @@ TEST(EllipsoidalTracer, ImagesAgreeWithPaths) {
         objects.push_back(test_support::parallelogram_object(side));
     }
     objects.push_back(test_support::sphere_object(Vec3(0.2, -0.4, 0.2), 0.4, 2, 0.9));
+    return objects;
+}
+
+void expect_images_to_agree(const std::vector<renderer::Object>& objects,
+                            const std::vector<core::TimeAxis>& axes,
+                            RenderSettings settings) {
     for (const bool spot : {false, true}) {
         core::Scan scan;
         scan.pattern = core::ScanPattern::Single;
@@ -212,17 +219,11 @@ TEST(EllipsoidalTracer, ImagesAgreeWithPaths) {
         scan.camera->resolution = {2, 2};
         if (spot) scan.camera->light_spot_m = Vec3(-0.5, -1.0, 0.3);
         const renderer::Scene scene({objects, {}}, scan, {});
-        RenderSettings settings;
         settings.max_bounces = 4;
         settings.variance = true;
-        settings.seed = test_support::seed_of("ImagesAgreeWithPaths");
-        // Also a gate that no first vertex reaches, so that connections do all the work, and one
-        // that crosses pixels.
-        for (const core::TimeAxis& axis : {core::TimeAxis{2.0, 0.25, 28},
-                                           core::TimeAxis{7.0, 0.03, 1},
-                                           core::TimeAxis{5.0, 0.5, 1}}) {
+        for (const core::TimeAxis& axis : axes) {
             settings.method = Estimator::Path;
-            settings.samples = 150'000;
+            settings.samples = 300'000;
             const auto paths = renderer::render(scene, scan, axis, settings, {}).capture;
             settings.method = Estimator::Ellipsoidal;
             settings.samples = 40'000;
@@ -230,6 +231,27 @@ TEST(EllipsoidalTracer, ImagesAgreeWithPaths) {
             expect_agreement(renderer::render(scene, scan, axis, settings, {}).capture, paths);
         }
     }
+}
+
+// Also a gate that no first vertex reaches, so that connections do all the work, and one that
+// crosses pixels.
+TEST(EllipsoidalTracer, ImagesAgreeWithPaths) {
+    RenderSettings settings;
+    settings.seed = test_support::seed_of("ImagesAgreeWithPaths");
+    expect_images_to_agree(
+        walls_and_ball(), {{2.0, 0.25, 28}, {7.0, 0.03, 1}, {5.0, 0.5, 1}}, settings);
+}
+
+// Connections that look where a glossy vertex mirrors what it sees.
+TEST(EllipsoidalTracer, ImagesOfGlossySurfacesAgreeWithPaths) {
+    std::vector<renderer::Object> objects = walls_and_ball();
+    for (const auto& [index, roughness] : {std::pair{std::size_t{0}, 0.5}, {std::size_t{3}, 0.3}}) {
+        objects[index].material.model = renderer::SurfaceModel::Ggx;
+        objects[index].material.roughness = roughness;
+    }
+    RenderSettings settings;
+    settings.seed = test_support::seed_of("ImagesOfGlossySurfaces");
+    expect_images_to_agree(objects, {{2.0, 0.25, 28}, {5.0, 0.5, 1}}, settings);
 }
 
 TEST(EllipsoidalTracer, SameBitsForAnyNumberOfThreads) {

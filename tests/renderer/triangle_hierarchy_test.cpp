@@ -191,14 +191,25 @@ TEST(ConnectionTechnique, EstimatesTheIntegralOverAllFacets) {
         renderer::HierarchyCut cut(technique.hierarchy());
         cut.rebuild(q.ends, q.lengths, 50);
         constexpr int kDraws = 100'000;
-        for (const bool from_cut : {false, true}) {
+        // Towards the middle of some facet, and not so narrow that few draws see the rest of it.
+        const auto aim = static_cast<std::uint32_t>(rng.uniform() * 60);
+        const Vec3 middle = scene.facet(aim).point(1.0 / 3.0, 1.0 / 3.0);
+        const renderer::LobeOnFacet lobe{aim, {(middle - q.ends.foci.a).normalized(), middle, 0.1}};
+        enum class Kind { Plain, Cut, Lobe };
+        for (const Kind kind : {Kind::Plain, Kind::Cut, Kind::Lobe}) {
             double sum = 0.0;
             double squares = 0.0;
             for (int i = 0; i < kDraws; ++i) {
                 std::size_t hint = 0;
-                const auto draw = from_cut ? technique.sample(cut, rng.uniform(), hint, rng)
-                                           : technique.sample(q.ends, q.lengths, rng);
+                std::optional<renderer::ConnectionDraw> draw;
+                if (kind == Kind::Plain) draw = technique.sample(q.ends, q.lengths, rng);
+                if (kind == Kind::Cut) draw = technique.sample(cut, rng.uniform(), hint, rng);
+                if (kind == Kind::Lobe) draw = technique.sample(q.ends, q.lengths, rng, lobe);
                 if (!draw) continue;
+                if (kind == Kind::Lobe && i % 100 == 0) {
+                    const double pdf = technique.pdf_area(q.ends, q.lengths, draw->point, lobe);
+                    EXPECT_NEAR(pdf / draw->pdf_area, 1.0, 1e-3);
+                }
                 const double estimate = value(draw->point) / draw->pdf_area;
                 sum += estimate;
                 squares += estimate * estimate;
@@ -207,9 +218,47 @@ TEST(ConnectionTechnique, EstimatesTheIntegralOverAllFacets) {
             const double sigma = std::sqrt((squares / kDraws - mean * mean) / kDraws);
             const double tolerance = std::hypot(sigma, 2e-3 * integral);
             EXPECT_GT(test_support::normal_tail((mean - integral) / (tolerance + 1e-300)), 1e-4)
-                << "mean " << mean << " integral " << integral << " cut " << from_cut;
+                << "mean " << mean << " integral " << integral << " kind "
+                << static_cast<int>(kind);
         }
     }
+}
+
+TEST(ConnectionTechnique, LobesOfGlossyVerticesMeetWhatTheyMirror) {
+    renderer::SceneGeometry geometry;
+    geometry.objects.push_back(
+        test_support::parallelogram_object({Vec3(-1, -1, 0), Vec3(2, 0, 0), Vec3(0, 2, 0)}));
+    geometry.objects.push_back(
+        test_support::parallelogram_object({Vec3(1, -1, 0), Vec3(0, 2, 0), Vec3(0, 0, 2)}));
+    const core::Scan scan = test_support::confocal_scan({Vec3(0, 0, 9)});
+    const Scene scene(std::move(geometry), scan, {});
+    const auto technique = technique_of(scene);
+    renderer::PathVertex vertex;
+    vertex.point = {Vec3(0.2, 0.1, 0.0), 0};
+    vertex.normal = Vec3::UnitZ();
+    vertex.to_previous = Vec3(-1, 0, 1).normalized();
+    vertex.bsdf = renderer::Ggx{0.9, 0.05};
+    const Vec3 light(-0.5, 0.2, 0.7);
+    std::uint64_t num_rays = 0;
+    const auto lobe = technique.lobe_of(vertex, light, num_rays);
+    ASSERT_TRUE(lobe);
+    EXPECT_EQ(scene.object_of(lobe->facet).name, scene.objects()[1].name);
+    EXPECT_GE(lobe->facet, 2U);
+    EXPECT_LT((lobe->lobe.point - Vec3(1.0, 0.1, 0.8)).norm(), 1e-6);
+    EXPECT_LT((lobe->lobe.direction - Vec3(1, 0, 1).normalized()).norm(), 1e-12);
+    EXPECT_DOUBLE_EQ(lobe->lobe.width_rad, 0.1);
+    EXPECT_EQ(num_rays, 1U);
+
+    EXPECT_FALSE(technique.lobe_of(vertex, Vec3(1.5, 0.2, 0.7), num_rays));  // behind that surface
+    vertex.to_previous = Vec3(1, 0, 1).normalized();
+    EXPECT_FALSE(technique.lobe_of(vertex, light, num_rays));  // into the open
+    EXPECT_EQ(num_rays, 3U);
+    for (const renderer::Bsdf& wide :
+         {renderer::Bsdf(renderer::Ggx{0.9, 0.5}), renderer::Bsdf(renderer::Lambertian{})}) {
+        vertex.bsdf = wide;
+        EXPECT_FALSE(technique.lobe_of(vertex, light, num_rays));
+    }
+    EXPECT_EQ(num_rays, 3U);
 }
 
 TEST(ExcludedFacets, AreThoseOfWallsFlaggedObjectsAndLargeFacets) {
