@@ -221,7 +221,7 @@ TEST(Camera, AgreesWithAScanOfTheSamePoints) {
     const std::vector<renderer::Object> objects{test_support::parallelogram_object(hidden),
                                                 test_support::parallelogram_object(other)};
     const core::TimeAxis axis{1.2, 0.05, 40};
-    renderer::RenderSettings settings = settings_with(400'000, 5);
+    renderer::RenderSettings settings = settings_with(1'600'000, 5);
 
     const core::Scan scan = test_support::single_scan(lit, {seen});
     renderer::RelayWall relay_wall;
