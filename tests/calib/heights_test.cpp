@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+// Meshes whose vertices are free along their normals.
+#include "calib/alternatives.h"
+#include "tests/support/fit_examples.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace {
+
+using core::Vec3;
+
+constexpr int kSide = 4;  // vertices
+
+// The tilted rectangle as a mesh of kSide x kSide vertices.
+renderer::SceneGeometry grid() {
+    renderer::Object object =
+        test_support::tilted_rectangle("target", Vec3(0.05, -0.02, 0.8), 0.35);
+    const auto corners = object.mesh;
+    const Vec3 origin = corners.vertices[0];
+    const Vec3 u = corners.vertices[1] - origin;
+    const Vec3 v = corners.vertices[3] - origin;
+    object.mesh.vertices.clear();
+    object.mesh.triangles.clear();
+    for (int j = 0; j < kSide; ++j) {
+        for (int i = 0; i < kSide; ++i) {
+            object.mesh.vertices.push_back(origin + i / (kSide - 1.0) * u + j / (kSide - 1.0) * v);
+            if (i + 1 == kSide || j + 1 == kSide) continue;
+            const auto first = static_cast<std::uint32_t>(j * kSide + i);
+            object.mesh.triangles.push_back({first, first + 1, first + kSide + 1});
+            object.mesh.triangles.push_back({first, first + kSide + 1, first + kSide});
+        }
+    }
+    renderer::SceneGeometry geometry;
+    geometry.objects = {object};
+    return geometry;
+}
+
+std::vector<double> true_heights() {
+    std::vector<double> heights;
+    for (int j = 0; j < kSide; ++j) {
+        for (int i = 0; i < kSide; ++i) {
+            const double x = 2.0 * i / (kSide - 1.0) - 1.0;
+            const double y = 2.0 * j / (kSide - 1.0) - 1.0;
+            heights.push_back(0.015 * std::cos(1.4 * x) * std::cos(1.1 * y) + 0.006 * x * y);
+        }
+    }
+    return heights;
+}
+
+calib::FitInput heights_input(const core::Capture& capture) {
+    calib::FitInput input = test_support::fit_input(capture, grid());
+    input.settings.free.objects = {{"target", false, false, false, true, true}};
+    return input;
+}
+
+// Errors over what the fit states: mean square about 1, 48 values spread by 0.2.
+TEST(Heights, AreFoundWithinTheirStatedErrors) {
+    const renderer::SceneGeometry flat = grid();
+    renderer::SceneGeometry raised = flat;
+    renderer::Object& object = raised.objects.front();
+    const Vec3 normal = object.world_from_node.linear().col(2);
+    const std::vector<double> truth = true_heights();
+    for (std::size_t v = 0; v < truth.size(); ++v) object.mesh.vertices[v] += truth[v] * normal;
+    const core::Capture light =
+        test_support::expected_capture(raised, test_support::confocal_grid(8), 3e5, 0.02);
+    double squares = 0.0;
+    int count = 0;
+    for (const char* seed : {"Heights 1", "Heights 2", "Heights 3"}) {
+        const calib::FitResult fit =
+            calib::fit_scene(heights_input(test_support::counted(light, seed)), {});
+        EXPECT_TRUE(fit.converged) << fit.message;
+        const calib::FittedObject& found = fit.objects.front();
+        ASSERT_EQ(found.heights_m.size(), truth.size());
+        for (std::size_t v = 0; v < truth.size(); ++v) {
+            const double error = found.heights_m[v] - truth[v];
+            EXPECT_LT(std::abs(error), 4e-3) << v;
+            EXPECT_LT(found.heights_sigma_m[v], 2e-3) << v;
+            squares += std::pow(error / found.heights_sigma_m[v], 2);
+            ++count;
+        }
+    }
+    EXPECT_GT(squares / count, 0.3);
+    EXPECT_LT(squares / count, 1.9);
+}
+
+TEST(Heights, SmoothedOnesSpreadToTheirNeighbours) {
+    const renderer::SceneGeometry geometry = grid();
+    calib::FitSettings settings;
+    settings.free.objects = {{"target", false, false, false, false, true}};
+    const calib::SceneModel model(geometry, settings, false);
+    calib::SceneState state = model.start();
+    std::vector<double>& heights = state.bodies.front().heights_m;
+    heights.assign(kSide * kSide, 0.01);
+    auto smoothed = calib::smoothed_heights(model, state);
+    ASSERT_TRUE(smoothed);
+    for (const double height : smoothed->bodies.front().heights_m) EXPECT_NEAR(height, 0.01, 1e-15);
+
+    heights.assign(kSide * kSide, 0.0);
+    heights[5] = 0.016;  // inside: six neighbours
+    smoothed = calib::smoothed_heights(model, state);
+    const std::vector<double>& spread = smoothed->bodies.front().heights_m;
+    EXPECT_LT(spread[5], 0.25 * heights[5]);
+    EXPECT_GT(spread[6], 0.0);
+    EXPECT_NEAR(spread[15], 0.016 / 7.0 / 4.0, 1e-15);  // three neighbours, one of six
+
+    settings.free.objects = {{"target", true, false, false, false, false}};
+    const calib::SceneModel stiff(geometry, settings, false);
+    EXPECT_FALSE(calib::smoothed_heights(stiff, stiff.start()));
+}
+
+}  // namespace
