@@ -26,6 +26,10 @@ double ellipsoidal_share(double asked) {
     return std::max(kLeast, kMost / (1.0 + asked / kHalved));
 }
 
+// Connections of a vertex with a lobe this narrow: what it mirrors makes bright, noisy pixels.
+constexpr int kDrawsAlongLobes = 6;
+constexpr double kNarrowLobe_rad = 0.2;
+
 // A Gaussian gate lets through e^-10 of its peak this many widths from its centre; what lies beyond
 // is left to the walk.
 constexpr double kGaussianReach = 4.5;
@@ -87,7 +91,8 @@ class EllipsoidalTracer::Walk {
     void connect(const PathVertex& vertex,
                  const ConnectionEnds& ends,
                  const OplBand& lengths,
-                 const std::optional<LobeOnFacet>& lobe);
+                 const std::optional<LobeOnFacet>& lobe,
+                 int num_draws);
     void deposit(const PathVertex& vertex, double value);
     OplBand lengths_left(const PathVertex& vertex) const;
     double opl_to_light(const PathVertex& vertex) const;
@@ -309,7 +314,8 @@ void EllipsoidalTracer::Walk::extend(PathVertex vertex) {
         // Every longer path from here takes at least the way straight to the light.
         if (lengths.high_m < (ends.foci.a - ends.foci.b).norm()) return;
         const auto lobe = tracer_.technique_.lobe_of(vertex, ends_.light.position, num_rays_);
-        connect(vertex, ends, lengths, lobe);
+        const int num_draws = lobe && lobe->lobe.width_rad < kNarrowLobe_rad ? kDrawsAlongLobes : 1;
+        for (int i = 0; i < num_draws; ++i) connect(vertex, ends, lengths, lobe, num_draws);
         const auto pdf = walk.draw_next(vertex, rng_, num_rays_);
         if (!pdf) return;
         if (!tracer_.in_scope(vertex.point.facet)) continue;
@@ -317,22 +323,24 @@ void EllipsoidalTracer::Walk::extend(PathVertex vertex) {
         if (!(value > 0.0) || !histogram_.lets_through(opl_to_light(vertex))) continue;
         const double other = tracer_.technique_.pdf_area(ends, lengths, vertex.point, lobe);
         ++num_rays_;
-        if (!walk.light_is_hidden(vertex, ends_)) deposit(vertex, value * *pdf / (*pdf + other));
+        if (walk.light_is_hidden(vertex, ends_)) continue;
+        deposit(vertex, value * *pdf / (*pdf + num_draws * other));
     }
 }
 
-// Draws the vertex between `vertex` and the light on an ellipsoid.
+// Draws the vertex between `vertex` and the light on an ellipsoid, once of `num_draws` times.
 void EllipsoidalTracer::Walk::connect(const PathVertex& vertex,
                                       const ConnectionEnds& ends,
                                       const OplBand& lengths,
-                                      const std::optional<LobeOnFacet>& lobe) {
+                                      const std::optional<LobeOnFacet>& lobe,
+                                      int num_draws) {
     const SurfaceWalk& walk = tracer_.surface_walk_;
     const auto draw = tracer_.technique_.sample(ends, lengths, rng_, lobe);
     if (!draw || !tracer_.in_scope(draw->point.facet)) return;
     const auto step = walk.step_to(vertex, draw->point);
     if (!step) return;
     const PathVertex next =
-        walk.advance(vertex, draw->point, *step, step->pdf_area + draw->pdf_area);
+        walk.advance(vertex, draw->point, *step, step->pdf_area + num_draws * draw->pdf_area);
     const double value = walk.connection_value(next, ends_);
     if (!(value > 0.0) || !histogram_.lets_through(opl_to_light(next))) return;
     ++num_rays_;
