@@ -238,7 +238,7 @@ class ArcDensity {
         const double turn_per_share =  // as seen from the focus [rad]
             arcs.total_rad() * (tangent - direction * direction.dot(tangent)).norm() / distance;
         const double width_rad = std::hypot(lobe->width_rad, (direction - lobe->direction).norm());
-        scale_ = std::max(kNarrowest, width_rad / turn_per_share);
+        scale_ = std::max(width_rad / turn_per_share, kNarrowest);  // stays what is not a number
         if (!(scale_ < kWidest)) return;
         is_uniform_ = false;
         middle_ = arcs.invert(nearest);

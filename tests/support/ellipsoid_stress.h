@@ -16,7 +16,7 @@ struct StressCounts {
 
 /// Draws `count` ellipsoidal connections, each with new foci and triangle: sizes from 1 mm to
 /// 100 m, foci from coincident to far apart, lengths down to the distance of the foci, slivers,
-/// tangent planes, planes that hold a focus.
+/// tangent planes, planes that hold a focus; a third of them towards a lobe.
 inline StressCounts stress_ellipsoid(std::uint64_t count, std::uint64_t seed) {
     core::Rng rng(seed, 0, 0);
     StressCounts counts;
@@ -39,11 +39,17 @@ inline StressCounts stress_ellipsoid(std::uint64_t count, std::uint64_t seed) {
         const renderer::OplBand band = opl_band(foci, facet);
         const double share = rng.uniform() < 0.3 ? power(-15.0, -1.0) : rng.uniform();
         const double opl_m = band.low_m + share * band.width_m();
-        const auto connection = sample_ellipsoid(foci, opl_m, facet, rng.uniform());
+        renderer::ConnectionLobe lobe;
+        lobe.point = facet.point(3.0 * rng.uniform() - 1.0, 3.0 * rng.uniform() - 1.0);
+        if (rng.uniform() < 0.1) lobe.point = foci.a;
+        lobe.direction = (lobe.point - foci.a).normalized();
+        lobe.width_rad = power(-3.0, 0.0);
+        const renderer::ConnectionLobe* const aim = rng.uniform() < 1.0 / 3.0 ? &lobe : nullptr;
+        const auto connection = sample_ellipsoid(foci, opl_m, facet, rng.uniform(), aim);
         if (!connection) continue;
         ++counts.drawn;
         const double pdf = connection->pdf_area_per_pdf_opl;
-        const double again = pdf_ellipsoid(foci, facet, connection->position);
+        const double again = pdf_ellipsoid(foci, facet, connection->position, aim);
         const double error = std::abs(foci.opl_m(connection->position) - opl_m);
         const bool good = connection->position.allFinite() && std::isfinite(pdf) && pdf > 0.0 &&
                           std::isfinite(again) && again >= 0.0 &&
