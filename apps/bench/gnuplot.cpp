@@ -15,7 +15,8 @@ namespace {
 // The text of a gnuplot script; data stand in it, so nothing is left beside the pictures.
 std::string script_of(const LogPlot& plot, const std::string& terminal, const std::string& target) {
     std::string script = fmt::format(
-        "set terminal {}\nset output '{}'\nset logscale xy\nset grid\nset key below reverse Left samplen 3\n"
+        "set terminal {}\nset output '{}'\nset logscale xy\nset grid\nset key below reverse Left "
+        "samplen 3\n"
         "set title '{}'\nset xlabel '{}'\nset ylabel '{}'\nset format '%g'\n",
         terminal,
         target,

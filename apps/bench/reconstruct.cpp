@@ -74,14 +74,16 @@ std::string accuracies_text(const ReconstructBench& bench) {
 }
 
 std::string growth_text(const ReconstructBench& bench) {
-    if (bench.growth.empty()) return "";
-    std::string text = fmt::format("{:<32}", "growth: CPU s, of the limit, GB");
-    for (const GrowthPoint& point : bench.growth.front().points) {
-        text += fmt::format("{:>23}", point.size);
-    }
-    text += fmt::format("{:>16}\n", "exponents");
+    std::string text;
+    std::string of;
     for (const ReconstructGrowth& curve : bench.growth) {
-        text += fmt::format("{:<32}", curve.method);
+        if (curve.of != of) {
+            of = curve.of;
+            text += fmt::format("\n{:<50}", "growth with " + of + ": CPU s, of the limit, GB");
+            for (const GrowthPoint& point : curve.points) text += fmt::format("{:>23}", point.size);
+            text += fmt::format("{:>16}\n", "exponents");
+        }
+        text += fmt::format("{:<50}", curve.method);
         for (const GrowthPoint& point : curve.points) {
             text += fmt::format("{:>10.3f} {:>4.1f} {:>7.3f}",
                                 point.cpu_seconds,
@@ -94,7 +96,7 @@ std::string growth_text(const ReconstructBench& bench) {
 }
 
 PlotLine growth_line(const ReconstructGrowth& curve, double GrowthPoint::*value) {
-    PlotLine line{curve.method, {}, {}};
+    PlotLine line{curve.of == "voxels" ? curve.method + ", voxels" : curve.method, {}, {}};
     for (const GrowthPoint& point : curve.points) {
         line.x.push_back(point.values);
         line.y.push_back(point.*value);
@@ -105,7 +107,7 @@ PlotLine growth_line(const ReconstructGrowth& curve, double GrowthPoint::*value)
 LogPlot growth_plot(const ReconstructBench& bench,
                     const std::string& title,
                     double GrowthPoint::*value) {
-    LogPlot plot{title + " against size", "values of the capture", title, {}};
+    LogPlot plot{title + " against size", "values of the capture, or voxels", title, {}};
     for (const ReconstructGrowth& curve : bench.growth) {
         plot.lines.push_back(growth_line(curve, value));
     }
@@ -140,11 +142,10 @@ ReconstructBench bench_reconstruct(const ReconstructBenchSettings& settings,
 }
 
 BenchResult reconstruct_result(const ReconstructBench& bench) {
-    BenchResult result{
-        core::write_value(bench),
-        costs_text(bench) + "\n" + accuracies_text(bench) + "\n" + growth_text(bench),
-        {},
-        {}};
+    BenchResult result{core::write_value(bench),
+                       costs_text(bench) + "\n" + accuracies_text(bench) + growth_text(bench),
+                       {},
+                       {}};
     if (!bench.growth.empty()) {
         LogPlot& time = result.plots["_time"];
         time = growth_plot(bench, "CPU time [s]", &GrowthPoint::cpu_seconds);

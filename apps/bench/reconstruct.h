@@ -69,7 +69,7 @@ void for_each_field(ReconstructAccuracy& row, Visitor&& visit) {
 /// One size of a growth curve.
 struct GrowthPoint {
     std::string size;
-    double values = 0.0;
+    double values = 0.0;  ///< of what grows
     double cpu_seconds = 0.0;
     double limit_seconds = 0.0;  ///< CPU time of its FFTs or multiply-adds alone
     double bytes = 0.0;
@@ -77,16 +77,17 @@ struct GrowthPoint {
 
 template <class Visitor>
 void for_each_field(GrowthPoint& point, Visitor&& visit) {
-    visit("size", point.size, "wall points x bins");
-    visit("values", point.values, "histogram values of the capture");
+    visit("size", point.size, "wall points x bins, or voxels");
+    visit("values", point.values, "their number");
     visit("cpu_seconds", point.cpu_seconds, "CPU time [s]");
     visit("limit_seconds", point.limit_seconds, "CPU time of its FFTs or multiply-adds alone [s]");
     visit("bytes", point.bytes, "memory on top of the capture [bytes]");
 }
 
-/// Time and memory against the capture's size, both proportional to values^exponent.
+/// Time and memory against a size, both proportional to values^exponent.
 struct ReconstructGrowth {
     std::string method;
+    std::string of;  ///< what grows: values of the capture, or voxels
     std::vector<GrowthPoint> points;
     double time_exponent = 0.0;
     double memory_exponent = 0.0;
@@ -95,9 +96,10 @@ struct ReconstructGrowth {
 template <class Visitor>
 void for_each_field(ReconstructGrowth& growth, Visitor&& visit) {
     visit("method", growth.method, "method");
+    visit("of", growth.of, "what grows");
     visit("points", growth.points, "by rising size");
-    visit("time_exponent", growth.time_exponent, "of the number of values");
-    visit("memory_exponent", growth.memory_exponent, "of the number of values");
+    visit("time_exponent", growth.time_exponent, "of their number");
+    visit("memory_exponent", growth.memory_exponent, "of their number");
 }
 
 struct ReconstructBench {
@@ -135,7 +137,7 @@ std::vector<ReconstructCost> measure_costs(const ReconstructBenchSettings& setti
 std::vector<ReconstructAccuracy> measure_accuracies(const ReconstructBenchSettings& settings,
                                                     const core::Progress& progress);
 
-/// Time and memory for rising sizes of a confocal capture.
+/// Time and memory for rising sizes of a confocal capture, and of the volume made from one.
 std::vector<ReconstructGrowth> measure_growth(const ReconstructBenchSettings& settings,
                                               const core::Progress& progress);
 
