@@ -140,22 +140,43 @@ void FitObjective::eliminate(std::vector<MatrixXd>& grams, bool with_slopes) {
     for (MatrixXd& gram : grams) gram = transform.transpose() * gram * transform;
 }
 
-// A Gram matrix of any rank as rows of its factor.
+// A Gram matrix of any rank as rows of its factor, by Cholesky's method with the largest pivot
+// first.
+//
+// What a pair's bins do not tell leaves pivots that are rounding: there it ends, and the rest of
+// the residual gets a row of its own. Divided by such pivots, rounding would grow to residuals of
+// any size (Eigen's LDLT takes pivots by the diagonal it began with, and cannot be stopped there).
 void FitObjective::compress(const MatrixXd& gram, bool with_slopes, PairRows& rows) const {
     const Eigen::Index columns = num_columns_;
+    rows.residual = VectorXd::Zero(columns + 1);
     if (!with_slopes) {
         rows.jacobian.resize(0, 0);
-        rows.residual = VectorXd::Zero(columns + 1);
         rows.residual(0) = std::sqrt(std::max(0.0, gram(0, 0)));
         return;
     }
-    const Eigen::LDLT<MatrixXd> factor(gram);
-    MatrixXd root = MatrixXd::Identity(columns + 1, columns + 1);
-    root = factor.transpositionsP() * root;
-    root = factor.matrixU() * root;
-    root = factor.vectorD().cwiseMax(0.0).cwiseSqrt().asDiagonal() * root;
-    rows.jacobian = root.leftCols(columns);
-    rows.residual = root.col(columns);
+    constexpr double kLeastPivot = 1e-12;  // of columns of length 1
+    const VectorXd lengths = gram.diagonal().head(columns).cwiseMax(0.0).cwiseSqrt();
+    const VectorXd scale = (lengths.array() > 0.0).select(lengths, 1.0);
+    const VectorXd inverse = scale.cwiseInverse();
+    MatrixXd left =
+        inverse.asDiagonal() * gram.topLeftCorner(columns, columns) * inverse.asDiagonal();
+    VectorXd left_of_residual = inverse.cwiseProduct(gram.col(columns).head(columns));
+    rows.jacobian = MatrixXd::Zero(columns + 1, columns);
+    for (Eigen::Index k = 0; k < columns; ++k) {
+        Eigen::Index pivot = 0;
+        const double largest = left.diagonal().maxCoeff(&pivot);
+        if (!(largest > kLeastPivot)) break;
+        const double root = std::sqrt(largest);
+        const VectorXd row = left.col(pivot) / root;
+        rows.residual(k) = left_of_residual(pivot) / root;
+        left.noalias() -= row * row.transpose();
+        left_of_residual -= rows.residual(k) * row;
+        left.row(pivot).setZero();
+        left.col(pivot).setZero();
+        rows.jacobian.row(k) = row.cwiseProduct(scale);
+    }
+    rows.residual(columns) =
+        std::sqrt(std::max(0.0, gram(columns, columns) - rows.residual.squaredNorm()));
 }
 
 double FitObjective::sum_of_squares() const {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Meshes whose vertices are free along their normals.
 #include "calib/alternatives.h"
+#include "calib/fit_objective.h"
+#include "renderer/core/random.h"
 #include "tests/support/fit_examples.h"
 
 #include <gtest/gtest.h>
@@ -13,8 +15,8 @@ using core::Vec3;
 
 constexpr int kSide = 4;  // vertices
 
-// The tilted rectangle as a mesh of kSide x kSide vertices.
-renderer::SceneGeometry grid() {
+// The tilted rectangle as a mesh of side x side vertices.
+renderer::SceneGeometry grid(int side = kSide) {
     renderer::Object object =
         test_support::tilted_rectangle("target", Vec3(0.05, -0.02, 0.8), 0.35);
     const auto corners = object.mesh;
@@ -23,13 +25,15 @@ renderer::SceneGeometry grid() {
     const Vec3 v = corners.vertices[3] - origin;
     object.mesh.vertices.clear();
     object.mesh.triangles.clear();
-    for (int j = 0; j < kSide; ++j) {
-        for (int i = 0; i < kSide; ++i) {
-            object.mesh.vertices.push_back(origin + i / (kSide - 1.0) * u + j / (kSide - 1.0) * v);
-            if (i + 1 == kSide || j + 1 == kSide) continue;
-            const auto first = static_cast<std::uint32_t>(j * kSide + i);
-            object.mesh.triangles.push_back({first, first + 1, first + kSide + 1});
-            object.mesh.triangles.push_back({first, first + kSide + 1, first + kSide});
+    const auto row = static_cast<std::uint32_t>(side);
+    for (int j = 0; j < side; ++j) {
+        for (int i = 0; i < side; ++i) {
+            object.mesh.vertices.push_back(origin + i / (side - 1.0) * u + j / (side - 1.0) * v);
+            if (i + 1 == side || j + 1 == side) continue;
+            const std::uint32_t first =
+                static_cast<std::uint32_t>(j) * row + static_cast<std::uint32_t>(i);
+            object.mesh.triangles.push_back({first, first + 1, first + row + 1});
+            object.mesh.triangles.push_back({first, first + row + 1, first + row});
         }
     }
     renderer::SceneGeometry geometry;
@@ -83,6 +87,61 @@ TEST(Heights, AreFoundWithinTheirStatedErrors) {
     }
     EXPECT_GT(squares / count, 0.3);
     EXPECT_LT(squares / count, 1.9);
+}
+
+// One wall point cannot tell 81 heights apart: its rows are rank-deficient, and what is dropped for
+// that must be rounding. Cost and gradient against those without compression, by differences.
+TEST(Heights, RankDeficientRowsKeepCostAndGradient) {
+    const renderer::SceneGeometry geometry = grid(9);
+    const core::Scan scan = test_support::confocal_grid(4);
+    const core::Capture counts = test_support::counted(
+        test_support::expected_capture(geometry, scan, 1e5, 0.02), "RankDeficient");
+    calib::FitSettings settings;
+    settings.free.objects = {{"target", true, true, false, true, true}};
+    const calib::SceneModel model(geometry, settings, false);
+    calib::ForwardSettings forward;
+    forward.axis = test_support::kFitAxis;
+    forward.sigma_m = core::sigma_m_from_fwhm_ps(test_support::kFitFwhm_ps);
+    forward.offset_m.assign(scan.num_pairs(), 0.0);
+    forward.radiance_factor = 1e5;
+    forward.tolerance = 2e-3;
+    calib::ForwardModel light(model, scan, calib::WallMotion(scan), forward);
+    calib::SceneState state = model.start();
+    core::Rng rng(test_support::seed_of("RankDeficientRows"), 0, 0);
+    for (double& height : state.bodies.front().heights_m) height = 0.01 * rng.uniform();
+    light.refresh(state);
+
+    calib::FitData data;
+    data.axis = counts.time_axis;
+    data.values.assign(counts.transient.values().begin(), counts.transient.values().end());
+    data.least_mean = 1e-6;
+    calib::FitObjective objective(light, data, true, {}, model.num_columns());
+    objective.evaluate(state, core::Slopes::Without);
+    const double cost = objective.sum_of_squares();
+    objective.evaluate(state, core::Slopes::With);
+    EXPECT_NEAR(objective.sum_of_squares() / cost, 1.0, 1e-9);
+
+    Eigen::VectorXd gradient = Eigen::VectorXd::Zero(model.num_columns());
+    for (std::size_t pair = 0; pair < objective.num_pairs(); ++pair) {
+        const auto& rows = objective.pair(pair);
+        gradient += 2.0 * rows.jacobian.transpose() * rows.residual;
+    }
+    const calib::ParameterBlock* block = model.find(calib::ParameterKind::Heights);
+    ASSERT_NE(block, nullptr);
+    for (const int vertex : {0, 40, 77}) {
+        constexpr double kStep_m = 1e-6;
+        double& height = state.bodies.front().heights_m[static_cast<std::size_t>(vertex)];
+        double ends[2];
+        for (const int end : {0, 1}) {
+            height += end == 0 ? -kStep_m : 2.0 * kStep_m;
+            objective.evaluate(state, core::Slopes::Without);
+            ends[end] = objective.sum_of_squares();
+        }
+        height -= kStep_m;
+        const double expected = (ends[1] - ends[0]) / (2.0 * kStep_m);
+        EXPECT_NEAR(gradient[block->first_column + vertex], expected, 1e-4 * std::abs(expected))
+            << vertex;
+    }
 }
 
 TEST(Heights, SmoothedOnesSpreadToTheirNeighbours) {
