@@ -107,24 +107,4 @@ std::vector<std::pair<std::string, SceneState>> turned_states(const SceneModel& 
     return result;
 }
 
-std::optional<SceneState> smoothed_heights(const SceneModel& model, const SceneState& state) {
-    constexpr int kPasses = 2;
-    SceneState smoothed = state;
-    bool has_heights = false;
-    for (std::size_t b = 0; b < model.bodies().size(); ++b) {
-        std::vector<double>& heights = smoothed.bodies[b].heights_m;
-        has_heights = has_heights || !heights.empty();
-        for (int pass = 0; pass < kPasses; ++pass) {
-            const std::vector<double> before = heights;
-            for (std::size_t v = 0; v < heights.size(); ++v) {
-                const auto& neighbours = model.bodies()[b].neighbours[v];
-                for (const std::uint32_t n : neighbours) heights[v] += before[n];
-                heights[v] /= static_cast<double>(neighbours.size() + 1);
-            }
-        }
-    }
-    if (!has_heights) return std::nullopt;
-    return smoothed;
-}
-
 }  // namespace calib

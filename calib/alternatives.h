@@ -3,7 +3,6 @@
 
 #include "calib/scene_model.h"
 
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,10 +22,5 @@ bool are_different_poses(const SceneModel& model, const SceneState& a, const Sce
 std::vector<std::pair<std::string, SceneState>> turned_states(const SceneModel& model,
                                                               const SceneState& state,
                                                               double most_distance);
-
-/// The state with free heights replaced by their means with their neighbours', twice: where single
-/// vertices have ended in wrong minima, a solve from there finds the right ones. Nothing when no
-/// heights are free.
-std::optional<SceneState> smoothed_heights(const SceneModel& model, const SceneState& state);
 
 }  // namespace calib

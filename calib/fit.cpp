@@ -246,27 +246,6 @@ void try_turns(const FitDriver& driver,
     sort_by_cost(candidates);
 }
 
-// Heights are solved again from smoother ones for as long as that finds a better minimum.
-void try_smoother_heights(const FitDriver& driver,
-                          FitDriver::Stage& last,
-                          int max_iterations,
-                          std::vector<Candidate>& candidates,
-                          FitResult& result) {
-    constexpr int kMostRounds = 3;
-    for (int round = 0; round < kMostRounds; ++round) {
-        const Candidate& best = candidates.front();
-        auto state = smoothed_heights(driver.model(), best.state);
-        if (!state) return;
-        Candidate smoother{best.name + ", smoothed", std::move(*state), {}};
-        smoother.summary = driver.solve(last, smoother.state, max_iterations);
-        result.iterations += smoother.summary.iterations;
-        const bool is_better = smoother.summary.cost < best.summary.cost;
-        candidates.push_back(std::move(smoother));
-        sort_by_cost(candidates);
-        if (!is_better) return;
-    }
-}
-
 // Twice the difference of costs is the difference of deviances: 9 is three standard deviations.
 void warn_of_ambiguity(const FitDriver& driver,
                        const std::vector<Candidate>& candidates,
@@ -319,7 +298,6 @@ FitResult fit_scene(const FitInput& input, const core::Progress& progress) {
     FitDriver::Stage last = driver.make_stage(input.settings.blur_schedule_m.back());
     std::vector<Candidate> candidates = run_stages(driver, input, progress, last, result);
     try_turns(driver, last, input.settings.max_iterations, candidates, result);
-    try_smoother_heights(driver, last, input.settings.max_iterations, candidates, result);
     Candidate& best = candidates.front();
     const RefinedSolution refined = refine(driver, last, best.state);
     Uncertainty uncertainty = assess(refined.information, driver.model().column_names());

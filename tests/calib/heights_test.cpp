@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Meshes whose vertices are free along their normals.
-#include "calib/alternatives.h"
 #include "calib/fit_objective.h"
 #include "renderer/core/random.h"
 #include "tests/support/fit_examples.h"
@@ -142,31 +141,6 @@ TEST(Heights, RankDeficientRowsKeepCostAndGradient) {
         EXPECT_NEAR(gradient[block->first_column + vertex], expected, 1e-4 * std::abs(expected))
             << vertex;
     }
-}
-
-TEST(Heights, SmoothedOnesSpreadToTheirNeighbours) {
-    const renderer::SceneGeometry geometry = grid();
-    calib::FitSettings settings;
-    settings.free.objects = {{"target", false, false, false, false, true}};
-    const calib::SceneModel model(geometry, settings, false);
-    calib::SceneState state = model.start();
-    std::vector<double>& heights = state.bodies.front().heights_m;
-    heights.assign(kSide * kSide, 0.01);
-    auto smoothed = calib::smoothed_heights(model, state);
-    ASSERT_TRUE(smoothed);
-    for (const double height : smoothed->bodies.front().heights_m) EXPECT_NEAR(height, 0.01, 1e-15);
-
-    heights.assign(kSide * kSide, 0.0);
-    heights[5] = 0.016;  // inside: six neighbours
-    smoothed = calib::smoothed_heights(model, state);
-    const std::vector<double>& spread = smoothed->bodies.front().heights_m;
-    EXPECT_LT(spread[5], 0.25 * heights[5]);
-    EXPECT_GT(spread[6], 0.0);
-    EXPECT_NEAR(spread[15], 0.016 / 7.0 / 4.0, 1e-15);  // three neighbours, one of six
-
-    settings.free.objects = {{"target", true, false, false, false, false}};
-    const calib::SceneModel stiff(geometry, settings, false);
-    EXPECT_FALSE(calib::smoothed_heights(stiff, stiff.start()));
 }
 
 }  // namespace
