@@ -93,8 +93,7 @@ FacetChoice ConnectionTechnique::choice_by_lobe(const ConnectionEnds& ends,
                                                 const OplBand& lengths,
                                                 const std::optional<LobeOnFacet>& lobe) const {
     if (!lobe) return {};
-    const OplBand band = opl_band(ends.foci, scene_->facet(lobe->facet));
-    const OplBand part{std::max(band.low_m, lengths.low_m), std::min(band.high_m, lengths.high_m)};
+    const OplBand part = hierarchy_.part_of(lengths, ends.foci, lobe->facet);
     return {lobe->facet, part.width_m() > 0.0 ? kLobeShare : 0.0, part};
 }
 

@@ -43,7 +43,7 @@ ConnectionEnds connection_ends(const PathEnds& ends);
 /// Draws the vertex between two others so that the path has a wanted length (source
 /// [Pediredla2019]): a facet from the hierarchy, a length within what the interval and the facet
 /// allow, a point where the ellipsoid of that length cuts the facet. Where the first of the two has
-/// a narrow lobe, half of the draws take the facet that its middle meets and stay near it.
+/// a narrow lobe, most draws take the facet that its middle meets and stay near it.
 class ConnectionTechnique {
  public:
     /// scene      must outlive the technique

@@ -69,6 +69,51 @@ void add_crossings(const Vec2& start,
     crossings.entering[crossings.num_entering++] = at((root - b) / a);
 }
 
+// Density over the shares of all arcs: uniform, or a Cauchy distribution cut off at 0 and 1.
+class ArcDensity {
+ public:
+    ArcDensity(const FocusPair& foci,
+               const EllipsoidSection& section,
+               const EllipsoidArcs& arcs,
+               const ConnectionLobe* lobe) {
+        if (lobe == nullptr) return;
+        const Vec2 nearest = section.angle_of(lobe->point);
+        const Vec3 leg = section.point(nearest) - foci.a;
+        const double distance = leg.norm();
+        const Vec3 direction = leg / distance;
+        const Vec3 tangent = section.tangent(nearest);
+        const double turn_per_share =  // as seen from the focus [rad]
+            arcs.total_rad() * (tangent - direction * direction.dot(tangent)).norm() / distance;
+        const double width_rad = std::hypot(lobe->width_rad, (direction - lobe->direction).norm());
+        scale_ = std::max(width_rad / turn_per_share, kNarrowest);  // stays what is not a number
+        if (!(scale_ < kWidest)) return;
+        is_uniform_ = false;
+        middle_ = arcs.invert(nearest);
+        begin_ = std::atan(-middle_ / scale_);
+        span_ = std::atan((1.0 - middle_) / scale_) - begin_;
+    }
+
+    double sample(double u) const {
+        if (is_uniform_) return u;
+        return std::clamp(middle_ + scale_ * std::tan(begin_ + u * span_), 0.0, core::kBelowOne);
+    }
+    double pdf(double share) const {
+        if (is_uniform_) return 1.0;
+        const double off = (share - middle_) / scale_;
+        return 1.0 / (scale_ * span_ * (1.0 + off * off));
+    }
+
+ private:
+    static constexpr double kNarrowest = 1e-4;
+    static constexpr double kWidest = 1.0;  // a lobe as wide as all arcs decides nothing
+
+    bool is_uniform_ = true;
+    double middle_ = 0.0;
+    double scale_ = 1.0;
+    double begin_ = 0.0;  ///< of the angle whose tangent is the distance from the middle
+    double span_ = 0.0;
+};
+
 }  // namespace
 
 OplBand opl_band(const FocusPair& foci, const Facet& facet) {
@@ -219,55 +264,6 @@ double EllipsoidArcs::invert(const Vec2& angle) const {
     }
     return std::min(result / total_rad_, core::kBelowOne);
 }
-
-namespace {
-
-// Density over the shares of all arcs: uniform, or a Cauchy distribution cut off at 0 and 1.
-class ArcDensity {
- public:
-    ArcDensity(const FocusPair& foci,
-               const EllipsoidSection& section,
-               const EllipsoidArcs& arcs,
-               const ConnectionLobe* lobe) {
-        if (lobe == nullptr) return;
-        const Vec2 nearest = section.angle_of(lobe->point);
-        const Vec3 leg = section.point(nearest) - foci.a;
-        const double distance = leg.norm();
-        const Vec3 direction = leg / distance;
-        const Vec3 tangent = section.tangent(nearest);
-        const double turn_per_share =  // as seen from the focus [rad]
-            arcs.total_rad() * (tangent - direction * direction.dot(tangent)).norm() / distance;
-        const double width_rad = std::hypot(lobe->width_rad, (direction - lobe->direction).norm());
-        scale_ = std::max(width_rad / turn_per_share, kNarrowest);  // stays what is not a number
-        if (!(scale_ < kWidest)) return;
-        is_uniform_ = false;
-        middle_ = arcs.invert(nearest);
-        begin_ = std::atan(-middle_ / scale_);
-        span_ = std::atan((1.0 - middle_) / scale_) - begin_;
-    }
-
-    double sample(double u) const {
-        if (is_uniform_) return u;
-        return std::clamp(middle_ + scale_ * std::tan(begin_ + u * span_), 0.0, core::kBelowOne);
-    }
-    double pdf(double share) const {
-        if (is_uniform_) return 1.0;
-        const double off = (share - middle_) / scale_;
-        return 1.0 / (scale_ * span_ * (1.0 + off * off));
-    }
-
- private:
-    static constexpr double kNarrowest = 1e-4;
-    static constexpr double kWidest = 1.0;  // a lobe as wide as all arcs decides nothing
-
-    bool is_uniform_ = true;
-    double middle_ = 0.0;
-    double scale_ = 1.0;
-    double begin_ = 0.0;  ///< of the angle whose tangent is the distance from the middle
-    double span_ = 0.0;
-};
-
-}  // namespace
 
 std::optional<EllipsoidalConnection> sample_ellipsoid(
     const FocusPair& foci, double opl_m, const Facet& facet, double u, const ConnectionLobe* lobe) {

@@ -55,6 +55,9 @@ class TriangleHierarchy {
                          const OplBand& lengths,
                          std::uint32_t facet) const;
 
+    /// The part of an interval that a facet's lengths cover; empty (width 0) when there is none.
+    OplBand part_of(const OplBand& lengths, const FocusPair& foci, std::uint32_t facet) const;
+
  private:
     friend class HierarchyCut;
 
@@ -101,9 +104,6 @@ class TriangleHierarchy {
                                          double& probability) const;
     /// Probability that the descent from `top` ends at a facet; 0 when it lies elsewhere.
     double descent_probability(std::int32_t top, const Query& query, std::uint32_t facet) const;
-    /// The part of an interval that a facet's lengths cover; empty (width 0) when there is none.
-    OplBand part_of(const OplBand& lengths, const FocusPair& foci, std::uint32_t facet) const;
-
     const Scene* scene_;
     core::Vec3 origin_ = core::Vec3::Zero();
     float margin_m_ = 0.0F;  ///< of lengths and box sizes, above the rounding of both
