@@ -109,7 +109,12 @@ double HierarchyCut::facet_weight(std::uint32_t index, OplBand& lengths) const {
     lengths.low_m = std::max(band.low_m, lengths_.low_m);
     lengths.high_m = std::min(band.high_m, lengths_.high_m);
     if (!(lengths.width_m() > 0.0)) return 0.0;
-    return facet.area_m2 * lengths.width_m() / band.width_m() * at_a * at_b;
+    // The legs asked for are shorter or longer than those to the centroid; cosines fall with them.
+    const double longer =
+        2.0 * ends_.foci.opl_m(facet.corner + arm) / (lengths.low_m + lengths.high_m);
+    const double longer2 = longer * longer;
+    const double longer8 = (longer2 * longer2) * (longer2 * longer2);
+    return facet.area_m2 * lengths.width_m() / band.width_m() * at_a * at_b * longer8;
 }
 
 double HierarchyCut::share(std::size_t entry) const {

@@ -2,10 +2,10 @@
 #include "renderer/triangle_hierarchy.h"
 
 #include "renderer/core/sampling.h"
+#include "renderer/facet_split.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace renderer {
 namespace {
@@ -16,6 +16,10 @@ using core::Vec3;
 constexpr double kMargin = 4e-6;
 // Added to the spread of normals: above the rounding of cosines.
 constexpr float kSpreadMargin = 1e-3F;
+// Of a leg, relative to the radius of a box that may hold its end.
+constexpr float kShortestLeg = 0.1F;
+// Levels that may be lopsided. Facets that cannot be told apart need no more.
+constexpr int kDeepestCut = 40;
 
 Eigen::AlignedBox3d box_of(const Facet& facet) {
     Eigen::AlignedBox3d box(facet.corner);
@@ -24,26 +28,20 @@ Eigen::AlignedBox3d box_of(const Facet& facet) {
     return box;
 }
 
-Vec3 centroid_of(const Facet& facet) {
-    return facet.corner + (facet.edge1 + facet.edge2) / 3.0;
-}
-
 }  // namespace
 
-// Splits facets at the median of the longest axis of their centroids, three times per node.
 struct TriangleHierarchy::Builder {
     using Range = std::span<std::uint32_t>;
 
     TriangleHierarchy& tree;
     std::span<const Facet> facets;
 
-    std::int32_t add_node(Range range, Place parent, std::uint32_t first) {
+    std::int32_t add_node(Range range, Place parent, std::uint32_t first, int depth) {
         const auto index = static_cast<std::int32_t>(tree.nodes_.size());
         tree.nodes_.emplace_back();
         tree.parents_.push_back(parent);
         tree.first_leaf_.push_back(first);
-        std::vector<Range> parts;
-        split(range, 3, parts);
+        const std::vector<Range> parts = split_facets(range, facets, kWidth, depth > kDeepestCut);
         std::uint32_t position = first;
         for (std::int32_t slot = 0; slot < kWidth; ++slot) {
             const auto part_index = static_cast<std::size_t>(slot);
@@ -60,34 +58,12 @@ struct TriangleHierarchy::Builder {
                 tree.places_[part[0]] = {index, slot};
                 tree.positions_[part[0]] = position;
             } else {
-                child = add_node(part, {index, slot}, position);
+                child = add_node(part, {index, slot}, position, depth + 1);
             }
             tree.nodes_[static_cast<std::size_t>(index)].child[part_index] = child;
             position += static_cast<std::uint32_t>(part.size());
         }
         return index;
-    }
-
-    void split(Range range, int levels, std::vector<Range>& parts) {
-        if (range.size() < 2 || levels == 0) {
-            if (!range.empty()) parts.push_back(range);
-            return;
-        }
-        Eigen::AlignedBox3d box;
-        for (const std::uint32_t f : range) box.extend(centroid_of(facets[f]));
-        Eigen::Index axis = 0;
-        box.sizes().maxCoeff(&axis);
-        const std::size_t middle = range.size() / 2;
-        std::nth_element(range.begin(),
-                         range.begin() + static_cast<std::ptrdiff_t>(middle),
-                         range.end(),
-                         [&](std::uint32_t i, std::uint32_t j) {
-                             const double x = centroid_of(facets[i])[axis];
-                             const double y = centroid_of(facets[j])[axis];
-                             return x < y || (x == y && i < j);
-                         });
-        split(range.first(middle), levels - 1, parts);
-        split(range.subspan(middle), levels - 1, parts);
     }
 
     // Facets that may be lit on either side count with the normal that agrees with the first.
@@ -148,58 +124,78 @@ TriangleHierarchy::TriangleHierarchy(const Scene& scene,
     margin_m_ = static_cast<float>(kMargin * all.sizes().norm());
     order_.reserve(facets.size());
     std::vector<std::uint32_t> ids(facets.begin(), facets.end());
-    Builder builder{*this, scene.facets()};
-    builder.add_node(ids, {}, 0);
+    Builder{*this, scene.facets()}.add_node(ids, {}, 0, 0);
 }
 
-// Bounds over a box: centre c, half diagonal r, d = focus - c. Lengths lie between the sums of the
-// least and of the largest distances. A normal n within the chord `spread` of the axis m has
-// n.(focus - x) >= ... <= m.d + r + spread |d|, so its cosine can be positive only when
-// m.d/|d| + r/|d| + spread is; likewise at the ends.
+// Bounds over a box: centre c, d = focus - c. A normal n within the chord `spread` of the axis m
+// has n.(focus - x) <= m.d + (half the box along m) + spread |focus - x|: a facet turns towards the
+// focus only where that is positive, and so for what lies above an end's horizon. What is not 0 is
+// an estimate, for legs whose sum is the middle of what is asked and whose product is that of the
+// shortest and the longest: for a facet that is large against its distance they are those of the
+// part that has the length.
 TriangleHierarchy::Lanes TriangleHierarchy::importance(const Node& node, const Query& q) const {
     struct End {
-        Lanes nearest2 = Lanes::Zero();
-        Lanes farthest2 = Lanes::Zero();
-        Lanes distance2 = Lanes::Zero();
+        std::array<Lanes, 3> gap;  ///< to the box along each axis
+        Lanes nearest = Lanes::Zero();
+        Lanes farthest = Lanes::Zero();
         Lanes along_axis = Lanes::Zero();
         Lanes above_end = Lanes::Zero();
     };
+    Lanes half_along_axis = Lanes::Zero();
+    for (std::size_t k = 0; k < 3; ++k) half_along_axis += node.axis[k].abs() * node.half_size[k];
     const auto bound = [&](const Eigen::Vector3f& focus, const Eigen::Vector3f& normal) {
         End end;
         for (std::size_t k = 0; k < 3; ++k) {
             const auto i = static_cast<Eigen::Index>(k);
             const Lanes d = focus[i] - node.center[k];
             const Lanes size = d.abs();
-            end.nearest2 += (size - node.half_size[k]).max(0.0F).square();
-            end.farthest2 += (size + node.half_size[k]).square();
-            end.distance2 += d.square();
+            end.gap[k] = (size - node.half_size[k]).max(0.0F);
+            end.nearest += end.gap[k].square();
+            end.farthest += (size + node.half_size[k]).square();
             end.along_axis += node.axis[k] * d;
-            end.above_end -= normal[i] * d;
+            end.above_end += std::abs(normal[i]) * node.half_size[k] - normal[i] * d;
         }
+        end.nearest = end.nearest.sqrt();
+        end.farthest = end.farthest.sqrt();
         return end;
     };
     const End a = bound(q.a, q.normal_a);
     const End b = q.coincide ? a : bound(q.b, q.normal_b);
 
-    const Lanes low = (a.nearest2.sqrt() + b.nearest2.sqrt()).max(q.apart) - margin_m_;
-    const Lanes high = a.farthest2.sqrt() + b.farthest2.sqrt() + margin_m_;
-    const Lanes asked = high.min(q.to) - low.max(q.from);
+    Lanes low = a.nearest + b.nearest;
+    if (!q.coincide) {
+        // Two legs are together at least as long as one by the sums of their sizes along the axes.
+        Lanes straight2 = Lanes::Zero();
+        for (std::size_t k = 0; k < 3; ++k) {
+            const auto i = static_cast<Eigen::Index>(k);
+            straight2 += (a.gap[k] + b.gap[k]).max(std::abs(q.a[i] - q.b[i])).square();
+        }
+        low = low.max(straight2.sqrt());
+    }
+    low -= margin_m_;
+    const Lanes high = a.farthest + b.farthest + margin_m_;
+    const Lanes from = low.max(q.from);
+    const Lanes to = high.min(q.to);
+    const Lanes length = 0.5F * (from + to);
+    const Lanes shortest_a = a.nearest.max(length - b.farthest).max(0.5F * (length - q.apart));
+    const Lanes longest_a =
+        a.farthest.min(length - b.nearest).min(0.5F * (length + q.apart)).max(shortest_a);
+    const Lanes least2 = (kShortestLeg * node.radius).square();
+    const Lanes inverse_a = (shortest_a * longest_a).max(least2).rsqrt();
+    const Lanes inverse_b = ((length - shortest_a) * (length - longest_a)).max(least2).rsqrt();
 
-    const Lanes radius2 = node.radius.square();
-    const Lanes inverse_a = a.distance2.max(radius2).rsqrt();
-    const Lanes inverse_b = b.distance2.max(radius2).rsqrt();
-    const Lanes slack_a = node.spread + node.radius * inverse_a;
-    const Lanes slack_b = node.spread + node.radius * inverse_b;
-    const Lanes cosine_a = a.along_axis * inverse_a;
-    const Lanes cosine_b = b.along_axis * inverse_b;
-    const auto cosine_bound = [](const Lanes& value) -> Lanes { return value.max(0.0F).min(1.0F); };
-    const Lanes front = cosine_bound(cosine_a + slack_a) * cosine_bound(cosine_b + slack_b);
-    const Lanes back =
-        node.two_sided * cosine_bound(slack_a - cosine_a) * cosine_bound(slack_b - cosine_b);
-    const Lanes at_a = cosine_bound((a.above_end + node.radius) * inverse_a + q.base_a);
-    const Lanes at_b = cosine_bound((b.above_end + node.radius) * inverse_b + q.base_b);
+    const auto cosine = [](const Lanes& value) -> Lanes { return value.max(0.0F).min(1.0F); };
+    const Lanes slack_a = half_along_axis + node.spread * a.farthest;
+    const Lanes slack_b = half_along_axis + node.spread * b.farthest;
+    const Lanes front =
+        cosine((slack_a + a.along_axis) * inverse_a) * cosine((slack_b + b.along_axis) * inverse_b);
+    const Lanes back = node.two_sided * cosine((slack_a - a.along_axis) * inverse_a) *
+                       cosine((slack_b - b.along_axis) * inverse_b);
+    const Lanes at_a = cosine(a.above_end * inverse_a + q.base_a);
+    const Lanes at_b = cosine(b.above_end * inverse_b + q.base_b);
     const Lanes falloff = (inverse_a * inverse_b).square();
-    return node.area * (asked.max(0.0F) / (high - low)) * front.max(back) * at_a * at_b * falloff;
+    return node.area * ((to - from).max(0.0F) / (high - low)) * front.max(back) * at_a * at_b *
+           falloff;
 }
 
 TriangleHierarchy::Query TriangleHierarchy::make_query(const ConnectionEnds& ends,

@@ -26,8 +26,8 @@ struct FacetChoice {
 /// A tree over the facets that ellipsoidal connections use, eight children per node.
 ///
 /// A descent picks children with probabilities proportional to an estimate of what they carry: area
-/// x share of their lengths that is asked for x bounds of the four cosines / squared distances, or
-/// 0 when bounds prove that they carry nothing. Children are tested eight at a time in single
+/// x share of their lengths that is asked for x the four cosines / squared distances, or 0 when
+/// bounds prove that they carry nothing. Children are tested eight at a time in single
 /// precision, relative to the centre of the set; all bounds are widened by more than its rounding.
 class TriangleHierarchy {
  public:

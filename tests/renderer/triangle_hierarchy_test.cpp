@@ -135,7 +135,10 @@ double carried(const ConnectionEnds& ends, const renderer::Facet& facet, const V
 bool is_inside_of_ball(const Scene& scene, std::uint32_t facet, const ConnectionEnds& ends) {
     const renderer::Facet& f = scene.facet(facet);
     if (scene.object_of(facet).name != "ball") return false;
-    const Vec3 outward = f.corner - Vec3(0.3, 0.2, 1.2);
+    Vec3 middle = Vec3::Zero();
+    const auto& vertices = scene.object_of(facet).mesh.vertices;
+    for (const Vec3& v : vertices) middle += v / static_cast<double>(vertices.size());
+    const Vec3 outward = f.corner - middle;
     const double side = f.normal.dot(outward) > 0.0 ? 1.0 : -1.0;
     return side * f.normal.dot(ends.foci.a - f.corner) <= 0.0;
 }
@@ -164,6 +167,63 @@ TEST(TriangleHierarchy, EveryPointThatCarriesSomethingCanBeDrawn) {
         }
     }
     EXPECT_GT(checked, 10'000);
+}
+
+// The walls of a room, metres long, and a ball of many facets in it; no side is told apart.
+Scene room_with_ball() {
+    renderer::SceneGeometry geometry;
+    const auto add_wall = [&](const Vec3& corner, const Vec3& edge1, const Vec3& edge2) {
+        geometry.objects.push_back(test_support::parallelogram_object({corner, edge1, edge2}));
+    };
+    add_wall(Vec3(-1, -1, -1), Vec3(2, 0, 0), Vec3(0, 2, 0));
+    add_wall(Vec3(-1, -1, -1), Vec3(0, 2, 0), Vec3(0, 0, 2));
+    add_wall(Vec3(1, -1, -1), Vec3(0, 2, 0), Vec3(0, 0, 2));
+    add_wall(Vec3(-1, -1, -1), Vec3(2, 0, 0), Vec3(0, 0, 2));
+    add_wall(Vec3(-1, 1, -1), Vec3(2, 0, 0), Vec3(0, 0, 2));
+    geometry.objects.push_back(test_support::sphere_object(Vec3(-0.4, -0.6, -0.5), 0.2, 3, 1.0));
+    geometry.objects.back().name = "ball";
+    return {
+        std::move(geometry), test_support::confocal_scan({Vec3(9, 9, 0)}), renderer::RelayWall{}};
+}
+
+// How far draws are from following what facets carry: E[(carried / pdf)^2] / E[carried / pdf]^2,
+// 1 for perfect ones, in a gate of 1 cm between points of the room and a light, visibility aside.
+// The median over these ends is 2.1 and a tenth lies above 4.6. When the ball's facets shared nodes
+// with walls, and walls were judged by the distance to their middle, it was 5.9 and 17.
+TEST(ConnectionTechnique, DrawsFollowWhatFacetsCarry) {
+    core::Rng rng(test_support::seed_of("DrawsFollowWhat"), 0, 0);
+    const Scene scene = room_with_ball();
+    const auto technique = technique_of(scene);
+    constexpr std::size_t kEnds = 60;
+    constexpr int kDraws = 4'000;
+    std::vector<double> spreads;
+    while (spreads.size() < kEnds) {
+        const auto wall = static_cast<std::uint32_t>(rng.uniform() * 10.0);
+        const double u1 = rng.uniform();
+        const Vec2 b = core::sample_triangle({u1, rng.uniform()});
+        const Vec3 a = scene.facet(wall).point(b.x(), b.y());
+        const Vec3 normal = scene.facet(wall).normal.dot(a) < 0.0 ? scene.facet(wall).normal
+                                                                  : Vec3(-scene.facet(wall).normal);
+        const ConnectionEnds ends{{a, Vec3(0.3, 0.2, 0.6)}, normal, Vec3::Zero()};
+        const double length = (ends.foci.a - ends.foci.b).norm() + 0.05 + 0.8 * rng.uniform();
+        const OplBand lengths{length, length + 0.01};
+        double sum = 0.0;
+        double squares = 0.0;
+        for (int k = 0; k < kDraws; ++k) {
+            const auto draw = technique.sample(ends, lengths, rng);
+            if (!draw || is_inside_of_ball(scene, draw->point.facet, ends)) continue;
+            const double estimate =
+                carried(ends, scene.facet(draw->point.facet), draw->point.position) /
+                draw->pdf_area;
+            sum += estimate;
+            squares += estimate * estimate;
+        }
+        if (!(sum > 0.0)) continue;  // the ellipsoid meets nothing but the end's own wall
+        spreads.push_back(kDraws * squares / (sum * sum));
+    }
+    std::sort(spreads.begin(), spreads.end());
+    EXPECT_LT(spreads[kEnds / 2], 3.0);
+    EXPECT_LT(spreads[kEnds * 9 / 10], 10.0);
 }
 
 // E[carried / pdf] over draws against the integral over all facets by stratified points.
