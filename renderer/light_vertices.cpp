@@ -157,6 +157,9 @@ void LightVertices::find(const PathDomain& domain,
     const float margin = kRoundingShare * (std::abs(end_f) + std::abs(begin_f) + start.norm());
     const float low = begin_f - margin;
     const float high = end_f + margin;
+    // There and back: the first vertex of a walk is its only one.
+    const bool same_legs =
+        by_area_ && domain.ends.coincide && points_.size() + 1 == walk_begin_.size();
     const std::uint32_t last = walk_begin_[static_cast<std::size_t>(walks.first + walks.count)];
     for (std::uint32_t v = walk_begin_[static_cast<std::size_t>(walks.first)]; v < last;) {
         std::array<float, kVerticesAtOnce> length;
@@ -167,7 +170,8 @@ void LightVertices::find(const PathDomain& domain,
             const float dz = z_[v + i] - start.z();
             length[i] = std::sqrt(dx * dx + dy * dy + dz * dz) + to_light_m_[v + i];
         }
-        for (std::uint32_t i = 0; by_area_ && i < count; ++i) {
+        for (std::uint32_t i = 0; same_legs && i < count; ++i) length[i] *= 2.0F;
+        for (std::uint32_t i = 0; by_area_ && !same_legs && i < count; ++i) {
             const float lx = first_x_[v + i] - light.x();
             const float ly = first_y_[v + i] - light.y();
             const float lz = first_z_[v + i] - light.z();

@@ -59,11 +59,11 @@ PathCandidates::PathCandidates(const Scene& scene,
       walk_(&walk),
       integrand_(scene, walk, settings),
       light_vertices_(scene, walk, measurement),
-      shared_walks_(settings.restir.candidates == Candidates::Shared ? settings.restir.shared_walks
-                                                                     : 0),
+      shared_walks_(has_shared_walks(settings.restir.candidates) ? settings.restir.shared_walks
+                                                                 : 0),
       max_vertices_(settings.max_bounces - measurement.first_order() +
                     (measurement.is_image() ? 0 : 1)) {
-    if (settings.restir.candidates == Candidates::Ellipsoidal) {
+    if (has_connections(settings.restir.candidates)) {
         connections_.emplace(scene, ExcludedFacets::of(scene, settings), scan);
     }
 }

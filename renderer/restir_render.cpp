@@ -27,7 +27,7 @@ constexpr std::size_t kPairsPerBlock = 64;
 constexpr std::uint64_t kMostRepeats = 1 << 16;
 
 int candidates_per_frame(const RestirSettings& settings) {
-    return settings.walks + (settings.candidates == Candidates::Shared ? settings.shared_walks : 0);
+    return settings.walks + (has_shared_walks(settings.candidates) ? settings.shared_walks : 0);
 }
 
 // Settings whose frames take no more candidates than are asked for in all.

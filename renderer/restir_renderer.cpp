@@ -133,7 +133,7 @@ ReusablePath placed(ReusablePath path, const PathDomain& domain) {
 PathCandidates::Effort effort_of(const RestirSettings& settings, double share) {
     PathCandidates::Effort effort;
     effort.walks = std::max(1, static_cast<int>(std::lround(share * settings.walks)));
-    if (settings.candidates == Candidates::Shared) {
+    if (has_shared_walks(settings.candidates)) {
         effort.shared_walks = static_cast<int>(std::lround(share * settings.shared_walks));
     }
     return effort;

@@ -17,7 +17,8 @@ enum class Gauge { Average, Start, Fixed, Midpoint, Symmetric, Flow };
 enum class Candidates {
     Path,         ///< independent walks from the sensor
     Ellipsoidal,  ///< these, and from each of their vertices an ellipsoidal connection to the light
-    Shared  ///< walks from the light, shared by all pairs and tested for length before any ray
+    Shared,  ///< walks from the light, shared by all pairs and tested for length before any ray
+    All      ///< both
 };
 
 /// Reservoir reuse: what the estimator `restir` is told; the others leave it alone.
@@ -36,11 +37,20 @@ struct RestirSettings {
     bool reverse_check = true;
 };
 
+inline bool has_connections(Candidates kind) {
+    return kind == Candidates::Ellipsoidal || kind == Candidates::All;
+}
+inline bool has_shared_walks(Candidates kind) {
+    return kind == Candidates::Shared || kind == Candidates::All;
+}
+
 template <class Visitor>
 void for_each_field(RestirSettings& s, Visitor&& visit) {
     visit("candidates", s.candidates, "what reservoirs choose from");
     visit("walks", s.walks, "walks from the sensor, per pair and frame");
-    visit("shared_walks", s.shared_walks, "shared: walks from the light tried, per pair and frame");
+    visit("shared_walks",
+          s.shared_walks,
+          "shared, all: walks from the light tried, per pair and frame");
     visit("reuse", s.reuse, "how paths are reused");
     visit("chart", s.chart, "coordinates in which a vertex moves");
     visit("gauge", s.gauge, "what fixes the second coordinate");
@@ -56,10 +66,11 @@ void for_each_field(RestirSettings& s, Visitor&& visit) {
 
 template <>
 struct core::EnumNames<renderer::Candidates> {
-    static constexpr std::array<std::pair<renderer::Candidates, std::string_view>, 3> value{
+    static constexpr std::array<std::pair<renderer::Candidates, std::string_view>, 4> value{
         {{renderer::Candidates::Path, "path"},
          {renderer::Candidates::Ellipsoidal, "ellipsoidal"},
-         {renderer::Candidates::Shared, "shared"}}};
+         {renderer::Candidates::Shared, "shared"},
+         {renderer::Candidates::All, "all"}}};
 };
 template <>
 struct core::EnumNames<renderer::Reuse> {

@@ -72,6 +72,8 @@ SequenceBench run_method(const SequenceCase& sequence,
     SequenceBench bench;
     bench.sequence = sequence.name;
     bench.method = method.name;
+    // Integrated frames are the same for every seed.
+    if (setup.description.render.method == renderer::Estimator::ThirdBounce) num_seeds = 1;
     SequenceErrors errors(static_cast<std::size_t>(sequence.num_frames));
     renderer::RestirCounts counts;
     for (int seed = 0; seed < num_seeds; ++seed) {
@@ -212,21 +214,31 @@ std::vector<SequenceMethod> standard_methods(const SequenceCase& sequence) {
     const auto near = [&](int moving) {
         return fmt::format("render.restir.neighbours={}", is_static ? 0 : moving);
     };
-    const int memory = is_image ? 8 : 5;
-    const std::string walks = is_image ? "render.restir.walks=2" : "render.restir.walks=8";
-    const std::string shared = fmt::format("render.restir.shared_walks={}", is_image ? 512 : 1024);
+    // On images few neighbours and more walks keep down what single bright paths do to a pixel.
+    const std::string memory = cap(5);
+    const std::string few = near(is_image ? 1 : 3);
+    const std::string walks = "render.restir.walks=8";
+    const std::string shared = fmt::format("render.restir.shared_walks={}", is_image ? 512 : 2048);
     const std::string restir = "render.method=restir";
     const std::string ellipsoidal = "render.restir.candidates=ellipsoidal";
+    const std::string on_paths = "render.restir.candidates=path";
+    const std::string on_all = "render.restir.candidates=all";
+    const std::string alone = "render.restir.reuse=none";
     std::vector<SequenceMethod> methods{
         {"path", {"render.method=path", is_image ? "render.samples=16" : "render.samples=128"}},
         {"ellipsoidal",
          {"render.method=ellipsoidal", is_image ? "render.samples=4" : "render.samples=32"}},
         {"naive, ellipsoidal",
-         {restir, ellipsoidal, walks, cap(memory), near(3), "render.restir.reuse=naive"}},
-        {"restir, walks", {restir, "render.restir.candidates=path", walks, cap(memory), near(3)}},
-        {"restir, ellipsoidal", {restir, ellipsoidal, walks, cap(memory), near(3)}},
-        {"shared alone", {restir, shared, "render.restir.reuse=none"}},
-        {"restir, shared", {restir, shared, cap(is_image ? 5 : 2), near(is_image ? 3 : 0)}}};
+         {restir, ellipsoidal, walks, memory, few, "render.restir.reuse=naive"}},
+        {"restir, walks", {restir, on_paths, walks, memory, few}},
+        {"restir, ellipsoidal", {restir, ellipsoidal, walks, memory, few}},
+        {"shared alone", {restir, shared, alone}},
+        {"restir, shared", {restir, shared, cap(is_image ? 5 : 2), near(is_image ? 1 : 0)}}};
+    if (is_image) {
+        const std::string three = "render.restir.walks=3";
+        methods.push_back({"all alone", {restir, on_all, three, shared, alone}});
+        methods.push_back({"restir, all", {restir, on_all, three, shared, memory, few}});
+    }
     if (is_integrable(setup)) {
         methods.push_back({"third_bounce", {"render.method=third_bounce"}});
     }

@@ -129,6 +129,11 @@ const std::vector<Case> kCases{
          s.restir.walks = 16;
          s.exclude = renderer::Exclusion::None;
      }},
+    {"all",
+     [](auto& s) {
+         s.restir.candidates = renderer::Candidates::All;
+         s.restir.walks = 8;
+     }},
     {"one_round", [](auto&) {}},
     {"eight_rounds", [](auto& s) { s.restir.rounds = 8; }},
     {"naive", [](auto& s) { s.restir.reuse = renderer::Reuse::Naive; }},
