@@ -100,17 +100,23 @@ core::Transient prepare_histograms(const core::Transient& transient, const Prepa
     core::parallel_for(prepared.num_pairs(), [&](std::size_t pair) {
         const auto input = transient.histogram(pair);
         const auto output = prepared.histogram(pair);
-        const auto first_filled = static_cast<std::size_t>(
-            std::find_if(input.begin(), input.end(), [](float value) { return value != 0.0F; }) -
-            input.begin());
-        const double ambient = plan.ambient_per_bin.empty() ? 0.0 : plan.ambient_per_bin[pair];
+        std::vector<double> signal(input.begin(), input.end());
+        const auto first_filled =
+            std::find_if(signal.begin(), signal.end(), [](double value) { return value != 0.0; });
+        if (!plan.ambient_per_bin.empty()) {
+            // Bins zeroed at the start of the axis hold no ambient light either.
+            std::for_each(first_filled, signal.end(), [&](double& value) {
+                value -= plan.ambient_per_bin[pair];
+            });
+        }
+        if (plan.deconvolution) {
+            plan.deconvolution->apply(signal);
+            std::fill(signal.begin(), first_filled, 0.0);
+        }
         for (std::size_t bin = 0; bin < output.size(); ++bin) {
-            double sum = 0.0;
-            for (std::size_t i = bin * merge; i < (bin + 1) * merge; ++i) {
-                // Bins zeroed at the start of the axis hold no ambient light either.
-                sum += static_cast<double>(input[i]) - (i >= first_filled ? ambient : 0.0);
-            }
-            output[bin] = static_cast<float>(sum);
+            const auto first = signal.begin() + static_cast<std::ptrdiff_t>(bin * merge);
+            output[bin] = static_cast<float>(
+                std::accumulate(first, first + static_cast<std::ptrdiff_t>(merge), 0.0));
         }
     });
     return prepared;

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "nlos/response_deconvolution.h"
 #include "renderer/core/capture.h"
 #include "renderer/core/time_axis.h"
 #include "renderer/core/transient.h"
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -32,9 +34,12 @@ struct PreparationPlan {
     int merge_bins = 1;
     int num_bins = 0;                     ///< after merging; later bins are dropped
     std::vector<double> ambient_per_bin;  ///< per pair, before merging; empty: none
+    /// Of histograms of the capture's length, null: none.
+    std::shared_ptr<const ResponseDeconvolution> deconvolution = nullptr;
 };
 
-/// Takes off ambient light, adds up neighbouring bins and drops those behind the plan's end.
+/// Takes off ambient light, then the set-up's response, adds up neighbouring bins and drops those
+/// behind the plan's end. Bins zeroed at the start of a histogram stay 0.
 core::Transient prepare_histograms(const core::Transient& transient, const PreparationPlan& plan);
 
 /// Multiplies every bin by range^power, range being half its path length without device legs; bins

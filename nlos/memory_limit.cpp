@@ -6,10 +6,17 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace nlos {
 
-void require_memory(double needed_bytes) {
+double memory_budget(std::optional<double> limit_gb) {
     const auto available = static_cast<double>(core::available_memory_bytes());
+    return limit_gb ? std::min(1e9 * *limit_gb, available) : available;
+}
+
+void require_memory(double needed_bytes, std::optional<double> limit_gb) {
+    const double available = memory_budget(limit_gb);
     if (needed_bytes <= available) return;
     throw core::Failure(
         "reconstruct",

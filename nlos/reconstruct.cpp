@@ -40,6 +40,17 @@ int default_merge_bins(const core::TimeAxis& axis, const WallFrame& wall) {
     return merge;
 }
 
+/// What takes the stated response off histograms; null when none is stated.
+std::shared_ptr<const ResponseDeconvolution> deconvolution_of(const ReconstructSettings& settings,
+                                                              const core::TimeAxis& axis) {
+    const core::ResponseSettings& stated = settings.response;
+    if (stated.jitter_fwhm_ps == 0.0 && stated.tail_ps == 0.0 && stated.curve.empty()) return {};
+    const core::ResponseFilter filter =
+        core::sample_response(core::make_response(stated, "response"), axis.bin_width_m);
+    return std::make_shared<const ResponseDeconvolution>(
+        filter, static_cast<std::size_t>(axis.num_bins), settings.response_floor);
+}
+
 /// Fills in merge_bins, ambient and, where a method has it, snr, and says what becomes of the
 /// histograms.
 PreparationPlan choose_preparation(const Measurement& measurement, ReconstructSettings& settings) {
@@ -70,6 +81,7 @@ PreparationPlan choose_preparation(const Measurement& measurement, ReconstructSe
             plan.ambient_per_bin.assign(measurement.scan.num_pairs(), *settings.noise_floor);
         }
     }
+    plan.deconvolution = deconvolution_of(settings, axis);
     const bool has_filter = settings.method == Method::Dlct ||
                             (settings.method == Method::Lct && settings.prior == Prior::None);
     if (has_filter && !settings.snr) {
@@ -188,7 +200,7 @@ double method_bytes(const MethodInput& input,
 std::size_t choose_slabs(const MethodInput& input,
                          const ReconstructSettings& settings,
                          double other_bytes) {
-    const auto available = static_cast<double>(core::available_memory_bytes());
+    const double available = memory_budget(settings.memory_gb);
     for (std::size_t num_slabs = 1; num_slabs <= kMostSlabs; ++num_slabs) {
         if (other_bytes + method_bytes(input, settings, num_slabs) <= available) return num_slabs;
     }
@@ -266,7 +278,7 @@ Reconstruction reconstruct(const core::Capture& capture,
     choose_axes(measurement.scan, axis, measurement.wall, result.settings, axes);
 
     const bool is_ready = plan.num_bins == measurement.time_axis.num_bins &&
-                          plan.ambient_per_bin.empty() &&
+                          plan.ambient_per_bin.empty() && !plan.deconvolution &&
                           !makes_up_for_falloff(measurement.scan, result.settings);
     const auto input_with = [&](const core::Transient& transient) {
         return MethodInput{measurement.scan,
@@ -282,7 +294,7 @@ Reconstruction reconstruct(const core::Capture& capture,
     const MethodInput unprepared = input_with(measurement.transient());
     const std::size_t num_slabs = choose_slabs(unprepared, result.settings, prepared_bytes);
     const double work_bytes = prepared_bytes + method_bytes(unprepared, result.settings, num_slabs);
-    require_memory(work_bytes);
+    require_memory(work_bytes, settings.memory_gb);
     result.stated_bytes = work_bytes + measurement.own_bytes();
     announce(result, num_slabs, progress);
     check_stop(progress);

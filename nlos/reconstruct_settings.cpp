@@ -53,6 +53,16 @@ void validate(const ReconstructSettings& settings) {
             "mask_threshold",
             fmt::format("{}", settings.mask_threshold),
             "must lie between 0 and 1");
+    if (settings.memory_gb) {
+        require(*settings.memory_gb > 0.0 && std::isfinite(*settings.memory_gb),
+                "memory_gb",
+                fmt::format("{}", *settings.memory_gb),
+                "must be positive");
+    }
+    require(settings.response_floor > 0.0 && settings.response_floor < 1.0,
+            "response_floor",
+            fmt::format("{}", settings.response_floor),
+            "must lie between 0 and 1");
     if (settings.noise_floor) {
         require(*settings.noise_floor >= 0.0 && std::isfinite(*settings.noise_floor),
                 "noise_floor",

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "renderer/core/instrument_response.h"
 #include "renderer/core/settings.h"
 
 #include <array>
@@ -68,12 +69,15 @@ struct ReconstructSettings {
     PhasorSettings phasor;
     TvSettings tv;
     CropSettings crop;
-    std::optional<double> snr;  ///< Wiener filter of lct, dlct; empty: see wiener_snr()
+    std::optional<double> snr;        ///< Wiener filter of lct, dlct; empty: see wiener_snr()
+    core::ResponseSettings response;  ///< of the set-up, to take off; all 0: none
+    double response_floor = 0.1;      ///< see ResponseDeconvolution
     Ambient ambient = Ambient::Auto;
     std::optional<double>
-        noise_floor;                ///< background per bin; empty: each pair's, see find_signal()
-    std::optional<int> merge_bins;  ///< neighbouring bins added up first; empty: from the pitch
-    double mask_threshold = 0.2;    ///< of the maximum: foreground of depth map and points
+        noise_floor;                  ///< background per bin; empty: each pair's, see find_signal()
+    std::optional<int> merge_bins;    ///< neighbouring bins added up first; empty: from the pitch
+    double mask_threshold = 0.2;      ///< of the maximum: foreground of depth map and points
+    std::optional<double> memory_gb;  ///< to take at most; empty: what the machine has
 };
 
 template <class Visitor>
@@ -125,6 +129,11 @@ void for_each_field(ReconstructSettings& s, Visitor&& visit) {
         s.snr,
         "signal to noise ratio of the Wiener filter (lct, dlct); null: from the noise of counts, 1 "
         "for radiance");
+    visit("response", s.response, "response of laser and detector to take off the histograms");
+    visit("response_floor",
+          s.response_floor,
+          "ratio of noise to signal, as amplitudes: frequencies of which the response leaves less "
+          "are not restored");
     visit("ambient",
           s.ambient,
           "constant background light, and bins behind the signal's end; auto: taken off counts");
@@ -137,6 +146,10 @@ void for_each_field(ReconstructSettings& s, Visitor&& visit) {
           "neighbouring bins added up first; null: as many as keep a bin's range within a quarter "
           "of the distance of scan points");
     visit("mask_threshold", s.mask_threshold, "share of the maximum that counts as foreground");
+    visit("memory_gb",
+          s.memory_gb,
+          "memory to take at most, beside the capture's [GB]; lct and dlct then work in slabs, "
+          "others refuse; null: what is free");
 }
 
 inline constexpr int kMaxVoxelsPerAxis = 65536;
