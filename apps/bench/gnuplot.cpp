@@ -17,6 +17,7 @@ std::string script_of(const LogPlot& plot, const std::string& terminal, const st
     std::string script = fmt::format(
         "set terminal {}\nset output '{}'\nset logscale xy\nset grid\nset key below reverse Left "
         "samplen 3\n"
+        "set linetype 9 lc rgb '#999999'\nset linetype 10 lc rgb '#8b4513'\nset linetype cycle 10\n"
         "set title '{}'\nset xlabel '{}'\nset ylabel '{}'\nset format '%g'\n",
         terminal,
         target,
