@@ -47,10 +47,7 @@ calib::FitInput make_input(const std::string& capture_path,
 void use_calibration(const calib::AppliedCalibration& calibration, calib::FitInput& input) {
     calib::replace_points(calibration, input.capture.scan);
     input.offset_m = calib::pair_offsets(calibration, input.capture.scan);
-    const core::ResponseSettings& response = input.settings.response;
-    if (response.jitter_fwhm_ps == 0.0 && response.tail_ps == 0.0 && response.curve.empty()) {
-        input.settings.response = calibration.response;
-    }
+    if (!core::is_stated(input.settings.response)) input.settings.response = calibration.response;
 }
 
 void write_results(const calib::FitInput& input,

@@ -43,10 +43,9 @@ int default_merge_bins(const core::TimeAxis& axis, const WallFrame& wall) {
 /// What takes the stated response off histograms; null when none is stated.
 std::shared_ptr<const ResponseDeconvolution> deconvolution_of(const ReconstructSettings& settings,
                                                               const core::TimeAxis& axis) {
-    const core::ResponseSettings& stated = settings.response;
-    if (stated.jitter_fwhm_ps == 0.0 && stated.tail_ps == 0.0 && stated.curve.empty()) return {};
+    if (!core::is_stated(settings.response)) return {};
     const core::ResponseFilter filter =
-        core::sample_response(core::make_response(stated, "response"), axis.bin_width_m);
+        core::sample_response(core::make_response(settings.response, "response"), axis.bin_width_m);
     return std::make_shared<const ResponseDeconvolution>(
         filter, static_cast<std::size_t>(axis.num_bins), settings.response_floor);
 }

@@ -55,6 +55,11 @@ void for_each_field(ResponseSettings& s, Visitor&& visit) {
           "text file of a measured response instead: a delay [ps] and a weight on every line");
 }
 
+/// Whether there is any response.
+inline bool is_stated(const ResponseSettings& settings) {
+    return settings.jitter_fwhm_ps != 0.0 || settings.tail_ps != 0.0 || !settings.curve.empty();
+}
+
 /// Throws Error naming `where` unless widths are finite and not negative and the curve stands alone
 /// and can be read.
 InstrumentResponse make_response(const ResponseSettings& settings, const std::string& where);
