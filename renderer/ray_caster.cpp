@@ -173,7 +173,8 @@ void RayCaster::trace(SegmentPacket& packet) const {
         rays.dir_y[lane] = packet.along_y[i];
         rays.dir_z[lane] = packet.along_z[i];
         rays.tnear[lane] = 0.0F;
-        rays.tfar[lane] = 1.0F;
+        // Where the processor has no vectors of 16, Embree asks the interval, not `valid`.
+        rays.tfar[lane] = lane < packet.count ? 1.0F : -1.0F;
         rays.time[lane] = 0.0F;
         rays.mask[lane] = ~0U;
         rays.flags[lane] = 0;

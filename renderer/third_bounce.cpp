@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/third_bounce.h"
 
+#include "renderer/core/process.h"
 #include "renderer/core/stopwatch.h"
 #include "renderer/third_bounce_scan.h"
 
@@ -37,6 +38,13 @@ constexpr double kCaution = 1.3;
 
 // Pieces whose visibility may be wrong add up; each may err by this much of the whole.
 constexpr double kNegligibleShare = 0.1;
+
+// What visibility may take of the memory that is free.
+constexpr double kShareOfMemory = 0.5;
+
+double memory_for_visibility() {
+    return kShareOfMemory * static_cast<double>(core::available_memory_bytes());
+}
 
 // `count` indices below `size`, spread evenly and out of step with rows of a grid.
 std::vector<std::size_t> spread_indices(std::size_t size, std::size_t count) {
@@ -145,7 +153,8 @@ const Transient& Integrator::try_out(int fineness) {
     const PieceSet pieces = cut(fineness);
     cut_seconds_[fineness] = cutting.seconds();
     const core::Stopwatch watch;
-    ThirdBounceScan trial(scene_, trial_scan_, axis_, pieces, negligible_error(fineness));
+    ThirdBounceScan trial(
+        scene_, trial_scan_, axis_, pieces, negligible_error(fineness), memory_for_visibility());
     Transient& result =
         trials_.try_emplace(fineness, trial_scan_.num_pairs(), axis_.num_bins).first->second;
     trial.integrate(
@@ -217,7 +226,8 @@ int Integrator::integrate(int fineness,
                           const core::Progress& progress,
                           ThirdBounce& result) {
     const PieceSet pieces = cut(fineness);
-    ThirdBounceScan scan(scene_, scan_, axis_, pieces, negligible_error(fineness));
+    ThirdBounceScan scan(
+        scene_, scan_, axis_, pieces, negligible_error(fineness), memory_for_visibility());
     const auto go_on = [&](double share) {
         progress.update(share, fmt::format("{} pieces", pieces.num_pieces));
         return !progress.should_stop();

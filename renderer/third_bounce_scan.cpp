@@ -2,7 +2,6 @@
 #include "renderer/third_bounce_scan.h"
 
 #include "renderer/core/parallel.h"
-#include "renderer/core/process.h"
 #include "renderer/third_bounce_pairs.h"
 
 #include <fmt/core.h>
@@ -18,16 +17,9 @@ using core::Vec3;
 
 constexpr std::size_t kSize = PieceBlock::kSize;
 constexpr std::size_t kPointsPerBlock = 4;
-// A tile's histograms and tables fit the second-level cache.
-constexpr std::size_t kLightsPerTile = 8;
-constexpr std::size_t kSensorsPerTile = 16;
 
 bool is_empty(const VisibilityMask* masks) {
     return std::all_of(masks, masks + kSize, [](VisibilityMask mask) { return mask == 0; });
-}
-
-std::size_t parts_of(std::size_t count, std::size_t size) {
-    return (count + size - 1) / size;
 }
 
 // Where part `part` of `count` items begins.
@@ -38,11 +30,9 @@ std::size_t begin_of_part(int part, std::size_t count) {
 // Tables of some wall points for one block, where they see anything of it.
 class TileTables {
  public:
-    TileTables(std::vector<WallPoint> points,
-               std::size_t first,
-               std::span<const std::vector<VisibilityMask>> masks)
+    TileTables(std::vector<WallPoint> points, std::span<const std::vector<VisibilityMask>> masks)
         : points_(std::move(points)),
-          masks_(masks.subspan(first, points_.size())),
+          masks_(masks),
           tables_(points_.size()),
           ends_(points_.size()) {}
 
@@ -82,12 +72,14 @@ ThirdBounceScan::ThirdBounceScan(const Scene& scene,
                                  const core::Scan& scan,
                                  const core::TimeAxis& axis,
                                  const PieceSet& pieces,
-                                 double negligible_error)
+                                 double negligible_error,
+                                 double memory_bytes)
     : scene_(scene),
       scan_(scan),
       axis_(axis),
       pieces_(pieces),
       negligible_error_(negligible_error),
+      memory_bytes_(memory_bytes),
       light_errors_(scan.illumination.size()),
       sensor_errors_(scan.sensing.size()) {}
 
@@ -159,10 +151,9 @@ void ThirdBounceScan::integrate_confocal(std::size_t first, std::size_t last) {
         });
 }
 
-std::vector<ThirdBounceScan::Masks> ThirdBounceScan::look_from(
-    const core::WallPoints& points,
-    const core::WallPoints& others,
-    std::vector<double>& squared_errors) {
+// What the points of one side need to know of the other side, all of it: so that a point sees the
+// same whatever is looked at with it.
+VisibilityRules ThirdBounceScan::rules_towards(const core::WallPoints& others) const {
     VisibilityRules rules;
     rules.negligible_error = negligible_error_;
     const auto [least_legs, most_legs] = core::device_leg_range_m(scan_);
@@ -184,84 +175,94 @@ std::vector<ThirdBounceScan::Masks> ThirdBounceScan::look_from(
                                         farthest.norm() + block.sphere_radius_m});
         }
     }
-    std::vector<Masks> masks(points.size());
-    core::parallel_blocks(points.size(), kPointsPerBlock, [&](std::size_t begin, std::size_t end) {
+    return rules;
+}
+
+void ThirdBounceScan::look_from(const core::WallPoints& points,
+                                const PointRange& range,
+                                const VisibilityRules& rules,
+                                Views& views,
+                                std::vector<double>& squared_errors) {
+    if (views.range == range) return;
+    views.range = range;
+    views.masks.resize(range.size());
+    core::parallel_blocks(range.size(), kPointsPerBlock, [&](std::size_t begin, std::size_t end) {
         VisibilityTracer tracer(scene_, pieces_);
         for (std::size_t i = begin; i < end; ++i) {
-            const VisibilityCost cost = tracer.trace(wall_point(points, i), rules, masks[i]);
+            const std::size_t point = range.begin + i;
+            const VisibilityCost cost =
+                tracer.trace(wall_point(points, point), rules, views.masks[i]);
             num_rays_ += cost.num_rays;
-            squared_errors[i] = cost.squared_error;
+            squared_errors[point] = cost.squared_error;
         }
     });
-    return masks;
 }
 
 int ThirdBounceScan::integrate_pairs(int first_part,
                                      const std::function<bool(double share)>& go_on) {
-    const std::size_t num_lights =
-        scan_.pattern == core::ScanPattern::Single ? 1 : scan_.illumination.size();
-    const double needed =
-        static_cast<double>(num_lights + scan_.sensing.size()) *
+    const auto bytes_per_point =
         static_cast<double>(pieces_.blocks.size() * kSize * sizeof(VisibilityMask));
-    const auto available = static_cast<double>(core::available_memory_bytes());
-    if (needed > available) {
+    const double fitting = memory_bytes_ / bytes_per_point;
+    if (fitting < PairTiles::kFewestPoints) {
         throw core::Failure(
             "third_bounce",
-            fmt::format("visibility of {} pieces needs {:.1f} GB, {:.1f} GB are free",
+            fmt::format("visibility of {} pieces needs {:.2f} GB, {:.2f} GB are free for it",
                         pieces_.num_pieces,
-                        needed * 1e-9,
-                        available * 1e-9));
+                        PairTiles::kFewestPoints * bytes_per_point * 1e-9,
+                        memory_bytes_ * 1e-9));
     }
-    const std::vector<Masks> light_masks =
-        look_from(scan_.illumination, scan_.sensing, light_errors_);
-    const std::vector<Masks> sensor_masks =
-        look_from(scan_.sensing, scan_.illumination, sensor_errors_);
+    const std::size_t num_lights =
+        scan_.pattern == core::ScanPattern::Single ? 1 : scan_.illumination.size();
+    // Tiles at the edges count as whole ones.
+    const auto enough =
+        static_cast<double>(num_lights + scan_.sensing.size() + PairTiles::kFewestPoints);
+    const PairTiles tiles(
+        num_lights, scan_.sensing.size(), static_cast<std::size_t>(std::min(fitting, enough)));
+    const VisibilityRules from_lights = rules_towards(scan_.sensing);
+    const VisibilityRules from_sensors = rules_towards(scan_.illumination);
+    Views lights;
+    Views sensors;
     constexpr double kShareOfLooking = 0.25;
-    if (!go_on(kShareOfLooking)) return first_part;
-    const std::size_t light_tiles = parts_of(num_lights, kLightsPerTile);
-    const std::size_t sensor_tiles = parts_of(scan_.sensing.size(), kSensorsPerTile);
-    const std::size_t count = light_tiles * sensor_tiles;
     for (int part = first_part; part < kParts; ++part) {
-        const std::size_t begin = begin_of_part(part, count);
-        core::parallel_for(begin_of_part(part + 1, count) - begin, [&](std::size_t i) {
-            integrate_tile((begin + i) / sensor_tiles * kLightsPerTile,
-                           light_masks,
-                           (begin + i) % sensor_tiles * kSensorsPerTile,
-                           sensor_masks);
-        });
-        if (!go_on(kShareOfLooking + (1.0 - kShareOfLooking) * (part + 1.0) / kParts)) {
-            return part + 1;
+        for (const PairTiles::Batch& batch :
+             tiles.batches(static_cast<std::size_t>(part), kParts)) {
+            look_from(scan_.illumination, batch.lights, from_lights, lights, light_errors_);
+            look_from(scan_.sensing, batch.sensors, from_sensors, sensors, sensor_errors_);
+            if (!go_on(kShareOfLooking + (1.0 - kShareOfLooking) * part / kParts)) return part;
+            core::parallel_for(batch.tiles.size(), [&](std::size_t i) {
+                integrate_tile(batch.tiles[i], lights, sensors);
+            });
         }
     }
+    go_on(1.0);
     return kParts;
 }
 
-void ThirdBounceScan::integrate_tile(std::size_t light_begin,
-                                     const std::vector<Masks>& light_masks,
-                                     std::size_t sensor_begin,
-                                     const std::vector<Masks>& sensor_masks) {
-    const auto points = [&](const core::WallPoints& all, std::size_t begin, std::size_t most) {
-        std::vector<WallPoint> tile;
-        for (std::size_t i = begin; i < std::min(all.size(), begin + most); ++i) {
-            tile.push_back(wall_point(all, i));
-        }
-        return tile;
-    };
-    TileTables lights(
-        points(scan_.illumination, light_begin, kLightsPerTile), light_begin, light_masks);
-    TileTables sensors(
-        points(scan_.sensing, sensor_begin, kSensorsPerTile), sensor_begin, sensor_masks);
-    const std::size_t num_sensors = sensors.ends().size();
+void ThirdBounceScan::integrate_tile(const PairTiles::Tile& tile,
+                                     const Views& light_views,
+                                     const Views& sensor_views) {
+    const auto tables =
+        [&](const core::WallPoints& all, const PointRange& range, const Views& views) {
+            std::vector<WallPoint> points;
+            for (std::size_t i = range.begin; i < range.end; ++i)
+                points.push_back(wall_point(all, i));
+            return TileTables(
+                std::move(points),
+                std::span(views.masks).subspan(range.begin - views.range.begin, range.size()));
+        };
+    TileTables lights = tables(scan_.illumination, tile.lights, light_views);
+    TileTables sensors = tables(scan_.sensing, tile.sensors, sensor_views);
+    const std::size_t num_sensors = tile.sensors.size();
     const auto num_bins = static_cast<std::size_t>(axis_.num_bins);
-    std::vector<double> histograms(lights.ends().size() * num_sensors * num_bins);
+    std::vector<double> histograms(tile.lights.size() * num_sensors * num_bins);
     const auto pair_of = [&](std::size_t l, std::size_t s) {
-        return (light_begin + l) * scan_.sensing.size() + sensor_begin + s;
+        return (tile.lights.begin + l) * scan_.sensing.size() + tile.sensors.begin + s;
     };
     for (std::size_t b = 0; b < pieces_.blocks.size(); ++b) {
         const PieceBlock& block = pieces_.blocks[b];
         lights.compute(block, b);
         sensors.compute(block, b);
-        for (std::size_t l = 0; l < lights.ends().size(); ++l) {
+        for (std::size_t l = 0; l < tile.lights.size(); ++l) {
             const PairEnd& light = lights.ends()[l];
             for (std::size_t s = 0; s < num_sensors; ++s) {
                 const PairEnd& sensor = sensors.ends()[s];
@@ -276,7 +277,7 @@ void ThirdBounceScan::integrate_tile(std::size_t light_begin,
             }
         }
     }
-    for (std::size_t i = 0; i < lights.ends().size() * num_sensors; ++i) {
+    for (std::size_t i = 0; i < tile.lights.size() * num_sensors; ++i) {
         store(pair_of(i / num_sensors, i % num_sensors),
               std::span(histograms).subspan(i * num_bins, num_bins));
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "renderer/core/capture.h"
+#include "renderer/pair_tiles.h"
 #include "renderer/third_bounce_visibility.h"
 
 #include <atomic>
@@ -15,12 +16,18 @@ namespace renderer {
 /// Integrates one cut of the surfaces for all pairs of a scan.
 class ThirdBounceScan {
  public:
-    /// All arguments must outlive this; negligible_error as in VisibilityRules.
+    /// All references must outlive this.
+    ///
+    /// negligible_error   as in VisibilityRules
+    /// memory_bytes       that masks of a single or exhaustive scan may take; where it does not
+    ///                    hold those of all points, some points are looked at more than once
+    /// throws             core::Failure when it does not even hold PairTiles::kFewestPoints
     ThirdBounceScan(const Scene& scene,
                     const core::Scan& scan,
                     const core::TimeAxis& axis,
                     const PieceSet& pieces,
-                    double negligible_error);
+                    double negligible_error,
+                    double memory_bytes);
 
     /// The pairs are integrated in this many parts.
     static constexpr int kParts = 16;
@@ -40,18 +47,23 @@ class ThirdBounceScan {
 
  private:
     using Masks = std::vector<VisibilityMask>;
+    /// What some points of one side of the scan see of all pieces.
+    struct Views {
+        PointRange range;
+        std::vector<Masks> masks;  ///< one per point of the range
+    };
 
     WallPoint wall_point(const core::WallPoints& points, std::size_t index) const;
     core::TimeAxis axis_of_pair(std::size_t pair) const;
     void integrate_confocal(std::size_t begin, std::size_t end);
     int integrate_pairs(int first_part, const std::function<bool(double share)>& go_on);
-    std::vector<Masks> look_from(const core::WallPoints& points,
-                                 const core::WallPoints& others,
-                                 std::vector<double>& squared_errors);
-    void integrate_tile(std::size_t light_begin,
-                        const std::vector<Masks>& light_masks,
-                        std::size_t sensor_begin,
-                        const std::vector<Masks>& sensor_masks);
+    VisibilityRules rules_towards(const core::WallPoints& others) const;
+    void look_from(const core::WallPoints& points,
+                   const PointRange& range,
+                   const VisibilityRules& rules,
+                   Views& views,
+                   std::vector<double>& squared_errors);
+    void integrate_tile(const PairTiles::Tile& tile, const Views& lights, const Views& sensors);
     void store(std::size_t pair, std::span<const double> histogram);
 
     const Scene& scene_;
@@ -59,6 +71,7 @@ class ThirdBounceScan {
     const core::TimeAxis& axis_;
     const PieceSet& pieces_;
     double negligible_error_;
+    double memory_bytes_;
     core::Transient* result_ = nullptr;  ///< while integrate() runs
     std::vector<double> light_errors_;   ///< squared, per illumination point and pair
     std::vector<double> sensor_errors_;

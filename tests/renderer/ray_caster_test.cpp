@@ -8,6 +8,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+
 namespace {
 
 using core::Vec3;
@@ -75,6 +78,36 @@ TEST_P(RayCasterOnSphere, ChordsAreFreeAndWallsBlock) {
         packet.count = 0;
     }
     EXPECT_EQ(blocked, 0) << "of " << count;
+}
+
+// Lanes beyond the count may hold anything, on every processor.
+TEST_P(RayCasterOnSphere, PartOfAPacketAnswersAsSingleRays) {
+    const renderer::RayCaster rays(corners_, {});
+    core::Rng rng(test_support::seed_of("RayCaster.part"), 0, 0);
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    int blocked = 0;
+    for (int count = 1; count <= renderer::SegmentPacket::kSize; ++count) {
+        renderer::SegmentPacket packet;
+        for (auto* lanes : {&packet.from_x, &packet.from_y, &packet.along_x, &packet.along_z}) {
+            lanes->fill(lanes == &packet.from_x ? std::nanf("") : kInfinity);
+        }
+        std::vector<bool> expected;
+        for (int i = 0; i < count; ++i) {
+            const auto a = static_cast<std::size_t>(rng.uniform() * double(corners_.size()));
+            const auto b = static_cast<std::size_t>(rng.uniform() * double(corners_.size()));
+            const Vec3 end =
+                centroid_of(a) + 2.0 * rng.uniform() * (centroid_of(b) - centroid_of(a));
+            expected.push_back(rays.is_blocked(centroid_of(a), normal_of(a), end, normal_of(b)));
+            rays.add_segment(packet, centroid_of(a), normal_of(a), end, normal_of(b));
+        }
+        rays.trace(packet);
+        for (std::size_t i = 0; i < expected.size(); ++i) {
+            EXPECT_EQ(packet.blocked[i], expected[i]);
+            blocked += expected[i];
+        }
+    }
+    EXPECT_GT(blocked, 20);
+    EXPECT_LT(blocked, 110);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scales,

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace renderer {
+
+/// Wall points [begin, end) of one side of a scan.
+struct PointRange {
+    std::size_t begin = 0;
+    std::size_t end = 0;
+
+    std::size_t size() const { return end - begin; }
+    bool operator==(const PointRange&) const = default;
+};
+
+/// The order in which all pairs of illumination and sensing points are worked on: in tiles whose
+/// histograms and tables fit the second-level cache, and in batches of tiles that need what is
+/// known of no more points than memory holds.
+class PairTiles {
+ public:
+    /// Fewest points that must fit at once.
+    static constexpr std::size_t kFewestPoints = 32;
+
+    struct Tile {
+        PointRange lights;
+        PointRange sensors;
+    };
+    struct Batch {
+        PointRange lights;  ///< of all its tiles
+        PointRange sensors;
+        std::vector<Tile> tiles;
+    };
+
+    /// points_at_once   lights and sensors together that a batch may have, at least kFewestPoints
+    PairTiles(std::size_t num_lights, std::size_t num_sensors, std::size_t points_at_once);
+
+    /// The tiles of a part, which do not depend on points_at_once; parts follow one another through
+    /// all tiles, and the batches of neighbouring parts share ranges where they can.
+    std::vector<Batch> batches(std::size_t part, std::size_t num_parts) const;
+
+    std::size_t num_tiles() const;
+
+ private:
+    std::size_t num_lights_;
+    std::size_t num_sensors_;
+    std::size_t lights_at_once_;
+    std::size_t sensors_at_once_;
+};
+
+}  // namespace renderer
