@@ -94,34 +94,20 @@ void FirstVertices::evaluate(const PathEnds& ends, const Draw& draw) {
     }
 }
 
-std::uint64_t FirstVertices::trace_from(const PathEnd& path_end) {
-    const End end(path_end);
-    const double offset = scene_.rays().offset_m();
-    const Vec3& origin = scene_.rays().origin();
+std::uint64_t FirstVertices::trace_from(const PathEnd& end) {
+    static_assert(kCapacity % SegmentPacket::kSize == 0);
     SegmentPacket packet;
     for (int begin = 0; begin < count_; begin += SegmentPacket::kSize) {
-        packet.count = std::min(count_ - begin, SegmentPacket::kSize);
-        for (int lane = 0; lane < SegmentPacket::kSize; ++lane) {
-            const int i = begin + lane;  // lanes beyond the count hold old numbers and are ignored
-            const double dx = x_[i] - end.x;
-            const double dy = y_[i] - end.y;
-            const double dz = z_[i] - end.z;
-            const double off_end = std::copysign(offset, end.cosine(dx, dy, dz));
-            const double facing = normal_x_[i] * dx + normal_y_[i] * dy + normal_z_[i] * dz;
-            const double off_vertex = std::copysign(offset, -facing);
-            const double from_x = end.x + off_end * end.normal_x - origin.x();
-            const double from_y = end.y + off_end * end.normal_y - origin.y();
-            const double from_z = end.z + off_end * end.normal_z - origin.z();
-            packet.from_x[lane] = static_cast<float>(from_x);
-            packet.from_y[lane] = static_cast<float>(from_y);
-            packet.from_z[lane] = static_cast<float>(from_z);
-            packet.along_x[lane] =
-                static_cast<float>(x_[i] + off_vertex * normal_x_[i] - origin.x() - from_x);
-            packet.along_y[lane] =
-                static_cast<float>(y_[i] + off_vertex * normal_y_[i] - origin.y() - from_y);
-            packet.along_z[lane] =
-                static_cast<float>(z_[i] + off_vertex * normal_z_[i] - origin.z() - from_z);
-        }
+        scene_.rays().aim(packet,
+                          end.position,
+                          end.normal,
+                          {x_ + begin,
+                           y_ + begin,
+                           z_ + begin,
+                           normal_x_ + begin,
+                           normal_y_ + begin,
+                           normal_z_ + begin},
+                          std::min(count_ - begin, SegmentPacket::kSize));
         scene_.rays().trace(packet);
         for (int lane = 0; lane < packet.count; ++lane) {
             seen_[begin + lane] = !packet.blocked[lane];

@@ -143,20 +143,43 @@ bool RayCaster::is_blocked(const Vec3& a,
     return ray.tfar < 0.0F;
 }
 
-void RayCaster::add_segment(SegmentPacket& packet,
-                            const Vec3& a,
-                            const Vec3& normal_a,
-                            const Vec3& b,
-                            const Vec3& normal_b) const {
-    const Vec3 from = moved_off(a, normal_a, b - a, offset_m_) - origin_;
-    const Vec3 along = moved_off(b, normal_b, a - b, offset_m_) - origin_ - from;
-    const auto lane = static_cast<std::size_t>(packet.count++);
-    packet.from_x[lane] = static_cast<float>(from.x());
-    packet.from_y[lane] = static_cast<float>(from.y());
-    packet.from_z[lane] = static_cast<float>(from.z());
-    packet.along_x[lane] = static_cast<float>(along.x());
-    packet.along_y[lane] = static_cast<float>(along.y());
-    packet.along_z[lane] = static_cast<float>(along.z());
+// Plain numbers in one loop over all lanes, so that the compiler fills vector units.
+void RayCaster::aim(SegmentPacket& packet,
+                    const Vec3& from,
+                    const Vec3& normal,
+                    const SurfacePointLanes& to,
+                    int count) const {
+    const double x = from.x();
+    const double y = from.y();
+    const double z = from.z();
+    const double normal_x = normal.x();
+    const double normal_y = normal.y();
+    const double normal_z = normal.z();
+    const double origin_x = origin_.x();
+    const double origin_y = origin_.y();
+    const double origin_z = origin_.z();
+    const double offset = offset_m_;
+    packet.count = count;
+    for (std::size_t i = 0; i < SegmentPacket::kSize; ++i) {
+        const double dx = to.x[i] - x;
+        const double dy = to.y[i] - y;
+        const double dz = to.z[i] - z;
+        const double off = std::copysign(offset, normal_x * dx + normal_y * dy + normal_z * dz);
+        const double facing = to.normal_x[i] * dx + to.normal_y[i] * dy + to.normal_z[i] * dz;
+        const double off_end = std::copysign(offset, -facing);
+        const double from_x = x + off * normal_x - origin_x;
+        const double from_y = y + off * normal_y - origin_y;
+        const double from_z = z + off * normal_z - origin_z;
+        packet.from_x[i] = static_cast<float>(from_x);
+        packet.from_y[i] = static_cast<float>(from_y);
+        packet.from_z[i] = static_cast<float>(from_z);
+        packet.along_x[i] =
+            static_cast<float>(to.x[i] + off_end * to.normal_x[i] - origin_x - from_x);
+        packet.along_y[i] =
+            static_cast<float>(to.y[i] + off_end * to.normal_y[i] - origin_y - from_y);
+        packet.along_z[i] =
+            static_cast<float>(to.z[i] + off_end * to.normal_z[i] - origin_z - from_z);
+    }
 }
 
 void RayCaster::trace(SegmentPacket& packet) const {

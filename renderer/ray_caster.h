@@ -20,15 +20,38 @@ struct RayHit {
 
 /// Shadow segments that Embree answers together; lanes beyond `count` are ignored.
 ///
-/// Single precision, relative to RayCaster::origin(); filled by RayCaster::add_segment.
+/// Single precision, relative to RayCaster::origin(); filled by RayCaster::aim.
 struct alignas(64) SegmentPacket {
     static constexpr int kSize = 16;
     std::array<float, kSize> from_x, from_y, from_z;
     std::array<float, kSize> along_x, along_y, along_z;
     std::array<bool, kSize> blocked;
     int count = 0;
+};
 
-    bool full() const { return count == kSize; }
+/// Surface points by coordinate [m], SegmentPacket::kSize of them in each array.
+struct SurfacePointLanes {
+    const double *x, *y, *z;
+    const double *normal_x, *normal_y, *normal_z;
+};
+
+/// Storage for them.
+struct alignas(64) SegmentEnds {
+    using Lanes = std::array<double, SegmentPacket::kSize>;
+    Lanes x{}, y{}, z{};
+    Lanes normal_x{}, normal_y{}, normal_z{};
+
+    void set(std::size_t lane, const core::Vec3& position, const core::Vec3& normal) {
+        x[lane] = position.x();
+        y[lane] = position.y();
+        z[lane] = position.z();
+        normal_x[lane] = normal.x();
+        normal_y[lane] = normal.y();
+        normal_z[lane] = normal.z();
+    }
+    SurfacePointLanes lanes() const {
+        return {x.data(), y.data(), z.data(), normal_x.data(), normal_y.data(), normal_z.data()};
+    }
 };
 
 /// Ray queries against a fixed set of triangles (Embree, robust mode).
@@ -62,12 +85,13 @@ class RayCaster {
                     const core::Vec3& b,
                     const core::Vec3& normal_b) const;
 
-    /// Appends the segment a-b to a packet that is not full.
-    void add_segment(SegmentPacket& packet,
-                     const core::Vec3& a,
-                     const core::Vec3& normal_a,
-                     const core::Vec3& b,
-                     const core::Vec3& normal_b) const;
+    /// Fills a packet with the segments from one surface point to the first `count` of several; the
+    /// lanes beyond may hold anything.
+    void aim(SegmentPacket& packet,
+             const core::Vec3& from,
+             const core::Vec3& normal,
+             const SurfacePointLanes& to,
+             int count) const;
 
     /// Answers all segments of a packet: sets blocked[0 .. count).
     void trace(SegmentPacket& packet) const;

@@ -73,14 +73,20 @@ void weigh_nodes(const PieceBlock& block,
     }
 }
 
+// By value: with std::min, compilers choose between addresses instead.
+double lower_of(double a, double b) {
+    return b < a ? b : a;
+}
+
 // core::match_midpoints for the weights of all lanes.
 void fit_weights(BlockKnots& knots) {
     const auto& k = knots.node_weight;
     for (std::size_t i = 0; i < kSize; ++i) {
         const double mean = (k[3][i] + k[4][i] + k[5][i]) * (1.0 / 3.0);
         const double corner_mean = (k[0][i] + k[1][i] + k[2][i]) * (1.0 / 3.0);
-        const double lowest = std::min(k[0][i], std::min(k[1][i], k[2][i])) - corner_mean;
-        const double spread = lowest < -mean ? mean / -lowest : 1.0;
+        const double lowest = lower_of(k[0][i], lower_of(k[1][i], k[2][i])) - corner_mean;
+        const double most = mean / -lowest;
+        const double spread = lowest < -mean ? most : 1.0;
         knots.fitted.weight[0][i] = mean + spread * (k[0][i] - corner_mean);
         knots.fitted.weight[1][i] = mean + spread * (k[1][i] - corner_mean);
         knots.fitted.weight[2][i] = mean + spread * (k[2][i] - corner_mean);

@@ -287,23 +287,27 @@ void VisibilityTracer::refine_mixed_pieces(double negligible_error,
 void VisibilityTracer::shoot() {
     results_.resize(targets_.size());
     SegmentPacket packet;
+    SegmentEnds ends;
     const Vec3 from = point_.position + set_.origin;
     for (std::size_t begin = 0; begin < targets_.size(); begin += SegmentPacket::kSize) {
-        const std::size_t end = std::min(targets_.size(), begin + SegmentPacket::kSize);
-        packet.count = 0;
-        for (std::size_t t = begin; t < end; ++t) {
-            const PieceBlock& block = set_.blocks[targets_[t].piece / kSize];
-            const std::size_t i = targets_[t].piece % kSize;
-            const auto& b = center_of_bit(targets_[t].bit);
-            const Vec3 target(b[0] * block.x[0][i] + b[1] * block.x[1][i] + b[2] * block.x[2][i],
-                              b[0] * block.y[0][i] + b[1] * block.y[1][i] + b[2] * block.y[2][i],
-                              b[0] * block.z[0][i] + b[1] * block.z[1][i] + b[2] * block.z[2][i]);
-            const Vec3 normal(block.normal_x[i], block.normal_y[i], block.normal_z[i]);
-            scene_.rays().add_segment(packet, from, point_.normal, target + set_.origin, normal);
+        const std::size_t count =
+            std::min<std::size_t>(targets_.size() - begin, SegmentPacket::kSize);
+        for (std::size_t lane = 0; lane < count; ++lane) {
+            const Target& target = targets_[begin + lane];
+            const PieceBlock& block = set_.blocks[target.piece / kSize];
+            const std::size_t i = target.piece % kSize;
+            const auto& b = center_of_bit(target.bit);
+            const auto at = [&](const std::array<PieceBlock::Lanes, 3>& corners) {
+                return b[0] * corners[0][i] + b[1] * corners[1][i] + b[2] * corners[2][i];
+            };
+            ends.set(lane,
+                     Vec3(at(block.x), at(block.y), at(block.z)) + set_.origin,
+                     Vec3(block.normal_x[i], block.normal_y[i], block.normal_z[i]));
         }
+        scene_.rays().aim(packet, from, point_.normal, ends.lanes(), static_cast<int>(count));
         scene_.rays().trace(packet);
-        for (std::size_t t = begin; t < end; ++t) {
-            results_[t] = packet.blocked[t - begin] ? 0 : 1;
+        for (std::size_t lane = 0; lane < count; ++lane) {
+            results_[begin + lane] = packet.blocked[lane] ? 0 : 1;
         }
     }
     cost_.num_rays += targets_.size();

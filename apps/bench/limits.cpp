@@ -151,9 +151,11 @@ double reconstruction_limit_seconds(const core::Capture& capture,
 
 double shadow_ray_seconds(const renderer::Scene& scene, const core::Scan& scan) {
     constexpr std::size_t kPoints = 64;
-    constexpr std::size_t kRays = 2048;  // per point
+    constexpr std::size_t kLanes = renderer::SegmentPacket::kSize;
+    constexpr std::size_t kRays = 128 * kLanes;  // per point
     const renderer::AreaSampler sampler(scene);
     std::vector<renderer::SegmentPacket> packets;
+    renderer::SegmentEnds ends;
     for (std::size_t p = 0; p < kPoints; ++p) {
         const std::size_t point = p * scan.sensing.size() / kPoints;
         core::Rng rng(0, p, 0);
@@ -161,12 +163,13 @@ double shadow_ray_seconds(const renderer::Scene& scene, const core::Scan& scan) 
         for (std::size_t i = 0; i < kRays; ++i) {
             const double u = (static_cast<double>(i) + rng.uniform()) / kRays;
             const renderer::SurfacePoint place = sampler.sample(u, rng.uniform(), hint);
-            if (packets.empty() || packets.back().full() || i == 0) packets.emplace_back();
-            scene.rays().add_segment(packets.back(),
-                                     scan.sensing.positions[point],
-                                     scan.sensing.normals[point],
-                                     place.position,
-                                     scene.facet(place.facet).normal);
+            ends.set(i % kLanes, place.position, scene.facet(place.facet).normal);
+            if (i % kLanes != kLanes - 1) continue;
+            scene.rays().aim(packets.emplace_back(),
+                             scan.sensing.positions[point],
+                             scan.sensing.normals[point],
+                             ends.lanes(),
+                             renderer::SegmentPacket::kSize);
         }
     }
     const double start = core::cpu_seconds();

@@ -54,24 +54,35 @@ class Cumulative {
     double per_01_, per_02_, per_12_;  // reciprocal lengths; infinite ones are never used
 };
 
-// Sorts corners a and b of the first lanes. No branches: neither is the likely order.
-void order_corners(TriangleLanes& lanes, std::size_t a, std::size_t b, std::size_t count) {
-    for (std::size_t i = 0; i < count; ++i) {
-        const double pa = lanes.opl_m[a][i];
-        const double pb = lanes.opl_m[b][i];
-        const double ka = lanes.weight[a][i];
-        const double kb = lanes.weight[b][i];
-        lanes.opl_m[a][i] = pb < pa ? pb : pa;
-        lanes.opl_m[b][i] = pb < pa ? pa : pb;
-        lanes.weight[a][i] = pb < pa ? kb : ka;
-        lanes.weight[b][i] = pb < pa ? ka : kb;
-    }
+struct Corner {
+    double p, k;
+};
+
+// By values and without branches: neither is the likely order.
+void order(Corner& a, Corner& b) {
+    const Corner first = a;
+    const bool swap = b.p < first.p;
+    a = {swap ? b.p : first.p, swap ? b.k : first.k};
+    b = {swap ? first.p : b.p, swap ? first.k : b.k};
 }
 
+// One loop that loads and stores each corner once: in place and pair by pair, compilers store with
+// masks, which some processors do slowly.
 void sort_corners(TriangleLanes& lanes, std::size_t count) {
-    order_corners(lanes, 0, 1, count);
-    order_corners(lanes, 1, 2, count);
-    order_corners(lanes, 0, 1, count);
+    for (std::size_t i = 0; i < count; ++i) {
+        Corner a{lanes.opl_m[0][i], lanes.weight[0][i]};
+        Corner b{lanes.opl_m[1][i], lanes.weight[1][i]};
+        Corner c{lanes.opl_m[2][i], lanes.weight[2][i]};
+        order(a, b);
+        order(b, c);
+        order(a, b);
+        lanes.opl_m[0][i] = a.p;
+        lanes.opl_m[1][i] = b.p;
+        lanes.opl_m[2][i] = c.p;
+        lanes.weight[0][i] = a.k;
+        lanes.weight[1][i] = b.k;
+        lanes.weight[2][i] = c.k;
+    }
 }
 
 SortedTriangle lane_of(const TriangleLanes& lanes, std::size_t i) {

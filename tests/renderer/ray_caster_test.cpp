@@ -36,6 +36,10 @@ class RayCasterOnSphere : public testing::TestWithParam<std::pair<Vec3, double>>
         return (a + b + c) / 3.0;
     }
 
+    std::size_t any_facet(core::Rng& rng) const {
+        return static_cast<std::size_t>(rng.uniform() * double(corners_.size()));
+    }
+
     std::vector<std::array<Vec3, 3>> corners_;
 };
 
@@ -44,7 +48,7 @@ TEST_P(RayCasterOnSphere, NoRayLeaks) {
     const renderer::RayCaster rays(corners_, {});
     core::Rng rng(test_support::seed_of("RayCaster.leak"), 0, 0);
     for (int i = 0; i < 20'000; ++i) {
-        const auto facet = static_cast<std::size_t>(rng.uniform() * double(corners_.size()));
+        const std::size_t facet = any_facet(rng);
         // Towards corners and edges, where meshes leak.
         const Vec3 target = corners_[facet][static_cast<std::size_t>(rng.uniform() * 3.0)];
         const Vec3 direction = (target - center).normalized();
@@ -58,56 +62,52 @@ TEST_P(RayCasterOnSphere, ChordsAreFreeAndWallsBlock) {
     const auto& [center, radius] = GetParam();
     const renderer::RayCaster rays(corners_, {});
     core::Rng rng(test_support::seed_of("RayCaster.chord"), 0, 0);
-    renderer::SegmentPacket packet;
     int blocked = 0;
     int count = 0;
     for (int i = 0; i < 20'000; ++i) {
-        const auto a = static_cast<std::size_t>(rng.uniform() * double(corners_.size()));
-        const auto b = static_cast<std::size_t>(rng.uniform() * double(corners_.size()));
+        const std::size_t a = any_facet(rng);
+        const std::size_t b = any_facet(rng);
         if ((centroid_of(a) - centroid_of(b)).norm() < 0.3 * radius) continue;
         ++count;
         blocked += rays.is_blocked(centroid_of(a), normal_of(a), centroid_of(b), normal_of(b));
         const Vec3 outside = centroid_of(a) + 2.0 * (centroid_of(b) - centroid_of(a));
         EXPECT_TRUE(rays.is_blocked(centroid_of(a), normal_of(a), outside, normal_of(b)));
-        rays.add_segment(packet, centroid_of(a), normal_of(a), centroid_of(b), normal_of(b));
-        if (!packet.full()) continue;
-        rays.trace(packet);
-        for (int lane = 0; lane < packet.count; ++lane) {
-            EXPECT_FALSE(packet.blocked[static_cast<std::size_t>(lane)]);
-        }
-        packet.count = 0;
     }
     EXPECT_EQ(blocked, 0) << "of " << count;
 }
 
-// Lanes beyond the count may hold anything, on every processor.
-TEST_P(RayCasterOnSphere, PartOfAPacketAnswersAsSingleRays) {
+// Also where a packet is not full and its other lanes hold what no ray tracer takes.
+TEST_P(RayCasterOnSphere, PacketsAnswerAsSingleRays) {
     const renderer::RayCaster rays(corners_, {});
-    core::Rng rng(test_support::seed_of("RayCaster.part"), 0, 0);
-    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    core::Rng rng(test_support::seed_of("RayCaster.packet"), 0, 0);
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
     int blocked = 0;
-    for (int count = 1; count <= renderer::SegmentPacket::kSize; ++count) {
-        renderer::SegmentPacket packet;
-        for (auto* lanes : {&packet.from_x, &packet.from_y, &packet.along_x, &packet.along_z}) {
-            lanes->fill(lanes == &packet.from_x ? std::nanf("") : kInfinity);
-        }
+    int traced = 0;
+    for (int i = 0; i < 500; ++i) {
+        const int count = 1 + i % renderer::SegmentPacket::kSize;
+        const std::size_t a = any_facet(rng);
+        renderer::SegmentEnds ends;
+        ends.x.fill(std::nan(""));
+        ends.y.fill(kInfinity);
         std::vector<bool> expected;
-        for (int i = 0; i < count; ++i) {
-            const auto a = static_cast<std::size_t>(rng.uniform() * double(corners_.size()));
-            const auto b = static_cast<std::size_t>(rng.uniform() * double(corners_.size()));
-            const Vec3 end =
-                centroid_of(a) + 2.0 * rng.uniform() * (centroid_of(b) - centroid_of(a));
+        for (std::size_t lane = 0; std::ssize(expected) < count; ++lane) {
+            const std::size_t b = any_facet(rng);
+            const Vec3 chord = centroid_of(b) - centroid_of(a);
+            const Vec3 end = centroid_of(a) + (rng.uniform() < 0.5 ? 1.0 : 2.0) * chord;
+            ends.set(lane, end, normal_of(b));
             expected.push_back(rays.is_blocked(centroid_of(a), normal_of(a), end, normal_of(b)));
-            rays.add_segment(packet, centroid_of(a), normal_of(a), end, normal_of(b));
         }
+        renderer::SegmentPacket packet;
+        rays.aim(packet, centroid_of(a), normal_of(a), ends.lanes(), count);
         rays.trace(packet);
-        for (std::size_t i = 0; i < expected.size(); ++i) {
-            EXPECT_EQ(packet.blocked[i], expected[i]);
-            blocked += expected[i];
+        for (std::size_t lane = 0; lane < expected.size(); ++lane) {
+            EXPECT_EQ(packet.blocked[lane], expected[lane]);
+            blocked += expected[lane];
+            ++traced;
         }
     }
-    EXPECT_GT(blocked, 20);
-    EXPECT_LT(blocked, 110);
+    EXPECT_GT(blocked, traced / 3);
+    EXPECT_LT(blocked, 2 * traced / 3);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scales,
