@@ -78,43 +78,46 @@ void HierarchyCut::append_children(std::int32_t node) {
     }
 }
 
-// What a facet carries, about: its cosines and falloff at the centroid, times the area asked for.
-// Nothing is left out that carries something: a facet in part below an end's horizon keeps a share.
+// What a facet carries, about: area asked for, times cosines and falloff at a point of its plane
+// that lies towards the centroid and has the length asked for. Nothing is left out that carries
+// something: a facet in part below an end's horizon keeps a share.
 double HierarchyCut::facet_weight(std::uint32_t index, OplBand& lengths) const {
     const Facet& facet = hierarchy_->scene_->facet(index);
-    const Vec3 arm = (facet.edge1 + facet.edge2) / 3.0;
-    const auto end_factor = [&](const Vec3& focus, const Vec3& normal, double& side) {
-        const Vec3 from_end = facet.corner - focus;
-        const Vec3 to_centroid = from_end + arm;
-        const double distance2 = std::max(facet.area_m2, to_centroid.squaredNorm());
-        side = -facet.normal.dot(from_end);
-        if (normal.isZero(0.0)) return std::abs(side) / (std::sqrt(distance2) * distance2);
-        const double height = normal.dot(from_end);
-        const double highest =
-            height + std::max({0.0, normal.dot(facet.edge1), normal.dot(facet.edge2)});
-        const double mean = std::max(height + normal.dot(arm), 0.1 * highest);
-        return mean > 0.0 ? std::abs(side) * mean / (distance2 * distance2) : 0.0;
-    };
-    double side_a = 0.0;
-    double side_b = 0.0;
-    const double at_a = end_factor(ends_.foci.a, ends_.normal_a, side_a);
-    if (!(at_a > 0.0)) return 0.0;
-    double at_b = at_a;
-    side_b = side_a;
-    if (!query_.coincide) at_b = end_factor(ends_.foci.b, ends_.normal_b, side_b);
     const double lit_side = double{hierarchy_->sides_[index]};
+    const double side_a = facet.normal.dot(ends_.foci.a - facet.corner);
+    const double side_b = query_.coincide ? side_a : facet.normal.dot(ends_.foci.b - facet.corner);
     if (!(side_a * side_b > 0.0) || lit_side * side_a < 0.0) return 0.0;
 
     const OplBand band = opl_band(ends_.foci, facet);
     lengths.low_m = std::max(band.low_m, lengths_.low_m);
     lengths.high_m = std::min(band.high_m, lengths_.high_m);
     if (!(lengths.width_m() > 0.0)) return 0.0;
-    // The legs asked for are shorter or longer than those to the centroid; cosines fall with them.
-    const double longer =
-        2.0 * ends_.foci.opl_m(facet.corner + arm) / (lengths.low_m + lengths.high_m);
-    const double longer2 = longer * longer;
-    const double longer8 = (longer2 * longer2) * (longer2 * longer2);
-    return facet.area_m2 * lengths.width_m() / band.width_m() * at_a * at_b * longer8;
+    const Vec3 arm = (facet.edge1 + facet.edge2) / 3.0;
+    const double asked = 0.5 * (lengths.low_m + lengths.high_m);
+    const double scale = asked / ends_.foci.opl_m(facet.corner + arm);
+    const double least2 = std::min(facet.area_m2, 0.0625 * asked * asked);
+    const auto end_factor = [&](const Vec3& focus, const Vec3& normal, double side) {
+        const Vec3 from_end = facet.corner - focus;
+        const double side2 = side * side;
+        const double centroid2 = (from_end + arm).squaredNorm();
+        const double distance2 = std::max(least2, scale * scale * centroid2);
+        if (normal.isZero(0.0)) return std::abs(side) / (std::sqrt(distance2) * distance2);
+        // Heights above the end's horizon, linear in the distance from the foot of the focus.
+        const double height = normal.dot(from_end);
+        const double highest =
+            height + std::max({0.0, normal.dot(facet.edge1), normal.dot(facet.edge2)});
+        const double at_foot = -side * normal.dot(facet.normal);
+        const double offset2 = centroid2 - side2;
+        const double ratio =
+            offset2 > 0.0 ? std::sqrt(std::max(0.0, distance2 - side2) / offset2) : 1.0;
+        const double there = at_foot + ratio * (height + normal.dot(arm) - at_foot);
+        const double mean = std::max(std::min(there, highest), 0.1 * highest);
+        return mean > 0.0 ? std::abs(side) * mean / (distance2 * distance2) : 0.0;
+    };
+    const double at_a = end_factor(ends_.foci.a, ends_.normal_a, side_a);
+    if (!(at_a > 0.0)) return 0.0;
+    const double at_b = query_.coincide ? at_a : end_factor(ends_.foci.b, ends_.normal_b, side_b);
+    return facet.area_m2 * lengths.width_m() / band.width_m() * at_a * at_b;
 }
 
 double HierarchyCut::share(std::size_t entry) const {
