@@ -91,7 +91,8 @@ TEST_P(RayCasterOnSphere, PacketsAnswerAsSingleRays) {
         ends.y.fill(kInfinity);
         std::vector<bool> expected;
         for (std::size_t lane = 0; std::ssize(expected) < count; ++lane) {
-            const std::size_t b = any_facet(rng);
+            std::size_t b = any_facet(rng);
+            while (b == a) b = any_facet(rng);  // a segment of no length has no side
             const Vec3 chord = centroid_of(b) - centroid_of(a);
             const Vec3 end = centroid_of(a) + (rng.uniform() < 0.5 ? 1.0 : 2.0) * chord;
             ends.set(lane, end, normal_of(b));
