@@ -83,11 +83,8 @@ namespace {
 
 // CPU seconds of tracing the recorded rays once. The rays are copies: tracing changes them.
 double replay(Recording recording) {
-    RTCIntersectContext coherent;
-    rtcInitIntersectContext(&coherent);
-    coherent.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    RTCIntersectContext incoherent;
-    rtcInitIntersectContext(&incoherent);
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
     auto packet = recording.packets.begin();
     auto first_hit = recording.first_hits.begin();
     auto segment = recording.segments.begin();
@@ -95,14 +92,14 @@ double replay(Recording recording) {
     for (const Call call : recording.calls) {
         switch (call) {
             case Call::Packet:
-                __real_rtcOccluded16(packet->valid, recording.scene, &coherent, &packet->rays);
+                __real_rtcOccluded16(packet->valid, recording.scene, &context, &packet->rays);
                 ++packet;
                 break;
             case Call::FirstHit:
-                __real_rtcIntersect1(recording.scene, &incoherent, &*first_hit++);
+                __real_rtcIntersect1(recording.scene, &context, &*first_hit++);
                 break;
             case Call::Segment:
-                __real_rtcOccluded1(recording.scene, &incoherent, &*segment++);
+                __real_rtcOccluded1(recording.scene, &context, &*segment++);
                 break;
         }
     }

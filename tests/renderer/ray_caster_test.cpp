@@ -76,7 +76,9 @@ TEST_P(RayCasterOnSphere, ChordsAreFreeAndWallsBlock) {
     EXPECT_EQ(blocked, 0) << "of " << count;
 }
 
-// Also where a packet is not full and its other lanes hold what no ray tracer takes.
+// Also where a packet is not full and its other lanes hold what no ray tracer takes. Embree's way
+// for coherent packets lets one ray in 3,000 out of the sphere of 5 mm where it has no vectors
+// of 16.
 TEST_P(RayCasterOnSphere, PacketsAnswerAsSingleRays) {
     const double radius = GetParam().second;
     const renderer::RayCaster rays(corners_, {});
@@ -84,7 +86,7 @@ TEST_P(RayCasterOnSphere, PacketsAnswerAsSingleRays) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     int blocked = 0;
     int traced = 0;
-    for (int i = 0; i < 500; ++i) {
+    for (int i = 0; i < 5'000; ++i) {
         const int count = 1 + i % renderer::SegmentPacket::kSize;
         const std::size_t a = any_facet(rng);
         renderer::SegmentEnds ends;
