@@ -25,27 +25,25 @@ PointRange range_around(std::size_t index, std::size_t size, std::size_t count) 
 
 }  // namespace
 
-// Sensors get half of the places, or what the lights leave: a light is looked at once in any case,
-// a sensor once for every range of lights unless all sensors fit.
+// Rows of tiles follow one another by lights: all sensors at once, wherever they fit beside a
+// tile's lights, are looked at once. Else they get half of the places, or what all lights leave.
 PairTiles::PairTiles(std::size_t num_lights, std::size_t num_sensors, std::size_t points_at_once)
     : num_lights_(num_lights), num_sensors_(num_sensors) {
     const std::size_t all_lights = parts_of(num_lights, kLightsPerTile) * kLightsPerTile;
     const std::size_t all_sensors = parts_of(num_sensors, kSensorsPerTile) * kSensorsPerTile;
     const std::size_t left = points_at_once - std::min(points_at_once, all_lights);
-    sensors_at_once_ =
-        whole_tiles(std::min(all_sensors, std::max(points_at_once / 2, left)), kSensorsPerTile);
+    sensors_at_once_ = all_sensors + kLightsPerTile <= points_at_once
+                           ? all_sensors
+                           : whole_tiles(std::max(points_at_once / 2, left), kSensorsPerTile);
     lights_at_once_ =
         whole_tiles(std::min(all_lights, points_at_once - sensors_at_once_), kLightsPerTile);
 }
 
-std::size_t PairTiles::num_tiles() const {
-    return parts_of(num_lights_, kLightsPerTile) * parts_of(num_sensors_, kSensorsPerTile);
-}
-
 std::vector<PairTiles::Batch> PairTiles::batches(std::size_t part, std::size_t num_parts) const {
     const std::size_t tiles_in_row = parts_of(num_sensors_, kSensorsPerTile);
+    const std::size_t num_tiles = parts_of(num_lights_, kLightsPerTile) * tiles_in_row;
     std::vector<Batch> batches;
-    for (std::size_t i = part * num_tiles() / num_parts; i < (part + 1) * num_tiles() / num_parts;
+    for (std::size_t i = part * num_tiles / num_parts; i < (part + 1) * num_tiles / num_parts;
          ++i) {
         const std::size_t light = i / tiles_in_row * kLightsPerTile;
         const std::size_t sensor = i % tiles_in_row * kSensorsPerTile;

@@ -37,10 +37,9 @@ class PairTiles {
     PairTiles(std::size_t num_lights, std::size_t num_sensors, std::size_t points_at_once);
 
     /// The tiles of a part, which do not depend on points_at_once; parts follow one another through
-    /// all tiles, and the batches of neighbouring parts share ranges where they can.
+    /// all tiles. Over all parts each range of lights comes up once, and so does each range of
+    /// sensors where it holds all; others come up once for every part and range of lights.
     std::vector<Batch> batches(std::size_t part, std::size_t num_parts) const;
-
-    std::size_t num_tiles() const;
 
  private:
     std::size_t num_lights_;

@@ -244,8 +244,9 @@ void ThirdBounceScan::integrate_tile(const PairTiles::Tile& tile,
     const auto tables =
         [&](const core::WallPoints& all, const PointRange& range, const Views& views) {
             std::vector<WallPoint> points;
-            for (std::size_t i = range.begin; i < range.end; ++i)
+            for (std::size_t i = range.begin; i < range.end; ++i) {
                 points.push_back(wall_point(all, i));
+            }
             return TileTables(
                 std::move(points),
                 std::span(views.masks).subspan(range.begin - views.range.begin, range.size()));

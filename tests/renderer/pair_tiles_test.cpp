@@ -71,6 +71,23 @@ TEST_P(PairTilesOf, KeepTheTilesOfPartsWhateverMemoryHolds) {
     }
 }
 
+// Where all sensors fit beside the lights of a tile, nothing is looked at twice.
+TEST(PairTiles, LookOnceAtEveryPointWhereAllSensorsFit) {
+    const PairTiles tiles(100, 64, 64 + 8);
+    std::size_t looked_at = 0;
+    renderer::PointRange lights;
+    renderer::PointRange sensors;
+    for (std::size_t part = 0; part < kParts; ++part) {
+        for (const PairTiles::Batch& batch : tiles.batches(part, kParts)) {
+            looked_at += batch.lights == lights ? 0 : batch.lights.size();
+            looked_at += batch.sensors == sensors ? 0 : batch.sensors.size();
+            lights = batch.lights;
+            sensors = batch.sensors;
+        }
+    }
+    EXPECT_EQ(looked_at, 164U);
+}
+
 INSTANTIATE_TEST_SUITE_P(ScansAndMemory,
                          PairTilesOf,
                          testing::Values(Sizes{1, 1, 32},
