@@ -29,7 +29,10 @@ std::vector<double> device_legs(const core::Scan& scan,
     return legs;
 }
 
-void run_fast(const MethodInput& input, Compensation compensation, std::span<float> values) {
+void run_fast(const MethodInput& input,
+              Compensation compensation,
+              std::size_t num_slabs,
+              std::span<float> values) {
     ConfocalGrid<float> data{
         *input.wall.grid, input.time_axis, input.transient.values(), {}, compensation};
     if (input.scan.opl_origin == core::OplOrigin::Device) {
@@ -37,7 +40,7 @@ void run_fast(const MethodInput& input, Compensation compensation, std::span<flo
             data.device_legs_m.push_back(input.scan.device_legs_m(pair));
         }
     }
-    backproject_confocal_grid<float>(data, input.axes, values, input.progress);
+    backproject_confocal_grid<float>(data, input.axes, values, input.progress, num_slabs);
 }
 
 void run_general(const MethodInput& input, Compensation compensation, std::span<float> values) {
@@ -56,23 +59,24 @@ void run_general(const MethodInput& input, Compensation compensation, std::span<
 
 }  // namespace
 
-Volume backproject(const MethodInput& input, Compensation compensation) {
+Volume backproject(const MethodInput& input, Compensation compensation, std::size_t num_slabs) {
     Volume volume{input.axes, std::vector<float>(input.axes.num_voxels(), 0.0F), {}};
     if (takes_fast_way(input)) {
-        run_fast(input, compensation, volume.values);
+        run_fast(input, compensation, num_slabs, volume.values);
     } else {
         run_general(input, compensation, volume.values);
     }
     return volume;
 }
 
-double backproject_bytes(const MethodInput& input) {
+double backproject_bytes(const MethodInput& input, std::size_t num_slabs) {
     const double volume = 4.0 * static_cast<double>(input.axes.num_voxels());
     if (takes_fast_way(input)) {
         const auto bins = static_cast<double>(input.time_axis.num_bins);
         const WallGrid& grid = *input.wall.grid;
+        const auto rows = static_cast<double>((grid.size[0] + num_slabs - 1) / num_slabs);
         const auto row = static_cast<double>(grid.size[1] + 120);  // four classes, padded
-        return volume + 4.0 * static_cast<double>(grid.size[0]) * (bins + 2.0) * row;
+        return volume + 4.0 * rows * (bins + 2.0) * row;
     }
     const auto points =
         static_cast<double>(input.scan.illumination.size() + input.scan.sensing.size());

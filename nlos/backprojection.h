@@ -16,13 +16,14 @@ namespace nlos {
 /// input          any scan; confocal grids whose y positions share a lattice with the voxels' take
 ///                the fast way (shifted additions of whole rows), all others the general one
 /// compensation   factor of each term: none, r_l^2 r_s^2 (diffuse) or r_l r_s (retro)
+/// num_slabs      the fast way copies this part of the wall's rows at a time
 /// returns        sums in the histograms' unit
 /// throws         core::Failure when asked to stop
 /// source         [Velten2012]
-Volume backproject(const MethodInput& input, Compensation compensation);
+Volume backproject(const MethodInput& input, Compensation compensation, std::size_t num_slabs = 1);
 
 /// Memory that backproject() takes on top of its input, its volume included [bytes].
-double backproject_bytes(const MethodInput& input);
+double backproject_bytes(const MethodInput& input, std::size_t num_slabs = 1);
 
 /// Confocal measurements on a wall grid.
 template <class Real>
@@ -53,13 +54,15 @@ bool shares_lattice(const WallGrid& grid, const VolumeAxes& axes);
 
 /// Adds the backprojection to `volume` [x][y][z]; Real is float or double.
 ///
-/// source   the lateral shift in reconstruction of confocal scans: the path length depends only on
-///          depth and on the offset of voxel and wall point
+/// num_slabs   as backproject()
+/// source      the lateral shift in reconstruction of confocal scans: the path length depends only
+///             on depth and on the offset of voxel and wall point
 template <class Real>
 void backproject_confocal_grid(const ConfocalGrid<Real>& data,
                                const VolumeAxes& axes,
                                std::span<Real> volume,
-                               const core::Progress& progress);
+                               const core::Progress& progress,
+                               std::size_t num_slabs = 1);
 
 /// Adds the backprojection to `volume` [x][y][z]; Real is float or double.
 template <class Real>

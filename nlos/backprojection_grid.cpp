@@ -49,10 +49,16 @@ std::size_t class_size(std::size_t count, std::size_t first, std::size_t step) {
     return first < count ? (count - first + step - 1) / step : 0;
 }
 
+/// Rows [begin, end) of the wall grid, each at one x.
+struct WallRows {
+    std::size_t begin = 0, end = 0;
+};
+
 /// Histograms of one class of wall points along y, stored [x][bin][y], y padded by zeros on both
 /// sides so that any shift can be loaded, and one bin of zeros before and after the axis.
 template <class Real>
 struct Slices {
+    WallRows walls;
     std::vector<Real> values;
     std::size_t num_y = 0;
     std::size_t row_stride = 0;
@@ -60,7 +66,7 @@ struct Slices {
     double first_y_m = 0.0;
 
     const Real* wall_row(std::size_t ix) const {
-        return values.data() + ix * (num_bins + 2) * row_stride;
+        return values.data() + (ix - walls.begin) * (num_bins + 2) * row_stride;
     }
 };
 
@@ -79,19 +85,22 @@ core::TimeAxis wall_axis(const ConfocalGrid<Real>& data) {
 template <class Real>
 Slices<Real> make_slices(const ConfocalGrid<Real>& data,
                          const core::TimeAxis& axis,
+                         const WallRows& walls,
                          std::size_t first_y,
                          std::size_t step) {
     Slices<Real> slices;
+    slices.walls = walls;
+    const std::size_t num_rows = walls.end - walls.begin;
     slices.num_y = class_size(data.grid.size[1], first_y, step);
     slices.row_stride = slices.num_y + 2 * (kLanes - 1);
     slices.num_bins = static_cast<std::size_t>(axis.num_bins);
     slices.first_y_m = data.grid.y_m(first_y);
-    slices.values.assign(data.grid.size[0] * (slices.num_bins + 2) * slices.row_stride, Real{0});
+    slices.values.assign(num_rows * (slices.num_bins + 2) * slices.row_stride, Real{0});
     const auto num_bins = static_cast<std::size_t>(data.time_axis.num_bins);
-    core::parallel_for(data.grid.size[0], [&](std::size_t ix) {
-        Real* rows = slices.values.data() + ix * (slices.num_bins + 2) * slices.row_stride;
+    core::parallel_for(num_rows, [&](std::size_t row) {
+        Real* rows = slices.values.data() + row * (slices.num_bins + 2) * slices.row_stride;
         for (std::size_t n = 0; n < slices.num_y; ++n) {
-            const std::size_t point = data.grid.point(ix, first_y + n * step);
+            const std::size_t point = data.grid.point(walls.begin + row, first_y + n * step);
             const double leg = data.device_legs_m.empty() ? 0.0 : data.device_legs_m[point];
             const double shift =
                 (data.time_axis.opl_start_m - leg - axis.opl_start_m) / axis.bin_width_m;
@@ -244,7 +253,7 @@ void add_slices(const Slices<Real>& slices,
                 const RowPairs& rows,
                 const std::vector<Taps<Real>>& taps_of_distance,
                 VoxelSlab<Real>& slab) {
-    for (std::size_t wall = 0; wall < rows.of_wall_row.size(); ++wall) {
+    for (std::size_t wall = slices.walls.begin; wall < slices.walls.end; ++wall) {
         const Real* wall_row = slices.wall_row(wall);
         for (const Offset& offset : rows.of_wall_row[wall]) {
             const Taps<Real>& taps = taps_of_distance[offset.distance];
@@ -268,24 +277,20 @@ void add_slices(const Slices<Real>& slices,
     }
 }
 
-}  // namespace
-
-bool shares_lattice(const WallGrid& grid, const VolumeAxes& axes) {
-    return common_lattice(grid, axes.y_m).has_value();
-}
-
+/// Adds what some of the wall's rows contribute to `volume`.
 template <class Real>
-void backproject_confocal_grid(const ConfocalGrid<Real>& data,
-                               const VolumeAxes& axes,
-                               std::span<Real> volume,
-                               const core::Progress& progress) {
+void backproject_rows(const ConfocalGrid<Real>& data,
+                      const VolumeAxes& axes,
+                      const RowPairs& rows,
+                      const WallRows& walls,
+                      std::span<Real> volume,
+                      const ProgressSpan& span) {
     const CommonLattice lattice = common_lattice(data.grid, axes.y_m).value();
     const core::TimeAxis axis = wall_axis(data);
     std::vector<Slices<Real>> classes;
     for (std::size_t q = 0; q < std::min(lattice.wall_step, data.grid.size[1]); ++q) {
-        classes.push_back(make_slices(data, axis, q, lattice.wall_step));
+        classes.push_back(make_slices(data, axis, walls, q, lattice.wall_step));
     }
-    const RowPairs rows = pair_rows(data.grid, axes.x_m);
     const std::size_t num_y = axes.y_m.size();
     const std::size_t num_z = axes.z_m.size();
 
@@ -314,19 +319,49 @@ void backproject_confocal_grid(const ConfocalGrid<Real>& data,
             }
         }
     };
-    const ProgressSpan span{progress, 0.0, 1.0, "backprojection"};
     parallel_blocks_with_progress(num_z, 1, span, [&](std::size_t begin, std::size_t end) {
         for (std::size_t iz = begin; iz < end; ++iz) fill_depth(iz);
     });
 }
 
+}  // namespace
+
+bool shares_lattice(const WallGrid& grid, const VolumeAxes& axes) {
+    return common_lattice(grid, axes.y_m).has_value();
+}
+
+template <class Real>
+void backproject_confocal_grid(const ConfocalGrid<Real>& data,
+                               const VolumeAxes& axes,
+                               std::span<Real> volume,
+                               const core::Progress& progress,
+                               std::size_t num_slabs) {
+    const RowPairs rows = pair_rows(data.grid, axes.x_m);
+    const std::size_t num_rows = data.grid.size[0];
+    const std::size_t size = (num_rows + num_slabs - 1) / num_slabs;
+    const auto share = [&](std::size_t done) {
+        return static_cast<double>(done) / static_cast<double>(num_rows);
+    };
+    for (std::size_t begin = 0; begin < num_rows; begin += size) {
+        const std::size_t end = std::min(num_rows, begin + size);
+        backproject_rows(data,
+                         axes,
+                         rows,
+                         {begin, end},
+                         volume,
+                         {progress, share(begin), share(end), "backprojection"});
+    }
+}
+
 template void backproject_confocal_grid<float>(const ConfocalGrid<float>&,
                                                const VolumeAxes&,
                                                std::span<float>,
-                                               const core::Progress&);
+                                               const core::Progress&,
+                                               std::size_t);
 template void backproject_confocal_grid<double>(const ConfocalGrid<double>&,
                                                 const VolumeAxes&,
                                                 std::span<double>,
-                                                const core::Progress&);
+                                                const core::Progress&,
+                                                std::size_t);
 
 }  // namespace nlos

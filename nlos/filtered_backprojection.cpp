@@ -72,10 +72,20 @@ void filter_column(const Volume& volume,
     }
 }
 
+/// The same measurement with other histograms.
+MethodInput with_histograms(const MethodInput& input,
+                            const core::TimeAxis& axis,
+                            const core::Transient& transient,
+                            const core::Progress& progress) {
+    return {input.scan, axis, transient, input.wall, input.axes, input.z_range_m, progress};
+}
+
 }  // namespace
 
-Volume laplacian_backprojection(const MethodInput& input, Compensation compensation) {
-    const Volume sums = backproject(input, compensation);
+Volume laplacian_backprojection(const MethodInput& input,
+                                Compensation compensation,
+                                std::size_t num_slabs) {
+    const Volume sums = backproject(input, compensation, num_slabs);
     const Filter filter = negative_laplacian_of_gaussian();
     const std::size_t nz = sums.axes.z_m.size();
     Volume volume{input.axes, std::vector<float>(sums.values.size()), {}};
@@ -86,33 +96,35 @@ Volume laplacian_backprojection(const MethodInput& input, Compensation compensat
     return volume;
 }
 
-Volume phasor_backprojection(const MethodInput& input, const PhasorSettings& settings) {
-    const FilteredHistograms filtered = filter_histograms(input, settings);
-    const auto run = [&](const core::Transient& transient, double begin, double end) {
+Volume phasor_backprojection(const MethodInput& input,
+                             const PhasorSettings& settings,
+                             std::size_t num_slabs) {
+    const auto run = [&](WavePart part, double begin, double end) {
+        const FilteredHistograms filtered = filter_histograms(input, settings, part);
         const core::Progress progress = input.progress.part(begin, end);
-        return backproject({input.scan,
-                            filtered.time_axis,
-                            transient,
-                            input.wall,
-                            input.axes,
-                            input.z_range_m,
-                            progress},
-                           Compensation::None);
+        return backproject(with_histograms(input, filtered.time_axis, filtered.transient, progress),
+                           Compensation::None,
+                           num_slabs);
     };
-    Volume volume = run(filtered.real, 0.0, 0.5);
-    const Volume imaginary = run(filtered.imaginary, 0.5, 1.0);
+    Volume volume = run(WavePart::Real, 0.0, 0.5);
+    const Volume imaginary = run(WavePart::Imaginary, 0.5, 1.0);
     for (std::size_t i = 0; i < volume.values.size(); ++i) {
         volume.values[i] = std::hypot(volume.values[i], imaginary.values[i]);
     }
     return volume;
 }
 
-double laplacian_backprojection_bytes(const MethodInput& input) {
-    return backproject_bytes(input) + 4.0 * static_cast<double>(input.axes.num_voxels());
+double laplacian_backprojection_bytes(const MethodInput& input, std::size_t num_slabs) {
+    return backproject_bytes(input, num_slabs) + 4.0 * static_cast<double>(input.axes.num_voxels());
 }
 
-double phasor_backprojection_bytes(const MethodInput& input, const PhasorSettings& settings) {
-    return filter_histograms_bytes(input, settings) + laplacian_backprojection_bytes(input);
+double phasor_backprojection_bytes(const MethodInput& input,
+                                   const PhasorSettings& settings,
+                                   std::size_t num_slabs) {
+    const core::TimeAxis axis = filtered_axis(input.time_axis, settings);
+    return 4.0 * static_cast<double>(input.transient.num_pairs()) * axis.num_bins +
+           laplacian_backprojection_bytes(
+               with_histograms(input, axis, input.transient, input.progress), num_slabs);
 }
 
 }  // namespace nlos

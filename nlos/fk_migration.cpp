@@ -17,7 +17,7 @@ namespace nlos {
 namespace {
 
 constexpr std::size_t kColumnsPerBlock = 16;
-constexpr std::size_t kSlabsPerBlock = 8;
+constexpr std::size_t kPlanesPerBlock = 8;
 
 double squared_sinc(double x) {
     const double angle = core::kPi * x;
@@ -38,7 +38,9 @@ struct Grids {
     std::size_t depth_length = 0;  ///< period in depth samples
 
     std::size_t num_frequencies() const { return length / 2 + 1; }
-    std::size_t num_slabs() const { return std::max(num_frequencies(), num_z * samples); }
+    std::size_t num_depths() const { return num_z * samples; }
+    std::size_t num_planes() const { return std::max(num_frequencies(), num_depths()); }
+    std::size_t num_columns() const { return nx * ny; }
     double period_m() const { return static_cast<double>(length) * bin_m; }
 };
 
@@ -82,7 +84,7 @@ class RangeTransform {
 
     void fill(std::size_t begin, std::size_t end, ComplexF* out) const {
         const std::size_t row_floats = grids_.length + 2;
-        const std::size_t num_columns = grids_.nx * grids_.ny;
+        const std::size_t num_columns = grids_.num_columns();
         FftBuffer rows(kColumnsPerBlock * row_floats);
         for (std::size_t column = begin; column < end; ++column) {
             fill_amplitudes(column, rows.data() + (column - begin) * row_floats);
@@ -134,6 +136,39 @@ class RangeTransform {
     Fft forward_;
 };
 
+/// Rows of the lateral spectrum that are held at a time: those of some |kx|, each kx followed by
+/// its mirror image.
+struct RowSlab {
+    std::vector<std::size_t> kx;     ///< index of each row held
+    std::vector<std::size_t> begin;  ///< first row of each |kx|, and one past the last row
+    std::size_t py = 0;
+
+    std::size_t num_pairs() const { return begin.size() - 1; }
+    /// Where row `row` of a plane begins.
+    std::size_t offset(std::size_t plane, std::size_t row) const {
+        return (plane * kx.size() + row) * py;
+    }
+};
+
+/// Most |kx| that one slab has.
+std::size_t slab_size(const Grids& grids, std::size_t num_slabs) {
+    return (grids.px / 2 + num_slabs) / num_slabs;
+}
+
+/// Rows of |kx| [first, end).
+RowSlab make_slab(const Grids& grids, std::size_t first, std::size_t end) {
+    RowSlab slab;
+    slab.py = grids.py;
+    for (std::size_t ix = first; ix < end; ++ix) {
+        slab.begin.push_back(slab.kx.size());
+        slab.kx.push_back(ix);
+        const std::size_t mirror = (grids.px - ix) % grids.px;
+        if (mirror != ix) slab.kx.push_back(mirror);
+    }
+    slab.begin.push_back(slab.kx.size());
+    return slab;
+}
+
 /// Reads the spectrum at the f that belongs to each kz and transforms along kz: one row of (kx, ky)
 /// and its mirror image at a time, as they share all weights.
 class StoltMap {
@@ -145,21 +180,22 @@ class StoltMap {
                                       Fft::Direction::Inverse)),
           num_kz_((grids.depth_length - 1) / 2) {}
 
-    /// Maps the rows at kx index `ix` and px - ix of `field` [f][kx][ky] into [z][kx][ky].
-    void apply(std::size_t ix, ComplexF* field) const {
-        const std::size_t mirror = (grids_.px - ix) % grids_.px;
-        std::vector<std::size_t> rows{ix};
-        if (mirror != ix) rows.push_back(mirror);
+    /// Maps the rows of the slab's pair `pair` of `field` [f][row][ky] into [z][row][ky].
+    void apply(const RowSlab& slab, std::size_t pair, ComplexF* field) const {
+        const std::size_t first = slab.begin[pair];
+        const std::size_t num_rows = slab.begin[pair + 1] - first;
         const std::size_t num_f = grids_.num_frequencies();
-        const std::size_t num_depths = grids_.num_z * grids_.samples;
-        std::vector<ComplexF> spectra(rows.size() * grids_.py * (num_f + 1));
-        gather(field, rows, num_f, spectra);
-        std::vector<ComplexF> depths(rows.size() * grids_.py * num_depths);
+        const std::size_t num_depths = grids_.num_depths();
+        std::vector<ComplexF> spectra(num_rows * grids_.py * (num_f + 1));
+        for (std::size_t r = 0; r < num_rows; ++r) {
+            gather(field, slab, first + r, spectra.data() + r * grids_.py * (num_f + 1));
+        }
+        std::vector<ComplexF> depths(num_rows * grids_.py * num_depths);
         FftBuffer column(2 * grids_.depth_length);
         Readings readings(num_kz_);
         for (std::size_t iy = 0; iy <= grids_.py / 2; ++iy) {
-            fill_readings(ix, iy, readings);
-            for (std::size_t r = 0; r < rows.size(); ++r) {
+            fill_readings(slab.kx[first], iy, readings);
+            for (std::size_t r = 0; r < num_rows; ++r) {
                 for (const std::size_t y : {iy, (grids_.py - iy) % grids_.py}) {
                     const std::size_t i = r * grids_.py + y;
                     read_column(readings, spectra.data() + i * (num_f + 1), column);
@@ -168,7 +204,9 @@ class StoltMap {
                 }
             }
         }
-        scatter(depths, rows, num_depths, field);
+        for (std::size_t r = 0; r < num_rows; ++r) {
+            scatter(depths.data() + r * grids_.py * num_depths, slab, first + r, field);
+        }
     }
 
  private:
@@ -217,30 +255,27 @@ class StoltMap {
         inverse_.run(column);
     }
 
-    /// [slab][x][y] -> [row][y][slab], with one element to spare behind each column.
+    /// [f][ky] of one row -> [ky][f], with one element to spare behind each column.
     void gather(const ComplexF* field,
-                const std::vector<std::size_t>& rows,
-                std::size_t num_slabs,
-                std::vector<ComplexF>& columns) const {
-        for (std::size_t slab = 0; slab < num_slabs; ++slab) {
-            for (std::size_t r = 0; r < rows.size(); ++r) {
-                const ComplexF* in = field + (slab * grids_.px + rows[r]) * grids_.py;
-                ComplexF* out = columns.data() + r * grids_.py * (num_slabs + 1) + slab;
-                for (std::size_t y = 0; y < grids_.py; ++y) out[y * (num_slabs + 1)] = in[y];
-            }
+                const RowSlab& slab,
+                std::size_t row,
+                ComplexF* columns) const {
+        const std::size_t num_f = grids_.num_frequencies();
+        for (std::size_t f = 0; f < num_f; ++f) {
+            const ComplexF* in = field + slab.offset(f, row);
+            for (std::size_t y = 0; y < grids_.py; ++y) columns[y * (num_f + 1) + f] = in[y];
         }
     }
 
-    void scatter(const std::vector<ComplexF>& columns,
-                 const std::vector<std::size_t>& rows,
-                 std::size_t num_slabs,
+    /// [ky][z] -> [z][ky] of one row.
+    void scatter(const ComplexF* columns,
+                 const RowSlab& slab,
+                 std::size_t row,
                  ComplexF* field) const {
-        for (std::size_t slab = 0; slab < num_slabs; ++slab) {
-            for (std::size_t r = 0; r < rows.size(); ++r) {
-                const ComplexF* in = columns.data() + r * grids_.py * num_slabs + slab;
-                ComplexF* out = field + (slab * grids_.px + rows[r]) * grids_.py;
-                for (std::size_t y = 0; y < grids_.py; ++y) out[y] = in[y * num_slabs];
-            }
+        const std::size_t num_depths = grids_.num_depths();
+        for (std::size_t z = 0; z < num_depths; ++z) {
+            ComplexF* out = field + slab.offset(z, row);
+            for (std::size_t y = 0; y < grids_.py; ++y) out[y] = columns[y * num_depths + z];
         }
     }
 
@@ -250,44 +285,125 @@ class StoltMap {
     std::size_t num_kz_;
 };
 
-/// Squared magnitudes of voxels [begin, end) along z: transforms their depth samples back to (x, y)
-/// and averages the samples of each voxel.
+/// Lateral transforms of the planes of a slab's field, those of frequencies and of depth samples.
+class LateralTransform {
+ public:
+    using Workspace = PaddedPlane::Workspace;
+
+    explicit LateralTransform(const Grids& grids)
+        : grids_(grids), plane_({grids.nx, grids.ny}, {grids.px, grids.py}) {}
+
+    Workspace make_workspace() const { return plane_.make_workspace(); }
+
+    /// Transforms (x, y) of one frequency and keeps the slab's rows.
+    void forward(const ComplexF* columns,
+                 const RowSlab& slab,
+                 std::size_t f,
+                 Workspace& work,
+                 ComplexF* field) const {
+        plane_.load(columns, work);
+        plane_.forward(work);
+        for (std::size_t row = 0; row < slab.kx.size(); ++row) {
+            std::copy_n(plane_.row(work, slab.kx[row]), grids_.py, field + slab.offset(f, row));
+        }
+    }
+
+    /// Adds the slab's share of depth sample `z` to `amplitudes` (x, y).
+    void add_amplitudes(const ComplexF* field,
+                        const RowSlab& slab,
+                        std::size_t z,
+                        Workspace& work,
+                        ComplexF* amplitudes) const {
+        if (slab.kx.size() < grids_.px) std::fill_n(work.data(), work.num_floats(), 0.0F);
+        for (std::size_t row = 0; row < slab.kx.size(); ++row) {
+            std::copy_n(field + slab.offset(z, row), grids_.py, plane_.row(work, slab.kx[row]));
+        }
+        plane_.inverse(work);
+        for (std::size_t ix = 0; ix < grids_.nx; ++ix) {
+            const ComplexF* in = plane_.row(work, ix);
+            ComplexF* out = amplitudes + ix * grids_.ny;
+            for (std::size_t iy = 0; iy < grids_.ny; ++iy) out[iy] += in[iy];
+        }
+    }
+
+ private:
+    const Grids& grids_;
+    PaddedPlane plane_;
+};
+
+/// Squared magnitudes of voxels [begin, end) along z, each an average over its depth samples.
+///
+/// field    of the last slab
+/// others   amplitudes of the slabs before it [z][x][y]; empty: there are none
 void fill_voxels(const Grids& grids,
-                 const PaddedPlane& plane,
+                 const LateralTransform& lateral,
+                 const RowSlab& slab,
                  const ComplexF* field,
+                 const std::vector<ComplexF>& others,
                  std::size_t begin,
                  std::size_t end,
                  Volume& volume) {
-    PaddedPlane::Workspace work = plane.make_workspace();
+    LateralTransform::Workspace work = lateral.make_workspace();
     const std::size_t count = end - begin;
+    const std::size_t num_columns = grids.num_columns();
     const float share = 1.0F / static_cast<float>(grids.samples);
-    std::vector<float> sums(grids.nx * grids.ny * count, 0.0F);
-    for (std::size_t iz = begin; iz < end; ++iz) {
-        for (std::size_t i = 0; i < grids.samples; ++i) {
-            plane.load_spectrum(field + (iz * grids.samples + i) * grids.px * grids.py, work);
-            plane.inverse(work);
-            for (std::size_t ix = 0; ix < grids.nx; ++ix) {
-                const ComplexF* row = plane.row(work, ix);
-                for (std::size_t iy = 0; iy < grids.ny; ++iy) {
-                    sums[(ix * grids.ny + iy) * count + iz - begin] +=
-                        share * (row[iy].real() * row[iy].real() + row[iy].imag() * row[iy].imag());
-                }
-            }
+    std::vector<float> sums(num_columns * count, 0.0F);
+    std::vector<ComplexF> amplitudes(num_columns);
+    for (std::size_t z = begin * grids.samples; z < end * grids.samples; ++z) {
+        if (others.empty()) {
+            std::fill(amplitudes.begin(), amplitudes.end(), ComplexF{});
+        } else {
+            std::copy_n(others.data() + z * num_columns, num_columns, amplitudes.data());
+        }
+        lateral.add_amplitudes(field, slab, z, work, amplitudes.data());
+        float* sum = sums.data() + z / grids.samples - begin;
+        for (std::size_t column = 0; column < num_columns; ++column) {
+            const ComplexF a = amplitudes[column];
+            sum[column * count] += share * (a.real() * a.real() + a.imag() * a.imag());
         }
     }
-    for (std::size_t column = 0; column < grids.nx * grids.ny; ++column) {
+    for (std::size_t column = 0; column < num_columns; ++column) {
         std::copy_n(sums.data() + column * count,
                     count,
                     volume.values.data() + column * grids.num_z + begin);
     }
 }
 
+/// Field [z][row][ky] of one slab of rows.
+///
+/// spectrum   [f][x][y]
+FftBuffer migrate(const MethodInput& input,
+                  const Grids& grids,
+                  const LateralTransform& lateral,
+                  const RowSlab& slab,
+                  FftBuffer& spectrum,
+                  const core::Progress& progress) {
+    FftBuffer field(2 * slab.offset(grids.num_planes(), 0));
+    parallel_blocks_with_progress(
+        grids.num_frequencies(),
+        kPlanesPerBlock,
+        {progress, 0.0, 0.3, "lateral transform"},
+        [&](std::size_t begin, std::size_t end) {
+            auto work = lateral.make_workspace();
+            for (std::size_t f = begin; f < end; ++f) {
+                lateral.forward(
+                    spectrum.complex() + f * grids.num_columns(), slab, f, work, field.complex());
+            }
+        });
+    const StoltMap map(*input.wall.grid, grids);
+    parallel_blocks_with_progress(
+        slab.num_pairs(),
+        1,
+        {progress, 0.3, 0.7, "migration"},
+        [&](std::size_t begin, std::size_t) { map.apply(slab, begin, field.complex()); });
+    return field;
+}
+
 }  // namespace
 
-Volume fk_migration(const MethodInput& input, Falloff falloff) {
+Volume fk_migration(const MethodInput& input, Falloff falloff, std::size_t num_slabs) {
     const Grids grids = make_grids(input);
-    const std::size_t num_columns = grids.nx * grids.ny;
-    const std::size_t slab_size = grids.px * grids.py;
+    const std::size_t num_columns = grids.num_columns();
 
     FftBuffer spectrum(2 * grids.num_frequencies() * num_columns);
     const RangeTransform transform(input, grids, falloff);
@@ -298,50 +414,58 @@ Volume fk_migration(const MethodInput& input, Falloff falloff) {
                                       transform.fill(begin, end, spectrum.complex());
                                   });
 
-    FftBuffer field(2 * grids.num_slabs() * slab_size);
-    const PaddedPlane plane({grids.nx, grids.ny}, {grids.px, grids.py});
-    parallel_blocks_with_progress(grids.num_frequencies(),
-                                  kSlabsPerBlock,
-                                  {input.progress, 0.1, 0.4, "lateral transform"},
-                                  [&](std::size_t begin, std::size_t end) {
-                                      PaddedPlane::Workspace work = plane.make_workspace();
-                                      for (std::size_t f = begin; f < end; ++f) {
-                                          plane.load(spectrum.complex() + f * num_columns, work);
-                                          plane.forward(work);
-                                          plane.store_spectrum(work,
-                                                               field.complex() + f * slab_size);
-                                      }
-                                  });
-    spectrum = FftBuffer(0);
-
-    const StoltMap map(*input.wall.grid, grids);
-    parallel_blocks_with_progress(
-        grids.px / 2 + 1,
-        1,
-        {input.progress, 0.4, 0.7, "migration"},
-        [&](std::size_t begin, std::size_t) { map.apply(begin, field.complex()); });
-
-    Volume volume{input.axes, std::vector<float>(num_columns * grids.num_z), {}};
-    parallel_blocks_with_progress(grids.num_z,
-                                  kSlabsPerBlock,
-                                  {input.progress, 0.7, 1.0, "lateral transform"},
-                                  [&](std::size_t begin, std::size_t end) {
-                                      fill_voxels(
-                                          grids, plane, field.complex(), begin, end, volume);
-                                  });
+    const LateralTransform lateral(grids);
+    const std::size_t num_kx = grids.px / 2 + 1;
+    const std::size_t size = slab_size(grids, num_slabs);
+    std::vector<ComplexF> amplitudes;  // [z][x][y], of all slabs but the last
+    Volume volume{input.axes, {}, {}};
+    for (std::size_t first = 0; first < num_kx; first += size) {
+        const std::size_t end = std::min(num_kx, first + size);
+        const auto share = [&](std::size_t kx) {
+            return 0.1 + 0.9 * static_cast<double>(kx) / static_cast<double>(num_kx);
+        };
+        const core::Progress progress = input.progress.part(share(first), share(end));
+        const RowSlab slab = make_slab(grids, first, end);
+        FftBuffer field = migrate(input, grids, lateral, slab, spectrum, progress);
+        const ProgressSpan span{progress, 0.7, 1.0, "lateral transform"};
+        if (end < num_kx) {
+            amplitudes.resize(num_columns * grids.num_depths());
+            parallel_blocks_with_progress(
+                grids.num_depths(),
+                kPlanesPerBlock,
+                span,
+                [&](std::size_t begin, std::size_t last) {
+                    auto work = lateral.make_workspace();
+                    for (std::size_t z = begin; z < last; ++z) {
+                        lateral.add_amplitudes(
+                            field.complex(), slab, z, work, amplitudes.data() + z * num_columns);
+                    }
+                });
+            continue;
+        }
+        spectrum = FftBuffer(0);
+        volume.values.resize(num_columns * grids.num_z);
+        parallel_blocks_with_progress(
+            grids.num_z, kPlanesPerBlock, span, [&](std::size_t begin, std::size_t last) {
+                fill_voxels(grids, lateral, slab, field.complex(), amplitudes, begin, last, volume);
+            });
+    }
     return volume;
 }
 
-double fk_migration_bytes(const MethodInput& input) {
+double fk_migration_bytes(const MethodInput& input, std::size_t num_slabs) {
     const Grids grids = make_grids(input);
-    const auto columns = static_cast<double>(grids.nx * grids.ny);
+    const auto columns = static_cast<double>(grids.num_columns());
     const auto plane = static_cast<double>(grids.px * (grids.py + 8));
-    const double field = 8.0 * plane * static_cast<double>(grids.num_slabs());
+    const auto rows = static_cast<double>(std::min(grids.px, 2 * slab_size(grids, num_slabs)));
+    const double field = 8.0 * rows * static_cast<double>(grids.py * grids.num_planes());
     const double spectrum = 8.0 * columns * static_cast<double>(grids.num_frequencies());
+    const double amplitudes =
+        num_slabs > 1 ? 8.0 * columns * static_cast<double>(grids.num_depths()) : 0.0;
     const double volume = 4.0 * columns * static_cast<double>(grids.num_z);
-    const double rows = 2.0 * static_cast<double>(grids.py * 2 * grids.num_slabs());
-    const double per_thread = 8.0 * (plane + rows) + 4.0 * columns * kSlabsPerBlock;
-    return field + std::max(spectrum, volume) + per_thread * core::thread_count();
+    const double lines = 2.0 * static_cast<double>(grids.py * 2 * grids.num_planes());
+    const double per_thread = 8.0 * (plane + lines + columns) + 4.0 * columns * kPlanesPerBlock;
+    return field + amplitudes + std::max(spectrum, volume) + per_thread * core::thread_count();
 }
 
 }  // namespace nlos

@@ -101,6 +101,11 @@ class PhaseSeries {
     std::vector<ComplexF> steps_;
 };
 
+/// Values of one frequency's lateral transform, padded by zeros to twice the grid.
+std::size_t padded_size(const WallGrid& grid) {
+    return 4 * good_fft_size(grid.size[0]) * good_fft_size(grid.size[1]);
+}
+
 /// Propagation from the wall to planes of voxels.
 class PlanePropagator {
  public:
@@ -230,35 +235,46 @@ std::size_t illumination_count(const MethodInput& input) {
     return input.scan.pattern == core::ScanPattern::Exhaustive ? input.scan.illumination.size() : 1;
 }
 
+/// How many illumination points' spectra are held at a time.
+///
+/// num_frequencies   of each
 std::size_t illumination_per_chunk(const MethodInput& input,
-                                   const VirtualWave& wave,
-                                   std::size_t spectrum_size) {
-    const double bytes = 8.0 * static_cast<double>(wave.size() * spectrum_size);
+                                   std::size_t num_frequencies,
+                                   std::size_t spectrum_size,
+                                   std::size_t num_slabs) {
+    const double bytes = 8.0 * static_cast<double>(num_frequencies * spectrum_size * num_slabs);
     const auto fitting = static_cast<std::size_t>(std::max(1.0, kSpectrumBytes / bytes));
     return std::min(illumination_count(input), fitting);
 }
 
-Volume propagate(const MethodInput& input, const PhasorSettings& settings) {
-    const Band band = make_band(input, settings);
-    const PlanePropagator propagator(input, band.wave);
-    const std::size_t num_columns = propagator.num_columns();
-    const std::size_t num_z = input.axes.z_m.size();
-    const std::size_t num_illumination = illumination_count(input);
-    const std::size_t chunk = illumination_per_chunk(input, band.wave, propagator.spectrum_size());
+/// Most frequencies that one slab of them has.
+std::size_t slab_size(std::size_t num_frequencies, std::size_t num_slabs) {
+    return (num_frequencies + num_slabs - 1) / num_slabs;
+}
 
-    std::vector<ComplexF> field(num_columns * num_z);  // [z][x][y]
+/// Adds what a wave, or a part of one, brings to all voxels to `field` [z][x][y].
+///
+/// chunk   illumination points at a time
+void add_wave(const MethodInput& input,
+              const VirtualWave& wave,
+              const BinRange& bins,
+              std::size_t chunk,
+              const core::Progress& progress,
+              std::vector<ComplexF>& field) {
+    const PlanePropagator propagator(input, wave);
+    const std::size_t num_columns = propagator.num_columns();
+    const std::size_t num_illumination = illumination_count(input);
     for (std::size_t first = 0; first < num_illumination; first += chunk) {
         const std::size_t end = std::min(num_illumination, first + chunk);
         const std::vector<ComplexF> spectra = propagator.spectra(
-            analyse(input, band.wave, band.bins, {first * num_columns, end * num_columns}),
-            end - first);
+            analyse(input, wave, bins, {first * num_columns, end * num_columns}), end - first);
         const auto share = [&](std::size_t done) {
             return static_cast<double>(done) / static_cast<double>(num_illumination);
         };
         parallel_blocks_with_progress(
-            num_z,
+            input.axes.z_m.size(),
             1,
-            {input.progress, share(first), share(end), "propagation"},
+            {progress, share(first), share(end), "propagation"},
             [&](std::size_t iz, std::size_t) {
                 std::vector<ComplexF> plane(num_columns);
                 propagator.add_plane(input.axes.z_m[iz], spectra, {first, end}, plane);
@@ -266,6 +282,29 @@ Volume propagate(const MethodInput& input, const PhasorSettings& settings) {
                     field[iz * num_columns + i] += plane[i];
                 }
             });
+    }
+}
+
+Volume propagate(const MethodInput& input, const PhasorSettings& settings, std::size_t num_slabs) {
+    const Band band = make_band(input, settings);
+    const std::size_t num_columns = input.axes.x_m.size() * input.axes.y_m.size();
+    const std::size_t num_z = input.axes.z_m.size();
+    const std::size_t size = slab_size(band.wave.size(), num_slabs);
+    const std::size_t chunk =
+        illumination_per_chunk(input, size, padded_size(*input.wall.grid), num_slabs);
+
+    std::vector<ComplexF> field(num_columns * num_z);  // [z][x][y]
+    for (std::size_t begin = 0; begin < band.wave.size(); begin += size) {
+        const std::size_t end = std::min(band.wave.size(), begin + size);
+        const auto share = [&](std::size_t done) {
+            return static_cast<double>(done) / static_cast<double>(band.wave.size());
+        };
+        add_wave(input,
+                 band.wave.part(begin, end),
+                 band.bins,
+                 chunk,
+                 input.progress.part(share(begin), share(end)),
+                 field);
     }
     Volume volume{input.axes, std::vector<float>(field.size()), {}};
     for (std::size_t column = 0; column < num_columns; ++column) {
@@ -280,22 +319,27 @@ Volume propagate(const MethodInput& input, const PhasorSettings& settings) {
 
 }  // namespace
 
-Volume phasor_field(const MethodInput& input, const PhasorSettings& settings) {
-    return is_planar(input) ? propagate(input, settings) : phasor_backprojection(input, settings);
+Volume phasor_field(const MethodInput& input,
+                    const PhasorSettings& settings,
+                    std::size_t num_slabs) {
+    return is_planar(input) ? propagate(input, settings, num_slabs)
+                            : phasor_backprojection(input, settings, num_slabs);
 }
 
 std::size_t phasor_frequency_count(const MethodInput& input, const PhasorSettings& settings) {
     return make_band(input, settings).wave.size();
 }
 
-double phasor_field_bytes(const MethodInput& input, const PhasorSettings& settings) {
-    if (!is_planar(input)) return phasor_backprojection_bytes(input, settings);
-    const Band band = make_band(input, settings);
+double phasor_field_bytes(const MethodInput& input,
+                          const PhasorSettings& settings,
+                          std::size_t num_slabs) {
+    if (!is_planar(input)) return phasor_backprojection_bytes(input, settings, num_slabs);
     const auto [nx, ny] = input.wall.grid->size;
-    const std::size_t padded = 4 * good_fft_size(nx) * good_fft_size(ny);
-    const auto chunk = static_cast<double>(illumination_per_chunk(input, band.wave, padded));
-    const auto frequencies = static_cast<double>(band.wave.size());
-    const double spectra = 8.0 * chunk * frequencies * static_cast<double>(padded + nx * ny);
+    const std::size_t padded = padded_size(*input.wall.grid);
+    const std::size_t size = slab_size(phasor_frequency_count(input, settings), num_slabs);
+    const auto chunk = static_cast<double>(illumination_per_chunk(input, size, padded, num_slabs));
+    const double spectra =
+        8.0 * chunk * static_cast<double>(size) * static_cast<double>(padded + nx * ny);
     const double per_thread =
         8.0 * static_cast<double>(padded) * 4.0 + 16.0 * chunk * static_cast<double>(nx * ny);
     return spectra + per_thread * core::thread_count() +

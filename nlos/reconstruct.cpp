@@ -27,7 +27,7 @@ namespace nlos {
 namespace {
 
 constexpr std::size_t kDefaultColumns = 64;
-constexpr std::size_t kMostSlabs = 64;  // each repeats the transforms along time
+constexpr std::size_t kMostSlabs = 64;  // each repeats a part of the work
 
 /// As many bins as keep the range they cover within a quarter of the wall points' distance: finer
 /// depth than that no aperture of this sampling resolves, and noise and work shrink with the bins.
@@ -170,7 +170,7 @@ void take_normals(const Volume& volume, core::DepthMap& depth) {
     }
 }
 
-/// num_slabs   of lct and dlct; others work on everything at once
+/// num_slabs   parts worked on one after another; the prior needs everything at once
 double method_bytes(const MethodInput& input,
                     const ReconstructSettings& settings,
                     std::size_t num_slabs) {
@@ -181,18 +181,18 @@ double method_bytes(const MethodInput& input,
         case Method::Dlct:
             return directional_light_cone_transform_bytes(input, num_slabs);
         case Method::Fk:
-            return fk_migration_bytes(input);
+            return fk_migration_bytes(input, num_slabs);
         case Method::Phasor:
-            return phasor_field_bytes(input, settings.phasor);
+            return phasor_field_bytes(input, settings.phasor, num_slabs);
         case Method::Fbp:
             return settings.filter == FbpFilter::Phasor
-                       ? phasor_backprojection_bytes(input, settings.phasor)
-                       : laplacian_backprojection_bytes(input);
+                       ? phasor_backprojection_bytes(input, settings.phasor, num_slabs)
+                       : laplacian_backprojection_bytes(input, num_slabs);
         case Method::Auto:
         case Method::Bp:
             break;
     }
-    return backproject_bytes(input);
+    return backproject_bytes(input, num_slabs);
 }
 
 /// As few slabs as fit into memory; 1 when none do.
@@ -209,12 +209,11 @@ std::size_t choose_slabs(const MethodInput& input,
 /// Says what will run and what it needs.
 void announce(const Reconstruction& result, std::size_t num_slabs, const core::Progress& progress) {
     if (!progress.announce) return;
-    progress.announce(
-        fmt::format("{}: {}; needs {:.2f} GB of memory{}",
-                    result.method,
-                    result.reason,
-                    1e-9 * result.stated_bytes,
-                    num_slabs > 1 ? fmt::format(" in {} slabs of frequencies", num_slabs) : ""));
+    progress.announce(fmt::format("{}: {}; needs {:.2f} GB of memory{}",
+                                  result.method,
+                                  result.reason,
+                                  1e-9 * result.stated_bytes,
+                                  num_slabs > 1 ? fmt::format(" in {} slabs", num_slabs) : ""));
 }
 
 Volume run_method(const MethodInput& input,
@@ -229,18 +228,18 @@ Volume run_method(const MethodInput& input,
             return directional_light_cone_transform(
                 input, settings.falloff, *settings.snr, num_slabs);
         case Method::Fk:
-            return fk_migration(input, settings.falloff);
+            return fk_migration(input, settings.falloff, num_slabs);
         case Method::Phasor:
-            return phasor_field(input, settings.phasor);
+            return phasor_field(input, settings.phasor, num_slabs);
         case Method::Fbp:
             return settings.filter == FbpFilter::Phasor
-                       ? phasor_backprojection(input, settings.phasor)
-                       : laplacian_backprojection(input, settings.compensation);
+                       ? phasor_backprojection(input, settings.phasor, num_slabs)
+                       : laplacian_backprojection(input, settings.compensation, num_slabs);
         case Method::Auto:
         case Method::Bp:
             break;
     }
-    return backproject(input, settings.compensation);
+    return backproject(input, settings.compensation, num_slabs);
 }
 
 }  // namespace

@@ -148,8 +148,8 @@ void for_each_field(ReconstructSettings& s, Visitor&& visit) {
     visit("mask_threshold", s.mask_threshold, "share of the maximum that counts as foreground");
     visit("memory_gb",
           s.memory_gb,
-          "memory to take at most, beside the capture's [GB]; lct and dlct then work in slabs, "
-          "others refuse; null: what is free");
+          "memory to take at most, beside the capture's [GB]; what needs more is done in slabs, "
+          "or refused; null: what is free");
 }
 
 inline constexpr int kMaxVoxelsPerAxis = 65536;

@@ -63,18 +63,6 @@ std::size_t oversampling(const core::TimeAxis& axis, const PhasorSettings& setti
         std::ceil(kBinsPerWavelength * axis.bin_width_m / *settings.wavelength_m - 1e-9));
 }
 
-/// The axis of filtered histograms: finer bins, and room for the wave before and behind.
-core::TimeAxis filtered_axis(const core::TimeAxis& axis, const PhasorSettings& settings) {
-    const double sigma = settings.cycles * *settings.wavelength_m / 6.0;
-    const double margin = std::ceil(kReach * sigma / axis.bin_width_m);
-    const std::size_t factor = std::max<std::size_t>(1, oversampling(axis, settings));
-    core::TimeAxis finer = axis;
-    finer.opl_start_m -= margin * axis.bin_width_m;
-    finer.bin_width_m /= static_cast<double>(factor);
-    finer.num_bins = (axis.num_bins + 2 * static_cast<int>(margin)) * static_cast<int>(factor);
-    return finer;
-}
-
 }  // namespace
 
 double wall_pitch_m(const core::Scan& scan, const WallFrame& wall) {
@@ -111,6 +99,14 @@ VirtualWave make_virtual_wave(const PhasorSettings& settings, double span_m) {
     return wave;
 }
 
+VirtualWave VirtualWave::part(std::size_t begin, std::size_t end) const {
+    VirtualWave result = *this;
+    result.first_frequency = frequency(begin);
+    result.amplitudes.assign(amplitudes.begin() + static_cast<std::ptrdiff_t>(begin),
+                             amplitudes.begin() + static_cast<std::ptrdiff_t>(end));
+    return result;
+}
+
 std::vector<ComplexF> analyse(const MethodInput& input,
                               const VirtualWave& wave,
                               const BinRange& bins,
@@ -135,7 +131,20 @@ std::vector<ComplexF> analyse(const MethodInput& input,
     return coefficients;
 }
 
-FilteredHistograms filter_histograms(const MethodInput& input, const PhasorSettings& settings) {
+core::TimeAxis filtered_axis(const core::TimeAxis& axis, const PhasorSettings& settings) {
+    const double sigma = settings.cycles * *settings.wavelength_m / 6.0;
+    const double margin = std::ceil(kReach * sigma / axis.bin_width_m);
+    const std::size_t factor = std::max<std::size_t>(1, oversampling(axis, settings));
+    core::TimeAxis finer = axis;
+    finer.opl_start_m -= margin * axis.bin_width_m;
+    finer.bin_width_m /= static_cast<double>(factor);
+    finer.num_bins = (axis.num_bins + 2 * static_cast<int>(margin)) * static_cast<int>(factor);
+    return finer;
+}
+
+FilteredHistograms filter_histograms(const MethodInput& input,
+                                     const PhasorSettings& settings,
+                                     WavePart part) {
     const core::TimeAxis axis = filtered_axis(input.time_axis, settings);
     const std::size_t num_pairs = input.transient.num_pairs();
     const VirtualWave wave =
@@ -149,27 +158,23 @@ FilteredHistograms filter_histograms(const MethodInput& input, const PhasorSetti
                                     1)
                                  .transpose();
     const auto n = static_cast<Eigen::Index>(wave.size());
-    FilteredHistograms result{
-        axis, core::Transient(num_pairs, axis.num_bins), core::Transient(num_pairs, axis.num_bins)};
+    FilteredHistograms result{axis, core::Transient(num_pairs, axis.num_bins)};
     core::parallel_blocks(num_pairs, kPairsPerBlock, [&](std::size_t begin, std::size_t end) {
         const Matrix block = analysis * histograms_of(input.transient, begin, end - begin, bins);
         const auto cosines = synthesis.leftCols(n);
         const auto sines = synthesis.rightCols(n);
         const auto re = block.topRows(n);
         const auto im = block.bottomRows(n);
-        Eigen::Map<Matrix>(result.real.histogram(begin).data(),
-                           axis.num_bins,
-                           static_cast<Eigen::Index>(end - begin)) = cosines * re - sines * im;
-        Eigen::Map<Matrix>(result.imaginary.histogram(begin).data(),
-                           axis.num_bins,
-                           static_cast<Eigen::Index>(end - begin)) = cosines * im + sines * re;
+        Eigen::Map<Matrix> filtered(result.transient.histogram(begin).data(),
+                                    axis.num_bins,
+                                    static_cast<Eigen::Index>(end - begin));
+        if (part == WavePart::Real) {
+            filtered = cosines * re - sines * im;
+        } else {
+            filtered = cosines * im + sines * re;
+        }
     });
     return result;
-}
-
-double filter_histograms_bytes(const MethodInput& input, const PhasorSettings& settings) {
-    return 8.0 * static_cast<double>(input.transient.num_pairs()) *
-           filtered_axis(input.time_axis, settings).num_bins;
 }
 
 }  // namespace nlos

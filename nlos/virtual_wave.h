@@ -23,6 +23,9 @@ struct VirtualWave {
     double frequency(std::size_t i) const {
         return first_frequency + static_cast<double>(i) * frequency_step;
     }
+
+    /// Frequencies [begin, end) alone: fields of parts add up to the field of the wave.
+    VirtualWave part(std::size_t begin, std::size_t end) const;
 };
 
 /// Distance of neighbouring wall points [m]: the grid's, or that of as many points spread evenly
@@ -59,18 +62,22 @@ std::vector<ComplexF> analyse(const MethodInput& input,
                               const BinRange& bins,
                               std::array<std::size_t, 2> pairs);
 
-/// Histograms convolved with the wave, real and imaginary part.
+enum class WavePart { Real, Imaginary };
+
+/// Histograms convolved with a part of the wave.
 struct FilteredHistograms {
-    core::TimeAxis time_axis;  ///< finer than the input
-    core::Transient real;
-    core::Transient imaginary;
+    core::TimeAxis time_axis;
+    core::Transient transient;
 };
 
-/// Convolves every histogram with the wave, on an axis fine enough for linear interpolation: at
-/// least 16 bins per wavelength. Device legs stay part of the axis.
-FilteredHistograms filter_histograms(const MethodInput& input, const PhasorSettings& settings);
+/// The axis of filtered histograms: bins fine enough for linear interpolation, at least 16 per
+/// wavelength, and room for the wave before and behind.
+core::TimeAxis filtered_axis(const core::TimeAxis& axis, const PhasorSettings& settings);
 
-/// Memory that filter_histograms() returns [bytes].
-double filter_histograms_bytes(const MethodInput& input, const PhasorSettings& settings);
+/// Convolves every histogram with a part of the wave, on filtered_axis(). Device legs stay part of
+/// the axis.
+FilteredHistograms filter_histograms(const MethodInput& input,
+                                     const PhasorSettings& settings,
+                                     WavePart part);
 
 }  // namespace nlos

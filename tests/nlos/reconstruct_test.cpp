@@ -212,22 +212,33 @@ TEST(Reconstruct, WorksInSlabsWhenMemoryIsShort) {
     core::Capture capture = nlos_test::confocal_capture(
         nlos_test::wall_grid({48, 48}, {0.02, 0.02}), {0.0, 0.008, 512});
     nlos_test::add_scatterer(capture, Vec3(0.07, -0.13, 0.5), 4.0);
-    for (const char* method : {"method=lct", "method=dlct"}) {
-        const Reconstruction whole = reconstruct(capture, with({method}), {});
+    for (const std::vector<std::string>& method :
+         std::vector<std::vector<std::string>>{{"method=lct"},
+                                               {"method=dlct"},
+                                               {"method=fk"},
+                                               {"method=phasor"},
+                                               {"method=bp"},
+                                               {"method=fbp"},
+                                               {"method=fbp", "filter=phasor"}}) {
+        const std::string name = fmt::format("{}", fmt::join(method, " "));
+        const Reconstruction whole = reconstruct(capture, with(method), {});
         std::string announced;
         core::Progress progress;
         progress.announce = [&](const std::string& text) { announced = text; };
         const std::string limit = fmt::format("memory_gb={}", 0.7e-9 * whole.stated_bytes);
-        const Reconstruction slabs = reconstruct(capture, with({method, limit}), progress);
+        std::vector<std::string> limited = method;
+        limited.push_back(limit);
+        const Reconstruction slabs = reconstruct(capture, with(limited), progress);
         EXPECT_NE(announced.find(" slabs"), std::string::npos) << announced;
-        EXPECT_LT(slabs.stated_bytes, 0.7 * whole.stated_bytes);
+        EXPECT_LT(slabs.stated_bytes, 0.7 * whole.stated_bytes) << name;
         // Single precision, whose rounding dlct raises next to the wall (7e-5 at most seen).
         EXPECT_LT(test_support::relative_l2(slabs.volume.values, whole.volume.values), 1e-3)
-            << method;
+            << name;
+        std::vector<std::string> hopeless = method;
+        hopeless.push_back("memory_gb=0.0001");
+        EXPECT_THROW(reconstruct(capture, with(hopeless), {}), core::Failure) << name;
     }
-    for (const char* method : {"method=fk", "method=phasor", "method=bp", "prior=tv"}) {
-        EXPECT_THROW(reconstruct(capture, with({method, "memory_gb=0.001"}), {}), core::Failure);
-    }
+    EXPECT_THROW(reconstruct(capture, with({"prior=tv", "memory_gb=0.001"}), {}), core::Failure);
 }
 
 TEST(Reconstruct, TakesNoMoreMemoryThanItStates) {
@@ -235,26 +246,35 @@ TEST(Reconstruct, TakesNoMoreMemoryThanItStates) {
     GTEST_SKIP() << "the address sanitizer keeps memory that was given back";
 #endif
     core::Capture capture = nlos_test::confocal_capture(
-        nlos_test::wall_grid({48, 48}, {0.02, 0.02}), {0.0, 0.008, 320});
+        nlos_test::wall_grid({96, 96}, {0.02, 0.02}), {0.0, 0.008, 320});
     nlos_test::add_scatterer(capture, Vec3(0.075, -0.125, 0.5), 4.0);
     const core::ThreadLimit limit(1);
     constexpr double kSlack_bytes = 16e6;  // of code, plans, depth map and the allocator
-    for (const std::vector<std::string>& overrides :
-         {std::vector<std::string>{"method=bp"},
-          {"method=fbp"},
-          {"method=phasor"},
-          {"method=lct"},
-          {"method=fk"},
-          {"method=fbp", "filter=phasor"},
-          {"method=dlct"},
-          {"method=lct", "prior=tv", "tv.iterations=2"}}) {
+    const auto stated_bytes = [&](std::vector<std::string> overrides) {
+        for (const char* common : {"merge_bins=1", "volume.z_range_m=[0.4,0.6]"}) {
+            overrides.push_back(common);
+        }
         core::reset_peak_rss();
         const auto before = static_cast<double>(core::peak_rss_bytes());
         const Reconstruction result = reconstruct(capture, with(overrides), {});
         const double taken = static_cast<double>(core::peak_rss_bytes()) - before;
-        EXPECT_LT(taken, result.stated_bytes + kSlack_bytes) << overrides[0];
+        EXPECT_LT(taken, result.stated_bytes + kSlack_bytes)
+            << fmt::format("{}", fmt::join(overrides, " "));
         EXPECT_GT(result.stated_bytes, 4.0 * static_cast<double>(result.volume.values.size()));
+        return result.stated_bytes;
+    };
+    for (const std::vector<std::string>& overrides : {std::vector<std::string>{"method=bp"},
+                                                      {"method=fbp"},
+                                                      {"method=phasor"},
+                                                      {"method=lct"},
+                                                      {"method=fk"},
+                                                      {"method=fbp", "filter=phasor"},
+                                                      {"method=dlct"}}) {
+        std::vector<std::string> in_slabs = overrides;
+        in_slabs.push_back(fmt::format("memory_gb={}", 0.8e-9 * stated_bytes(overrides)));
+        stated_bytes(in_slabs);
     }
+    stated_bytes({"method=lct", "prior=tv", "tv.iterations=2"});
 }
 
 TEST(Reconstruct, EndsWhenAskedToStop) {
