@@ -164,26 +164,42 @@ void LightVertices::find(const PathDomain& domain,
     for (std::uint32_t v = walk_begin_[static_cast<std::size_t>(walks.first)]; v < last;) {
         std::array<float, kVerticesAtOnce> length;
         const std::uint32_t count = std::min(kVerticesAtOnce, last - v);
+        // Pointers: sums of 32-bit indices might wrap, for all a compiler knows, and would be
+        // loaded one by one.
+        const float* x = x_.data() + v;
+        const float* y = y_.data() + v;
+        const float* z = z_.data() + v;
+        const float* to_light_m = to_light_m_.data() + v;
+        const float* first_x = first_x_.data() + v;
+        const float* first_y = first_y_.data() + v;
+        const float* first_z = first_z_.data() + v;
         for (std::uint32_t i = 0; i < count; ++i) {
-            const float dx = x_[v + i] - start.x();
-            const float dy = y_[v + i] - start.y();
-            const float dz = z_[v + i] - start.z();
-            length[i] = std::sqrt(dx * dx + dy * dy + dz * dz) + to_light_m_[v + i];
+            const float dx = x[i] - start.x();
+            const float dy = y[i] - start.y();
+            const float dz = z[i] - start.z();
+            length[i] = std::sqrt(dx * dx + dy * dy + dz * dz) + to_light_m[i];
         }
         for (std::uint32_t i = 0; same_legs && i < count; ++i) length[i] *= 2.0F;
         for (std::uint32_t i = 0; by_area_ && !same_legs && i < count; ++i) {
-            const float lx = first_x_[v + i] - light.x();
-            const float ly = first_y_[v + i] - light.y();
-            const float lz = first_z_[v + i] - light.z();
+            const float lx = first_x[i] - light.x();
+            const float ly = first_y[i] - light.y();
+            const float lz = first_z[i] - light.z();
             length[i] += std::sqrt(lx * lx + ly * ly + lz * lz);
         }
-        // In a narrow gate most blocks have no hit.
+        const auto is_hit = [&](std::uint32_t i) {
+            return static_cast<std::uint32_t>((length[i] >= low) & (length[i] < high));
+        };
+        // In a narrow gate most blocks have no hit, and where some have, few: no branches.
         std::uint32_t num_hits = 0;
-        for (std::uint32_t i = 0; i < count; ++i) {
-            num_hits += static_cast<std::uint32_t>((length[i] >= low) & (length[i] < high));
-        }
-        for (std::uint32_t i = 0; num_hits > 0 && i < count; ++i) {
-            if (length[i] >= low && length[i] < high) found.push_back(v + i);
+        for (std::uint32_t i = 0; i < count; ++i) num_hits += is_hit(i);
+        if (num_hits > 0) {
+            std::array<std::uint32_t, kVerticesAtOnce> hits;
+            std::uint32_t n = 0;
+            for (std::uint32_t i = 0; i < count; ++i) {
+                hits[n] = v + i;
+                n += is_hit(i);
+            }
+            found.insert(found.end(), hits.begin(), hits.begin() + num_hits);
         }
         v += count;
     }
