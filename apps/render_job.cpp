@@ -56,9 +56,10 @@ core::Json provenance(const std::string& scene_path,
                                   {"surfaces", source.surfaces}});
     }
     if (result.estimated_error) info["estimated_error"] = *result.estimated_error;
-    if (names.find("ellipsoidal") != std::string::npos) {
+    if (names == "ellipsoidal" || names == "restir") {
         info["excluded"] = {{"mode", std::string(core::enum_name(description.render.exclude))},
-                            {"objects", result.excluded_objects}};
+                            {"objects", result.excluded.names},
+                            {"connected", result.excluded.connected}};
     }
     if (!result.warnings.empty()) info["warnings"] = result.warnings;
     info["samples_per_pair"] = result.samples_per_pair;

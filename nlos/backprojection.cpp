@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/backprojection.h"
 
+#include "nlos/slabs.h"
+
 namespace nlos {
 namespace {
 
@@ -74,7 +76,7 @@ double backproject_bytes(const MethodInput& input, std::size_t num_slabs) {
     if (takes_fast_way(input)) {
         const auto bins = static_cast<double>(input.time_axis.num_bins);
         const WallGrid& grid = *input.wall.grid;
-        const auto rows = static_cast<double>((grid.size[0] + num_slabs - 1) / num_slabs);
+        const auto rows = static_cast<double>(largest_slab(grid.size[0], num_slabs));
         const auto row = static_cast<double>(grid.size[1] + 120);  // four classes, padded
         return volume + 4.0 * rows * (bins + 2.0) * row;
     }

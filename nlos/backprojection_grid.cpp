@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/backprojection.h"
+#include "nlos/slabs.h"
 
 #include <algorithm>
 #include <cmath>
@@ -49,16 +50,11 @@ std::size_t class_size(std::size_t count, std::size_t first, std::size_t step) {
     return first < count ? (count - first + step - 1) / step : 0;
 }
 
-/// Rows [begin, end) of the wall grid, each at one x.
-struct WallRows {
-    std::size_t begin = 0, end = 0;
-};
-
-/// Histograms of one class of wall points along y, stored [x][bin][y], y padded by zeros on both
-/// sides so that any shift can be loaded, and one bin of zeros before and after the axis.
+/// Histograms of one class of the wall points of some rows, stored [x][bin][y], y padded by zeros
+/// on both sides so that any shift can be loaded, and one bin of zeros before and after the axis.
 template <class Real>
 struct Slices {
-    WallRows walls;
+    Slab walls;  ///< rows of the wall grid, each at one x
     std::vector<Real> values;
     std::size_t num_y = 0;
     std::size_t row_stride = 0;
@@ -85,19 +81,18 @@ core::TimeAxis wall_axis(const ConfocalGrid<Real>& data) {
 template <class Real>
 Slices<Real> make_slices(const ConfocalGrid<Real>& data,
                          const core::TimeAxis& axis,
-                         const WallRows& walls,
+                         const Slab& walls,
                          std::size_t first_y,
                          std::size_t step) {
     Slices<Real> slices;
     slices.walls = walls;
-    const std::size_t num_rows = walls.end - walls.begin;
     slices.num_y = class_size(data.grid.size[1], first_y, step);
     slices.row_stride = slices.num_y + 2 * (kLanes - 1);
     slices.num_bins = static_cast<std::size_t>(axis.num_bins);
     slices.first_y_m = data.grid.y_m(first_y);
-    slices.values.assign(num_rows * (slices.num_bins + 2) * slices.row_stride, Real{0});
+    slices.values.assign(walls.size() * (slices.num_bins + 2) * slices.row_stride, Real{0});
     const auto num_bins = static_cast<std::size_t>(data.time_axis.num_bins);
-    core::parallel_for(num_rows, [&](std::size_t row) {
+    core::parallel_for(walls.size(), [&](std::size_t row) {
         Real* rows = slices.values.data() + row * (slices.num_bins + 2) * slices.row_stride;
         for (std::size_t n = 0; n < slices.num_y; ++n) {
             const std::size_t point = data.grid.point(walls.begin + row, first_y + n * step);
@@ -282,7 +277,7 @@ template <class Real>
 void backproject_rows(const ConfocalGrid<Real>& data,
                       const VolumeAxes& axes,
                       const RowPairs& rows,
-                      const WallRows& walls,
+                      const Slab& walls,
                       std::span<Real> volume,
                       const ProgressSpan& span) {
     const CommonLattice lattice = common_lattice(data.grid, axes.y_m).value();
@@ -338,18 +333,9 @@ void backproject_confocal_grid(const ConfocalGrid<Real>& data,
                                std::size_t num_slabs) {
     const RowPairs rows = pair_rows(data.grid, axes.x_m);
     const std::size_t num_rows = data.grid.size[0];
-    const std::size_t size = (num_rows + num_slabs - 1) / num_slabs;
-    const auto share = [&](std::size_t done) {
-        return static_cast<double>(done) / static_cast<double>(num_rows);
-    };
-    for (std::size_t begin = 0; begin < num_rows; begin += size) {
-        const std::size_t end = std::min(num_rows, begin + size);
-        backproject_rows(data,
-                         axes,
-                         rows,
-                         {begin, end},
-                         volume,
-                         {progress, share(begin), share(end), "backprojection"});
+    for (const Slab& walls : split_into_slabs(num_rows, num_slabs)) {
+        const core::Progress part = walls.part_of(progress, num_rows);
+        backproject_rows(data, axes, rows, walls, volume, {part, 0.0, 1.0, "backprojection"});
     }
 }
 

@@ -177,31 +177,27 @@ Volume directional_light_cone_transform(const MethodInput& input,
     const VectorFilter filter(cone, *input.wall.grid, depth_m, snr);
     // 2 z f_x z_0 / z_0 and 2 z f_z / z: both rho n, up to a common factor.
     std::vector<float> x(input.axes.num_voxels()), y(x.size()), z(x.size());
-    const std::vector<FrequencySlab> slabs = frequency_slabs(cone, num_slabs);
-    for (std::size_t i = 0; i < num_slabs; ++i) {
-        const FrequencySlab& slab = slabs[i];
-        const auto span = [&](double begin, double end, const char* what) {
-            const auto share = [&](double done) {
-                return (static_cast<double>(i) + done) / static_cast<double>(num_slabs);
-            };
-            return ProgressSpan{input.progress, share(begin), share(end), what};
-        };
+    for (const Slab& slab : split_into_slabs(cone.num_frequencies(), num_slabs)) {
+        const core::Progress progress = slab.part_of(input.progress, cone.num_frequencies());
         const std::size_t spectrum_floats = 2 * slab.size() * cone.num_columns();
         Components components{
             FftBuffer(spectrum_floats),
             FftBuffer(spectrum_floats),
-            cone_spectrum(input, cone, power, slab, span(0.0, 0.1, "time to depth"))};
+            cone_spectrum(input, cone, power, slab, {progress, 0.0, 0.1, "time to depth"})};
         parallel_blocks_with_progress(slab.size(),
                                       kSlabsPerBlock,
-                                      span(0.1, 0.8, "deconvolution"),
+                                      {progress, 0.1, 0.8, "deconvolution"},
                                       [&](std::size_t begin, std::size_t end) {
                                           VectorFilter::Workspace work = filter.make_workspace();
                                           for (std::size_t n = begin; n < end; ++n)
                                               filter.apply(slab.begin + n, n, components, work);
                                       });
-        add_spectrum_to_depth(input, cone, components.x, slab, x, span(0.8, 0.87, "to depth"));
-        add_spectrum_to_depth(input, cone, components.y, slab, y, span(0.87, 0.94, "to depth"));
-        add_spectrum_to_depth(input, cone, components.z, slab, z, span(0.94, 1.0, "to depth"));
+        add_spectrum_to_depth(
+            input, cone, components.x, slab, x, {progress, 0.8, 0.87, "to depth"});
+        add_spectrum_to_depth(
+            input, cone, components.y, slab, y, {progress, 0.87, 0.94, "to depth"});
+        add_spectrum_to_depth(
+            input, cone, components.z, slab, z, {progress, 0.94, 1.0, "to depth"});
     }
 
     const std::size_t num_z = input.axes.z_m.size();
@@ -231,7 +227,7 @@ double directional_light_cone_transform_bytes(const MethodInput& input, std::siz
     const auto columns = static_cast<double>(cone.num_columns());
     const auto padded = static_cast<double>(cone.px * (cone.py + 8));
     const double spectra =
-        24.0 * static_cast<double>(cone.num_frequencies() / num_slabs + 1) * columns;
+        24.0 * static_cast<double>(largest_slab(cone.num_frequencies(), num_slabs)) * columns;
     const double volumes = 16.0 * columns * static_cast<double>(input.axes.z_m.size());
     return spectra + volumes +
            (36.0 * padded + 64.0 * static_cast<double>(cone.length)) * core::thread_count();

@@ -3,6 +3,7 @@
 
 #include "nlos/fft.h"
 #include "nlos/padded_plane.h"
+#include "nlos/slabs.h"
 #include "nlos/unit_phasor.h"
 
 #include <cmath>
@@ -150,16 +151,16 @@ struct RowSlab {
     }
 };
 
-/// Most |kx| that one slab has.
-std::size_t slab_size(const Grids& grids, std::size_t num_slabs) {
-    return (grids.px / 2 + num_slabs) / num_slabs;
+/// How many |kx| a grid has.
+std::size_t num_pairs(const Grids& grids) {
+    return grids.px / 2 + 1;
 }
 
-/// Rows of |kx| [first, end).
-RowSlab make_slab(const Grids& grids, std::size_t first, std::size_t end) {
+/// Rows of some of the |kx|.
+RowSlab rows_of(const Grids& grids, const Slab& pairs) {
     RowSlab slab;
     slab.py = grids.py;
-    for (std::size_t ix = first; ix < end; ++ix) {
+    for (std::size_t ix = pairs.begin; ix < pairs.end; ++ix) {
         slab.begin.push_back(slab.kx.size());
         slab.kx.push_back(ix);
         const std::size_t mirror = (grids.px - ix) % grids.px;
@@ -415,20 +416,15 @@ Volume fk_migration(const MethodInput& input, Falloff falloff, std::size_t num_s
                                   });
 
     const LateralTransform lateral(grids);
-    const std::size_t num_kx = grids.px / 2 + 1;
-    const std::size_t size = slab_size(grids, num_slabs);
+    const core::Progress migration = input.progress.part(0.1, 1.0);
     std::vector<ComplexF> amplitudes;  // [z][x][y], of all slabs but the last
     Volume volume{input.axes, {}, {}};
-    for (std::size_t first = 0; first < num_kx; first += size) {
-        const std::size_t end = std::min(num_kx, first + size);
-        const auto share = [&](std::size_t kx) {
-            return 0.1 + 0.9 * static_cast<double>(kx) / static_cast<double>(num_kx);
-        };
-        const core::Progress progress = input.progress.part(share(first), share(end));
-        const RowSlab slab = make_slab(grids, first, end);
+    for (const Slab& pairs : split_into_slabs(num_pairs(grids), num_slabs)) {
+        const core::Progress progress = pairs.part_of(migration, num_pairs(grids));
+        const RowSlab slab = rows_of(grids, pairs);
         FftBuffer field = migrate(input, grids, lateral, slab, spectrum, progress);
         const ProgressSpan span{progress, 0.7, 1.0, "lateral transform"};
-        if (end < num_kx) {
+        if (pairs.end < num_pairs(grids)) {
             amplitudes.resize(num_columns * grids.num_depths());
             parallel_blocks_with_progress(
                 grids.num_depths(),
@@ -457,7 +453,8 @@ double fk_migration_bytes(const MethodInput& input, std::size_t num_slabs) {
     const Grids grids = make_grids(input);
     const auto columns = static_cast<double>(grids.num_columns());
     const auto plane = static_cast<double>(grids.px * (grids.py + 8));
-    const auto rows = static_cast<double>(std::min(grids.px, 2 * slab_size(grids, num_slabs)));
+    const std::size_t pairs = largest_slab(num_pairs(grids), num_slabs);
+    const auto rows = static_cast<double>(std::min(grids.px, 2 * pairs));
     const double field = 8.0 * rows * static_cast<double>(grids.py * grids.num_planes());
     const double spectrum = 8.0 * columns * static_cast<double>(grids.num_frequencies());
     const double amplitudes =

@@ -117,19 +117,10 @@ void ConeKernel::fill(std::size_t k, ComplexF* quadrant) const {
     }
 }
 
-std::vector<FrequencySlab> frequency_slabs(const Cone& cone, std::size_t num_slabs) {
-    std::vector<FrequencySlab> slabs;
-    for (std::size_t i = 0; i < num_slabs; ++i) {
-        slabs.push_back(
-            {i * cone.num_frequencies() / num_slabs, (i + 1) * cone.num_frequencies() / num_slabs});
-    }
-    return slabs;
-}
-
 FftBuffer cone_spectrum(const MethodInput& input,
                         const Cone& cone,
                         double power,
-                        const FrequencySlab& slab,
+                        const Slab& slab,
                         const ProgressSpan& span) {
     const std::size_t num_columns = cone.num_columns();
     const std::size_t row_floats = cone.length + 2;
@@ -156,7 +147,7 @@ FftBuffer cone_spectrum(const MethodInput& input,
 void add_spectrum_to_depth(const MethodInput& input,
                            const Cone& cone,
                            FftBuffer& spectrum,
-                           const FrequencySlab& slab,
+                           const Slab& slab,
                            std::vector<float>& values,
                            const ProgressSpan& span) {
     const std::size_t num_columns = cone.num_columns();

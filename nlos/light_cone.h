@@ -4,6 +4,7 @@
 #include "nlos/conservative_resampling.h"
 #include "nlos/fft.h"
 #include "nlos/method_input.h"
+#include "nlos/slabs.h"
 
 #include <vector>
 
@@ -78,22 +79,12 @@ class ConeKernel {
     std::vector<ComplexF> phases_;
 };
 
-/// Frequencies [begin, end) along v: filters treat each by itself, so that as many as memory holds
-/// can be worked on at a time.
-struct FrequencySlab {
-    std::size_t begin = 0, end = 0;
-
-    std::size_t size() const { return end - begin; }
-};
-
-/// All frequencies of a cone in `num_slabs` runs of nearly equal length.
-std::vector<FrequencySlab> frequency_slabs(const Cone& cone, std::size_t num_slabs);
-
-/// g(v) of all wall points, transformed along v: stored [frequency of the slab][x][y].
+/// g(v) of all wall points, transformed along v at a slab of its frequencies: stored [frequency of
+/// the slab][x][y].
 FftBuffer cone_spectrum(const MethodInput& input,
                         const Cone& cone,
                         double power,
-                        const FrequencySlab& slab,
+                        const Slab& slab,
                         const ProgressSpan& span);
 
 /// Back from frequencies along v to voxels along z, negative values kept: adds the slab's share to
@@ -101,7 +92,7 @@ FftBuffer cone_spectrum(const MethodInput& input,
 void add_spectrum_to_depth(const MethodInput& input,
                            const Cone& cone,
                            FftBuffer& spectrum,
-                           const FrequencySlab& slab,
+                           const Slab& slab,
                            std::vector<float>& values,
                            const ProgressSpan& span);
 

@@ -77,30 +77,22 @@ Volume light_cone_transform(const MethodInput& input,
     const double power = falloff_power(falloff);
     const SlabFilter filter(cone, *input.wall.grid, snr);
     Volume volume{input.axes, std::vector<float>(input.axes.num_voxels()), {}};
-    const std::vector<FrequencySlab> slabs = frequency_slabs(cone, num_slabs);
-    for (std::size_t i = 0; i < num_slabs; ++i) {
-        const auto share = [&](double done) {
-            return (static_cast<double>(i) + done) / static_cast<double>(num_slabs);
-        };
-        const FrequencySlab& slab = slabs[i];
-        FftBuffer spectrum = cone_spectrum(
-            input, cone, power, slab, {input.progress, share(0.0), share(0.2), "time to depth"});
+    for (const Slab& slab : split_into_slabs(cone.num_frequencies(), num_slabs)) {
+        const core::Progress progress = slab.part_of(input.progress, cone.num_frequencies());
+        FftBuffer spectrum =
+            cone_spectrum(input, cone, power, slab, {progress, 0.0, 0.2, "time to depth"});
         parallel_blocks_with_progress(
             slab.size(),
             kSlabsPerBlock,
-            {input.progress, share(0.2), share(0.8), "deconvolution"},
+            {progress, 0.2, 0.8, "deconvolution"},
             [&](std::size_t begin, std::size_t end) {
                 SlabFilter::Workspace work = filter.make_workspace();
                 for (std::size_t k = begin; k < end; ++k) {
                     filter.apply(slab.begin + k, spectrum.complex() + k * cone.num_columns(), work);
                 }
             });
-        add_spectrum_to_depth(input,
-                              cone,
-                              spectrum,
-                              slab,
-                              volume.values,
-                              {input.progress, share(0.8), share(1.0), "to depth"});
+        add_spectrum_to_depth(
+            input, cone, spectrum, slab, volume.values, {progress, 0.8, 1.0, "to depth"});
     }
     for (float& value : volume.values) value = std::max(0.0F, value);
     return volume;
@@ -110,7 +102,7 @@ double light_cone_transform_bytes(const MethodInput& input, std::size_t num_slab
     const Cone cone = make_cone(input, kSquaredRangeBinsPerBin);
     const auto columns = static_cast<double>(cone.num_columns());
     const auto padded = static_cast<double>(cone.px * (cone.py + 8));
-    const double frequencies = static_cast<double>(cone.num_frequencies() / num_slabs + 1);
+    const auto frequencies = static_cast<double>(largest_slab(cone.num_frequencies(), num_slabs));
     const double spectrum = 8.0 * frequencies * columns;
     const double volume = 4.0 * columns * static_cast<double>(input.axes.z_m.size());
     const double per_thread = 12.0 * padded + 64.0 * static_cast<double>(cone.length + 2);

@@ -3,6 +3,7 @@
 
 #include "nlos/filtered_backprojection.h"
 #include "nlos/padded_plane.h"
+#include "nlos/slabs.h"
 #include "nlos/unit_phasor.h"
 #include "nlos/virtual_wave.h"
 
@@ -247,11 +248,6 @@ std::size_t illumination_per_chunk(const MethodInput& input,
     return std::min(illumination_count(input), fitting);
 }
 
-/// Most frequencies that one slab of them has.
-std::size_t slab_size(std::size_t num_frequencies, std::size_t num_slabs) {
-    return (num_frequencies + num_slabs - 1) / num_slabs;
-}
-
 /// Adds what a wave, or a part of one, brings to all voxels to `field` [z][x][y].
 ///
 /// chunk   illumination points at a time
@@ -289,21 +285,17 @@ Volume propagate(const MethodInput& input, const PhasorSettings& settings, std::
     const Band band = make_band(input, settings);
     const std::size_t num_columns = input.axes.x_m.size() * input.axes.y_m.size();
     const std::size_t num_z = input.axes.z_m.size();
-    const std::size_t size = slab_size(band.wave.size(), num_slabs);
-    const std::size_t chunk =
-        illumination_per_chunk(input, size, padded_size(*input.wall.grid), num_slabs);
+    const std::size_t num_frequencies = band.wave.size();
+    const std::size_t chunk = illumination_per_chunk(
+        input, largest_slab(num_frequencies, num_slabs), padded_size(*input.wall.grid), num_slabs);
 
     std::vector<ComplexF> field(num_columns * num_z);  // [z][x][y]
-    for (std::size_t begin = 0; begin < band.wave.size(); begin += size) {
-        const std::size_t end = std::min(band.wave.size(), begin + size);
-        const auto share = [&](std::size_t done) {
-            return static_cast<double>(done) / static_cast<double>(band.wave.size());
-        };
+    for (const Slab& slab : split_into_slabs(num_frequencies, num_slabs)) {
         add_wave(input,
-                 band.wave.part(begin, end),
+                 band.wave.part(slab.begin, slab.end),
                  band.bins,
                  chunk,
-                 input.progress.part(share(begin), share(end)),
+                 slab.part_of(input.progress, num_frequencies),
                  field);
     }
     Volume volume{input.axes, std::vector<float>(field.size()), {}};
@@ -336,7 +328,7 @@ double phasor_field_bytes(const MethodInput& input,
     if (!is_planar(input)) return phasor_backprojection_bytes(input, settings, num_slabs);
     const auto [nx, ny] = input.wall.grid->size;
     const std::size_t padded = padded_size(*input.wall.grid);
-    const std::size_t size = slab_size(phasor_frequency_count(input, settings), num_slabs);
+    const std::size_t size = largest_slab(phasor_frequency_count(input, settings), num_slabs);
     const auto chunk = static_cast<double>(illumination_per_chunk(input, size, padded, num_slabs));
     const double spectra =
         8.0 * chunk * static_cast<double>(size) * static_cast<double>(padded + nx * ny);

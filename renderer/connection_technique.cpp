@@ -32,24 +32,6 @@ core::Vec3 lit_normal(const PathEnd& end) {
 
 }  // namespace
 
-ExcludedFacets ExcludedFacets::of(const Scene& scene, const RenderSettings& settings) {
-    ExcludedFacets excluded;
-    excluded.facets.resize(scene.facets().size());
-    if (settings.exclude == Exclusion::None) return excluded;
-    std::vector<bool> touched(scene.objects().size());
-    for (std::uint32_t i = 0; i < scene.facets().size(); ++i) {
-        const Object& object = scene.object_of(i);
-        const bool too_large = settings.exclude_area_above_m2 &&
-                               scene.facet(i).area_m2 > *settings.exclude_area_above_m2;
-        excluded.facets[i] = object.role != Role::Hidden || object.ellipsoidal_exclude || too_large;
-        if (excluded.facets[i]) touched[scene.facet(i).object] = true;
-    }
-    for (std::size_t o = 0; o < touched.size(); ++o) {
-        if (touched[o]) excluded.objects.push_back(scene.objects()[o].name);
-    }
-    return excluded;
-}
-
 ConnectionEnds connection_ends(const PathVertex& vertex, const PathEnd& light) {
     const bool flipped = vertex.normal.dot(vertex.to_previous) < 0.0;
     return {{vertex.point.position, light.position},

@@ -3,11 +3,10 @@
 
 #include "renderer/core/capture.h"
 #include "renderer/core/random.h"
+#include "renderer/excluded_facets.h"
 #include "renderer/hierarchy_cut.h"
 #include "renderer/light_path.h"
-#include "renderer/render_settings.h"
 
-#include <string>
 #include <vector>
 
 namespace renderer {
@@ -22,17 +21,6 @@ struct ConnectionDraw {
 struct LobeOnFacet {
     std::uint32_t facet = 0;
     ConnectionLobe lobe;
-};
-
-/// Which facets ellipsoidal connections leave out, and why that is known.
-///
-/// Excluded are, unless the mode is `none`, objects with the role of a wall, objects that say so,
-/// and facets above an area. There the technique has density 0.
-struct ExcludedFacets {
-    std::vector<bool> facets;          ///< per facet of the scene
-    std::vector<std::string> objects;  ///< names of objects of which some facet is excluded
-
-    static ExcludedFacets of(const Scene& scene, const RenderSettings& settings);
 };
 
 /// The ends of the connections from a path's vertex to its light.

@@ -85,6 +85,23 @@ DroppedSignal measure_dropped_signal(const Scene& scene,
     return dropped;
 }
 
+std::string surfaces_kept(const RenderSettings& settings, const ExcludedObjects& excluded) {
+    const bool drops = settings.exclude == Exclusion::Drop && !excluded.names.empty();
+    return drops ? "all but the excluded ones" : "all";
+}
+
+void warn_of_dropped_signal(const Scene& scene,
+                            const core::Scan& scan,
+                            const core::TimeAxis& axis,
+                            const RenderSettings& settings,
+                            RenderResult& result) {
+    if (settings.exclude != Exclusion::Drop || result.excluded.names.empty()) return;
+    const DroppedSignal dropped =
+        measure_dropped_signal(scene, scan, axis, settings, kMeasuredPairs);
+    const double kept = kept_signal(result.capture, dropped.pairs);
+    result.warnings.push_back(drop_warning(dropped, kept, result.excluded.names));
+}
+
 RenderResult render_ellipsoidal(const Scene& scene,
                                 const core::Scan& scan,
                                 const core::HistogramAxes& axes,
@@ -99,16 +116,10 @@ RenderResult render_ellipsoidal(const Scene& scene,
     }
     RenderResult result = render_passes(scene, scan, axes, settings, work, progress);
     if (!work.estimate) return result;
-    result.excluded_objects = ExcludedFacets::of(scene, settings).objects;
-    std::string surfaces = "all";
-    if (drops && !result.excluded_objects.empty()) {
-        surfaces = "all but the excluded ones";
-        const DroppedSignal dropped =
-            measure_dropped_signal(scene, scan, axes.time, settings, kMeasuredPairs);
-        const double kept = kept_signal(result.capture, dropped.pairs);
-        result.warnings.push_back(drop_warning(dropped, kept, result.excluded_objects));
-    }
+    result.excluded = ExcludedFacets::of(scene, axes.time, settings).objects;
+    const std::string surfaces = surfaces_kept(settings, result.excluded);
     result.sources.push_back({first, settings.max_bounces, Estimator::Ellipsoidal, surfaces});
+    warn_of_dropped_signal(scene, scan, axes.time, settings, result);
     return result;
 }
 

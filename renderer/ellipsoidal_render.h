@@ -7,8 +7,8 @@ namespace renderer {
 
 /// Renders with ellipsoidal connections; arguments and results are those of render().
 ///
-/// With excluded surfaces dropped, the result's warnings say what share of the signal that lost, as
-/// measured on some of the pairs.
+/// With excluded surfaces dropped, the result's warnings say what share of the signal that lost:
+/// see warn_of_dropped_signal().
 RenderResult render_ellipsoidal(const Scene& scene,
                                 const core::Scan& scan,
                                 const core::HistogramAxes& axes,
@@ -28,5 +28,18 @@ DroppedSignal measure_dropped_signal(const Scene& scene,
                                      const core::TimeAxis& axis,
                                      const RenderSettings& settings,
                                      std::size_t most_pairs);
+
+/// Which surfaces connections end on, in words.
+std::string surfaces_kept(const RenderSettings& settings, const ExcludedObjects& excluded);
+
+/// With excluded surfaces dropped, adds a warning that says what share of the signal that lost, as
+/// measured on some of the pairs.
+///
+/// result   with the capture and what was excluded
+void warn_of_dropped_signal(const Scene& scene,
+                            const core::Scan& scan,
+                            const core::TimeAxis& axis,
+                            const RenderSettings& settings,
+                            RenderResult& result);
 
 }  // namespace renderer

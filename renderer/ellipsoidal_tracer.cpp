@@ -122,7 +122,7 @@ EllipsoidalTracer::EllipsoidalTracer(const Scene& scene,
       lengths_(lengths_of_gate(axis, settings.gate)),
       surface_walk_(scene, settings.laser_spot_m2),
       facet_traits_(scene, hidden_objects(scene)),
-      excluded_(ExcludedFacets::of(scene, settings)),
+      excluded_(ExcludedFacets::of(scene, axis, settings)),
       technique_(scene, excluded_, scan) {
     if (scan.camera) pixel_places_.emplace(Measurement(scene, scan), *scan.camera);
 }

@@ -54,17 +54,22 @@ PathCandidates::PathCandidates(const Scene& scene,
                                const core::Scan& scan,
                                const Measurement& measurement,
                                const SurfaceWalk& walk,
+                               const core::TimeAxis& axis,
                                const RenderSettings& settings)
     : scene_(&scene),
       walk_(&walk),
-      integrand_(scene, walk, settings),
+      excluded_(ExcludedFacets::of(scene, axis, settings)),
+      integrand_(scene,
+                 walk,
+                 settings.laser_spot_m2,
+                 settings.exclude == Exclusion::Drop ? excluded_.facets : std::vector<bool>()),
       light_vertices_(scene, walk, measurement),
       shared_walks_(has_shared_walks(settings.restir.candidates) ? settings.restir.shared_walks
                                                                  : 0),
       max_vertices_(settings.max_bounces - measurement.first_order() +
                     (measurement.is_image() ? 0 : 1)) {
     if (has_connections(settings.restir.candidates)) {
-        connections_.emplace(scene, ExcludedFacets::of(scene, settings), scan);
+        connections_.emplace(scene, excluded_, scan);
     }
 }
 

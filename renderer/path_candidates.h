@@ -38,14 +38,17 @@ class PathCandidates {
         Effort effort;
     };
 
-    /// All references must outlive this. scan: where sensors and lights may be.
+    /// All references but `axis` must outlive this. scan: where sensors and lights may be.
+    /// axis: lengths asked for, by whose span surfaces are excluded; see ExcludedFacets.
     PathCandidates(const Scene& scene,
                    const core::Scan& scan,
                    const Measurement& measurement,
                    const SurfaceWalk& walk,
+                   const core::TimeAxis& axis,
                    const RenderSettings& settings);
 
     const PathIntegrand& integrand() const { return integrand_; }
+    const ExcludedFacets& excluded() const { return excluded_; }
     int max_vertices() const { return max_vertices_; }
 
     /// Traces the shared walks of a frame. returns the number of rays
@@ -70,6 +73,7 @@ class PathCandidates {
 
     const Scene* scene_;
     const SurfaceWalk* walk_;
+    ExcludedFacets excluded_;
     PathIntegrand integrand_;
     LightVertices light_vertices_;
     std::optional<ConnectionTechnique> connections_;

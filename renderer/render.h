@@ -3,6 +3,7 @@
 
 #include "renderer/core/capture.h"
 #include "renderer/core/progress.h"
+#include "renderer/excluded_facets.h"
 #include "renderer/render_settings.h"
 #include "renderer/restir_counts.h"
 #include "renderer/scene.h"
@@ -30,8 +31,7 @@ struct RenderResult {
     std::uint64_t samples_per_pair = 0;     ///< candidate paths used, whole passes
     std::uint64_t num_rays = 0;
     double seconds = 0.0;
-    std::vector<std::string>
-        excluded_objects;  ///< from ellipsoidal connections, when there are any
+    ExcludedObjects excluded;  ///< from ellipsoidal connections, when there are any
     std::vector<std::string> warnings;
     RestirCounts restir_counts;  ///< of restir
     bool interrupted = false;    ///< stopped early; every pair has a result

@@ -6,6 +6,10 @@ namespace {
 
 using core::Vec3;
 
+ShiftQuantity kept_quantity(const core::HistogramAxes& axes) {
+    return axes.velocity ? ShiftQuantity::PathVelocity : ShiftQuantity::PathLength;
+}
+
 std::optional<ShiftMapping> make_shift(const Scene& scene,
                                        const RestirSettings& settings,
                                        ShiftQuantity quantity) {
@@ -144,13 +148,13 @@ bool is_open(const RestirSide& from,
 
 RestirScene::RestirScene(std::shared_ptr<const Scene> scene_of_frames,
                          const core::Scan& scan,
-                         const RenderSettings& settings,
-                         ShiftQuantity quantity)
+                         const core::HistogramAxes& axes,
+                         const RenderSettings& settings)
     : scene(std::move(scene_of_frames)),
       measurement(*scene, scan),
       walk(*scene, settings.laser_spot_m2),
-      candidates(*scene, scan, measurement, walk, settings),
-      shift(make_shift(*scene, settings.restir, quantity)) {
+      candidates(*scene, scan, measurement, walk, axes.time, settings),
+      shift(make_shift(*scene, settings.restir, kept_quantity(axes))) {
     if (measurement.is_image()) pixel_places.emplace(measurement, *scan.camera);
 }
 

@@ -17,12 +17,12 @@ namespace renderer {
 
 /// What reservoirs need to know of a scene; the same for all frames in which nothing moves.
 struct RestirScene {
-    /// scan       must outlive this
-    /// quantity   what shifts keep
+    /// scan   must outlive this
+    /// axes   of all frames: their spans and kinds count, not where they begin
     RestirScene(std::shared_ptr<const Scene> scene_of_frames,
                 const core::Scan& scan,
-                const RenderSettings& settings,
-                ShiftQuantity quantity);
+                const core::HistogramAxes& axes,
+                const RenderSettings& settings);
     RestirScene(const RestirScene&) = delete;
     RestirScene& operator=(const RestirScene&) = delete;
 

@@ -5,6 +5,7 @@
 #include "renderer/core/process.h"
 #include "renderer/core/sampling.h"
 #include "renderer/core/stopwatch.h"
+#include "renderer/ellipsoidal_render.h"
 #include "renderer/measurement.h"
 #include "renderer/restir_renderer.h"
 #include "renderer/short_paths.h"
@@ -50,10 +51,6 @@ void require_gate_to_shrink_to(const core::HistogramAxes& axes, const RenderSett
                                   axes.velocity ? " and a velocity axis" : ""),
                       "must be 0 unless the time axis has one bin, a gate, and there is no "
                       "velocity axis");
-}
-
-ShiftQuantity kept_quantity(const core::HistogramAxes& axes) {
-    return axes.velocity ? ShiftQuantity::PathVelocity : ShiftQuantity::PathLength;
 }
 
 void require_memory(double needed) {
@@ -161,6 +158,7 @@ RenderResult result_of(const HistogramSums& sums,
                        int num_frames,
                        const core::Scan& scan,
                        const core::HistogramAxes& axes,
+                       const ExcludedObjects& excluded,
                        const RenderSettings& settings) {
     RenderResult result;
     result.capture.scan = scan;
@@ -173,7 +171,11 @@ RenderResult result_of(const HistogramSums& sums,
             *axes.velocity, sums.velocity->mean_of_all(num_frames), std::nullopt};
         if (has_variance) result.capture.velocity->variance = sums.velocity->variance(num_frames);
     }
-    result.sources.push_back({first_order(scan), settings.max_bounces, Estimator::Restir, "all"});
+    result.excluded = excluded;
+    result.sources.push_back({first_order(scan),
+                              settings.max_bounces,
+                              Estimator::Restir,
+                              surfaces_kept(settings, excluded)});
     result.samples_per_pair = static_cast<std::uint64_t>(num_frames) *
                               static_cast<std::uint64_t>(candidates_per_frame(settings.restir));
     return result;
@@ -197,8 +199,7 @@ RenderResult render_restir(std::shared_ptr<const Scene> scene,
     const RenderSettings settings = with_fitting_frames(asked);
     RestirRenderer renderer(scan, settings);
     require_memory(renderer.bytes_needed(axes));
-    const auto restir_scene =
-        std::make_shared<RestirScene>(std::move(scene), scan, settings, kept_quantity(axes));
+    const auto restir_scene = std::make_shared<RestirScene>(std::move(scene), scan, axes, settings);
     const int per_frame = candidates_per_frame(settings.restir);
     StoppingRule rule(settings, (settings.samples + per_frame - 1) / per_frame, {});
     HistogramSums sums = empty_sums(scan, axes, settings);
@@ -216,7 +217,9 @@ RenderResult render_restir(std::shared_ptr<const Scene> scene,
             break;
         }
     }
-    RenderResult result = result_of(sums, done, scan, axes, settings);
+    const ExcludedObjects& excluded = restir_scene->candidates.excluded().objects;
+    RenderResult result = result_of(sums, done, scan, axes, excluded, settings);
+    warn_of_dropped_signal(*restir_scene->scene, scan, axes.time, settings, result);
     if (done > 1) {
         result.estimated_error = relative_error(sums.time.squared_norms(done, nullptr), {});
     }
@@ -246,11 +249,10 @@ FrameRenderer make_restir_frame_renderer(const core::Scan& scan, const RenderSet
         require_gate_to_shrink_to(frame.axes, state->settings);
         if (frame.index == 0) require_memory(state->renderer.bytes_needed(frame.axes));
         const bool is_first = state->last.scene == nullptr;
-        const auto scene =
-            !is_first && state->last.scene->scene == frame.scene
-                ? state->last.scene
-                : std::make_shared<RestirScene>(
-                      frame.scene, frame_scan, state->settings, kept_quantity(frame.axes));
+        const auto scene = !is_first && state->last.scene->scene == frame.scene
+                               ? state->last.scene
+                               : std::make_shared<RestirScene>(
+                                     frame.scene, frame_scan, frame.axes, state->settings);
         const std::uint64_t rays_before = state->renderer.counts().num_rays;
         HistogramSums sums = empty_sums(frame_scan, frame.axes, state->settings);
         // Time that is left goes into more estimates from the same past; the last one is kept.
@@ -266,7 +268,12 @@ FrameRenderer make_restir_frame_renderer(const core::Scan& scan, const RenderSet
         } while (state->settings.seconds && watch.seconds() < *state->settings.seconds &&
                  repeats < static_cast<int>(kMostRepeats));
         state->last = std::move(rendered);
-        RenderResult result = result_of(sums, repeats, frame_scan, frame.axes, state->settings);
+        RenderResult result = result_of(sums,
+                                        repeats,
+                                        frame_scan,
+                                        frame.axes,
+                                        scene->candidates.excluded().objects,
+                                        state->settings);
         result.num_rays = state->renderer.counts().num_rays - rays_before;
         result.restir_counts = state->renderer.counts();
         result.seconds = watch.seconds();

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/reusable_path.h"
 
-#include "renderer/connection_technique.h"
-
 #include <cmath>
 
 namespace renderer {
@@ -11,10 +9,9 @@ using core::Vec3;
 
 PathIntegrand::PathIntegrand(const Scene& scene,
                              const SurfaceWalk& walk,
-                             const RenderSettings& settings)
-    : scene_(&scene), walk_(&walk), laser_spot_m2_(settings.laser_spot_m2) {
-    if (settings.exclude == Exclusion::Drop) dropped_ = ExcludedFacets::of(scene, settings).facets;
-}
+                             double laser_spot_m2,
+                             std::vector<bool> dropped)
+    : scene_(&scene), walk_(&walk), laser_spot_m2_(laser_spot_m2), dropped_(std::move(dropped)) {}
 
 PathValue PathIntegrand::evaluate(const PathDomain& domain, const ReusablePath& path) const {
     PathValue value;

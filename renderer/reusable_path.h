@@ -61,8 +61,13 @@ struct PathValue {
 /// Evaluates reusable paths.
 class PathIntegrand {
  public:
-    /// Both must outlive this; of the settings the excluded surfaces count, if they are dropped.
-    PathIntegrand(const Scene& scene, const SurfaceWalk& walk, const RenderSettings& settings);
+    /// scene, walk   must outlive this
+    /// dropped       per facet, whether paths whose last vertex lies on it are left out; may be
+    ///               empty
+    PathIntegrand(const Scene& scene,
+                  const SurfaceWalk& walk,
+                  double laser_spot_m2,
+                  std::vector<bool> dropped);
 
     /// A path of at least one vertex; radiance 0 when it carries nothing.
     PathValue evaluate(const PathDomain& domain, const ReusablePath& path) const;
@@ -78,7 +83,7 @@ class PathIntegrand {
     const Scene* scene_;
     const SurfaceWalk* walk_;
     double laser_spot_m2_;
-    std::vector<bool> dropped_;  ///< per facet: paths whose last vertex lies on it are left out
+    std::vector<bool> dropped_;
 };
 
 }  // namespace renderer

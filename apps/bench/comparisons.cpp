@@ -82,7 +82,7 @@ std::vector<bool> planes_met(const SequenceSetup& setup, const SequenceCase& seq
     axis.opl_start_m += 1e-3 * sequence.gate_step_mm * (sequence.num_frames - 1);
     renderer::RestirRenderer paths(setup.scan, settings);
     const auto scene = std::make_shared<renderer::RestirScene>(
-        setup.scene, setup.scan, settings, renderer::ShiftQuantity::PathLength);
+        setup.scene, setup.scan, core::HistogramAxes{axis, {}}, settings);
     std::vector<double> excess(setup.scan.num_pairs());  // of light by way of large planes
     for (std::uint64_t number = 0; number < kPlaneFrames; ++number) {
         const renderer::RestirFrame frame = paths.render({scene, axis, nullptr, number});

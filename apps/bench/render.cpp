@@ -241,7 +241,7 @@ RenderBench bench_render(const RenderBenchSettings& settings, const core::Progre
         result.gates.push_back(bench_gates(settings.camera_scene, 0, gate_runs, progress));
     }
     if (settings.has("exclusion")) {
-        for (const std::string& path : {settings.scene, settings.exclusion_scene}) {
+        for (const std::string& path : settings.exclusion_scenes) {
             const auto part = bench_exclusion(path, gate_runs);
             result.exclusion.insert(result.exclusion.end(), part.begin(), part.end());
         }

@@ -106,9 +106,10 @@ void for_each_field(RenderBench& bench, Visitor&& visit) {
 struct RenderBenchSettings {
     std::string scene = "scenes/bars/scene.json";
     std::string camera_scene = "scenes/box/scene.json";  ///< where gates are tried, too
-    /// Where excluding a back wall from ellipsoidal connections is tried; excluding the relay wall
-    /// is tried on the first scene.
-    std::string exclusion_scene = "scenes/corner/scene.json";
+    /// Where excluding surfaces from ellipsoidal connections is tried: a relay wall, a curved one,
+    /// and a back wall with its neighbours.
+    std::vector<std::string> exclusion_scenes = {
+        "scenes/bars/scene.json", "scenes/curved/scene.json", "scenes/corner/scene.json"};
     std::string part = "all";  ///< or curves, gates, exclusion, growth
     int repeats = 3;           ///< runs per point; those that take long are not repeated
     bool quick = false;        ///< leaves out what takes longest

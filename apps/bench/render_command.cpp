@@ -30,9 +30,9 @@ void add_bench_render_command(CLI::App& bench) {
     render->add_option("--camera-scene", settings.camera_scene, "Image to try gates on")
         ->capture_default_str();
     render
-        ->add_option("--exclusion-scene",
-                     settings.exclusion_scene,
-                     "Scene with surfaces to exclude from ellipsoidal connections")
+        ->add_option("--exclusion-scenes",
+                     settings.exclusion_scenes,
+                     "Scenes with surfaces to exclude from ellipsoidal connections")
         ->capture_default_str();
     render->add_option("--part", settings.part, "What to measure")
         ->capture_default_str()

@@ -109,7 +109,8 @@ int main(int argc, char** argv) {
     const auto description = renderer::read_scene_description(argv[1], {});
     const core::Scan scan = renderer::make_scan(description);
     const renderer::Scene scene = renderer::load_scene(description, scan);
-    const auto excluded = renderer::ExcludedFacets::of(scene, description.render);
+    const auto excluded =
+        renderer::ExcludedFacets::of(scene, description.time_axis, description.render);
     const renderer::ConnectionTechnique technique(scene, excluded, scan);
     const Bench bench{scene,
                       scan,

@@ -164,7 +164,7 @@ TEST(EllipsoidalTracer, DropLosesExactlyTheSignalOfTheExcludedSurfaces) {
     const auto dropped = renderer::render(few.scene, few.scan, few.axis, settings, {});
     ASSERT_EQ(dropped.warnings.size(), 1U);
     EXPECT_NE(dropped.warnings[0].find("back_wall"), std::string::npos) << dropped.warnings[0];
-    EXPECT_EQ(dropped.excluded_objects.size(), 4U);
+    EXPECT_EQ(dropped.excluded.names.size(), 4U);
 
     renderer::SceneGeometry painted{few.scene.objects(), {}};
     for (renderer::Object& object : painted.objects) {
@@ -176,6 +176,14 @@ TEST(EllipsoidalTracer, DropLosesExactlyTheSignalOfTheExcludedSurfaces) {
     const RenderSettings paths = few.settings(Estimator::Path, 3, 200'000);
     const auto kept = renderer::render(black, few.scan, few.axis, paths, {}).capture;
     expect_agreement(dropped.capture, kept);
+
+    RenderSettings reuse = few.settings(Estimator::Restir, 3, 200'000);
+    reuse.exclude = Exclusion::Drop;
+    reuse.restir.shared_walks = 64;
+    const auto reused = renderer::render(few.scene, few.scan, few.axis, reuse, {});
+    EXPECT_EQ(reused.excluded.names, dropped.excluded.names);
+    EXPECT_EQ(reused.warnings.size(), 1U);
+    expect_agreement(reused.capture, kept);
 
     const core::Capture all = few.render(paths);
     double expected = 0.0;

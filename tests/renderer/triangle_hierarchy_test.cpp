@@ -64,7 +64,7 @@ std::vector<Question> questions(core::Rng& rng) {
 renderer::ConnectionTechnique technique_of(const Scene& scene) {
     renderer::RenderSettings settings;
     return {scene,
-            renderer::ExcludedFacets::of(scene, settings),
+            renderer::ExcludedFacets::of(scene, core::TimeAxis{}, settings),
             test_support::confocal_scan({Vec3(9, 9, 0)})};
 }
 
@@ -376,21 +376,60 @@ TEST(ExcludedFacets, AreThoseOfWallsFlaggedObjectsAndLargeFacets) {
     const core::Scan scan = test_support::confocal_scan({Vec3::Zero()});
     const Scene scene(std::move(geometry), scan, renderer::RelayWall{});
     renderer::RenderSettings settings;
+    const core::TimeAxis axis{0.0, 0.01, 100};
     using Names = std::vector<std::string>;
-    EXPECT_EQ(renderer::ExcludedFacets::of(scene, settings).objects,
+    EXPECT_EQ(renderer::ExcludedFacets::of(scene, axis, settings).objects.names,
               (Names{"back", "flagged", "relay_wall"}));
     settings.exclude_area_above_m2 = 0.1;
     settings.exclude = renderer::Exclusion::Drop;
-    const auto excluded = renderer::ExcludedFacets::of(scene, settings);
-    EXPECT_EQ(excluded.objects, (Names{"large", "back", "flagged", "relay_wall"}));
+    const auto excluded = renderer::ExcludedFacets::of(scene, axis, settings);
+    EXPECT_EQ(excluded.objects.names, (Names{"large", "back", "flagged", "relay_wall"}));
+    EXPECT_TRUE(excluded.objects.connected.empty());
     settings.exclude = renderer::Exclusion::None;
-    EXPECT_TRUE(renderer::ExcludedFacets::of(scene, settings).objects.empty());
+    EXPECT_TRUE(renderer::ExcludedFacets::of(scene, axis, settings).objects.names.empty());
 
     const renderer::ConnectionTechnique technique(scene, excluded, scan);
     const ConnectionEnds ends{{Vec3::Zero(), Vec3::Zero()}, Vec3::UnitZ(), Vec3::UnitZ()};
     for (std::uint32_t f = 0; f < scene.facets().size(); ++f) {
         const double p = technique.hierarchy().evaluate(ends, {0.0, 10.0}, f).probability;
         EXPECT_EQ(p > 0.0, scene.object_of(f).name == "small") << scene.object_of(f).name;
+    }
+}
+
+// What `mis` leaves to walks they must be able to find: not a wall in a short gate.
+TEST(ExcludedFacets, OfModeMisAreConnectedToInGatesShorterThanTheyAreWide) {
+    renderer::SceneGeometry geometry;
+    for (const double size : {0.3, 3.0}) {
+        geometry.objects.push_back(test_support::parallelogram_object(
+            {Vec3(0, 0, 1), Vec3(0.8 * size, 0, 0), Vec3(0, 0.6 * size, 0)}));
+        geometry.objects.back().name = size > 1.0 ? "wall" : "panel";
+        geometry.objects.back().role = renderer::Role::BackWall;
+    }
+    const core::Scan scan = test_support::confocal_scan({Vec3::Zero()});
+    const Scene scene(std::move(geometry), scan, renderer::RelayWall{});
+    renderer::RenderSettings settings;
+    using Names = std::vector<std::string>;
+    const auto excluded = [&](const core::TimeAxis& axis) {
+        return renderer::ExcludedFacets::of(scene, axis, settings);
+    };
+    for (const renderer::Exclusion mode : {renderer::Exclusion::Mis, renderer::Exclusion::Drop}) {
+        settings.exclude = mode;
+        const bool connects = mode == renderer::Exclusion::Mis;
+        for (const auto& [axis, connected] :
+             {std::pair{core::TimeAxis{0.5, 3.01, 1}, Names{}},
+              {core::TimeAxis{0.5, 0.01, 299}, Names{"wall"}},
+              {core::TimeAxis{0.5, 0.31, 1}, Names{"wall"}},
+              {core::TimeAxis{0.5, 0.29, 1}, Names{"panel", "wall"}}}) {
+            const auto found = excluded(axis);
+            EXPECT_EQ(found.objects.names, (Names{"panel", "wall", "relay_wall"}));
+            EXPECT_EQ(found.objects.connected, connects ? connected : Names{});
+            for (std::uint32_t f = 0; f < scene.facets().size(); ++f) {
+                const auto& names = found.objects.connected;
+                const bool is_connected =
+                    std::find(names.begin(), names.end(), scene.object_of(f).name) != names.end();
+                EXPECT_EQ(found.facets[f], !is_connected) << scene.object_of(f).name;
+            }
+        }
     }
 }
 

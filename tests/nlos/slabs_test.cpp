@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include "nlos/slabs.h"
+
 #include "nlos/directional_light_cone_transform.h"
 #include "nlos/light_cone_transform.h"
 #include "renderer/core/process.h"
@@ -39,6 +41,24 @@ struct Example {
             capture.scan, capture.time_axis, capture.transient, wall, axes, kDepths_m, progress};
     }
 };
+
+TEST(Slabs, CoverEverythingOnceInRunsOfNearlyEqualSize) {
+    for (const std::size_t count : {1, 2, 7, 64, 129}) {
+        for (const std::size_t num_slabs : {1, 2, 3, 8, 200}) {
+            const std::vector<Slab> slabs = split_into_slabs(count, num_slabs);
+            EXPECT_EQ(slabs.size(), std::min(count, num_slabs));
+            std::size_t end = 0;
+            for (const Slab& slab : slabs) {
+                EXPECT_EQ(slab.begin, end);
+                EXPECT_LE(slab.size(), largest_slab(count, num_slabs));
+                EXPECT_GE(slab.size() + 1, largest_slab(count, num_slabs));
+                end = slab.end;
+            }
+            EXPECT_EQ(end, count);
+        }
+    }
+    EXPECT_TRUE(split_into_slabs(0, 4).empty());
+}
 
 TEST(FrequencySlabs, GiveTheSameVolumeInAnyNumber) {
     const Example example(24, 140);
