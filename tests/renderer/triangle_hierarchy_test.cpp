@@ -433,4 +433,38 @@ TEST(ExcludedFacets, OfModeMisAreConnectedToInGatesShorterThanTheyAreWide) {
     }
 }
 
+// A plane that holds an end carries nothing to it, and bounds of cosines know: of a flat relay wall
+// exclusion has nothing to take away. On a curved one it has.
+TEST(ExcludedFacets, TakeDrawsFromCurvedRelayWallsAlone) {
+    for (const bool curved : {false, true}) {
+        renderer::SceneGeometry geometry;
+        geometry.objects.push_back(test_support::parallelogram_object(
+            {Vec3(-0.2, -0.2, 0.8), Vec3(0.4, 0, 0), Vec3(0, 0.4, 0)}));
+        for (const double slope : curved ? std::vector{-0.5, 0.5} : std::vector{0.0}) {
+            geometry.objects.push_back(test_support::parallelogram_object(
+                {Vec3(0, -1, 0),
+                 Vec3(slope < 0.0 ? -1.0 : 1.0, 0, std::abs(slope)),
+                 Vec3(0, 2, 0)}));
+            geometry.objects.back().role = renderer::Role::RelayWall;
+        }
+        const core::Scan scan = test_support::confocal_scan({Vec3(0.5, 0.1, curved ? 0.25 : 0.0)});
+        const Vec3 normal = curved ? Vec3(-0.5, 0, 1).normalized() : Vec3(Vec3::UnitZ());
+        const Scene scene(std::move(geometry), scan, renderer::RelayWall{});
+        renderer::RenderSettings settings;
+        settings.exclude = renderer::Exclusion::None;
+        const core::TimeAxis axis{0.1, 4.0, 1};
+        const renderer::ConnectionTechnique technique(
+            scene, renderer::ExcludedFacets::of(scene, axis, settings), scan);
+        const Vec3 spot = scan.sensing.positions[0];
+        double share = 0.0;
+        for (std::uint32_t f = 0; f < scene.facets().size(); ++f) {
+            if (scene.object_of(f).role != renderer::Role::RelayWall) continue;
+            share += technique.hierarchy()
+                         .evaluate({{spot, spot}, normal, normal}, {0.1, 4.1}, f)
+                         .probability;
+        }
+        EXPECT_TRUE(curved ? share > 0.1 : share < 1e-3) << share;
+    }
+}
+
 }  // namespace
