@@ -188,6 +188,13 @@ INSTANTIATE_TEST_SUITE_P(Measurements,
                          testing::Range<std::size_t>(0, 5),
                          [](const auto& test) { return settings()[test.param].name; });
 
+// Of a long list of points, some that lie apart.
+void keep_nine(std::vector<Vec3>& points) {
+    if (points.size() < 9) return;
+    for (std::size_t i = 0; i < 9; ++i) points[i] = points[(2 * i + 1) * points.size() / 18];
+    points.resize(9);
+}
+
 class RestirOfScenes : public testing::TestWithParam<const char*> {};
 
 TEST_P(RestirOfScenes, AgreesWithPathTracing) {
@@ -199,6 +206,8 @@ TEST_P(RestirOfScenes, AgreesWithPathTracing) {
         description.time_axis = {1.4, 0.4, 8};
     } else {
         description.scan.sensing_points = {3, 3};
+        keep_nine(description.scan.sensing_points_m);
+        keep_nine(description.scan.sensing_normals);
         description.time_axis = {1.0, 0.15, 12};
     }
     const core::Scan scan = renderer::make_scan(description);
@@ -209,15 +218,26 @@ TEST_P(RestirOfScenes, AgreesWithPathTracing) {
                                         description.time_axis,
                                         settings_for(Estimator::Path, 8192, max_bounces),
                                         std::string("Restir.Scenes.Paths.") + GetParam());
-    for (const int rounds : {1, 8}) {
-        SCOPED_TRACE(rounds);
+    const std::vector<Case> kinds{
+        {"one_round", [](auto&) {}},
+        {"eight_rounds", [](auto& s) { s.restir.rounds = 8; }},
+        {"plane", [](auto& s) { s.restir.chart = renderer::Chart::Plane; }},
+        {"barycentric", [](auto& s) { s.restir.chart = renderer::Chart::Barycentric; }},
+        {"hemisphere", [](auto& s) { s.restir.chart = renderer::Chart::Hemisphere; }},
+        {"excluded", [](auto& s) { s.restir.candidates = renderer::Candidates::All; }},
+        {"connected", [](auto& s) {
+             s.restir.candidates = renderer::Candidates::All;
+             s.exclude = renderer::Exclusion::None;
+         }}};
+    for (const Case& kind : kinds) {
+        SCOPED_TRACE(kind.name);
         renderer::RenderSettings restir = settings_for(Estimator::Restir, 2080, max_bounces);
-        restir.restir.rounds = rounds;
+        kind.change(restir);
         expect_same_means(render_often(scene,
                                        scan,
                                        description.time_axis,
                                        restir,
-                                       std::string("Restir.Scenes.") + GetParam()),
+                                       std::string("Restir.Scenes.") + GetParam() + kind.name),
                           paths,
                           0.1);
     }
@@ -225,7 +245,16 @@ TEST_P(RestirOfScenes, AgreesWithPathTracing) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes,
                          RestirOfScenes,
-                         testing::Values("letter", "bars", "corner", "glossy", "box"),
+                         testing::Values("letter",
+                                         "bars",
+                                         "corner",
+                                         "glossy",
+                                         "animal",
+                                         "curved",
+                                         "box",
+                                         "room",
+                                         "relief",
+                                         "traffic"),
                          [](const auto& test) { return std::string(test.param); });
 
 // Totals of every frame, and the last frame's pairs.
