@@ -177,13 +177,13 @@ Volume directional_light_cone_transform(const MethodInput& input,
     const VectorFilter filter(cone, *input.wall.grid, depth_m, snr);
     // 2 z f_x z_0 / z_0 and 2 z f_z / z: both rho n, up to a common factor.
     std::vector<float> x(input.axes.num_voxels()), y(x.size()), z(x.size());
+    Components components{make_slab_spectrum(cone, num_slabs),
+                          make_slab_spectrum(cone, num_slabs),
+                          make_slab_spectrum(cone, num_slabs)};
     for (const Slab& slab : split_into_slabs(cone.num_frequencies(), num_slabs)) {
         const core::Progress progress = slab.part_of(input.progress, cone.num_frequencies());
-        const std::size_t spectrum_floats = 2 * slab.size() * cone.num_columns();
-        Components components{
-            FftBuffer(spectrum_floats),
-            FftBuffer(spectrum_floats),
-            cone_spectrum(input, cone, power, slab, {progress, 0.0, 0.1, "time to depth"})};
+        fill_cone_spectrum(
+            input, cone, power, slab, components.z, {progress, 0.0, 0.1, "time to depth"});
         parallel_blocks_with_progress(slab.size(),
                                       kSlabsPerBlock,
                                       {progress, 0.1, 0.8, "deconvolution"},

@@ -117,16 +117,20 @@ void ConeKernel::fill(std::size_t k, ComplexF* quadrant) const {
     }
 }
 
-FftBuffer cone_spectrum(const MethodInput& input,
+FftBuffer make_slab_spectrum(const Cone& cone, std::size_t num_slabs) {
+    return FftBuffer(2 * largest_slab(cone.num_frequencies(), num_slabs) * cone.num_columns());
+}
+
+void fill_cone_spectrum(const MethodInput& input,
                         const Cone& cone,
                         double power,
                         const Slab& slab,
+                        FftBuffer& spectrum,
                         const ProgressSpan& span) {
     const std::size_t num_columns = cone.num_columns();
     const std::size_t row_floats = cone.length + 2;
     const Fft forward = Fft::real_to_complex(cone.length, kColumnsPerBlock);
     const ConeData data(input, cone, power);
-    FftBuffer out(2 * slab.size() * num_columns);
     parallel_blocks_with_progress(
         num_columns, kColumnsPerBlock, span, [&](std::size_t begin, std::size_t end) {
             FftBuffer rows(kColumnsPerBlock * row_floats);
@@ -136,12 +140,11 @@ FftBuffer cone_spectrum(const MethodInput& input,
             forward.run(rows);
             for (std::size_t k = slab.begin; k < slab.end; ++k) {
                 for (std::size_t column = begin; column < end; ++column) {
-                    out.complex()[(k - slab.begin) * num_columns + column] =
+                    spectrum.complex()[(k - slab.begin) * num_columns + column] =
                         rows.complex()[(column - begin) * (row_floats / 2) + k];
                 }
             }
         });
-    return out;
 }
 
 void add_spectrum_to_depth(const MethodInput& input,

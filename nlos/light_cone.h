@@ -79,12 +79,17 @@ class ConeKernel {
     std::vector<ComplexF> phases_;
 };
 
+/// Room for the spectrum of the largest of `num_slabs` slabs. One for all of them: buffers that
+/// are given back and asked for again leave gaps behind, by which more than stated would be taken.
+FftBuffer make_slab_spectrum(const Cone& cone, std::size_t num_slabs);
+
 /// g(v) of all wall points, transformed along v at a slab of its frequencies: stored [frequency of
 /// the slab][x][y].
-FftBuffer cone_spectrum(const MethodInput& input,
+void fill_cone_spectrum(const MethodInput& input,
                         const Cone& cone,
                         double power,
                         const Slab& slab,
+                        FftBuffer& spectrum,
                         const ProgressSpan& span);
 
 /// Back from frequencies along v to voxels along z, negative values kept: adds the slab's share to

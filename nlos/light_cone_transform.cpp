@@ -77,10 +77,11 @@ Volume light_cone_transform(const MethodInput& input,
     const double power = falloff_power(falloff);
     const SlabFilter filter(cone, *input.wall.grid, snr);
     Volume volume{input.axes, std::vector<float>(input.axes.num_voxels()), {}};
+    FftBuffer spectrum = make_slab_spectrum(cone, num_slabs);
     for (const Slab& slab : split_into_slabs(cone.num_frequencies(), num_slabs)) {
         const core::Progress progress = slab.part_of(input.progress, cone.num_frequencies());
-        FftBuffer spectrum =
-            cone_spectrum(input, cone, power, slab, {progress, 0.0, 0.2, "time to depth"});
+        fill_cone_spectrum(
+            input, cone, power, slab, spectrum, {progress, 0.0, 0.2, "time to depth"});
         parallel_blocks_with_progress(
             slab.size(),
             kSlabsPerBlock,
