@@ -7,6 +7,7 @@
 #include "renderer/core/process.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace apps {
@@ -14,7 +15,7 @@ namespace {
 
 using renderer::Estimator;
 
-constexpr double kGates_mm[] = {0.0, 100.0, 30.0, 10.0, 3.0, 1.0};
+constexpr double kGates_mm[] = {0.0, 1000.0, 300.0, 100.0, 30.0, 10.0, 3.0, 1.0};
 constexpr double kRunSeconds = 0.3;       ///< of one measured run, about
 constexpr double kReferenceFactor = 8.0;  ///< a reference takes this many runs
 constexpr int kPilotSamples = 64;
@@ -82,6 +83,41 @@ Cost cost(const Case& c, const core::Capture& a, const core::Capture& b, int rep
     }
     return {mean_of(all), mean_of(trimmed)};
 }
+
+// How far renders of one case with different seeds lie apart.
+class Spread {
+ public:
+    void add(const TimedCapture& run) {
+        const core::Transient& values = run.capture.transient;
+        sums_.resize(values.values().size());
+        squares_.resize(sums_.size());
+        for (std::size_t i = 0; i < sums_.size(); ++i) {
+            const double value = values.values()[i];
+            sums_[i] += value;
+            squares_[i] += value * value;
+        }
+        cpu_seconds_ += run.cpu_seconds;
+        ++count_;
+    }
+
+    // Variance of all values together over the square of their means, after one CPU second.
+    double relative_variance() const {
+        double variance = 0.0;
+        double signal = 0.0;
+        for (std::size_t i = 0; i < sums_.size(); ++i) {
+            const double mean = sums_[i] / count_;
+            const double of_one = (squares_[i] - count_ * mean * mean) / (count_ - 1.0);
+            variance += of_one;
+            signal += mean * mean - of_one / count_;
+        }
+        return variance / signal * cpu_seconds_ / count_;
+    }
+
+ private:
+    std::vector<double> sums_, squares_;
+    double cpu_seconds_ = 0.0;
+    double count_ = 0.0;
+};
 
 // Length before which half of the signal arrives; with Exclusion::Drop, of that by way of surfaces
 // that are not excluded.
@@ -181,6 +217,7 @@ GateTable bench_gates(const std::string& scene_path,
 
 std::vector<ExclusionBench> bench_exclusion(const std::string& scene_path, int repeats) {
     using renderer::Exclusion;
+    constexpr std::array kModes{Exclusion::None, Exclusion::Mis, Exclusion::Drop};
     const BenchScene scene(scene_path);
     const core::ThreadLimit one_thread(1);
     const double all_m = middle_of_signal_m(scene, Exclusion::None);
@@ -189,22 +226,27 @@ std::vector<ExclusionBench> bench_exclusion(const std::string& scene_path, int r
     for (const int max_bounces : {3, 5}) {
         for (const auto& [gate_mm, center_m] :
              {std::pair{0.0, all_m}, std::pair{10.0, all_m}, std::pair{10.0, kept_m}}) {
-            double none = 0.0;
-            for (const Exclusion mode : {Exclusion::None, Exclusion::Mis, Exclusion::Drop}) {
-                Case c{scene, gate_axis(scene, center_m, gate_mm), scene.settings()};
-                c.settings.method = Estimator::Ellipsoidal;
-                c.settings.max_bounces = max_bounces;
-                c.settings.exclude = mode;
-                const auto [a, b] = references(c);
-                const double cost_s = cost(c, a, b, repeats).all.value;
-                if (mode == Exclusion::None) none = cost_s;
+            Case c{scene, gate_axis(scene, center_m, gate_mm), scene.settings()};
+            c.settings.method = Estimator::Ellipsoidal;
+            c.settings.max_bounces = max_bounces;
+            const int samples = samples_for(c, kRunSeconds);
+            std::array<Spread, kModes.size()> spreads;
+            // In turns: what else the machine does slows all of them.
+            for (int i = 0; i < std::max(2, repeats); ++i) {
+                for (std::size_t mode = 0; mode < kModes.size(); ++mode) {
+                    c.settings.exclude = kModes[mode];
+                    spreads[mode].add(run(c, samples, static_cast<std::uint64_t>(i)));
+                }
+            }
+            for (std::size_t mode = 0; mode < kModes.size(); ++mode) {
+                const double variance = spreads[mode].relative_variance();
                 result.push_back({scene_path,
-                                  std::string(core::enum_name(mode)),
+                                  std::string(core::enum_name(kModes[mode])),
                                   max_bounces,
                                   gate_mm,
                                   center_m,
-                                  cost_s,
-                                  none / cost_s});
+                                  variance,
+                                  spreads[0].relative_variance() / variance});
             }
         }
     }

@@ -86,8 +86,10 @@ GateTable bench_gates(const std::string& scene_path,
 
 /// Variance per second of `ellipsoidal` with each mode of exclusion, for 3 and 5 bounces, on one
 /// thread: histogram, a gate at the middle of the signal, and one at the middle of what comes by
-/// way of surfaces that are not excluded. Each mode is measured against its own expectation: that
-/// of `drop` lacks a part.
+/// way of surfaces that are not excluded. Variances are those between runs of the same samples,
+/// each mode about its own mean: that of `drop` lacks a part.
+///
+/// repeats   runs per figure, 2 at least
 std::vector<ExclusionBench> bench_exclusion(const std::string& scene_path, int repeats);
 
 }  // namespace apps
