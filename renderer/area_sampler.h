@@ -5,6 +5,7 @@
 #include "renderer/scene.h"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace renderer {
@@ -17,13 +18,23 @@ class AreaSampler {
  public:
     explicit AreaSampler(const Scene& scene);
 
-    /// A surface point; `hint` is updated so that calls with rising u1 are quick (start with 0).
-    SurfacePoint sample(double u1, double u2, std::size_t& hint) const {
+    SurfacePoint sample(double u1, double u2) const {
         double remapped = 0.0;
-        hint = by_area_.sample_from(hint, u1, remapped);
+        const std::uint32_t facet = facets_[by_area_.sample(u1, remapped)];
         const core::Vec2 b = core::sample_triangle({remapped, u2});
-        const std::uint32_t facet = facets_[hint];
         return {scene_->facet(facet).point(b.x(), b.y()), facet};
+    }
+
+    /// The facet of the first of several rising u1 and of all after it that share it.
+    struct Run {
+        std::uint32_t facet;
+        std::size_t size;
+    };
+    /// hint, u1, remapped   as DiscreteDistribution::sample_run(); start with 0. The points are
+    ///                      those of sample_triangle({remapped, u2})
+    Run next_run(std::size_t& hint, std::span<const double> u1, std::span<double> remapped) const {
+        const std::size_t size = by_area_.sample_run(hint, u1, remapped);
+        return {facets_[hint], size};
     }
 
     /// Density of sample() on hidden facets, pdf_area [1/m^2].

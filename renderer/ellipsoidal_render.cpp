@@ -9,6 +9,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <span>
 
 namespace renderer {
 namespace {
@@ -20,7 +22,10 @@ constexpr std::uint64_t kMeasuringItem = 1ULL << 40;  ///< keeps its random numb
 
 double sum_of(PassHistogram& histogram) {
     double sum = 0.0;
-    histogram.drain([](std::size_t, double) {}, [&](std::size_t, double total) { sum += total; });
+    histogram.drain([](std::size_t, std::span<const double>) {},
+                    [&](std::size_t, std::span<const double> totals) {
+                        sum += std::accumulate(totals.begin(), totals.end(), 0.0);
+                    });
     return sum;
 }
 

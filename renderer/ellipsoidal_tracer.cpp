@@ -106,6 +106,7 @@ class EllipsoidalTracer::Walk {
     double ellipsoidal_share_ = 0.0;  ///< of third bounces
     double walk_weight_ = 0.0;        ///< of one walk: 1 / their expected number
     FirstVertices first_;
+    std::vector<PathVertex> go_on_;  ///< those of which longer paths are made
     std::array<double, FirstVertices::kCapacity> ellipsoidal_pdf_;
     std::uint64_t num_rays_ = 0;
 };
@@ -193,33 +194,17 @@ void EllipsoidalTracer::Walk::finish_connections() {
 }
 
 void EllipsoidalTracer::Walk::trace_area_samples(int count) {
-    std::size_t hint = 0;
-    for (int i = 0; i < count; ++i) {
-        const double u1 = (i + rng_.uniform()) / count;
-        const SurfacePoint point =
-            tracer_.surface_walk_.area_sampler().sample(u1, rng_.uniform(), hint);
-        first_.add(point.position, point.facet);
-        if (first_.full()) finish_first_vertices(true);
+    for (FirstVertices::AreaDraws draws{count}; !draws.done();) {
+        first_.draw_by_area(tracer_.surface_walk_.area_sampler(), draws, rng_);
+        finish_first_vertices(true);
     }
-    finish_first_vertices(true);
 }
 
 void EllipsoidalTracer::Walk::trace_directions(int count) {
-    const PathEnd& sensor = ends_.sensor;
-    const core::Mat3 world_from_end =
-        core::frame_from_normal(sensor.normal, scene_.tangent_hint(sensor.normal));
-    for (int i = 0; i < count; ++i) {
-        const Vec2 u{(i + rng_.uniform()) / count, rng_.uniform()};
-        const Vec3 direction = sensor.isotropic
-                                   ? core::sample_sphere(u)
-                                   : Vec3(world_from_end * core::sample_cosine_hemisphere(u));
-        const auto point = scene_.first_hit(sensor.position, sensor.normal, direction);
-        ++num_rays_;
-        if (!point) continue;
-        first_.add(point->position, point->facet);
-        if (first_.full()) finish_first_vertices(false);
+    for (EndDirections directions(scene_, ends_.sensor, count, rng_); !directions.done();) {
+        num_rays_ += first_.draw_by_direction(directions);
+        finish_first_vertices(false);
     }
-    finish_first_vertices(false);
 }
 
 void EllipsoidalTracer::Walk::trace_pixel_samples(const Measurement& measurement,
@@ -260,14 +245,13 @@ void EllipsoidalTracer::Walk::finish_first_vertices(bool may_be_hidden) {
         num_rays_ += first_.trace_from(ends_.sensor);
         if (goes_on || !ends_.coincide) first_.keep_seen();
     }
-    std::array<PathVertex, FirstVertices::kCapacity> vertices;
-    const int num_vertices = goes_on ? first_.size() : 0;
-    for (int i = 0; i < num_vertices; ++i) {
-        vertices[static_cast<std::size_t>(i)] = first_.vertex(i, ends_.sensor);
+    go_on_.clear();
+    for (int i = 0; i < first_.size() && goes_on; ++i) {
+        go_on_.push_back(first_.vertex(i, ends_.sensor));
     }
     if (goes_on && !ends_.coincide) first_.keep_useful(true);
     connect_seen();
-    for (int i = 0; i < num_vertices; ++i) extend(vertices[static_cast<std::size_t>(i)]);
+    for (const PathVertex& vertex : go_on_) extend(vertex);
 }
 
 // What the first vertices carry over the density of the walk alone, as if the walk drew them all.

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/first_vertices.h"
 
+#include "renderer/core/sampling.h"
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace renderer {
@@ -50,7 +53,77 @@ FacetTraits::FacetTraits(const Scene& scene, const std::vector<bool>& adds_third
     }
 }
 
+void FirstVertices::draw_by_area(const AreaSampler& sampler, AreaDraws& draws, core::Rng& rng) {
+    alignas(64) std::array<double, kCapacity> u1;
+    alignas(64) std::array<double, kCapacity> u2;
+    alignas(64) std::array<double, kCapacity> remapped;
+    const int size = std::min(draws.count - draws.begin, kCapacity);
+    const auto all = static_cast<std::size_t>(size);
+    rng.fill_uniform({u1.data(), all});
+    rng.fill_uniform({u2.data(), all});
+    const double width = 1.0 / draws.count;
+    for (int i = 0; i < size; ++i) {
+        // Rounding may lift the last number to 1.
+        u1[i] = std::min((draws.begin + i + u1[i]) * width, core::kBelowOne);
+    }
+    for (std::size_t begin = 0; begin < all;) {
+        const auto run = sampler.next_run(
+            draws.hint, {u1.data() + begin, all - begin}, {remapped.data() + begin, all - begin});
+        add_on_facet(run.facet, {remapped.data() + begin, run.size}, u2.data() + begin);
+        begin += run.size;
+    }
+    draws.begin += size;
+}
+
+// Appends the points core::sample_triangle({u1, u2}) of a facet.
+void FirstVertices::add_on_facet(std::uint32_t facet,
+                                 std::span<const double> u1,
+                                 const double* u2) {
+    const Facet on = scene_.facet(facet);
+    const double is_hidden = traits_.is_hidden(facet);
+    const double constant = traits_.constant(facet);
+    const int begin = count_;
+    count_ += static_cast<int>(u1.size());
+    for (int i = begin; i < count_; ++i) {
+        const double root = std::sqrt(u1[static_cast<std::size_t>(i - begin)]);
+        const double b1 = root * (1.0 - u2[i - begin]);
+        const double b2 = root * u2[i - begin];
+        x_[i] = on.corner.x() + b1 * on.edge1.x() + b2 * on.edge2.x();
+        y_[i] = on.corner.y() + b1 * on.edge1.y() + b2 * on.edge2.y();
+        z_[i] = on.corner.z() + b1 * on.edge1.z() + b2 * on.edge2.z();
+        normal_x_[i] = on.normal.x();
+        normal_y_[i] = on.normal.y();
+        normal_z_[i] = on.normal.z();
+        is_hidden_[i] = is_hidden;
+        constant_bsdf_[i] = constant;
+        facet_[i] = facet;
+    }
+}
+
+std::uint64_t FirstVertices::draw_by_direction(EndDirections& directions) {
+    std::uint64_t num_rays = 0;
+    DirectionPacket packet;
+    const PathEnd& end = directions.end();
+    while (!directions.done() && count_ + DirectionPacket::kSize <= kCapacity) {
+        directions.next(packet);
+        scene_.rays().first_hits(end.position, end.normal, packet);
+        num_rays += static_cast<std::uint64_t>(packet.count);
+        for (std::size_t i = 0; i < static_cast<std::size_t>(packet.count); ++i) {
+            if (packet.triangle[i] == DirectionPacket::kNone) continue;
+            const Vec3 direction(packet.x[i], packet.y[i], packet.z[i]);
+            add(end.position + packet.distance_m[i] * direction, packet.triangle[i]);
+        }
+    }
+    return num_rays;
+}
+
 void FirstVertices::evaluate(const PathEnds& ends, const Draw& draw) {
+    ends.coincide ? evaluate_legs<true>(ends, draw) : evaluate_legs<false>(ends, draw);
+}
+
+// Ends that coincide share the leg's length, which spares a root and a division.
+template <bool kCoincide>
+void FirstVertices::evaluate_legs(const PathEnds& ends, const Draw& draw) {
     const End sensor(ends.sensor);
     const End light(ends.light);
     const double pdf_by_area = draw.area_share * draw.hidden_pdf_area;
@@ -80,8 +153,8 @@ void FirstVertices::evaluate(const PathEnds& ends, const Draw& draw) {
         const double ly = light.y - y_[i];
         const double lz = light.z - z_[i];
         const double light_distance2 = lx * lx + ly * ly + lz * lz;
-        const double light_distance = std::sqrt(light_distance2);
-        const double light_inverse = 1.0 / light_distance;
+        const double light_distance = kCoincide ? distance : std::sqrt(light_distance2);
+        const double light_inverse = kCoincide ? inverse : 1.0 / light_distance;
         const double light_shape = light.shape(-light.cosine(lx, ly, lz) * light_inverse);
         const double out =
             (normal_x_[i] * lx + normal_y_[i] * ly + normal_z_[i] * lz) * light_inverse;
@@ -120,24 +193,23 @@ std::uint64_t FirstVertices::trace_from(const PathEnd& end) {
 template <class Predicate>
 void FirstVertices::keep_if(const Predicate& keep) {
     int kept = 0;
-    for (int i = 0; i < count_; ++i) {
+    while (kept < count_ && keep(kept)) ++kept;
+    for (int i = kept + 1; i < count_; ++i) {
         if (!keep(i)) continue;
-        if (kept != i) {
-            facet_[kept] = facet_[i];
-            for (double* array : {x_,
-                                  y_,
-                                  z_,
-                                  normal_x_,
-                                  normal_y_,
-                                  normal_z_,
-                                  is_hidden_,
-                                  constant_bsdf_,
-                                  pdf_area_,
-                                  throughput_,
-                                  opl_m_,
-                                  contribution_}) {
-                array[kept] = array[i];
-            }
+        facet_[kept] = facet_[i];
+        for (double* array : {x_,
+                              y_,
+                              z_,
+                              normal_x_,
+                              normal_y_,
+                              normal_z_,
+                              is_hidden_,
+                              constant_bsdf_,
+                              pdf_area_,
+                              throughput_,
+                              opl_m_,
+                              contribution_}) {
+            array[kept] = array[i];
         }
         ++kept;
     }

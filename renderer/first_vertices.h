@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "renderer/area_sampler.h"
+#include "renderer/core/random.h"
+#include "renderer/end_directions.h"
 #include "renderer/light_path.h"
 
 #include <cstdint>
@@ -50,6 +53,20 @@ class FirstVertices {
     bool full() const { return count_ == kCapacity; }
     void clear() { count_ = 0; }
 
+    /// Draws by hidden area: numbers of one of `count` strata each, one batch after the other.
+    struct AreaDraws {
+        int count;
+        int begin = 0;
+        std::size_t hint = 0;
+        bool done() const { return begin == count; }
+    };
+    /// Fills empty arrays with the next points, uniform by area.
+    void draw_by_area(const AreaSampler& sampler, AreaDraws& draws, core::Rng& rng);
+    /// Appends what the next directions meet, until the arrays are nearly full or all are done.
+    ///
+    /// returns   the number of rays
+    std::uint64_t draw_by_direction(EndDirections& directions);
+
     /// Appends a point; not to be called when full().
     void add(const core::Vec3& position, std::uint32_t facet) {
         const int i = count_++;
@@ -93,6 +110,9 @@ class FirstVertices {
 
  private:
     std::size_t size_t_count() const { return static_cast<std::size_t>(count_); }
+    void add_on_facet(std::uint32_t facet, std::span<const double> u1, const double* u2);
+    template <bool kCoincide>
+    void evaluate_legs(const PathEnds& ends, const Draw& draw);
     template <class Predicate>
     void keep_if(const Predicate& keep);
 

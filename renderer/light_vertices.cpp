@@ -71,8 +71,7 @@ LightVertices::Walked LightVertices::trace_walk(int index,
     const double u2 = rng.uniform();
     SurfacePoint point;
     if (by_area_) {
-        std::size_t hint = 0;
-        point = walk_->area_sampler().sample(u1, u2, hint);
+        point = walk_->area_sampler().sample(u1, u2);
     } else {
         const Vec3 direction =
             light_.isotropic

@@ -5,6 +5,7 @@
 #include "renderer/path_extent.h"
 #include "renderer/render_settings.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -44,26 +45,25 @@ class PassHistogram {
     /// Whether a path of this length may count.
     bool lets_through(double opl_m) const;
 
-    /// Hands over what was collected and clears it: first `visit_value(channel * num_bins + bin,
-    /// value)` for every channel of a range that holds all touched bins, then `visit_total(bin, sum
-    /// over channels)`.
-    template <class VisitValue, class VisitTotal>
-    void drain(VisitValue&& visit_value, VisitTotal&& visit_total) {
+    /// Hands over what was collected and clears it, for a range that holds all touched bins: first
+    /// `visit_values(channel * num_bins + first bin, values)` for every channel, then
+    /// `visit_totals(first bin, sums over channels)`; the last arguments are spans.
+    template <class VisitValues, class VisitTotals>
+    void drain(VisitValues&& visit_values, VisitTotals&& visit_totals) {
+        if (last_touched_ < 0) return;
         const auto num_bins = static_cast<std::size_t>(axis_.num_bins);
-        const auto end = static_cast<std::size_t>(last_touched_ + 1);
-        for (std::size_t begin = 0; begin + num_bins < values_.size(); begin += num_bins) {
-            for (auto bin = static_cast<std::size_t>(first_touched_); bin < end; ++bin) {
-                visit_value(begin + bin, values_[begin + bin]);
-            }
+        const auto first = static_cast<std::size_t>(first_touched_);
+        const auto count = static_cast<std::size_t>(last_touched_) - first + 1;
+        const std::span<double> totals{values_.data() + first, count};
+        visit_values(first, std::span<const double>(totals));
+        for (std::size_t begin = num_bins; begin + num_bins < values_.size(); begin += num_bins) {
+            const std::span<double> row{values_.data() + begin + first, count};
+            visit_values(begin + first, std::span<const double>(row));
+            for (std::size_t i = 0; i < count; ++i) totals[i] += row[i];
+            std::fill(row.begin(), row.end(), 0.0);
         }
-        for (auto bin = static_cast<std::size_t>(first_touched_); bin < end; ++bin) {
-            double total = 0.0;
-            for (std::size_t begin = 0; begin + num_bins < values_.size(); begin += num_bins) {
-                total += values_[begin + bin];
-                values_[begin + bin] = 0.0;
-            }
-            visit_total(bin, total);
-        }
+        visit_totals(first, std::span<const double>(totals));
+        std::fill(totals.begin(), totals.end(), 0.0);
         first_touched_ = axis_.num_bins;
         last_touched_ = -1;
     }

@@ -4,6 +4,7 @@
 #include "renderer/core/velocity_axis.h"
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 namespace renderer {
@@ -28,11 +29,12 @@ class PassVelocityHistogram {
     }
 
     /// As PassHistogram::drain() for a single channel.
-    template <class VisitValue, class VisitTotal>
-    void drain(VisitValue&& visit_value, VisitTotal&& visit_total) {
+    template <class VisitValues, class VisitTotals>
+    void drain(VisitValues&& visit_values, VisitTotals&& visit_totals) {
         for (const std::size_t place : touched_) {
-            visit_value(place, values_[place]);
-            visit_total(place, values_[place]);
+            const std::span<const double> value{values_.data() + place, 1};
+            visit_values(place, value);
+            visit_totals(place, value);
             values_[place] = 0.0;
         }
         touched_.clear();

@@ -120,8 +120,7 @@ bool PathCandidates::draw_first(Job& job, PathVertex& vertex) const {
     const double u1 = job.rng.uniform();
     const double u2 = job.rng.uniform();
     if (from_area) {
-        std::size_t hint = 0;
-        point = walk_->area_sampler().sample(u1, u2, hint);
+        point = walk_->area_sampler().sample(u1, u2);
     } else {
         const core::Mat3 world_from_end =
             core::frame_from_normal(sensor.normal, scene_->tangent_hint(sensor.normal));

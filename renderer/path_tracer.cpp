@@ -10,10 +10,6 @@
 namespace renderer {
 namespace {
 
-using core::kPi;
-using core::Vec2;
-using core::Vec3;
-
 // Share of first vertices drawn from the hidden area: seen from the wall, hidden objects are small
 // and most directions miss.
 constexpr double kAreaShare = 0.75;
@@ -66,6 +62,7 @@ class PathTracer::Walk {
     double weight_;  ///< of one path: 1 / number of samples
 
     FirstVertices first_;
+    std::vector<PathVertex> go_on_;  ///< those of which longer paths are made
     std::uint64_t num_rays_ = 0;
 };
 
@@ -102,40 +99,17 @@ std::uint64_t PathTracer::trace_pixel(const Measurement& measurement,
 }
 
 void PathTracer::Walk::trace_area_samples(int count) {
-    std::array<double, FirstVertices::kCapacity> u1;
-    std::array<double, FirstVertices::kCapacity> u2;
-    std::size_t hint = 0;
-    for (int begin = 0; begin < count; begin += FirstVertices::kCapacity) {
-        const int size = std::min(count - begin, FirstVertices::kCapacity);
-        rng_.fill_uniform({u1.data(), static_cast<std::size_t>(size)});
-        rng_.fill_uniform({u2.data(), static_cast<std::size_t>(size)});
-        const double strata = 1.0 / count;
-        for (std::size_t i = 0; i < static_cast<std::size_t>(size); ++i) {
-            const double stratified = (begin + static_cast<double>(i) + u1[i]) * strata;
-            const SurfacePoint point =
-                tracer_.surface_walk_.area_sampler().sample(stratified, u2[i], hint);
-            first_.add(point.position, point.facet);
-        }
+    for (FirstVertices::AreaDraws draws{count}; !draws.done();) {
+        first_.draw_by_area(tracer_.surface_walk_.area_sampler(), draws, rng_);
         finish_first_vertices(true);
     }
 }
 
 void PathTracer::Walk::trace_bsdf_samples(int count) {
-    const PathEnd& sensor = ends_.sensor;
-    const core::Mat3 world_from_end =
-        core::frame_from_normal(sensor.normal, scene_.tangent_hint(sensor.normal));
-    for (int i = 0; i < count; ++i) {
-        const Vec2 u{(i + rng_.uniform()) / count, rng_.uniform()};
-        const Vec3 direction = sensor.isotropic
-                                   ? core::sample_sphere(u)
-                                   : Vec3(world_from_end * core::sample_cosine_hemisphere(u));
-        const auto point = scene_.first_hit(sensor.position, sensor.normal, direction);
-        ++num_rays_;
-        if (!point) continue;
-        first_.add(point->position, point->facet);
-        if (first_.full()) finish_first_vertices(false);
+    for (EndDirections directions(scene_, ends_.sensor, count, rng_); !directions.done();) {
+        num_rays_ += first_.draw_by_direction(directions);
+        finish_first_vertices(false);
     }
-    finish_first_vertices(false);
 }
 
 void PathTracer::Walk::trace_pixel_samples(const Measurement& measurement,
@@ -170,10 +144,9 @@ void PathTracer::Walk::finish_first_vertices(bool may_be_hidden) {
         num_rays_ += first_.trace_from(ends_.sensor);
         if (goes_on || !ends_.coincide) first_.keep_seen();
     }
-    std::array<PathVertex, FirstVertices::kCapacity> vertices;
-    const int num_vertices = goes_on ? first_.size() : 0;
-    for (int i = 0; i < num_vertices; ++i) {
-        vertices[static_cast<std::size_t>(i)] = first_.vertex(i, ends_.sensor);
+    go_on_.clear();
+    for (int i = 0; i < first_.size() && goes_on; ++i) {
+        go_on_.push_back(first_.vertex(i, ends_.sensor));
     }
     if (!ends_.coincide) {
         if (goes_on) first_.keep_useful(true);
@@ -183,7 +156,7 @@ void PathTracer::Walk::finish_first_vertices(bool may_be_hidden) {
     if (histogram_.resolves_velocity()) velocities = first_.find_velocities(ends_);
     histogram_.add(tracer_.by_order_ ? 2 : 0, first_.opl_m(), velocities, first_.contributions());
     first_.clear();
-    for (int i = 0; i < num_vertices; ++i) extend(vertices[static_cast<std::size_t>(i)]);
+    for (const PathVertex& vertex : go_on_) extend(vertex);
 }
 
 void PathTracer::Walk::deposit(const PathVertex& vertex, double value) {

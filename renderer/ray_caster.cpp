@@ -27,6 +27,10 @@ Vec3 moved_off(const Vec3& point, const Vec3& normal, const Vec3& towards, doubl
     return point + std::copysign(offset, normal.dot(towards)) * normal;
 }
 
+bool is_ahead(double distance_m) {
+    return std::isfinite(distance_m) && distance_m > 0.0;
+}
+
 }  // namespace
 
 struct RayCaster::Embree {
@@ -112,13 +116,61 @@ std::optional<RayHit> RayCaster::first_hit(const Vec3& from,
     rtcIntersect1(embree_->scene, &context, &query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
 
-    // The distance once more in double precision, from the facet's plane.
-    const auto& [a, b, c] = corners_[query.hit.primID];
-    const Vec3 area_vector = (b - a).cross(c - a);
-    const double slope = area_vector.dot(direction);
-    const double distance = area_vector.dot(a - from) / slope;
-    if (!std::isfinite(distance) || distance <= 0.0) return std::nullopt;
+    const double distance = distance_to_plane(query.hit.primID, from, direction);
+    if (!is_ahead(distance)) return std::nullopt;
     return RayHit{query.hit.primID, distance};
+}
+
+// The distance once more in double precision, from the facet's plane.
+double RayCaster::distance_to_plane(std::uint32_t triangle,
+                                    const Vec3& from,
+                                    const Vec3& direction) const {
+    const auto& [a, b, c] = corners_[triangle];
+    const Vec3 area_vector = (b - a).cross(c - a);
+    return area_vector.dot(a - from) / area_vector.dot(direction);
+}
+
+void RayCaster::first_hits(const Vec3& from, const Vec3& normal, DirectionPacket& packet) const {
+    constexpr int kSize = DirectionPacket::kSize;
+    const Vec3 start = from - origin_;
+    const double normal_x = normal.x();
+    const double normal_y = normal.y();
+    const double normal_z = normal.z();
+    alignas(64) std::array<int, kSize> valid;
+    RTCRayHit16 query;
+    for (int lane = 0; lane < kSize; ++lane) {
+        const auto i = static_cast<std::size_t>(lane);
+        const double off = std::copysign(
+            offset_m_, normal_x * packet.x[i] + normal_y * packet.y[i] + normal_z * packet.z[i]);
+        const bool is_valid = lane < packet.count;
+        valid[i] = is_valid ? -1 : 0;
+        query.ray.org_x[lane] = static_cast<float>(start.x() + off * normal_x);
+        query.ray.org_y[lane] = static_cast<float>(start.y() + off * normal_y);
+        query.ray.org_z[lane] = static_cast<float>(start.z() + off * normal_z);
+        query.ray.dir_x[lane] = static_cast<float>(packet.x[i]);
+        query.ray.dir_y[lane] = static_cast<float>(packet.y[i]);
+        query.ray.dir_z[lane] = static_cast<float>(packet.z[i]);
+        query.ray.tnear[lane] = 0.0F;
+        // As in trace(): where vectors are shorter, Embree asks the interval, not `valid`.
+        query.ray.tfar[lane] = is_valid ? std::numeric_limits<float>::infinity() : -1.0F;
+        query.ray.time[lane] = 0.0F;
+        query.ray.mask[lane] = ~0U;
+        query.ray.flags[lane] = 0;
+        query.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
+        query.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
+    }
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+    rtcIntersect16(valid.data(), embree_->scene, &context, &query);
+    for (int lane = 0; lane < packet.count; ++lane) {
+        const auto i = static_cast<std::size_t>(lane);
+        packet.triangle[i] = DirectionPacket::kNone;
+        if (query.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID) continue;
+        const Vec3 direction(packet.x[i], packet.y[i], packet.z[i]);
+        packet.distance_m[i] = distance_to_plane(query.hit.primID[lane], from, direction);
+        if (is_ahead(packet.distance_m[i])) packet.triangle[i] = query.hit.primID[lane];
+    }
 }
 
 bool RayCaster::is_blocked(const Vec3& a,

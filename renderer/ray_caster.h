@@ -29,6 +29,16 @@ struct alignas(64) SegmentPacket {
     int count = 0;
 };
 
+/// Directions (unit, world) that Embree follows together; lanes beyond `count` are ignored.
+struct alignas(64) DirectionPacket {
+    static constexpr int kSize = 16;
+    static constexpr std::uint32_t kNone = ~0U;
+    std::array<double, kSize> x, y, z;
+    std::array<std::uint32_t, kSize> triangle;  ///< nearest one, or kNone
+    std::array<double, kSize> distance_m;       ///< to it; undefined for kNone
+    int count = 0;
+};
+
 /// Surface points by coordinate [m], SegmentPacket::kSize of them in each array.
 struct SurfacePointLanes {
     const double *x, *y, *z;
@@ -79,6 +89,11 @@ class RayCaster {
                                     const core::Vec3& normal,
                                     const core::Vec3& direction) const;
 
+    /// The same for several rays from one point: sets triangle and distance_m.
+    void first_hits(const core::Vec3& from,
+                    const core::Vec3& normal,
+                    DirectionPacket& packet) const;
+
     /// True when something lies between two surface points with the given normals (unit).
     bool is_blocked(const core::Vec3& a,
                     const core::Vec3& normal_a,
@@ -97,6 +112,10 @@ class RayCaster {
     void trace(SegmentPacket& packet) const;
 
  private:
+    double distance_to_plane(std::uint32_t triangle,
+                             const core::Vec3& from,
+                             const core::Vec3& direction) const;
+
     struct Embree;
     std::unique_ptr<Embree> embree_;
     core::Vec3 origin_ = core::Vec3::Zero();

@@ -100,9 +100,8 @@ std::optional<double> SurfaceWalk::draw_next(PathVertex& vertex,
     SurfacePoint next;
     const bool from_area = rng.uniform() < area_share;
     if (from_area) {
-        std::size_t hint = 0;
         const double u1 = rng.uniform();
-        next = area_sampler_.sample(u1, rng.uniform(), hint);
+        next = area_sampler_.sample(u1, rng.uniform());
     } else {
         const core::Mat3 world_from_facet = scene_->facet(vertex.point.facet).world_from_facet();
         const double u1 = rng.uniform();

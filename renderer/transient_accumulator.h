@@ -4,8 +4,12 @@
 #include "renderer/core/transient.h"
 #include "renderer/pass_histogram.h"
 
+#include <Eigen/Core>
+
 #include <cstddef>
 #include <optional>
+#include <span>
+#include <type_traits>
 #include <vector>
 
 namespace renderer {
@@ -24,15 +28,18 @@ class TransientAccumulator {
     /// histogram   PassHistogram, or PassVelocityHistogram for its bins; is left empty
     template <class Histogram>
     void add_pass(std::size_t pair, Histogram& histogram) {
+        using Values = std::span<const double>;
         double* const sums = sums_.data() + pair * num_channels_ * num_bins_;
-        double* const squares = squares_.empty() ? nullptr : squares_.data() + pair * num_bins_;
-        double squared_norm = 0.0;
-        histogram.drain([&](std::size_t index, double value) { sums[index] += value; },
-                        [&](std::size_t bin, double total) {
-                            squared_norm += total * total;
-                            if (squares != nullptr) squares[bin] += total * total;
-                        });
-        squared_norms_[pair] += squared_norm;
+        histogram.drain(
+            [&](std::size_t begin, Values values) {
+                array(sums + begin, values.size()) += array(values.data(), values.size());
+            },
+            [&](std::size_t begin, Values totals) {
+                const auto all = array(totals.data(), totals.size());
+                squared_norms_[pair] += all.square().sum();
+                if (squares_.empty()) return;
+                array(squares_.data() + pair * num_bins_ + begin, totals.size()) += all.square();
+            });
     }
 
     /// Mean over passes of one channel.
@@ -53,6 +60,13 @@ class TransientAccumulator {
     SquaredNorms squared_norms(int num_passes, const core::Transient* known) const;
 
  private:
+    template <class Double>
+    static auto array(Double* begin, std::size_t size) {
+        using Array =
+            std::conditional_t<std::is_const_v<Double>, const Eigen::ArrayXd, Eigen::ArrayXd>;
+        return Eigen::Map<Array>(begin, static_cast<Eigen::Index>(size));
+    }
+
     std::size_t num_pairs_;
     std::size_t num_bins_;
     std::size_t num_channels_;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <vector>
 
 namespace renderer {
@@ -18,8 +19,11 @@ constexpr std::uint64_t kMeasuringItem = 1ULL << 41;  ///< keeps its random numb
 // What a pair receives in each order and all later ones: [order - 1][bin].
 std::vector<double> tails_of(PassHistogram& histogram, std::size_t num_orders, std::size_t bins) {
     std::vector<double> tails(num_orders * bins);
-    histogram.drain([&](std::size_t index, double value) { tails[index] = value; },
-                    [](std::size_t, double) {});
+    histogram.drain(
+        [&](std::size_t begin, std::span<const double> values) {
+            std::copy(values.begin(), values.end(), tails.data() + begin);
+        },
+        [](std::size_t, std::span<const double>) {});
     for (std::size_t i = (num_orders - 1) * bins; i-- > 0;) tails[i] += tails[i + bins];
     return tails;
 }

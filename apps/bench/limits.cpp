@@ -159,10 +159,9 @@ double shadow_ray_seconds(const renderer::Scene& scene, const core::Scan& scan) 
     for (std::size_t p = 0; p < kPoints; ++p) {
         const std::size_t point = p * scan.sensing.size() / kPoints;
         core::Rng rng(0, p, 0);
-        std::size_t hint = 0;
         for (std::size_t i = 0; i < kRays; ++i) {
             const double u = (static_cast<double>(i) + rng.uniform()) / kRays;
-            const renderer::SurfacePoint place = sampler.sample(u, rng.uniform(), hint);
+            const renderer::SurfacePoint place = sampler.sample(u, rng.uniform());
             ends.set(i % kLanes, place.position, scene.facet(place.facet).normal);
             if (i % kLanes != kLanes - 1) continue;
             scene.rays().aim(packets.emplace_back(),

@@ -80,10 +80,9 @@ class ShiftWorkbench {
         const std::size_t pairs = scan_.num_pairs();
         const auto pair = static_cast<std::size_t>(rng.uniform() * double(pairs));
         const std::size_t next = pair + 1 < pairs ? pair + 1 : pair - 1;
-        std::size_t hint = 0;
         Shift shift;
         const double u = rng.uniform();
-        shift.x = sampler.sample(u, rng.uniform(), hint);
+        shift.x = sampler.sample(u, rng.uniform());
         shift.source = end_of(pair);
         shift.target = end_of(next);
         const Vec3& sensing_normal = scan_.sensing.normals[scan_.sensing_index(pair)];

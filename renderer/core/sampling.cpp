@@ -83,6 +83,17 @@ std::size_t DiscreteDistribution::next_index(std::size_t hint, double u) const {
     return static_cast<std::size_t>(std::upper_bound(first, last, u) - cumulative_.begin());
 }
 
+std::size_t DiscreteDistribution::sample_run(std::size_t& hint,
+                                             std::span<const double> u,
+                                             std::span<double> remapped) const {
+    if (cumulative_[hint] <= u.front()) hint = next_index(hint, u.front());
+    const double end = cumulative_[hint];
+    const auto beyond = std::find_if(u.begin() + 1, u.end(), [=](double v) { return end <= v; });
+    const auto size = static_cast<std::size_t>(beyond - u.begin());
+    for (std::size_t i = 0; i < size; ++i) remapped[i] = remap(hint, u[i]);
+    return size;
+}
+
 double DiscreteDistribution::probability(std::size_t index) const {
     return cumulative_[index] - begin_of(index);
 }

@@ -61,12 +61,15 @@ class DiscreteDistribution {
     /// The index whose share of [0, 1) holds u. `remapped` becomes uniform in [0, 1) given the
     /// index.
     std::size_t sample(double u, double& remapped) const;
-    /// Like sample(), when u does not decrease from call to call: continues from index `hint`.
-    std::size_t sample_from(std::size_t hint, double u, double& remapped) const {
-        if (cumulative_[hint] <= u) hint = next_index(hint, u);
-        remapped = remap(hint, u);
-        return hint;
-    }
+    /// Like sample() for numbers that do not decrease, as far as they have the same index.
+    ///
+    /// hint      in: an index from where to search upwards; out: the index
+    /// u         at least one
+    /// remapped  as many; those after the first with another index are left alone
+    /// returns   how many have the index
+    std::size_t sample_run(std::size_t& hint,
+                           std::span<const double> u,
+                           std::span<double> remapped) const;
     double probability(std::size_t index) const;
     /// The u for which sample() gives `index` and `remapped`.
     double invert(std::size_t index, double remapped) const;

@@ -11,7 +11,8 @@ namespace {
 
 constexpr double kThird = 1.0 / 3.0;
 
-// Corners sorted by position along the axis; positions in any unit.
+// Triangles side by side, a vector unit's worth, with corners sorted by position along the axis;
+// positions in any unit.
 //
 // Let p0 <= p1 <= p2 and K0, K1, K2 be positions and weights. The level set p = e cuts the edge 0-2
 // at the fraction b = (e-p0)/(p2-p0) and, for e < p1, the edge 0-1 at a = (e-p0)/(p1-p0). The part
@@ -22,36 +23,57 @@ constexpr double kThird = 1.0 / 3.0;
 //
 // and the same seen from corner 2 for e >= p1, subtracted from the mean (K0+K1+K2)/3. All factors
 // are ratios in [0, 1]: nothing cancels, however small the triangle is.
-struct SortedTriangle {
-    double p0, p1, p2;
-    double k0, k1, k2;
-
-    double mean() const { return (k0 + k1 + k2) * kThird; }
-};
-
-class Cumulative {
+class SortedTriangles {
  public:
-    explicit Cumulative(const SortedTriangle& triangle)
-        : t_(triangle),
-          per_01_(1.0 / (t_.p1 - t_.p0)),
-          per_02_(1.0 / (t_.p2 - t_.p0)),
-          per_12_(1.0 / (t_.p2 - t_.p1)) {}
+    static constexpr std::size_t kSize = 8;
+    static_assert(TriangleLanes::kSize % kSize == 0);
 
-    // For p0 < e < p2.
-    double below(double e) const {
-        if (e < t_.p1) {
-            const double a = (e - t_.p0) * per_01_;
-            const double b = (e - t_.p0) * per_02_;
-            return a * b * (t_.k0 + (a * (t_.k1 - t_.k0) + b * (t_.k2 - t_.k0)) * kThird);
+    // Lanes [begin, begin + kSize) after sort_corners().
+    SortedTriangles(const TriangleLanes& lanes, std::size_t begin) {
+        for (std::size_t i = 0; i < kSize; ++i) {
+            p0_[i] = lanes.opl_m[0][begin + i];
+            p1_[i] = lanes.opl_m[1][begin + i];
+            p2_[i] = lanes.opl_m[2][begin + i];
+            k0_[i] = lanes.weight[0][begin + i];
+            k1_[i] = lanes.weight[1][begin + i];
+            k2_[i] = lanes.weight[2][begin + i];
+            mean_[i] = (k0_[i] + k1_[i] + k2_[i]) * kThird;
+            per_01_[i] = 1.0 / (p1_[i] - p0_[i]);
+            per_02_[i] = 1.0 / (p2_[i] - p0_[i]);
+            per_12_[i] = 1.0 / (p2_[i] - p1_[i]);
         }
-        const double a = (t_.p2 - e) * per_12_;
-        const double b = (t_.p2 - e) * per_02_;
-        return t_.mean() - a * b * (t_.k2 + (a * (t_.k1 - t_.k2) + b * (t_.k0 - t_.k2)) * kThird);
+    }
+
+    double least(std::size_t i) const { return p0_[i]; }
+    double most(std::size_t i) const { return p2_[i]; }
+    double mean(std::size_t i) const { return mean_[i]; }
+
+    // C(e). Everything is loaded before anything is selected, so that compilers need no branches;
+    // what an infinite reciprocal spoils is not selected.
+    double below(std::size_t i, double e) const {
+        const double from_low = e - p0_[i];
+        const double to_high = p2_[i] - e;
+        const double low_k = k0_[i];
+        const double high_k = k2_[i];
+        const double per_low = per_01_[i];
+        const double per_high = per_12_[i];
+        const double mean = mean_[i];
+        const bool low = e < p1_[i];
+        const double reach = low ? from_low : to_high;
+        const double near = low ? low_k : high_k;
+        const double far = low ? high_k : low_k;
+        const double a = reach * (low ? per_low : per_high);
+        const double b = reach * per_02_[i];
+        const double part = a * b * (near + (a * (k1_[i] - near) + b * (far - near)) * kThird);
+        const double other_part = mean - part;
+        const double inside = low ? part : other_part;
+        const double up_to_high = to_high > 0.0 ? inside : mean;
+        return from_low > 0.0 ? up_to_high : 0.0;
     }
 
  private:
-    SortedTriangle t_;
-    double per_01_, per_02_, per_12_;  // reciprocal lengths; infinite ones are never used
+    using Lanes = std::array<double, kSize>;
+    alignas(64) Lanes p0_, p1_, p2_, k0_, k1_, k2_, mean_, per_01_, per_02_, per_12_;
 };
 
 struct Corner {
@@ -85,45 +107,52 @@ void sort_corners(TriangleLanes& lanes, std::size_t count) {
     }
 }
 
-SortedTriangle lane_of(const TriangleLanes& lanes, std::size_t i) {
-    return {lanes.opl_m[0][i],
-            lanes.opl_m[1][i],
-            lanes.opl_m[2][i],
-            lanes.weight[0][i],
-            lanes.weight[1][i],
-            lanes.weight[2][i]};
-}
-
-TriangleLanes one_lane(const TriangleKnots& knots) {
+// A triangle in all lanes of the first unit.
+TriangleLanes repeated(const TriangleKnots& knots) {
     TriangleLanes lanes;
     for (std::size_t j = 0; j < 3; ++j) {
-        lanes.opl_m[j][0] = knots.opl_m[j];
-        lanes.weight[j][0] = knots.weight[j];
+        std::fill_n(lanes.opl_m[j].begin(), SortedTriangles::kSize, knots.opl_m[j]);
+        std::fill_n(lanes.weight[j].begin(), SortedTriangles::kSize, knots.weight[j]);
     }
     return lanes;
 }
 
-// Corners at positions in bins.
-void add_sorted(const SortedTriangle& triangle, double area_m2, std::span<double> histogram) {
+// Adds the first `count` of the triangles, whose corners lie at positions in bins.
+void add_sorted(const SortedTriangles& triangles,
+                const double* area_m2,
+                std::size_t count,
+                std::span<double> histogram) {
+    constexpr std::size_t kSize = SortedTriangles::kSize;
     const auto num_bins = static_cast<double>(histogram.size());
-    if (!(triangle.p2 >= 0.0) || !(triangle.p0 < num_bins)) return;
-
-    const double mean = triangle.mean();
-    const double last = std::floor(triangle.p2);
-    if (triangle.p0 >= last) {
-        if (last < num_bins) histogram[static_cast<std::size_t>(last)] += area_m2 * mean;
-        return;
+    alignas(64) std::array<double, kSize> edge;
+    alignas(64) std::array<double, kSize> below;
+    alignas(64) std::array<double, kSize> added;
+    alignas(64) std::array<double, kSize> reached;
+    for (std::size_t i = 0; i < kSize; ++i) {
+        const double low = triangles.least(i);
+        const double high = triangles.most(i);
+        const double begin = std::floor(low > 0.0 ? low : 0.0);
+        const double last = std::floor(high < num_bins ? high : num_bins - 1.0);
+        edge[i] = begin;
+        below[i] = triangles.below(i, begin);
+        // Below 1 where nothing lies on the axis.
+        const double bins = last - begin + 1.0;
+        reached[i] = triangles.mean(i) == 0.0 ? 0.0 : bins;
     }
-    const Cumulative cumulative(triangle);
-    double edge = std::max(0.0, std::floor(triangle.p0));
-    double below = edge > triangle.p0 ? cumulative.below(edge) : 0.0;
-    auto bin = static_cast<std::size_t>(edge);
-    for (edge += 1.0; edge <= last && edge <= num_bins; edge += 1.0, ++bin) {
-        const double next = edge < triangle.p2 ? cumulative.below(edge) : mean;
-        histogram[bin] += area_m2 * (next - below);
-        below = next;
+    double most = 0.0;
+    for (std::size_t i = 0; i < count; ++i) most = std::max(most, reached[i]);
+    for (double bin = 0.0; bin < most; bin += 1.0) {
+        for (std::size_t i = 0; i < kSize; ++i) {
+            const double next = triangles.below(i, edge[i] + 1.0);
+            added[i] = next - below[i];
+            below[i] = next;
+        }
+        for (std::size_t i = 0; i < count; ++i) {
+            if (!(bin < reached[i])) continue;  // nor where a number is none
+            histogram[static_cast<std::size_t>(edge[i])] += area_m2[i] * added[i];
+        }
+        for (double& e : edge) e += 1.0;
     }
-    if (last < num_bins) histogram[bin] += area_m2 * (mean - below);
 }
 
 double mean_of(const std::array<double, 3>& values) {
@@ -181,11 +210,9 @@ TriangleKnots match_midpoints(const TriangleKnots& at_corners, const TriangleKno
 }
 
 double triangle_cumulative(const TriangleKnots& knots, double opl_m) {
-    TriangleLanes lanes = one_lane(knots);
-    sort_corners(lanes, 1);
-    const SortedTriangle triangle = lane_of(lanes, 0);
-    if (opl_m <= triangle.p0) return 0.0;
-    return opl_m < triangle.p2 ? Cumulative(triangle).below(opl_m) : triangle.mean();
+    TriangleLanes lanes = repeated(knots);
+    sort_corners(lanes, SortedTriangles::kSize);
+    return SortedTriangles(lanes, 0).below(0, opl_m);
 }
 
 void add_triangles(TriangleLanes& lanes,
@@ -198,9 +225,11 @@ void add_triangles(TriangleLanes& lanes,
         for (std::size_t i = 0; i < count; ++i) lane[i] = (lane[i] - axis.opl_start_m) * per_m;
     }
     sort_corners(lanes, count);
-    for (std::size_t i = 0; i < count; ++i) {
-        const SortedTriangle triangle = lane_of(lanes, i);
-        if (triangle.mean() != 0.0) add_sorted(triangle, area_m2[i], histogram);
+    for (std::size_t begin = 0; begin < count; begin += SortedTriangles::kSize) {
+        add_sorted(SortedTriangles(lanes, begin),
+                   area_m2.data() + begin,
+                   std::min(count - begin, SortedTriangles::kSize),
+                   histogram);
     }
 }
 
@@ -208,7 +237,7 @@ void add_triangle(const TriangleKnots& knots,
                   double area_m2,
                   const TimeAxis& axis,
                   std::span<double> histogram) {
-    TriangleLanes lanes = one_lane(knots);
+    TriangleLanes lanes = repeated(knots);
     add_triangles(lanes, {&area_m2, 1}, axis, histogram);
 }
 

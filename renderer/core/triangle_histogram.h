@@ -55,7 +55,7 @@ struct TriangleLanes {
 /// add_triangle() for the first lanes.
 ///
 /// lanes       overwritten: corners are sorted by length, which become positions in bins
-/// area_m2     of each triangle, as many as lanes are used
+/// area_m2     of each triangle, as many as lanes are used; what the other lanes hold is ignored
 /// histogram   axis.num_bins values
 void add_triangles(TriangleLanes& lanes,
                    std::span<const double> area_m2,

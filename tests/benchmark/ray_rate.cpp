@@ -19,18 +19,20 @@
 
 namespace {
 
-struct RecordedPacket {
+template <class Rays>
+struct Recorded {
     alignas(64) int valid[16];
-    RTCRay16 rays;
+    Rays rays;
 };
 
 // Calls in the order in which the tracer made them, so that the replay meets the same caches.
-enum class Call : char { Packet, FirstHit, Segment };
+enum class Call : char { Segments, FirstHits, FirstHit, Segment };
 
 struct Recording {
     RTCScene scene = nullptr;
     std::vector<Call> calls;
-    std::vector<RecordedPacket> packets;
+    std::vector<Recorded<RTCRay16>> segment_packets;
+    std::vector<Recorded<RTCRayHit16>> first_hit_packets;
     std::vector<RTCRayHit> first_hits;
     std::vector<RTCRay> segments;
     std::size_t num_rays = 0;
@@ -38,10 +40,23 @@ struct Recording {
 
 Recording* g_recording = nullptr;
 
+template <class Rays>
+void record_packet(Call call,
+                   const int* valid,
+                   const Rays& rays,
+                   std::vector<Recorded<Rays>>& packets) {
+    g_recording->calls.push_back(call);
+    Recorded<Rays>& packet = packets.emplace_back();
+    std::copy(valid, valid + 16, packet.valid);
+    packet.rays = rays;
+    g_recording->num_rays += static_cast<std::size_t>(std::count(valid, valid + 16, -1));
+}
+
 }  // namespace
 
 extern "C" {
 void __real_rtcOccluded16(const int*, RTCScene, RTCIntersectContext*, RTCRay16*);
+void __real_rtcIntersect16(const int*, RTCScene, RTCIntersectContext*, RTCRayHit16*);
 void __real_rtcIntersect1(RTCScene, RTCIntersectContext*, RTCRayHit*);
 void __real_rtcOccluded1(RTCScene, RTCIntersectContext*, RTCRay*);
 
@@ -51,13 +66,19 @@ void __wrap_rtcOccluded16(const int* valid,
                           RTCRay16* rays) {
     if (g_recording != nullptr) {
         g_recording->scene = scene;
-        g_recording->calls.push_back(Call::Packet);
-        RecordedPacket& packet = g_recording->packets.emplace_back();
-        std::copy(valid, valid + 16, packet.valid);
-        packet.rays = *rays;
-        g_recording->num_rays += static_cast<std::size_t>(std::count(valid, valid + 16, -1));
+        record_packet(Call::Segments, valid, *rays, g_recording->segment_packets);
     }
     __real_rtcOccluded16(valid, scene, context, rays);
+}
+
+void __wrap_rtcIntersect16(const int* valid,
+                           RTCScene scene,
+                           RTCIntersectContext* context,
+                           RTCRayHit16* rays) {
+    if (g_recording != nullptr) {
+        record_packet(Call::FirstHits, valid, *rays, g_recording->first_hit_packets);
+    }
+    __real_rtcIntersect16(valid, scene, context, rays);
 }
 
 void __wrap_rtcIntersect1(RTCScene scene, RTCIntersectContext* context, RTCRayHit* ray) {
@@ -85,15 +106,22 @@ namespace {
 double replay(Recording recording) {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    auto packet = recording.packets.begin();
+    auto segment_packet = recording.segment_packets.begin();
+    auto first_hit_packet = recording.first_hit_packets.begin();
     auto first_hit = recording.first_hits.begin();
     auto segment = recording.segments.begin();
     const double start = core::cpu_seconds();
     for (const Call call : recording.calls) {
         switch (call) {
-            case Call::Packet:
-                __real_rtcOccluded16(packet->valid, recording.scene, &context, &packet->rays);
-                ++packet;
+            case Call::Segments:
+                __real_rtcOccluded16(
+                    segment_packet->valid, recording.scene, &context, &segment_packet->rays);
+                ++segment_packet;
+                break;
+            case Call::FirstHits:
+                __real_rtcIntersect16(
+                    first_hit_packet->valid, recording.scene, &context, &first_hit_packet->rays);
+                ++first_hit_packet;
                 break;
             case Call::FirstHit:
                 __real_rtcIntersect1(recording.scene, &context, &*first_hit++);

@@ -130,6 +130,35 @@ TEST(TriangleHistogram, BinsAreDifferencesOfTheCumulative) {
     }
 }
 
+// Triangles of all spans, some on no bin, some partly outside; the lanes after them hold others.
+TEST(TriangleHistogram, LanesAddWhatEachTriangleAloneDoes) {
+    core::Rng rng(test_support::seed_of("LanesAddWhatEachDoes"), 0, 0);
+    const TimeAxis axis{1.02, 0.007, 9};
+    for (std::size_t count = 1; count <= core::TriangleLanes::kSize; ++count) {
+        core::TriangleLanes lanes;
+        std::vector<double> areas;
+        std::vector<double> expected(9);
+        for (std::size_t i = 0; i < core::TriangleLanes::kSize; ++i) {
+            TriangleKnots knots = random_knots(rng);
+            const double spread = i % 3 == 0 ? 0.0 : rng.uniform();
+            for (double& opl : knots.opl_m) opl = knots.opl_m[2] + spread * (opl - knots.opl_m[2]);
+            if (i % 7 == 3) knots.weight = {0.0, 0.0, 0.0};
+            for (std::size_t j = 0; j < 3; ++j) {
+                lanes.opl_m[j][i] = knots.opl_m[j];
+                lanes.weight[j][i] = knots.weight[j];
+            }
+            if (i >= count) continue;
+            areas.push_back(rng.uniform());
+            core::add_triangle(knots, areas.back(), axis, expected);
+        }
+        std::vector<double> histogram(9);
+        core::add_triangles(lanes, areas, axis, histogram);
+        for (std::size_t bin = 0; bin < 9; ++bin) {
+            EXPECT_NEAR(histogram[bin], expected[bin], 1e-13) << count;
+        }
+    }
+}
+
 TEST(TriangleHistogram, EnergyDoesNotDependOnTheAxis) {
     core::Rng rng(test_support::seed_of("EnergyDoesNotDependOnTheAxis"), 0, 0);
     for (int trial = 0; trial < 200; ++trial) {

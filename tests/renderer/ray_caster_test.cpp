@@ -2,6 +2,7 @@
 #include "renderer/ray_caster.h"
 
 #include "renderer/core/random.h"
+#include "renderer/core/sampling.h"
 #include "renderer/scene.h"
 #include "tests/support/statistics.h"
 #include "tests/support/test_scenes.h"
@@ -113,6 +114,44 @@ TEST_P(RayCasterOnSphere, PacketsAnswerAsSingleRays) {
     }
     EXPECT_GT(blocked, traced / 3);
     EXPECT_LT(blocked, 2 * traced / 3);
+}
+
+TEST_P(RayCasterOnSphere, FirstHitsOfPacketsAreThoseOfSingleRays) {
+    const auto& [center, radius] = GetParam();
+    corners_.resize(corners_.size() / 2);  // a sphere with holes: some rays meet nothing
+    const renderer::RayCaster rays(corners_, std::vector{center});
+    core::Rng rng(test_support::seed_of("RayCaster.first_hits"), 0, 0);
+    int met = 0;
+    int traced = 0;
+    for (int i = 0; i < 2'000; ++i) {
+        renderer::DirectionPacket packet;
+        packet.x.fill(std::nan(""));
+        packet.y.fill(std::numeric_limits<double>::infinity());
+        packet.count = 1 + i % renderer::DirectionPacket::kSize;
+        const Vec3 normal = core::sample_sphere({rng.uniform(), rng.uniform()});
+        std::vector<std::optional<renderer::RayHit>> expected;
+        for (std::size_t lane = 0; std::ssize(expected) < packet.count; ++lane) {
+            const Vec3 direction = core::sample_sphere({rng.uniform(), rng.uniform()});
+            packet.x[lane] = direction.x();
+            packet.y[lane] = direction.y();
+            packet.z[lane] = direction.z();
+            expected.push_back(rays.first_hit(center, normal, direction));
+        }
+        rays.first_hits(center, normal, packet);
+        for (std::size_t lane = 0; lane < expected.size(); ++lane) {
+            ++traced;
+            if (!expected[lane]) {
+                EXPECT_EQ(packet.triangle[lane], renderer::DirectionPacket::kNone);
+                continue;
+            }
+            ++met;
+            // Next to an edge either facet may be named; both are where the ray meets the sphere.
+            ASSERT_NE(packet.triangle[lane], renderer::DirectionPacket::kNone);
+            EXPECT_NEAR(packet.distance_m[lane] / expected[lane]->distance_m, 1.0, 1e-5);
+        }
+    }
+    EXPECT_GT(met, traced / 3);
+    EXPECT_LT(met, 2 * traced / 3);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scales,

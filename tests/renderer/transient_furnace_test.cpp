@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <span>
 
 namespace {
 
@@ -48,11 +49,13 @@ class Furnace {
             tracer.trace(ends, 1000, rng, histogram);
             std::vector<double> totals(static_cast<std::size_t>(max_bounces), 0.0);
             histogram.drain(
-                [&](std::size_t i, double value) {
-                    sums_[i] += value / kPasses;
-                    totals[i / bins] += value;
+                [&](std::size_t begin, std::span<const double> values) {
+                    for (std::size_t i = 0; i < values.size(); ++i) {
+                        sums_[begin + i] += values[i] / kPasses;
+                        totals[begin / bins] += values[i];
+                    }
                 },
-                [](std::size_t, double) {});
+                [](std::size_t, std::span<const double>) {});
             for (std::size_t i = 0; i < totals.size(); ++i) pass_totals_[i].push_back(totals[i]);
         }
     }
