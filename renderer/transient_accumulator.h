@@ -6,7 +6,9 @@
 
 #include <Eigen/Core>
 
+#include <array>
 #include <cstddef>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <type_traits>
@@ -35,9 +37,9 @@ class TransientAccumulator {
                 array(sums + begin, values.size()) += array(values.data(), values.size());
             },
             [&](std::size_t begin, Values totals) {
-                const auto all = array(totals.data(), totals.size());
-                squared_norms_[pair] += all.square().sum();
+                squared_norms_[pair] += squared_norm(totals);
                 if (squares_.empty()) return;
+                const auto all = array(totals.data(), totals.size());
                 array(squares_.data() + pair * num_bins_ + begin, totals.size()) += all.square();
             });
     }
@@ -65,6 +67,18 @@ class TransientAccumulator {
         using Array =
             std::conditional_t<std::is_const_v<Double>, const Eigen::ArrayXd, Eigen::ArrayXd>;
         return Eigen::Map<Array>(begin, static_cast<Eigen::Index>(size));
+    }
+
+    // Has the same bits wherever the values lie: Eigen's sums over arrays start at aligned ones.
+    static double squared_norm(std::span<const double> values) {
+        constexpr std::size_t kParts = 8;
+        std::array<double, kParts> parts{};
+        std::size_t i = 0;
+        for (; i + kParts <= values.size(); i += kParts) {
+            for (std::size_t k = 0; k < kParts; ++k) parts[k] += values[i + k] * values[i + k];
+        }
+        for (std::size_t k = 0; i < values.size(); ++i, ++k) parts[k] += values[i] * values[i];
+        return std::accumulate(parts.begin(), parts.end(), 0.0);
     }
 
     std::size_t num_pairs_;
