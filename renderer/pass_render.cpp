@@ -71,14 +71,12 @@ void require_memory(const core::Scan& scan,
                     const core::HistogramAxes& axes,
                     const RenderSettings& settings,
                     std::size_t tile_pairs) {
-    // The capture's arrays, and for one tile the sums and what is made of them.
+    // The capture's arrays, and the sums of one tile.
     const double kinds = settings.variance ? 2.0 : 1.0;
     const double values =
         (channel_count(settings) + kinds) * axes.time.num_bins + kinds * num_velocity_values(axes);
-    const double needed =
-        values * sizeof(float) *
-            (static_cast<double>(scan.num_pairs()) + static_cast<double>(tile_pairs)) +
-        sums_bytes_per_pair(axes, settings) * static_cast<double>(tile_pairs);
+    const double needed = values * sizeof(float) * static_cast<double>(scan.num_pairs()) +
+                          sums_bytes_per_pair(axes, settings) * static_cast<double>(tile_pairs);
     const double available = static_cast<double>(core::available_memory_bytes());
     if (needed > available) {
         throw core::Failure("render",
@@ -172,37 +170,17 @@ void PassLoop::run_pass(const Tile& tile, int pass, int samples, HistogramSums& 
     }
 }
 
-void copy_tile(const core::Transient& from, const Tile& tile, core::Transient& to) {
-    std::copy(from.values().begin(), from.values().end(), to.histogram(tile.begin).begin());
-}
-
-// The variance of `mean`, whose shape it gets with the first tile.
-void copy_variance(const TransientAccumulator& sums,
-                   const Tile& tile,
-                   int passes,
-                   const core::Transient& mean,
-                   std::optional<core::Transient>& variance) {
-    if (!variance) variance.emplace(mean.num_pairs(), static_cast<int>(mean.num_bins()));
-    copy_tile(sums.variance(passes), tile, *variance);
-}
-
 void PassLoop::fill_capture(const Tile& tile,
                             const HistogramSums& sums,
                             int passes,
                             core::Capture& capture) const {
-    copy_tile(sums.time.mean_of_all(passes), tile, capture.transient);
-    if (sums.velocity) {
-        copy_tile(sums.velocity->mean_of_all(passes), tile, capture.velocity->values);
-    }
-    if (settings_.variance && passes > 1) {
-        copy_variance(sums.time, tile, passes, capture.transient, capture.variance);
-        if (sums.velocity) {
-            copy_variance(
-                *sums.velocity, tile, passes, capture.velocity->values, capture.velocity->variance);
-        }
-    }
+    sums.write_to(capture, tile.begin, passes);
+    const auto num_bins = static_cast<std::size_t>(axes_.time.num_bins);
     for (std::size_t i = 0; i < capture.orders.size(); ++i) {
-        copy_tile(sums.time.mean(capture.orders[i] - 1, passes), tile, capture.by_order[i]);
+        sums.time.write_mean(
+            capture.orders[i] - 1,
+            passes,
+            capture.by_order[i].values().subspan(tile.begin * num_bins, tile.count * num_bins));
     }
 }
 
@@ -243,13 +221,7 @@ core::Capture empty_capture(const core::Scan& scan,
     core::Capture capture;
     capture.scan = scan;
     capture.time_axis = axes.time;
-    capture.transient = core::Transient(scan.num_pairs(), axes.time.num_bins);
-    if (axes.velocity) {
-        capture.velocity = {
-            *axes.velocity,
-            core::Transient(scan.num_pairs(), axes.velocity->num_values(axes.time.num_bins)),
-            std::nullopt};
-    }
+    if (axes.velocity) capture.velocity = {*axes.velocity, {}, std::nullopt};
     if (!settings.by_order) return capture;
     for (int order = 1; order <= channel_count(settings); ++order) {
         capture.orders.push_back(order);

@@ -162,15 +162,9 @@ RenderResult result_of(const HistogramSums& sums,
                        const RenderSettings& settings) {
     RenderResult result;
     result.capture.scan = scan;
-    const bool has_variance = settings.variance && num_frames > 1;
     result.capture.time_axis = axes.time;
-    result.capture.transient = sums.time.mean_of_all(num_frames);
-    if (has_variance) result.capture.variance = sums.time.variance(num_frames);
-    if (sums.velocity) {
-        result.capture.velocity = {
-            *axes.velocity, sums.velocity->mean_of_all(num_frames), std::nullopt};
-        if (has_variance) result.capture.velocity->variance = sums.velocity->variance(num_frames);
-    }
+    if (axes.velocity) result.capture.velocity = {*axes.velocity, {}, std::nullopt};
+    sums.write_to(result.capture, 0, num_frames);
     result.excluded = excluded;
     result.sources.push_back({first_order(scan),
                               settings.max_bounces,

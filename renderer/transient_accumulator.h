@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/core/transient.h"
+#include "renderer/core/capture.h"
 #include "renderer/pass_histogram.h"
 
 #include <Eigen/Core>
@@ -44,16 +44,20 @@ class TransientAccumulator {
             });
     }
 
-    /// Mean over passes of one channel.
-    core::Transient mean(int channel, int num_passes) const;
-    /// Mean over passes of the sum of all channels.
-    core::Transient mean_of_all(int num_passes) const;
-    /// Variance of mean_of_all(); needs two passes and sums of squares.
-    core::Transient variance(int num_passes) const;
+    std::size_t num_pairs() const { return num_pairs_; }
+    std::size_t num_bins() const { return num_bins_; }
+    bool keeps_squares() const { return !squares_.empty(); }
+
+    /// Writes the mean over passes of one channel; `to` is [pair][bin], as below.
+    void write_mean(int channel, int num_passes, std::span<float> to) const;
+    /// Writes the mean over passes of the sum of all channels.
+    void write_mean_of_all(int num_passes, std::span<float> to) const;
+    /// Writes the variance of that mean; needs two passes and sums of squares.
+    void write_variance(int num_passes, std::span<float> to) const;
 
     /// Squared L2 norms over all pairs and bins.
     struct SquaredNorms {
-        double noise = 0.0;   ///< expected, of mean_of_all() about H
+        double noise = 0.0;   ///< expected, of the mean of all channels about H
         double signal = 0.0;  ///< of `known` + H
     };
     /// Estimates both from the spread of at least two passes, without the arrays of squares.
@@ -81,6 +85,9 @@ class TransientAccumulator {
         return std::accumulate(parts.begin(), parts.end(), 0.0);
     }
 
+    // Sums of all channels of a pair: of a single one its own row, else in `buffer`.
+    std::span<const double> totals(std::size_t pair, std::vector<double>& buffer) const;
+
     std::size_t num_pairs_;
     std::size_t num_bins_;
     std::size_t num_channels_;
@@ -104,6 +111,11 @@ struct HistogramSums {
         time.add_pass(pair, histogram);
         if (velocity) velocity->add_pass(pair, histogram.velocity());
     }
+
+    /// Writes the means, and the variances where there are squares of two passes, to the rows of a
+    /// capture that begin with `first_pair`. Arrays that are still empty get their shape from the
+    /// capture's scan; of velocities the axis must be there.
+    void write_to(core::Capture& capture, std::size_t first_pair, int num_passes) const;
 
     TransientAccumulator time;
     std::optional<TransientAccumulator> velocity;  ///< with a velocity axis
