@@ -6,6 +6,37 @@
 #include <algorithm>
 
 namespace renderer {
+namespace {
+
+void write_row(std::span<const double> sums, int num_passes, float* to) {
+    std::transform(sums.begin(), sums.end(), to, [&](double sum) {
+        return static_cast<float>(sum / num_passes);
+    });
+}
+
+// The rows of all pairs of `sums` in an array of the whole scan, made when the first ones come.
+std::span<float> rows_of(core::Transient& array,
+                         const core::Scan& scan,
+                         std::size_t first_pair,
+                         const TransientAccumulator& sums) {
+    const std::size_t num_bins = sums.num_bins();
+    if (array.empty()) array = core::Transient(scan.num_pairs(), static_cast<int>(num_bins));
+    return array.values().subspan(first_pair * num_bins, sums.num_pairs() * num_bins);
+}
+
+void write(const TransientAccumulator& sums,
+           int num_passes,
+           const core::Scan& scan,
+           std::size_t first_pair,
+           core::Transient& mean,
+           std::optional<core::Transient>& variance) {
+    sums.write_mean_of_all(num_passes, rows_of(mean, scan, first_pair, sums));
+    if (!sums.keeps_squares() || num_passes < 2) return;
+    if (!variance) variance.emplace();
+    sums.write_variance(num_passes, rows_of(*variance, scan, first_pair, sums));
+}
+
+}  // namespace
 
 TransientAccumulator::TransientAccumulator(std::size_t num_pairs,
                                            int num_bins,
@@ -33,19 +64,14 @@ void TransientAccumulator::write_mean(int channel, int num_passes, std::span<flo
     core::parallel_for(num_pairs_, [&](std::size_t pair) {
         const double* const sums =
             sums_.data() + (pair * num_channels_ + static_cast<std::size_t>(channel)) * num_bins_;
-        std::transform(sums, sums + num_bins_, to.data() + pair * num_bins_, [&](double sum) {
-            return static_cast<float>(sum / num_passes);
-        });
+        write_row({sums, num_bins_}, num_passes, to.data() + pair * num_bins_);
     });
 }
 
 void TransientAccumulator::write_mean_of_all(int num_passes, std::span<float> to) const {
     core::parallel_for(num_pairs_, [&](std::size_t pair) {
         std::vector<double> buffer;
-        const std::span<const double> sums = totals(pair, buffer);
-        std::transform(sums.begin(), sums.end(), to.data() + pair * num_bins_, [&](double sum) {
-            return static_cast<float>(sum / num_passes);
-        });
+        write_row(totals(pair, buffer), num_passes, to.data() + pair * num_bins_);
     });
 }
 
@@ -93,32 +119,6 @@ TransientAccumulator::SquaredNorms TransientAccumulator::squared_norms(
     const double noise = std::max(0.0, sums.passes - n * sums.mean) / (n * (n - 1.0));
     return {noise, std::max(0.0, sums.all - noise)};
 }
-
-namespace {
-
-// The rows of all pairs of `sums` in an array of the whole scan, made when the first ones come.
-std::span<float> rows_of(core::Transient& array,
-                         const core::Scan& scan,
-                         std::size_t first_pair,
-                         const TransientAccumulator& sums) {
-    const std::size_t num_bins = sums.num_bins();
-    if (array.empty()) array = core::Transient(scan.num_pairs(), static_cast<int>(num_bins));
-    return array.values().subspan(first_pair * num_bins, sums.num_pairs() * num_bins);
-}
-
-void write(const TransientAccumulator& sums,
-           int num_passes,
-           const core::Scan& scan,
-           std::size_t first_pair,
-           core::Transient& mean,
-           std::optional<core::Transient>& variance) {
-    sums.write_mean_of_all(num_passes, rows_of(mean, scan, first_pair, sums));
-    if (!sums.keeps_squares() || num_passes < 2) return;
-    if (!variance) variance.emplace();
-    sums.write_variance(num_passes, rows_of(*variance, scan, first_pair, sums));
-}
-
-}  // namespace
 
 void HistogramSums::write_to(core::Capture& capture, std::size_t first_pair, int num_passes) const {
     write(time, num_passes, capture.scan, first_pair, capture.transient, capture.variance);
