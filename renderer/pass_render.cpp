@@ -22,6 +22,9 @@ constexpr int kPasses = 8;
 constexpr int kMostSamplesPerPass = 256;
 constexpr int kSamplesPerTimedPass = 32;  ///< also when an error is to be reached
 constexpr std::size_t kPairsPerBlock = 16;
+// Passes run in rounds, all of a round for one pair after the other, so that its sums stay in the
+// cache. Between rounds the caller may end the run.
+constexpr double kMostSecondsPerRound = 0.1;
 
 struct PassPlan {
     int samples_per_pass = 1;
@@ -40,6 +43,13 @@ PassPlan plan_passes(const RenderSettings& settings, const PassWork& work) {
     // Multiples of 4 split into the path tracer's two kinds of samples without rounding noise.
     if (per_pass > 4) per_pass -= per_pass % 4;
     return {per_pass, (settings.samples + per_pass - 1) / per_pass};
+}
+
+// How many passes the next round has when `done` of them took `elapsed_s`. It changes no result.
+int next_round(const PassPlan& plan, const RenderSettings& settings, int done, double elapsed_s) {
+    if (done == 0 || is_open_ended(settings)) return 1;
+    const double fit = kMostSecondsPerRound * done / elapsed_s;
+    return static_cast<int>(std::clamp(fit, 1.0, static_cast<double>(plan.num_passes - done)));
 }
 
 int channel_count(const RenderSettings& settings) {
@@ -118,7 +128,7 @@ class PassLoop {
                              int samples,
                              core::Rng& rng,
                              PassHistogram& histogram) const;
-    void run_pass(const Tile& tile, int pass, int samples, HistogramSums& sums);
+    void run_passes(const Tile& tile, int first, int count, int samples, HistogramSums& sums);
     void fill_capture(const Tile& tile,
                       const HistogramSums& sums,
                       int passes,
@@ -147,26 +157,31 @@ std::uint64_t PassLoop::trace_pair(std::size_t pair,
     return num_rays;
 }
 
-void PassLoop::run_pass(const Tile& tile, int pass, int samples, HistogramSums& sums) {
+void PassLoop::run_passes(
+    const Tile& tile, int first, int count, int samples, HistogramSums& sums) {
     constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
     std::atomic<std::size_t> bad_pair{kNone};
     core::parallel_blocks(tile.count, kPairsPerBlock, [&](std::size_t begin, std::size_t end) {
         PassHistogram histogram(axes_, settings_.gate, num_channels_);
         for (std::size_t i = begin; i < end; ++i) {
             const std::size_t pair = tile.begin + i;
-            core::Rng rng(settings_.seed, pair, static_cast<std::uint64_t>(pass));
-            num_rays_ += trace_pair(pair, samples, rng, histogram);
-            sums.add_pass(i, histogram);
+            for (int pass = first; pass < first + count; ++pass) {
+                core::Rng rng(settings_.seed, pair, static_cast<std::uint64_t>(pass));
+                num_rays_ += trace_pair(pair, samples, rng, histogram);
+                sums.add_pass(i, histogram);
+            }
             if (histogram.num_non_finite() > 0) bad_pair = std::min(bad_pair.load(), pair);
             if (bad_pair != kNone) return;
         }
     });
     if (bad_pair != kNone) {
-        throw core::Failure("render",
-                            fmt::format("a contribution is not finite (pair {}, pass {}, seed {})",
-                                        bad_pair.load(),
-                                        pass,
-                                        settings_.seed));
+        throw core::Failure(
+            "render",
+            fmt::format("a contribution is not finite (pair {}, passes {} to {}, seed {})",
+                        bad_pair.load(),
+                        first,
+                        first + count - 1,
+                        settings_.seed));
     }
 }
 
@@ -191,8 +206,9 @@ void PassLoop::run(const Tile& tile, const core::Progress& progress, RenderResul
     StoppingRule rule(settings_, plan.num_passes, work_.known);
     int pass = 0;
     for (bool enough = false; !enough;) {
-        run_pass(tile, pass, plan.samples_per_pass, sums);
-        ++pass;
+        const int count = next_round(plan, settings_, pass, watch.seconds());
+        run_passes(tile, pass, count, plan.samples_per_pass, sums);
+        pass += count;
         const double elapsed = watch.seconds();
         const double share = work_.estimate ? rule.share_done(pass, elapsed, sums.time) : 1.0;
         const double paths = static_cast<double>(tile.count) * plan.samples_per_pass * pass;

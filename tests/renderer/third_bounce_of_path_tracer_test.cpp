@@ -7,7 +7,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 namespace {
 
@@ -134,19 +137,31 @@ INSTANTIATE_TEST_SUITE_P(AllPatterns,
                                          core::ScanPattern::Exhaustive),
                          [](const auto& test) { return std::string(core::enum_name(test.param)); });
 
+// Of eight passes. Who listens slowly is asked after each; the others after rounds of several.
 TEST(PathTracer, InterruptedRenderKeepsWholePasses) {
     const core::Scan scan = test_support::confocal_scan(kPoints);
     const renderer::Scene scene = scene_of({kHidden}, scan, 1.0);
+    const core::TimeAxis axis{1.2, 0.02, 40};
+    const renderer::RenderSettings settings = settings_for("Interrupted", 800);
     core::Progress progress;
-    int passes = 0;
-    progress.stop_requested = [&] { return ++passes == 3; };
-    const auto result = renderer::render(
-        scene, scan, core::TimeAxis{1.2, 0.02, 40}, settings_for("Interrupted", 800), progress);
-    EXPECT_TRUE(result.interrupted);
-    EXPECT_EQ(result.samples_per_pair, 300U);
+    progress.report = [](double, const std::string&) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(110));
+    };
+    int asked = 0;
+    const auto whole_slowly = renderer::render(scene, scan, axis, settings, progress);
+    progress.stop_requested = [&] { return ++asked == 3; };
+    const auto interrupted = renderer::render(scene, scan, axis, settings, progress);
+    EXPECT_TRUE(interrupted.interrupted);
+    EXPECT_EQ(interrupted.samples_per_pair, 300U);
     double sum = 0.0;
-    for (const float value : result.capture.transient.values()) sum += double{value};
+    for (const float value : interrupted.capture.transient.values()) sum += double{value};
     EXPECT_GT(sum, 0.0);
+
+    const auto whole = renderer::render(scene, scan, axis, settings, {});
+    EXPECT_FALSE(whole.interrupted);
+    EXPECT_EQ(whole.samples_per_pair, 800U);
+    EXPECT_TRUE(std::ranges::equal(whole.capture.transient.values(),
+                                   whole_slowly.capture.transient.values()));
 }
 
 TEST(PathTracer, GateWeightsPathsByLength) {
