@@ -44,39 +44,56 @@ void PassHistogram::add(int channel,
                         std::span<const double> opl_m,
                         std::span<const double> velocities,
                         std::span<const double> values) {
+    // As TimeAxis::bin_of(), all at once; what lies outside the axis goes to one place. Short loops
+    // without branches, so that the compiler fills vector units.
     constexpr double kMost = std::numeric_limits<double>::max();
-    bool all_finite = true;
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        all_finite &= std::abs(values[i]) + std::abs(opl_m[i]) <= kMost;
+    std::array<int, kMostAtOnce> places;
+    const std::size_t size = values.size();
+    const double start = axis_.opl_start_m;
+    const double width = axis_.bin_width_m;
+    const int num_bins = axis_.num_bins;
+    const double end = num_bins;
+    int num_non_finite = 0;
+    for (std::size_t i = 0; i < size; ++i) {
+        num_non_finite += std::abs(values[i]) + std::abs(opl_m[i]) <= kMost ? 0 : 1;
     }
-    if (gate_ != GateShape::Box || velocity_ || !all_finite) {
-        for (std::size_t i = 0; i < values.size(); ++i) {
+    for (std::size_t i = 0; i < size; ++i) {
+        double position = (opl_m[i] - start) / width;
+        position = position >= 0.0 ? position : end;
+        position = values[i] != 0.0 ? position : end;
+        places[i] = static_cast<int>(position < end ? position : end);
+    }
+    int lowest = num_bins;
+    int highest = -1;
+    for (std::size_t i = 0; i < size; ++i) {
+        const int bin = places[i];
+        const int inside = bin < num_bins ? bin : -1;
+        lowest = bin < lowest ? bin : lowest;
+        highest = inside > highest ? inside : highest;
+    }
+    const int first = channel * num_bins;
+    const int outside = static_cast<int>(values_.size()) - 1;
+    for (std::size_t i = 0; i < size; ++i) {
+        places[i] = places[i] < num_bins ? first + places[i] : outside;
+    }
+    if (gate_ != GateShape::Box || velocity_ || num_non_finite > 0) {
+        for (std::size_t i = 0; i < size; ++i) {
             add(channel, {opl_m[i], velocity_ ? velocities[i] : 0.0}, values[i]);
         }
         return;
     }
-    // As TimeAxis::bin_of(), all at once; what lies outside the axis goes to one place.
-    std::array<int, kMostAtOnce> places;
-    const int first = channel * axis_.num_bins;
-    const int outside = static_cast<int>(values_.size()) - 1;
-    int lowest = first_touched_;
-    int highest = last_touched_;
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        const double position = (opl_m[i] - axis_.opl_start_m) / axis_.bin_width_m;
-        const bool counts = position >= 0.0 && position < axis_.num_bins && values[i] != 0.0;
-        const int bin = counts ? static_cast<int>(position) : 0;
-        lowest = std::min(lowest, counts ? bin : lowest);
-        highest = std::max(highest, counts ? bin : highest);
-        places[i] = counts ? first + bin : outside;
-    }
-    first_touched_ = lowest;
-    last_touched_ = highest;
+    first_touched_ = std::min(first_touched_, lowest);
+    last_touched_ = std::max(last_touched_, highest);
     // Neighbours often share a bin, and such additions wait for each other: so four parts in turn.
-    const std::size_t part = (values.size() + 3) / 4;
-    for (std::size_t first_of_turn = 0; first_of_turn < part; ++first_of_turn) {
-        for (std::size_t i = first_of_turn; i < values.size(); i += part) {
-            values_[static_cast<std::size_t>(places[i])] += values[i];
-        }
+    const std::size_t part = size / 4;
+    for (std::size_t i = 0; i < part; ++i) {
+        values_[static_cast<std::size_t>(places[i])] += values[i];
+        values_[static_cast<std::size_t>(places[i + part])] += values[i + part];
+        values_[static_cast<std::size_t>(places[i + 2 * part])] += values[i + 2 * part];
+        values_[static_cast<std::size_t>(places[i + 3 * part])] += values[i + 3 * part];
+    }
+    for (std::size_t i = 4 * part; i < size; ++i) {
+        values_[static_cast<std::size_t>(places[i])] += values[i];
     }
 }
 
