@@ -5,7 +5,6 @@
 #include "renderer/scene.h"
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 namespace renderer {
@@ -25,16 +24,16 @@ class AreaSampler {
         return {scene_->facet(facet).point(b.x(), b.y()), facet};
     }
 
-    /// The facet of the first of several rising u1 and of all after it that share it.
-    struct Run {
-        std::uint32_t facet;
-        std::size_t size;
-    };
-    /// hint, u1, remapped   as DiscreteDistribution::sample_run(); start with 0. The points are
-    ///                      those of sample_triangle({remapped, u2})
-    Run next_run(std::size_t& hint, std::span<const double> u1, std::span<double> remapped) const {
-        const std::size_t size = by_area_.sample_run(hint, u1, remapped);
-        return {facets_[hint], size};
+    /// For rising numbers: the share of u1 that holds the next one; see facet_of().
+    ///
+    /// hint   index of the share before, at first 0
+    core::DiscreteDistribution::Share share_from(std::size_t hint, double u1) const {
+        return by_area_.share_from(hint, u1);
+    }
+    /// Where sample() finds the u1 of a share; its points there are those of
+    /// sample_triangle({share.remap(u1), u2}).
+    std::uint32_t facet_of(const core::DiscreteDistribution::Share& share) const {
+        return facets_[share.index];
     }
 
     /// Density of sample() on hidden facets, pdf_area [1/m^2].

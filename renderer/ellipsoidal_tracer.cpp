@@ -76,14 +76,13 @@ class EllipsoidalTracer::Walk {
     /// For third bounces, before all others; returns the share of trace_connections().
     double cut_hierarchy(int num_samples);
     void trace_connections(int count);
-    void trace_area_samples(int count);
-    void trace_directions(int count);
+    void trace_walks(int num_area, int num_directions);
     void trace_pixel_samples(const Measurement& measurement, std::size_t pixel, int count);
     std::uint64_t num_rays() const { return num_rays_; }
 
  private:
     void finish_connections();
-    void finish_first_vertices(bool may_be_hidden);
+    void finish_first_vertices();
     void evaluate();
     void weigh(int index, double ellipsoidal_pdf);
     void connect_seen();
@@ -141,8 +140,7 @@ std::uint64_t EllipsoidalTracer::trace(const PathEnds& ends,
     const int num_connections = rounded(num_samples * share);
     const int num_chosen = rounded(num_samples * (share + (1.0 - share) * kAreaShare));
     walk.trace_connections(num_connections);
-    walk.trace_area_samples(num_chosen - num_connections);
-    walk.trace_directions(num_samples - num_chosen);
+    walk.trace_walks(num_chosen - num_connections, num_samples - num_chosen);
     return walk.num_rays();
 }
 
@@ -188,22 +186,17 @@ void EllipsoidalTracer::Walk::finish_connections() {
         weigh(i, ellipsoidal_pdf_[static_cast<std::size_t>(i)]);
     }
     first_.keep_useful(true);
-    num_rays_ += first_.trace_from(ends_.sensor);
+    num_rays_ += first_.trace_from_sensor(ends_);
     if (!ends_.coincide) first_.keep_useful(true);
     connect_seen();
 }
 
-void EllipsoidalTracer::Walk::trace_area_samples(int count) {
-    for (FirstVertices::AreaDraws draws{count}; !draws.done();) {
-        first_.draw_by_area(tracer_.surface_walk_.area_sampler(), draws, rng_);
-        finish_first_vertices(true);
-    }
-}
-
-void EllipsoidalTracer::Walk::trace_directions(int count) {
-    for (EndDirections directions(scene_, ends_.sensor, count, rng_); !directions.done();) {
-        num_rays_ += first_.draw_by_direction(directions);
-        finish_first_vertices(false);
+void EllipsoidalTracer::Walk::trace_walks(int num_area, int num_directions) {
+    EndDirections directions(scene_, ends_.sensor, num_directions, rng_);
+    FirstVertices::AreaDraws by_area{num_area};
+    while (!by_area.done() || !directions.done()) {
+        num_rays_ += first_.draw(directions, tracer_.surface_walk_.area_sampler(), by_area, rng_);
+        finish_first_vertices();
     }
 }
 
@@ -229,9 +222,8 @@ void EllipsoidalTracer::Walk::trace_pixel_samples(const Measurement& measurement
     }
 }
 
-// Connects first vertices of walks to the light and continues them. `may_be_hidden`: whether the
-// sensor may not see them.
-void EllipsoidalTracer::Walk::finish_first_vertices(bool may_be_hidden) {
+// Connects first vertices of walks to the light and continues them.
+void EllipsoidalTracer::Walk::finish_first_vertices() {
     evaluate();
     for (int i = 0; i < first_.size(); ++i) {
         const double opl_m = first_.opl_m()[static_cast<std::size_t>(i)];
@@ -241,10 +233,8 @@ void EllipsoidalTracer::Walk::finish_first_vertices(bool may_be_hidden) {
     }
     const bool goes_on = tracer_.max_order_ > 3;
     first_.keep_useful(!goes_on);
-    if (may_be_hidden) {
-        num_rays_ += first_.trace_from(ends_.sensor);
-        if (goes_on || !ends_.coincide) first_.keep_seen();
-    }
+    num_rays_ += first_.trace_from_sensor(ends_);
+    if (goes_on || !ends_.coincide) first_.keep_seen();
     go_on_.clear();
     for (int i = 0; i < first_.size() && goes_on; ++i) {
         go_on_.push_back(first_.vertex(i, ends_.sensor));
@@ -276,7 +266,7 @@ void EllipsoidalTracer::Walk::weigh(int index, double ellipsoidal_pdf) {
 }
 
 void EllipsoidalTracer::Walk::connect_seen() {
-    if (!ends_.coincide) num_rays_ += first_.trace_from(ends_.light);
+    if (!ends_.coincide) num_rays_ += first_.trace_from_light(ends_);
     std::span<const double> velocities;
     if (histogram_.resolves_velocity()) velocities = first_.find_velocities(ends_);
     histogram_.add(tracer_.by_order_ ? 2 : 0, first_.opl_m(), velocities, first_.contributions());

@@ -54,10 +54,12 @@ FacetTraits::FacetTraits(const Scene& scene, const std::vector<bool>& adds_third
 }
 
 void FirstVertices::draw_by_area(const AreaSampler& sampler, AreaDraws& draws, core::Rng& rng) {
-    alignas(64) std::array<double, kCapacity> u1;
-    alignas(64) std::array<double, kCapacity> u2;
-    alignas(64) std::array<double, kCapacity> remapped;
-    const int size = std::min(draws.count - draws.begin, kCapacity);
+    // Lanes beyond the last number lie in no share.
+    alignas(64) std::array<double, kPadded> u1;
+    alignas(64) std::array<double, kPadded> u2;
+    u1.fill(1.0);
+    u2.fill(0.0);
+    const int size = std::min(draws.count - draws.begin, kCapacity - count_);
     const auto all = static_cast<std::size_t>(size);
     rng.fill_uniform({u1.data(), all});
     rng.fill_uniform({u2.data(), all});
@@ -66,38 +68,50 @@ void FirstVertices::draw_by_area(const AreaSampler& sampler, AreaDraws& draws, c
         // Rounding may lift the last number to 1.
         u1[i] = std::min((draws.begin + i + u1[i]) * width, core::kBelowOne);
     }
-    for (std::size_t begin = 0; begin < all;) {
-        const auto run = sampler.next_run(
-            draws.hint, {u1.data() + begin, all - begin}, {remapped.data() + begin, all - begin});
-        add_on_facet(run.facet, {remapped.data() + begin, run.size}, u2.data() + begin);
-        begin += run.size;
+    for (int begin = 0; begin < size;) {
+        const auto share = sampler.share_from(draws.hint, u1[begin]);
+        begin += add_on_facet(sampler.facet_of(share), share, u1.data() + begin, u2.data() + begin);
+        draws.hint = share.index;
     }
     draws.begin += size;
 }
 
-// Appends the points core::sample_triangle({u1, u2}) of a facet.
-void FirstVertices::add_on_facet(std::uint32_t facet,
-                                 std::span<const double> u1,
-                                 const double* u2) {
-    const Facet on = scene_.facet(facet);
+// Appends points of a facet, for rising u1 as far as they belong to its share.
+//
+// returns   their number
+int FirstVertices::add_on_facet(std::uint32_t facet,
+                                const core::DiscreteDistribution::Share& share,
+                                const double* u1,
+                                const double* u2) {
+    using Lanes = Eigen::Array<double, kLanes, 1>;
+    const auto at = [this](double* array) { return Eigen::Map<Lanes>(array + count_); };
+    const Facet& on = scene_.facet(facet);
     const double is_hidden = traits_.is_hidden(facet);
     const double constant = traits_.constant(facet);
     const int begin = count_;
-    count_ += static_cast<int>(u1.size());
-    for (int i = begin; i < count_; ++i) {
-        const double root = std::sqrt(u1[static_cast<std::size_t>(i - begin)]);
-        const double b1 = root * (1.0 - u2[i - begin]);
-        const double b2 = root * u2[i - begin];
-        x_[i] = on.corner.x() + b1 * on.edge1.x() + b2 * on.edge2.x();
-        y_[i] = on.corner.y() + b1 * on.edge1.y() + b2 * on.edge2.y();
-        z_[i] = on.corner.z() + b1 * on.edge1.z() + b2 * on.edge2.z();
-        normal_x_[i] = on.normal.x();
-        normal_y_[i] = on.normal.y();
-        normal_z_[i] = on.normal.z();
-        is_hidden_[i] = is_hidden;
-        constant_bsdf_[i] = constant;
-        facet_[i] = facet;
+    int inside = kLanes;
+    for (int i = 0; inside == kLanes; i += kLanes) {
+        // As Share::remap() and core::sample_triangle(), but that rounding may pass an edge.
+        const Eigen::Map<const Lanes> u(u1 + i);
+        const Eigen::Map<const Lanes> v(u2 + i);
+        Lanes root = (u - share.begin) * share.inverse_width;
+        for (double& value : root) value = std::sqrt(value);
+        const Lanes b1 = root * (1.0 - v);
+        const Lanes b2 = root * v;
+        at(x_) = on.corner.x() + b1 * on.edge1.x() + b2 * on.edge2.x();
+        at(y_) = on.corner.y() + b1 * on.edge1.y() + b2 * on.edge2.y();
+        at(z_) = on.corner.z() + b1 * on.edge1.z() + b2 * on.edge2.z();
+        at(normal_x_) = on.normal.x();
+        at(normal_y_) = on.normal.y();
+        at(normal_z_) = on.normal.z();
+        at(is_hidden_) = is_hidden;
+        at(constant_bsdf_) = constant;
+        std::fill_n(facet_ + count_, kLanes, facet);
+        inside = 0;
+        for (int lane = 0; lane < kLanes; ++lane) inside += u1[i + lane] < share.end ? 1 : 0;
+        count_ += inside;
     }
+    return count_ - begin;
 }
 
 std::uint64_t FirstVertices::draw_by_direction(EndDirections& directions) {
@@ -114,6 +128,7 @@ std::uint64_t FirstVertices::draw_by_direction(EndDirections& directions) {
             add(end.position + packet.distance_m[i] * direction, packet.triangle[i]);
         }
     }
+    num_in_sight_ = count_;
     return num_rays;
 }
 
@@ -167,10 +182,10 @@ void FirstVertices::evaluate_legs(const PathEnds& ends, const Draw& draw) {
     }
 }
 
-std::uint64_t FirstVertices::trace_from(const PathEnd& end) {
-    static_assert(kCapacity % SegmentPacket::kSize == 0);
+std::uint64_t FirstVertices::trace_from(const PathEnd& end, int first) {
     SegmentPacket packet;
-    for (int begin = 0; begin < count_; begin += SegmentPacket::kSize) {
+    std::fill_n(seen_, first, true);
+    for (int begin = first; begin < count_; begin += SegmentPacket::kSize) {
         scene_.rays().aim(packet,
                           end.position,
                           end.normal,
@@ -187,15 +202,17 @@ std::uint64_t FirstVertices::trace_from(const PathEnd& end) {
             if (packet.blocked[lane]) contribution_[begin + lane] = 0.0;
         }
     }
-    return static_cast<std::uint64_t>(count_);
+    return static_cast<std::uint64_t>(count_ - first);
 }
 
 template <class Predicate>
 void FirstVertices::keep_if(const Predicate& keep) {
     int kept = 0;
     while (kept < count_ && keep(kept)) ++kept;
+    int kept_in_sight = std::min(kept, num_in_sight_);
     for (int i = kept + 1; i < count_; ++i) {
         if (!keep(i)) continue;
+        if (i < num_in_sight_) ++kept_in_sight;
         facet_[kept] = facet_[i];
         for (double* array : {x_,
                               y_,
@@ -214,6 +231,7 @@ void FirstVertices::keep_if(const Predicate& keep) {
         ++kept;
     }
     count_ = kept;
+    num_in_sight_ = kept_in_sight;
 }
 
 void FirstVertices::keep_seen() {

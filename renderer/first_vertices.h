@@ -38,7 +38,7 @@ class FacetTraits {
 /// with one entry per vertex, so that the compiler fills vector units.
 class FirstVertices {
  public:
-    static constexpr int kCapacity = 64;  // a few packets of rays; the arrays stay in the L1 cache
+    static constexpr int kCapacity = 128;  // some packets of rays; the arrays stay in the L1 cache
 
     /// How the vertices were drawn.
     struct Draw {
@@ -51,7 +51,10 @@ class FirstVertices {
 
     int size() const { return count_; }
     bool full() const { return count_ == kCapacity; }
-    void clear() { count_ = 0; }
+    void clear() {
+        count_ = 0;
+        num_in_sight_ = 0;
+    }
 
     /// Draws by hidden area: numbers of one of `count` strata each, one batch after the other.
     struct AreaDraws {
@@ -60,12 +63,24 @@ class FirstVertices {
         std::size_t hint = 0;
         bool done() const { return begin == count; }
     };
-    /// Fills empty arrays with the next points, uniform by area.
+    /// Appends the next points, uniform by area, until the arrays are full or all are done.
     void draw_by_area(const AreaSampler& sampler, AreaDraws& draws, core::Rng& rng);
-    /// Appends what the next directions meet, until the arrays are nearly full or all are done.
+    /// Fills empty arrays with what the next directions meet, until they are nearly full or all are
+    /// done.
     ///
     /// returns   the number of rays
     std::uint64_t draw_by_direction(EndDirections& directions);
+    /// Fills empty arrays with the next draws of both kinds.
+    ///
+    /// returns   the number of rays
+    std::uint64_t draw(EndDirections& directions,
+                       const AreaSampler& sampler,
+                       AreaDraws& by_area,
+                       core::Rng& rng) {
+        const std::uint64_t num_rays = draw_by_direction(directions);
+        draw_by_area(sampler, by_area, rng);
+        return num_rays;
+    }
 
     /// Appends a point; not to be called when full().
     void add(const core::Vec3& position, std::uint32_t facet) {
@@ -85,10 +100,15 @@ class FirstVertices {
     /// Computes throughputs, path lengths and what the connections to the light carry if nothing is
     /// in the way; for facets that vary() the caller sets these.
     void evaluate(const PathEnds& ends, const Draw& draw);
-    /// Sets to 0 the contributions of vertices that `end` does not see, and remembers who is seen.
+    /// Sets to 0 the contributions of vertices that an end does not see, and remembers who is seen.
+    /// The sensor is known to see what its directions met.
+    ///
     /// returns   the number of rays
-    std::uint64_t trace_from(const PathEnd& end);
-    /// Drops vertices that the last trace_from() did not see.
+    std::uint64_t trace_from_sensor(const PathEnds& ends) {
+        return trace_from(ends.sensor, num_in_sight_);
+    }
+    std::uint64_t trace_from_light(const PathEnds& ends) { return trace_from(ends.light, 0); }
+    /// Drops vertices that the end did not see that was asked last.
     void keep_seen();
     /// Drops vertices that can carry nothing: by throughput, or by their own contribution.
     void keep_useful(bool by_contribution);
@@ -110,25 +130,34 @@ class FirstVertices {
 
  private:
     std::size_t size_t_count() const { return static_cast<std::size_t>(count_); }
-    void add_on_facet(std::uint32_t facet, std::span<const double> u1, const double* u2);
+    int add_on_facet(std::uint32_t facet,
+                     const core::DiscreteDistribution::Share& share,
+                     const double* u1,
+                     const double* u2);
+    std::uint64_t trace_from(const PathEnd& end, int first);
     template <bool kCoincide>
     void evaluate_legs(const PathEnds& ends, const Draw& draw);
     template <class Predicate>
     void keep_if(const Predicate& keep);
 
+    static constexpr int kLanes = 8;
+    // Points are drawn in groups of kLanes and traced in packets; the last may reach further.
+    static constexpr int kPadded = kCapacity + SegmentPacket::kSize;
+
     const Scene& scene_;
     const FacetTraits& traits_;
     int count_ = 0;
-    std::uint32_t facet_[kCapacity];
+    int num_in_sight_ = 0;  ///< of the first ones, which the sensor's directions met
+    std::uint32_t facet_[kPadded];
     bool seen_[kCapacity];
-    alignas(64) double x_[kCapacity];
-    alignas(64) double y_[kCapacity];
-    alignas(64) double z_[kCapacity];
-    alignas(64) double normal_x_[kCapacity];
-    alignas(64) double normal_y_[kCapacity];
-    alignas(64) double normal_z_[kCapacity];
-    alignas(64) double constant_bsdf_[kCapacity];
-    alignas(64) double is_hidden_[kCapacity];  ///< 1 where draws by area reach, 0 on the wall
+    alignas(64) double x_[kPadded];
+    alignas(64) double y_[kPadded];
+    alignas(64) double z_[kPadded];
+    alignas(64) double normal_x_[kPadded];
+    alignas(64) double normal_y_[kPadded];
+    alignas(64) double normal_z_[kPadded];
+    alignas(64) double constant_bsdf_[kPadded];
+    alignas(64) double is_hidden_[kPadded];  ///< 1 where draws by area reach, 0 on the wall
     alignas(64) double pdf_area_[kCapacity];
     alignas(64) double throughput_[kCapacity];
     alignas(64) double opl_m_[kCapacity];

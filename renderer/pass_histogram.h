@@ -38,7 +38,7 @@ class PassHistogram {
              std::span<const double> opl_m,
              std::span<const double> velocities,
              std::span<const double> values);
-    static constexpr std::size_t kMostAtOnce = 64;
+    static constexpr std::size_t kMostAtOnce = 128;
     bool resolves_velocity() const { return velocity_.has_value(); }
     /// What was collected by velocity; only if resolves_velocity().
     PassVelocityHistogram& velocity() { return *velocity_; }

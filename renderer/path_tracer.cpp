@@ -43,13 +43,12 @@ class PathTracer::Walk {
           weight_(1.0 / num_samples),
           first_(*tracer.scene_, tracer.facet_traits_) {}
 
-    void trace_area_samples(int count);
-    void trace_bsdf_samples(int count);
+    void trace_samples(int num_area, int num_directions);
     void trace_pixel_samples(const Measurement& measurement, std::size_t pixel, int count);
     std::uint64_t num_rays() const { return num_rays_; }
 
  private:
-    void finish_first_vertices(bool may_be_hidden);
+    void finish_first_vertices();
     void deposit(const PathVertex& vertex, double value);
     void connect_to_light(const PathVertex& vertex);
     void extend(PathVertex vertex);
@@ -82,8 +81,7 @@ std::uint64_t PathTracer::trace(const PathEnds& ends,
     const double expected = num_samples * kAreaShare;
     const int num_area = std::min(num_samples, static_cast<int>(expected + rng.uniform()));
     Walk walk(*this, ends, num_samples, rng, histogram);
-    walk.trace_area_samples(num_area);
-    walk.trace_bsdf_samples(num_samples - num_area);
+    walk.trace_samples(num_area, num_samples - num_area);
     return walk.num_rays();
 }
 
@@ -98,17 +96,12 @@ std::uint64_t PathTracer::trace_pixel(const Measurement& measurement,
     return walk.num_rays();
 }
 
-void PathTracer::Walk::trace_area_samples(int count) {
-    for (FirstVertices::AreaDraws draws{count}; !draws.done();) {
-        first_.draw_by_area(tracer_.surface_walk_.area_sampler(), draws, rng_);
-        finish_first_vertices(true);
-    }
-}
-
-void PathTracer::Walk::trace_bsdf_samples(int count) {
-    for (EndDirections directions(scene_, ends_.sensor, count, rng_); !directions.done();) {
-        num_rays_ += first_.draw_by_direction(directions);
-        finish_first_vertices(false);
+void PathTracer::Walk::trace_samples(int num_area, int num_directions) {
+    EndDirections directions(scene_, ends_.sensor, num_directions, rng_);
+    FirstVertices::AreaDraws by_area{num_area};
+    while (!by_area.done() || !directions.done()) {
+        num_rays_ += first_.draw(directions, tracer_.surface_walk_.area_sampler(), by_area, rng_);
+        finish_first_vertices();
     }
 }
 
@@ -127,9 +120,8 @@ void PathTracer::Walk::trace_pixel_samples(const Measurement& measurement,
     }
 }
 
-// Connects first vertices to the light and continues their paths. `may_be_hidden`: whether the
-// sensor may not see them.
-void PathTracer::Walk::finish_first_vertices(bool may_be_hidden) {
+// Connects first vertices to the light and continues their paths.
+void PathTracer::Walk::finish_first_vertices() {
     first_.evaluate(ends_, {weight_, kAreaShare, tracer_.surface_walk_.area_sampler().pdf_area()});
     if (tracer_.facet_traits_.any_varies()) {
         for (int i = 0; i < first_.size(); ++i) {
@@ -140,17 +132,15 @@ void PathTracer::Walk::finish_first_vertices(bool may_be_hidden) {
     }
     const bool goes_on = tracer_.max_order_ > 3;
     first_.keep_useful(!goes_on);
-    if (may_be_hidden) {
-        num_rays_ += first_.trace_from(ends_.sensor);
-        if (goes_on || !ends_.coincide) first_.keep_seen();
-    }
+    num_rays_ += first_.trace_from_sensor(ends_);
+    if (goes_on || !ends_.coincide) first_.keep_seen();
     go_on_.clear();
     for (int i = 0; i < first_.size() && goes_on; ++i) {
         go_on_.push_back(first_.vertex(i, ends_.sensor));
     }
     if (!ends_.coincide) {
         if (goes_on) first_.keep_useful(true);
-        num_rays_ += first_.trace_from(ends_.light);
+        num_rays_ += first_.trace_from_light(ends_);
     }
     std::span<const double> velocities;
     if (histogram_.resolves_velocity()) velocities = first_.find_velocities(ends_);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 namespace core {
 namespace {
@@ -65,11 +66,18 @@ DiscreteDistribution::DiscreteDistribution(std::span<const double> weights)
 std::size_t DiscreteDistribution::sample(double u, double& remapped) const {
     const auto it = std::upper_bound(cumulative_.begin(), cumulative_.end(), u);
     const auto index = static_cast<std::size_t>(it - cumulative_.begin());
-    remapped = remap(index, u);
+    remapped = share_of(index).remap(u);
     return index;
 }
 
-std::size_t DiscreteDistribution::next_index(std::size_t hint, double u) const {
+DiscreteDistribution::Share DiscreteDistribution::share_of(std::size_t index) const {
+    const double begin = begin_of(index);
+    const double end = cumulative_[index];
+    return {index, begin, end, 1.0 / std::max(end - begin, std::numeric_limits<double>::min())};
+}
+
+DiscreteDistribution::Share DiscreteDistribution::share_from(std::size_t hint, double u) const {
+    if (u < cumulative_[hint]) return share_of(hint);
     // Gallop: shares are usually narrower than the steps of u only by a small factor.
     std::size_t step = 1;
     std::size_t low = hint;
@@ -80,18 +88,8 @@ std::size_t DiscreteDistribution::next_index(std::size_t hint, double u) const {
     const auto first = cumulative_.begin() + static_cast<std::ptrdiff_t>(low);
     const auto last =
         cumulative_.begin() + static_cast<std::ptrdiff_t>(std::min(low + step, cumulative_.size()));
-    return static_cast<std::size_t>(std::upper_bound(first, last, u) - cumulative_.begin());
-}
-
-std::size_t DiscreteDistribution::sample_run(std::size_t& hint,
-                                             std::span<const double> u,
-                                             std::span<double> remapped) const {
-    if (cumulative_[hint] <= u.front()) hint = next_index(hint, u.front());
-    const double end = cumulative_[hint];
-    const auto beyond = std::find_if(u.begin() + 1, u.end(), [=](double v) { return end <= v; });
-    const auto size = static_cast<std::size_t>(beyond - u.begin());
-    for (std::size_t i = 0; i < size; ++i) remapped[i] = remap(hint, u[i]);
-    return size;
+    return share_of(
+        static_cast<std::size_t>(std::upper_bound(first, last, u) - cumulative_.begin()));
 }
 
 double DiscreteDistribution::probability(std::size_t index) const {

@@ -61,26 +61,27 @@ class DiscreteDistribution {
     /// The index whose share of [0, 1) holds u. `remapped` becomes uniform in [0, 1) given the
     /// index.
     std::size_t sample(double u, double& remapped) const;
-    /// Like sample() for numbers that do not decrease, as far as they have the same index.
-    ///
-    /// hint      in: an index from where to search upwards; out: the index
-    /// u         at least one
-    /// remapped  as many; those after the first with another index are left alone
-    /// returns   how many have the index
-    std::size_t sample_run(std::size_t& hint,
-                           std::span<const double> u,
-                           std::span<double> remapped) const;
+    /// The part [begin, end) of [0, 1) that belongs to an index.
+    struct Share {
+        std::size_t index;
+        double begin;
+        double end;
+        double inverse_width;
+
+        /// Of a u in it, uniform in [0, 1).
+        double remap(double u) const {
+            return std::clamp((u - begin) * inverse_width, 0.0, kBelowOne);
+        }
+    };
+    /// The share that holds u, searched upwards from an index not beyond its own.
+    Share share_from(std::size_t hint, double u) const;
     double probability(std::size_t index) const;
     /// The u for which sample() gives `index` and `remapped`.
     double invert(std::size_t index, double remapped) const;
 
  private:
     double begin_of(std::size_t index) const { return index == 0 ? 0.0 : cumulative_[index - 1]; }
-    double remap(std::size_t index, double u) const {
-        const double begin = begin_of(index);
-        return std::clamp((u - begin) / (cumulative_[index] - begin), 0.0, kBelowOne);
-    }
-    std::size_t next_index(std::size_t hint, double u) const;
+    Share share_of(std::size_t index) const;
 
     std::vector<double> cumulative_;  ///< upper end of each index's share, last is 1
     double sum_ = 0.0;

@@ -99,31 +99,23 @@ TEST(DiscreteDistribution, PicksInProportionToWeights) {
     EXPECT_EQ(observed[4], 0.0);
 }
 
-TEST(DiscreteDistribution, InverseAndRunsAgreeWithSample) {
+TEST(DiscreteDistribution, InverseAndSharesAgreeWithSample) {
     core::Rng rng(test_support::seed_of("DiscreteDistribution.inverse"), 0, 0);
     std::vector<double> weights;
     for (int i = 0; i < 1000; ++i) weights.push_back(rng.uniform());
     const core::DiscreteDistribution distribution(weights);
     for (const std::size_t count : {5000, 300}) {
-        std::vector<double> numbers(count);
-        for (std::size_t i = 0; i < count; ++i) {
-            numbers[i] = (static_cast<double>(i) + rng.uniform()) / static_cast<double>(count);
-        }
-        std::vector<double> remapped_in_run(count);
         std::size_t hint = 0;
-        for (std::size_t begin = 0; begin < count;) {
-            const std::size_t size =
-                distribution.sample_run(hint,
-                                        std::span<const double>(numbers).subspan(begin),
-                                        std::span<double>(remapped_in_run).subspan(begin));
-            ASSERT_GT(size, 0U);
-            for (std::size_t i = begin; i < begin + size; ++i) {
-                double remapped = 0.0;
-                EXPECT_EQ(hint, distribution.sample(numbers[i], remapped));
-                EXPECT_EQ(remapped_in_run[i], remapped);
-                EXPECT_NEAR(distribution.invert(hint, remapped), numbers[i], 1e-12);
-            }
-            begin += size;
+        for (std::size_t i = 0; i < count; ++i) {
+            const double u = (static_cast<double>(i) + rng.uniform()) / static_cast<double>(count);
+            const auto share = distribution.share_from(hint, u);
+            hint = share.index;
+            EXPECT_LE(share.begin, u);
+            EXPECT_LT(u, share.end);
+            double remapped = 0.0;
+            EXPECT_EQ(share.index, distribution.sample(u, remapped));
+            EXPECT_EQ(share.remap(u), remapped);
+            EXPECT_NEAR(distribution.invert(share.index, remapped), u, 1e-12);
         }
     }
 }

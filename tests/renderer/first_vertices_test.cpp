@@ -31,7 +31,7 @@ class FirstVertexDraws : public testing::Test {
 
 TEST_F(FirstVertexDraws, ByAreaAreThoseOfTheSampler) {
     const renderer::AreaSampler sampler(scene_);
-    for (const int count : {1, 7, 64, 65, 200, 5'000}) {
+    for (const int count : {1, 7, 128, 129, 300, 5'000}) {
         const core::Rng rng(test_support::seed_of("FirstVertexDraws"), 0, 0);
         core::Rng batches = rng;
         core::Rng singles = rng;
@@ -105,6 +105,51 @@ TEST_F(FirstVertexDraws, ByDirectionLieWhereSingleRaysEnd) {
     }
     EXPECT_EQ(drawn, 500);
     EXPECT_EQ(num_rays, 500U);
+}
+
+// What directions met is in sight and takes no further ray, wherever it stands after others were
+// dropped; of the points by area only those in sight carry something.
+TEST_F(FirstVertexDraws, BothKindsTogetherAreSeenAsSingleRaysSee) {
+    renderer::PathEnds ends;
+    ends.sensor.position = Vec3(0.1, -0.2, 0.0);
+    ends.light = ends.sensor;
+    ends.coincide = true;
+    const renderer::AreaSampler sampler(scene_);
+    core::Rng rng(test_support::seed_of("FirstVertexDraws.both"), 0, 0);
+    FirstVertices vertices(scene_, traits_);
+    renderer::EndDirections directions(scene_, ends.sensor, 300, rng);
+    FirstVertices::AreaDraws by_area{500};
+    int met = 0;
+    int hidden = 0;
+    int drawn_by_area = 0;
+    for (; !by_area.done() || !directions.done(); vertices.clear()) {
+        const int begin = by_area.begin;
+        vertices.draw(directions, sampler, by_area, rng);
+        drawn_by_area += by_area.begin - begin;
+        met += vertices.size() - (by_area.begin - begin);
+        vertices.evaluate(ends, {1.0, 0.5, sampler.pdf_area()});
+        for (int i = 0; i < vertices.size(); i += 3) vertices.set_contribution(i, 0.0);
+        vertices.keep_useful(true);
+        const auto num_rays = static_cast<int>(vertices.trace_from_sensor(ends));
+        EXPECT_LE(num_rays, by_area.begin - begin);
+        for (int i = 0; i < vertices.size(); ++i) {
+            const auto point = vertices.point(i);
+            const bool blocked = scene_.rays().is_blocked(ends.sensor.position,
+                                                          ends.sensor.normal,
+                                                          point.position,
+                                                          scene_.facet(point.facet).normal);
+            EXPECT_EQ(vertices.contributions()[static_cast<std::size_t>(i)] == 0.0, blocked);
+            hidden += blocked;
+        }
+        const int all = vertices.size();
+        const auto visible =
+            std::ranges::count_if(vertices.contributions(), [](double c) { return c > 0.0; });
+        vertices.keep_seen();
+        EXPECT_EQ(vertices.size(), visible) << "of " << all;
+    }
+    EXPECT_EQ(drawn_by_area, 500);
+    EXPECT_GT(met, 10);
+    EXPECT_GT(hidden, 100);
 }
 
 }  // namespace
