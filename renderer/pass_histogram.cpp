@@ -44,19 +44,25 @@ void PassHistogram::add(int channel,
                         std::span<const double> opl_m,
                         std::span<const double> velocities,
                         std::span<const double> values) {
-    // As TimeAxis::bin_of(), all at once; what lies outside the axis goes to one place. Short loops
-    // without branches, so that the compiler fills vector units.
+    // Short loops without branches, so that the compiler fills vector units.
     constexpr double kMost = std::numeric_limits<double>::max();
-    std::array<int, kMostAtOnce> places;
     const std::size_t size = values.size();
-    const double start = axis_.opl_start_m;
-    const double width = axis_.bin_width_m;
-    const int num_bins = axis_.num_bins;
-    const double end = num_bins;
     int num_non_finite = 0;
     for (std::size_t i = 0; i < size; ++i) {
         num_non_finite += std::abs(values[i]) + std::abs(opl_m[i]) <= kMost ? 0 : 1;
     }
+    if (gate_ != GateShape::Box || velocity_ || num_non_finite > 0) {
+        for (std::size_t i = 0; i < size; ++i) {
+            add(channel, {opl_m[i], velocity_ ? velocities[i] : 0.0}, values[i]);
+        }
+        return;
+    }
+    // As TimeAxis::bin_of(), all at once; what lies outside the axis goes to one place.
+    std::array<int, kMostAtOnce> places;
+    const double start = axis_.opl_start_m;
+    const double width = axis_.bin_width_m;
+    const int num_bins = axis_.num_bins;
+    const double end = num_bins;
     for (std::size_t i = 0; i < size; ++i) {
         double position = (opl_m[i] - start) / width;
         position = position >= 0.0 ? position : end;
@@ -75,12 +81,6 @@ void PassHistogram::add(int channel,
     const int outside = static_cast<int>(values_.size()) - 1;
     for (std::size_t i = 0; i < size; ++i) {
         places[i] = places[i] < num_bins ? first + places[i] : outside;
-    }
-    if (gate_ != GateShape::Box || velocity_ || num_non_finite > 0) {
-        for (std::size_t i = 0; i < size; ++i) {
-            add(channel, {opl_m[i], velocity_ ? velocities[i] : 0.0}, values[i]);
-        }
-        return;
     }
     first_touched_ = std::min(first_touched_, lowest);
     last_touched_ = std::max(last_touched_, highest);
