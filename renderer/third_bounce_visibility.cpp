@@ -129,6 +129,7 @@ std::uint64_t VisibilityTracer::lanes_within_axis(std::uint32_t b,
                                                   const VisibilityRules& rules) const {
     const PieceBlock& block = set_.blocks[b];
     const bool exact = rules.other_legs.empty();
+    const bool confocal = exact && rules.other_end.position == point_.position;
     const LengthBounds others = exact ? LengthBounds{} : rules.other_legs[b];
     alignas(64) PieceBlock::Lanes shortest;
     alignas(64) PieceBlock::Lanes longest;
@@ -138,20 +139,26 @@ std::uint64_t VisibilityTracer::lanes_within_axis(std::uint32_t b,
         lanes->fill(std::numeric_limits<double>::infinity());
     }
     longest.fill(0.0);
+    alignas(64) PieceBlock::Lanes legs;
+    alignas(64) PieceBlock::Lanes exact_other_legs{};
+    const PieceBlock::Lanes& other_legs = confocal ? legs : exact_other_legs;
     for (std::size_t corner = 0; corner < 3; ++corner) {
-        const auto distance = [&](const Vec3& from, std::size_t i) {
-            const double x = block.x[corner][i] - from.x();
-            const double y = block.y[corner][i] - from.y();
-            const double z = block.z[corner][i] - from.z();
-            return std::sqrt(x * x + y * y + z * z);
+        const auto find_distances = [&](const Vec3& from, PieceBlock::Lanes& distances) {
+            for (std::size_t i = 0; i < kSize; ++i) {
+                const double x = block.x[corner][i] - from.x();
+                const double y = block.y[corner][i] - from.y();
+                const double z = block.z[corner][i] - from.z();
+                distances[i] = std::sqrt(x * x + y * y + z * z);
+            }
         };
+        find_distances(point_.position, legs);
+        if (exact && !confocal) find_distances(rules.other_end.position, exact_other_legs);
         for (std::size_t i = 0; i < kSize; ++i) {
-            const double leg = distance(point_.position, i);
-            const double other = exact ? distance(rules.other_end.position, i) : 0.0;
-            shortest[i] = std::min(shortest[i], leg + other);
-            longest[i] = std::max(longest[i], leg + other);
-            shortest_leg[i] = std::min(shortest_leg[i], leg);
-            shortest_other_leg[i] = std::min(shortest_other_leg[i], other);
+            const double length = legs[i] + other_legs[i];
+            shortest[i] = std::min(shortest[i], length);
+            longest[i] = std::max(longest[i], length);
+            shortest_leg[i] = std::min(shortest_leg[i], legs[i]);
+            shortest_other_leg[i] = std::min(shortest_other_leg[i], other_legs[i]);
         }
     }
     // For a point x = sum of l_c c over corners c, |x-w|^2 = sum of l_c |c-w|^2 - sum of l_c
