@@ -63,6 +63,8 @@ void PieceArranger::fill_lane(PieceBlock& block, std::size_t lane, const Piece& 
         block.x[i][lane] = piece.corners[i].x();
         block.y[i][lane] = piece.corners[i].y();
         block.z[i][lane] = piece.corners[i].z();
+        block.squared_edge[i][lane] =
+            (piece.corners[(i + 2) % 3] - piece.corners[(i + 1) % 3]).squaredNorm();
     }
     const Facet& facet = scene_.facet(piece.facet);
     block.normal_x[lane] = facet.normal.x();
@@ -77,11 +79,14 @@ void PieceArranger::fill_lane(PieceBlock& block, std::size_t lane, const Piece& 
     block.one_sided[lane] = visible_side_[facet.object];
     block.facet[lane] = piece.facet;
     block.mean_reflectance[lane] = 0.0;
-    for (std::size_t node = 0; node < 6; ++node) {
-        const Vec3 position = node < 3 ? piece.corners[node] : piece.midpoint(node - 3);
+    for (std::size_t node = 0; node < PieceBlock::kNodes; ++node) {
+        const Vec3 position = node < 3   ? piece.corners[node]
+                              : node < 6 ? piece.midpoint(node - 3)
+                                         : center;
+        const double share = node < 3 ? kShareOfCorner : node < 6 ? kShareOfMiddle : kShareOfCenter;
         const Bsdf bsdf = scene_.bsdf_at({position + set_.origin, piece.facet});
         block.reflectance[node][lane] = reflectance(bsdf, block.kind, rules_.laser_spot_m2);
-        block.mean_reflectance[lane] += block.reflectance[node][lane] / 6.0;
+        block.mean_reflectance[lane] += share * block.reflectance[node][lane];
         if (block.kind == PieceKind::Glossy) block.glossy[lane] = bsdf;
     }
 }

@@ -13,13 +13,14 @@ using core::Vec3;
 
 constexpr std::size_t kSize = PieceBlock::kSize;
 
-// Lengths and weights of all pieces of a block, before and after fitting the knots.
+// Weights of all pieces of a block at the nodes, and what follows for the closed form.
 struct alignas(64) BlockKnots {
-    std::array<PieceBlock::Lanes, 6> node_weight;
+    std::array<PieceBlock::Lanes, PieceBlock::kNodes> node_weight;
     core::TriangleLanes fitted;
 };
 
 Vec3 node_of(const PieceBlock& block, std::size_t node, std::size_t i) {
+    if (node == 6) return {block.center_x[i], block.center_y[i], block.center_z[i]};
     const auto corner = [&](std::size_t c) {
         return Vec3(block.x[c][i], block.y[c][i], block.z[c][i]);
     };
@@ -35,7 +36,7 @@ void apply_bsdf(const PieceBlock& block,
     const Vec3 normal(block.normal_x[i], block.normal_y[i], block.normal_z[i]);
     const Vec3 edge = node_of(block, 1, i) - node_of(block, 0, i);
     const core::Mat3 facet_from_world = core::frame_from_normal(normal, edge).transpose();
-    for (std::size_t node = 0; node < 6; ++node) {
+    for (std::size_t node = 0; node < PieceBlock::kNodes; ++node) {
         const Vec3 position = node_of(block, node, i);
         const Vec3 in = (light.point->position - position).normalized();
         const Vec3 out = (sensor.point->position - position).normalized();
@@ -53,6 +54,7 @@ void weigh_nodes(const PieceBlock& block,
     for (std::size_t j = 0; j < 3; ++j) {
         for (std::size_t i = 0; i < kSize; ++i) {
             knots.fitted.opl_m[j][i] = light.table->leg_m[j][i] + sensor.table->leg_m[j][i];
+            knots.fitted.bend_m[j][i] = light.table->bend_m[j][i] + sensor.table->bend_m[j][i];
         }
     }
     if (block.kind == PieceKind::Glossy) {
@@ -63,7 +65,7 @@ void weigh_nodes(const PieceBlock& block,
         return;
     }
     const bool retro = block.kind == PieceKind::Retroreflective;
-    for (std::size_t node = 0; node < 6; ++node) {
+    for (std::size_t node = 0; node < PieceBlock::kNodes; ++node) {
         const auto& towards_light = light.table->factor[node];
         const auto& towards_sensor = sensor.table->factor[node];
         for (std::size_t i = 0; i < kSize; ++i) {
@@ -78,12 +80,22 @@ double lower_of(double a, double b) {
     return b < a ? b : a;
 }
 
-// core::match_midpoints for the weights of all lanes.
+// Coordinates of a point of every piece.
+struct Point {
+    const PieceBlock::Lanes& x;
+    const PieceBlock::Lanes& y;
+    const PieceBlock::Lanes& z;
+};
+
+// Linear weights with the mean over the piece, as the nodes tell it, and the corners' differences;
+// where a corner would fall below 0, all of them shrink until it does not.
 void fit_weights(BlockKnots& knots) {
     const auto& k = knots.node_weight;
     for (std::size_t i = 0; i < kSize; ++i) {
-        const double mean = (k[3][i] + k[4][i] + k[5][i]) * (1.0 / 3.0);
         const double corner_mean = (k[0][i] + k[1][i] + k[2][i]) * (1.0 / 3.0);
+        const double mean = 3.0 * kShareOfCorner * corner_mean +
+                            kShareOfMiddle * (k[3][i] + k[4][i] + k[5][i]) +
+                            kShareOfCenter * k[6][i];
         const double lowest = lower_of(k[0][i], lower_of(k[1][i], k[2][i])) - corner_mean;
         const double most = mean / -lowest;
         const double spread = lowest < -mean ? most : 1.0;
@@ -112,33 +124,50 @@ std::array<double, 3> visible_weights(const std::array<double, 3>& weight, Visib
 void compute_table(const PieceBlock& block, const WallPoint& point, BlockTable& table) {
     const Vec3 w = point.position;
     const Vec3 n = point.normal;
-    alignas(64) std::array<PieceBlock::Lanes, 6> leg;
+    alignas(64) std::array<PieceBlock::Lanes, 3> leg;
+    alignas(64) PieceBlock::Lanes facing;
     for (std::size_t i = 0; i < kSize; ++i) {
-        const double facing = (w.x() - block.x[0][i]) * block.normal_x[i] +
-                              (w.y() - block.y[0][i]) * block.normal_y[i] +
-                              (w.z() - block.z[0][i]) * block.normal_z[i];
-        table.side[i] = facing;
+        // All points of the piece have the same distance from w along its normal.
+        const double side = (w.x() - block.x[0][i]) * block.normal_x[i] +
+                            (w.y() - block.y[0][i]) * block.normal_y[i] +
+                            (w.z() - block.z[0][i]) * block.normal_z[i];
+        table.side[i] = side;
+        facing[i] = std::abs(side);
     }
-    for (std::size_t node = 0; node < 6; ++node) {
-        // A midpoint is the mean of two corners, a corner of itself twice.
-        const std::size_t a = node % 3;
-        const std::size_t b = node < 3 ? a : (a + 1) % 3;
+    // At a node, the mean of two points; a corner or the centre is that twice.
+    const auto look_at = [&](std::size_t node, const Point& p, const Point& q) {
+        auto& factor = table.factor[node];
         for (std::size_t i = 0; i < kSize; ++i) {
-            const double x = 0.5 * (block.x[a][i] + block.x[b][i]) - w.x();
-            const double y = 0.5 * (block.y[a][i] + block.y[b][i]) - w.y();
-            const double z = 0.5 * (block.z[a][i] + block.z[b][i]) - w.z();
+            const double x = 0.5 * (p.x[i] + q.x[i]) - w.x();
+            const double y = 0.5 * (p.y[i] + q.y[i]) - w.y();
+            const double z = 0.5 * (p.z[i] + q.z[i]) - w.z();
             const double d2 = std::max(x * x + y * y + z * z, 1e-200);
             const double front = std::max(0.0, x * n.x() + y * n.y() + z * n.z());
-            leg[node][i] = std::sqrt(d2);
-            // All points of the piece have the same distance from w along its normal.
-            table.factor[node][i] = front * std::abs(table.side[i]) / (d2 * d2);
+            factor[i] = front * facing[i] / (d2 * d2);
+            if (node < 3) leg[node][i] = std::sqrt(d2);
         }
+    };
+    const auto corner = [&](std::size_t j) { return Point{block.x[j], block.y[j], block.z[j]}; };
+    const Point center{block.center_x, block.center_y, block.center_z};
+    for (std::size_t j = 0; j < 3; ++j) {
+        look_at(j, corner(j), corner(j));
+        look_at(3 + j, corner(j), corner((j + 1) % 3));
     }
+    look_at(6, center, center);
     for (std::size_t i = 0; i < kSize; ++i) {
-        const double shift =
-            (leg[3][i] + leg[4][i] + leg[5][i] - leg[0][i] - leg[1][i] - leg[2][i]) * (1.0 / 3.0);
-        for (std::size_t j = 0; j < 3; ++j) table.leg_m[j][i] = leg[j][i] + shift;
+        const double a = leg[0][i];
+        const double b = leg[1][i];
+        const double c = leg[2][i];
+        // The leg's second derivative along an edge is (|edge|^2 - (its rise)^2) / leg.
+        const double per_leg = 3.0 / (a + b + c);
+        const auto bend = [&](std::size_t j, double rise) {
+            table.bend_m[j][i] = std::max(0.0, block.squared_edge[j][i] - rise * rise) * per_leg;
+        };
+        bend(0, c - b);
+        bend(1, a - c);
+        bend(2, b - a);
     }
+    table.leg_m = leg;
 }
 
 void add_pair(const PieceBlock& block,

@@ -10,10 +10,11 @@ namespace renderer {
 
 /// What one wall point contributes to every path through the pieces of a block.
 struct alignas(64) BlockTable {
-    /// Length of the leg: values at the corners, shifted to the mean at the midpoints [m].
-    std::array<PieceBlock::Lanes, 3> leg_m;
-    /// (n_w.d) |n_x.d| / |d|^4 at the six nodes [1/m^2], 0 behind the wall point.
-    std::array<PieceBlock::Lanes, 6> factor;
+    /// Length of the leg at the corners, and how it bends along the edges opposite to them, see
+    /// core::TriangleLanes [m].
+    std::array<PieceBlock::Lanes, 3> leg_m, bend_m;
+    /// (n_w.d) |n_x.d| / |d|^4 at the nodes [1/m^2], 0 behind the wall point.
+    std::array<PieceBlock::Lanes, PieceBlock::kNodes> factor;
     PieceBlock::Lanes side;  ///< sign of the side of the piece that the wall point is on
 };
 

@@ -29,17 +29,20 @@ struct Piece {
     core::Vec3 midpoint(std::size_t i) const { return 0.5 * (corners[i] + corners[(i + 1) % 3]); }
 };
 
-/// Pieces of one kind in the layout of vectorised loops. Nodes 0-2 are corners, 3-5 midpoints.
+/// Pieces of one kind in the layout of vectorised loops. Nodes 0-2 are corners, 3-5 the middles of
+/// the edges that start there, node 6 is the centre.
 struct alignas(64) PieceBlock {
     static constexpr std::size_t kSize = core::TriangleLanes::kSize;
+    static constexpr std::size_t kNodes = 7;
     using Lanes = core::TriangleLanes::Lanes;
 
     std::array<Lanes, 3> x, y, z;  ///< corners, relative to PieceSet::origin [m]
     Lanes normal_x, normal_y, normal_z;
     Lanes center_x, center_y, center_z;
     Lanes area_m2;
-    Lanes one_sided;                   ///< +-1: only this side of the normal is ever seen; 0: both
-    std::array<Lanes, 6> reflectance;  ///< at the nodes; albedo/pi or albedo/spot area
+    std::array<Lanes, 3> squared_edge;  ///< opposite to the corners [m^2]
+    Lanes one_sided;                    ///< +-1: only this side of the normal is ever seen; 0: both
+    std::array<Lanes, kNodes> reflectance;  ///< at the nodes; albedo/pi or albedo/spot area
     Lanes mean_reflectance;
     std::array<Bsdf, kSize> glossy;  ///< set for glossy pieces only
     std::array<std::uint32_t, kSize> facet;
@@ -49,6 +52,12 @@ struct alignas(64) PieceBlock {
     double sphere_radius_m = 0.0;  ///< holds all corners
     double longest_edge_m = 0.0;
 };
+
+/// A function's mean over a triangle from its values at a corner, a middle and the centre: exact
+/// for cubic ones.
+inline constexpr double kShareOfCorner = 1.0 / 20.0;
+inline constexpr double kShareOfMiddle = 2.0 / 15.0;
+inline constexpr double kShareOfCenter = 9.0 / 20.0;
 
 /// Neighbouring pieces of one object that one shadow ray may stand for: lanes [begin, end).
 struct PieceGroup {

@@ -4,12 +4,22 @@
 #include "renderer/core/triangle_splines.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 
 namespace core {
 namespace {
 
 constexpr double kThird = 1.0 / 3.0;
+constexpr double kSixth = 1.0 / 6.0;
+// The mean of bent positions lies below that of linear ones by this times the sum of the bends.
+constexpr double kSag = 1.0 / 24.0;
+
+// By values: with std::max, compilers choose between addresses instead.
+double larger_of(double a, double b) {
+    return a < b ? b : a;
+}
 
 // Triangles side by side, a vector unit's worth, with corners sorted by position along the axis;
 // positions in any unit.
@@ -19,10 +29,21 @@ constexpr double kThird = 1.0 / 3.0;
 // below e is the triangle (corner 0, those two cuts), a share a*b of the area, and the mean of a
 // linear weight over a triangle is the mean of its corner values:
 //
-//     C(e) = a b [K0 + (a (K1-K0) + b (K2-K0))/3],        e <= p1
+//     C(e) = a b [K0 + x/3],   x = a (K1-K0) + b (K2-K0),        e <= p1
 //
 // and the same seen from corner 2 for e >= p1, subtracted from the mean (K0+K1+K2)/3. All factors
 // are ratios in [0, 1]: nothing cancels, however small the triangle is.
+//
+// Where positions bend away from linear ones by q, C(e) changes to first order by minus the
+// integral of K q over the cut. Per unit of e the cut is dC/de = 2 a / (p2-p0) of the area for
+// K = 1, its mean weight K0 + x/2, and with q = -(c2 l0 l1 + c1 l0 l2 + c0 l1 l2)/2, its mean over
+// the segment between the two cuts is
+//
+//     q = -[c2 a (3-2a-b) + c1 b (3-2b-a) + c0 a b]/12.
+//
+// p are the linear positions with the true mean, shifted by -(c0+c1+c2)/24, and q the rest. Where
+// a triangle bends more than it rises, this is too much of a correction, and 1/(p2-p0) is held at
+// 1/c.
 class SortedTriangles {
  public:
     static constexpr std::size_t kSize = 8;
@@ -37,10 +58,18 @@ class SortedTriangles {
             k0_[i] = lanes.weight[0][begin + i];
             k1_[i] = lanes.weight[1][begin + i];
             k2_[i] = lanes.weight[2][begin + i];
+            const double c0 = lanes.bend_m[0][begin + i];
+            const double c1 = lanes.bend_m[1][begin + i];
+            const double c2 = lanes.bend_m[2][begin + i];
             mean_[i] = (k0_[i] + k1_[i] + k2_[i]) * kThird;
             per_01_[i] = 1.0 / (p1_[i] - p0_[i]);
             per_02_[i] = 1.0 / (p2_[i] - p0_[i]);
             per_12_[i] = 1.0 / (p2_[i] - p1_[i]);
+            const double most = larger_of(c0, larger_of(c1, larger_of(c2, 1e-300)));
+            const double held = most * per_02_[i] > 1.0 ? 1.0 / most : per_02_[i];
+            c0_[i] = c0 * kSixth * held;
+            c1_[i] = c1 * kSixth * held;
+            c2_[i] = c2 * kSixth * held;
         }
     }
 
@@ -57,6 +86,8 @@ class SortedTriangles {
         const double high_k = k2_[i];
         const double per_low = per_01_[i];
         const double per_high = per_12_[i];
+        const double c0 = c0_[i];
+        const double c2 = c2_[i];
         const double mean = mean_[i];
         const bool low = e < p1_[i];
         const double reach = low ? from_low : to_high;
@@ -64,9 +95,18 @@ class SortedTriangles {
         const double far = low ? high_k : low_k;
         const double a = reach * (low ? per_low : per_high);
         const double b = reach * per_02_[i];
-        const double part = a * b * (near + (a * (k1_[i] - near) + b * (far - near)) * kThird);
-        const double other_part = mean - part;
-        const double inside = low ? part : other_part;
+        const double x = a * (k1_[i] - near) + b * (far - near);
+        const double c_a = low ? c2 : c0;
+        const double c_b = c1_[i];
+        const double sum = c0 + c1_[i] + c2;
+        // -2 q / (p2-p0)
+        const double bent = a * c_a * (3.0 - 2.0 * a) + b * c_b * (3.0 - 2.0 * b) +
+                            a * b * (sum - 2.0 * (c_a + c_b)) - 0.5 * sum;
+        const double gained = bent * (near + 0.5 * x);
+        const double part = a * (b * (near + x * kThird) + (low ? gained : -gained));
+        const double at_least_0 = part > 0.0 ? part : 0.0;
+        const double within = at_least_0 < mean ? at_least_0 : mean;
+        const double inside = low ? within : mean - within;
         const double up_to_high = to_high > 0.0 ? inside : mean;
         return from_low > 0.0 ? up_to_high : 0.0;
     }
@@ -74,27 +114,33 @@ class SortedTriangles {
  private:
     using Lanes = std::array<double, kSize>;
     alignas(64) Lanes p0_, p1_, p2_, k0_, k1_, k2_, mean_, per_01_, per_02_, per_12_;
+    alignas(64) Lanes c0_, c1_, c2_;  // bends / 6 (p2-p0)
 };
 
 struct Corner {
-    double p, k;
+    double p, k, c;
 };
 
 // By values and without branches: neither is the likely order.
 void order(Corner& a, Corner& b) {
     const Corner first = a;
     const bool swap = b.p < first.p;
-    a = {swap ? b.p : first.p, swap ? b.k : first.k};
-    b = {swap ? first.p : b.p, swap ? first.k : b.k};
+    a = {swap ? b.p : first.p, swap ? b.k : first.k, swap ? b.c : first.c};
+    b = {swap ? first.p : b.p, swap ? first.k : b.k, swap ? first.c : b.c};
 }
 
-// One loop that loads and stores each corner once: in place and pair by pair, compilers store with
-// masks, which some processors do slowly.
-void sort_corners(TriangleLanes& lanes, std::size_t count) {
+// Turns lengths into positions in bins, shifts them to the mean of the bent ones, and sorts corners
+// by them. One loop that loads and stores each corner once: in place and pair by pair, compilers
+// store with masks, which some processors do slowly.
+void sort_corners(TriangleLanes& lanes, std::size_t count, double start_m, double bins_per_m) {
     for (std::size_t i = 0; i < count; ++i) {
-        Corner a{lanes.opl_m[0][i], lanes.weight[0][i]};
-        Corner b{lanes.opl_m[1][i], lanes.weight[1][i]};
-        Corner c{lanes.opl_m[2][i], lanes.weight[2][i]};
+        Corner a{lanes.opl_m[0][i], lanes.weight[0][i], lanes.bend_m[0][i] * bins_per_m};
+        Corner b{lanes.opl_m[1][i], lanes.weight[1][i], lanes.bend_m[1][i] * bins_per_m};
+        Corner c{lanes.opl_m[2][i], lanes.weight[2][i], lanes.bend_m[2][i] * bins_per_m};
+        const double sag = (a.c + b.c + c.c) * kSag;
+        a.p = (a.p - start_m) * bins_per_m - sag;
+        b.p = (b.p - start_m) * bins_per_m - sag;
+        c.p = (c.p - start_m) * bins_per_m - sag;
         order(a, b);
         order(b, c);
         order(a, b);
@@ -104,6 +150,9 @@ void sort_corners(TriangleLanes& lanes, std::size_t count) {
         lanes.weight[0][i] = a.k;
         lanes.weight[1][i] = b.k;
         lanes.weight[2][i] = c.k;
+        lanes.bend_m[0][i] = a.c;
+        lanes.bend_m[1][i] = b.c;
+        lanes.bend_m[2][i] = c.c;
     }
 }
 
@@ -112,6 +161,7 @@ TriangleLanes repeated(const TriangleKnots& knots) {
     TriangleLanes lanes;
     for (std::size_t j = 0; j < 3; ++j) {
         std::fill_n(lanes.opl_m[j].begin(), SortedTriangles::kSize, knots.opl_m[j]);
+        std::fill_n(lanes.bend_m[j].begin(), SortedTriangles::kSize, 0.0);
         std::fill_n(lanes.weight[j].begin(), SortedTriangles::kSize, knots.weight[j]);
     }
     return lanes;
@@ -125,33 +175,141 @@ void add_sorted(const SortedTriangles& triangles,
     constexpr std::size_t kSize = SortedTriangles::kSize;
     const auto num_bins = static_cast<double>(histogram.size());
     alignas(64) std::array<double, kSize> edge;
-    alignas(64) std::array<double, kSize> below;
+    alignas(64) std::array<double, kSize> below{};
+    alignas(64) std::array<double, kSize> whole;
     alignas(64) std::array<double, kSize> added;
     alignas(64) std::array<double, kSize> reached;
+    alignas(64) std::array<double, kSize> outside;
     for (std::size_t i = 0; i < kSize; ++i) {
         const double low = triangles.least(i);
         const double high = triangles.most(i);
         const double begin = std::floor(low > 0.0 ? low : 0.0);
         const double last = std::floor(high < num_bins ? high : num_bins - 1.0);
         edge[i] = begin;
-        below[i] = triangles.below(i, begin);
+        whole[i] = triangles.mean(i);
         // Below 1 where nothing lies on the axis.
         const double bins = last - begin + 1.0;
         reached[i] = triangles.mean(i) == 0.0 ? 0.0 : bins;
+        outside[i] = larger_of(-low, high - num_bins);
     }
     double most = 0.0;
-    for (std::size_t i = 0; i < count; ++i) most = std::max(most, reached[i]);
-    for (double bin = 0.0; bin < most; bin += 1.0) {
+    double most_outside = 0.0;
+    for (std::size_t i = 0; i < count; ++i) {
+        most = std::max(most, reached[i]);
+        most_outside = std::max(most_outside, outside[i]);
+    }
+    if (most_outside > 0.0) {
         for (std::size_t i = 0; i < kSize; ++i) {
-            const double next = triangles.below(i, edge[i] + 1.0);
-            added[i] = next - below[i];
-            below[i] = next;
+            below[i] = triangles.below(i, 0.0);
+            whole[i] = triangles.below(i, num_bins);
+        }
+    }
+    for (double bin = 0.0; bin < most; bin += 1.0) {
+        const bool is_last = bin + 1.0 == most;
+        for (std::size_t i = 0; i < kSize; ++i) {
+            const double next = is_last ? whole[i] : triangles.below(i, edge[i] + 1.0);
+            const double rising = larger_of(below[i], next);
+            added[i] = rising - below[i];
+            below[i] = rising;
         }
         for (std::size_t i = 0; i < count; ++i) {
             if (!(bin < reached[i])) continue;  // nor where a number is none
             histogram[static_cast<std::size_t>(edge[i])] += area_m2[i] * added[i];
         }
         for (double& e : edge) e += 1.0;
+    }
+}
+
+// Triangles that bend more than this times what they rise are split where a bin's edge falls into
+// them, ...
+constexpr double kMostBend = 0.5;
+// ... unless they bend by a negligible part of a bin ...
+constexpr double kNegligibleBend = 1e-3;
+// ... or have been split this often.
+constexpr int kMostSplits = 4;
+
+// Which of the sorted triangles are to be split.
+std::uint64_t bent_lanes(const TriangleLanes& lanes, std::size_t count, double num_bins) {
+    alignas(64) TriangleLanes::Lanes is_bent;
+    for (std::size_t i = 0; i < count; ++i) {
+        const double low = lanes.opl_m[0][i];
+        const double high = lanes.opl_m[2][i];
+        const double most =
+            larger_of(lanes.bend_m[0][i], larger_of(lanes.bend_m[1][i], lanes.bend_m[2][i]));
+        // The bend is at most a third of this below linear positions, which stand too low by at
+        // most an eighth of it.
+        const auto bin_of = [num_bins](double p) {
+            const double from_start = larger_of(p, -1.0);
+            return std::floor(from_start < num_bins ? from_start : num_bins);
+        };
+        const double weight = lanes.weight[0][i] + lanes.weight[1][i] + lanes.weight[2][i];
+        const double crossed = bin_of(high + most / 8.0) - bin_of(low - most / 6.0);
+        const double threshold = larger_of(kNegligibleBend, kMostBend * (high - low));
+        is_bent[i] = weight > 0.0 && most > threshold ? crossed : 0.0;
+    }
+    std::uint64_t bits = 0;
+    for (std::size_t i = 0; i < count; ++i) bits |= std::uint64_t{is_bent[i] > 0.0} << i;
+    return bits;
+}
+
+// Sets lanes [begin, begin + 4) of `parts` to the quarters of a sorted triangle.
+void quarter(const TriangleLanes& lanes, std::size_t i, TriangleLanes& parts, std::size_t begin) {
+    const auto& c = lanes.bend_m;
+    const double sag = (c[0][i] + c[1][i] + c[2][i]) * kSag;
+    std::array<double, 3> p, k, middle_p, middle_k;
+    for (std::size_t j = 0; j < 3; ++j) {
+        p[j] = lanes.opl_m[j][i] + sag;
+        k[j] = lanes.weight[j][i];
+    }
+    for (std::size_t j = 0; j < 3; ++j) {  // of the edge opposite to corner j
+        middle_p[j] = 0.5 * (p[(j + 1) % 3] + p[(j + 2) % 3]) - c[j][i] / 8.0;
+        middle_k[j] = 0.5 * (k[(j + 1) % 3] + k[(j + 2) % 3]);
+    }
+    for (std::size_t part = 0; part < 4; ++part) {
+        for (std::size_t j = 0; j < 3; ++j) {
+            // Corner j of the part that keeps corner `part` lies there or opposite to the third
+            // corner; the fourth part joins the middles.
+            const std::size_t opposite = part == 3 ? j : 3 - part - j;
+            const bool is_corner = part == j;
+            parts.opl_m[j][begin + part] = is_corner ? p[j] : middle_p[opposite];
+            parts.weight[j][begin + part] = is_corner ? k[j] : middle_k[opposite];
+            parts.bend_m[j][begin + part] = 0.25 * c[j][i];
+        }
+    }
+}
+
+// Adds triangles whose lengths start at start_m; those that bend too much as their quarters.
+void add_lanes(TriangleLanes& lanes,
+               std::span<const double> area_m2,
+               double start_m,
+               double bins_per_m,
+               int num_splits,
+               std::span<double> histogram) {
+    const std::size_t count = area_m2.size();
+    sort_corners(lanes, count, start_m, bins_per_m);
+    std::uint64_t bent = num_splits == kMostSplits
+                             ? 0
+                             : bent_lanes(lanes, count, static_cast<double>(histogram.size()));
+    while (bent != 0) {
+        TriangleLanes parts;
+        TriangleLanes::Lanes part_area_m2;
+        std::size_t num_parts = 0;
+        for (; bent != 0 && num_parts < TriangleLanes::kSize; bent &= bent - 1) {
+            const auto i = static_cast<std::size_t>(std::countr_zero(bent));
+            quarter(lanes, i, parts, num_parts);
+            std::fill_n(part_area_m2.begin() + static_cast<std::ptrdiff_t>(num_parts),
+                        4,
+                        0.25 * area_m2[i]);
+            num_parts += 4;
+            for (TriangleLanes::Lanes& weight : lanes.weight) weight[i] = 0.0;
+        }
+        add_lanes(parts, {part_area_m2.data(), num_parts}, 0.0, 1.0, num_splits + 1, histogram);
+    }
+    for (std::size_t begin = 0; begin < count; begin += SortedTriangles::kSize) {
+        add_sorted(SortedTriangles(lanes, begin),
+                   area_m2.data() + begin,
+                   std::min(count - begin, SortedTriangles::kSize),
+                   histogram);
     }
 }
 
@@ -211,7 +369,7 @@ TriangleKnots match_midpoints(const TriangleKnots& at_corners, const TriangleKno
 
 double triangle_cumulative(const TriangleKnots& knots, double opl_m) {
     TriangleLanes lanes = repeated(knots);
-    sort_corners(lanes, SortedTriangles::kSize);
+    sort_corners(lanes, SortedTriangles::kSize, 0.0, 1.0);
     return SortedTriangles(lanes, 0).below(0, opl_m);
 }
 
@@ -219,18 +377,7 @@ void add_triangles(TriangleLanes& lanes,
                    std::span<const double> area_m2,
                    const TimeAxis& axis,
                    std::span<double> histogram) {
-    const std::size_t count = area_m2.size();
-    const double per_m = 1.0 / axis.bin_width_m;
-    for (TriangleLanes::Lanes& lane : lanes.opl_m) {
-        for (std::size_t i = 0; i < count; ++i) lane[i] = (lane[i] - axis.opl_start_m) * per_m;
-    }
-    sort_corners(lanes, count);
-    for (std::size_t begin = 0; begin < count; begin += SortedTriangles::kSize) {
-        add_sorted(SortedTriangles(lanes, begin),
-                   area_m2.data() + begin,
-                   std::min(count - begin, SortedTriangles::kSize),
-                   histogram);
-    }
+    add_lanes(lanes, area_m2, axis.opl_start_m, 1.0 / axis.bin_width_m, 0, histogram);
 }
 
 void add_triangle(const TriangleKnots& knots,

@@ -43,20 +43,30 @@ void add_triangle(const TriangleKnots& knots,
                   const TimeAxis& axis,
                   std::span<double> histogram);
 
-/// Triangles side by side, one lane each, so that the compiler fills vector units.
+/// Triangles side by side, one lane each, so that the compiler fills vector units. Weights are
+/// linear, lengths quadratic: with barycentric coordinates l,
+///
+///     opl = sum over corners of l_j opl_m[j] - sum over edges ij of bend_m[k] l_i l_j / 2,
+///
+/// k the corner opposite to the edge.
 struct TriangleLanes {
     static constexpr std::size_t kSize = 64;
     using Lanes = std::array<double, kSize>;
 
-    alignas(64) std::array<Lanes, 3> opl_m;
+    alignas(64) std::array<Lanes, 3> opl_m;   ///< at the corners
+    alignas(64) std::array<Lanes, 3> bend_m;  ///< at least 0: 4 (two ends - twice the middle)
     alignas(64) std::array<Lanes, 3> weight;  ///< 0 at all corners: the lane adds nothing
 };
 
-/// add_triangle() for the first lanes.
+/// Adds the histograms of the first lanes: without bend that of add_triangle(), else right to first
+/// order in the bend. Where a bin's edge falls into a triangle whose bend is not small against what
+/// its lengths span, its quarters are added instead, down to 256ths. No weight is lost, and no bin
+/// receives less than 0.
 ///
 /// lanes       overwritten: corners are sorted by length, which become positions in bins
 /// area_m2     of each triangle, as many as lanes are used; what the other lanes hold is ignored
 /// histogram   axis.num_bins values
+/// source      derived in triangle_histogram.cpp
 void add_triangles(TriangleLanes& lanes,
                    std::span<const double> area_m2,
                    const TimeAxis& axis,

@@ -145,6 +145,7 @@ TEST(TriangleHistogram, LanesAddWhatEachTriangleAloneDoes) {
             if (i % 7 == 3) knots.weight = {0.0, 0.0, 0.0};
             for (std::size_t j = 0; j < 3; ++j) {
                 lanes.opl_m[j][i] = knots.opl_m[j];
+                lanes.bend_m[j][i] = 0.0;
                 lanes.weight[j][i] = knots.weight[j];
             }
             if (i >= count) continue;
