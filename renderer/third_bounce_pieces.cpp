@@ -21,6 +21,8 @@ constexpr double kSmallestGlossyAlpha = 0.03;
 // [measured]; weights, linear over a piece, err with (h/d)^2.
 constexpr double kKappaPerTolerance = 80.0;
 constexpr double kSquaredSizePerTolerance = 3.0;
+// However coarse, energy errs by a few 1e-5 at most.
+constexpr double kMostSquaredSize = 0.05;
 
 // A facet is bisected at most this often, even where it touches a wall point.
 constexpr int kMostBisections = 28;
@@ -115,7 +117,7 @@ bool PieceCutter::is_small_enough(const LegBounds& legs,
                                   const Vec3& center,
                                   double squared_edge,
                                   double tolerance) const {
-    const double relative = kSquaredSizePerTolerance * tolerance;
+    const double relative = std::min(kSquaredSizePerTolerance * tolerance, kMostSquaredSize);
     const auto holds = [&](double light, double sensor) {
         const double nearest = std::min(light, sensor);
         if (squared_edge > relative * nearest * nearest) return false;

@@ -206,6 +206,8 @@ TEST(TargetError, IsHonouredOnRandomScenesAndNotFarUndercut) {
         renderer::RenderSettings settings;
         settings.target_error = 1e-3;
         const auto reference = integrate_third_bounce(scene, scan, axis, settings, {});
+        settings.target_error = 10.0;
+        const auto coarsest = integrate_third_bounce(scene, scan, axis, settings, {});
         for (const double target : {0.05, 0.02, 0.01}) {
             settings.target_error = target;
             const auto result = integrate_third_bounce(scene, scan, axis, settings, {});
@@ -213,7 +215,8 @@ TEST(TargetError, IsHonouredOnRandomScenesAndNotFarUndercut) {
                 test_support::relative_l2(result.transient.values(), reference.transient.values());
             ++num_cases;
             if (error > target) ++num_above;
-            if (error < target / 5.0) ++num_far_below;
+            const bool is_coarsest = result.num_pieces == coarsest.num_pieces;
+            if (error < target / 5.0 && !is_coarsest) ++num_far_below;
             EXPECT_LT(error, 2.0 * target) << "scene " << i;
         }
     }
