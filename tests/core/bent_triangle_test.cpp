@@ -15,6 +15,7 @@ namespace {
 
 using core::TimeAxis;
 using core::Vec3;
+using test_support::relative_l2;
 using Triple = std::array<double, 3>;
 
 struct BentTriangle {
@@ -40,16 +41,6 @@ std::vector<double> histogram_of(const BentTriangle& triangle, const TimeAxis& a
 
 double sum_of(const std::vector<double>& values) {
     return std::accumulate(values.begin(), values.end(), 0.0);
-}
-
-double relative_l2(const std::vector<double>& a, const std::vector<double>& b) {
-    double difference = 0.0;
-    double norm = 0.0;
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        difference += std::pow(a[i] - b[i], 2);
-        norm += b[i] * b[i];
-    }
-    return std::sqrt(difference / norm);
 }
 
 // Lengths of corners within `spread` of 1 m, bends up to `bend` along edges of a plane triangle:

@@ -17,6 +17,7 @@ namespace {
 using core::TimeAxis;
 using core::TriangleKnots;
 using core::Vec3;
+using test_support::relative_l2;
 using Corners = std::array<Vec3, 3>;
 
 std::vector<double> histogram_of(const TriangleKnots& knots, double area, const TimeAxis& axis) {
@@ -27,16 +28,6 @@ std::vector<double> histogram_of(const TriangleKnots& knots, double area, const 
 
 double sum_of(const std::vector<double>& values) {
     return std::accumulate(values.begin(), values.end(), 0.0);
-}
-
-double relative_l2(const std::vector<double>& a, const std::vector<double>& b) {
-    double difference = 0.0;
-    double norm = 0.0;
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        difference += (a[i] - b[i]) * (a[i] - b[i]);
-        norm += b[i] * b[i];
-    }
-    return std::sqrt(difference / norm);
 }
 
 TriangleKnots random_knots(core::Rng& rng) {

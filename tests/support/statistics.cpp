@@ -80,12 +80,16 @@ double chi_square_p_value(std::span<const double> observed, std::span<const doub
 }
 
 double relative_l2(std::span<const float> a, std::span<const float> b) {
+    const std::vector<double> doubles(a.begin(), a.end());
+    return relative_l2(doubles, std::vector<double>(b.begin(), b.end()));
+}
+
+double relative_l2(std::span<const double> a, std::span<const double> b) {
     double difference = 0.0;
     double reference = 0.0;
     for (std::size_t i = 0; i < a.size(); ++i) {
-        const double d = double{a[i]} - double{b[i]};
-        difference += d * d;
-        reference += double{b[i]} * double{b[i]};
+        difference += (a[i] - b[i]) * (a[i] - b[i]);
+        reference += b[i] * b[i];
     }
     return std::sqrt(difference / reference);
 }

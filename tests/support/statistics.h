@@ -25,5 +25,6 @@ double chi_square_p_value(std::span<const double> observed, std::span<const doub
 
 /// sqrt(sum (a-b)^2 / sum b^2).
 double relative_l2(std::span<const float> a, std::span<const float> b);
+double relative_l2(std::span<const double> a, std::span<const double> b);
 
 }  // namespace test_support
