@@ -236,8 +236,8 @@ std::uint64_t bent_lanes(const TriangleLanes& lanes, std::size_t count, double n
         const double high = lanes.opl_m[2][i];
         const double most =
             larger_of(lanes.bend_m[0][i], larger_of(lanes.bend_m[1][i], lanes.bend_m[2][i]));
-        // The bend is at most a third of this below linear positions, which stand too low by at
-        // most an eighth of it.
+        // Bent positions lie at most a sixth of this below the linear ones through the corners,
+        // from which those here are shifted down by at most an eighth of it.
         const auto bin_of = [num_bins](double p) {
             const double from_start = larger_of(p, -1.0);
             return std::floor(from_start < num_bins ? from_start : num_bins);
