@@ -32,6 +32,8 @@ constexpr std::size_t kTrialPointsPerSideForFewBins = 16;
 constexpr int kCoarsest = 5;
 constexpr int kFinest = -10;
 constexpr int kReferenceSteps = 2;  // a reference is at least this much finer
+// A cut with this times the pieces of the coarsest one is as coarse as can be: facets limit it.
+constexpr double kNearlyFewest = 1.05;
 
 // A reference has an error of its own, and the trial pairs are not all pairs.
 constexpr double kCaution = 1.5;
@@ -126,9 +128,10 @@ class Integrator {
     ThirdBounce run(const core::Progress& progress);
 
  private:
-    PieceSet cut(int fineness) const { return cutter_.cut(target_ * std::exp2(fineness)); }
+    double tolerance(int fineness) const { return target_ * std::exp2(fineness); }
+    PieceSet cut(int fineness) const { return cutter_.cut(tolerance(fineness)); }
     double negligible_error(int fineness) const {
-        return kNegligibleShare * target_ * std::exp2(fineness) * norm_per_pair_;
+        return kNegligibleShare * tolerance(fineness) * norm_per_pair_;
     }
     const Transient& try_out(int fineness);
     double error_of(int fineness);
@@ -149,6 +152,7 @@ class Integrator {
     PieceCutter cutter_;
     double norm_per_pair_ = 0.0;
     std::map<int, Transient> trials_;
+    std::map<int, std::size_t> num_pieces_;
     std::map<int, double> shadow_errors_;  // expected ones, absolute
     std::map<int, double> errors_;
     // What trials took, and cutting the surfaces for them.
@@ -162,6 +166,7 @@ const Transient& Integrator::try_out(int fineness) {
     const core::Stopwatch cutting;
     const PieceSet pieces = cut(fineness);
     cut_seconds_[fineness] = cutting.seconds();
+    num_pieces_[fineness] = pieces.num_pieces;
     const core::Stopwatch watch;
     ThirdBounceScan trial(scene_,
                           trial_scan_,
@@ -232,7 +237,13 @@ int Integrator::choose_fineness(const core::Progress& progress) {
         }
         return fineness;
     }
-    while (fineness < kCoarsest && error_of(fineness + 1) <= target_) ++fineness;
+    const auto fewest = static_cast<double>(cutter_.num_pieces(tolerance(kCoarsest)));
+    const auto can_be_coarser = [&] {
+        return static_cast<double>(num_pieces_.at(fineness)) > kNearlyFewest * fewest;
+    };
+    while (fineness < kCoarsest && can_be_coarser() && error_of(fineness + 1) <= target_) {
+        ++fineness;
+    }
     return fineness;
 }
 

@@ -24,6 +24,22 @@ double reflectance(const Bsdf& bsdf, PieceKind kind, double laser_spot_m2) {
     return kind == PieceKind::Retroreflective ? albedo / laser_spot_m2 : albedo / core::kPi;
 }
 
+void find_unit_spheres(PieceBlock& block) {
+    for_each_unit(kAllUnits, [&](std::size_t begin) {
+        Eigen::AlignedBox3d box;
+        for (std::size_t c = 0; c < 3; ++c) {
+            for (std::size_t i = begin; i < begin + PieceBlock::kUnitSize; ++i) {
+                box.extend(Vec3(block.x[c][i], block.y[c][i], block.z[c][i]));
+            }
+        }
+        const std::size_t unit = begin / PieceBlock::kUnitSize;
+        block.unit_x[unit] = box.center().x();
+        block.unit_y[unit] = box.center().y();
+        block.unit_z[unit] = box.center().z();
+        block.unit_radius_m[unit] = 0.5 * box.diagonal().norm();
+    });
+}
+
 }  // namespace
 
 PieceArranger::PieceArranger(const Scene& scene,
@@ -115,6 +131,7 @@ void PieceArranger::append_blocks(const std::vector<Piece>& pieces, PieceKind ki
         }
         block.sphere_center = box.center();
         block.sphere_radius_m = 0.5 * box.diagonal().norm();
+        find_unit_spheres(block);
     }
 }
 

@@ -13,11 +13,8 @@ using core::Vec3;
 
 constexpr std::size_t kSize = PieceBlock::kSize;
 
-// Weights of all pieces of a block at the nodes, and what follows for the closed form.
-struct alignas(64) BlockKnots {
-    std::array<PieceBlock::Lanes, PieceBlock::kNodes> node_weight;
-    core::TriangleLanes fitted;
-};
+using UnitLanes = std::array<double, PieceBlock::kUnitSize>;
+using NodeWeights = std::array<UnitLanes, PieceBlock::kNodes>;
 
 Vec3 node_of(const PieceBlock& block, std::size_t node, std::size_t i) {
     if (node == 6) return {block.center_x[i], block.center_y[i], block.center_z[i]};
@@ -27,12 +24,12 @@ Vec3 node_of(const PieceBlock& block, std::size_t node, std::size_t i) {
     return node < 3 ? corner(node) : 0.5 * (corner(node - 3) + corner((node - 2) % 3));
 }
 
-// Replaces the nominal reflectance of one piece by its BSDF.
-void apply_bsdf(const PieceBlock& block,
-                std::size_t i,
-                const PairEnd& light,
-                const PairEnd& sensor,
-                BlockKnots& knots) {
+// Weights of one glossy piece at the nodes.
+void weigh_by_bsdf(const PieceBlock& block,
+                   std::size_t i,
+                   const PairEnd& light,
+                   const PairEnd& sensor,
+                   std::array<double, PieceBlock::kNodes>& weights) {
     const Vec3 normal(block.normal_x[i], block.normal_y[i], block.normal_z[i]);
     const Vec3 edge = node_of(block, 1, i) - node_of(block, 0, i);
     const core::Mat3 facet_from_world = core::frame_from_normal(normal, edge).transpose();
@@ -42,35 +39,36 @@ void apply_bsdf(const PieceBlock& block,
         const Vec3 out = (sensor.point->position - position).normalized();
         const double value =
             evaluate_bsdf(block.glossy[i], facet_from_world * in, facet_from_world * out);
-        knots.node_weight[node][i] =
-            value * light.table->factor[node][i] * sensor.table->factor[node][i];
+        weights[node] = value * light.table->factor[node][i] * sensor.table->factor[node][i];
     }
 }
 
+// Weights of the pieces of the unit that starts at lane `begin`.
 void weigh_nodes(const PieceBlock& block,
+                 std::size_t begin,
                  const PairEnd& light,
                  const PairEnd& sensor,
-                 BlockKnots& knots) {
-    for (std::size_t j = 0; j < 3; ++j) {
-        for (std::size_t i = 0; i < kSize; ++i) {
-            knots.fitted.opl_m[j][i] = light.table->leg_m[j][i] + sensor.table->leg_m[j][i];
-            knots.fitted.bend_m[j][i] = light.table->bend_m[j][i] + sensor.table->bend_m[j][i];
-        }
-    }
+                 NodeWeights& weights) {
     if (block.kind == PieceKind::Glossy) {
-        for (std::size_t i = 0; i < block.count; ++i) {
-            if ((light.masks[i] & sensor.masks[i]) == 0) continue;
-            apply_bsdf(block, i, light, sensor, knots);
+        for (std::size_t j = 0; j < PieceBlock::kUnitSize; ++j) {
+            const std::size_t i = begin + j;
+            std::array<double, PieceBlock::kNodes> of_piece{};
+            if ((light.masks[i] & sensor.masks[i]) != 0) {
+                weigh_by_bsdf(block, i, light, sensor, of_piece);
+            }
+            for (std::size_t node = 0; node < PieceBlock::kNodes; ++node) {
+                weights[node][j] = of_piece[node];
+            }
         }
         return;
     }
     const bool retro = block.kind == PieceKind::Retroreflective;
     for (std::size_t node = 0; node < PieceBlock::kNodes; ++node) {
-        const auto& towards_light = light.table->factor[node];
-        const auto& towards_sensor = sensor.table->factor[node];
-        for (std::size_t i = 0; i < kSize; ++i) {
-            knots.node_weight[node][i] =
-                block.reflectance[node][i] * towards_light[i] * (retro ? 1.0 : towards_sensor[i]);
+        const double* const towards_light = light.table->factor[node].data() + begin;
+        const double* const towards_sensor = sensor.table->factor[node].data() + begin;
+        const double* const reflectance = block.reflectance[node].data() + begin;
+        for (std::size_t j = 0; j < PieceBlock::kUnitSize; ++j) {
+            weights[node][j] = reflectance[j] * towards_light[j] * (retro ? 1.0 : towards_sensor[j]);
         }
     }
 }
@@ -88,20 +86,19 @@ struct Point {
 };
 
 // Linear weights with the mean over the piece, as the nodes tell it, and the corners' differences;
-// where a corner would fall below 0, all of them shrink until it does not.
-void fit_weights(BlockKnots& knots) {
-    const auto& k = knots.node_weight;
-    for (std::size_t i = 0; i < kSize; ++i) {
-        const double corner_mean = (k[0][i] + k[1][i] + k[2][i]) * (1.0 / 3.0);
+// where a corner would fall below 0, all of them shrink until it does not. Into lanes from `begin`.
+void fit_weights(const NodeWeights& k, std::size_t begin, core::TriangleLanes& fitted) {
+    for (std::size_t j = 0; j < PieceBlock::kUnitSize; ++j) {
+        const double corner_mean = (k[0][j] + k[1][j] + k[2][j]) * (1.0 / 3.0);
         const double mean = 3.0 * kShareOfCorner * corner_mean +
-                            kShareOfMiddle * (k[3][i] + k[4][i] + k[5][i]) +
-                            kShareOfCenter * k[6][i];
-        const double lowest = lower_of(k[0][i], lower_of(k[1][i], k[2][i])) - corner_mean;
+                            kShareOfMiddle * (k[3][j] + k[4][j] + k[5][j]) +
+                            kShareOfCenter * k[6][j];
+        const double lowest = lower_of(k[0][j], lower_of(k[1][j], k[2][j])) - corner_mean;
         const double most = mean / -lowest;
         const double spread = lowest < -mean ? most : 1.0;
-        knots.fitted.weight[0][i] = mean + spread * (k[0][i] - corner_mean);
-        knots.fitted.weight[1][i] = mean + spread * (k[1][i] - corner_mean);
-        knots.fitted.weight[2][i] = mean + spread * (k[2][i] - corner_mean);
+        fitted.weight[0][begin + j] = mean + spread * (k[0][j] - corner_mean);
+        fitted.weight[1][begin + j] = mean + spread * (k[1][j] - corner_mean);
+        fitted.weight[2][begin + j] = mean + spread * (k[2][j] - corner_mean);
     }
 }
 
@@ -119,84 +116,128 @@ std::array<double, 3> visible_weights(const std::array<double, 3>& weight, Visib
     return product;
 }
 
+// What both ends see of the pieces of a unit.
+using UnitMasks = std::array<VisibilityMask, PieceBlock::kUnitSize>;
+
+UnitMasks common_masks(const PairEnd& light, const PairEnd& sensor, std::size_t begin) {
+    UnitMasks masks;
+    for (std::size_t j = 0; j < masks.size(); ++j) {
+        const std::size_t i = begin + j;
+        const bool same_side = light.table->side[i] * sensor.table->side[i] > 0.0;
+        masks[j] = static_cast<VisibilityMask>(same_side ? light.masks[i] & sensor.masks[i] : 0);
+    }
+    return masks;
+}
+
+void keep_visible_weights(const UnitMasks& masks, std::size_t begin, core::TriangleLanes& lanes) {
+    auto& weight = lanes.weight;
+    for (std::size_t j = 0; j < masks.size(); ++j) {
+        if (masks[j] == kAllVisible) continue;
+        const std::size_t i = begin + j;
+        const std::array<double, 3> all{weight[0][i], weight[1][i], weight[2][i]};
+        const auto visible =
+            masks[j] != 0 ? visible_weights(all, masks[j]) : std::array<double, 3>{};
+        for (std::size_t c = 0; c < 3; ++c) weight[c][i] = visible[c];
+    }
+}
+
+UnitMask units_seen(const VisibilityMask* masks) {
+    UnitMask units = 0;
+    for (std::size_t u = 0; u < PieceBlock::kUnits; ++u) {
+        VisibilityMask any = 0;
+        for (std::size_t j = 0; j < PieceBlock::kUnitSize; ++j) {
+            any = static_cast<VisibilityMask>(any | masks[u * PieceBlock::kUnitSize + j]);
+        }
+        units |= UnitMask{any != 0} << u;
+    }
+    return units;
+}
+
 }  // namespace
 
-void compute_table(const PieceBlock& block, const WallPoint& point, BlockTable& table) {
+void compute_table(const PieceBlock& block,
+                   const WallPoint& point,
+                   const VisibilityMask* masks,
+                   BlockTable& table) {
     const Vec3 w = point.position;
     const Vec3 n = point.normal;
-    alignas(64) std::array<PieceBlock::Lanes, 3> leg;
-    alignas(64) PieceBlock::Lanes facing;
-    for (std::size_t i = 0; i < kSize; ++i) {
-        // All points of the piece have the same distance from w along its normal.
-        const double side = (w.x() - block.x[0][i]) * block.normal_x[i] +
+    table.units = units_seen(masks);
+    for_each_unit(table.units, [&](std::size_t begin) {
+        const std::size_t end = begin + PieceBlock::kUnitSize;
+        for (std::size_t i = begin; i < end; ++i) {
+            // All points of the piece have the same distance from w along its normal.
+            table.side[i] = (w.x() - block.x[0][i]) * block.normal_x[i] +
                             (w.y() - block.y[0][i]) * block.normal_y[i] +
                             (w.z() - block.z[0][i]) * block.normal_z[i];
-        table.side[i] = side;
-        facing[i] = std::abs(side);
-    }
-    // At a node, the mean of two points; a corner or the centre is that twice.
-    const auto look_at = [&](std::size_t node, const Point& p, const Point& q) {
-        auto& factor = table.factor[node];
-        for (std::size_t i = 0; i < kSize; ++i) {
-            const double x = 0.5 * (p.x[i] + q.x[i]) - w.x();
-            const double y = 0.5 * (p.y[i] + q.y[i]) - w.y();
-            const double z = 0.5 * (p.z[i] + q.z[i]) - w.z();
-            const double d2 = std::max(x * x + y * y + z * z, 1e-200);
-            const double front = std::max(0.0, x * n.x() + y * n.y() + z * n.z());
-            factor[i] = front * facing[i] / (d2 * d2);
-            if (node < 3) leg[node][i] = std::sqrt(d2);
         }
-    };
-    const auto corner = [&](std::size_t j) { return Point{block.x[j], block.y[j], block.z[j]}; };
-    const Point center{block.center_x, block.center_y, block.center_z};
-    for (std::size_t j = 0; j < 3; ++j) {
-        look_at(j, corner(j), corner(j));
-        look_at(3 + j, corner(j), corner((j + 1) % 3));
-    }
-    look_at(6, center, center);
-    for (std::size_t i = 0; i < kSize; ++i) {
-        const double a = leg[0][i];
-        const double b = leg[1][i];
-        const double c = leg[2][i];
-        // The leg's second derivative along an edge is (|edge|^2 - (its rise)^2) / leg.
-        const double per_leg = 3.0 / (a + b + c);
-        const auto bend = [&](std::size_t j, double rise) {
-            table.bend_m[j][i] = std::max(0.0, block.squared_edge[j][i] - rise * rise) * per_leg;
+        // At a node, the mean of two points; a corner or the centre is that twice.
+        const auto look_at = [&](std::size_t node, const Point& p, const Point& q) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const double x = 0.5 * (p.x[i] + q.x[i]) - w.x();
+                const double y = 0.5 * (p.y[i] + q.y[i]) - w.y();
+                const double z = 0.5 * (p.z[i] + q.z[i]) - w.z();
+                const double d2 = std::max(x * x + y * y + z * z, 1e-200);
+                const double front = std::max(0.0, x * n.x() + y * n.y() + z * n.z());
+                table.factor[node][i] = front * std::abs(table.side[i]) / (d2 * d2);
+                if (node < 3) table.leg_m[node][i] = std::sqrt(d2);
+            }
         };
-        bend(0, c - b);
-        bend(1, a - c);
-        bend(2, b - a);
-    }
-    table.leg_m = leg;
+        const auto corner = [&](std::size_t j) {
+            return Point{block.x[j], block.y[j], block.z[j]};
+        };
+        const Point center{block.center_x, block.center_y, block.center_z};
+        for (std::size_t j = 0; j < 3; ++j) {
+            look_at(j, corner(j), corner(j));
+            look_at(3 + j, corner(j), corner((j + 1) % 3));
+        }
+        look_at(6, center, center);
+        for (std::size_t i = begin; i < end; ++i) {
+            const double a = table.leg_m[0][i];
+            const double b = table.leg_m[1][i];
+            const double c = table.leg_m[2][i];
+            // The leg's second derivative along an edge is (|edge|^2 - (its rise)^2) / leg.
+            const double per_leg = 3.0 / (a + b + c);
+            const auto bend = [&](std::size_t j, double rise) {
+                table.bend_m[j][i] =
+                    std::max(0.0, block.squared_edge[j][i] - rise * rise) * per_leg;
+            };
+            bend(0, c - b);
+            bend(1, a - c);
+            bend(2, b - a);
+        }
+    });
 }
 
 void add_pair(const PieceBlock& block,
               const PairEnd& light,
               const PairEnd& sensor,
+              UnitMask units,
               const core::TimeAxis& axis,
               std::span<double> histogram) {
-    const auto common_mask = [&](std::size_t i) {
-        const bool same_side = light.table->side[i] * sensor.table->side[i] > 0.0;
-        return static_cast<VisibilityMask>(same_side ? light.masks[i] & sensor.masks[i] : 0);
-    };
-    std::array<VisibilityMask, kSize> mask;
-    VisibilityMask any = 0;
-    for (std::size_t i = 0; i < kSize; ++i) {
-        mask[i] = common_mask(i);
-        any = static_cast<VisibilityMask>(any | mask[i]);
-    }
-    if (any == 0) return;
-    BlockKnots knots;
-    weigh_nodes(block, light, sensor, knots);
-    fit_weights(knots);
-    auto& weight = knots.fitted.weight;
-    for (std::size_t i = 0; i < block.count; ++i) {
-        if (mask[i] == kAllVisible) continue;
-        const std::array<double, 3> all{weight[0][i], weight[1][i], weight[2][i]};
-        const auto visible = mask[i] != 0 ? visible_weights(all, mask[i]) : std::array<double, 3>{};
-        for (std::size_t j = 0; j < 3; ++j) weight[j][i] = visible[j];
-    }
-    core::add_triangles(knots.fitted, {block.area_m2.data(), block.count}, axis, histogram);
+    core::TriangleLanes fitted;
+    alignas(64) PieceBlock::Lanes area_m2;
+    std::size_t count = 0;
+    for_each_unit(units & light.table->units & sensor.table->units, [&](std::size_t begin) {
+        const UnitMasks masks = common_masks(light, sensor, begin);
+        VisibilityMask any = 0;
+        for (const VisibilityMask mask : masks) any = static_cast<VisibilityMask>(any | mask);
+        if (any == 0) return;
+        for (std::size_t c = 0; c < 3; ++c) {
+            for (std::size_t j = 0; j < PieceBlock::kUnitSize; ++j) {
+                const std::size_t i = begin + j;
+                fitted.opl_m[c][count + j] = light.table->leg_m[c][i] + sensor.table->leg_m[c][i];
+                fitted.bend_m[c][count + j] =
+                    light.table->bend_m[c][i] + sensor.table->bend_m[c][i];
+            }
+        }
+        alignas(64) NodeWeights weights;
+        weigh_nodes(block, begin, light, sensor, weights);
+        fit_weights(weights, count, fitted);
+        keep_visible_weights(masks, count, fitted);
+        std::copy_n(block.area_m2.data() + begin, PieceBlock::kUnitSize, area_m2.data() + count);
+        count += PieceBlock::kUnitSize;
+    });
+    core::add_triangles(fitted, {area_m2.data(), count}, axis, histogram);
 }
 
 }  // namespace renderer

@@ -8,7 +8,7 @@
 
 namespace renderer {
 
-/// What one wall point contributes to every path through the pieces of a block.
+/// What one wall point contributes to every path through the pieces of a block that it sees.
 struct alignas(64) BlockTable {
     /// Length of the leg at the corners, and how it bends along the edges opposite to them, see
     /// core::TriangleLanes [m].
@@ -16,10 +16,16 @@ struct alignas(64) BlockTable {
     /// (n_w.d) |n_x.d| / |d|^4 at the nodes [1/m^2], 0 behind the wall point.
     std::array<PieceBlock::Lanes, PieceBlock::kNodes> factor;
     PieceBlock::Lanes side;  ///< sign of the side of the piece that the wall point is on
+    UnitMask units = 0;      ///< with pieces that the point sees; the others are not filled
 };
 
 /// Fills `table` for one wall point.
-void compute_table(const PieceBlock& block, const WallPoint& point, BlockTable& table);
+///
+/// masks   of the block's pieces, PieceBlock::kSize of them
+void compute_table(const PieceBlock& block,
+                   const WallPoint& point,
+                   const VisibilityMask* masks,
+                   BlockTable& table);
 
 /// One end of the paths of a pair: the wall point, its table and its masks for one block.
 struct PairEnd {
@@ -32,11 +38,13 @@ struct PairEnd {
 /// left out.
 ///
 /// light, sensor   the two ends; the same one twice for a confocal pair
+/// units           with pieces that are wanted; only those that both ends see are added
 /// axis            of the histogram, its start reduced by the pair's device legs
 /// histogram       axis.num_bins values
 void add_pair(const PieceBlock& block,
               const PairEnd& light,
               const PairEnd& sensor,
+              UnitMask units,
               const core::TimeAxis& axis,
               std::span<double> histogram);
 

@@ -189,14 +189,23 @@ std::vector<Piece> PieceCutter::cut_kind(PieceKind kind, double tolerance) const
     return pieces;
 }
 
+// Those of which something comes back to the sensor.
+std::vector<PieceKind> PieceCutter::kinds() const {
+    std::vector<PieceKind> kinds{PieceKind::Lambertian, PieceKind::Glossy};
+    if (scan_.pattern == core::ScanPattern::Confocal) kinds.push_back(PieceKind::Retroreflective);
+    return kinds;
+}
+
 PieceSet PieceCutter::cut(double tolerance) const {
     PieceArranger arranger(scene_, scan_, {tolerance, laser_spot_m2_}, visible_sides_);
-    arranger.add(cut_kind(PieceKind::Lambertian, tolerance), PieceKind::Lambertian);
-    arranger.add(cut_kind(PieceKind::Glossy, tolerance), PieceKind::Glossy);
-    if (scan_.pattern == core::ScanPattern::Confocal) {
-        arranger.add(cut_kind(PieceKind::Retroreflective, tolerance), PieceKind::Retroreflective);
-    }
+    for (const PieceKind kind : kinds()) arranger.add(cut_kind(kind, tolerance), kind);
     return arranger.finish();
+}
+
+std::size_t PieceCutter::num_pieces(double tolerance) const {
+    std::size_t count = 0;
+    for (const PieceKind kind : kinds()) count += cut_kind(kind, tolerance).size();
+    return count;
 }
 
 }  // namespace renderer

@@ -18,10 +18,6 @@ using core::Vec3;
 constexpr std::size_t kSize = PieceBlock::kSize;
 constexpr std::size_t kPointsPerBlock = 4;
 
-bool is_empty(const VisibilityMask* masks) {
-    return std::all_of(masks, masks + kSize, [](VisibilityMask mask) { return mask == 0; });
-}
-
 // Where part `part` of `count` items begins.
 std::size_t begin_of_part(int part, std::size_t count) {
     return static_cast<std::size_t>(part) * count / ThirdBounceScan::kParts;
@@ -39,10 +35,8 @@ class TileTables {
     void compute(const PieceBlock& block, std::size_t block_index) {
         for (std::size_t i = 0; i < points_.size(); ++i) {
             const VisibilityMask* const masks = masks_[i].data() + block_index * kSize;
-            ends_[i] = {&points_[i], nullptr, masks};
-            if (is_empty(masks)) continue;
-            compute_table(block, points_[i], tables_[i]);
-            ends_[i].table = &tables_[i];
+            compute_table(block, points_[i], masks, tables_[i]);
+            ends_[i] = {&points_[i], &tables_[i], masks};
         }
     }
 
@@ -141,10 +135,10 @@ void ThirdBounceScan::integrate_confocal(std::size_t first, std::size_t last) {
                 std::fill(histogram.begin(), histogram.end(), 0.0);
                 for (std::size_t b = 0; b < pieces_.blocks.size(); ++b) {
                     const VisibilityMask* const seen = masks.data() + b * kSize;
-                    if (is_empty(seen)) continue;
-                    compute_table(pieces_.blocks[b], point, table);
+                    compute_table(pieces_.blocks[b], point, seen, table);
+                    if (table.units == 0) continue;
                     const PairEnd end{&point, &table, seen};
-                    add_pair(pieces_.blocks[b], end, end, axis, histogram);
+                    add_pair(pieces_.blocks[b], end, end, kAllUnits, axis, histogram);
                 }
                 store(pair, histogram);
             }
@@ -267,12 +261,13 @@ void ThirdBounceScan::integrate_tile(const PairTiles::Tile& tile,
             const PairEnd& light = lights.ends()[l];
             for (std::size_t s = 0; s < num_sensors; ++s) {
                 const PairEnd& sensor = sensors.ends()[s];
-                if (light.table == nullptr || sensor.table == nullptr) continue;
+                if ((light.table->units & sensor.table->units) == 0) continue;
                 const core::TimeAxis axis = axis_of_pair(pair_of(l, s));
                 if (misses_axis(block, *light.point, *sensor.point, axis)) continue;
                 add_pair(block,
                          light,
                          sensor,
+                         kAllUnits,
                          axis,
                          std::span(histograms).subspan((l * num_sensors + s) * num_bins, num_bins));
             }

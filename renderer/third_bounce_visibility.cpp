@@ -13,6 +13,17 @@ using core::Vec3;
 
 constexpr std::size_t kSize = PieceBlock::kSize;
 
+using UnitLanes = std::array<double, PieceBlock::kUnitSize>;
+
+UnitMask units_of(std::uint64_t lanes) {
+    UnitMask units = 0;
+    for (std::size_t u = 0; u < PieceBlock::kUnits; ++u) {
+        const std::uint64_t unit = (lanes >> (u * PieceBlock::kUnitSize)) & 0xff;
+        units |= UnitMask{unit != 0} << u;
+    }
+    return units;
+}
+
 // Standard deviation of the visible share of a piece that a shadow's straight edge crosses, known
 // from its centre, from 4 and from 16 points [found by simulation].
 constexpr double kErrorFromCenter = 0.24;
@@ -81,10 +92,10 @@ void VisibilityTracer::classify_block(std::uint32_t b, const VisibilityRules& ru
     if (point_.normal.dot(block.sphere_center - point_.position) < -block.sphere_radius_m) return;
     const LengthBounds lengths = path_lengths(b, rules);
     if (lengths.most_m < rules.opl_begin_m || lengths.least_m > rules.opl_end_m) return;
-    std::uint64_t relevant = lanes_seen(b, rules.other_end);
-    if (lengths.least_m < rules.opl_begin_m || lengths.most_m > rules.opl_end_m) {
-        relevant &= lanes_within_axis(b, rules);
-    }
+    const bool crosses_end =
+        lengths.least_m < rules.opl_begin_m || lengths.most_m > rules.opl_end_m;
+    const std::uint64_t within = crosses_end ? lanes_within_axis(b, rules) : ~std::uint64_t{0};
+    const std::uint64_t relevant = within & lanes_seen(b, units_of(within), rules.other_end);
     if (relevant == 0) return;
     active_blocks_.push_back(b);
     for (std::size_t i = 0; i < block.count; ++i) {
@@ -93,8 +104,35 @@ void VisibilityTracer::classify_block(std::uint32_t b, const VisibilityRules& ru
     choose_representatives(b, relevant);
 }
 
+// Units of which some path may have a length within the axis.
+UnitMask VisibilityTracer::units_within_axis(std::uint32_t b, const VisibilityRules& rules) const {
+    const PieceBlock& block = set_.blocks[b];
+    const bool exact = rules.other_legs.empty();
+    const LengthBounds others = exact ? LengthBounds{} : rules.other_legs[b];
+    const double num_exact = exact ? 1.0 : 0.0;
+    std::array<bool, PieceBlock::kUnits> within;
+    for (std::size_t u = 0; u < PieceBlock::kUnits; ++u) {
+        const auto distance = [&](const Vec3& from) {
+            const double x = block.unit_x[u] - from.x();
+            const double y = block.unit_y[u] - from.y();
+            const double z = block.unit_z[u] - from.z();
+            return std::sqrt(x * x + y * y + z * z);
+        };
+        const double middle =
+            distance(point_.position) + num_exact * distance(rules.other_end.position);
+        const double reach = (1.0 + num_exact) * block.unit_radius_m[u];
+        within[u] = (middle + reach + others.most_m >= rules.opl_begin_m) &
+                    (middle - reach + others.least_m <= rules.opl_end_m);
+    }
+    UnitMask units = 0;
+    for (std::size_t u = 0; u < within.size(); ++u) units |= UnitMask{within[u]} << u;
+    return units;
+}
+
 // Pieces that show the point a side which reflects; computes their masses on the way.
-std::uint64_t VisibilityTracer::lanes_seen(std::uint32_t b, const WallPoint& other) {
+std::uint64_t VisibilityTracer::lanes_seen(std::uint32_t b,
+                                           UnitMask units,
+                                           const WallPoint& other) {
     const PieceBlock& block = set_.blocks[b];
     const bool retro = block.kind == PieceKind::Retroreflective;
     double* const mass = piece_mass_.data() + b * kSize;
@@ -109,75 +147,72 @@ std::uint64_t VisibilityTracer::lanes_seen(std::uint32_t b, const WallPoint& oth
         facing = -(x * block.normal_x[i] + y * block.normal_y[i] + z * block.normal_z[i]);
         return std::max(0.0, front + block.longest_edge_m) * std::abs(facing) / (d2 * d2);
     };
-    alignas(64) PieceBlock::Lanes seen;
-    for (std::size_t i = 0; i < kSize; ++i) {
-        double facing = 0.0;
-        double other_facing = 0.0;
-        const double g = term(point_, i, facing);
-        const double other_g = term(other, i, other_facing);
-        mass[i] = block.area_m2[i] * block.mean_reflectance[i] * g * (retro ? 1.0 : other_g);
-        const bool hidden_side = block.one_sided[i] * facing < 0.0;
-        seen[i] = hidden_side ? 0.0 : mass[i];
-    }
     std::uint64_t lanes = 0;
-    for (std::size_t i = 0; i < block.count; ++i) lanes |= std::uint64_t{seen[i] > 0.0} << i;
+    for_each_unit(units, [&](std::size_t begin) {
+        alignas(64) UnitLanes seen;
+        for (std::size_t j = 0; j < seen.size(); ++j) {
+            const std::size_t i = begin + j;
+            double facing = 0.0;
+            double other_facing = 0.0;
+            const double g = term(point_, i, facing);
+            const double other_g = term(other, i, other_facing);
+            mass[i] = block.area_m2[i] * block.mean_reflectance[i] * g * (retro ? 1.0 : other_g);
+            const bool hidden_side = block.one_sided[i] * facing < 0.0;
+            seen[j] = hidden_side ? 0.0 : mass[i];
+        }
+        for (std::size_t j = 0; j < seen.size(); ++j) {
+            lanes |= std::uint64_t{seen[j] > 0.0} << (begin + j);
+        }
+    });
     return lanes;
 }
 
-// Pieces of which some path has a length within the axis.
+// Pieces of which some path may have a length within the axis.
 std::uint64_t VisibilityTracer::lanes_within_axis(std::uint32_t b,
                                                   const VisibilityRules& rules) const {
     const PieceBlock& block = set_.blocks[b];
     const bool exact = rules.other_legs.empty();
     const bool confocal = exact && rules.other_end.position == point_.position;
-    const LengthBounds others = exact ? LengthBounds{} : rules.other_legs[b];
-    alignas(64) PieceBlock::Lanes shortest;
-    alignas(64) PieceBlock::Lanes longest;
-    alignas(64) PieceBlock::Lanes shortest_leg;
-    alignas(64) PieceBlock::Lanes shortest_other_leg;
-    for (auto* lanes : {&shortest, &shortest_leg, &shortest_other_leg}) {
-        lanes->fill(std::numeric_limits<double>::infinity());
-    }
-    longest.fill(0.0);
-    alignas(64) PieceBlock::Lanes legs;
-    alignas(64) PieceBlock::Lanes exact_other_legs{};
-    const PieceBlock::Lanes& other_legs = confocal ? legs : exact_other_legs;
-    for (std::size_t corner = 0; corner < 3; ++corner) {
-        const auto find_distances = [&](const Vec3& from, PieceBlock::Lanes& distances) {
-            for (std::size_t i = 0; i < kSize; ++i) {
-                const double x = block.x[corner][i] - from.x();
-                const double y = block.y[corner][i] - from.y();
-                const double z = block.z[corner][i] - from.z();
-                distances[i] = std::sqrt(x * x + y * y + z * z);
+    // For a point x = sum of l_c c over corners c, |x-w|^2 = sum of l_c |c-w|^2 - sum of l_c
+    // |c-x|^2, and the last term is at most edge^2/3 ([Jung1901]).
+    const double most_below2 = block.longest_edge_m * block.longest_edge_m / 3.0;
+    std::uint64_t lanes = 0;
+    for_each_unit(units_within_axis(b, rules), [&](std::size_t begin) {
+        struct Legs {
+            alignas(64) UnitLanes least;
+            alignas(64) UnitLanes most;
+        };
+        const auto find_legs = [&](const Vec3& from, Legs& legs) {
+            for (std::size_t j = 0; j < PieceBlock::kUnitSize; ++j) {
+                const auto squared_distance = [&](std::size_t corner) {
+                    const double x = block.x[corner][begin + j] - from.x();
+                    const double y = block.y[corner][begin + j] - from.y();
+                    const double z = block.z[corner][begin + j] - from.z();
+                    return x * x + y * y + z * z;
+                };
+                const double first = squared_distance(0);
+                const double second = squared_distance(1);
+                const double third = squared_distance(2);
+                const double least2 = std::min(first, std::min(second, third)) - most_below2;
+                legs.least[j] = std::sqrt(std::max(0.0, least2));
+                legs.most[j] = std::sqrt(std::max(first, std::max(second, third)));
             }
         };
-        find_distances(point_.position, legs);
-        if (exact && !confocal) find_distances(rules.other_end.position, exact_other_legs);
-        for (std::size_t i = 0; i < kSize; ++i) {
-            const double length = legs[i] + other_legs[i];
-            shortest[i] = std::min(shortest[i], length);
-            longest[i] = std::max(longest[i], length);
-            shortest_leg[i] = std::min(shortest_leg[i], legs[i]);
-            shortest_other_leg[i] = std::min(shortest_other_leg[i], other_legs[i]);
+        Legs legs;
+        find_legs(point_.position, legs);
+        Legs other_legs = legs;
+        if (exact && !confocal) find_legs(rules.other_end.position, other_legs);
+        if (!exact) {
+            other_legs.least.fill(rules.other_legs[b].least_m);
+            other_legs.most.fill(rules.other_legs[b].most_m);
         }
-    }
-    // For a point x = sum of l_c c over corners c, |x-w|^2 = sum of l_c |c-w|^2 - sum of l_c
-    // |c-x|^2, and the last term is at most edge^2/3 ([Jung1901]): a leg falls below the mean of
-    // those of the corners by no more than it would from the shortest one.
-    const double most_below2 = block.longest_edge_m * block.longest_edge_m / 3.0;
-    const auto sag = [&](double leg) {
-        return leg - std::sqrt(std::max(0.0, leg * leg - most_below2));
-    };
-    for (std::size_t i = 0; i < kSize; ++i) {
-        shortest[i] += others.least_m - sag(shortest_leg[i]);
-        if (exact) shortest[i] -= sag(shortest_other_leg[i]);
-    }
-    std::uint64_t lanes = 0;
-    for (std::size_t i = 0; i < block.count; ++i) {
-        const double most = longest[i] + others.most_m;
-        const bool within = most >= rules.opl_begin_m && shortest[i] <= rules.opl_end_m;
-        lanes |= std::uint64_t{within} << i;
-    }
+        for (std::size_t j = 0; j < PieceBlock::kUnitSize; ++j) {
+            const double least = legs.least[j] + other_legs.least[j];
+            const double most = legs.most[j] + other_legs.most[j];
+            const bool within = (most >= rules.opl_begin_m) & (least <= rules.opl_end_m);
+            lanes |= std::uint64_t{within} << (begin + j);
+        }
+    });
     return lanes;
 }
 

@@ -57,7 +57,8 @@ class VisibilityTracer {
     void classify(const VisibilityRules& rules);
     void classify_block(std::uint32_t block, const VisibilityRules& rules);
     LengthBounds path_lengths(std::uint32_t block, const VisibilityRules& rules) const;
-    std::uint64_t lanes_seen(std::uint32_t block, const WallPoint& other);
+    UnitMask units_within_axis(std::uint32_t block, const VisibilityRules& rules) const;
+    std::uint64_t lanes_seen(std::uint32_t block, UnitMask units, const WallPoint& other);
     std::uint64_t lanes_within_axis(std::uint32_t block, const VisibilityRules& rules) const;
     void choose_representatives(std::uint32_t block, std::uint64_t relevant);
     void trace_groups();
