@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <numeric>
 
 namespace renderer {
 namespace {
@@ -81,18 +82,29 @@ Pairs touching_pieces(std::span<const Piece> pieces) {
     return pairs;
 }
 
-NeighbourLists neighbour_lists(std::size_t num_items, Pairs pairs) {
-    const std::size_t count = pairs.size();
-    for (std::size_t i = 0; i < count; ++i) pairs.emplace_back(pairs[i].second, pairs[i].first);
-    std::sort(pairs.begin(), pairs.end());
-    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-    NeighbourLists lists;
-    lists.begin.assign(num_items + 1, 0);
-    for (const auto& [from, to] : pairs) {
-        ++lists.begin[from + 1];
-        lists.items.push_back(to);
+NeighbourLists neighbour_lists(std::size_t num_items, const Pairs& pairs) {
+    // Counting sort by the first item; then each list for itself.
+    std::vector<std::uint32_t> end(num_items, 0);
+    for (const auto& [a, b] : pairs) {
+        ++end[a];
+        ++end[b];
     }
-    for (std::size_t i = 0; i < num_items; ++i) lists.begin[i + 1] += lists.begin[i];
+    std::exclusive_scan(end.begin(), end.end(), end.begin(), std::uint32_t{0});
+    std::vector<std::uint32_t> begin = end;
+    std::vector<std::uint32_t> others(2 * pairs.size());
+    for (const auto& [a, b] : pairs) {
+        others[end[a]++] = b;
+        others[end[b]++] = a;
+    }
+    NeighbourLists lists;
+    lists.begin.push_back(0);
+    for (std::size_t item = 0; item < num_items; ++item) {
+        const auto first = others.begin() + begin[item];
+        const auto last = others.begin() + end[item];
+        std::sort(first, last);
+        lists.items.insert(lists.items.end(), first, std::unique(first, last));
+        lists.begin.push_back(static_cast<std::uint32_t>(lists.items.size()));
+    }
     return lists;
 }
 

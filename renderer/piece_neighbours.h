@@ -16,6 +16,6 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> touching_pieces(std::span<c
 
 /// The lists of both ends of every pair, without duplicates, in rising order.
 NeighbourLists neighbour_lists(std::size_t num_items,
-                               std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs);
+                               const std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs);
 
 }  // namespace renderer

@@ -12,6 +12,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <utility>
 
 namespace renderer {
 namespace {
@@ -129,7 +130,7 @@ class Integrator {
 
  private:
     double tolerance(int fineness) const { return target_ * std::exp2(fineness); }
-    PieceSet cut(int fineness) const { return cutter_.cut(tolerance(fineness)); }
+    const PieceSet& cut(int fineness);
     double negligible_error(int fineness) const {
         return kNegligibleShare * tolerance(fineness) * norm_per_pair_;
     }
@@ -150,6 +151,7 @@ class Integrator {
     double target_;
     std::optional<double> seconds_;
     PieceCutter cutter_;
+    std::optional<std::pair<int, PieceSet>> cut_;  ///< the latest
     double norm_per_pair_ = 0.0;
     std::map<int, Transient> trials_;
     std::map<int, std::size_t> num_pieces_;
@@ -161,10 +163,19 @@ class Integrator {
     std::uint64_t num_rays_ = 0;
 };
 
+// Valid until another fineness is asked for.
+const PieceSet& Integrator::cut(int fineness) {
+    if (!cut_ || cut_->first != fineness) {
+        cut_.reset();
+        cut_.emplace(fineness, cutter_.cut(tolerance(fineness)));
+    }
+    return cut_->second;
+}
+
 const Transient& Integrator::try_out(int fineness) {
     if (const auto it = trials_.find(fineness); it != trials_.end()) return it->second;
     const core::Stopwatch cutting;
-    const PieceSet pieces = cut(fineness);
+    const PieceSet& pieces = cut(fineness);
     cut_seconds_[fineness] = cutting.seconds();
     num_pieces_[fineness] = pieces.num_pieces;
     const core::Stopwatch watch;
@@ -252,7 +263,7 @@ int Integrator::integrate(int fineness,
                           int first_part,
                           const core::Progress& progress,
                           ThirdBounce& result) {
-    const PieceSet pieces = cut(fineness);
+    const PieceSet& pieces = cut(fineness);
     ThirdBounceScan scan(
         scene_, scan_, axis_, pieces, negligible_error(fineness), memory_for_visibility());
     const auto go_on = [&](double share) {
@@ -260,10 +271,10 @@ int Integrator::integrate(int fineness,
         return !progress.should_stop();
     };
     const int part = scan.integrate(first_part, go_on, result.transient);
-    if (!errors_.contains(fineness)) error_of(fineness);
-    result.estimated_error = std::max(result.estimated_error, errors_.at(fineness));
     result.num_pieces = std::max(result.num_pieces, pieces.num_pieces);
     num_rays_ += scan.num_rays();
+    if (!errors_.contains(fineness)) error_of(fineness);
+    result.estimated_error = std::max(result.estimated_error, errors_.at(fineness));
     return part;
 }
 

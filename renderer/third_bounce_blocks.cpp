@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 namespace renderer {
@@ -22,6 +23,32 @@ constexpr double kLeastGroupCosine = 0.85;
 double reflectance(const Bsdf& bsdf, PieceKind kind, double laser_spot_m2) {
     const double albedo = albedo_of(bsdf);
     return kind == PieceKind::Retroreflective ? albedo / laser_spot_m2 : albedo / core::kPi;
+}
+
+struct PieceCenter {
+    Vec3 position;
+    std::size_t piece;
+};
+
+// Median splits along the longest side of the centres' box, at whole blocks where there are
+// several.
+void sort_into_blocks(std::span<PieceCenter> centers) {
+    const std::size_t count = centers.size();
+    if (count < 2) return;
+    Eigen::AlignedBox3d box;
+    for (const PieceCenter& center : centers) box.extend(center.position);
+    Eigen::Index axis = 0;
+    box.sizes().maxCoeff(&axis);
+    std::size_t half = (count + 1) / 2;
+    if (count > kSize) half = (half + kSize - 1) / kSize * kSize;
+    std::nth_element(centers.begin(),
+                     centers.begin() + static_cast<std::ptrdiff_t>(half),
+                     centers.end(),
+                     [axis](const PieceCenter& a, const PieceCenter& b) {
+                         return a.position[axis] < b.position[axis];
+                     });
+    sort_into_blocks(centers.first(half));
+    sort_into_blocks(centers.subspan(half));
 }
 
 void find_unit_spheres(PieceBlock& block) {
@@ -51,27 +78,6 @@ PieceArranger::PieceArranger(const Scene& scene,
     Vec3 sum = Vec3::Zero();
     for (const Vec3& point : scan.sensing.positions) sum += point - set_.origin;
     scan_center_ = sum / static_cast<double>(scan.sensing.size());
-}
-
-// Median splits along the longest side of the centres' box, at whole blocks where there are
-// several.
-void PieceArranger::sort_into_blocks(std::vector<Piece>& pieces, Range range) const {
-    const std::size_t count = range.end - range.begin;
-    if (count < 2) return;
-    Eigen::AlignedBox3d box;
-    for (std::size_t i = range.begin; i < range.end; ++i) box.extend(pieces[i].center());
-    Eigen::Index axis = 0;
-    box.sizes().maxCoeff(&axis);
-    std::size_t half = (count + 1) / 2;
-    if (count > kSize) half = (half + kSize - 1) / kSize * kSize;
-    const auto at = [&](std::size_t i) { return pieces.begin() + static_cast<std::ptrdiff_t>(i); };
-    std::nth_element(
-        at(range.begin),
-        at(range.begin + half),
-        at(range.end),
-        [axis](const Piece& a, const Piece& b) { return a.center()[axis] < b.center()[axis]; });
-    sort_into_blocks(pieces, {range.begin, range.begin + half});
-    sort_into_blocks(pieces, {range.begin + half, range.end});
 }
 
 void PieceArranger::fill_lane(PieceBlock& block, std::size_t lane, const Piece& piece) const {
@@ -140,8 +146,12 @@ void PieceArranger::add(std::vector<Piece> pieces, PieceKind kind) {
         const auto& [a, b, c] = piece.corners;
         return !(core::triangle_area_vector(a, b, c).squaredNorm() > 0.0);
     });
-    sort_into_blocks(pieces, {0, pieces.size()});
-    append_blocks(pieces, kind);
+    std::vector<PieceCenter> centers;
+    for (std::size_t i = 0; i < pieces.size(); ++i) centers.push_back({pieces[i].center(), i});
+    sort_into_blocks(centers);
+    std::vector<Piece> sorted;
+    for (const PieceCenter& center : centers) sorted.push_back(pieces[center.piece]);
+    append_blocks(sorted, kind);
 }
 
 bool PieceArranger::may_be_one_group(const PieceBlock& block, Range lanes) const {
@@ -211,7 +221,7 @@ void PieceArranger::find_group_neighbours() {
             if (group_of[piece] < other) pairs.emplace_back(group_of[piece], other);
         }
     }
-    set_.group_neighbours = neighbour_lists(set_.groups.size(), std::move(pairs));
+    set_.group_neighbours = neighbour_lists(set_.groups.size(), pairs);
 }
 
 PieceSet PieceArranger::finish() {
@@ -221,7 +231,7 @@ PieceSet PieceArranger::finish() {
         a = piece_ids_[a];
         b = piece_ids_[b];
     }
-    set_.piece_neighbours = neighbour_lists(set_.blocks.size() * kSize, std::move(pairs));
+    set_.piece_neighbours = neighbour_lists(set_.blocks.size() * kSize, pairs);
     for (std::size_t block = 0; block < set_.blocks.size(); ++block) {
         set_.first_group.push_back(static_cast<std::uint32_t>(set_.groups.size()));
         form_groups(block, {0, set_.blocks[block].count});

@@ -33,7 +33,6 @@ class PieceArranger {
         std::size_t begin;
         std::size_t end;
     };
-    void sort_into_blocks(std::vector<Piece>& pieces, Range range) const;
     void append_blocks(const std::vector<Piece>& pieces, PieceKind kind);
     void fill_lane(PieceBlock& block, std::size_t lane, const Piece& piece) const;
     bool may_be_one_group(const PieceBlock& block, Range lanes) const;

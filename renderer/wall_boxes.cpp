@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 namespace renderer {
 namespace {
@@ -15,6 +16,41 @@ constexpr std::size_t kMostBoxes = 64;
 // Walls with more distinct tangent planes are not searched for what lies behind all of them.
 constexpr std::size_t kMostPlanes = 256;
 
+using Runs = std::vector<std::span<Vec3>>;
+
+// Median splits along the longest side, until runs hold few points.
+void split(std::span<Vec3> points, std::size_t most_per_run, Runs& runs) {
+    if (points.size() <= most_per_run) {
+        runs.push_back(points);
+        return;
+    }
+    Eigen::AlignedBox3d box;
+    for (const Vec3& point : points) box.extend(point);
+    Eigen::Index axis = 0;
+    box.sizes().maxCoeff(&axis);
+    const std::size_t half = points.size() / 2;
+    std::nth_element(points.begin(),
+                     points.begin() + static_cast<std::ptrdiff_t>(half),
+                     points.end(),
+                     [axis](const Vec3& a, const Vec3& b) { return a[axis] < b[axis]; });
+    split(points.first(half), most_per_run, runs);
+    split(points.subspan(half), most_per_run, runs);
+}
+
+// Values per box, in vector units and without memory of the heap.
+using PerBox = Eigen::Array<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostBoxes, 1>;
+
+// Squared distances from a point to the nearest of each box, given by two corners.
+PerBox squared_distances(const Eigen::ArrayX3d& lower,
+                         const Eigen::ArrayX3d& upper,
+                         const Vec3& point) {
+    PerBox sum = PerBox::Zero(lower.rows());
+    for (Eigen::Index c = 0; c < 3; ++c) {
+        sum += (lower.col(c) - point[c]).max(point[c] - upper.col(c)).max(0.0).square();
+    }
+    return sum;
+}
+
 }  // namespace
 
 WallBoxes::WallBoxes(const core::Scan& scan, const Vec3& origin)
@@ -22,8 +58,9 @@ WallBoxes::WallBoxes(const core::Scan& scan, const Vec3& origin)
       sensor_(make_boxes(scan.sensing, origin)) {
     if (!confocal_) light_ = make_boxes(scan.illumination, origin);
     for (const Boxes* boxes : {&light_, &sensor_}) {
-        for (const Box& box : *boxes) {
-            slack_m_ = std::max(slack_m_, box.bounds.diagonal().norm());
+        for (Eigen::Index i = 0; i < boxes->lower.rows(); ++i) {
+            const double diagonal = (boxes->upper.row(i) - boxes->lower.row(i)).matrix().norm();
+            slack_m_ = std::max(slack_m_, diagonal);
         }
     }
     const auto [least, most] = core::device_leg_range_m(scan);
@@ -45,43 +82,40 @@ void WallBoxes::find_planes(const core::WallPoints& points, const Vec3& origin) 
     }
 }
 
-// Median splits along the longest side, until boxes hold few points.
-void WallBoxes::split(std::vector<Vec3> points, std::size_t most_per_box, Boxes& boxes) {
-    Box box;
-    for (const Vec3& point : points) box.bounds.extend(point);
-    if (points.size() <= most_per_box) {
-        box.points = std::move(points);
-        boxes.push_back(std::move(box));
-        return;
-    }
-    Eigen::Index axis = 0;
-    box.bounds.sizes().maxCoeff(&axis);
-    const auto middle = points.begin() + static_cast<std::ptrdiff_t>(points.size() / 2);
-    std::nth_element(points.begin(), middle, points.end(), [axis](const Vec3& a, const Vec3& b) {
-        return a[axis] < b[axis];
-    });
-    split({points.begin(), middle}, most_per_box, boxes);
-    split({middle, points.end()}, most_per_box, boxes);
-}
-
 WallBoxes::Boxes WallBoxes::make_boxes(const core::WallPoints& points, const Vec3& origin) {
     std::vector<Vec3> positions;
     for (const Vec3& position : points.positions) positions.push_back(position - origin);
+    Runs runs;
+    // Halved six times, runs are as short as that.
+    split(positions, (points.size() + kMostBoxes - 1) / kMostBoxes, runs);
     Boxes boxes;
-    split(std::move(positions), (points.size() + kMostBoxes - 1) / kMostBoxes, boxes);
+    boxes.points.resize(static_cast<Eigen::Index>(positions.size()), 3);
+    boxes.lower.resize(static_cast<Eigen::Index>(runs.size()), 3);
+    boxes.upper.resize(boxes.lower.rows(), 3);
+    Eigen::Index row = 0;
+    for (const std::span<Vec3> run : runs) {
+        const auto box = static_cast<Eigen::Index>(boxes.first_point.size());
+        boxes.first_point.push_back(row);
+        Eigen::AlignedBox3d bounds;
+        for (const Vec3& point : run) {
+            bounds.extend(point);
+            boxes.points.row(row++) = point;
+        }
+        boxes.lower.row(box) = bounds.min();
+        boxes.upper.row(box) = bounds.max();
+    }
+    boxes.first_point.push_back(row);
     return boxes;
 }
 
 LengthBounds WallBoxes::bounds(const Boxes& boxes, const Vec3& center, double radius) {
-    double least = std::numeric_limits<double>::infinity();
-    double most = 0.0;
-    for (const Box& box : boxes) {
-        least = std::min(least, box.bounds.squaredExteriorDistance(center));
-        const Vec3 farthest =
-            (center - box.bounds.min()).cwiseAbs().cwiseMax((center - box.bounds.max()).cwiseAbs());
-        most = std::max(most, farthest.squaredNorm());
+    const double least = squared_distances(boxes.lower, boxes.upper, center).minCoeff();
+    PerBox farthest = PerBox::Zero(boxes.lower.rows());
+    for (Eigen::Index c = 0; c < 3; ++c) {
+        farthest +=
+            (boxes.upper.col(c) - center[c]).max(center[c] - boxes.lower.col(c)).square();
     }
-    return {std::max(0.0, std::sqrt(least) - radius), std::sqrt(most) + radius};
+    return {std::max(0.0, std::sqrt(least) - radius), std::sqrt(farthest.maxCoeff()) + radius};
 }
 
 LegBounds WallBoxes::legs(const Vec3& center, double radius) const {
@@ -90,10 +124,21 @@ LegBounds WallBoxes::legs(const Vec3& center, double radius) const {
 }
 
 double WallBoxes::nearest(const Boxes& boxes, const Vec3& center, double radius) {
+    const PerBox distances2 = squared_distances(boxes.lower, boxes.upper, center);
     double best = std::numeric_limits<double>::infinity();
-    for (const Box& box : boxes) {
-        if (box.bounds.squaredExteriorDistance(center) >= best) continue;
-        for (const Vec3& point : box.points) best = std::min(best, (point - center).squaredNorm());
+    const auto look_into = [&](Eigen::Index box) {
+        const Eigen::Index begin = boxes.first_point[static_cast<std::size_t>(box)];
+        const Eigen::Index end = boxes.first_point[static_cast<std::size_t>(box) + 1];
+        const auto offset2 = [&](Eigen::Index c) {
+            return (boxes.points.col(c).segment(begin, end - begin) - center[c]).square();
+        };
+        best = std::min(best, (offset2(0) + offset2(1) + offset2(2)).minCoeff());
+    };
+    Eigen::Index first = 0;
+    distances2.minCoeff(&first);
+    look_into(first);
+    for (Eigen::Index box = 0; box < distances2.size(); ++box) {
+        if (distances2[box] < best && box != first) look_into(box);
     }
     return std::max(0.0, std::sqrt(best) - radius);
 }

@@ -44,14 +44,13 @@ class WallBoxes {
     const std::optional<std::pair<core::Vec3, double>>& common_plane() const { return plane_; }
 
  private:
-    struct Box {
-        Eigen::AlignedBox3d bounds;
-        std::vector<core::Vec3> points;
+    struct Boxes {
+        Eigen::ArrayX3d lower, upper;           ///< corners
+        Eigen::ArrayX3d points;                 ///< box by box
+        std::vector<Eigen::Index> first_point;  ///< per box, and one past the last
     };
-    using Boxes = std::vector<Box>;
 
     void find_planes(const core::WallPoints& points, const core::Vec3& origin);
-    static void split(std::vector<core::Vec3> points, std::size_t most_per_box, Boxes& boxes);
     static Boxes make_boxes(const core::WallPoints& points, const core::Vec3& origin);
     static LengthBounds bounds(const Boxes& boxes, const core::Vec3& center, double radius);
     static double nearest(const Boxes& boxes, const core::Vec3& center, double radius);
