@@ -248,7 +248,7 @@ int Integrator::choose_fineness(const core::Progress& progress) {
         }
         return fineness;
     }
-    const auto fewest = static_cast<double>(cutter_.num_pieces(tolerance(kCoarsest)));
+    const auto fewest = static_cast<double>(cutter_.fewest_pieces(tolerance(kCoarsest)));
     const auto can_be_coarser = [&] {
         return static_cast<double>(num_pieces_.at(fineness)) > kNearlyFewest * fewest;
     };

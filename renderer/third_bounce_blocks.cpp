@@ -80,7 +80,10 @@ PieceArranger::PieceArranger(const Scene& scene,
     scan_center_ = sum / static_cast<double>(scan.sensing.size());
 }
 
-void PieceArranger::fill_lane(PieceBlock& block, std::size_t lane, const Piece& piece) const {
+void PieceArranger::fill_lane(PieceBlock& block,
+                              std::size_t lane,
+                              const MergedPiece& merged) const {
+    const Piece& piece = merged.triangle;
     for (std::size_t i = 0; i < 3; ++i) {
         block.x[i][lane] = piece.corners[i].x();
         block.y[i][lane] = piece.corners[i].y();
@@ -88,17 +91,16 @@ void PieceArranger::fill_lane(PieceBlock& block, std::size_t lane, const Piece& 
         block.squared_edge[i][lane] =
             (piece.corners[(i + 2) % 3] - piece.corners[(i + 1) % 3]).squaredNorm();
     }
-    const Facet& facet = scene_.facet(piece.facet);
-    block.normal_x[lane] = facet.normal.x();
-    block.normal_y[lane] = facet.normal.y();
-    block.normal_z[lane] = facet.normal.z();
+    block.normal_x[lane] = merged.normal.x();
+    block.normal_y[lane] = merged.normal.y();
+    block.normal_z[lane] = merged.normal.z();
     const Vec3 center = piece.center();
     block.center_x[lane] = center.x();
     block.center_y[lane] = center.y();
     block.center_z[lane] = center.z();
-    block.area_m2[lane] =
-        core::triangle_area_vector(piece.corners[0], piece.corners[1], piece.corners[2]).norm();
-    block.one_sided[lane] = visible_side_[facet.object];
+    block.area_m2[lane] = merged.area_m2;
+    block.rise_m[lane] = merged.rise_m;
+    block.one_sided[lane] = visible_side_[scene_.facet(piece.facet).object];
     block.facet[lane] = piece.facet;
     block.mean_reflectance[lane] = 0.0;
     for (std::size_t node = 0; node < PieceBlock::kNodes; ++node) {
@@ -113,25 +115,32 @@ void PieceArranger::fill_lane(PieceBlock& block, std::size_t lane, const Piece& 
     }
 }
 
-void PieceArranger::append_blocks(const std::vector<Piece>& pieces, PieceKind kind) {
-    for (std::size_t begin = 0; begin < pieces.size(); begin += kSize) {
+void PieceArranger::append_blocks(const std::vector<MergedPiece>& pieces, PieceKind kind) {
+    std::vector<PieceCenter> sorted;
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        const Piece& triangle = pieces[i].triangle;
+        if (kind_of(scene_.object_of(triangle.facet).material) == kind) {
+            sorted.push_back({triangle.center(), i});
+        }
+    }
+    sort_into_blocks(sorted);
+    for (std::size_t begin = 0; begin < sorted.size(); begin += kSize) {
         PieceBlock& block = set_.blocks.emplace_back();
         block.kind = kind;
-        block.count = std::min(kSize, pieces.size() - begin);
+        block.count = std::min(kSize, sorted.size() - begin);
         Eigen::AlignedBox3d box;
         for (std::size_t lane = 0; lane < kSize; ++lane) {
-            const Piece& piece = pieces[begin + (lane < block.count ? lane : 0)];
-            fill_lane(block, lane, piece);
+            const std::size_t index = sorted[begin + (lane < block.count ? lane : 0)].piece;
+            fill_lane(block, lane, pieces[index]);
             if (lane >= block.count) {
                 block.area_m2[lane] = 0.0;
                 continue;
             }
-            piece_ids_.push_back(
-                static_cast<std::uint32_t>((set_.blocks.size() - 1) * kSize + lane));
-            pieces_.push_back(piece);
+            piece_ids_[index] = static_cast<std::uint32_t>((set_.blocks.size() - 1) * kSize + lane);
+            const auto& corners = pieces[index].triangle.corners;
             for (std::size_t i = 0; i < 3; ++i) {
-                box.extend(piece.corners[i]);
-                const double edge = (piece.corners[(i + 1) % 3] - piece.corners[i]).norm();
+                box.extend(corners[i]);
+                const double edge = (corners[(i + 1) % 3] - corners[i]).norm();
                 block.longest_edge_m = std::max(block.longest_edge_m, edge);
             }
         }
@@ -139,19 +148,6 @@ void PieceArranger::append_blocks(const std::vector<Piece>& pieces, PieceKind ki
         block.sphere_radius_m = 0.5 * box.diagonal().norm();
         find_unit_spheres(block);
     }
-}
-
-void PieceArranger::add(std::vector<Piece> pieces, PieceKind kind) {
-    std::erase_if(pieces, [](const Piece& piece) {
-        const auto& [a, b, c] = piece.corners;
-        return !(core::triangle_area_vector(a, b, c).squaredNorm() > 0.0);
-    });
-    std::vector<PieceCenter> centers;
-    for (std::size_t i = 0; i < pieces.size(); ++i) centers.push_back({pieces[i].center(), i});
-    sort_into_blocks(centers);
-    std::vector<Piece> sorted;
-    for (const PieceCenter& center : centers) sorted.push_back(pieces[center.piece]);
-    append_blocks(sorted, kind);
 }
 
 bool PieceArranger::may_be_one_group(const PieceBlock& block, Range lanes) const {
@@ -224,13 +220,21 @@ void PieceArranger::find_group_neighbours() {
     set_.group_neighbours = neighbour_lists(set_.groups.size(), pairs);
 }
 
-PieceSet PieceArranger::finish() {
-    set_.num_pieces = pieces_.size();
-    auto pairs = touching_pieces(pieces_);
-    for (auto& [a, b] : pairs) {
-        a = piece_ids_[a];
-        b = piece_ids_[b];
+PieceSet PieceArranger::arrange(std::span<const Piece> pieces,
+                                std::span<const std::uint32_t> clusters) {
+    auto pairs = touching_pieces(pieces);
+    const MergedPieces merged = merge_pieces(scene_, pieces, clusters, pairs);
+    set_.num_pieces = merged.pieces.size();
+    piece_ids_.resize(set_.num_pieces);
+    for (const PieceKind kind :
+         {PieceKind::Lambertian, PieceKind::Glossy, PieceKind::Retroreflective}) {
+        append_blocks(merged.pieces, kind);
     }
+    for (auto& [a, b] : pairs) {
+        a = piece_ids_[merged.merged_of[a]];
+        b = piece_ids_[merged.merged_of[b]];
+    }
+    std::erase_if(pairs, [](const auto& pair) { return pair.first == pair.second; });
     set_.piece_neighbours = neighbour_lists(set_.blocks.size() * kSize, pairs);
     for (std::size_t block = 0; block < set_.blocks.size(); ++block) {
         set_.first_group.push_back(static_cast<std::uint32_t>(set_.groups.size()));

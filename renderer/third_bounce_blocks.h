@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "renderer/merged_pieces.h"
 #include "renderer/third_bounce_pieces.h"
 
+#include <span>
 #include <vector>
 
 namespace renderer {
@@ -13,7 +15,7 @@ struct PieceRules {
     double laser_spot_m2 = 1e-4;
 };
 
-/// Arranges pieces into blocks of neighbours and groups within blocks.
+/// Merges pieces and arranges them into blocks of neighbours and groups within blocks.
 class PieceArranger {
  public:
     /// visible_side   per object, see closed_surface.h
@@ -22,19 +24,18 @@ class PieceArranger {
                   const PieceRules& rules,
                   std::vector<int> visible_side);
 
-    /// Adds all pieces of one kind.
-    void add(std::vector<Piece> pieces, PieceKind kind);
-
-    /// Finds neighbours and returns the set; call once.
-    PieceSet finish();
+    /// Call once.
+    ///
+    /// clusters   of pieces that may be merged, see cluster_pieces()
+    PieceSet arrange(std::span<const Piece> pieces, std::span<const std::uint32_t> clusters);
 
  private:
     struct Range {
         std::size_t begin;
         std::size_t end;
     };
-    void append_blocks(const std::vector<Piece>& pieces, PieceKind kind);
-    void fill_lane(PieceBlock& block, std::size_t lane, const Piece& piece) const;
+    void append_blocks(const std::vector<MergedPiece>& pieces, PieceKind kind);
+    void fill_lane(PieceBlock& block, std::size_t lane, const MergedPiece& piece) const;
     bool may_be_one_group(const PieceBlock& block, Range lanes) const;
     void form_groups(std::size_t block, Range lanes);
     void find_group_neighbours();
@@ -43,8 +44,7 @@ class PieceArranger {
     PieceRules rules_;
     std::vector<int> visible_side_;
     core::Vec3 scan_center_;
-    std::vector<std::uint32_t> piece_ids_;  ///< block * kSize + lane of every piece in `pieces_`
-    std::vector<Piece> pieces_;
+    std::vector<std::uint32_t> piece_ids_;  ///< block * kSize + lane of every merged piece
     PieceSet set_;
 };
 

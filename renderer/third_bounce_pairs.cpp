@@ -68,7 +68,8 @@ void weigh_nodes(const PieceBlock& block,
         const double* const towards_sensor = sensor.table->factor[node].data() + begin;
         const double* const reflectance = block.reflectance[node].data() + begin;
         for (std::size_t j = 0; j < PieceBlock::kUnitSize; ++j) {
-            weights[node][j] = reflectance[j] * towards_light[j] * (retro ? 1.0 : towards_sensor[j]);
+            weights[node][j] =
+                reflectance[j] * towards_light[j] * (retro ? 1.0 : towards_sensor[j]);
         }
     }
 }

@@ -3,6 +3,7 @@
 
 #include "renderer/closed_surface.h"
 #include "renderer/core/error.h"
+#include "renderer/merged_pieces.h"
 #include "renderer/third_bounce_blocks.h"
 
 #include <algorithm>
@@ -23,6 +24,14 @@ constexpr double kKappaPerTolerance = 80.0;
 constexpr double kSquaredSizePerTolerance = 3.0;
 // However coarse, energy errs by a few 1e-5 at most.
 constexpr double kMostSquaredSize = 0.05;
+
+// Facets are merged up to this size, squared, in bins: histograms of merged ones err by about 0.001
+// times it [measured]. Their weights err with the mean square of the normals' tilts, ...
+constexpr double kSquaredBinsPerTolerance = 200.0;
+constexpr double kSquaredTiltPerTolerance = 0.3;
+// ... and however coarse, a merged triangle has a clear normal and few bins.
+constexpr double kMostSquaredBins = 16.0;
+constexpr double kMostSquaredTilt = 0.03;
 
 // A facet is bisected at most this often, even where it touches a wall point.
 constexpr int kMostBisections = 28;
@@ -72,18 +81,6 @@ std::vector<Piece> clip(const Piece& piece, const std::pair<Vec3, double>& plane
     return parts;
 }
 
-PieceKind kind_of(const Material& material) {
-    switch (material.model) {
-        case SurfaceModel::Ggx:
-            return PieceKind::Glossy;
-        case SurfaceModel::Retroreflective:
-            return PieceKind::Retroreflective;
-        case SurfaceModel::Lambertian:
-            break;
-    }
-    return PieceKind::Lambertian;
-}
-
 // Squared width of the BSDF's lobe relative to a cosine's.
 double lobe_scale(const Material& material) {
     if (material.model != SurfaceModel::Ggx) return 1.0;
@@ -96,6 +93,18 @@ double lobe_scale(const Material& material) {
 bool is_integrable(const Material& material) {
     return material.model != SurfaceModel::Ggx ||
            material.roughness * material.roughness >= kSmallestGlossyAlpha;
+}
+
+PieceKind kind_of(const Material& material) {
+    switch (material.model) {
+        case SurfaceModel::Ggx:
+            return PieceKind::Glossy;
+        case SurfaceModel::Retroreflective:
+            return PieceKind::Retroreflective;
+        case SurfaceModel::Lambertian:
+            break;
+    }
+    return PieceKind::Lambertian;
 }
 
 PieceCutter::PieceCutter(const Scene& scene,
@@ -164,13 +173,17 @@ void PieceCutter::bisect(const Piece& facet, double tolerance, std::vector<Piece
     }
 }
 
-std::vector<Piece> PieceCutter::cut_kind(PieceKind kind, double tolerance) const {
+std::vector<Piece> PieceCutter::cut_all(double tolerance) const {
     std::vector<Piece> pieces;
     for (std::uint32_t i = 0; i < scene_.facets().size(); ++i) {
         const Object& object = scene_.object_of(i);
         const Material& material = object.material;
-        if (!scene_.is_hidden(i) || !is_integrable(material) || kind_of(material) != kind) continue;
-        if (material.albedo == 0.0) continue;
+        if (!scene_.is_hidden(i) || !is_integrable(material) || material.albedo == 0.0) continue;
+        // Nothing comes back to another point than the light's.
+        if (kind_of(material) == PieceKind::Retroreflective &&
+            scan_.pattern != core::ScanPattern::Confocal) {
+            continue;
+        }
         Piece whole;
         whole.facet = i;
         const auto& triangle = object.mesh.triangles[scene_.facet(i).triangle];
@@ -186,26 +199,40 @@ std::vector<Piece> PieceCutter::cut_kind(PieceKind kind, double tolerance) const
             bisect(part, facet_tolerance, pieces);
         }
     }
+    std::erase_if(pieces, [](const Piece& piece) {
+        const auto& [a, b, c] = piece.corners;
+        return !(core::triangle_area_vector(a, b, c).squaredNorm() > 0.0);
+    });
     return pieces;
 }
 
-// Those of which something comes back to the sensor.
-std::vector<PieceKind> PieceCutter::kinds() const {
-    std::vector<PieceKind> kinds{PieceKind::Lambertian, PieceKind::Glossy};
-    if (scan_.pattern == core::ScanPattern::Confocal) kinds.push_back(PieceKind::Retroreflective);
-    return kinds;
+// Numbers of clusters of pieces that may be merged.
+std::vector<std::uint32_t> PieceCutter::cluster(std::span<const Piece> pieces,
+                                                double tolerance) const {
+    const double most_bins =
+        std::sqrt(std::min(kSquaredBinsPerTolerance * tolerance, kMostSquaredBins));
+    const double most_m = most_bins * axis_.bin_width_m;
+    return cluster_pieces(
+        scene_,
+        pieces,
+        std::min(kSquaredTiltPerTolerance * tolerance, kMostSquaredTilt),
+        [&](const Vec3& center, double diameter_m) {
+            if (diameter_m > most_m) return false;
+            return is_small_enough(
+                boxes_.legs(center, 0.5 * diameter_m), center, diameter_m * diameter_m, tolerance);
+        });
 }
 
 PieceSet PieceCutter::cut(double tolerance) const {
-    PieceArranger arranger(scene_, scan_, {tolerance, laser_spot_m2_}, visible_sides_);
-    for (const PieceKind kind : kinds()) arranger.add(cut_kind(kind, tolerance), kind);
-    return arranger.finish();
+    std::vector<Piece> pieces = cut_all(tolerance);
+    std::vector<std::uint32_t> clusters = cluster(pieces, tolerance);
+    return PieceArranger(scene_, scan_, {tolerance, laser_spot_m2_}, visible_sides_)
+        .arrange(pieces, clusters);
 }
 
-std::size_t PieceCutter::num_pieces(double tolerance) const {
-    std::size_t count = 0;
-    for (const PieceKind kind : kinds()) count += cut_kind(kind, tolerance).size();
-    return count;
+std::size_t PieceCutter::fewest_pieces(double tolerance) const {
+    const std::vector<std::uint32_t> clusters = cluster(cut_all(tolerance), tolerance);
+    return clusters.empty() ? 0 : 1 + *std::max_element(clusters.begin(), clusters.end());
 }
 
 }  // namespace renderer

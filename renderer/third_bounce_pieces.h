@@ -9,6 +9,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace renderer {
@@ -19,6 +20,7 @@ enum class PieceKind { Lambertian, Retroreflective, Glossy };
 /// True for surfaces whose third bounce the deterministic integrator takes: Lambertian and
 /// retroreflective ones, and GGX lobes wide enough to be smooth over a piece.
 bool is_integrable(const Material& material);
+PieceKind kind_of(const Material& material);
 
 /// A flat triangle small enough for the closed-form kernel; positions relative to PieceSet::origin.
 struct Piece {
@@ -43,6 +45,7 @@ struct alignas(64) PieceBlock {
     Lanes normal_x, normal_y, normal_z;
     Lanes center_x, center_y, center_z;
     Lanes area_m2;
+    Lanes rise_m;  ///< the surface lies at most this far above or below the triangle
     std::array<Lanes, 3> squared_edge;  ///< opposite to the corners [m^2]
     Lanes one_sided;                    ///< +-1: only this side of the normal is ever seen; 0: both
     std::array<Lanes, kNodes> reflectance;  ///< at the nodes; albedo/pi or albedo/spot area
@@ -113,22 +116,23 @@ class PieceCutter {
 
     /// Clips facets at the wall's plane and bisects them along their longest edge until length,
     /// falloff and cosines are linear enough over each piece, as seen from the nearest wall point;
-    /// leaves out what no pair can see within the axis.
+    /// leaves out what no pair can see within the axis. Smaller facets are merged where the bins do
+    /// not tell them apart.
     ///
     /// tolerance   relative L2 error that the size rule aims at
     PieceSet cut(double tolerance) const;
 
-    /// How many pieces cut() makes.
-    std::size_t num_pieces(double tolerance) const;
+    /// cut() makes at least this many pieces.
+    std::size_t fewest_pieces(double tolerance) const;
 
  private:
-    std::vector<PieceKind> kinds() const;
     bool is_small_enough(const LegBounds& legs,
                          const core::Vec3& center,
                          double squared_edge,
                          double tolerance) const;
     void bisect(const Piece& facet, double tolerance, std::vector<Piece>& pieces) const;
-    std::vector<Piece> cut_kind(PieceKind kind, double tolerance) const;
+    std::vector<Piece> cut_all(double tolerance) const;
+    std::vector<std::uint32_t> cluster(std::span<const Piece> pieces, double tolerance) const;
 
     const Scene& scene_;
     const core::Scan& scan_;

@@ -338,13 +338,18 @@ void VisibilityTracer::shoot() {
             const Target& target = targets_[begin + lane];
             const PieceBlock& block = set_.blocks[target.piece / kSize];
             const std::size_t i = target.piece % kSize;
-            const auto& b = center_of_bit(target.bit);
-            const auto at = [&](const std::array<PieceBlock::Lanes, 3>& corners) {
-                return b[0] * corners[0][i] + b[1] * corners[1][i] + b[2] * corners[2][i];
-            };
-            ends.set(lane,
-                     Vec3(at(block.x), at(block.y), at(block.z)) + set_.origin,
-                     Vec3(block.normal_x[i], block.normal_y[i], block.normal_z[i]));
+            Vec3 position(block.center_x[i], block.center_y[i], block.center_z[i]);
+            if (target.bit != kCenterBit) {
+                const auto& b = center_of_bit(target.bit);
+                const auto at = [&](const std::array<PieceBlock::Lanes, 3>& corners) {
+                    return b[0] * corners[0][i] + b[1] * corners[1][i] + b[2] * corners[2][i];
+                };
+                position = {at(block.x), at(block.y), at(block.z)};
+            }
+            const Vec3 normal(block.normal_x[i], block.normal_y[i], block.normal_z[i]);
+            const double height = normal.dot(point_.position - position);
+            position += std::copysign(block.rise_m[i], height) * normal;
+            ends.set(lane, position + set_.origin, normal);
         }
         scene_.rays().aim(packet, from, point_.normal, ends.lanes(), static_cast<int>(count));
         scene_.rays().trace(packet);

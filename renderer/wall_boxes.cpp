@@ -112,8 +112,7 @@ LengthBounds WallBoxes::bounds(const Boxes& boxes, const Vec3& center, double ra
     const double least = squared_distances(boxes.lower, boxes.upper, center).minCoeff();
     PerBox farthest = PerBox::Zero(boxes.lower.rows());
     for (Eigen::Index c = 0; c < 3; ++c) {
-        farthest +=
-            (boxes.upper.col(c) - center[c]).max(center[c] - boxes.lower.col(c)).square();
+        farthest += (boxes.upper.col(c) - center[c]).max(center[c] - boxes.lower.col(c)).square();
     }
     return {std::max(0.0, std::sqrt(least) - radius), std::sqrt(farthest.maxCoeff()) + radius};
 }
