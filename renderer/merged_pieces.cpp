@@ -19,12 +19,12 @@ class Clusterer {
  public:
     Clusterer(const Scene& scene,
               std::span<const Piece> pieces,
-              double most_squared_tilt,
-              const std::function<bool(const Vec3& center, double diameter_m)>& is_small_enough)
+              const ClusterLimits& limits,
+              const std::function<bool(const Vec3& center, double diameter_m)>& may_be_merged)
         : scene_(scene),
           pieces_(pieces),
-          most_squared_tilt_(most_squared_tilt),
-          is_small_enough_(is_small_enough),
+          limits_(limits),
+          may_be_merged_(may_be_merged),
           clusters_(pieces.size()) {
         for (std::uint32_t i = 0; i < pieces.size(); ++i) items_.push_back({pieces[i].center(), i});
     }
@@ -64,7 +64,7 @@ class Clusterer {
     void split(std::span<Item> items) {
         Eigen::AlignedBox3d centers;
         for (const Item& item : items) centers.extend(item.center);
-        if (items.size() == 1 || may_be_merged(items, centers)) return make_cluster(items);
+        if (items.size() == 1 || is_cluster(items, centers)) return make_cluster(items);
         Eigen::Index axis = 0;
         centers.sizes().maxCoeff(&axis);
         const std::size_t half = items.size() / 2;
@@ -77,28 +77,30 @@ class Clusterer {
         split(items.subspan(half));
     }
 
-    bool may_be_merged(std::span<const Item> items, const Eigen::AlignedBox3d& centers) const {
-        if (!is_small_enough_(centers.center(), centers.diagonal().norm())) return false;
+    bool is_cluster(std::span<const Item> items, const Eigen::AlignedBox3d& centers) const {
+        if (centers.diagonal().norm() > limits_.diameter_m) return false;
         Eigen::AlignedBox3d corners;
+        for (const Item& item : items) {
+            for (const Vec3& corner : pieces_[item.piece].corners) corners.extend(corner);
+        }
+        const double diameter = corners.diagonal().norm();
+        if (diameter > limits_.diameter_m) return false;
         Vec3 normals = Vec3::Zero();
         double area = 0.0;
         for (const Item& item : items) {
             const Piece& piece = pieces_[item.piece];
-            const Facet& facet = scene_.facet(piece.facet);
-            for (const Vec3& corner : piece.corners) corners.extend(corner);
             const double piece_area = area_vector(piece).norm();
-            normals += piece_area * facet.normal;
+            normals += piece_area * scene_.facet(piece.facet).normal;
             area += piece_area;
         }
-        if (!is_small_enough_(corners.center(), corners.diagonal().norm())) return false;
-        // The mean of |n - mean of n|^2 over the area.
-        return 1.0 - normals.squaredNorm() / (area * area) <= most_squared_tilt_;
+        const double squared_tilt = 1.0 - normals.squaredNorm() / (area * area);
+        return squared_tilt <= limits_.squared_tilt && may_be_merged_(corners.center(), diameter);
     }
 
     const Scene& scene_;
     std::span<const Piece> pieces_;
-    double most_squared_tilt_;
-    const std::function<bool(const Vec3& center, double diameter_m)>& is_small_enough_;
+    ClusterLimits limits_;
+    const std::function<bool(const Vec3& center, double diameter_m)>& may_be_merged_;
     std::vector<Item> items_;
     std::vector<std::uint32_t> clusters_;
     std::uint32_t num_clusters_ = 0;
@@ -180,9 +182,9 @@ MergedPiece alone(const Scene& scene, const Piece& piece) {
 std::vector<std::uint32_t> cluster_pieces(
     const Scene& scene,
     std::span<const Piece> pieces,
-    double most_squared_tilt,
-    const std::function<bool(const Vec3& center, double diameter_m)>& is_small_enough) {
-    return Clusterer(scene, pieces, most_squared_tilt, is_small_enough).run();
+    const ClusterLimits& limits,
+    const std::function<bool(const Vec3& center, double diameter_m)>& may_be_merged) {
+    return Clusterer(scene, pieces, limits, may_be_merged).run();
 }
 
 MergedPieces merge_pieces(const Scene& scene,

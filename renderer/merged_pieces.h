@@ -26,18 +26,23 @@ struct MergedPieces {
     std::vector<std::uint32_t> merged_of;  ///< per piece, index into `pieces`
 };
 
+/// What may be a cluster.
+struct ClusterLimits {
+    double diameter_m = 0.0;
+    double squared_tilt = 0.0;  ///< mean of |normal - mean normal|^2
+};
+
 /// Splits the pieces of each object at medians until each part may be merged; pieces of glossy and
 /// textured objects stay single.
 ///
 /// pieces              those of an object in a row
-/// most_squared_tilt   largest mean square of normals' distance from their mean
-/// is_small_enough     of a part's bounding sphere
+/// may_be_merged       asked for a part's bounding sphere when it keeps the limits
 /// returns             a cluster number per piece, counted from 0
 std::vector<std::uint32_t> cluster_pieces(
     const Scene& scene,
     std::span<const Piece> pieces,
-    double most_squared_tilt,
-    const std::function<bool(const core::Vec3& center, double diameter_m)>& is_small_enough);
+    const ClusterLimits& limits,
+    const std::function<bool(const core::Vec3& center, double diameter_m)>& may_be_merged);
 
 /// Merges pieces of the same cluster that hang together.
 ///

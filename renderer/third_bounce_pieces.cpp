@@ -211,13 +211,12 @@ std::vector<std::uint32_t> PieceCutter::cluster(std::span<const Piece> pieces,
                                                 double tolerance) const {
     const double most_bins =
         std::sqrt(std::min(kSquaredBinsPerTolerance * tolerance, kMostSquaredBins));
-    const double most_m = most_bins * axis_.bin_width_m;
+    const double most_tilt = std::min(kSquaredTiltPerTolerance * tolerance, kMostSquaredTilt);
     return cluster_pieces(
         scene_,
         pieces,
-        std::min(kSquaredTiltPerTolerance * tolerance, kMostSquaredTilt),
+        {most_bins * axis_.bin_width_m, most_tilt},
         [&](const Vec3& center, double diameter_m) {
-            if (diameter_m > most_m) return false;
             return is_small_enough(
                 boxes_.legs(center, 0.5 * diameter_m), center, diameter_m * diameter_m, tolerance);
         });

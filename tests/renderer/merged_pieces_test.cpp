@@ -134,17 +134,20 @@ TEST(MergedPieces, ClustersKeepToTheirSizeTiltAndObject) {
     const std::vector<Piece> pieces = pieces_of(scene);
     constexpr double kSize = 0.07;
     constexpr double kSquaredTilt = 0.01;
-    const auto clusters =
-        renderer::cluster_pieces(scene, pieces, kSquaredTilt, [&](const Vec3&, double diameter) {
-            return diameter < kSize;
+    const auto is_wanted = [](const Vec3& center) { return center.y() < 0.1; };
+    const auto clusters = renderer::cluster_pieces(
+        scene, pieces, {kSize, kSquaredTilt}, [&](const Vec3& center, double diameter) {
+            EXPECT_LE(diameter, kSize);
+            return is_wanted(center);
         });
     const std::size_t num_clusters = 1 + *std::max_element(clusters.begin(), clusters.end());
-    EXPECT_LT(num_clusters, pieces.size() / 3);
+    EXPECT_LT(num_clusters, pieces.size() / 2);
     for (std::uint32_t c = 0; c < num_clusters; ++c) {
         Eigen::AlignedBox3d box;
         std::set<std::uint32_t> objects;
         Vec3 normals = Vec3::Zero();
         double area = 0.0;
+        const bool is_single = std::count(clusters.begin(), clusters.end(), c) == 1;
         for (std::size_t i = 0; i < pieces.size(); ++i) {
             if (clusters[i] != c) continue;
             for (const Vec3& corner : pieces[i].corners) box.extend(corner);
@@ -152,7 +155,8 @@ TEST(MergedPieces, ClustersKeepToTheirSizeTiltAndObject) {
             normals += area_of(pieces[i]) * scene.facet(pieces[i].facet).normal;
             area += area_of(pieces[i]);
         }
-        EXPECT_LT(box.diagonal().norm(), kSize);
+        EXPECT_TRUE(is_single || is_wanted(box.center()));
+        EXPECT_LE(box.diagonal().norm(), kSize);
         EXPECT_EQ(objects.size(), 1U);
         EXPECT_GE(normals.squaredNorm() / (area * area), 1.0 - kSquaredTilt - 1e-12);
     }
