@@ -134,6 +134,10 @@ class Integrator {
     double negligible_error(int fineness) const {
         return kNegligibleShare * tolerance(fineness) * norm_per_pair_;
     }
+    void count_rays(const ThirdBounceScan& scan) {
+        num_rays_ += scan.num_rays();
+        tracing_seconds_ += scan.tracing_seconds();
+    }
     const Transient& try_out(int fineness);
     double error_of(int fineness);
     int choose_fineness(const core::Progress& progress);
@@ -161,6 +165,7 @@ class Integrator {
     std::map<int, double> trial_seconds_;
     std::map<int, double> cut_seconds_;
     std::uint64_t num_rays_ = 0;
+    double tracing_seconds_ = 0.0;
 };
 
 // Valid until another fineness is asked for.
@@ -191,7 +196,7 @@ const Transient& Integrator::try_out(int fineness) {
         0, [](double) { return true; }, result);
     trial_seconds_[fineness] = watch.seconds();
     shadow_errors_[fineness] = std::sqrt(trial.squared_shadow_error());
-    num_rays_ += trial.num_rays();
+    count_rays(trial);
     if (norm_per_pair_ == 0.0) {
         norm_per_pair_ =
             std::sqrt(squared_norm(result) / static_cast<double>(trial_scan_.num_pairs()));
@@ -272,7 +277,7 @@ int Integrator::integrate(int fineness,
     };
     const int part = scan.integrate(first_part, go_on, result.transient);
     result.num_pieces = std::max(result.num_pieces, pieces.num_pieces);
-    num_rays_ += scan.num_rays();
+    count_rays(scan);
     if (!errors_.contains(fineness)) error_of(fineness);
     result.estimated_error = std::max(result.estimated_error, errors_.at(fineness));
     return part;
@@ -289,6 +294,7 @@ ThirdBounce Integrator::run(const core::Progress& progress) {
         integrate(kCoarsest, part, to_the_end, result);
     }
     result.num_rays = num_rays_;
+    result.tracing_seconds = tracing_seconds_;
     const double wall = scene_.wall_albedo() / core::kPi;
     for (float& value : result.transient.values()) value = static_cast<float>(value * wall * wall);
     const double norm = squared_norm(result.transient);

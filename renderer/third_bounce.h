@@ -17,6 +17,7 @@ struct ThirdBounce {
     double squared_error = 0.0;    ///< the same, absolute, squared
     std::size_t num_pieces = 0;    ///< that the surfaces were cut into
     std::uint64_t num_rays = 0;
+    double tracing_seconds = 0.0;  ///< aiming and tracing them, of all threads together
     double seconds = 0.0;
     bool interrupted = false;  ///< pairs that were left got the coarsest cut, see estimated_error
 };

@@ -109,6 +109,11 @@ core::TimeAxis ThirdBounceScan::axis_of_pair(std::size_t pair) const {
     return axis;
 }
 
+void ThirdBounceScan::add(const VisibilityCost& cost) {
+    num_rays_ += cost.num_rays;
+    tracing_seconds_ += cost.tracing_seconds;
+}
+
 void ThirdBounceScan::store(std::size_t pair, std::span<const double> histogram) {
     std::transform(
         histogram.begin(), histogram.end(), result_->histogram(pair).begin(), [](double value) {
@@ -130,7 +135,7 @@ void ThirdBounceScan::integrate_confocal(std::size_t first, std::size_t last) {
                     tracer.trace(point,
                                  {axis.opl_start_m, axis.opl_end_m(), point, {}, negligible_error_},
                                  masks);
-                num_rays_ += cost.num_rays;
+                add(cost);
                 sensor_errors_[pair] = cost.squared_error;
                 std::fill(histogram.begin(), histogram.end(), 0.0);
                 for (std::size_t b = 0; b < pieces_.blocks.size(); ++b) {
@@ -186,7 +191,7 @@ void ThirdBounceScan::look_from(const core::WallPoints& points,
             const std::size_t point = range.begin + i;
             const VisibilityCost cost =
                 tracer.trace(wall_point(points, point), rules, views.masks[i]);
-            num_rays_ += cost.num_rays;
+            add(cost);
             squared_errors[point] = cost.squared_error;
         }
     });

@@ -41,6 +41,8 @@ class ThirdBounceScan {
                   core::Transient& result);
 
     std::uint64_t num_rays() const { return num_rays_; }
+    /// Of all threads together.
+    double tracing_seconds() const { return tracing_seconds_; }
     /// Expected squared error of all of H at shadow edges, as far as pieces are too coarse for
     /// them.
     double squared_shadow_error() const;
@@ -64,6 +66,7 @@ class ThirdBounceScan {
                    Views& views,
                    std::vector<double>& squared_errors);
     void integrate_tile(const PairTiles::Tile& tile, const Views& lights, const Views& sensors);
+    void add(const VisibilityCost& cost);
     void store(std::size_t pair, std::span<const double> histogram);
 
     const Scene& scene_;
@@ -76,6 +79,7 @@ class ThirdBounceScan {
     std::vector<double> light_errors_;   ///< squared, per illumination point and pair
     std::vector<double> sensor_errors_;
     std::atomic<std::uint64_t> num_rays_{0};
+    std::atomic<double> tracing_seconds_{0.0};
 };
 
 }  // namespace renderer

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/third_bounce_visibility.h"
 
+#include "renderer/core/stopwatch.h"
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -327,6 +329,7 @@ void VisibilityTracer::refine_mixed_pieces(double negligible_error,
 }
 
 void VisibilityTracer::shoot() {
+    const core::Stopwatch watch;
     results_.resize(targets_.size());
     SegmentPacket packet;
     SegmentEnds ends;
@@ -358,6 +361,7 @@ void VisibilityTracer::shoot() {
         }
     }
     cost_.num_rays += targets_.size();
+    cost_.tracing_seconds += watch.seconds();
 }
 
 }  // namespace renderer

@@ -29,6 +29,7 @@ struct VisibilityRules {
 /// What a look around took, and how good it is.
 struct VisibilityCost {
     std::uint64_t num_rays = 0;
+    double tracing_seconds = 0.0;  ///< aiming rays, tracing them, reading the answers
     double squared_error = 0.0;  ///< expected, of H: of shadow edges that 16 rays leave uncertain
 };
 

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 // How close an estimator comes to the ray tracer's own speed: renders a scene on one thread,
 // records the rays by wrapping Embree's entry points at link time, and replays exactly these rays
-// with nothing in between.
+// with nothing in between. Of third_bounce, also its tracing phase alone: aiming the rays, tracing
+// them and reading the answers.
 //   ray_rate SCENE.json [SAMPLES] [MAX_BOUNCES] [REPEATS] [METHOD]
 #include "renderer/core/parallel.h"
 #include "renderer/core/process.h"
 #include "renderer/render.h"
 #include "renderer/scene_file.h"
+#include "renderer/third_bounce.h"
 
 #include <embree3/rtcore.h>
 #include <fmt/core.h>
@@ -168,16 +170,24 @@ int main(int argc, char** argv) {
     g_recording = nullptr;
     std::vector<double> render_seconds;
     std::vector<double> replay_seconds;
+    std::vector<double> tracing_seconds;
     for (int i = 0; i < argument(argc, argv, 4, 5); ++i) {
         const double start = core::cpu_seconds();
         render();
         render_seconds.push_back(core::cpu_seconds() - start);
         replay_seconds.push_back(replay(recording));
+        if (description.render.method != renderer::Estimator::ThirdBounce) continue;
+        tracing_seconds.push_back(renderer::integrate_third_bounce(
+                                      scene, scan, description.time_axis, description.render, {})
+                                      .tracing_seconds);
     }
     const double rays = static_cast<double>(recording.num_rays);
     fmt::print("{} facets, {:.2f} M rays\n", scene.facets().size(), rays * 1e-6);
     fmt::print("render   {:6.2f} M rays/s\n", rays / least(render_seconds) * 1e-6);
     fmt::print("replay   {:6.2f} M rays/s\n", rays / least(replay_seconds) * 1e-6);
     fmt::print("ratio    {:6.3f}\n", least(replay_seconds) / least(render_seconds));
+    if (tracing_seconds.empty()) return 0;
+    fmt::print("tracing  {:6.2f} M rays/s\n", rays / least(tracing_seconds) * 1e-6);
+    fmt::print("ratio    {:6.3f}\n", least(replay_seconds) / least(tracing_seconds));
     return 0;
 }
