@@ -25,9 +25,9 @@ struct ThirdBounce {
 /// Integrates the third bounce of the scene's integrable surfaces, without random numbers.
 ///
 /// Surfaces are cut into triangles small enough for the closed-form kernel of core/
-/// triangle_histogram.h. Every wall point finds once what it sees of each piece; every pair then
-/// only combines two tables. A few pairs, computed at several finenesses, tell how fine is fine
-/// enough for the target.
+/// triangle_histogram.h; facets that bins do not tell apart are merged. Every wall point finds once
+/// what it sees of each piece; every pair then only combines two tables. A few pairs, computed at
+/// several finenesses, tell how fine is fine enough for the target.
 ///
 /// settings   target_error; or seconds, then as fine as that time allows; laser_spot_m2; the gate
 ///            is a box

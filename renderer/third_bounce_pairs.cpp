@@ -212,13 +212,12 @@ void compute_table(const PieceBlock& block,
 void add_pair(const PieceBlock& block,
               const PairEnd& light,
               const PairEnd& sensor,
-              UnitMask units,
               const core::TimeAxis& axis,
               std::span<double> histogram) {
     core::TriangleLanes fitted;
     alignas(64) PieceBlock::Lanes area_m2;
     std::size_t count = 0;
-    for_each_unit(units & light.table->units & sensor.table->units, [&](std::size_t begin) {
+    for_each_unit(light.table->units & sensor.table->units, [&](std::size_t begin) {
         const UnitMasks masks = common_masks(light, sensor, begin);
         VisibilityMask any = 0;
         for (const VisibilityMask mask : masks) any = static_cast<VisibilityMask>(any | mask);

@@ -38,13 +38,11 @@ struct PairEnd {
 /// left out.
 ///
 /// light, sensor   the two ends; the same one twice for a confocal pair
-/// units           with pieces that are wanted; only those that both ends see are added
 /// axis            of the histogram, its start reduced by the pair's device legs
 /// histogram       axis.num_bins values
 void add_pair(const PieceBlock& block,
               const PairEnd& light,
               const PairEnd& sensor,
-              UnitMask units,
               const core::TimeAxis& axis,
               std::span<double> histogram);
 

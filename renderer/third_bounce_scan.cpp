@@ -143,7 +143,7 @@ void ThirdBounceScan::integrate_confocal(std::size_t first, std::size_t last) {
                     compute_table(pieces_.blocks[b], point, seen, table);
                     if (table.units == 0) continue;
                     const PairEnd end{&point, &table, seen};
-                    add_pair(pieces_.blocks[b], end, end, kAllUnits, axis, histogram);
+                    add_pair(pieces_.blocks[b], end, end, axis, histogram);
                 }
                 store(pair, histogram);
             }
@@ -272,7 +272,6 @@ void ThirdBounceScan::integrate_tile(const PairTiles::Tile& tile,
                 add_pair(block,
                          light,
                          sensor,
-                         kAllUnits,
                          axis,
                          std::span(histograms).subspan((l * num_sensors + s) * num_bins, num_bins));
             }

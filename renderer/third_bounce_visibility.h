@@ -30,7 +30,7 @@ struct VisibilityRules {
 struct VisibilityCost {
     std::uint64_t num_rays = 0;
     double tracing_seconds = 0.0;  ///< aiming rays, tracing them, reading the answers
-    double squared_error = 0.0;  ///< expected, of H: of shadow edges that 16 rays leave uncertain
+    double squared_error = 0.0;    ///< expected, of H: of shadow edges that 16 rays leave uncertain
 };
 
 /// Finds what wall points see of the pieces.
