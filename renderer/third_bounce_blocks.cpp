@@ -2,6 +2,7 @@
 #include "renderer/third_bounce_blocks.h"
 
 #include "renderer/piece_neighbours.h"
+#include "renderer/piece_units.h"
 
 #include <algorithm>
 #include <cmath>

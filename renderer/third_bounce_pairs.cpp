@@ -13,6 +13,11 @@ using core::Vec3;
 
 constexpr std::size_t kSize = PieceBlock::kSize;
 
+// A point of each piece of a unit.
+struct UnitPoints {
+    UnitArray x, y, z;
+};
+
 using UnitLanes = std::array<double, PieceBlock::kUnitSize>;
 using NodeWeights = std::array<UnitLanes, PieceBlock::kNodes>;
 
@@ -62,15 +67,13 @@ void weigh_nodes(const PieceBlock& block,
         }
         return;
     }
-    const bool retro = block.kind == PieceKind::Retroreflective;
     for (std::size_t node = 0; node < PieceBlock::kNodes; ++node) {
-        const double* const towards_light = light.table->factor[node].data() + begin;
-        const double* const towards_sensor = sensor.table->factor[node].data() + begin;
-        const double* const reflectance = block.reflectance[node].data() + begin;
-        for (std::size_t j = 0; j < PieceBlock::kUnitSize; ++j) {
-            weights[node][j] =
-                reflectance[j] * towards_light[j] * (retro ? 1.0 : towards_sensor[j]);
+        UnitArray weight =
+            load(block.reflectance[node], begin) * load(light.table->factor[node], begin);
+        if (block.kind != PieceKind::Retroreflective) {
+            weight *= load(sensor.table->factor[node], begin);
         }
+        weight.copy_to(weights[node].data(), std::experimental::element_aligned);
     }
 }
 
@@ -78,13 +81,6 @@ void weigh_nodes(const PieceBlock& block,
 double lower_of(double a, double b) {
     return b < a ? b : a;
 }
-
-// Coordinates of a point of every piece.
-struct Point {
-    const PieceBlock::Lanes& x;
-    const PieceBlock::Lanes& y;
-    const PieceBlock::Lanes& z;
-};
 
 // Linear weights with the mean over the piece, as the nodes tell it, and the corners' differences;
 // where a corner would fall below 0, all of them shrink until it does not. Into lanes from `begin`.
@@ -164,47 +160,45 @@ void compute_table(const PieceBlock& block,
     const Vec3 n = point.normal;
     table.units = units_seen(masks);
     for_each_unit(table.units, [&](std::size_t begin) {
-        const std::size_t end = begin + PieceBlock::kUnitSize;
-        for (std::size_t i = begin; i < end; ++i) {
-            // All points of the piece have the same distance from w along its normal.
-            table.side[i] = (w.x() - block.x[0][i]) * block.normal_x[i] +
-                            (w.y() - block.y[0][i]) * block.normal_y[i] +
-                            (w.z() - block.z[0][i]) * block.normal_z[i];
-        }
-        // At a node, the mean of two points; a corner or the centre is that twice.
-        const auto look_at = [&](std::size_t node, const Point& p, const Point& q) {
-            for (std::size_t i = begin; i < end; ++i) {
-                const double x = 0.5 * (p.x[i] + q.x[i]) - w.x();
-                const double y = 0.5 * (p.y[i] + q.y[i]) - w.y();
-                const double z = 0.5 * (p.z[i] + q.z[i]) - w.z();
-                const double d2 = std::max(x * x + y * y + z * z, 1e-200);
-                const double front = std::max(0.0, x * n.x() + y * n.y() + z * n.z());
-                table.factor[node][i] = front * std::abs(table.side[i]) / (d2 * d2);
-                if (node < 3) table.leg_m[node][i] = std::sqrt(d2);
-            }
+        const auto relative = [&](const PieceBlock::Lanes& x,
+                                  const PieceBlock::Lanes& y,
+                                  const PieceBlock::Lanes& z) {
+            return UnitPoints{
+                load(x, begin) - w.x(), load(y, begin) - w.y(), load(z, begin) - w.z()};
         };
-        const auto corner = [&](std::size_t j) {
-            return Point{block.x[j], block.y[j], block.z[j]};
+        const std::array<UnitPoints, 3> corners{relative(block.x[0], block.y[0], block.z[0]),
+                                                relative(block.x[1], block.y[1], block.z[1]),
+                                                relative(block.x[2], block.y[2], block.z[2])};
+        // All points of the piece have the same distance from w along its normal.
+        const UnitArray side = -(corners[0].x * load(block.normal_x, begin) +
+                                 corners[0].y * load(block.normal_y, begin) +
+                                 corners[0].z * load(block.normal_z, begin));
+        const UnitArray facing = larger_of(side, -side);
+        store(side, table.side, begin);
+        // Returns the squared distances.
+        const auto look_at = [&](std::size_t node, const UnitPoints& p) -> UnitArray {
+            const UnitArray d2 =
+                larger_of(UnitArray(p.x * p.x + p.y * p.y + p.z * p.z), UnitArray(1e-200));
+            const UnitArray front =
+                larger_of(UnitArray(p.x * n.x() + p.y * n.y() + p.z * n.z()), UnitArray(0.0));
+            store(front * facing / (d2 * d2), table.factor[node], begin);
+            return d2;
         };
-        const Point center{block.center_x, block.center_y, block.center_z};
+        std::array<UnitArray, 3> leg;
         for (std::size_t j = 0; j < 3; ++j) {
-            look_at(j, corner(j), corner(j));
-            look_at(3 + j, corner(j), corner((j + 1) % 3));
+            const UnitPoints& p = corners[j];
+            const UnitPoints& q = corners[(j + 1) % 3];
+            leg[j] = square_root(look_at(j, p));
+            store(leg[j], table.leg_m[j], begin);
+            look_at(3 + j, {0.5 * (p.x + q.x), 0.5 * (p.y + q.y), 0.5 * (p.z + q.z)});
         }
-        look_at(6, center, center);
-        for (std::size_t i = begin; i < end; ++i) {
-            const double a = table.leg_m[0][i];
-            const double b = table.leg_m[1][i];
-            const double c = table.leg_m[2][i];
-            // The leg's second derivative along an edge is (|edge|^2 - (its rise)^2) / leg.
-            const double per_leg = 3.0 / (a + b + c);
-            const auto bend = [&](std::size_t j, double rise) {
-                table.bend_m[j][i] =
-                    std::max(0.0, block.squared_edge[j][i] - rise * rise) * per_leg;
-            };
-            bend(0, c - b);
-            bend(1, a - c);
-            bend(2, b - a);
+        look_at(6, relative(block.center_x, block.center_y, block.center_z));
+        // The leg's second derivative along an edge is (|edge|^2 - (its rise)^2) / leg.
+        const UnitArray per_leg = 3.0 / (leg[0] + leg[1] + leg[2]);
+        for (std::size_t j = 0; j < 3; ++j) {
+            const UnitArray rise = leg[(j + 2) % 3] - leg[(j + 1) % 3];
+            const UnitArray squared = load(block.squared_edge[j], begin) - rise * rise;
+            store(larger_of(squared, UnitArray(0.0)) * per_leg, table.bend_m[j], begin);
         }
     });
 }
@@ -223,12 +217,12 @@ void add_pair(const PieceBlock& block,
         for (const VisibilityMask mask : masks) any = static_cast<VisibilityMask>(any | mask);
         if (any == 0) return;
         for (std::size_t c = 0; c < 3; ++c) {
-            for (std::size_t j = 0; j < PieceBlock::kUnitSize; ++j) {
-                const std::size_t i = begin + j;
-                fitted.opl_m[c][count + j] = light.table->leg_m[c][i] + sensor.table->leg_m[c][i];
-                fitted.bend_m[c][count + j] =
-                    light.table->bend_m[c][i] + sensor.table->bend_m[c][i];
-            }
+            store(load(light.table->leg_m[c], begin) + load(sensor.table->leg_m[c], begin),
+                  fitted.opl_m[c],
+                  count);
+            store(load(light.table->bend_m[c], begin) + load(sensor.table->bend_m[c], begin),
+                  fitted.bend_m[c],
+                  count);
         }
         alignas(64) NodeWeights weights;
         weigh_nodes(block, begin, light, sensor, weights);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "renderer/core/time_axis.h"
+#include "renderer/piece_units.h"
 #include "renderer/third_bounce_visibility.h"
 
 #include <span>

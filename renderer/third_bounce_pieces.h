@@ -7,7 +7,6 @@
 #include "renderer/wall_boxes.h"
 
 #include <array>
-#include <bit>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -36,7 +35,7 @@ struct Piece {
 /// the edges that start there, node 6 is the centre.
 struct alignas(64) PieceBlock {
     static constexpr std::size_t kSize = core::TriangleLanes::kSize;
-    static constexpr std::size_t kUnitSize = 8;
+    static constexpr std::size_t kUnitSize = 8;  ///< see piece_units.h
     static constexpr std::size_t kUnits = kSize / kUnitSize;
     static constexpr std::size_t kNodes = 7;
     using Lanes = core::TriangleLanes::Lanes;
@@ -60,20 +59,6 @@ struct alignas(64) PieceBlock {
     /// Spheres that hold the corners of each unit.
     alignas(64) std::array<double, kUnits> unit_x, unit_y, unit_z, unit_radius_m;
 };
-
-/// Some units of a block, runs of PieceBlock::kUnitSize lanes that lie next to each other: unit u
-/// is bit u.
-using UnitMask = std::uint32_t;
-
-inline constexpr UnitMask kAllUnits = (UnitMask{1} << PieceBlock::kUnits) - 1;
-
-/// Calls work(first lane) for each unit.
-template <class Work>
-void for_each_unit(UnitMask units, const Work& work) {
-    for (; units != 0; units &= units - 1) {
-        work(static_cast<std::size_t>(std::countr_zero(units)) * PieceBlock::kUnitSize);
-    }
-}
 
 /// A function's mean over a triangle from its values at a corner, a middle and the centre: exact
 /// for cubic ones.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/third_bounce_pieces.h"
+#include "renderer/piece_units.h"
 #include "renderer/visibility_mask.h"
 #include "renderer/wall_boxes.h"
 

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/third_bounce_pieces.h"
+
+#include <experimental/simd>
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+namespace renderer {
+
+/// Some units of a block, runs of PieceBlock::kUnitSize lanes that lie next to each other: unit u
+/// is bit u.
+using UnitMask = std::uint32_t;
+
+inline constexpr UnitMask kAllUnits = (UnitMask{1} << PieceBlock::kUnits) - 1;
+
+/// Calls work(first lane) for each unit.
+template <class Work>
+void for_each_unit(UnitMask units, const Work& work) {
+    for (; units != 0; units &= units - 1) {
+        work(static_cast<std::size_t>(std::countr_zero(units)) * PieceBlock::kUnitSize);
+    }
+}
+
+/// The values of a unit's pieces, for arithmetic in vectors: compilers leave loops over lanes of
+/// arrays in memory scalar where these might overlap.
+using UnitArray = std::experimental::fixed_size_simd<double, PieceBlock::kUnitSize>;
+
+/// Reads the lanes from `begin`, the first of a unit.
+inline UnitArray load(const PieceBlock::Lanes& lanes, std::size_t begin) {
+    return UnitArray(lanes.data() + begin, std::experimental::vector_aligned);
+}
+
+inline UnitArray load(const std::array<double, PieceBlock::kUnitSize>& values) {
+    return UnitArray(values.data(), std::experimental::element_aligned);
+}
+
+inline void store(const UnitArray& values, PieceBlock::Lanes& lanes, std::size_t begin) {
+    values.copy_to(lanes.data() + begin, std::experimental::vector_aligned);
+}
+
+inline UnitArray larger_of(const UnitArray& a, const UnitArray& b) {
+    return std::experimental::max(a, b);
+}
+
+inline UnitArray smaller_of(const UnitArray& a, const UnitArray& b) {
+    return std::experimental::min(a, b);
+}
+
+inline UnitArray square_root(const UnitArray& a) {
+    return UnitArray([&](auto i) { return std::sqrt(a[i]); });
+}
+
+/// Bit j is set where lane j is true.
+inline std::uint64_t bits_of(const UnitArray::mask_type& mask) {
+    std::uint64_t bits = 0;
+    for (std::size_t j = 0; j < mask.size(); ++j) bits |= std::uint64_t{mask[j]} << j;
+    return bits;
+}
+
+}  // namespace renderer
