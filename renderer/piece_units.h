@@ -34,10 +34,6 @@ inline UnitArray load(const PieceBlock::Lanes& lanes, std::size_t begin) {
     return UnitArray(lanes.data() + begin, std::experimental::vector_aligned);
 }
 
-inline UnitArray load(const std::array<double, PieceBlock::kUnitSize>& values) {
-    return UnitArray(values.data(), std::experimental::element_aligned);
-}
-
 inline void store(const UnitArray& values, PieceBlock::Lanes& lanes, std::size_t begin) {
     values.copy_to(lanes.data() + begin, std::experimental::vector_aligned);
 }
@@ -46,19 +42,8 @@ inline UnitArray larger_of(const UnitArray& a, const UnitArray& b) {
     return std::experimental::max(a, b);
 }
 
-inline UnitArray smaller_of(const UnitArray& a, const UnitArray& b) {
-    return std::experimental::min(a, b);
-}
-
 inline UnitArray square_root(const UnitArray& a) {
     return UnitArray([&](auto i) { return std::sqrt(a[i]); });
-}
-
-/// Bit j is set where lane j is true.
-inline std::uint64_t bits_of(const UnitArray::mask_type& mask) {
-    std::uint64_t bits = 0;
-    for (std::size_t j = 0; j < mask.size(); ++j) bits |= std::uint64_t{mask[j]} << j;
-    return bits;
 }
 
 }  // namespace renderer

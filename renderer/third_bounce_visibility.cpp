@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 namespace renderer {
 namespace {
@@ -14,6 +15,8 @@ using core::Vec3;
 
 constexpr std::size_t kSize = PieceBlock::kSize;
 
+using UnitLanes = std::array<double, PieceBlock::kUnitSize>;
+
 UnitMask units_of(std::uint64_t lanes) {
     UnitMask units = 0;
     for (std::size_t u = 0; u < PieceBlock::kUnits; ++u) {
@@ -21,17 +24,6 @@ UnitMask units_of(std::uint64_t lanes) {
         units |= UnitMask{unit != 0} << u;
     }
     return units;
-}
-
-// Squared distances from a point.
-UnitArray squared_distances(const UnitArray& x,
-                            const UnitArray& y,
-                            const UnitArray& z,
-                            const Vec3& from) {
-    const UnitArray dx = x - from.x();
-    const UnitArray dy = y - from.y();
-    const UnitArray dz = z - from.z();
-    return dx * dx + dy * dy + dz * dz;
 }
 
 // Standard deviation of the visible share of a piece that a shadow's straight edge crosses, known
@@ -119,19 +111,24 @@ UnitMask VisibilityTracer::units_within_axis(std::uint32_t b, const VisibilityRu
     const PieceBlock& block = set_.blocks[b];
     const bool exact = rules.other_legs.empty();
     const LengthBounds others = exact ? LengthBounds{} : rules.other_legs[b];
-    static_assert(PieceBlock::kUnits == PieceBlock::kUnitSize);
-    const auto distances_from = [&](const Vec3& from) {
-        return square_root(
-            squared_distances(load(block.unit_x), load(block.unit_y), load(block.unit_z), from));
-    };
-    UnitArray middle = distances_from(point_.position);
-    UnitArray reach = load(block.unit_radius_m);
-    if (exact) {
-        middle += distances_from(rules.other_end.position);
-        reach += reach;
+    const double num_exact = exact ? 1.0 : 0.0;
+    std::array<bool, PieceBlock::kUnits> within;
+    for (std::size_t u = 0; u < PieceBlock::kUnits; ++u) {
+        const auto distance = [&](const Vec3& from) {
+            const double x = block.unit_x[u] - from.x();
+            const double y = block.unit_y[u] - from.y();
+            const double z = block.unit_z[u] - from.z();
+            return std::sqrt(x * x + y * y + z * z);
+        };
+        const double middle =
+            distance(point_.position) + num_exact * distance(rules.other_end.position);
+        const double reach = (1.0 + num_exact) * block.unit_radius_m[u];
+        within[u] = (middle + reach + others.most_m >= rules.opl_begin_m) &
+                    (middle - reach + others.least_m <= rules.opl_end_m);
     }
-    return static_cast<UnitMask>(bits_of(middle + reach + others.most_m >= rules.opl_begin_m &&
-                                         middle - reach + others.least_m <= rules.opl_end_m));
+    UnitMask units = 0;
+    for (std::size_t u = 0; u < within.size(); ++u) units |= UnitMask{within[u]} << u;
+    return units;
 }
 
 // Pieces that show the point a side which reflects; computes their masses on the way.
@@ -139,35 +136,35 @@ std::uint64_t VisibilityTracer::lanes_seen(std::uint32_t b,
                                            UnitMask units,
                                            const WallPoint& other) {
     const PieceBlock& block = set_.blocks[b];
+    const bool retro = block.kind == PieceKind::Retroreflective;
+    double* const mass = piece_mass_.data() + b * kSize;
+    // Terms (n_w.d) (n_x.d) / |d|^4 of both ends; a piece may reach in front of the wall point when
+    // its centre does not.
+    const auto term = [&](const WallPoint& point, std::size_t i, double& facing) {
+        const double x = block.center_x[i] - point.position.x();
+        const double y = block.center_y[i] - point.position.y();
+        const double z = block.center_z[i] - point.position.z();
+        const double d2 = x * x + y * y + z * z;
+        const double front = x * point.normal.x() + y * point.normal.y() + z * point.normal.z();
+        facing = -(x * block.normal_x[i] + y * block.normal_y[i] + z * block.normal_z[i]);
+        return std::max(0.0, front + block.longest_edge_m) * std::abs(facing) / (d2 * d2);
+    };
     std::uint64_t lanes = 0;
     for_each_unit(units, [&](std::size_t begin) {
-        const UnitArray center_x = load(block.center_x, begin);
-        const UnitArray center_y = load(block.center_y, begin);
-        const UnitArray center_z = load(block.center_z, begin);
-        const UnitArray normal_x = load(block.normal_x, begin);
-        const UnitArray normal_y = load(block.normal_y, begin);
-        const UnitArray normal_z = load(block.normal_z, begin);
-        // Terms (n_w.d) (n_x.d) / |d|^4 of both ends; a piece may reach in front of the wall point
-        // when its centre does not.
-        const auto term = [&](const WallPoint& point, UnitArray& facing) -> UnitArray {
-            const UnitArray x = center_x - point.position.x();
-            const UnitArray y = center_y - point.position.y();
-            const UnitArray z = center_z - point.position.z();
-            const UnitArray d2 = x * x + y * y + z * z;
-            const UnitArray front =
-                x * point.normal.x() + y * point.normal.y() + z * point.normal.z();
-            facing = -(x * normal_x + y * normal_y + z * normal_z);
-            return larger_of(front + block.longest_edge_m, 0.0) * larger_of(facing, -facing) /
-                   (d2 * d2);
-        };
-        UnitArray facing;
-        UnitArray other_facing;
-        UnitArray mass =
-            load(block.area_m2, begin) * load(block.mean_reflectance, begin) * term(point_, facing);
-        if (block.kind != PieceKind::Retroreflective) mass *= term(other, other_facing);
-        mass.copy_to(piece_mass_.data() + b * kSize + begin, std::experimental::element_aligned);
-        const auto is_hidden = load(block.one_sided, begin) * facing < 0.0;
-        lanes |= bits_of(mass > 0.0 && !is_hidden) << begin;
+        alignas(64) UnitLanes seen;
+        for (std::size_t j = 0; j < seen.size(); ++j) {
+            const std::size_t i = begin + j;
+            double facing = 0.0;
+            double other_facing = 0.0;
+            const double g = term(point_, i, facing);
+            const double other_g = term(other, i, other_facing);
+            mass[i] = block.area_m2[i] * block.mean_reflectance[i] * g * (retro ? 1.0 : other_g);
+            const bool hidden_side = block.one_sided[i] * facing < 0.0;
+            seen[j] = hidden_side ? 0.0 : mass[i];
+        }
+        for (std::size_t j = 0; j < seen.size(); ++j) {
+            lanes |= std::uint64_t{seen[j] > 0.0} << (begin + j);
+        }
     });
     return lanes;
 }
@@ -183,31 +180,40 @@ std::uint64_t VisibilityTracer::lanes_within_axis(std::uint32_t b,
     const double most_below2 = block.longest_edge_m * block.longest_edge_m / 3.0;
     std::uint64_t lanes = 0;
     for_each_unit(units_within_axis(b, rules), [&](std::size_t begin) {
-        const auto find_legs = [&](const Vec3& from, UnitArray& least, UnitArray& most) {
-            std::array<UnitArray, 3> d2;
-            for (std::size_t c = 0; c < 3; ++c) {
-                d2[c] = squared_distances(load(block.x[c], begin),
-                                          load(block.y[c], begin),
-                                          load(block.z[c], begin),
-                                          from);
-            }
-            const UnitArray least2 = smaller_of(d2[0], smaller_of(d2[1], d2[2])) - most_below2;
-            least = square_root(larger_of(least2, 0.0));
-            most = square_root(larger_of(d2[0], larger_of(d2[1], d2[2])));
+        struct Legs {
+            alignas(64) UnitLanes least;
+            alignas(64) UnitLanes most;
         };
-        UnitArray least;
-        UnitArray most;
-        find_legs(point_.position, least, most);
-        UnitArray other_least = least;
-        UnitArray other_most = most;
-        if (exact && !confocal) find_legs(rules.other_end.position, other_least, other_most);
+        const auto find_legs = [&](const Vec3& from, Legs& legs) {
+            for (std::size_t j = 0; j < PieceBlock::kUnitSize; ++j) {
+                const auto squared_distance = [&](std::size_t corner) {
+                    const double x = block.x[corner][begin + j] - from.x();
+                    const double y = block.y[corner][begin + j] - from.y();
+                    const double z = block.z[corner][begin + j] - from.z();
+                    return x * x + y * y + z * z;
+                };
+                const double first = squared_distance(0);
+                const double second = squared_distance(1);
+                const double third = squared_distance(2);
+                const double least2 = std::min(first, std::min(second, third)) - most_below2;
+                legs.least[j] = std::sqrt(std::max(0.0, least2));
+                legs.most[j] = std::sqrt(std::max(first, std::max(second, third)));
+            }
+        };
+        Legs legs;
+        find_legs(point_.position, legs);
+        Legs other_legs = legs;
+        if (exact && !confocal) find_legs(rules.other_end.position, other_legs);
         if (!exact) {
-            other_least = rules.other_legs[b].least_m;
-            other_most = rules.other_legs[b].most_m;
+            other_legs.least.fill(rules.other_legs[b].least_m);
+            other_legs.most.fill(rules.other_legs[b].most_m);
         }
-        lanes |= bits_of(most + other_most >= rules.opl_begin_m &&
-                         least + other_least <= rules.opl_end_m)
-                 << begin;
+        for (std::size_t j = 0; j < PieceBlock::kUnitSize; ++j) {
+            const double least = legs.least[j] + other_legs.least[j];
+            const double most = legs.most[j] + other_legs.most[j];
+            const bool within = (most >= rules.opl_begin_m) & (least <= rules.opl_end_m);
+            lanes |= std::uint64_t{within} << (begin + j);
+        }
     });
     return lanes;
 }
