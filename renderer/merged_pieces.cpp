@@ -135,6 +135,7 @@ MergedPiece merged(const Scene& scene,
                    std::span<const std::uint32_t> members) {
     MergedPiece result;
     result.triangle.facet = pieces[members[0]].facet;
+    result.triangle.number = pieces[members[0]].number;
     Vec3 center = Vec3::Zero();
     Vec3 normals = Vec3::Zero();
     for (const std::uint32_t i : members) {

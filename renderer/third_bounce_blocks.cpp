@@ -103,6 +103,7 @@ void PieceArranger::fill_lane(PieceBlock& block,
     block.rise_m[lane] = merged.rise_m;
     block.one_sided[lane] = visible_side_[scene_.facet(piece.facet).object];
     block.facet[lane] = piece.facet;
+    block.number[lane] = piece.number;
     block.mean_reflectance[lane] = 0.0;
     for (std::size_t node = 0; node < PieceBlock::kNodes; ++node) {
         const Vec3 position = node < 3   ? piece.corners[node]

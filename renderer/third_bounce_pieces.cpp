@@ -203,6 +203,7 @@ std::vector<Piece> PieceCutter::cut_all(double tolerance) const {
         const auto& [a, b, c] = piece.corners;
         return !(core::triangle_area_vector(a, b, c).squaredNorm() > 0.0);
     });
+    for (std::uint32_t i = 0; i < pieces.size(); ++i) pieces[i].number = i;
     return pieces;
 }
 

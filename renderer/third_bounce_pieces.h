@@ -25,6 +25,7 @@ PieceKind kind_of(const Material& material);
 struct Piece {
     std::array<core::Vec3, 3> corners;
     std::uint32_t facet = 0;
+    std::uint32_t number = 0;  ///< in the order of facets, whatever rounding does to sorting
 
     core::Vec3 center() const { return (corners[0] + corners[1] + corners[2]) / 3.0; }
     /// Midpoint of the edge from corner i to the next one.
@@ -51,6 +52,7 @@ struct alignas(64) PieceBlock {
     Lanes mean_reflectance;
     std::array<Bsdf, kSize> glossy;  ///< set for glossy pieces only
     std::array<std::uint32_t, kSize> facet;
+    std::array<std::uint32_t, kSize> number;
     PieceKind kind = PieceKind::Lambertian;
     std::size_t count = 0;  ///< lanes beyond it repeat lane 0 with area 0
     core::Vec3 sphere_center;

@@ -100,7 +100,9 @@ int ThirdBounceScan::integrate(int first_part,
 }
 
 WallPoint ThirdBounceScan::wall_point(const core::WallPoints& points, std::size_t index) const {
-    return {points.positions[index] - pieces_.origin, points.normals[index]};
+    return {points.positions[index] - pieces_.origin,
+            points.normals[index],
+            static_cast<std::uint32_t>(index)};
 }
 
 core::TimeAxis ThirdBounceScan::axis_of_pair(std::size_t pair) const {
@@ -158,7 +160,7 @@ VisibilityRules ThirdBounceScan::rules_towards(const core::WallPoints& others) c
     const auto [least_legs, most_legs] = core::device_leg_range_m(scan_);
     rules.opl_begin_m = axis_.opl_start_m - most_legs;
     rules.opl_end_m = axis_.opl_end_m() - least_legs;
-    rules.other_end = {Vec3::Zero(), Vec3::Zero()};
+    rules.other_end = {Vec3::Zero(), Vec3::Zero(), 0};
     Eigen::AlignedBox3d box;
     for (std::size_t i = 0; i < others.size(); ++i) {
         const WallPoint other = wall_point(others, i);

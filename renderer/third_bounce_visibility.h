@@ -5,6 +5,7 @@
 #include "renderer/visibility_mask.h"
 #include "renderer/wall_boxes.h"
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -14,6 +15,7 @@ namespace renderer {
 struct WallPoint {
     core::Vec3 position;
     core::Vec3 normal;
+    std::uint32_t index = 0;  ///< among the points of its side
 };
 
 /// What limits the work of one wall point.
@@ -35,9 +37,11 @@ struct VisibilityCost {
 
 /// Finds what wall points see of the pieces.
 ///
-/// One ray goes to each group. Where neighbouring groups disagree, each piece of theirs gets a ray,
-/// where neighbouring pieces disagree, 4 and then 16: each step only if what the piece could add
-/// wrongly to H is not negligible.
+/// One ray goes to each group, to a part of a piece that is drawn anew for every wall point: of
+/// shadows that cover less than half of many pieces, as bumps cast, fixed parts would see nothing.
+/// Where neighbouring groups disagree, each piece of theirs gets a ray, where neighbouring pieces
+/// disagree, 4 and then 16: each step only if what the piece could add wrongly to H is not
+/// negligible.
 class VisibilityTracer {
  public:
     /// scene, pieces   must outlive the tracer
@@ -62,6 +66,13 @@ class VisibilityTracer {
     std::uint64_t lanes_seen(std::uint32_t block, UnitMask units, const WallPoint& other);
     std::uint64_t lanes_within_axis(std::uint32_t block, const VisibilityRules& rules) const;
     void choose_representatives(std::uint32_t block, std::uint64_t relevant);
+    /// The parts of a piece that its first rays go to, one in each quarter.
+    struct FirstBits {
+        std::array<std::uint32_t, 4> of_quarter;
+        std::uint32_t first_quarter;  ///< whose ray comes before the others
+        std::uint32_t first() const { return of_quarter[first_quarter]; }
+    };
+    FirstBits first_bits(std::uint32_t piece) const;
     void trace_groups();
     void trace_pieces_of_mixed_groups(double negligible_error);
     void refine_mixed_pieces(double negligible_error, std::vector<VisibilityMask>& masks);

@@ -12,7 +12,6 @@ namespace renderer {
 using VisibilityMask = std::uint16_t;
 
 inline constexpr VisibilityMask kAllVisible = 0xffff;
-inline constexpr std::uint32_t kCenterBit = 15;  ///< its centre is that of the triangle
 
 /// Barycentric coordinates of the centre of a bit's triangle.
 const std::array<double, 3>& center_of_bit(std::uint32_t bit);
