@@ -9,7 +9,8 @@ set(own_calib         "renderer/|calib/")
 set(own_apps          "renderer/|nlos/|calib/|apps/")
 
 # Third-party headers: which may appear in the .cpp files of each folder. Headers get only "anywhere".
-set(anywhere "Eigen/|tbb/|nlohmann/|fmt/|sys/|unistd\\.h|fcntl\\.h|immintrin\\.h")
+set(anywhere
+    "Eigen/|tbb/|nlohmann/|fmt/|sys/|unistd\\.h|fcntl\\.h|immintrin\\.h|experimental/simd")
 set(third_renderer/core "${anywhere}|flann/|malloc\\.h")
 set(third_renderer      "${anywhere}|embree3/|tiny_gltf")
 set(third_nlos          "${anywhere}|fftw3\\.h|hdf5\\.h|matio\\.h|Imf|OpenEXR/|opencv2/")
