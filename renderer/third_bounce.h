@@ -22,7 +22,8 @@ struct ThirdBounce {
     bool interrupted = false;  ///< pairs that were left got the coarsest cut, see estimated_error
 };
 
-/// Integrates the third bounce of the scene's integrable surfaces, without random numbers.
+/// Integrates the third bounce of the scene's integrable surfaces: the same bits for any seed and
+/// number of threads.
 ///
 /// Surfaces are cut into triangles small enough for the closed-form kernel of core/
 /// triangle_histogram.h; facets that bins do not tell apart are merged. Every wall point finds once
