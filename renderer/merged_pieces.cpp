@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/merged_pieces.h"
 
+#include "renderer/median_split.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -65,14 +67,9 @@ class Clusterer {
         Eigen::AlignedBox3d centers;
         for (const Item& item : items) centers.extend(item.center);
         if (items.size() == 1 || is_cluster(items, centers)) return make_cluster(items);
-        Eigen::Index axis = 0;
-        centers.sizes().maxCoeff(&axis);
         const std::size_t half = items.size() / 2;
-        std::nth_element(
-            items.begin(),
-            items.begin() + static_cast<std::ptrdiff_t>(half),
-            items.end(),
-            [axis](const Item& a, const Item& b) { return a.center[axis] < b.center[axis]; });
+        split_along_longest_side(
+            items, half, centers, [](const Item& item) -> const Vec3& { return item.center; });
         split(items.first(half));
         split(items.subspan(half));
     }

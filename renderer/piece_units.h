@@ -17,6 +17,9 @@ using UnitMask = std::uint32_t;
 
 inline constexpr UnitMask kAllUnits = (UnitMask{1} << PieceBlock::kUnits) - 1;
 
+/// A value per piece of a unit.
+using UnitLanes = std::array<double, PieceBlock::kUnitSize>;
+
 /// Calls work(first lane) for each unit.
 template <class Work>
 void for_each_unit(UnitMask units, const Work& work) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/third_bounce_blocks.h"
 
+#include "renderer/median_split.h"
 #include "renderer/piece_neighbours.h"
 #include "renderer/piece_units.h"
 
@@ -38,16 +39,10 @@ void sort_into_blocks(std::span<PieceCenter> centers) {
     if (count < 2) return;
     Eigen::AlignedBox3d box;
     for (const PieceCenter& center : centers) box.extend(center.position);
-    Eigen::Index axis = 0;
-    box.sizes().maxCoeff(&axis);
     std::size_t half = (count + 1) / 2;
     if (count > kSize) half = (half + kSize - 1) / kSize * kSize;
-    std::nth_element(centers.begin(),
-                     centers.begin() + static_cast<std::ptrdiff_t>(half),
-                     centers.end(),
-                     [axis](const PieceCenter& a, const PieceCenter& b) {
-                         return a.position[axis] < b.position[axis];
-                     });
+    split_along_longest_side(
+        centers, half, box, [](const PieceCenter& c) -> const Vec3& { return c.position; });
     sort_into_blocks(centers.first(half));
     sort_into_blocks(centers.subspan(half));
 }

@@ -18,7 +18,6 @@ struct UnitPoints {
     UnitArray x, y, z;
 };
 
-using UnitLanes = std::array<double, PieceBlock::kUnitSize>;
 using NodeWeights = std::array<UnitLanes, PieceBlock::kNodes>;
 
 Vec3 node_of(const PieceBlock& block, std::size_t node, std::size_t i) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/third_bounce_visibility.h"
 
+#include "renderer/core/random.h"
 #include "renderer/core/stopwatch.h"
 
 #include <algorithm>
@@ -15,8 +16,6 @@ using core::Vec3;
 
 constexpr std::size_t kSize = PieceBlock::kSize;
 
-using UnitLanes = std::array<double, PieceBlock::kUnitSize>;
-
 UnitMask units_of(std::uint64_t lanes) {
     UnitMask units = 0;
     for (std::size_t u = 0; u < PieceBlock::kUnits; ++u) {
@@ -24,13 +23,6 @@ UnitMask units_of(std::uint64_t lanes) {
         units |= UnitMask{unit != 0} << u;
     }
     return units;
-}
-
-// A number of 32 bits that looks random.
-std::uint32_t scrambled(std::uint32_t a, std::uint32_t b) {
-    std::uint32_t bits = a * 0x9e3779b9U ^ (b + 0x7f4a7c15U) * 0x85ebca6bU;
-    bits = (bits ^ (bits >> 16)) * 0xc2b2ae35U;
-    return bits ^ (bits >> 15);
 }
 
 // Standard deviation of the visible share of a piece that a shadow's straight edge crosses, known
@@ -246,7 +238,8 @@ void VisibilityTracer::choose_representatives(std::uint32_t block, std::uint64_t
 // Every part is as likely as any other, so that shadows count by what they cover.
 VisibilityTracer::FirstBits VisibilityTracer::first_bits(std::uint32_t piece) const {
     const std::uint32_t number = set_.blocks[piece / kSize].number[piece % kSize];
-    const std::uint32_t draw = scrambled(number, point_.index);
+    const auto draw =
+        static_cast<std::uint32_t>(core::Rng(0, number, point_.index).next_bits() & 0x3ffU);
     FirstBits bits{{}, draw & 3U};
     for (std::uint32_t q = 0; q < 4; ++q) bits.of_quarter[q] = 4 * q + (draw >> (2 * q + 2) & 3U);
     return bits;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/wall_boxes.h"
 
+#include "renderer/median_split.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -26,13 +28,8 @@ void split(std::span<Vec3> points, std::size_t most_per_run, Runs& runs) {
     }
     Eigen::AlignedBox3d box;
     for (const Vec3& point : points) box.extend(point);
-    Eigen::Index axis = 0;
-    box.sizes().maxCoeff(&axis);
     const std::size_t half = points.size() / 2;
-    std::nth_element(points.begin(),
-                     points.begin() + static_cast<std::ptrdiff_t>(half),
-                     points.end(),
-                     [axis](const Vec3& a, const Vec3& b) { return a[axis] < b[axis]; });
+    split_along_longest_side(points, half, box, [](const Vec3& p) -> const Vec3& { return p; });
     split(points.first(half), most_per_run, runs);
     split(points.subspan(half), most_per_run, runs);
 }
