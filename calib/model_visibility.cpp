@@ -30,7 +30,7 @@ std::vector<Target> make_targets(const SceneModel& model,
         Target& target = targets.emplace_back();
         target.normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
         for (std::uint32_t part = 0; part < kParts; ++part) {
-            const auto& share = renderer::center_of_bit(part);
+            const auto& share = renderer::centers_of_bits()[part];
             const Vec3 weights = share[0] * piece.barycentric[0] + share[1] * piece.barycentric[1] +
                                  share[2] * piece.barycentric[2];
             target.centers[part] =

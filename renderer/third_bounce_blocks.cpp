@@ -141,8 +141,7 @@ void PieceArranger::append_blocks(const std::vector<MergedPiece>& pieces, PieceK
                 block.longest_edge_m = std::max(block.longest_edge_m, edge);
             }
         }
-        block.sphere_center = box.center();
-        block.sphere_radius_m = 0.5 * box.diagonal().norm();
+        set_.spheres.push_back({box.center(), 0.5 * box.diagonal().norm()});
         find_unit_spheres(block);
     }
 }
@@ -189,8 +188,7 @@ void PieceArranger::form_groups(std::size_t block, Range lanes) {
     }
     if (is_group) {
         set_.groups.push_back({static_cast<std::uint32_t>(block),
-                               static_cast<std::uint32_t>(lanes.begin),
-                               static_cast<std::uint32_t>(lanes.end)});
+                               (~std::uint64_t{0} >> (kSize - count)) << lanes.begin});
         return;
     }
     const std::size_t middle = lanes.begin + (count + 1) / 2;
@@ -202,9 +200,8 @@ void PieceArranger::find_group_neighbours() {
     std::vector<std::uint32_t> group_of(set_.blocks.size() * kSize);
     for (std::uint32_t g = 0; g < set_.groups.size(); ++g) {
         const PieceGroup& group = set_.groups[g];
-        for (std::uint32_t lane = group.begin; lane < group.end; ++lane) {
-            group_of[group.block * kSize + lane] = g;
-        }
+        for_each_bit(group.lanes,
+                     [&](std::size_t lane) { group_of[group.block * kSize + lane] = g; });
     }
     std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
     const NeighbourLists& lists = set_.piece_neighbours;

@@ -13,12 +13,11 @@ using core::Vec3;
 
 constexpr std::size_t kSize = PieceBlock::kSize;
 
-// A point of each piece of a unit.
-struct UnitPoints {
-    UnitArray x, y, z;
-};
+using core::load;
+using core::Simd;
+using core::store;
 
-using NodeWeights = std::array<UnitLanes, PieceBlock::kNodes>;
+using NodeWeights = std::array<Simd, PieceBlock::kNodes>;
 
 Vec3 node_of(const PieceBlock& block, std::size_t node, std::size_t i) {
     if (node == 6) return {block.center_x[i], block.center_y[i], block.center_z[i]};
@@ -48,54 +47,73 @@ void weigh_by_bsdf(const PieceBlock& block,
 }
 
 // Weights of the pieces of the unit that starts at lane `begin`.
-void weigh_nodes(const PieceBlock& block,
-                 std::size_t begin,
-                 const PairEnd& light,
-                 const PairEnd& sensor,
-                 NodeWeights& weights) {
+[[gnu::always_inline]] inline NodeWeights weigh_nodes(const PieceBlock& block,
+                                                      std::size_t begin,
+                                                      const PairEnd& light,
+                                                      const PairEnd& sensor) {
+    NodeWeights weights;
     if (block.kind == PieceKind::Glossy) {
+        alignas(64) std::array<UnitLanes, PieceBlock::kNodes> values{};
         for (std::size_t j = 0; j < PieceBlock::kUnitSize; ++j) {
             const std::size_t i = begin + j;
-            std::array<double, PieceBlock::kNodes> of_piece{};
-            if ((light.masks[i] & sensor.masks[i]) != 0) {
-                weigh_by_bsdf(block, i, light, sensor, of_piece);
-            }
-            for (std::size_t node = 0; node < PieceBlock::kNodes; ++node) {
-                weights[node][j] = of_piece[node];
+            if ((light.masks[i] & sensor.masks[i]) == 0) continue;
+            std::array<double, PieceBlock::kNodes> of_piece;
+            weigh_by_bsdf(block, i, light, sensor, of_piece);
+            for (std::size_t node = 0; node < of_piece.size(); ++node) {
+                values[node][j] = of_piece[node];
             }
         }
-        return;
+        for (std::size_t node = 0; node < weights.size(); ++node) {
+            weights[node] = load(values[node], 0);
+        }
+        return weights;
     }
-    for (std::size_t node = 0; node < PieceBlock::kNodes; ++node) {
-        UnitArray weight =
+    for (std::size_t node = 0; node < weights.size(); ++node) {
+        weights[node] =
             load(block.reflectance[node], begin) * load(light.table->factor[node], begin);
         if (block.kind != PieceKind::Retroreflective) {
-            weight *= load(sensor.table->factor[node], begin);
+            weights[node] *= load(sensor.table->factor[node], begin);
         }
-        weight.copy_to(weights[node].data(), std::experimental::element_aligned);
     }
-}
-
-// By value: with std::min, compilers choose between addresses instead.
-double lower_of(double a, double b) {
-    return b < a ? b : a;
+    return weights;
 }
 
 // Linear weights with the mean over the piece, as the nodes tell it, and the corners' differences;
 // where a corner would fall below 0, all of them shrink until it does not. Into lanes from `begin`.
-void fit_weights(const NodeWeights& k, std::size_t begin, core::TriangleLanes& fitted) {
-    for (std::size_t j = 0; j < PieceBlock::kUnitSize; ++j) {
-        const double corner_mean = (k[0][j] + k[1][j] + k[2][j]) * (1.0 / 3.0);
-        const double mean = 3.0 * kShareOfCorner * corner_mean +
-                            kShareOfMiddle * (k[3][j] + k[4][j] + k[5][j]) +
-                            kShareOfCenter * k[6][j];
-        const double lowest = lower_of(k[0][j], lower_of(k[1][j], k[2][j])) - corner_mean;
-        const double most = mean / -lowest;
-        const double spread = lowest < -mean ? most : 1.0;
-        fitted.weight[0][begin + j] = mean + spread * (k[0][j] - corner_mean);
-        fitted.weight[1][begin + j] = mean + spread * (k[1][j] - corner_mean);
-        fitted.weight[2][begin + j] = mean + spread * (k[2][j] - corner_mean);
+[[gnu::always_inline]] inline void fit_weights(const NodeWeights& k,
+                                               std::size_t begin,
+                                               core::TriangleLanes& fitted) {
+    const Simd corner_mean = (k[0] + k[1] + k[2]) * (1.0 / 3.0);
+    const Simd mean = 3.0 * kShareOfCorner * corner_mean + kShareOfMiddle * (k[3] + k[4] + k[5]) +
+                      kShareOfCenter * k[6];
+    const Simd lowest = core::smaller_of(core::smaller_of(k[0], k[1]), k[2]) - corner_mean;
+    Simd spread = 1.0;
+    const core::SimdMask falls_below = lowest < -mean;
+    if (falls_below.any()) spread = core::select(falls_below, mean / -lowest, 1.0);
+    for (std::size_t c = 0; c < 3; ++c) {
+        store(mean + spread * (k[c] - corner_mean), fitted.weight[c], begin);
     }
+}
+
+// Keeps products of a piece's squared distances from becoming 0 [m^2].
+constexpr double kLeastSquaredDistance = 1e-40;
+
+// By one division, which takes as long as a dozen products.
+template <std::size_t N>
+[[gnu::always_inline]] inline std::array<Simd, N> reciprocals(const std::array<Simd, N>& values) {
+    std::array<Simd, N> result;  // first the products of the values before
+    Simd product = values[0];
+    for (std::size_t i = 1; i < N; ++i) {
+        result[i] = product;
+        product *= values[i];
+    }
+    Simd per = 1.0 / product;
+    for (std::size_t i = N - 1; i > 0; --i) {
+        result[i] *= per;
+        per *= values[i];
+    }
+    result[0] = per;
+    return result;
 }
 
 // Weights of the visible part: the product of two linear functions, made linear again with its
@@ -137,67 +155,55 @@ void keep_visible_weights(const UnitMasks& masks, std::size_t begin, core::Trian
     }
 }
 
-UnitMask units_seen(const VisibilityMask* masks) {
-    UnitMask units = 0;
-    for (std::size_t u = 0; u < PieceBlock::kUnits; ++u) {
-        VisibilityMask any = 0;
-        for (std::size_t j = 0; j < PieceBlock::kUnitSize; ++j) {
-            any = static_cast<VisibilityMask>(any | masks[u * PieceBlock::kUnitSize + j]);
-        }
-        units |= UnitMask{any != 0} << u;
-    }
-    return units;
-}
-
 }  // namespace
 
 void compute_table(const PieceBlock& block,
                    const WallPoint& point,
-                   const VisibilityMask* masks,
+                   UnitMask units,
                    BlockTable& table) {
     const Vec3 w = point.position;
     const Vec3 n = point.normal;
-    table.units = units_seen(masks);
-    for_each_unit(table.units, [&](std::size_t begin) {
-        const auto relative = [&](const PieceBlock::Lanes& x,
-                                  const PieceBlock::Lanes& y,
-                                  const PieceBlock::Lanes& z) {
-            return UnitPoints{
-                load(x, begin) - w.x(), load(y, begin) - w.y(), load(z, begin) - w.z()};
-        };
-        const std::array<UnitPoints, 3> corners{relative(block.x[0], block.y[0], block.z[0]),
-                                                relative(block.x[1], block.y[1], block.z[1]),
-                                                relative(block.x[2], block.y[2], block.z[2])};
+    table.units = units;
+    for_each_unit(units, [&](std::size_t begin) {
+        std::array<UnitPoints, 3> corners;
+        for (std::size_t j = 0; j < 3; ++j) {
+            corners[j] = load_points(block.x[j], block.y[j], block.z[j], begin, w);
+        }
+        const UnitPoints normal =
+            load_points(block.normal_x, block.normal_y, block.normal_z, begin, Vec3::Zero());
         // All points of the piece have the same distance from w along its normal.
-        const UnitArray side = -(corners[0].x * load(block.normal_x, begin) +
-                                 corners[0].y * load(block.normal_y, begin) +
-                                 corners[0].z * load(block.normal_z, begin));
-        const UnitArray facing = larger_of(side, -side);
+        const Simd side = -corners[0].dot(normal);
+        const Simd facing = core::larger_of(side, -side);
         store(side, table.side, begin);
-        // Returns the squared distances.
-        const auto look_at = [&](std::size_t node, const UnitPoints& p) -> UnitArray {
-            const UnitArray d2 =
-                larger_of(UnitArray(p.x * p.x + p.y * p.y + p.z * p.z), UnitArray(1e-200));
-            const UnitArray front =
-                larger_of(UnitArray(p.x * n.x() + p.y * n.y() + p.z * n.z()), UnitArray(0.0));
-            store(front * facing / (d2 * d2), table.factor[node], begin);
-            return d2;
-        };
-        std::array<UnitArray, 3> leg;
+        std::array<UnitPoints, PieceBlock::kNodes> nodes;
         for (std::size_t j = 0; j < 3; ++j) {
             const UnitPoints& p = corners[j];
             const UnitPoints& q = corners[(j + 1) % 3];
-            leg[j] = square_root(look_at(j, p));
-            store(leg[j], table.leg_m[j], begin);
-            look_at(3 + j, {0.5 * (p.x + q.x), 0.5 * (p.y + q.y), 0.5 * (p.z + q.z)});
+            nodes[j] = p;
+            nodes[3 + j] = {0.5 * (p.x + q.x), 0.5 * (p.y + q.y), 0.5 * (p.z + q.z)};
         }
-        look_at(6, relative(block.center_x, block.center_y, block.center_z));
-        // The leg's second derivative along an edge is (|edge|^2 - (its rise)^2) / leg.
-        const UnitArray per_leg = 3.0 / (leg[0] + leg[1] + leg[2]);
+        nodes[6] = load_points(block.center_x, block.center_y, block.center_z, begin, w);
+        std::array<Simd, PieceBlock::kNodes> d2;
+        for (std::size_t node = 0; node < nodes.size(); ++node) {
+            d2[node] = core::larger_of(nodes[node].dot(nodes[node]), kLeastSquaredDistance);
+        }
+        const auto per_d2 = reciprocals(d2);
+        for (std::size_t node = 0; node < nodes.size(); ++node) {
+            const Simd front = core::larger_of(nodes[node].dot(n), 0.0);
+            store(front * facing * (per_d2[node] * per_d2[node]), table.factor[node], begin);
+        }
+        std::array<Simd, 3> leg;
+        Simd per_leg = 0.0;  // mean
         for (std::size_t j = 0; j < 3; ++j) {
-            const UnitArray rise = leg[(j + 2) % 3] - leg[(j + 1) % 3];
-            const UnitArray squared = load(block.squared_edge[j], begin) - rise * rise;
-            store(larger_of(squared, UnitArray(0.0)) * per_leg, table.bend_m[j], begin);
+            leg[j] = core::square_root(d2[j]);
+            store(leg[j], table.leg_m[j], begin);
+            per_leg += leg[j] * per_d2[j] * (1.0 / 3.0);
+        }
+        // The leg's second derivative along an edge is (|edge|^2 - (its rise)^2) / leg.
+        for (std::size_t j = 0; j < 3; ++j) {
+            const Simd rise = leg[(j + 2) % 3] - leg[(j + 1) % 3];
+            const Simd squared = load(block.squared_edge[j], begin) - rise * rise;
+            store(core::larger_of(squared, 0.0) * per_leg, table.bend_m[j], begin);
         }
     });
 }
@@ -208,7 +214,6 @@ void add_pair(const PieceBlock& block,
               const core::TimeAxis& axis,
               std::span<double> histogram) {
     core::TriangleLanes fitted;
-    alignas(64) PieceBlock::Lanes area_m2;
     std::size_t count = 0;
     for_each_unit(light.table->units & sensor.table->units, [&](std::size_t begin) {
         const UnitMasks masks = common_masks(light, sensor, begin);
@@ -223,14 +228,12 @@ void add_pair(const PieceBlock& block,
                   fitted.bend_m[c],
                   count);
         }
-        alignas(64) NodeWeights weights;
-        weigh_nodes(block, begin, light, sensor, weights);
-        fit_weights(weights, count, fitted);
+        fit_weights(weigh_nodes(block, begin, light, sensor), count, fitted);
         keep_visible_weights(masks, count, fitted);
-        std::copy_n(block.area_m2.data() + begin, PieceBlock::kUnitSize, area_m2.data() + count);
+        store(load(block.area_m2, begin), fitted.area_m2, count);
         count += PieceBlock::kUnitSize;
     });
-    core::add_triangles(fitted, {area_m2.data(), count}, axis, histogram);
+    core::add_triangles(fitted, count, axis, histogram);
 }
 
 }  // namespace renderer

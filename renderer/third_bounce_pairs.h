@@ -17,22 +17,22 @@ struct alignas(64) BlockTable {
     /// (n_w.d) |n_x.d| / |d|^4 at the nodes [1/m^2], 0 behind the wall point.
     std::array<PieceBlock::Lanes, PieceBlock::kNodes> factor;
     PieceBlock::Lanes side;  ///< sign of the side of the piece that the wall point is on
-    UnitMask units = 0;      ///< with pieces that the point sees; the others are not filled
+    UnitMask units = 0;      ///< the others are not filled
 };
 
 /// Fills `table` for one wall point.
 ///
-/// masks   of the block's pieces, PieceBlock::kSize of them
+/// units   with pieces that the point sees
 void compute_table(const PieceBlock& block,
                    const WallPoint& point,
-                   const VisibilityMask* masks,
+                   UnitMask units,
                    BlockTable& table);
 
 /// One end of the paths of a pair: the wall point, its table and its masks for one block.
 struct PairEnd {
     const WallPoint* point;
     const BlockTable* table;
-    const VisibilityMask* masks;  ///< PieceBlock::kSize of them
+    const VisibilityMask* masks;  ///< of the block, see VisiblePieces
 };
 
 /// Adds the third bounce of one measurement pair by way of one block to its histogram, wall albedos

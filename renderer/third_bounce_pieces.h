@@ -2,6 +2,7 @@
 #pragma once
 
 #include "renderer/core/capture.h"
+#include "renderer/core/simd.h"
 #include "renderer/core/triangle_histogram.h"
 #include "renderer/scene.h"
 #include "renderer/wall_boxes.h"
@@ -36,7 +37,7 @@ struct Piece {
 /// the edges that start there, node 6 is the centre.
 struct alignas(64) PieceBlock {
     static constexpr std::size_t kSize = core::TriangleLanes::kSize;
-    static constexpr std::size_t kUnitSize = 8;  ///< see piece_units.h
+    static constexpr std::size_t kUnitSize = core::Simd::size();  ///< see piece_units.h
     static constexpr std::size_t kUnits = kSize / kUnitSize;
     static constexpr std::size_t kNodes = 7;
     using Lanes = core::TriangleLanes::Lanes;
@@ -55,8 +56,6 @@ struct alignas(64) PieceBlock {
     std::array<std::uint32_t, kSize> number;
     PieceKind kind = PieceKind::Lambertian;
     std::size_t count = 0;  ///< lanes beyond it repeat lane 0 with area 0
-    core::Vec3 sphere_center;
-    double sphere_radius_m = 0.0;  ///< holds all corners
     double longest_edge_m = 0.0;
     /// Spheres that hold the corners of each unit.
     alignas(64) std::array<double, kUnits> unit_x, unit_y, unit_z, unit_radius_m;
@@ -68,11 +67,16 @@ inline constexpr double kShareOfCorner = 1.0 / 20.0;
 inline constexpr double kShareOfMiddle = 2.0 / 15.0;
 inline constexpr double kShareOfCenter = 9.0 / 20.0;
 
-/// Neighbouring pieces of one object that one shadow ray may stand for: lanes [begin, end).
+/// Holds the corners of all pieces of a block; relative to PieceSet::origin.
+struct BlockSphere {
+    core::Vec3 center;
+    double radius_m = 0.0;
+};
+
+/// Neighbouring pieces of one object that one shadow ray may stand for: a run of a block's lanes.
 struct PieceGroup {
     std::uint32_t block = 0;
-    std::uint32_t begin = 0;
-    std::uint32_t end = 0;
+    std::uint64_t lanes = 0;  ///< lane i as bit i
 };
 
 /// Lists of neighbours: those of item i are items[begin[i] .. begin[i + 1]).
@@ -85,6 +89,7 @@ struct NeighbourLists {
 struct PieceSet {
     core::Vec3 origin = core::Vec3::Zero();  ///< world; keeps precision far from the world's origin
     std::vector<PieceBlock> blocks;
+    std::vector<BlockSphere> spheres;  ///< per block, close together in memory
     std::vector<PieceGroup> groups;
     std::vector<std::uint32_t> first_group;  ///< per block, and one past the last
     NeighbourLists piece_neighbours;         ///< pieces that share an edge

@@ -26,17 +26,13 @@ std::size_t begin_of_part(int part, std::size_t count) {
 // Tables of some wall points for one block, where they see anything of it.
 class TileTables {
  public:
-    TileTables(std::vector<WallPoint> points, std::span<const std::vector<VisibilityMask>> masks)
-        : points_(std::move(points)),
-          masks_(masks),
-          tables_(points_.size()),
-          ends_(points_.size()) {}
+    TileTables(std::vector<WallPoint> points, std::span<const VisiblePieces> seen)
+        : points_(std::move(points)), seen_(seen), tables_(points_.size()), ends_(points_.size()) {}
 
     void compute(const PieceBlock& block, std::size_t block_index) {
         for (std::size_t i = 0; i < points_.size(); ++i) {
-            const VisibilityMask* const masks = masks_[i].data() + block_index * kSize;
-            compute_table(block, points_[i], masks, tables_[i]);
-            ends_[i] = {&points_[i], &tables_[i], masks};
+            compute_table(block, points_[i], seen_[i].units[block_index], tables_[i]);
+            ends_[i] = {&points_[i], &tables_[i], seen_[i].masks.data() + block_index * kSize};
         }
     }
 
@@ -44,19 +40,19 @@ class TileTables {
 
  private:
     std::vector<WallPoint> points_;
-    std::span<const std::vector<VisibilityMask>> masks_;
+    std::span<const VisiblePieces> seen_;
     std::vector<BlockTable> tables_;
     std::vector<PairEnd> ends_;
 };
 
 // True when no path of the two points through the block has a length within the axis.
-bool misses_axis(const PieceBlock& block,
+bool misses_axis(const BlockSphere& sphere,
                  const WallPoint& light,
                  const WallPoint& sensor,
                  const core::TimeAxis& axis) {
-    const double middle = (block.sphere_center - light.position).norm() +
-                          (block.sphere_center - sensor.position).norm();
-    const double reach = 2.0 * block.sphere_radius_m;
+    const double middle =
+        (sphere.center - light.position).norm() + (sphere.center - sensor.position).norm();
+    const double reach = 2.0 * sphere.radius_m;
     return middle + reach < axis.opl_start_m || middle - reach > axis.opl_end_m();
 }
 
@@ -127,7 +123,7 @@ void ThirdBounceScan::integrate_confocal(std::size_t first, std::size_t last) {
     core::parallel_blocks(
         last - first, kPointsPerBlock, [&](std::size_t block_begin, std::size_t block_end) {
             VisibilityTracer tracer(scene_, pieces_);
-            Masks masks;
+            VisiblePieces seen;
             BlockTable table;
             std::vector<double> histogram(static_cast<std::size_t>(axis_.num_bins));
             for (std::size_t pair = first + block_begin; pair < first + block_end; ++pair) {
@@ -136,15 +132,14 @@ void ThirdBounceScan::integrate_confocal(std::size_t first, std::size_t last) {
                 const VisibilityCost cost =
                     tracer.trace(point,
                                  {axis.opl_start_m, axis.opl_end_m(), point, {}, negligible_error_},
-                                 masks);
+                                 seen);
                 add(cost);
                 sensor_errors_[pair] = cost.squared_error;
                 std::fill(histogram.begin(), histogram.end(), 0.0);
                 for (std::size_t b = 0; b < pieces_.blocks.size(); ++b) {
-                    const VisibilityMask* const seen = masks.data() + b * kSize;
-                    compute_table(pieces_.blocks[b], point, seen, table);
-                    if (table.units == 0) continue;
-                    const PairEnd end{&point, &table, seen};
+                    if (seen.units[b] == 0) continue;
+                    compute_table(pieces_.blocks[b], point, seen.units[b], table);
+                    const PairEnd end{&point, &table, seen.masks.data() + b * kSize};
                     add_pair(pieces_.blocks[b], end, end, axis, histogram);
                 }
                 store(pair, histogram);
@@ -169,11 +164,10 @@ VisibilityRules ThirdBounceScan::rules_towards(const core::WallPoints& others) c
         rules.other_end.normal += other.normal / static_cast<double>(others.size());
     }
     if (others.size() > 1) {
-        for (const PieceBlock& block : pieces_.blocks) {
-            const Vec3 c = block.sphere_center;
+        for (const auto& [c, radius_m] : pieces_.spheres) {
             const Vec3 farthest = (c - box.min()).cwiseAbs().cwiseMax((c - box.max()).cwiseAbs());
-            rules.other_legs.push_back({box.exteriorDistance(c) - block.sphere_radius_m,
-                                        farthest.norm() + block.sphere_radius_m});
+            rules.other_legs.push_back(
+                {box.exteriorDistance(c) - radius_m, farthest.norm() + radius_m});
         }
     }
     return rules;
@@ -186,13 +180,13 @@ void ThirdBounceScan::look_from(const core::WallPoints& points,
                                 std::vector<double>& squared_errors) {
     if (views.range == range) return;
     views.range = range;
-    views.masks.resize(range.size());
+    views.seen.resize(range.size());
     core::parallel_blocks(range.size(), kPointsPerBlock, [&](std::size_t begin, std::size_t end) {
         VisibilityTracer tracer(scene_, pieces_);
         for (std::size_t i = begin; i < end; ++i) {
             const std::size_t point = range.begin + i;
             const VisibilityCost cost =
-                tracer.trace(wall_point(points, point), rules, views.masks[i]);
+                tracer.trace(wall_point(points, point), rules, views.seen[i]);
             add(cost);
             squared_errors[point] = cost.squared_error;
         }
@@ -250,7 +244,7 @@ void ThirdBounceScan::integrate_tile(const PairTiles::Tile& tile,
             }
             return TileTables(
                 std::move(points),
-                std::span(views.masks).subspan(range.begin - views.range.begin, range.size()));
+                std::span(views.seen).subspan(range.begin - views.range.begin, range.size()));
         };
     TileTables lights = tables(scan_.illumination, tile.lights, light_views);
     TileTables sensors = tables(scan_.sensing, tile.sensors, sensor_views);
@@ -270,7 +264,7 @@ void ThirdBounceScan::integrate_tile(const PairTiles::Tile& tile,
                 const PairEnd& sensor = sensors.ends()[s];
                 if ((light.table->units & sensor.table->units) == 0) continue;
                 const core::TimeAxis axis = axis_of_pair(pair_of(l, s));
-                if (misses_axis(block, *light.point, *sensor.point, axis)) continue;
+                if (misses_axis(pieces_.spheres[b], *light.point, *sensor.point, axis)) continue;
                 add_pair(block,
                          light,
                          sensor,

@@ -48,11 +48,10 @@ class ThirdBounceScan {
     double squared_shadow_error() const;
 
  private:
-    using Masks = std::vector<VisibilityMask>;
     /// What some points of one side of the scan see of all pieces.
     struct Views {
         PointRange range;
-        std::vector<Masks> masks;  ///< one per point of the range
+        std::vector<VisiblePieces> seen;  ///< one per point of the range
     };
 
     WallPoint wall_point(const core::WallPoints& points, std::size_t index) const;

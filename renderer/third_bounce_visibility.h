@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace renderer {
@@ -28,6 +29,12 @@ struct VisibilityRules {
     double negligible_error = 0.0;  ///< errors of a value of H that need no more rays
 };
 
+/// What a wall point sees of the pieces.
+struct VisiblePieces {
+    std::vector<UnitMask> units;        ///< per block: those with pieces of which a part is seen
+    std::vector<VisibilityMask> masks;  ///< block * kSize + lane, of these units; others: anything
+};
+
 /// What a look around took, and how good it is.
 struct VisibilityCost {
     std::uint64_t num_rays = 0;
@@ -47,16 +54,36 @@ class VisibilityTracer {
     /// scene, pieces   must outlive the tracer
     VisibilityTracer(const Scene& scene, const PieceSet& pieces);
 
-    /// Sets masks[block * kSize + lane] for all pieces; 0 for what cannot matter.
-    VisibilityCost trace(const WallPoint& point,
-                         const VisibilityRules& rules,
-                         std::vector<VisibilityMask>& masks);
+    /// Sets `seen`; pieces that cannot matter are not.
+    VisibilityCost trace(const WallPoint& point, const VisibilityRules& rules, VisiblePieces& seen);
 
  private:
     enum State : std::uint8_t { kIrrelevant, kBlocked, kVisible };
     struct Target {
         std::uint32_t piece;
         std::uint32_t bit;
+    };
+    /// Bit i: lane i of a block.
+    struct BlockLanes {
+        std::uint64_t relevant = 0;
+        std::uint64_t visible = 0;  ///< of the relevant ones
+    };
+    struct alignas(64) BlockMasses {
+        PieceBlock::Lanes of_lane;  ///< contribution to H if all visible
+    };
+    struct ActiveGroup {
+        std::uint32_t group;
+        std::uint32_t representative;  ///< the piece that its first ray goes to
+    };
+    /// The parts of a piece that its first rays go to, one in each quarter.
+    struct FirstBits {
+        std::uint32_t draw;
+        std::uint32_t of_quarter(std::uint32_t q) const {
+            return 4 * q + (draw >> (2 * q + 2) & 3U);
+        }
+        /// Whose ray comes before the others.
+        std::uint32_t first_quarter() const { return draw & 3U; }
+        std::uint32_t first() const { return of_quarter(first_quarter()); }
     };
 
     void classify(const VisibilityRules& rules);
@@ -65,20 +92,21 @@ class VisibilityTracer {
     UnitMask units_within_axis(std::uint32_t block, const VisibilityRules& rules) const;
     std::uint64_t lanes_seen(std::uint32_t block, UnitMask units, const WallPoint& other);
     std::uint64_t lanes_within_axis(std::uint32_t block, const VisibilityRules& rules) const;
-    void choose_representatives(std::uint32_t block, std::uint64_t relevant);
-    /// The parts of a piece that its first rays go to, one in each quarter.
-    struct FirstBits {
-        std::array<std::uint32_t, 4> of_quarter;
-        std::uint32_t first_quarter;  ///< whose ray comes before the others
-        std::uint32_t first() const { return of_quarter[first_quarter]; }
-    };
-    FirstBits first_bits(std::uint32_t piece) const;
+    inline FirstBits first_bits(std::uint32_t piece) const;
+    void choose_representatives(std::uint32_t block);
     void trace_groups();
     void trace_pieces_of_mixed_groups(double negligible_error);
     void refine_mixed_pieces(double negligible_error, std::vector<VisibilityMask>& masks);
-    bool is_mixed(const NeighbourLists& lists,
-                  const std::vector<State>& states,
-                  std::uint32_t item) const;
+    State state_of(std::uint32_t piece) const;
+    double mass_of(std::uint32_t piece) const {
+        return masses_[piece / PieceBlock::kSize].of_lane[piece % PieceBlock::kSize];
+    }
+    void set_visible(std::uint32_t piece, bool is_visible);
+    /// state_of_item   gives the state of the list's items
+    template <class StateOf>
+    static bool is_mixed(const NeighbourLists& lists,
+                         std::uint32_t item,
+                         const StateOf& state_of_item);
     /// Shoots at all targets; results_[i] is true where targets_[i] is seen.
     void shoot();
 
@@ -86,10 +114,9 @@ class VisibilityTracer {
     const PieceSet& set_;
     WallPoint point_;
     std::vector<State> group_states_;
-    std::vector<State> piece_states_;
-    std::vector<double> piece_mass_;  ///< contribution to H if all visible
-    std::vector<std::uint32_t> representative_;
-    std::vector<std::uint32_t> active_groups_;
+    std::vector<BlockLanes> lanes_;          ///< per block
+    std::unique_ptr<BlockMasses[]> masses_;  ///< per block, of relevant lanes
+    std::vector<ActiveGroup> active_groups_;
     std::vector<std::uint32_t> active_blocks_;
     std::vector<std::uint32_t> opened_pieces_;
     std::vector<std::uint32_t> mixed_;

@@ -60,8 +60,8 @@ constexpr NibbleTable kTable = make_table();
 
 }  // namespace
 
-const Barycentric& center_of_bit(std::uint32_t bit) {
-    return kCenters[bit];
+const std::array<Barycentric, 16>& centers_of_bits() {
+    return kCenters;
 }
 
 Barycentric visible_share(VisibilityMask mask) {

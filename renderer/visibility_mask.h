@@ -13,8 +13,8 @@ using VisibilityMask = std::uint16_t;
 
 inline constexpr VisibilityMask kAllVisible = 0xffff;
 
-/// Barycentric coordinates of the centre of a bit's triangle.
-const std::array<double, 3>& center_of_bit(std::uint32_t bit);
+/// Barycentric coordinates of the centre of each bit's triangle.
+const std::array<std::array<double, 3>, 16>& centers_of_bits();
 
 /// The linear function with the integral and the first moments of the visible part's indicator,
 /// bent to stay at or above 0: its values at the three corners.

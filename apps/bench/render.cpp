@@ -235,6 +235,9 @@ RenderBench bench_render(const RenderBenchSettings& settings, const core::Progre
     result.repeats = settings.repeats;
     const int gate_runs = std::max(kFewestGateRuns, settings.repeats);
     if (settings.has("curves")) measure_curves(settings, progress, result);
+    if (settings.has("third_bounce")) {
+        result.third_bounce = bench_third_bounce_costs(settings.scene, settings.repeats);
+    }
     if (settings.has("gates")) {
         result.gates.push_back(bench_gates(settings.scene, 3, gate_runs, progress));
         result.gates.push_back(bench_gates(settings.scene, 5, gate_runs, progress));

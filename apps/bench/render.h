@@ -4,6 +4,7 @@
 #include "apps/bench/gates.h"
 #include "apps/bench/growth.h"
 #include "apps/bench/output.h"
+#include "apps/bench/third_bounce_costs.h"
 
 #include <string>
 #include <vector>
@@ -80,6 +81,7 @@ struct RenderBench {
     double ray_limit_seconds = 0.0;  ///< CPU time of the shadow rays of `path`, per sample
     std::vector<BenchCurve> curves;
     std::vector<EqualError> equal_error;
+    std::vector<ThirdBounceCost> third_bounce;
     std::vector<GateTable> gates;
     std::vector<ExclusionBench> exclusion;
     std::vector<RenderGrowth> growth;
@@ -97,6 +99,7 @@ void for_each_field(RenderBench& bench, Visitor&& visit) {
           "CPU time of the shadow rays alone per sample of all pairs [s]");
     visit("curves", bench.curves, "error against time");
     visit("equal_error", bench.equal_error, "every estimator against path");
+    visit("third_bounce", bench.third_bounce, "histogram, gates and pairs to 1 %");
     visit("gates", bench.gates, "every estimator in equal time");
     visit("exclusion", bench.exclusion, "ellipsoidal with and without excluded surfaces");
     visit("growth", bench.growth, "time against sizes");
@@ -110,7 +113,7 @@ struct RenderBenchSettings {
     /// and a back wall with its neighbours.
     std::vector<std::string> exclusion_scenes = {
         "scenes/bars/scene.json", "scenes/curved/scene.json", "scenes/corner/scene.json"};
-    std::string part = "all";  ///< or curves, gates, exclusion, growth
+    std::string part = "all";  ///< or curves, third_bounce, gates, exclusion, growth
     int repeats = 3;           ///< runs per point; those that take long are not repeated
     bool quick = false;        ///< leaves out what takes longest
 

@@ -36,7 +36,7 @@ void add_bench_render_command(CLI::App& bench) {
         ->capture_default_str();
     render->add_option("--part", settings.part, "What to measure")
         ->capture_default_str()
-        ->check(CLI::IsMember({"all", "curves", "gates", "exclusion", "growth"}));
+        ->check(CLI::IsMember({"all", "curves", "third_bounce", "gates", "exclusion", "growth"}));
     render->add_option("--repeats", settings.repeats, "Runs per point")
         ->capture_default_str()
         ->check(CLI::Range(1, 1000));

@@ -81,6 +81,21 @@ std::string exclusion_text(const std::vector<ExclusionBench>& benches) {
     return text;
 }
 
+std::string third_bounce_text(const RenderBench& bench) {
+    if (bench.third_bounce.empty()) return "";
+    std::string text = fmt::format("\nthird_bounce to 1 %, {}\n", bench.scene);
+    text += fmt::format(
+        "{:<28} {:>10} {:>13} {:>10}\n", "measurement", "CPU s", "of histogram", "rel. L2");
+    for (const ThirdBounceCost& cost : bench.third_bounce) {
+        text += fmt::format("{:<28} {:>10.3f} {:>13.3f} {:>10.2e}\n",
+                            cost.measurement,
+                            cost.cpu_seconds,
+                            cost.share,
+                            cost.rel_l2);
+    }
+    return text;
+}
+
 std::string curves_text(const RenderBench& bench) {
     if (bench.curves.empty()) return "";
     std::string text = fmt::format(
@@ -128,7 +143,7 @@ std::string curves_text(const RenderBench& bench) {
 }
 
 std::string table_of(const RenderBench& bench) {
-    std::string text = curves_text(bench);
+    std::string text = curves_text(bench) + third_bounce_text(bench);
     for (const GateTable& table : bench.gates) text += gates_text(table);
     return text + exclusion_text(bench.exclusion) + growth_text(bench.growth);
 }

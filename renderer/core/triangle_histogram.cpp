@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/core/triangle_histogram.h"
 
+#include "renderer/core/simd.h"
 #include "renderer/core/triangle_splines.h"
 
 #include <algorithm>
@@ -11,18 +12,15 @@
 namespace core {
 namespace {
 
+constexpr std::size_t kUnit = Simd::size();
+static_assert(TriangleLanes::kSize % kUnit == 0);
+
 constexpr double kThird = 1.0 / 3.0;
 constexpr double kSixth = 1.0 / 6.0;
 // The mean of bent positions lies below that of linear ones by this times the sum of the bends.
 constexpr double kSag = 1.0 / 24.0;
 
-// By values: with std::max, compilers choose between addresses instead.
-double larger_of(double a, double b) {
-    return a < b ? b : a;
-}
-
-// Triangles side by side, a vector unit's worth, with corners sorted by position along the axis;
-// positions in any unit.
+// Triangles side by side with corners sorted by position along the axis; positions in any unit.
 //
 // Let p0 <= p1 <= p2 and K0, K1, K2 be positions and weights. The level set p = e cuts the edge 0-2
 // at the fraction b = (e-p0)/(p2-p0) and, for e < p1, the edge 0-1 at a = (e-p0)/(p1-p0). The part
@@ -31,8 +29,7 @@ double larger_of(double a, double b) {
 //
 //     C(e) = a b [K0 + x/3],   x = a (K1-K0) + b (K2-K0),        e <= p1
 //
-// and the same seen from corner 2 for e >= p1, subtracted from the mean (K0+K1+K2)/3. All factors
-// are ratios in [0, 1]: nothing cancels, however small the triangle is.
+// and the same seen from corner 2 for e >= p1, subtracted from the mean (K0+K1+K2)/3.
 //
 // Where positions bend away from linear ones by q, C(e) changes to first order by minus the
 // integral of K q over the cut. Per unit of e the cut is dC/de = 2 a / (p2-p0) of the area for
@@ -44,180 +41,184 @@ double larger_of(double a, double b) {
 // p are the linear positions with the true mean, shifted by -(c0+c1+c2)/24, and q the rest. Where
 // a triangle bends more than it rises, this is too much of a correction, and 1/(p2-p0) is held at
 // 1/c.
+//
+// With the ratio r = b/a = (p1-p0)/(p2-p0), all this is a polynomial of a, which lies in [0, 1]
+// like r: nothing cancels, however small the triangle is.
 class SortedTriangles {
- public:
-    static constexpr std::size_t kSize = 8;
-    static_assert(TriangleLanes::kSize % kSize == 0);
+    // Keeps reciprocals finite; in bins.
+    static constexpr double kLeastRise = 1e-100;
 
-    // Lanes [begin, begin + kSize) after sort_corners().
-    SortedTriangles(const TriangleLanes& lanes, std::size_t begin) {
-        for (std::size_t i = 0; i < kSize; ++i) {
-            p0_[i] = lanes.opl_m[0][begin + i];
-            p1_[i] = lanes.opl_m[1][begin + i];
-            p2_[i] = lanes.opl_m[2][begin + i];
-            k0_[i] = lanes.weight[0][begin + i];
-            k1_[i] = lanes.weight[1][begin + i];
-            k2_[i] = lanes.weight[2][begin + i];
-            const double c0 = lanes.bend_m[0][begin + i];
-            const double c1 = lanes.bend_m[1][begin + i];
-            const double c2 = lanes.bend_m[2][begin + i];
-            mean_[i] = (k0_[i] + k1_[i] + k2_[i]) * kThird;
-            per_01_[i] = 1.0 / (p1_[i] - p0_[i]);
-            per_02_[i] = 1.0 / (p2_[i] - p0_[i]);
-            per_12_[i] = 1.0 / (p2_[i] - p1_[i]);
-            const double most = larger_of(c0, larger_of(c1, larger_of(c2, 1e-300)));
-            const double held = most * per_02_[i] > 1.0 ? 1.0 / most : per_02_[i];
-            c0_[i] = c0 * kSixth * held;
-            c1_[i] = c1 * kSixth * held;
-            c2_[i] = c2 * kSixth * held;
-        }
+ public:
+    // The unit of lanes that starts at `begin`, after sort_corners().
+    [[gnu::always_inline]] SortedTriangles(const TriangleLanes& lanes, std::size_t begin)
+        : p0_(load(lanes.opl_m[0], begin)),
+          p1_(load(lanes.opl_m[1], begin)),
+          p2_(load(lanes.opl_m[2], begin)) {
+        const Simd area = load(lanes.area_m2, begin);
+        const Simd k0 = area * load(lanes.weight[0], begin);
+        const Simd k1 = area * load(lanes.weight[1], begin);
+        const Simd k2 = area * load(lanes.weight[2], begin);
+        const Simd c0 = load(lanes.bend_m[0], begin);
+        const Simd c1 = load(lanes.bend_m[1], begin);
+        const Simd c2 = load(lanes.bend_m[2], begin);
+        whole_ = (k0 + k1 + k2) * kThird;
+        const Simd rise = larger_of(p2_ - p0_, kLeastRise);
+        const Simd per_02 = 1.0 / rise;
+        const Simd held = kSixth / larger_of(larger_of(rise, c0), larger_of(c1, c2));
+        const Bends bends{c0 * held, c1 * held, c2 * held};
+        low_ = Side(p1_ - p0_, per_02, {k0, k1, k2}, bends, 1.0);
+        high_ = Side(p2_ - p1_, per_02, {k2, k1, k0}, {bends[2], bends[1], bends[0]}, -1.0);
     }
 
-    double least(std::size_t i) const { return p0_[i]; }
-    double most(std::size_t i) const { return p2_[i]; }
-    double mean(std::size_t i) const { return mean_[i]; }
+    // Where the first of the triangles that weigh anything begins and the last one ends, if not
+    // beyond the given limits.
+    [[gnu::always_inline]] double lowest(double limit) const {
+        return least_of(select(whole_ != 0.0, p0_, limit));
+    }
+    [[gnu::always_inline]] double highest(double limit) const {
+        return most_of(select(whole_ != 0.0, p2_, limit));
+    }
+    /// What the longest one spans.
+    [[gnu::always_inline]] double longest() const {
+        return most_of(select(whole_ != 0.0, p2_ - p0_, 0.0));
+    }
 
-    // C(e). Everything is loaded before anything is selected, so that compilers need no branches;
-    // what an infinite reciprocal spoils is not selected.
-    double below(std::size_t i, double e) const {
-        const double from_low = e - p0_[i];
-        const double to_high = p2_[i] - e;
-        const double low_k = k0_[i];
-        const double high_k = k2_[i];
-        const double per_low = per_01_[i];
-        const double per_high = per_12_[i];
-        const double c0 = c0_[i];
-        const double c2 = c2_[i];
-        const double mean = mean_[i];
-        const bool low = e < p1_[i];
-        const double reach = low ? from_low : to_high;
-        const double near = low ? low_k : high_k;
-        const double far = low ? high_k : low_k;
-        const double a = reach * (low ? per_low : per_high);
-        const double b = reach * per_02_[i];
-        const double x = a * (k1_[i] - near) + b * (far - near);
-        const double c_a = low ? c2 : c0;
-        const double c_b = c1_[i];
-        const double sum = c0 + c1_[i] + c2;
-        // -2 q / (p2-p0)
-        const double bent = a * c_a * (3.0 - 2.0 * a) + b * c_b * (3.0 - 2.0 * b) +
-                            a * b * (sum - 2.0 * (c_a + c_b)) - 0.5 * sum;
-        const double gained = bent * (near + 0.5 * x);
-        const double part = a * (b * (near + x * kThird) + (low ? gained : -gained));
-        const double at_least_0 = part > 0.0 ? part : 0.0;
-        const double within = at_least_0 < mean ? at_least_0 : mean;
-        const double inside = low ? within : mean - within;
-        const double up_to_high = to_high > 0.0 ? inside : mean;
-        return from_low > 0.0 ? up_to_high : 0.0;
+    /// C(e) times the area once all of a triangle lies below e.
+    const Simd& whole() const { return whole_; }
+
+    /// The same, with lane i alone.
+    SortedTriangles only(std::size_t i) const {
+        SortedTriangles one = *this;
+        alignas(64) std::array<double, kUnit> whole{};
+        whole[i] = whole_[i];
+        one.whole_ = load(whole, 0);
+        return one;
+    }
+
+    // C(e) times the area.
+    [[gnu::always_inline]] Simd below(double e) const {
+        const SimdMask low = e < p1_;
+        const Simd reach = larger_of(select(low, e - p0_, p2_ - e), 0.0);
+        const Simd a = reach * select(low, low_.per, high_.per);
+        Simd part = select(low, low_.factor[3], high_.factor[3]);
+        for (std::size_t k = 3; k-- > 0;) {
+            part = part * a + select(low, low_.factor[k], high_.factor[k]);
+        }
+        const Simd within = smaller_of(larger_of(part * a, 0.0), whole_);
+        return select(low, within, whole_ - within);
     }
 
  private:
-    using Lanes = std::array<double, kSize>;
-    alignas(64) Lanes p0_, p1_, p2_, k0_, k1_, k2_, mean_, per_01_, per_02_, per_12_;
-    alignas(64) Lanes c0_, c1_, c2_;  // bends / 6 (p2-p0)
+    using Bends = std::array<Simd, 3>;
+
+    // C(e), or what it lacks to all, as a polynomial of a without a constant term.
+    struct Side {
+        Simd per;  ///< a per distance from the corner
+        std::array<Simd, 4> factor;
+
+        Side() = default;
+        // k      weights of the corner that a counts from, of the middle one and of the other one
+        // c      bends opposite to them
+        // sign   +1 where the part below e is described, -1 for the part above
+        [[gnu::always_inline]] Side(
+            const Simd& rise, const Simd& per_02, const Bends& k, const Bends& c, double sign)
+            : per(1.0 / larger_of(rise, kLeastRise)) {
+            const Simd ratio = rise * per_02;
+            const Simd slope = (k[1] - k[0]) + ratio * (k[2] - k[0]);  // x / a
+            // -2 q / (p2-p0), by powers of a
+            const Simd sum = c[0] + c[1] + c[2];
+            const Simd q0 = -0.5 * sign * sum;
+            const Simd q1 = 3.0 * sign * (c[2] + ratio * c[1]);
+            const Simd q2 =
+                sign * (ratio * (sum - 2.0 * (c[2] + c[1]) - 2.0 * ratio * c[1]) - 2.0 * c[2]);
+            factor[0] = q0 * k[0];
+            factor[1] = ratio * k[0] + q1 * k[0] + 0.5 * q0 * slope;
+            factor[2] = kThird * ratio * slope + q2 * k[0] + 0.5 * q1 * slope;
+            factor[3] = 0.5 * q2 * slope;
+        }
+    };
+
+    Simd p0_, p1_, p2_, whole_;
+    Side low_, high_;
 };
 
 struct Corner {
-    double p, k, c;
+    Simd p, k, c;
 };
 
-// By values and without branches: neither is the likely order.
-void order(Corner& a, Corner& b) {
+[[gnu::always_inline]] inline void order(Corner& a, Corner& b) {
     const Corner first = a;
-    const bool swap = b.p < first.p;
-    a = {swap ? b.p : first.p, swap ? b.k : first.k, swap ? b.c : first.c};
-    b = {swap ? first.p : b.p, swap ? first.k : b.k, swap ? first.c : b.c};
+    const SimdMask swap = b.p < first.p;
+    a = {select(swap, b.p, first.p), select(swap, b.k, first.k), select(swap, b.c, first.c)};
+    b = {select(swap, first.p, b.p), select(swap, first.k, b.k), select(swap, first.c, b.c)};
 }
 
 // Turns lengths into positions in bins, shifts them to the mean of the bent ones, and sorts corners
-// by them. One loop that loads and stores each corner once: in place and pair by pair, compilers
-// store with masks, which some processors do slowly.
+// by them.
 void sort_corners(TriangleLanes& lanes, std::size_t count, double start_m, double bins_per_m) {
-    for (std::size_t i = 0; i < count; ++i) {
-        Corner a{lanes.opl_m[0][i], lanes.weight[0][i], lanes.bend_m[0][i] * bins_per_m};
-        Corner b{lanes.opl_m[1][i], lanes.weight[1][i], lanes.bend_m[1][i] * bins_per_m};
-        Corner c{lanes.opl_m[2][i], lanes.weight[2][i], lanes.bend_m[2][i] * bins_per_m};
-        const double sag = (a.c + b.c + c.c) * kSag;
-        a.p = (a.p - start_m) * bins_per_m - sag;
-        b.p = (b.p - start_m) * bins_per_m - sag;
-        c.p = (c.p - start_m) * bins_per_m - sag;
-        order(a, b);
-        order(b, c);
-        order(a, b);
-        lanes.opl_m[0][i] = a.p;
-        lanes.opl_m[1][i] = b.p;
-        lanes.opl_m[2][i] = c.p;
-        lanes.weight[0][i] = a.k;
-        lanes.weight[1][i] = b.k;
-        lanes.weight[2][i] = c.k;
-        lanes.bend_m[0][i] = a.c;
-        lanes.bend_m[1][i] = b.c;
-        lanes.bend_m[2][i] = c.c;
+    for (std::size_t begin = 0; begin < count; begin += kUnit) {
+        std::array<Corner, 3> corners;
+        for (std::size_t j = 0; j < 3; ++j) {
+            corners[j] = {load(lanes.opl_m[j], begin),
+                          load(lanes.weight[j], begin),
+                          load(lanes.bend_m[j], begin) * bins_per_m};
+        }
+        const Simd sag = (corners[0].c + corners[1].c + corners[2].c) * kSag;
+        for (Corner& corner : corners) corner.p = (corner.p - start_m) * bins_per_m - sag;
+        order(corners[0], corners[1]);
+        order(corners[1], corners[2]);
+        order(corners[0], corners[1]);
+        for (std::size_t j = 0; j < 3; ++j) {
+            store(corners[j].p, lanes.opl_m[j], begin);
+            store(corners[j].k, lanes.weight[j], begin);
+            store(corners[j].c, lanes.bend_m[j], begin);
+        }
     }
 }
 
-// A triangle in all lanes of the first unit.
-TriangleLanes repeated(const TriangleKnots& knots) {
+// A triangle in the first lane.
+TriangleLanes single_lane(const TriangleKnots& knots, double area_m2) {
     TriangleLanes lanes;
+    lanes.area_m2[0] = area_m2;
     for (std::size_t j = 0; j < 3; ++j) {
-        std::fill_n(lanes.opl_m[j].begin(), SortedTriangles::kSize, knots.opl_m[j]);
-        std::fill_n(lanes.bend_m[j].begin(), SortedTriangles::kSize, 0.0);
-        std::fill_n(lanes.weight[j].begin(), SortedTriangles::kSize, knots.weight[j]);
+        lanes.opl_m[j][0] = knots.opl_m[j];
+        lanes.bend_m[j][0] = 0.0;
+        lanes.weight[j][0] = knots.weight[j];
     }
     return lanes;
 }
 
-// Adds the first `count` of the triangles, whose corners lie at positions in bins.
-void add_sorted(const SortedTriangles& triangles,
-                const double* area_m2,
-                std::size_t count,
-                std::span<double> histogram) {
-    constexpr std::size_t kSize = SortedTriangles::kSize;
+// Adds a unit of triangles, whose corners lie at positions in bins, bin by bin.
+[[gnu::always_inline]] inline void add_together(const SortedTriangles& triangles,
+                                                std::span<double> histogram) {
     const auto num_bins = static_cast<double>(histogram.size());
-    alignas(64) std::array<double, kSize> edge;
-    alignas(64) std::array<double, kSize> below{};
-    alignas(64) std::array<double, kSize> whole;
-    alignas(64) std::array<double, kSize> added;
-    alignas(64) std::array<double, kSize> reached;
-    alignas(64) std::array<double, kSize> outside;
-    for (std::size_t i = 0; i < kSize; ++i) {
-        const double low = triangles.least(i);
-        const double high = triangles.most(i);
-        const double begin = std::floor(low > 0.0 ? low : 0.0);
-        const double last = std::floor(high < num_bins ? high : num_bins - 1.0);
-        edge[i] = begin;
-        whole[i] = triangles.mean(i);
-        // Below 1 where nothing lies on the axis.
-        const double bins = last - begin + 1.0;
-        reached[i] = triangles.mean(i) == 0.0 ? 0.0 : bins;
-        outside[i] = larger_of(-low, high - num_bins);
+    const double low = triangles.lowest(num_bins);
+    const double high = triangles.highest(-1.0);
+    const double first = std::floor(std::max(low, 0.0));
+    const double last = std::floor(std::min(high, num_bins - 1.0));
+    Simd below = low < first ? triangles.below(first) : Simd(0.0);
+    const auto add = [&](double bin, const Simd& next) {
+        const Simd rising = larger_of(below, next);
+        histogram[static_cast<std::size_t>(bin)] += sum_of(rising - below);
+        below = rising;
+    };
+    for (double bin = first; bin < last; bin += 1.0) add(bin, triangles.below(bin + 1.0));
+    if (first <= last) add(last, high < num_bins ? triangles.whole() : triangles.below(num_bins));
+}
+
+// Triangles that together reach over more bins than this and more than this many times the longest
+// one are added one by one.
+constexpr double kFewBins = 16.0;
+constexpr double kMostScatter = 4.0;
+
+void add_sorted(const SortedTriangles& triangles, std::span<double> histogram) {
+    const auto num_bins = static_cast<double>(histogram.size());
+    const double reached = triangles.highest(-1.0) - triangles.lowest(num_bins);
+    if (reached > kFewBins && reached > kMostScatter * triangles.longest()) {
+        for (std::size_t i = 0; i < kUnit; ++i) add_together(triangles.only(i), histogram);
+        return;
     }
-    double most = 0.0;
-    double most_outside = 0.0;
-    for (std::size_t i = 0; i < count; ++i) {
-        most = std::max(most, reached[i]);
-        most_outside = std::max(most_outside, outside[i]);
-    }
-    if (most_outside > 0.0) {
-        for (std::size_t i = 0; i < kSize; ++i) {
-            below[i] = triangles.below(i, 0.0);
-            whole[i] = triangles.below(i, num_bins);
-        }
-    }
-    for (double bin = 0.0; bin < most; bin += 1.0) {
-        const bool is_last = bin + 1.0 == most;
-        for (std::size_t i = 0; i < kSize; ++i) {
-            const double next = is_last ? whole[i] : triangles.below(i, edge[i] + 1.0);
-            const double rising = larger_of(below[i], next);
-            added[i] = rising - below[i];
-            below[i] = rising;
-        }
-        for (std::size_t i = 0; i < count; ++i) {
-            if (!(bin < reached[i])) continue;  // nor where a number is none
-            histogram[static_cast<std::size_t>(edge[i])] += area_m2[i] * added[i];
-        }
-        for (double& e : edge) e += 1.0;
-    }
+    add_together(triangles, histogram);
 }
 
 // Triangles that bend more than this times what they rise are split where a bin's edge falls into
@@ -230,86 +231,131 @@ constexpr int kMostSplits = 4;
 
 // Which of the sorted triangles are to be split.
 std::uint64_t bent_lanes(const TriangleLanes& lanes, std::size_t count, double num_bins) {
-    alignas(64) TriangleLanes::Lanes is_bent;
-    for (std::size_t i = 0; i < count; ++i) {
-        const double low = lanes.opl_m[0][i];
-        const double high = lanes.opl_m[2][i];
-        const double most =
-            larger_of(lanes.bend_m[0][i], larger_of(lanes.bend_m[1][i], lanes.bend_m[2][i]));
+    std::uint64_t bits = 0;
+    for (std::size_t begin = 0; begin < count; begin += kUnit) {
+        const Simd low = load(lanes.opl_m[0], begin);
+        const Simd high = load(lanes.opl_m[2], begin);
+        const Simd most =
+            larger_of(larger_of(load(lanes.bend_m[0], begin), load(lanes.bend_m[1], begin)),
+                      load(lanes.bend_m[2], begin));
         // Bent positions lie at most a sixth of this below the linear ones through the corners,
         // from which those here are shifted down by at most an eighth of it.
-        const auto bin_of = [num_bins](double p) {
-            const double from_start = larger_of(p, -1.0);
-            return std::floor(from_start < num_bins ? from_start : num_bins);
+        const auto bin_of = [num_bins](const Simd& p) {
+            return floor(smaller_of(larger_of(p, -1.0), num_bins));
         };
-        const double weight = lanes.weight[0][i] + lanes.weight[1][i] + lanes.weight[2][i];
-        const double crossed = bin_of(high + most / 8.0) - bin_of(low - most / 6.0);
-        const double threshold = larger_of(kNegligibleBend, kMostBend * (high - low));
-        is_bent[i] = weight > 0.0 && most > threshold ? crossed : 0.0;
+        const Simd weight = load(lanes.weight[0], begin) + load(lanes.weight[1], begin) +
+                            load(lanes.weight[2], begin);
+        const SimdMask is_split = (0.0 < weight) &
+                                  (larger_of(kNegligibleBend, kMostBend * (high - low)) < most) &
+                                  (bin_of(low - most * kSixth) < bin_of(high + most * 0.125));
+        bits |= is_split.bits() << begin;
     }
-    std::uint64_t bits = 0;
-    for (std::size_t i = 0; i < count; ++i) bits |= std::uint64_t{is_bent[i] > 0.0} << i;
     return bits;
 }
 
-// Sets lanes [begin, begin + 4) of `parts` to the quarters of a sorted triangle.
-void quarter(const TriangleLanes& lanes, std::size_t i, TriangleLanes& parts, std::size_t begin) {
-    const auto& c = lanes.bend_m;
-    const double sag = (c[0][i] + c[1][i] + c[2][i]) * kSag;
-    std::array<double, 3> p, k, middle_p, middle_k;
-    for (std::size_t j = 0; j < 3; ++j) {
-        p[j] = lanes.opl_m[j][i] + sag;
-        k[j] = lanes.weight[j][i];
-    }
-    for (std::size_t j = 0; j < 3; ++j) {  // of the edge opposite to corner j
-        middle_p[j] = 0.5 * (p[(j + 1) % 3] + p[(j + 2) % 3]) - c[j][i] / 8.0;
-        middle_k[j] = 0.5 * (k[(j + 1) % 3] + k[(j + 2) % 3]);
-    }
-    for (std::size_t part = 0; part < 4; ++part) {
+// Numbers for the corners of the four quarters of a triangle, twice: lane 4t + part.
+struct QuarterCorner {
+    alignas(64) std::array<std::array<double, kUnit>, 3> of_corner;  ///< barycentric coordinates
+    alignas(64) std::array<std::array<double, kUnit>, 3> of_bend;
+};
+
+// Corner j of the part that keeps corner `part` lies there or in the middle of the edge opposite to
+// the third corner; the fourth part joins the middles.
+constexpr std::array<QuarterCorner, 3> quarter_corners() {
+    std::array<QuarterCorner, 3> corners{};
+    for (std::size_t lane = 0; lane < kUnit; ++lane) {
+        const std::size_t part = lane % 4;
         for (std::size_t j = 0; j < 3; ++j) {
-            // Corner j of the part that keeps corner `part` lies there or opposite to the third
-            // corner; the fourth part joins the middles.
+            if (part == j) {
+                corners[j].of_corner[j][lane] = 1.0;
+                continue;
+            }
             const std::size_t opposite = part == 3 ? j : 3 - part - j;
-            const bool is_corner = part == j;
-            parts.opl_m[j][begin + part] = is_corner ? p[j] : middle_p[opposite];
-            parts.weight[j][begin + part] = is_corner ? k[j] : middle_k[opposite];
-            parts.bend_m[j][begin + part] = 0.25 * c[j][i];
+            corners[j].of_corner[(opposite + 1) % 3][lane] = 0.5;
+            corners[j].of_corner[(opposite + 2) % 3][lane] = 0.5;
+            corners[j].of_bend[opposite][lane] = -0.125;
         }
     }
+    return corners;
+}
+
+constexpr std::array<QuarterCorner, 3> kQuarterCorners = quarter_corners();
+
+// 1 in the lanes of the second triangle.
+alignas(64) constexpr std::array<double, kUnit> kSecond{0, 0, 0, 0, 1, 1, 1, 1};
+
+// Sets the unit of `parts` from `begin` to the quarters of two sorted triangles.
+void quarter(const TriangleLanes& lanes,
+             std::size_t first,
+             std::size_t second,
+             TriangleLanes& parts,
+             std::size_t begin) {
+    const SimdMask is_first = load(kSecond, 0) < 0.5;
+    const auto both = [&](const TriangleLanes::Lanes& values) {
+        return select(is_first, values[first], values[second]);
+    };
+    std::array<Simd, 3> p, k, c;
+    for (std::size_t j = 0; j < 3; ++j) {
+        p[j] = both(lanes.opl_m[j]);
+        k[j] = both(lanes.weight[j]);
+        c[j] = both(lanes.bend_m[j]);
+    }
+    const Simd sag = (c[0] + c[1] + c[2]) * kSag;
+    for (std::size_t j = 0; j < 3; ++j) {
+        const QuarterCorner& corner = kQuarterCorners[j];
+        Simd position = sag;
+        Simd weight = 0.0;
+        for (std::size_t m = 0; m < 3; ++m) {
+            const Simd share = load(corner.of_corner[m], 0);
+            position += share * p[m] + load(corner.of_bend[m], 0) * c[m];
+            weight += share * k[m];
+        }
+        store(position, parts.opl_m[j], begin);
+        store(weight, parts.weight[j], begin);
+        store(0.25 * c[j], parts.bend_m[j], begin);
+    }
+    store(0.25 * both(lanes.area_m2), parts.area_m2, begin);
+}
+
+// Returns the lowest bit, and takes it away.
+std::size_t take_lowest(std::uint64_t& bits) {
+    const auto lowest = static_cast<std::size_t>(std::countr_zero(bits));
+    bits &= bits - 1;
+    return lowest;
 }
 
 // Adds triangles whose lengths start at start_m; those that bend too much as their quarters.
 void add_lanes(TriangleLanes& lanes,
-               std::span<const double> area_m2,
+               std::size_t count,
                double start_m,
                double bins_per_m,
                int num_splits,
                std::span<double> histogram) {
-    const std::size_t count = area_m2.size();
+    for (; count % kUnit != 0; ++count) {
+        lanes.area_m2[count] = 0.0;
+        for (TriangleLanes::Lanes& weight : lanes.weight) weight[count] = 0.0;
+    }
     sort_corners(lanes, count, start_m, bins_per_m);
     std::uint64_t bent = num_splits == kMostSplits
                              ? 0
                              : bent_lanes(lanes, count, static_cast<double>(histogram.size()));
     while (bent != 0) {
         TriangleLanes parts;
-        TriangleLanes::Lanes part_area_m2;
         std::size_t num_parts = 0;
-        for (; bent != 0 && num_parts < TriangleLanes::kSize; bent &= bent - 1) {
-            const auto i = static_cast<std::size_t>(std::countr_zero(bent));
-            quarter(lanes, i, parts, num_parts);
-            std::fill_n(part_area_m2.begin() + static_cast<std::ptrdiff_t>(num_parts),
-                        4,
-                        0.25 * area_m2[i]);
-            num_parts += 4;
-            for (TriangleLanes::Lanes& weight : lanes.weight) weight[i] = 0.0;
+        while (bent != 0 && num_parts < TriangleLanes::kSize) {
+            const std::size_t first = take_lowest(bent);
+            const std::size_t second = bent != 0 ? take_lowest(bent) : first;
+            quarter(lanes, first, second, parts, num_parts);
+            num_parts += first == second ? 4 : kUnit;
+            for (TriangleLanes::Lanes& weight : lanes.weight) {
+                weight[first] = 0.0;
+                weight[second] = 0.0;
+            }
         }
-        add_lanes(parts, {part_area_m2.data(), num_parts}, 0.0, 1.0, num_splits + 1, histogram);
+        add_lanes(parts, num_parts, 0.0, 1.0, num_splits + 1, histogram);
     }
-    for (std::size_t begin = 0; begin < count; begin += SortedTriangles::kSize) {
-        add_sorted(SortedTriangles(lanes, begin),
-                   area_m2.data() + begin,
-                   std::min(count - begin, SortedTriangles::kSize),
-                   histogram);
+    for (std::size_t begin = 0; begin < count; begin += kUnit) {
+        add_sorted(SortedTriangles(lanes, begin), histogram);
     }
 }
 
@@ -368,24 +414,24 @@ TriangleKnots match_midpoints(const TriangleKnots& at_corners, const TriangleKno
 }
 
 double triangle_cumulative(const TriangleKnots& knots, double opl_m) {
-    TriangleLanes lanes = repeated(knots);
-    sort_corners(lanes, SortedTriangles::kSize, 0.0, 1.0);
-    return SortedTriangles(lanes, 0).below(0, opl_m);
+    TriangleLanes lanes = single_lane(knots, 1.0);
+    sort_corners(lanes, 1, 0.0, 1.0);
+    return SortedTriangles(lanes, 0).below(opl_m)[0];
 }
 
 void add_triangles(TriangleLanes& lanes,
-                   std::span<const double> area_m2,
+                   std::size_t count,
                    const TimeAxis& axis,
                    std::span<double> histogram) {
-    add_lanes(lanes, area_m2, axis.opl_start_m, 1.0 / axis.bin_width_m, 0, histogram);
+    add_lanes(lanes, count, axis.opl_start_m, 1.0 / axis.bin_width_m, 0, histogram);
 }
 
 void add_triangle(const TriangleKnots& knots,
                   double area_m2,
                   const TimeAxis& axis,
                   std::span<double> histogram) {
-    TriangleLanes lanes = repeated(knots);
-    add_triangles(lanes, {&area_m2, 1}, axis, histogram);
+    TriangleLanes lanes = single_lane(knots, area_m2);
+    add_triangles(lanes, 1, axis, histogram);
 }
 
 void evaluate_triangle(const TriangleKnots& knots,

@@ -56,6 +56,7 @@ struct TriangleLanes {
     alignas(64) std::array<Lanes, 3> opl_m;   ///< at the corners
     alignas(64) std::array<Lanes, 3> bend_m;  ///< at least 0: 4 (two ends - twice the middle)
     alignas(64) std::array<Lanes, 3> weight;  ///< 0 at all corners: the lane adds nothing
+    alignas(64) Lanes area_m2;
 };
 
 /// Adds the histograms of the first lanes: without bend that of add_triangle(), else right to first
@@ -64,11 +65,11 @@ struct TriangleLanes {
 /// receives less than 0.
 ///
 /// lanes       overwritten: corners are sorted by length, which become positions in bins
-/// area_m2     of each triangle, as many as lanes are used; what the other lanes hold is ignored
+/// count       of lanes that are used; what the others hold is ignored
 /// histogram   axis.num_bins values
 /// source      derived in triangle_histogram.cpp
 void add_triangles(TriangleLanes& lanes,
-                   std::span<const double> area_m2,
+                   std::size_t count,
                    const TimeAxis& axis,
                    std::span<double> histogram);
 

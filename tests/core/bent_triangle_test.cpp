@@ -26,16 +26,20 @@ struct BentTriangle {
     double mean_weight() const { return (weight[0] + weight[1] + weight[2]) / 3.0; }
 };
 
+void put(const BentTriangle& triangle, double area_m2, std::size_t i, core::TriangleLanes& lanes) {
+    for (std::size_t j = 0; j < 3; ++j) {
+        lanes.opl_m[j][i] = triangle.opl_m[j];
+        lanes.bend_m[j][i] = triangle.bend_m[j];
+        lanes.weight[j][i] = triangle.weight[j];
+    }
+    lanes.area_m2[i] = area_m2;
+}
+
 std::vector<double> histogram_of(const BentTriangle& triangle, const TimeAxis& axis) {
     core::TriangleLanes lanes;
-    for (std::size_t j = 0; j < 3; ++j) {
-        lanes.opl_m[j].fill(triangle.opl_m[j]);
-        lanes.bend_m[j].fill(triangle.bend_m[j]);
-        lanes.weight[j].fill(triangle.weight[j]);
-    }
+    put(triangle, 1.0, 0, lanes);
     std::vector<double> histogram(static_cast<std::size_t>(axis.num_bins));
-    const double area = 1.0;
-    core::add_triangles(lanes, {&area, 1}, axis, histogram);
+    core::add_triangles(lanes, 1, axis, histogram);
     return histogram;
 }
 
@@ -118,6 +122,39 @@ TEST(BentTriangle, AllWeightArrivesAndNoBinIsNegative) {
         const auto histogram = histogram_of(triangle, axis);
         EXPECT_NEAR(sum_of(histogram) / triangle.mean_weight(), 1.0, 1e-12) << trial;
         for (const double value : histogram) EXPECT_GE(value, 0.0) << trial;
+    }
+}
+
+// Lanes do not know of each other, whether they lie together or far apart; unused ones may hold
+// anything.
+TEST(BentTriangle, LanesAddUp) {
+    core::Rng rng(test_support::seed_of("BentTriangle.LanesAddUp"), 0, 0);
+    const TimeAxis axis{0.99, 0.002, 4000};
+    for (const double distance : {0.0, 0.05, 7.0}) {
+        for (std::size_t count = 1; count <= core::TriangleLanes::kSize; count += 3) {
+            core::TriangleLanes lanes;
+            std::vector<double> expected(static_cast<std::size_t>(axis.num_bins));
+            for (std::size_t i = 0; i < count; ++i) {
+                BentTriangle triangle = random_triangle(rng, 0.02, 0.01 * rng.uniform());
+                const double shift = distance * (rng.uniform() - 0.1);
+                for (double& opl : triangle.opl_m) opl += shift;
+                if (rng.uniform() < 0.2) triangle.weight = {};
+                put(triangle, 0.5 + rng.uniform(), i, lanes);
+                const auto alone = histogram_of(triangle, axis);
+                for (std::size_t bin = 0; bin < alone.size(); ++bin) {
+                    expected[bin] += lanes.area_m2[i] * alone[bin];
+                }
+            }
+            const BentTriangle none{{std::nan(""), 1.0, 1.0}, {}, {std::nan(""), 1e300, 1.0}};
+            for (std::size_t i = count; i < core::TriangleLanes::kSize; ++i) {
+                put(none, std::nan(""), i, lanes);
+            }
+            std::vector<double> histogram(expected.size());
+            core::add_triangles(lanes, count, axis, histogram);
+            for (std::size_t bin = 0; bin < expected.size(); ++bin) {
+                EXPECT_NEAR(histogram[bin], expected[bin], 1e-12) << distance << " " << bin;
+            }
+        }
     }
 }
 

@@ -127,7 +127,6 @@ TEST(TriangleHistogram, LanesAddWhatEachTriangleAloneDoes) {
     const TimeAxis axis{1.02, 0.007, 9};
     for (std::size_t count = 1; count <= core::TriangleLanes::kSize; ++count) {
         core::TriangleLanes lanes;
-        std::vector<double> areas;
         std::vector<double> expected(9);
         for (std::size_t i = 0; i < core::TriangleLanes::kSize; ++i) {
             TriangleKnots knots = random_knots(rng);
@@ -139,12 +138,11 @@ TEST(TriangleHistogram, LanesAddWhatEachTriangleAloneDoes) {
                 lanes.bend_m[j][i] = 0.0;
                 lanes.weight[j][i] = knots.weight[j];
             }
-            if (i >= count) continue;
-            areas.push_back(rng.uniform());
-            core::add_triangle(knots, areas.back(), axis, expected);
+            lanes.area_m2[i] = rng.uniform();
+            if (i < count) core::add_triangle(knots, lanes.area_m2[i], axis, expected);
         }
         std::vector<double> histogram(9);
-        core::add_triangles(lanes, areas, axis, histogram);
+        core::add_triangles(lanes, count, axis, histogram);
         for (std::size_t bin = 0; bin < 9; ++bin) {
             EXPECT_NEAR(histogram[bin], expected[bin], 1e-13) << count;
         }

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <experimental/simd>
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+// Calls would go through memory.
+#define NLOS_INLINE [[gnu::always_inline]] inline
+
+namespace core {
+
+/// Eight numbers for arithmetic in vectors of the processor's width: compilers leave loops over
+/// arrays scalar where these might overlap, and break them up for the sake of conditions. (The
+/// standard library's own vectors of a fixed size are slow where they take two registers, and with
+/// GCC 12 and AVX2 conditions on them go wrong.) Whoever computes with them should be inlined, too.
+struct Simd {
+    using Part = std::experimental::native_simd<double>;
+    static constexpr std::size_t kParts = 8 / Part::size();
+    static constexpr std::size_t size() { return kParts * Part::size(); }
+
+    std::array<Part, kParts> parts;
+
+    Simd() = default;
+    NLOS_INLINE Simd(double value) {
+        for (Part& part : parts) part = value;
+    }
+    double operator[](std::size_t i) const { return parts[i / Part::size()][i % Part::size()]; }
+};
+
+/// What holds for each of the numbers.
+struct SimdMask {
+    using Part = Simd::Part::mask_type;
+
+    std::array<Part, Simd::kParts> parts;
+
+    NLOS_INLINE bool any() const {
+        bool found = false;
+        for (const Part& part : parts) found |= any_of(part);
+        return found;
+    }
+    /// Lane i as bit i.
+    NLOS_INLINE std::uint64_t bits() const {
+        std::uint64_t bits = 0;
+        for (std::size_t i = 0; i < Simd::size(); ++i) {
+            bits |= std::uint64_t{parts[i / Part::size()][i % Part::size()]} << i;
+        }
+        return bits;
+    }
+};
+
+/// Reads the lanes from `begin`, a multiple of Simd::size(), of an array aligned to 64 bytes.
+template <std::size_t N>
+NLOS_INLINE Simd load(const std::array<double, N>& lanes, std::size_t begin) {
+    Simd values;
+    for (std::size_t p = 0; p < Simd::kParts; ++p) {
+        values.parts[p].copy_from(lanes.data() + begin + p * Simd::Part::size(),
+                                  std::experimental::vector_aligned);
+    }
+    return values;
+}
+
+/// The reverse of load().
+template <std::size_t N>
+NLOS_INLINE void store(const Simd& values, std::array<double, N>& lanes, std::size_t begin) {
+    for (std::size_t p = 0; p < Simd::kParts; ++p) {
+        values.parts[p].copy_to(lanes.data() + begin + p * Simd::Part::size(),
+                                std::experimental::vector_aligned);
+    }
+}
+
+NLOS_INLINE Simd operator+(const Simd& a, const Simd& b) {
+    Simd result;
+    for (std::size_t p = 0; p < Simd::kParts; ++p) result.parts[p] = a.parts[p] + b.parts[p];
+    return result;
+}
+
+NLOS_INLINE Simd operator-(const Simd& a, const Simd& b) {
+    Simd result;
+    for (std::size_t p = 0; p < Simd::kParts; ++p) result.parts[p] = a.parts[p] - b.parts[p];
+    return result;
+}
+
+NLOS_INLINE Simd operator*(const Simd& a, const Simd& b) {
+    Simd result;
+    for (std::size_t p = 0; p < Simd::kParts; ++p) result.parts[p] = a.parts[p] * b.parts[p];
+    return result;
+}
+
+NLOS_INLINE Simd operator/(const Simd& a, const Simd& b) {
+    Simd result;
+    for (std::size_t p = 0; p < Simd::kParts; ++p) result.parts[p] = a.parts[p] / b.parts[p];
+    return result;
+}
+
+NLOS_INLINE Simd operator-(const Simd& a) {
+    Simd result;
+    for (std::size_t p = 0; p < Simd::kParts; ++p) result.parts[p] = -a.parts[p];
+    return result;
+}
+
+NLOS_INLINE Simd& operator+=(Simd& a, const Simd& b) {
+    return a = a + b;
+}
+
+NLOS_INLINE Simd& operator*=(Simd& a, const Simd& b) {
+    return a = a * b;
+}
+
+NLOS_INLINE Simd larger_of(const Simd& a, const Simd& b) {
+    Simd result;
+    for (std::size_t p = 0; p < Simd::kParts; ++p) result.parts[p] = max(a.parts[p], b.parts[p]);
+    return result;
+}
+
+NLOS_INLINE Simd smaller_of(const Simd& a, const Simd& b) {
+    Simd result;
+    for (std::size_t p = 0; p < Simd::kParts; ++p) result.parts[p] = min(a.parts[p], b.parts[p]);
+    return result;
+}
+
+NLOS_INLINE Simd floor(const Simd& a) {
+    Simd result;
+    for (std::size_t p = 0; p < Simd::kParts; ++p) result.parts[p] = floor(a.parts[p]);
+    return result;
+}
+
+/// Compilers make vectors of it; the library's own makes some warn of what they do themselves.
+NLOS_INLINE Simd square_root(const Simd& a) {
+    Simd result;
+    for (std::size_t p = 0; p < Simd::kParts; ++p) {
+        result.parts[p] = Simd::Part([&](auto i) { return std::sqrt(a.parts[p][i]); });
+    }
+    return result;
+}
+
+NLOS_INLINE SimdMask operator<(const Simd& a, const Simd& b) {
+    SimdMask result;
+    for (std::size_t p = 0; p < Simd::kParts; ++p) result.parts[p] = a.parts[p] < b.parts[p];
+    return result;
+}
+
+NLOS_INLINE SimdMask operator<=(const Simd& a, const Simd& b) {
+    SimdMask result;
+    for (std::size_t p = 0; p < Simd::kParts; ++p) result.parts[p] = a.parts[p] <= b.parts[p];
+    return result;
+}
+
+NLOS_INLINE SimdMask operator!=(const Simd& a, const Simd& b) {
+    SimdMask result;
+    for (std::size_t p = 0; p < Simd::kParts; ++p) result.parts[p] = a.parts[p] != b.parts[p];
+    return result;
+}
+
+NLOS_INLINE SimdMask operator&(const SimdMask& a, const SimdMask& b) {
+    SimdMask result;
+    for (std::size_t p = 0; p < Simd::kParts; ++p) result.parts[p] = a.parts[p] && b.parts[p];
+    return result;
+}
+
+NLOS_INLINE SimdMask operator!(const SimdMask& a) {
+    SimdMask result;
+    for (std::size_t p = 0; p < Simd::kParts; ++p) result.parts[p] = !a.parts[p];
+    return result;
+}
+
+/// By lane: a where the mask holds, else b.
+NLOS_INLINE Simd select(const SimdMask& mask, const Simd& a, const Simd& b) {
+    Simd result = b;
+    for (std::size_t p = 0; p < Simd::kParts; ++p)
+        where(mask.parts[p], result.parts[p]) = a.parts[p];
+    return result;
+}
+
+NLOS_INLINE double sum_of(const Simd& a) {
+    Simd::Part result = a.parts[0];
+    for (std::size_t p = 1; p < Simd::kParts; ++p) result = result + a.parts[p];
+    return reduce(result);
+}
+
+NLOS_INLINE double least_of(const Simd& a) {
+    Simd::Part result = a.parts[0];
+    for (std::size_t p = 1; p < Simd::kParts; ++p) result = min(result, a.parts[p]);
+    return hmin(result);
+}
+
+NLOS_INLINE double most_of(const Simd& a) {
+    Simd::Part result = a.parts[0];
+    for (std::size_t p = 1; p < Simd::kParts; ++p) result = max(result, a.parts[p]);
+    return hmax(result);
+}
+
+}  // namespace core
+
+#undef NLOS_INLINE
