@@ -15,8 +15,9 @@ namespace core {
 
 /// Eight numbers for arithmetic in vectors of the processor's width: compilers leave loops over
 /// arrays scalar where these might overlap, and break them up for the sake of conditions. (The
-/// standard library's own vectors of a fixed size are slow where they take two registers, and with
-/// GCC 12 and AVX2 conditions on them go wrong.) Whoever computes with them should be inlined, too.
+/// standard library's own vectors of a fixed size are slow where they take several registers, and
+/// with GCC 12 conditions on them then go wrong.) Whoever computes with them should be inlined,
+/// too.
 struct Simd {
     using Part = std::experimental::native_simd<double>;
     static constexpr std::size_t kParts = 8 / Part::size();
