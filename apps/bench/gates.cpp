@@ -126,20 +126,7 @@ double middle_of_signal_m(const BenchScene& scene, renderer::Exclusion exclude) 
     settings.method = Estimator::Ellipsoidal;
     settings.exclude = exclude;
     settings.samples = kPilotSamples;
-    const core::Capture capture = scene.render(settings);
-    const int num_bins = scene.axis().num_bins;
-    std::vector<double> bins(static_cast<std::size_t>(num_bins));
-    double total = 0.0;
-    for (std::size_t i = 0; i < capture.transient.values().size(); ++i) {
-        bins[i % bins.size()] += double{capture.transient.values()[i]};
-        total += double{capture.transient.values()[i]};
-    }
-    double sum = 0.0;
-    int bin = 0;
-    while (bin + 1 < num_bins && sum + bins[static_cast<std::size_t>(bin)] < 0.5 * total) {
-        sum += bins[static_cast<std::size_t>(bin++)];
-    }
-    return scene.axis().bin_center_m(bin);
+    return scene.axis().bin_center_m(bin_of_share(scene.render(settings), 0.5));
 }
 
 core::TimeAxis gate_axis(const BenchScene& scene, double center_m, double gate_mm) {

@@ -4,6 +4,8 @@
 #include "renderer/render.h"
 #include "renderer/scene_file.h"
 
+#include <algorithm>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -37,5 +39,17 @@ class BenchScene {
     core::Scan scan_;
     renderer::Scene scene_;
 };
+
+/// The bin in which this share of the capture's light has arrived.
+inline int bin_of_share(const core::Capture& capture, double share) {
+    std::vector<double> arrived(static_cast<std::size_t>(capture.transient.num_bins()));
+    const auto values = capture.transient.values();
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        arrived[i % arrived.size()] += double{values[i]};
+    }
+    std::partial_sum(arrived.begin(), arrived.end(), arrived.begin());
+    const auto bin = std::lower_bound(arrived.begin(), arrived.end(), share * arrived.back());
+    return static_cast<int>(bin - arrived.begin());
+}
 
 }  // namespace apps

@@ -3,12 +3,11 @@
 
 #include "apps/bench/scene.h"
 #include "nlos/compare.h"
+#include "nlos/compare_scores.h"
 #include "renderer/core/parallel.h"
 #include "renderer/core/process.h"
 
 #include <fmt/core.h>
-
-#include <algorithm>
 
 namespace apps {
 namespace {
@@ -35,22 +34,8 @@ ThirdBounceCost measure(const std::string& measurement,
         seconds.push_back(core::cpu_seconds() - start);
         cost.rel_l2 = nlos::compare_captures(capture, reference).rel_l2.value_or(0.0);
     }
-    std::sort(seconds.begin(), seconds.end());
-    cost.cpu_seconds = seconds[seconds.size() / 2];
+    cost.cpu_seconds = nlos::median(seconds);
     return cost;
-}
-
-// Where this share of the scan's light has arrived.
-double opl_of_share(const core::Capture& capture, double share) {
-    const core::Transient& transient = capture.transient;
-    std::vector<double> arrived(static_cast<std::size_t>(transient.num_bins()));
-    for (std::size_t pair = 0; pair < transient.num_pairs(); ++pair) {
-        const auto histogram = transient.histogram(pair);
-        for (std::size_t bin = 0; bin < arrived.size(); ++bin) arrived[bin] += histogram[bin];
-    }
-    for (std::size_t bin = 1; bin < arrived.size(); ++bin) arrived[bin] += arrived[bin - 1];
-    const auto bin = std::lower_bound(arrived.begin(), arrived.end(), share * arrived.back());
-    return capture.time_axis.bin_begin_m(static_cast<int>(bin - arrived.begin()));
 }
 
 }  // namespace
@@ -63,7 +48,7 @@ std::vector<ThirdBounceCost> bench_third_bounce_costs(const std::string& scene_p
     settings.method = renderer::Estimator::ThirdBounce;
     const core::Capture capture = bench.render(settings);
     for (const double share : {0.1, 0.5, 0.9}) {
-        const double opl = opl_of_share(capture, share);
+        const double opl = bench.axis().bin_begin_m(bin_of_share(capture, share));
         costs.push_back(measure(fmt::format("gate of {:g} mm at {:.2f} m", 1e3 * kGate_m, opl),
                                 bench,
                                 {opl, kGate_m, 1},

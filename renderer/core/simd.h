@@ -171,8 +171,9 @@ NLOS_INLINE SimdMask operator!(const SimdMask& a) {
 /// By lane: a where the mask holds, else b.
 NLOS_INLINE Simd select(const SimdMask& mask, const Simd& a, const Simd& b) {
     Simd result = b;
-    for (std::size_t p = 0; p < Simd::kParts; ++p)
+    for (std::size_t p = 0; p < Simd::kParts; ++p) {
         where(mask.parts[p], result.parts[p]) = a.parts[p];
+    }
     return result;
 }
 

@@ -65,7 +65,7 @@ class SortedTriangles {
         const Simd rise = larger_of(p2_ - p0_, kLeastRise);
         const Simd per_02 = 1.0 / rise;
         const Simd held = kSixth / larger_of(larger_of(rise, c0), larger_of(c1, c2));
-        const Bends bends{c0 * held, c1 * held, c2 * held};
+        const OfCorners bends{c0 * held, c1 * held, c2 * held};
         low_ = Side(p1_ - p0_, per_02, {k0, k1, k2}, bends, 1.0);
         high_ = Side(p2_ - p1_, per_02, {k2, k1, k0}, {bends[2], bends[1], bends[0]}, -1.0);
     }
@@ -109,7 +109,7 @@ class SortedTriangles {
     }
 
  private:
-    using Bends = std::array<Simd, 3>;
+    using OfCorners = std::array<Simd, 3>;
 
     // C(e), or what it lacks to all, as a polynomial of a without a constant term.
     struct Side {
@@ -120,8 +120,11 @@ class SortedTriangles {
         // k      weights of the corner that a counts from, of the middle one and of the other one
         // c      bends opposite to them
         // sign   +1 where the part below e is described, -1 for the part above
-        [[gnu::always_inline]] Side(
-            const Simd& rise, const Simd& per_02, const Bends& k, const Bends& c, double sign)
+        [[gnu::always_inline]] Side(const Simd& rise,
+                                    const Simd& per_02,
+                                    const OfCorners& k,
+                                    const OfCorners& c,
+                                    double sign)
             : per(1.0 / larger_of(rise, kLeastRise)) {
             const Simd ratio = rise * per_02;
             const Simd slope = (k[1] - k[0]) + ratio * (k[2] - k[0]);  // x / a
