@@ -17,7 +17,6 @@ using core::Vec3;
 constexpr std::size_t kSamples = 4000;
 constexpr std::size_t kCloudSamples = 40'000;
 constexpr std::uint64_t kSeed = 1;
-constexpr double kDegrees = 180.0 / core::kPi;
 
 // The objects of one node as one mesh.
 struct Shape {
@@ -134,7 +133,7 @@ void compare_shapes(const Shape& fitted, const Shape& truth, FitErrors& errors) 
             rotation_of(fitted) * (rotation_of(truth) * symmetry).transpose();
         least = std::min(least, std::abs(Eigen::AngleAxisd(difference).angle()));
     }
-    keep_worst(errors.rotation_deg, kDegrees * least);
+    keep_worst(errors.rotation_deg, core::kDegreesPerRadian * least);
     append_samples(fitted, errors.fitted_points);
     append_samples(truth, errors.true_points);
 }

@@ -24,7 +24,6 @@ using core::Vec3;
 
 constexpr int kScoutIterations = 8;     // of each of many starts, on the coarsest data
 constexpr std::size_t kKeptStarts = 3;  // that go on to the second stage
-constexpr double kDegrees = 180.0 / core::kPi;
 
 struct Candidate {
     std::string name;
@@ -195,7 +194,8 @@ void store_objects(const FitInput& input,
         object.albedo = std::exp(s.log_albedo);
         object.heights_m = s.heights_m;
         object.position_sigma_m = sigmas.vector(ParameterKind::Translation, b);
-        object.rotation_sigma_deg = kDegrees * sigmas.vector(ParameterKind::Rotation, b);
+        object.rotation_sigma_deg =
+            core::kDegreesPerRadian * sigmas.vector(ParameterKind::Rotation, b);
         object.size_sigma = object.size * sigmas.at(ParameterKind::Size, b);
         object.albedo_sigma = object.albedo * sigmas.at(ParameterKind::Albedo, b);
         for (std::size_t v = 0; v < s.heights_m.size(); ++v) {

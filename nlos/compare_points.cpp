@@ -30,7 +30,7 @@ double median(std::vector<double> values) {
 }
 
 double angle_deg(const core::Vec3& a, const core::Vec3& b) {
-    return std::atan2(a.cross(b).norm(), a.dot(b)) * 180.0 / core::kPi;
+    return std::atan2(a.cross(b).norm(), a.dot(b)) * core::kDegreesPerRadian;
 }
 
 void score_angles(const std::vector<double>& angles_deg, Metrics& metrics) {

@@ -13,10 +13,10 @@
 namespace nlos {
 namespace {
 
-using Range = std::optional<std::array<double, 2>>;
+using Limits = std::optional<std::array<double, 2>>;
 
-bool holds(const Range& range, double value) {
-    return !range || (value >= (*range)[0] && value <= (*range)[1]);
+bool holds(const Limits& limits, double value) {
+    return !limits || (value >= (*limits)[0] && value <= (*limits)[1]);
 }
 
 /// Numbers of the points inside the crop, in order, and the grid they form if any.
@@ -52,14 +52,14 @@ Selection select_points(const core::WallPoints& points,
     return selection;
 }
 
-/// Bins [begin, end) whose centres lie in the range.
-std::array<int, 2> select_bins(const core::TimeAxis& axis, const Range& range) {
-    if (!range) return {0, axis.num_bins};
+/// Bins [begin, end) whose centres lie within the limits.
+std::array<int, 2> select_bins(const core::TimeAxis& axis, const Limits& limits) {
+    if (!limits) return {0, axis.num_bins};
     const auto bin_at = [&](double opl) {
         const double bin = std::ceil((opl - axis.opl_start_m) / axis.bin_width_m - 0.5);
         return static_cast<int>(std::clamp(bin, 0.0, static_cast<double>(axis.num_bins)));
     };
-    return {bin_at((*range)[0]), bin_at((*range)[1])};
+    return {bin_at((*limits)[0]), bin_at((*limits)[1])};
 }
 
 void crop_measurement(const core::Capture& capture,

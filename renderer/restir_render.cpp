@@ -22,7 +22,7 @@
 namespace renderer {
 namespace {
 
-constexpr std::size_t kPairsPerBlock = 64;
+constexpr std::size_t kDomainsPerBlock = 64;
 
 // Estimates of one frame of a sequence, at most: each has random numbers of its own.
 constexpr std::uint64_t kMostRepeats = 1 << 16;
@@ -139,7 +139,7 @@ void add_reservoirs(const RestirFrame& frame, std::size_t pair, PassHistogram& h
 void add_frame(const RestirFrame& frame, const RenderSettings& settings, HistogramSums& sums) {
     std::atomic<bool> is_finite{true};
     core::parallel_blocks(
-        frame.domains.size(), kPairsPerBlock, [&](std::size_t begin, std::size_t end) {
+        frame.domains.size(), kDomainsPerBlock, [&](std::size_t begin, std::size_t end) {
             PassHistogram histogram(frame.bins.axes(), settings.gate, 1);
             for (std::size_t pair = begin; pair < end; ++pair) {
                 add_paths_without_vertices(frame, pair, settings, histogram);

@@ -10,7 +10,7 @@
 namespace renderer {
 namespace {
 
-constexpr std::size_t kPairsPerBlock = 16;
+constexpr std::size_t kPairsPerTask = 16;
 
 // Streams of random numbers of one frame: one for the candidates, one for each round of reuse, and
 // one for the places within pixels.
@@ -61,7 +61,7 @@ void RestirRenderer::for_each_pair(const FrameInput& input,
                                    const std::function<void(Worker&, std::size_t)>& body) {
     std::mutex mutex;
     core::parallel_blocks(
-        scan_->num_pairs(), kPairsPerBlock, [&](std::size_t begin, std::size_t end) {
+        scan_->num_pairs(), kPairsPerTask, [&](std::size_t begin, std::size_t end) {
             Worker worker;
             worker.builders.resize(ReservoirBins(input.axes, settings_.gate).count());
             for (std::size_t pair = begin; pair < end; ++pair) {

@@ -179,7 +179,7 @@ void look_up_camera(const std::string& geometry, const std::string& where, Camer
         camera.position_m = candidate.position;
         camera.look_at_m = candidate.position + candidate.forward;
         camera.up = candidate.up;
-        camera.fov_y_deg = candidate.fov_y_rad * 180.0 / core::kPi;
+        camera.fov_y_deg = candidate.fov_y_rad * core::kDegreesPerRadian;
         return;
     }
     throw Error(

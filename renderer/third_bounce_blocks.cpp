@@ -15,8 +15,6 @@ namespace {
 
 using core::Vec3;
 
-constexpr std::size_t kSize = PieceBlock::kSize;
-
 // A group spans at most this times sqrt(tolerance) times its distance, ...
 constexpr double kGroupSizePerDistance = 0.8;
 // ... and its normals differ by about 30 degrees at most.
@@ -40,7 +38,8 @@ void sort_into_blocks(std::span<PieceCenter> centers) {
     Eigen::AlignedBox3d box;
     for (const PieceCenter& center : centers) box.extend(center.position);
     std::size_t half = (count + 1) / 2;
-    if (count > kSize) half = (half + kSize - 1) / kSize * kSize;
+    if (count > PieceBlock::kSize)
+        half = (half + PieceBlock::kSize - 1) / PieceBlock::kSize * PieceBlock::kSize;
     split_along_longest_side(
         centers, half, box, [](const PieceCenter& c) -> const Vec3& { return c.position; });
     sort_into_blocks(centers.first(half));
@@ -121,19 +120,20 @@ void PieceArranger::append_blocks(const std::vector<MergedPiece>& pieces, PieceK
         }
     }
     sort_into_blocks(sorted);
-    for (std::size_t begin = 0; begin < sorted.size(); begin += kSize) {
+    for (std::size_t begin = 0; begin < sorted.size(); begin += PieceBlock::kSize) {
         PieceBlock& block = set_.blocks.emplace_back();
         block.kind = kind;
-        block.count = std::min(kSize, sorted.size() - begin);
+        block.count = std::min(PieceBlock::kSize, sorted.size() - begin);
         Eigen::AlignedBox3d box;
-        for (std::size_t lane = 0; lane < kSize; ++lane) {
+        for (std::size_t lane = 0; lane < PieceBlock::kSize; ++lane) {
             const std::size_t index = sorted[begin + (lane < block.count ? lane : 0)].piece;
             fill_lane(block, lane, pieces[index]);
             if (lane >= block.count) {
                 block.area_m2[lane] = 0.0;
                 continue;
             }
-            piece_ids_[index] = static_cast<std::uint32_t>((set_.blocks.size() - 1) * kSize + lane);
+            piece_ids_[index] =
+                static_cast<std::uint32_t>((set_.blocks.size() - 1) * PieceBlock::kSize + lane);
             const auto& corners = pieces[index].triangle.corners;
             for (std::size_t i = 0; i < 3; ++i) {
                 box.extend(corners[i]);
@@ -170,9 +170,9 @@ void PieceArranger::form_groups(std::size_t block, Range lanes) {
     const std::size_t count = lanes.end - lanes.begin;
     bool is_group = count == 1 || may_be_one_group(set_.blocks[block], lanes);
     if (is_group && count > 1) {
-        const auto base = static_cast<std::uint32_t>(block * kSize);
+        const auto base = static_cast<std::uint32_t>(block * PieceBlock::kSize);
         std::vector<std::uint32_t> reached{base + static_cast<std::uint32_t>(lanes.begin)};
-        std::array<bool, kSize> seen{};
+        std::array<bool, PieceBlock::kSize> seen{};
         seen[lanes.begin] = true;
         for (std::size_t next = 0; next < reached.size(); ++next) {
             const auto& lists = set_.piece_neighbours;
@@ -188,7 +188,7 @@ void PieceArranger::form_groups(std::size_t block, Range lanes) {
     }
     if (is_group) {
         set_.groups.push_back({static_cast<std::uint32_t>(block),
-                               (~std::uint64_t{0} >> (kSize - count)) << lanes.begin});
+                               (~std::uint64_t{0} >> (PieceBlock::kSize - count)) << lanes.begin});
         return;
     }
     const std::size_t middle = lanes.begin + (count + 1) / 2;
@@ -197,11 +197,12 @@ void PieceArranger::form_groups(std::size_t block, Range lanes) {
 }
 
 void PieceArranger::find_group_neighbours() {
-    std::vector<std::uint32_t> group_of(set_.blocks.size() * kSize);
+    std::vector<std::uint32_t> group_of(set_.blocks.size() * PieceBlock::kSize);
     for (std::uint32_t g = 0; g < set_.groups.size(); ++g) {
         const PieceGroup& group = set_.groups[g];
-        for_each_bit(group.lanes,
-                     [&](std::size_t lane) { group_of[group.block * kSize + lane] = g; });
+        for_each_bit(group.lanes, [&](std::size_t lane) {
+            group_of[group.block * PieceBlock::kSize + lane] = g;
+        });
     }
     std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
     const NeighbourLists& lists = set_.piece_neighbours;
@@ -229,7 +230,7 @@ PieceSet PieceArranger::arrange(std::span<const Piece> pieces,
         b = piece_ids_[merged.merged_of[b]];
     }
     std::erase_if(pairs, [](const auto& pair) { return pair.first == pair.second; });
-    set_.piece_neighbours = neighbour_lists(set_.blocks.size() * kSize, pairs);
+    set_.piece_neighbours = neighbour_lists(set_.blocks.size() * PieceBlock::kSize, pairs);
     for (std::size_t block = 0; block < set_.blocks.size(); ++block) {
         set_.first_group.push_back(static_cast<std::uint32_t>(set_.groups.size()));
         form_groups(block, {0, set_.blocks[block].count});

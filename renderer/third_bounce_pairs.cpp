@@ -11,8 +11,6 @@ namespace {
 
 using core::Vec3;
 
-constexpr std::size_t kSize = PieceBlock::kSize;
-
 using core::load;
 using core::Simd;
 using core::store;

@@ -15,7 +15,6 @@ namespace {
 
 using core::Vec3;
 
-constexpr std::size_t kSize = PieceBlock::kSize;
 constexpr std::size_t kPointsPerBlock = 4;
 
 // Where part `part` of `count` items begins.
@@ -32,7 +31,8 @@ class TileTables {
     void compute(const PieceBlock& block, std::size_t block_index) {
         for (std::size_t i = 0; i < points_.size(); ++i) {
             compute_table(block, points_[i], seen_[i].units[block_index], tables_[i]);
-            ends_[i] = {&points_[i], &tables_[i], seen_[i].masks.data() + block_index * kSize};
+            ends_[i] = {
+                &points_[i], &tables_[i], seen_[i].masks.data() + block_index * PieceBlock::kSize};
         }
     }
 
@@ -139,7 +139,7 @@ void ThirdBounceScan::integrate_confocal(std::size_t first, std::size_t last) {
                 for (std::size_t b = 0; b < pieces_.blocks.size(); ++b) {
                     if (seen.units[b] == 0) continue;
                     compute_table(pieces_.blocks[b], point, seen.units[b], table);
-                    const PairEnd end{&point, &table, seen.masks.data() + b * kSize};
+                    const PairEnd end{&point, &table, seen.masks.data() + b * PieceBlock::kSize};
                     add_pair(pieces_.blocks[b], end, end, axis, histogram);
                 }
                 store(pair, histogram);
@@ -196,7 +196,7 @@ void ThirdBounceScan::look_from(const core::WallPoints& points,
 int ThirdBounceScan::integrate_pairs(int first_part,
                                      const std::function<bool(double share)>& go_on) {
     const auto bytes_per_point =
-        static_cast<double>(pieces_.blocks.size() * kSize * sizeof(VisibilityMask));
+        static_cast<double>(pieces_.blocks.size() * PieceBlock::kSize * sizeof(VisibilityMask));
     const double fitting = memory_bytes_ / bytes_per_point;
     if (fitting < PairTiles::kFewestPoints) {
         throw core::Failure(

@@ -17,8 +17,6 @@ using core::Simd;
 using core::store;
 using core::Vec3;
 
-constexpr std::size_t kSize = PieceBlock::kSize;
-
 UnitMask units_of(std::uint64_t lanes) {
     UnitMask units = 0;
     for (std::size_t u = 0; u < PieceBlock::kUnits; ++u) {
@@ -68,11 +66,11 @@ VisibilityCost VisibilityTracer::trace(const WallPoint& point,
     classify(rules);
     trace_groups();
     trace_pieces_of_mixed_groups(rules.negligible_error);
-    seen.masks.resize(set_.blocks.size() * kSize);
+    seen.masks.resize(set_.blocks.size() * PieceBlock::kSize);
     for (const std::uint32_t block : active_blocks_) {
         const std::uint64_t visible = lanes_[block].visible;
-        VisibilityMask* const of_block = seen.masks.data() + block * kSize;
-        for (std::size_t i = 0; i < kSize; ++i) {
+        VisibilityMask* const of_block = seen.masks.data() + block * PieceBlock::kSize;
+        for (std::size_t i = 0; i < PieceBlock::kSize; ++i) {
             of_block[i] = (visible >> i & 1U) != 0 ? kAllVisible : VisibilityMask{0};
         }
     }
@@ -227,7 +225,8 @@ std::uint64_t VisibilityTracer::lanes_within_axis(std::uint32_t b,
 
 // Every part is as likely as any other, so that shadows count by what they cover.
 inline VisibilityTracer::FirstBits VisibilityTracer::first_bits(std::uint32_t piece) const {
-    const std::uint32_t number = set_.blocks[piece / kSize].number[piece % kSize];
+    const std::uint32_t number =
+        set_.blocks[piece / PieceBlock::kSize].number[piece % PieceBlock::kSize];
     return {static_cast<std::uint32_t>(core::Rng(0, number, point_.index).next_bits())};
 }
 
@@ -245,7 +244,8 @@ void VisibilityTracer::choose_representatives(std::uint32_t b) {
             upper != 0 ? middle + std::countr_zero(upper) : 63 - std::countl_zero(lanes);
         group_states_[g] = kBlocked;
         active_groups_.push_back(
-            {g, static_cast<std::uint32_t>(b * kSize) + static_cast<std::uint32_t>(lane)});
+            {g,
+             static_cast<std::uint32_t>(b * PieceBlock::kSize) + static_cast<std::uint32_t>(lane)});
     }
 }
 
@@ -266,15 +266,15 @@ void VisibilityTracer::trace_groups() {
 }
 
 VisibilityTracer::State VisibilityTracer::state_of(std::uint32_t piece) const {
-    const BlockLanes& lanes = lanes_[piece / kSize];
-    const std::uint32_t lane = piece % kSize;
+    const BlockLanes& lanes = lanes_[piece / PieceBlock::kSize];
+    const std::uint32_t lane = piece % PieceBlock::kSize;
     if ((lanes.relevant >> lane & 1U) == 0) return kIrrelevant;
     return (lanes.visible >> lane & 1U) != 0 ? kVisible : kBlocked;
 }
 
 void VisibilityTracer::set_visible(std::uint32_t piece, bool is_visible) {
-    std::uint64_t& visible = lanes_[piece / kSize].visible;
-    const std::uint64_t bit = std::uint64_t{1} << (piece % kSize);
+    std::uint64_t& visible = lanes_[piece / PieceBlock::kSize].visible;
+    const std::uint64_t bit = std::uint64_t{1} << (piece % PieceBlock::kSize);
     visible = is_visible ? visible | bit : visible & ~bit;
 }
 
@@ -300,7 +300,7 @@ void VisibilityTracer::trace_pieces_of_mixed_groups(double negligible_error) {
         const auto state_of_group = [&](std::uint32_t other) { return group_states_[other]; };
         if (!is_mixed(set_.group_neighbours, g, state_of_group)) continue;
         const PieceGroup& group = set_.groups[g];
-        const auto base = static_cast<std::uint32_t>(group.block * kSize);
+        const auto base = static_cast<std::uint32_t>(group.block * PieceBlock::kSize);
         const std::uint64_t relevant = lanes_[group.block].relevant & group.lanes;
         double mass = 0.0;
         for_each_bit(relevant,
@@ -381,8 +381,8 @@ void VisibilityTracer::shoot() {
             std::min<std::size_t>(targets_.size() - begin, SegmentPacket::kSize);
         for (std::size_t lane = 0; lane < count; ++lane) {
             const Target& target = targets_[begin + lane];
-            const PieceBlock& block = set_.blocks[target.piece / kSize];
-            const std::size_t i = target.piece % kSize;
+            const PieceBlock& block = set_.blocks[target.piece / PieceBlock::kSize];
+            const std::size_t i = target.piece % PieceBlock::kSize;
             const auto& b = centers[target.bit];
             const auto at = [&](const std::array<PieceBlock::Lanes, 3>& corners) {
                 return b[0] * corners[0][i] + b[1] * corners[1][i] + b[2] * corners[2][i];

@@ -18,9 +18,6 @@ namespace {
 
 using core::Vec3;
 
-constexpr double kMillimetre = 1e-3;
-constexpr double kDegrees = 180.0 / core::kPi;
-
 // Root mean squares over fits of one pose.
 struct PoseSummary {
     double lateral_m = 0.0;
@@ -68,7 +65,7 @@ PoseSummary summarise(const TrialSetup& setup, int trials) {
                   error.turn_deg.squaredNorm() / turn_sigma.squaredNorm();
         bound2 += 2.0;
         Eigen::Matrix<double, 6, 1> all;
-        all << error.position_m, error.turn_deg / kDegrees;
+        all << error.position_m, error.turn_deg / core::kDegreesPerRadian;
         const Eigen::MatrixXd covariance = fit.covariance.topLeftCorner<6, 6>();
         summary.normalised_square += all.dot(covariance.ldlt().solve(all)) / 6.0;
     }

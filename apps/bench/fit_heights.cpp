@@ -14,7 +14,6 @@ namespace {
 using core::Vec3;
 
 constexpr int kMostFits = 10;
-constexpr double kMillimetre = 1e-3;
 
 // A bump of 2 cm with a twist, in the rectangle's coordinates from -1 to 1.
 double true_height(double x, double y) {

@@ -5,6 +5,8 @@
 
 namespace apps {
 
+inline constexpr double kMillimetre = 1e-3;  // in metres
+
 /// The forward model against exact arcs, its energy, and how long it takes.
 void bench_forward(FitBench& bench);
 

@@ -16,7 +16,6 @@ using core::Vec3;
 
 constexpr double kWidth_m = 0.4;
 constexpr double kHeight_m = 0.3;
-constexpr double kDegrees = 180.0 / core::kPi;
 
 Vec3 random_direction(core::Rng& rng) {
     return core::sample_sphere({1.0 - rng.uniform(), rng.uniform()});
@@ -66,7 +65,7 @@ core::TimeAxis trial_axis() {
 
 TrialPose standard_pose() {
     TrialPose pose;
-    pose.rotation = turn(25.0 / kDegrees, Vec3(0.6, 0.8, 0.0));
+    pose.rotation = turn(25.0 / core::kDegreesPerRadian, Vec3(0.6, 0.8, 0.0));
     return pose;
 }
 
@@ -76,7 +75,7 @@ TrialPose random_pose(std::uint64_t seed) {
     TrialPose pose;
     pose.position_m = {0.2 * symmetric(), 0.2 * symmetric(), 0.8 + 0.2 * symmetric()};
     const double azimuth = core::kPi * symmetric();
-    const double tilt = 35.0 / kDegrees * std::sqrt(rng.uniform());
+    const double tilt = 35.0 / core::kDegreesPerRadian * std::sqrt(rng.uniform());
     pose.rotation = turn(tilt, Vec3(std::cos(azimuth), std::sin(azimuth), 0.0)) *
                     turn(core::kPi * symmetric(), Vec3::UnitZ());
     return pose;
@@ -90,7 +89,8 @@ TrialPose displaced(const TrialPose& pose,
     TrialPose moved = pose;
     moved.position_m += distance_m * random_direction(rng);
     moved.position_m.z() = std::max(moved.position_m.z(), 0.15);
-    moved.rotation = turn(angle_deg / kDegrees, random_direction(rng)) * pose.rotation;
+    moved.rotation =
+        turn(angle_deg / core::kDegreesPerRadian, random_direction(rng)) * pose.rotation;
     return moved;
 }
 
@@ -182,7 +182,7 @@ TrialError trial_error(const calib::FitResult& fit, const TrialPose& truth) {
         if (angle >= best) continue;
         best = angle;
         const double sign = difference.angle() > core::kPi ? -1.0 : 1.0;
-        error.turn_deg = kDegrees * angle * sign * difference.axis();
+        error.turn_deg = core::kDegreesPerRadian * angle * sign * difference.axis();
     }
     const Vec3 normal = truth.rotation * Vec3::UnitZ();
     error.spin_deg = std::abs(normal.dot(error.turn_deg));

@@ -13,7 +13,6 @@ namespace apps {
 namespace {
 
 constexpr double kLongEnough_s = 10.0;  // of repeats
-const std::string kSlices = "volume.z_range_m=[0.45,1.05]";
 
 struct CostTarget {
     double max_ratio = 0.0;

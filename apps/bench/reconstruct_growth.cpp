@@ -16,7 +16,6 @@ namespace {
 // Below these, fixed costs say nothing about growth.
 constexpr double kShortest_s = 0.02;
 constexpr double kSmallest_bytes = 1e7;
-const std::string kSlices = "volume.z_range_m=[0.45,1.05]";
 
 // Growth of what lies above `smallest`; 0 for fewer than two points.
 double exponent_of(const std::vector<GrowthPoint>& points,

@@ -10,6 +10,9 @@ namespace apps {
 
 using Overrides = std::vector<std::string>;  ///< `key.path=value` texts
 
+/// The slices that the costs of methods are compared on.
+inline const std::string kSlices = "volume.z_range_m=[0.45,1.05]";
+
 /// One reconstruction and what it took.
 struct ReconstructRun {
     nlos::Reconstruction result;

@@ -193,11 +193,11 @@ void read_scan(const Attributes& attributes, core::Scan& scan) {
     scan.detector_position = attributes.vector("nlosDetectorM");
 }
 
-bool recognise(const std::string& path) {
+bool recognise_exr(const std::string& path) {
     return is_exr_file(path);
 }
 
-Capture read(const std::string& path, const CaptureReadSettings& settings) {
+Capture read_exr(const std::string& path, const CaptureReadSettings& settings) {
     const ExrTable table = read_exr_table(path);
     const auto format = table.texts.find(kFormatKey);
     if (format != table.texts.end() && format->second == kExrImageFormat) {
@@ -298,8 +298,8 @@ std::vector<std::string> write(const std::string& path,
 CaptureFormat exr_format() {
     return {"OpenEXR",
             "OpenEXR with the header attribute nlosFormat",
-            recognise,
-            read,
+            recognise_exr,
+            read_exr,
             {".exr"},
             write};
 }

@@ -29,7 +29,7 @@ namespace {
 constexpr std::size_t kColumnBytes = sizeof(float);
 constexpr std::uint64_t kMostChannels = 1 << 16;
 
-[[noreturn]] void throw_damaged(const std::string& path) {
+[[noreturn]] void throw_damaged_table(const std::string& path) {
     throw core::Error(path, "is damaged or cut short", "must be a complete OpenEXR file");
 }
 
@@ -59,10 +59,10 @@ class HeaderReader {
             if (c == '\0') return text;
             text += c;
         }
-        throw_damaged(path_);
+        throw_damaged_table(path_);
     }
     void skip(std::uint64_t count) {
-        if (count > left_) throw_damaged(path_);
+        if (count > left_) throw_damaged_table(path_);
         file_.seekg(static_cast<std::streamoff>(count), std::ios::cur);
         left_ -= count;
     }
@@ -70,7 +70,7 @@ class HeaderReader {
  private:
     void take(char* bytes, std::size_t count) {
         if (count > left_ || !file_.read(bytes, static_cast<std::streamsize>(count))) {
-            throw_damaged(path_);
+            throw_damaged_table(path_);
         }
         left_ -= count;
     }
@@ -108,10 +108,10 @@ void check_header(const std::string& path) {
         for (std::int64_t& edge : window) edge = static_cast<std::int32_t>(header.number());
         const std::int64_t width = window[2] - window[0] + 1;
         const std::int64_t height = window[3] - window[1] + 1;
-        if (width < 1 || height < 1) throw_damaged(path);
+        if (width < 1 || height < 1) throw_damaged_table(path);
         pixels = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
     }
-    if (pixels == 0 || pixels > header.left() * kLargestRatio) throw_damaged(path);
+    if (pixels == 0 || pixels > header.left() * kLargestRatio) throw_damaged_table(path);
 }
 
 core::Json to_json(const ExrTable& table) {
@@ -218,7 +218,7 @@ ExrTable read_exr_table(const std::string& path) {
         } catch (const std::bad_alloc&) {
             throw;
         } catch (const std::exception&) {  // the library's own, and texts that are not UTF-8
-            throw_damaged(path);
+            throw_damaged_table(path);
         }
     });
     return from_json(core::Json::from_cbor(answer));

@@ -24,16 +24,16 @@ hid_t memory_type() {
     if constexpr (std::is_same_v<T, std::int64_t>) return H5T_NATIVE_INT64;
 }
 
-[[noreturn]] void throw_damaged(const std::string& where) {
+[[noreturn]] void throw_unreadable(const std::string& where) {
     throw core::Error(where, "cannot be read", "must be an undamaged, complete file");
 }
 
 Shape extents_of(const Hdf5Handle& space, const std::string& where) {
     const int rank = H5Sget_simple_extent_ndims(space.id());
-    if (rank < 0) throw_damaged(where);
+    if (rank < 0) throw_unreadable(where);
     std::vector<hsize_t> extents(static_cast<std::size_t>(rank));
     if (rank > 0 && H5Sget_simple_extent_dims(space.id(), extents.data(), nullptr) < 0) {
-        throw_damaged(where);
+        throw_unreadable(where);
     }
     return {extents.begin(), extents.end()};
 }
@@ -58,16 +58,16 @@ std::string fetch_text(hid_t type, const std::string& where, Read&& read) {
     if (H5Tis_variable_str(type) > 0) {
         H5Tset_size(text.id(), H5T_VARIABLE);
         char* characters = nullptr;
-        if (!read(text.id(), static_cast<void*>(&characters))) throw_damaged(where);
+        if (!read(text.id(), static_cast<void*>(&characters))) throw_unreadable(where);
         std::string result = characters == nullptr ? "" : characters;
         H5free_memory(characters);
         return result;
     }
     const std::size_t length = H5Tget_size(type);
-    if (length == 0 || length > kLongestText) throw_damaged(where);
+    if (length == 0 || length > kLongestText) throw_unreadable(where);
     H5Tset_size(text.id(), length + 1);
     std::string result(length + 1, '\0');
-    if (!read(text.id(), static_cast<void*>(result.data()))) throw_damaged(where);
+    if (!read(text.id(), static_cast<void*>(result.data()))) throw_unreadable(where);
     result.resize(result.find('\0'));
     return result;
 }
@@ -102,7 +102,7 @@ bool Hdf5Session::has_object(const std::string& name) const {
 bool Hdf5Session::has(const std::string& name) const {
     if (!has_object(name)) return false;
     const Hdf5Handle object(H5Oopen(file_.id(), name.c_str(), H5P_DEFAULT), H5Oclose);
-    if (!object.is_valid()) throw_damaged(where(name));
+    if (!object.is_valid()) throw_unreadable(where(name));
     if (H5Iget_type(object.id()) != H5I_DATASET) return false;
     const Hdf5Handle space(H5Dget_space(object.id()), H5Sclose);
     return H5Sget_simple_extent_type(space.id()) != H5S_NULL;
@@ -186,7 +186,7 @@ std::vector<T> Hdf5Session::read_all(const std::string& name, const Shape& wante
     const Hdf5Handle dataset = open_dataset(name);
     if (!values.empty() &&
         H5Dread(dataset.id(), memory_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) {
-        throw_damaged(where(name));
+        throw_unreadable(where(name));
     }
     return values;
 }
@@ -256,7 +256,7 @@ std::size_t Hdf5Session::rows_per_read(const std::string& name) const {
     std::vector<hsize_t> chunk(extents.size());
     if (H5Pget_chunk(plan.id(), static_cast<int>(chunk.size()), chunk.data()) < 0 ||
         chunk[0] == 0) {
-        throw_damaged(where(name));
+        throw_unreadable(where(name));
     }
     return (rows + chunk[0] - 1) / chunk[0] * chunk[0];
 }
@@ -267,7 +267,7 @@ std::vector<float> Hdf5Session::read_row_range(const std::string& name,
     require_numeric(name);
     check_size(name);
     const Shape extents = shape(name);
-    if (extents.empty() || first + count > extents[0]) throw_damaged(where(name));
+    if (extents.empty() || first + count > extents[0]) throw_unreadable(where(name));
     std::vector<hsize_t> start(extents.size(), 0);
     std::vector<hsize_t> size(extents.begin(), extents.end());
     start[0] = first;
@@ -281,7 +281,7 @@ std::vector<float> Hdf5Session::read_row_range(const std::string& name,
     if (H5Dread(
             dataset.id(), H5T_NATIVE_FLOAT, memory.id(), space.id(), H5P_DEFAULT, values.data()) <
         0) {
-        throw_damaged(where(name));
+        throw_unreadable(where(name));
     }
     return values;
 }
@@ -325,7 +325,7 @@ std::optional<std::vector<double>> Hdf5Session::real_attribute(const std::string
     }
     std::vector<double> values(count);
     if (count > 0 && H5Aread(attribute.id(), H5T_NATIVE_DOUBLE, values.data()) < 0) {
-        throw_damaged(place);
+        throw_unreadable(place);
     }
     return values;
 }

@@ -73,7 +73,7 @@ bool has_object(const std::vector<char>& collection, std::uint32_t index, std::u
     return false;
 }
 
-[[noreturn]] void throw_damaged(const std::string& path) {
+[[noreturn]] void throw_damaged_texts(const std::string& path) {
     throw core::Error(path, "has damaged texts", "must be an undamaged HDF5 file");
 }
 
@@ -85,7 +85,7 @@ void check_text_reference(const std::string& path, std::uint64_t position) {
     std::vector<char> reference(16);
     file.seekg(static_cast<std::streamoff>(position));
     if (!file.read(reference.data(), static_cast<std::streamsize>(reference.size()))) {
-        throw_damaged(path);
+        throw_damaged_texts(path);
     }
     const auto bytes = value_at<std::uint32_t>(reference, 0);
     const auto address = value_at<std::uint64_t>(reference, 4);
@@ -93,7 +93,7 @@ void check_text_reference(const std::string& path, std::uint64_t position) {
     const std::vector<char> collection = read_collection(file, address);
     if (collection.empty() || !is_sound(collection) ||
         !has_object(collection, value_at<std::uint32_t>(reference, 12), bytes)) {
-        throw_damaged(path);
+        throw_damaged_texts(path);
     }
 }
 
@@ -112,7 +112,7 @@ void check_text_heaps(const std::string& path) {
              at = text.find(kSignature, at + 1)) {
             const std::vector<char> collection = read_collection(file, begin + at);
             if (collection.empty() || !is_sound(collection)) {
-                throw_damaged(path);
+                throw_damaged_texts(path);
             }
         }
         if (count < kBlock) return;

@@ -27,7 +27,7 @@ using MatPointer = std::unique_ptr<matvar_t, void (*)(matvar_t*)>;
 constexpr std::uint64_t kHeaderBytes = 128;
 constexpr std::uint64_t kTagBytes = 8;
 
-[[noreturn]] void throw_damaged(const std::string& path) {
+[[noreturn]] void throw_damaged_mat(const std::string& path) {
     throw core::Error(path, "is damaged or cut short", "must be a complete MATLAB v5 file");
 }
 
@@ -41,17 +41,17 @@ void check_elements(const std::string& path) {
     const std::uint64_t file_bytes = std::filesystem::file_size(path, error);
     std::ifstream file(path, std::ios::binary);
     std::array<char, kHeaderBytes> header{};
-    if (error || !file.read(header.data(), header.size())) throw_damaged(path);
+    if (error || !file.read(header.data(), header.size())) throw_damaged_mat(path);
     const bool swapped = header[kHeaderBytes - 2] == 'M';
     for (std::uint64_t begin = kHeaderBytes; begin < file_bytes;) {
         std::array<std::uint32_t, 2> tag{};
         file.seekg(static_cast<std::streamoff>(begin));
-        if (!file.read(reinterpret_cast<char*>(tag.data()), kTagBytes)) throw_damaged(path);
+        if (!file.read(reinterpret_cast<char*>(tag.data()), kTagBytes)) throw_damaged_mat(path);
         const std::uint32_t type = swapped ? swap_bytes(tag[0]) : tag[0];
         const std::uint32_t size = swapped ? swap_bytes(tag[1]) : tag[1];
         const bool is_variable = type == MAT_T_MATRIX || type == MAT_T_COMPRESSED;
         begin += kTagBytes + size;
-        if (!is_variable || size == 0 || begin > file_bytes) throw_damaged(path);
+        if (!is_variable || size == 0 || begin > file_bytes) throw_damaged_mat(path);
     }
 }
 
@@ -61,7 +61,7 @@ MatFile open_mat(const std::string& path) {
     }
     check_elements(path);
     MatFile file(Mat_Open(path.c_str(), MAT_ACC_RDONLY), Mat_Close);
-    if (!file) throw_damaged(path);
+    if (!file) throw_damaged_mat(path);
     return file;
 }
 
@@ -72,7 +72,7 @@ Shape checked_shape(const matvar_t& variable, const std::string& path) {
     constexpr int kHighestRank = 8;
     const std::string where = path + ": " + variable.name;
     if (variable.rank < 2 || variable.rank > kHighestRank || variable.dims == nullptr) {
-        throw_damaged(path);
+        throw_damaged_mat(path);
     }
     const Shape shape(variable.dims, variable.dims + variable.rank);
     const std::uint64_t most = std::filesystem::file_size(path) * kLargestRatio;
@@ -152,7 +152,7 @@ MatArray<T> read_with_library(const std::string& path, const std::string& variab
     for (const std::size_t extent : array.shape) count *= extent;
     if (Mat_VarReadDataAll(file.get(), info.get()) != 0 || info->data == nullptr ||
         info->nbytes < count * static_cast<std::size_t>(info->data_size)) {
-        throw_damaged(path);
+        throw_damaged_mat(path);
     }
     convert(*info, count, array.values);
     return array;

@@ -28,7 +28,7 @@ std::string file_of(const std::string& path, const std::string& variable) {
     return (folder / (variable + ".mat")).string();
 }
 
-bool recognise(const std::string& path) {
+bool recognise_point_list(const std::string& path) {
     std::error_code ignored;
     if (fs::is_directory(path, ignored)) return fs::exists(file_of(path, "sub_Sig"), ignored);
     if (!is_mat5_file(path)) return false;
@@ -159,7 +159,7 @@ core::Scan scan_of(const std::string& path,
     return scan;
 }
 
-Capture read(const std::string& path, const CaptureReadSettings& settings) {
+Capture read_point_list(const std::string& path, const CaptureReadSettings& settings) {
     const double pitch_m = required(settings.pitch_m, path, "pitch_m");
     const double bin_width_m = required(settings.bin_width_m, path, "bin_width_m");
     const std::string signal_file = fs::is_directory(path) ? file_of(path, "sub_Sig") : path;
@@ -199,8 +199,8 @@ Capture read(const std::string& path, const CaptureReadSettings& settings) {
 CaptureFormat point_list_format() {
     CaptureFormat format{"general-NLOS point lists .mat",
                          "a folder or MATLAB v5 file with sub_Sig, C_i and C_d",
-                         recognise,
-                         read};
+                         recognise_point_list,
+                         read_point_list};
     format.lacks_scale = true;
     return format;
 }

@@ -22,7 +22,7 @@ constexpr const char* kName = "Stanford 2018 confocal .mat";
 
 constexpr const char* kOwnAxis = "nlos_axis";
 
-bool recognise(const std::string& path) {
+bool recognise_stanford(const std::string& path) {
     if (!is_mat5_file(path)) return false;
     const auto names = mat_variable_names(path);
     return std::find(names.begin(), names.end(), "rect_data") != names.end();
@@ -80,7 +80,7 @@ void take_own_axis(const std::vector<double>& axis,
     capture.scene_info[kOwnAxis] = axis;
 }
 
-Capture read(const std::string& path, const CaptureReadSettings& settings) {
+Capture read_stanford(const std::string& path, const CaptureReadSettings& settings) {
     const double half_width_m = read_half_width(path);
     const auto data = read_mat_array<float>(path, "rect_data");
     if (data.shape.size() != 3 || data.shape[0] != data.shape[1] || data.shape[0] < 2) {
@@ -235,8 +235,8 @@ std::vector<std::string> write(const std::string& path,
 CaptureFormat stanford_format() {
     return {kName,
             "MATLAB v5 with rect_data and width",
-            recognise,
-            read,
+            recognise_stanford,
+            read_stanford,
             {".mat"},
             write,
             default_zero_bins};

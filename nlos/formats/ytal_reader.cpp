@@ -209,11 +209,11 @@ void read_own_group(const Hdf5Reader& file, Capture& capture) {
     require_variances(file, "nlos/variance", *capture.variance);
 }
 
-bool recognise(const std::string& path) {
+bool recognise_ytal(const std::string& path) {
     return is_hdf5_file(path) && Hdf5Reader(path).has_object("H");
 }
 
-Capture read(const std::string& path, const CaptureReadSettings& settings) {
+Capture read_ytal(const std::string& path, const CaptureReadSettings& settings) {
     const Hdf5Reader file(path);
     Capture capture;
     if (file.has("scene_info")) capture.scene_info = parse_scene_info(file.read_text("scene_info"));
@@ -229,8 +229,8 @@ Capture read(const std::string& path, const CaptureReadSettings& settings) {
 CaptureFormat ytal_format() {
     return {"y-tal HDF5",
             "HDF5 with a dataset H",
-            recognise,
-            read,
+            recognise_ytal,
+            read_ytal,
             {".h5", ".hdf5"},
             write_ytal_capture};
 }

@@ -18,6 +18,7 @@ using Transform = Eigen::Affine3d;
 inline constexpr double kSpeedOfLight = 299792458.0;
 
 inline constexpr double kPi = 3.14159265358979323846;
+inline constexpr double kDegreesPerRadian = 180.0 / kPi;
 
 /// Optical path length travelled during `seconds` [m].
 inline constexpr double opl_from_seconds(double seconds) {

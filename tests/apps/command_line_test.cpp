@@ -198,8 +198,10 @@ TEST_F(CommandLine, HelpOnEveryLevelEndsWithAnExampleThatWorks) {
         ASSERT_NE(at, std::string::npos) << help.out;
         const std::string example = help.out.substr(at + start.size());
         EXPECT_EQ(example.find('\n') + 1, example.size()) << example;
+#ifndef __SANITIZE_ADDRESS__  // six minutes of what other tests here call too
         const Outcome outcome = run(example.substr(0, example.size() - 1), folder_.path().string());
         EXPECT_EQ(outcome.status, 0) << example << outcome.err;
+#endif
     }
     EXPECT_NE(run("demo --help").out.find("Example:\n  nlos demo"), std::string::npos);
     EXPECT_NE(run("render --help").out.find("time_axis.bin_width_m = 0.008"), std::string::npos);
@@ -457,6 +459,9 @@ TEST_F(CommandLine, FilesThatDoNotFitTogetherAreRefused) {
 }
 
 TEST_F(CommandLine, DemoMakesASelfContainedReport) {
+#ifdef __SANITIZE_ADDRESS__
+    GTEST_SKIP() << "takes many minutes; other tests here call each of its commands";
+#endif
     const Outcome outcome = run("demo -o " + file("demo"));
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     const std::string page = file_bytes(file("demo/report.html"));

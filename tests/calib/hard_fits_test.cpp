@@ -17,11 +17,11 @@ using test_support::counted;
 
 using core::Vec3;
 
-constexpr double kDegrees = 180.0 / core::kPi;
 const Vec3 kCenter(0.05, -0.02, 0.8);
 
 Eigen::Quaterniond turn(double degrees, const Vec3& axis) {
-    return Eigen::Quaterniond(Eigen::AngleAxisd(degrees / kDegrees, axis.normalized()));
+    return Eigen::Quaterniond(
+        Eigen::AngleAxisd(degrees / core::kDegreesPerRadian, axis.normalized()));
 }
 
 renderer::Object rectangle(const std::string& name,
@@ -200,7 +200,7 @@ TEST(HardFit, OneHundredPhotonsGiveWideErrorsAndSayWhy) {
         EXPECT_GT(object.position_sigma_m.norm(), 0.01);
         const Vec3 error = object.position_m - truth.world_from_node.translation();
         const Vec3 turned =
-            kDegrees *
+            core::kDegreesPerRadian *
             turn_error(object.rotation, Eigen::Quaterniond(truth.world_from_node.rotation()));
         squares += error.cwiseQuotient(object.position_sigma_m).squaredNorm() +
                    turned.cwiseQuotient(object.rotation_sigma_deg).squaredNorm();

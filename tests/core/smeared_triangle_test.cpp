@@ -21,7 +21,7 @@ constexpr TimeAxis kAxis{0.9, 0.0096, 60};
 constexpr int kTrials = 300;
 
 // Knots in general position, nearly equal in pairs, or nearly equal altogether.
-TriangleKnots random_knots(core::Rng& rng) {
+TriangleKnots knots_of_any_spread(core::Rng& rng) {
     const auto spread = [&] { return std::pow(10.0, -7.0 + 6.0 * rng.uniform()); };
     TriangleKnots knots;
     knots.opl_m = {1.1, 1.1 + spread() * (rng.uniform() - 0.5), 1.1 + spread()};
@@ -61,7 +61,7 @@ std::vector<double> difference(const Change& change, double step) {
 TEST(SmearedTriangle, WithoutResponseItIsTheBoxKernel) {
     core::Rng rng(test_support::seed_of("WithoutResponseItIsTheBoxKernel"), 0, 0);
     for (int trial = 0; trial < kTrials; ++trial) {
-        const TriangleKnots knots = random_knots(rng);
+        const TriangleKnots knots = knots_of_any_spread(rng);
         std::vector<double> expected(static_cast<std::size_t>(kAxis.num_bins));
         core::add_triangle(knots, 1.0, kAxis, expected);
         EXPECT_LT(distance(slot(knots, 0.0, 0), expected), 1e-7);
@@ -76,7 +76,8 @@ TEST(SmearedTriangle, EqualsTheFinelySampledConvolution) {
     fine.bin_width_m /= kFine;
     fine.num_bins *= kFine;
     for (int trial = 0; trial < 5; ++trial) {
-        TriangleKnots knots = random_knots(rng);  // wide, so that fine bins are narrow against it
+        TriangleKnots knots =
+            knots_of_any_spread(rng);  // wide, so that fine bins are narrow against it
         knots.opl_m = {1.1, 1.13 + 0.02 * rng.uniform(), 1.05 - 0.02 * rng.uniform()};
         std::vector<double> sharp(static_cast<std::size_t>(fine.num_bins));
         core::add_triangle(knots, 1.0, fine, sharp);
@@ -93,7 +94,7 @@ TEST(SmearedTriangle, EqualsTheFinelySampledConvolution) {
 TEST(SmearedTriangle, KeepsTheWholeWeightForAnyStart) {
     core::Rng rng(test_support::seed_of("KeepsTheWholeWeightForAnyStart"), 0, 0);
     for (int trial = 0; trial < kTrials; ++trial) {
-        TriangleKnots knots = random_knots(rng);
+        TriangleKnots knots = knots_of_any_spread(rng);
         const double shift = 0.01 * rng.uniform();
         for (double& opl : knots.opl_m) opl += shift;
         const auto values = slot(knots, 0.004 + 0.008 * rng.uniform(), 0);
@@ -105,7 +106,7 @@ TEST(SmearedTriangle, KeepsTheWholeWeightForAnyStart) {
 TEST(SmearedTriangle, SlopesMatchFiniteDifferences) {
     core::Rng rng(test_support::seed_of("SlopesMatchFiniteDifferences"), 0, 0);
     for (int trial = 0; trial < kTrials; ++trial) {
-        const TriangleKnots knots = random_knots(rng);
+        const TriangleKnots knots = knots_of_any_spread(rng);
         const double sigma_m = 0.003 + 0.01 * rng.uniform();
         for (std::size_t j = 0; j < 3; ++j) {
             const auto by_opl = difference(

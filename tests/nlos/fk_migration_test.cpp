@@ -14,10 +14,10 @@ namespace {
 
 using core::Vec3;
 
-Volume run(const core::Capture& capture,
-           std::array<double, 2> z_range_m,
-           std::size_t num_z,
-           Falloff falloff) {
+Volume migrate(const core::Capture& capture,
+               std::array<double, 2> z_range_m,
+               std::size_t num_z,
+               Falloff falloff) {
     const WallFrame wall = derive_wall_frame(capture.scan);
     VolumeAxes axes;
     axes.x_m = cell_centers(wall.min_m[0], wall.max_m[0], wall.grid->size[0]);
@@ -36,7 +36,7 @@ TEST(FkMigration, FindsAPointOnOblongGridsWithUnequalPitch) {
     for (const Falloff falloff : {Falloff::Diffuse, Falloff::Retro}) {
         core::Capture capture = nlos_test::confocal_capture(points, {0.3, 0.016, 100});
         nlos_test::add_scatterer(capture, scatterer, falloff == Falloff::Diffuse ? 4.0 : 2.0);
-        const Volume volume = run(capture, {0.3, 0.9}, 75, falloff);
+        const Volume volume = migrate(capture, {0.3, 0.9}, 75, falloff);
         const core::PointCloud found = surface_points(extract_depth_map(volume, 0.99));
         ASSERT_EQ(found.positions.size(), 1U);
         EXPECT_LT((found.positions[0] - scatterer).norm(), 0.0016);
@@ -47,8 +47,8 @@ TEST(FkMigration, CoarseVoxelsHoldTheMeanOfTheFineOnesTheyCover) {
     core::Capture capture = nlos_test::confocal_capture(
         nlos_test::wall_grid({12, 12}, {0.04, 0.04}), {0.0, 0.016, 128});
     nlos_test::add_scatterer(capture, Vec3(0.02, 0.06, 0.5), 4.0);
-    const Volume fine = run(capture, {0.4, 0.592}, 24, Falloff::Diffuse);
-    const Volume coarse = run(capture, {0.4, 0.592}, 8, Falloff::Diffuse);
+    const Volume fine = migrate(capture, {0.4, 0.592}, 24, Falloff::Diffuse);
+    const Volume coarse = migrate(capture, {0.4, 0.592}, 8, Falloff::Diffuse);
     const float brightest = *std::max_element(coarse.values.begin(), coarse.values.end());
     for (std::size_t i = 0; i < coarse.values.size(); ++i) {
         const float mean =
@@ -63,7 +63,7 @@ TEST(FkMigration, EqualPointsAreEquallyBrightAtAnyDepth) {
         core::Capture capture = nlos_test::confocal_capture(
             nlos_test::wall_grid({24, 24}, {0.04, 0.04}), {0.0, 0.016, 160});
         nlos_test::add_scatterer(capture, Vec3(0.02, 0.02, depth), 4.0);
-        const Volume volume = run(capture, {0.2, 1.1}, 225, Falloff::Diffuse);
+        const Volume volume = migrate(capture, {0.2, 1.1}, 225, Falloff::Diffuse);
         return *std::max_element(volume.values.begin(), volume.values.end());
     };
     // The solid angle of the wall is all that should matter: for 1/r the field falls with it.

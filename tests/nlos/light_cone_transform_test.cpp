@@ -16,10 +16,10 @@ using core::Vec3;
 using nlos_test::confocal_capture;
 using nlos_test::wall_grid;
 
-Volume run(const core::Capture& capture,
-           std::array<double, 2> z_range_m,
-           std::size_t num_z,
-           Falloff falloff = Falloff::Diffuse) {
+Volume transform(const core::Capture& capture,
+                 std::array<double, 2> z_range_m,
+                 std::size_t num_z,
+                 Falloff falloff = Falloff::Diffuse) {
     const WallFrame wall = derive_wall_frame(capture.scan);
     VolumeAxes axes;
     axes.x_m = cell_centers(wall.min_m[0], wall.max_m[0], wall.grid->size[0]);
@@ -48,7 +48,7 @@ TEST(LightConeTransform, FindsAPointOnOblongGridsWithUnequalPitch) {
         for (const Falloff falloff : {Falloff::Diffuse, Falloff::Retro}) {
             core::Capture capture = confocal_capture(points, {start, 0.016, 128});
             nlos_test::add_scatterer(capture, scatterer, falloff == Falloff::Diffuse ? 4.0 : 2.0);
-            const Vec3 found = brightest_voxel(run(capture, {0.3, 0.9}, 75, falloff));
+            const Vec3 found = brightest_voxel(transform(capture, {0.3, 0.9}, 75, falloff));
             EXPECT_NEAR(found.x(), scatterer.x(), 1e-9);
             EXPECT_NEAR(found.y(), scatterer.y(), 1e-9);
             EXPECT_NEAR(found.z(), scatterer.z(), 0.0081);
@@ -63,7 +63,7 @@ TEST(LightConeTransform, TakesDeviceLegsOffEveryPoint) {
     capture.scan.detector_position = Vec3(-0.4, 0.1, -0.7);
     const Vec3 scatterer(-0.125, 0.075, 0.6);
     nlos_test::add_scatterer(capture, scatterer, 4.0);
-    const Vec3 found = brightest_voxel(run(capture, {0.3, 0.9}, 75));
+    const Vec3 found = brightest_voxel(transform(capture, {0.3, 0.9}, 75));
     EXPECT_LT((found - scatterer).norm(), 0.0081);
 }
 
@@ -74,7 +74,7 @@ TEST(LightConeTransform, PlacesAPlaneWithinAQuarterOfABin) {
             nlos_test::add_scatterer(capture, Vec3(0.02 * ix, 0.02 * iy, 0.6), 4.0);
         }
     }
-    const core::DepthMap depth = extract_depth_map(run(capture, {0.3, 0.9}, 75), 0.2);
+    const core::DepthMap depth = extract_depth_map(transform(capture, {0.3, 0.9}, 75), 0.2);
     double sum = 0.0;
     for (std::size_t ix = 8; ix < 16; ++ix) {
         for (std::size_t iy = 8; iy < 16; ++iy) {
@@ -87,13 +87,13 @@ TEST(LightConeTransform, PlacesAPlaneWithinAQuarterOfABin) {
 TEST(LightConeTransform, OfDarknessIsDark) {
     const core::Capture capture =
         confocal_capture(wall_grid({5, 7}, {0.05, 0.05}), {0.0, 0.02, 40});
-    for (const float value : run(capture, {0.0, 0.4}, 40).values) EXPECT_EQ(value, 0.0F);
+    for (const float value : transform(capture, {0.0, 0.4}, 40).values) EXPECT_EQ(value, 0.0F);
 }
 
 TEST(LightConeTransform, IsFiniteAndNotNegativeEverywhere) {
     core::Capture capture = confocal_capture(wall_grid({7, 5}, {0.05, 0.05}), {-0.02, 0.02, 50});
     for (float& value : capture.transient.values()) value = 1.0F;
-    for (const float value : run(capture, {0.0, 3.0}, 100).values) {
+    for (const float value : transform(capture, {0.0, 3.0}, 100).values) {
         EXPECT_TRUE(std::isfinite(value));
         EXPECT_GE(value, 0.0F);
     }
@@ -104,7 +104,7 @@ TEST(LightConeTransform, HasTheSameBitsForAnyNumberOfThreads) {
     nlos_test::add_scatterer(capture, Vec3(0.1, 0.0, 0.4), 4.0);
     const auto values = [&](int threads) {
         const core::ThreadLimit limit(threads);
-        return run(capture, {0.1, 0.6}, 50).values;
+        return transform(capture, {0.1, 0.6}, 50).values;
     };
     EXPECT_EQ(values(1), values(7));
 }

@@ -13,7 +13,7 @@ namespace {
 using test_support::TemporaryFolder;
 
 constexpr std::size_t kSide = 3;
-constexpr std::size_t kBins = 700;
+constexpr std::size_t kFileBins = 700;
 
 /// rect_data(i, j, t) of the files made here.
 std::uint16_t value_at(std::size_t i, std::size_t j, std::size_t bin) {
@@ -22,7 +22,7 @@ std::uint16_t value_at(std::size_t i, std::size_t j, std::size_t bin) {
 
 std::vector<std::uint16_t> example_data() {
     std::vector<std::uint16_t> data;
-    for (std::size_t bin = 0; bin < kBins; ++bin) {
+    for (std::size_t bin = 0; bin < kFileBins; ++bin) {
         for (std::size_t j = 0; j < kSide; ++j) {
             for (std::size_t i = 0; i < kSide; ++i) data.push_back(value_at(i, j, bin));
         }
@@ -32,7 +32,7 @@ std::vector<std::uint16_t> example_data() {
 
 class StanfordFile {
  public:
-    StanfordFile() : StanfordFile({kSide, kSide, kBins}, {0.4}) {}
+    StanfordFile() : StanfordFile({kSide, kSide, kFileBins}, {0.4}) {}
     StanfordFile(std::vector<std::size_t> shape,
                  const std::vector<double>& width,
                  matio_compression compression = MAT_COMPRESSION_ZLIB)
@@ -67,7 +67,7 @@ TEST(StanfordCapture, PointsFollowTheAxesOfTheFile) {
 TEST(StanfordCapture, BinsAreFourPicosecondsWithTheDirectReturnInTheFirst) {
     const core::Capture capture = StanfordFile().read();
     EXPECT_EQ(capture.unit, core::TransientUnit::Counts);
-    EXPECT_EQ(capture.time_axis.num_bins, static_cast<int>(kBins));
+    EXPECT_EQ(capture.time_axis.num_bins, static_cast<int>(kFileBins));
     EXPECT_NEAR(capture.time_axis.bin_width_m, 4e-12 * 299792458.0, 1e-15);
     EXPECT_NEAR(capture.time_axis.bin_center_m(0), 0.0, 1e-15);
 }
@@ -91,7 +91,8 @@ TEST(StanfordCapture, TheTailOfTheDirectReturnIsZeroedUnlessAskedOtherwise) {
 
 TEST(StanfordCapture, UncompressedFilesReadTheSame) {
     const core::Capture a = StanfordFile().read();
-    const core::Capture b = StanfordFile({kSide, kSide, kBins}, {0.4}, MAT_COMPRESSION_NONE).read();
+    const core::Capture b =
+        StanfordFile({kSide, kSide, kFileBins}, {0.4}, MAT_COMPRESSION_NONE).read();
     EXPECT_TRUE(std::ranges::equal(a.transient.values(), b.transient.values()));
 }
 
@@ -107,15 +108,15 @@ TEST(StanfordCapture, WrongShapesAndWidthsAreNamed) {
 TEST(StanfordCapture, AFileWithoutWidthIsNamed) {
     const TemporaryFolder folder;
     const auto data = example_data();
-    write_mat(folder.file("a.mat"), {mat_variable("rect_data", {kSide, kSide, kBins}, data)});
+    write_mat(folder.file("a.mat"), {mat_variable("rect_data", {kSide, kSide, kFileBins}, data)});
     EXPECT_ERROR_WITH(read_capture(folder.file("a.mat")), "a.mat: width: is missing");
-    write_mat(folder.file("b.mat"), {mat_variable("other", {kSide, kSide, kBins}, data)});
+    write_mat(folder.file("b.mat"), {mat_variable("other", {kSide, kSide, kFileBins}, data)});
     EXPECT_ERROR_WITH(read_capture(folder.file("b.mat")), "is no capture in a known format");
 }
 
 TEST(StanfordCapture, EveryTruncationIsReported) {
     for (const auto compression : {MAT_COMPRESSION_ZLIB, MAT_COMPRESSION_NONE}) {
-        const StanfordFile file({kSide, kSide, kBins}, {0.4}, compression);
+        const StanfordFile file({kSide, kSide, kFileBins}, {0.4}, compression);
         const std::string bytes = test_support::file_bytes(file.path());
         for (std::size_t length = 0; length < bytes.size(); length += 1 + bytes.size() / 101) {
             test_support::write_file_bytes(file.path(), bytes.substr(0, length));

@@ -56,13 +56,13 @@ TEST(PlaneShift, ConfocalJacobianIsTheRatioOfRadii) {
 // of the perpendicular, so all gauges move along the same line, and the closed form is an oracle.
 template <class Gauge>
 class PlaneShiftOracle : public testing::Test {};
-using Gauges = testing::Types<renderer::AverageGauge,
-                              renderer::MetricAverageGauge,
-                              renderer::StartGauge,
-                              renderer::MidpointGauge,
-                              renderer::SymmetricGauge,
-                              renderer::FlowGauge>;
-TYPED_TEST_SUITE(PlaneShiftOracle, Gauges);
+using PlaneGauges = testing::Types<renderer::AverageGauge,
+                                   renderer::MetricAverageGauge,
+                                   renderer::StartGauge,
+                                   renderer::MidpointGauge,
+                                   renderer::SymmetricGauge,
+                                   renderer::FlowGauge>;
+TYPED_TEST_SUITE(PlaneShiftOracle, PlaneGauges);
 
 TYPED_TEST(PlaneShiftOracle, EveryGaugeMovesLikeTheClosedFormAroundOneFocus) {
     // The start gauge moves like the others here, but its determinant is its own.

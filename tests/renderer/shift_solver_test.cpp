@@ -89,14 +89,14 @@ SdfSetup sdf_setup(core::Rng& rng, double ratio, double moved_m) {
 
 template <class Gauge>
 class ShiftSolver : public testing::Test {};
-using Gauges = testing::Types<renderer::AverageGauge,
-                              renderer::MetricAverageGauge,
-                              renderer::StartGauge,
-                              renderer::FixedGauge,
-                              renderer::MidpointGauge,
-                              renderer::SymmetricGauge,
-                              renderer::FlowGauge>;
-TYPED_TEST_SUITE(ShiftSolver, Gauges);
+using SolverGauges = testing::Types<renderer::AverageGauge,
+                                    renderer::MetricAverageGauge,
+                                    renderer::StartGauge,
+                                    renderer::FixedGauge,
+                                    renderer::MidpointGauge,
+                                    renderer::SymmetricGauge,
+                                    renderer::FlowGauge>;
+TYPED_TEST_SUITE(ShiftSolver, SolverGauges);
 
 TYPED_TEST(ShiftSolver, JacobianOnAnImplicitSurfaceMatchesCentralDifferences) {
     const TypeParam gauge;
