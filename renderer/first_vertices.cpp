@@ -198,8 +198,9 @@ std::uint64_t FirstVertices::trace_from(const PathEnd& end, int first) {
                           std::min(count_ - begin, SegmentPacket::kSize));
         scene_.rays().trace(packet);
         for (int lane = 0; lane < packet.count; ++lane) {
-            seen_[begin + lane] = !packet.blocked[lane];
-            if (packet.blocked[lane]) contribution_[begin + lane] = 0.0;
+            const bool is_blocked = (packet.blocked >> lane & 1U) != 0;
+            seen_[begin + lane] = !is_blocked;
+            if (is_blocked) contribution_[begin + lane] = 0.0;
         }
     }
     return static_cast<std::uint64_t>(count_ - first);

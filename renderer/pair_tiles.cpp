@@ -8,6 +8,7 @@ namespace {
 
 constexpr std::size_t kLightsPerTile = 8;
 constexpr std::size_t kSensorsPerTile = 16;
+static_assert(kSensorsPerTile % PairTiles::kPointsTogether == 0);
 
 std::size_t parts_of(std::size_t count, std::size_t size) {
     return (count + size - 1) / size;
@@ -25,18 +26,19 @@ PointRange range_around(std::size_t index, std::size_t size, std::size_t count) 
 
 }  // namespace
 
-// Rows of tiles follow one another by lights: all sensors at once, wherever they fit beside a
-// tile's lights, are looked at once. Else they get half of the places, or what all lights leave.
+// Rows of tiles follow one another by lights: all sensors at once, wherever they fit beside the
+// lights that are looked from together, are looked at once. Else they get half of the places, or
+// what all lights leave.
 PairTiles::PairTiles(std::size_t num_lights, std::size_t num_sensors, std::size_t points_at_once)
     : num_lights_(num_lights), num_sensors_(num_sensors) {
-    const std::size_t all_lights = parts_of(num_lights, kLightsPerTile) * kLightsPerTile;
+    const std::size_t all_lights = parts_of(num_lights, kPointsTogether) * kPointsTogether;
     const std::size_t all_sensors = parts_of(num_sensors, kSensorsPerTile) * kSensorsPerTile;
     const std::size_t left = points_at_once - std::min(points_at_once, all_lights);
-    sensors_at_once_ = all_sensors + kLightsPerTile <= points_at_once
+    sensors_at_once_ = all_sensors + kPointsTogether <= points_at_once
                            ? all_sensors
                            : whole_tiles(std::max(points_at_once / 2, left), kSensorsPerTile);
     lights_at_once_ =
-        whole_tiles(std::min(all_lights, points_at_once - sensors_at_once_), kLightsPerTile);
+        whole_tiles(std::min(all_lights, points_at_once - sensors_at_once_), kPointsTogether);
 }
 
 std::vector<PairTiles::Batch> PairTiles::batches(std::size_t part, std::size_t num_parts) const {

@@ -20,8 +20,11 @@ struct PointRange {
 /// known of no more points than memory holds.
 class PairTiles {
  public:
+    /// Points of one side that are looked from together, from multiples of this on: so that the
+    /// same ones always are.
+    static constexpr std::size_t kPointsTogether = 16;
     /// Fewest points that must fit at once.
-    static constexpr std::size_t kFewestPoints = 32;
+    static constexpr std::size_t kFewestPoints = 2 * kPointsTogether;
 
     struct Tile {
         PointRange lights;

@@ -27,6 +27,11 @@ Vec3 moved_off(const Vec3& point, const Vec3& normal, const Vec3& towards, doubl
     return point + std::copysign(offset, normal.dot(towards)) * normal;
 }
 
+// A surface point and its normal.
+struct PlainPoint {
+    double x, y, z, normal_x, normal_y, normal_z;
+};
+
 bool is_ahead(double distance_m) {
     return std::isfinite(distance_m) && distance_m > 0.0;
 }
@@ -196,23 +201,18 @@ bool RayCaster::is_blocked(const Vec3& a,
 }
 
 // Plain numbers in one loop over all lanes, so that the compiler fills vector units.
-void RayCaster::aim(SegmentPacket& packet,
-                    const Vec3& from,
-                    const Vec3& normal,
-                    const SurfacePointLanes& to,
-                    int count) const {
-    const double x = from.x();
-    const double y = from.y();
-    const double z = from.z();
-    const double normal_x = normal.x();
-    const double normal_y = normal.y();
-    const double normal_z = normal.z();
+template <class From>
+[[gnu::always_inline]] inline void RayCaster::aim_from(SegmentPacket& packet,
+                                                       const From& from_of,
+                                                       const SurfacePointLanes& to,
+                                                       int count) const {
     const double origin_x = origin_.x();
     const double origin_y = origin_.y();
     const double origin_z = origin_.z();
     const double offset = offset_m_;
     packet.count = count;
     for (std::size_t i = 0; i < SegmentPacket::kSize; ++i) {
+        const auto [x, y, z, normal_x, normal_y, normal_z] = from_of(i);
         const double dx = to.x[i] - x;
         const double dy = to.y[i] - y;
         const double dz = to.z[i] - z;
@@ -232,6 +232,34 @@ void RayCaster::aim(SegmentPacket& packet,
         packet.along_z[i] =
             static_cast<float>(to.z[i] + off_end * to.normal_z[i] - origin_z - from_z);
     }
+}
+
+void RayCaster::aim(SegmentPacket& packet,
+                    const Vec3& from,
+                    const Vec3& normal,
+                    const SurfacePointLanes& to,
+                    int count) const {
+    const PlainPoint point{from.x(), from.y(), from.z(), normal.x(), normal.y(), normal.z()};
+    aim_from(
+        packet, [&](std::size_t) { return point; }, to, count);
+}
+
+void RayCaster::aim(SegmentPacket& packet,
+                    const SurfacePointLanes& from,
+                    const SurfacePointLanes& to,
+                    int count) const {
+    aim_from(
+        packet,
+        [&](std::size_t i) {
+            return PlainPoint{from.x[i],
+                              from.y[i],
+                              from.z[i],
+                              from.normal_x[i],
+                              from.normal_y[i],
+                              from.normal_z[i]};
+        },
+        to,
+        count);
 }
 
 void RayCaster::trace(SegmentPacket& packet) const {
@@ -259,8 +287,9 @@ void RayCaster::trace(SegmentPacket& packet) const {
     // The way for coherent packets leaks on small scenes and is no faster.
     context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
     rtcOccluded16(valid.data(), embree_->scene, &context, &rays);
-    for (int lane = 0; lane < packet.count; ++lane) {
-        packet.blocked[static_cast<std::size_t>(lane)] = rays.tfar[lane] < 0.0F;
+    packet.blocked = 0;
+    for (int lane = 0; lane < kSize; ++lane) {
+        packet.blocked |= std::uint32_t{valid[lane] != 0 && rays.tfar[lane] < 0.0F} << lane;
     }
 }
 

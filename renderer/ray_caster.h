@@ -25,7 +25,7 @@ struct alignas(64) SegmentPacket {
     static constexpr int kSize = 16;
     std::array<float, kSize> from_x, from_y, from_z;
     std::array<float, kSize> along_x, along_y, along_z;
-    std::array<bool, kSize> blocked;
+    std::uint32_t blocked = 0;  ///< lane i as bit i
     int count = 0;
 };
 
@@ -107,11 +107,21 @@ class RayCaster {
              const core::Vec3& normal,
              const SurfacePointLanes& to,
              int count) const;
+    /// The same from a point of its own for each segment.
+    void aim(SegmentPacket& packet,
+             const SurfacePointLanes& from,
+             const SurfacePointLanes& to,
+             int count) const;
 
-    /// Answers all segments of a packet: sets blocked[0 .. count).
+    /// Answers all segments of a packet: sets blocked, 0 beyond `count`.
     void trace(SegmentPacket& packet) const;
 
  private:
+    template <class From>
+    void aim_from(SegmentPacket& packet,
+                  const From& from_of,
+                  const SurfacePointLanes& to,
+                  int count) const;
     double distance_to_plane(std::uint32_t triangle,
                              const core::Vec3& from,
                              const core::Vec3& direction) const;

@@ -156,6 +156,7 @@ class Integrator {
     std::optional<double> seconds_;
     PieceCutter cutter_;
     std::optional<std::pair<int, PieceSet>> cut_;  ///< the latest
+    bool stopped_ = false;                         ///< before all trials were made
     double norm_per_pair_ = 0.0;
     std::map<int, Transient> trials_;
     std::map<int, std::size_t> num_pieces_;
@@ -239,6 +240,7 @@ int Integrator::finest_in_time(const core::Progress& progress) {
         const double all = trial_seconds_[next] * trials_to_all + cut_seconds_[next];
         if (watch.seconds() + all > *seconds_) break;
     }
+    stopped_ = progress.should_stop();
     return fineness;
 }
 
@@ -249,7 +251,9 @@ int Integrator::choose_fineness(const core::Progress& progress) {
     int fineness = 0;
     if (error_of(fineness) > target_) {
         while (fineness > kFinest && error_of(--fineness) > target_) {
-            if (progress.should_stop()) return kCoarsest;
+            if (!progress.should_stop()) continue;
+            stopped_ = true;
+            return kCoarsest;
         }
         return fineness;
     }
@@ -287,7 +291,7 @@ ThirdBounce Integrator::run(const core::Progress& progress) {
     ThirdBounce result;
     result.transient = Transient(scan_.num_pairs(), axis_.num_bins);
     const int part = integrate(choose_fineness(progress), 0, progress, result);
-    result.interrupted = part < ThirdBounceScan::kParts;
+    result.interrupted = stopped_ || part < ThirdBounceScan::kParts;
     if (part < ThirdBounceScan::kParts) {
         core::Progress to_the_end;
         to_the_end.report = progress.report;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/third_bounce_blocks.h"
 
+#include "renderer/core/random.h"
 #include "renderer/median_split.h"
 #include "renderer/piece_neighbours.h"
 #include "renderer/piece_units.h"
@@ -97,7 +98,8 @@ void PieceArranger::fill_lane(PieceBlock& block,
     block.rise_m[lane] = merged.rise_m;
     block.one_sided[lane] = visible_side_[scene_.facet(piece.facet).object];
     block.facet[lane] = piece.facet;
-    block.number[lane] = piece.number;
+    block.random_bits[lane] =
+        static_cast<std::uint32_t>(core::Rng(0, piece.number, /*sample=*/1).next_bits());
     block.mean_reflectance[lane] = 0.0;
     for (std::size_t node = 0; node < PieceBlock::kNodes; ++node) {
         const Vec3 position = node < 3   ? piece.corners[node]

@@ -53,7 +53,7 @@ struct alignas(64) PieceBlock {
     Lanes mean_reflectance;
     std::array<Bsdf, kSize> glossy;  ///< set for glossy pieces only
     std::array<std::uint32_t, kSize> facet;
-    std::array<std::uint32_t, kSize> number;
+    std::array<std::uint32_t, kSize> random_bits;  ///< from Piece::number
     PieceKind kind = PieceKind::Lambertian;
     std::size_t count = 0;  ///< lanes beyond it repeat lane 0 with area 0
     double longest_edge_m = 0.0;

@@ -15,11 +15,18 @@ namespace {
 
 using core::Vec3;
 
-constexpr std::size_t kPointsPerBlock = 4;
+constexpr std::size_t kPointsPerBlock = PairTiles::kPointsTogether;
+static_assert(kPointsPerBlock == WallPointLanes::kSize);
 
-// Where part `part` of `count` items begins.
-std::size_t begin_of_part(int part, std::size_t count) {
-    return static_cast<std::size_t>(part) * count / ThirdBounceScan::kParts;
+// Where part `part` of a confocal scan's points begins: parts hold whole blocks, a few at least for
+// threads to share, so that the last parts of small scans are empty.
+std::size_t begin_of_part(int part, std::size_t num_points) {
+    constexpr std::size_t kFewestBlocks = 4;
+    const std::size_t num_blocks = (num_points + kPointsPerBlock - 1) / kPointsPerBlock;
+    const std::size_t per_part =
+        (num_blocks + ThirdBounceScan::kParts - 1) / ThirdBounceScan::kParts;
+    const std::size_t block = static_cast<std::size_t>(part) * std::max(kFewestBlocks, per_part);
+    return std::min(block * kPointsPerBlock, num_points);
 }
 
 // Tables of some wall points for one block, where they see anything of it.
@@ -88,9 +95,13 @@ int ThirdBounceScan::integrate(int first_part,
     result_ = &result;
     if (scan_.pattern != core::ScanPattern::Confocal) return integrate_pairs(first_part, go_on);
     for (int part = first_part; part < kParts; ++part) {
-        integrate_confocal(begin_of_part(part, scan_.num_pairs()),
-                           begin_of_part(part + 1, scan_.num_pairs()));
-        if (!go_on((part + 1.0) / kParts)) return part + 1;
+        const std::size_t begin = begin_of_part(part, scan_.num_pairs());
+        const std::size_t end = begin_of_part(part + 1, scan_.num_pairs());
+        integrate_confocal(begin, end);
+        const bool goes_on =
+            go_on(static_cast<double>(end) / static_cast<double>(scan_.num_pairs()));
+        if (end == scan_.num_pairs()) break;
+        if (!goes_on) return part + 1;
     }
     return kParts;
 }
@@ -107,9 +118,9 @@ core::TimeAxis ThirdBounceScan::axis_of_pair(std::size_t pair) const {
     return axis;
 }
 
-void ThirdBounceScan::add(const VisibilityCost& cost) {
-    num_rays_ += cost.num_rays;
-    tracing_seconds_ += cost.tracing_seconds;
+void ThirdBounceScan::add_costs(const VisibilityTracer& tracer) {
+    num_rays_ += tracer.num_rays();
+    tracing_seconds_ += tracer.tracing_seconds();
 }
 
 void ThirdBounceScan::store(std::size_t pair, std::span<const double> histogram) {
@@ -123,26 +134,37 @@ void ThirdBounceScan::integrate_confocal(std::size_t first, std::size_t last) {
     core::parallel_blocks(
         last - first, kPointsPerBlock, [&](std::size_t block_begin, std::size_t block_end) {
             VisibilityTracer tracer(scene_, pieces_);
-            VisiblePieces seen;
-            BlockTable table;
-            std::vector<double> histogram(static_cast<std::size_t>(axis_.num_bins));
+            VisibilityRules rules;
+            rules.negligible_error = negligible_error_;
+            std::vector<WallPoint> points;
+            std::vector<core::TimeAxis> axes;
             for (std::size_t pair = first + block_begin; pair < first + block_end; ++pair) {
-                const WallPoint point = wall_point(scan_.sensing, pair);
-                const core::TimeAxis axis = axis_of_pair(pair);
-                const VisibilityCost cost =
-                    tracer.trace(point,
-                                 {axis.opl_start_m, axis.opl_end_m(), point, {}, negligible_error_},
-                                 seen);
-                add(cost);
-                sensor_errors_[pair] = cost.squared_error;
-                std::fill(histogram.begin(), histogram.end(), 0.0);
-                for (std::size_t b = 0; b < pieces_.blocks.size(); ++b) {
-                    if (seen.units[b] == 0) continue;
-                    compute_table(pieces_.blocks[b], point, seen.units[b], table);
-                    const PairEnd end{&point, &table, seen.masks.data() + b * PieceBlock::kSize};
-                    add_pair(pieces_.blocks[b], end, end, axis, histogram);
+                points.push_back(wall_point(scan_.sensing, pair));
+                axes.push_back(axis_of_pair(pair));
+                rules.opl.push_back({axes.back().opl_start_m, axes.back().opl_end_m()});
+            }
+            std::vector<VisiblePieces> seen(points.size());
+            tracer.trace(points, rules, seen);
+            add_costs(tracer);
+            BlockTable table;
+            const auto num_bins = static_cast<std::size_t>(axis_.num_bins);
+            std::vector<double> histograms(points.size() * num_bins);
+            const auto histogram_of = [&](std::size_t i) {
+                return std::span(histograms).subspan(i * num_bins, num_bins);
+            };
+            for (std::size_t b = 0; b < pieces_.blocks.size(); ++b) {
+                for (std::size_t i = 0; i < points.size(); ++i) {
+                    const UnitMask units = seen[i].units[b];
+                    if (units == 0) continue;
+                    compute_table(pieces_.blocks[b], points[i], units, table);
+                    const PairEnd end{
+                        &points[i], &table, seen[i].masks.data() + b * PieceBlock::kSize};
+                    add_pair(pieces_.blocks[b], end, end, axes[i], histogram_of(i));
                 }
-                store(pair, histogram);
+            }
+            for (std::size_t i = 0; i < points.size(); ++i) {
+                sensor_errors_[first + block_begin + i] = seen[i].squared_error;
+                store(first + block_begin + i, histogram_of(i));
             }
         });
 }
@@ -153,15 +175,14 @@ VisibilityRules ThirdBounceScan::rules_towards(const core::WallPoints& others) c
     VisibilityRules rules;
     rules.negligible_error = negligible_error_;
     const auto [least_legs, most_legs] = core::device_leg_range_m(scan_);
-    rules.opl_begin_m = axis_.opl_start_m - most_legs;
-    rules.opl_end_m = axis_.opl_end_m() - least_legs;
-    rules.other_end = {Vec3::Zero(), Vec3::Zero(), 0};
+    rules.opl.push_back({axis_.opl_start_m - most_legs, axis_.opl_end_m() - least_legs});
+    WallPoint& middle = rules.other_end.emplace(WallPoint{Vec3::Zero(), Vec3::Zero()});
     Eigen::AlignedBox3d box;
     for (std::size_t i = 0; i < others.size(); ++i) {
         const WallPoint other = wall_point(others, i);
         box.extend(other.position);
-        rules.other_end.position += other.position / static_cast<double>(others.size());
-        rules.other_end.normal += other.normal / static_cast<double>(others.size());
+        middle.position += other.position / static_cast<double>(others.size());
+        middle.normal += other.normal / static_cast<double>(others.size());
     }
     if (others.size() > 1) {
         for (const auto& [c, radius_m] : pieces_.spheres) {
@@ -183,12 +204,15 @@ void ThirdBounceScan::look_from(const core::WallPoints& points,
     views.seen.resize(range.size());
     core::parallel_blocks(range.size(), kPointsPerBlock, [&](std::size_t begin, std::size_t end) {
         VisibilityTracer tracer(scene_, pieces_);
+        std::vector<WallPoint> looked_from;
         for (std::size_t i = begin; i < end; ++i) {
-            const std::size_t point = range.begin + i;
-            const VisibilityCost cost =
-                tracer.trace(wall_point(points, point), rules, views.seen[i]);
-            add(cost);
-            squared_errors[point] = cost.squared_error;
+            looked_from.push_back(wall_point(points, range.begin + i));
+        }
+        const auto seen = std::span(views.seen).subspan(begin, end - begin);
+        tracer.trace(looked_from, rules, seen);
+        add_costs(tracer);
+        for (std::size_t i = begin; i < end; ++i) {
+            squared_errors[range.begin + i] = views.seen[i].squared_error;
         }
     });
 }

@@ -29,7 +29,7 @@ class ThirdBounceScan {
                     double negligible_error,
                     double memory_bytes);
 
-    /// The pairs are integrated in this many parts.
+    /// The pairs are integrated in this many parts, the last of which may be empty.
     static constexpr int kParts = 16;
 
     /// Fills the pairs of parts [first_part, kParts) of `result` with H for wall albedos of pi.
@@ -65,7 +65,7 @@ class ThirdBounceScan {
                    Views& views,
                    std::vector<double>& squared_errors);
     void integrate_tile(const PairTiles::Tile& tile, const Views& lights, const Views& sensors);
-    void add(const VisibilityCost& cost);
+    void add_costs(const VisibilityTracer& tracer);
     void store(std::size_t pair, std::span<const double> histogram);
 
     const Scene& scene_;

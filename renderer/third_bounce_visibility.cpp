@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/third_bounce_visibility.h"
 
-#include "renderer/core/random.h"
-#include "renderer/core/stopwatch.h"
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <limits>
 
 namespace renderer {
 namespace {
@@ -17,14 +13,7 @@ using core::Simd;
 using core::store;
 using core::Vec3;
 
-UnitMask units_of(std::uint64_t lanes) {
-    UnitMask units = 0;
-    for (std::size_t u = 0; u < PieceBlock::kUnits; ++u) {
-        const std::uint64_t unit = (lanes >> (u * PieceBlock::kUnitSize)) & 0xff;
-        units |= UnitMask{unit != 0} << u;
-    }
-    return units;
-}
+constexpr std::size_t kPoints = WallPointLanes::kSize;
 
 // Standard deviation of the visible share of a piece that a shadow's straight edge crosses, known
 // from one part drawn of 16, from one drawn in each quarter, and from all 16 [found by simulation].
@@ -32,98 +21,158 @@ constexpr double kErrorFromOne = 0.34;
 constexpr double kErrorFromQuarters = 0.12;
 constexpr double kErrorFromSixteenths = 0.03;
 
-// Moves points on triangles by `rise_m` to the side that `from` looks at, then by `origin`.
-void lift(SegmentEnds& ends,
-          const SegmentEnds::Lanes& rise_m,
-          const Vec3& from,
-          const Vec3& origin) {
-    for (std::size_t begin = 0; begin < rise_m.size(); begin += Simd::size()) {
-        const UnitPoints point = load_points(ends.x, ends.y, ends.z, begin, from);
-        const UnitPoints normal =
-            load_points(ends.normal_x, ends.normal_y, ends.normal_z, begin, Vec3::Zero());
-        const Simd rise = load(rise_m, begin);
-        const Simd moved = core::select(0.0 < point.dot(normal), -rise, rise);
-        store(load(ends.x, begin) + moved * normal.x + origin.x(), ends.x, begin);
-        store(load(ends.y, begin) + moved * normal.y + origin.y(), ends.y, begin);
-        store(load(ends.z, begin) + moved * normal.z + origin.z(), ends.z, begin);
-    }
+// Positions of wall points from `begin` on, relative to `origin`.
+[[gnu::always_inline]] inline UnitPoints positions(const WallPointLanes& points,
+                                                   std::size_t begin,
+                                                   const Vec3& origin) {
+    return load_points(points.x, points.y, points.z, begin, origin);
+}
+
+[[gnu::always_inline]] inline UnitPoints normals(const WallPointLanes& points, std::size_t begin) {
+    return load_points(points.normal_x, points.normal_y, points.normal_z, begin, Vec3::Zero());
+}
+
+[[gnu::always_inline]] inline PointMask point_mask(const core::SimdMask& mask, std::size_t begin) {
+    return static_cast<PointMask>(mask.bits() << begin);
+}
+
+PointMask combine(PointMask a, PointMask b) {
+    return static_cast<PointMask>(a | b);
+}
+
+PointMask without(PointMask a, PointMask b) {
+    return static_cast<PointMask>(a & ~b);
+}
+
+PointMask common(PointMask a, PointMask b) {
+    return static_cast<PointMask>(a & b);
+}
+
+// Pieces [begin, end).
+struct PieceRange {
+    std::uint32_t begin;
+    std::uint32_t end;
+};
+
+PieceRange pieces_of(const PieceGroup& group) {
+    const auto begin = static_cast<std::uint32_t>(group.block * PieceBlock::kSize) +
+                       static_cast<std::uint32_t>(std::countr_zero(group.lanes));
+    return {begin, begin + static_cast<std::uint32_t>(std::popcount(group.lanes))};
+}
+
+VisibilityMask quarter_mask(std::uint32_t quarter) {
+    return static_cast<VisibilityMask>(0xfU << (4 * quarter));
 }
 
 }  // namespace
 
 VisibilityTracer::VisibilityTracer(const Scene& scene, const PieceSet& pieces)
-    : scene_(scene),
-      set_(pieces),
-      group_states_(pieces.groups.size(), kIrrelevant),
-      lanes_(pieces.blocks.size()),
-      masses_(std::make_unique_for_overwrite<BlockMasses[]>(pieces.blocks.size())) {}
+    : set_(pieces),
+      rays_(scene, pieces),
+      groups_(pieces.groups.size()),
+      pieces_(pieces.blocks.size() * PieceBlock::kSize),
+      represented_(pieces_.size()) {}
 
-VisibilityCost VisibilityTracer::trace(const WallPoint& point,
-                                       const VisibilityRules& rules,
-                                       VisiblePieces& seen) {
-    point_ = point;
-    cost_ = {};
-    classify(rules);
+void VisibilityTracer::trace(std::span<const WallPoint> points,
+                             const VisibilityRules& rules,
+                             std::span<VisiblePieces> seen) {
+    points_ = WallPointLanes(points);
+    rules_ = &rules;
+    rays_.look_from(points_);
+    for (std::size_t p = 0; p < kPoints; ++p) {
+        const LengthBounds& opl = rules.opl_of(p < points_.count ? p : 0);
+        opl_begin_m_[p] = opl.least_m;
+        opl_end_m_[p] = opl.most_m;
+    }
+    squared_errors_.fill(0.0);
+    classify();
     trace_groups();
-    trace_pieces_of_mixed_groups(rules.negligible_error);
-    seen.masks.resize(set_.blocks.size() * PieceBlock::kSize);
-    for (const std::uint32_t block : active_blocks_) {
-        const std::uint64_t visible = lanes_[block].visible;
-        VisibilityMask* const of_block = seen.masks.data() + block * PieceBlock::kSize;
-        for (std::size_t i = 0; i < PieceBlock::kSize; ++i) {
-            of_block[i] = (visible >> i & 1U) != 0 ? kAllVisible : VisibilityMask{0};
-        }
-    }
-    refine_mixed_pieces(rules.negligible_error, seen.masks);
-    seen.units.assign(set_.blocks.size(), 0);
-    for (const std::uint32_t block : active_blocks_) {
-        seen.units[block] = units_of(lanes_[block].visible);
-    }
-    return cost_;
+    open_mixed_groups();
+    refine_mixed_pieces();
+    write(seen);
 }
 
-void VisibilityTracer::classify(const VisibilityRules& rules) {
-    for (const ActiveGroup& active : active_groups_) group_states_[active.group] = kIrrelevant;
-    for (const std::uint32_t block : active_blocks_) lanes_[block] = {};
+void VisibilityTracer::classify() {
+    for (const std::uint32_t group : active_groups_) groups_[group] = {};
+    for (const std::uint32_t block : active_blocks_) {
+        const auto begin = static_cast<std::ptrdiff_t>(block * PieceBlock::kSize);
+        std::fill_n(pieces_.begin() + begin, PieceBlock::kSize, State{});
+        std::fill_n(represented_.begin() + begin, PieceBlock::kSize, PointMask{0});
+    }
     active_groups_.clear();
     active_blocks_.clear();
-    opened_pieces_.clear();
+    shadow_rays_.clear();
     for (std::uint32_t b = 0; b < set_.blocks.size(); ++b) {
-        classify_block(b, rules);
+        PointMask crossing = 0;
+        const PointMask reaching = points_reaching(b, crossing);
+        if (reaching == 0) continue;
+        const BlockPoints within = points_within_axis(b, reaching, crossing);
+        PointMask any = 0;
+        for (std::size_t lane = 0; lane < set_.blocks[b].count; ++lane) {
+            if (within[lane] == 0) continue;
+            const PointMask relevant = common(within[lane], points_facing(set_.blocks[b], lane));
+            pieces_[b * PieceBlock::kSize + lane].relevant = relevant;
+            any = combine(any, relevant);
+        }
+        if (any == 0) continue;
+        active_blocks_.push_back(b);
+        choose_representatives(b);
     }
 }
 
-// Lengths of the paths from the point by way of a block to the other end, device legs left out.
-LengthBounds VisibilityTracer::path_lengths(std::uint32_t b, const VisibilityRules& rules) const {
+// Points from which some path by way of a block may have a length within the axis; `crossing`:
+// those from which others may not.
+PointMask VisibilityTracer::points_reaching(std::uint32_t b, PointMask& crossing) const {
     const auto& [center, radius] = set_.spheres[b];
-    const double leg = (center - point_.position).norm();
     LengthBounds other;
-    if (rules.other_legs.empty()) {
-        const double distance = (center - rules.other_end.position).norm();
+    if (!rules_->other_legs.empty()) {
+        other = rules_->other_legs[b];
+    } else if (rules_->other_end) {
+        const double distance = (center - rules_->other_end->position).norm();
         other = {distance - radius, distance + radius};
-    } else {
-        other = rules.other_legs[b];
     }
-    return {leg - radius + other.least_m, leg + radius + other.most_m};
+    PointMask reaching = 0;
+    crossing = 0;
+    for (std::size_t begin = 0; begin < kPoints; begin += Simd::size()) {
+        const UnitPoints away = positions(points_, begin, center);
+        const Simd leg = core::square_root(away.dot(away));
+        Simd least = leg - radius;
+        Simd most = leg + radius;
+        if (rules_->other_end) {
+            least += other.least_m;
+            most += other.most_m;
+        } else {
+            least += least;
+            most += most;
+        }
+        const Simd opl_begin = load(opl_begin_m_, begin);
+        const Simd opl_end = load(opl_end_m_, begin);
+        const core::SimdMask in_front = away.dot(normals(points_, begin)) <= radius;
+        const core::SimdMask within = in_front & (opl_begin <= most) & (least <= opl_end);
+        const core::SimdMask inside = (opl_begin <= least) & (most <= opl_end);
+        reaching = combine(reaching, point_mask(within, begin));
+        crossing = combine(crossing, point_mask(within & !inside, begin));
+    }
+    crossing = common(crossing, points_.all());
+    return common(reaching, points_.all());
 }
 
-void VisibilityTracer::classify_block(std::uint32_t b, const VisibilityRules& rules) {
-    const BlockSphere& sphere = set_.spheres[b];
-    if (point_.normal.dot(sphere.center - point_.position) < -sphere.radius_m) return;
-    const LengthBounds lengths = path_lengths(b, rules);
-    if (lengths.most_m < rules.opl_begin_m || lengths.least_m > rules.opl_end_m) return;
-    const bool crosses_end =
-        lengths.least_m < rules.opl_begin_m || lengths.most_m > rules.opl_end_m;
-    const std::uint64_t within = crosses_end ? lanes_within_axis(b, rules) : ~std::uint64_t{0};
-    const std::uint64_t relevant = within & lanes_seen(b, units_of(within), rules.other_end);
-    if (relevant == 0) return;
-    active_blocks_.push_back(b);
-    lanes_[b] = {relevant, 0};
-    choose_representatives(b);
+// Per lane, the points from which some path by way of the piece may have a length within the axis.
+VisibilityTracer::BlockPoints VisibilityTracer::points_within_axis(std::uint32_t b,
+                                                                   PointMask reaching,
+                                                                   PointMask crossing) const {
+    BlockPoints within;
+    within.fill(without(reaching, crossing));
+    for_each_bit(crossing, [&](std::size_t p) {
+        for_each_bit(lanes_within_axis(b, p), [&](std::size_t lane) {
+            within[lane] = static_cast<PointMask>(within[lane] | 1U << p);
+        });
+    });
+    return within;
 }
 
-// Units of which some path may have a length within the axis.
-UnitMask VisibilityTracer::units_within_axis(std::uint32_t b, const VisibilityRules& rules) const {
+// Units of which some path from a point may have a length within the axis.
+UnitMask VisibilityTracer::units_within_axis(std::uint32_t b, std::size_t p) const {
     static_assert(PieceBlock::kUnits == Simd::size());
     const PieceBlock& block = set_.blocks[b];
     const auto distance = [&](const Vec3& from) {
@@ -131,65 +180,24 @@ UnitMask VisibilityTracer::units_within_axis(std::uint32_t b, const VisibilityRu
         return core::square_root(d.dot(d));
     };
     const Simd radius = load(block.unit_radius_m, 0);
-    const Simd leg = distance(point_.position);
+    const Simd leg = distance(points_.position(p));
     Simd least = leg - radius;
     Simd most = leg + radius;
-    if (rules.other_legs.empty()) {
-        const Simd other =
-            rules.other_end.position == point_.position ? leg : distance(rules.other_end.position);
+    if (!rules_->other_legs.empty()) {
+        least += rules_->other_legs[b].least_m;
+        most += rules_->other_legs[b].most_m;
+    } else {
+        const Simd other = rules_->other_end ? distance(rules_->other_end->position) : leg;
         least += other - radius;
         most += other + radius;
-    } else {
-        least += rules.other_legs[b].least_m;
-        most += rules.other_legs[b].most_m;
     }
-    return static_cast<UnitMask>(((rules.opl_begin_m <= most) & (least <= rules.opl_end_m)).bits());
+    const core::SimdMask within = (opl_begin_m_[p] <= most) & (least <= opl_end_m_[p]);
+    return static_cast<UnitMask>(within.bits());
 }
 
-// Pieces that show the point a side which reflects; computes their masses on the way.
-std::uint64_t VisibilityTracer::lanes_seen(std::uint32_t b,
-                                           UnitMask units,
-                                           const WallPoint& other) {
+// Pieces of which some path from a point may have a length within the axis.
+std::uint64_t VisibilityTracer::lanes_within_axis(std::uint32_t b, std::size_t p) const {
     const PieceBlock& block = set_.blocks[b];
-    const bool looks_twice =
-        block.kind != PieceKind::Retroreflective && other.position != point_.position;
-    std::uint64_t lanes = 0;
-    for_each_unit(units, [&](std::size_t begin) {
-        const UnitPoints normal =
-            load_points(block.normal_x, block.normal_y, block.normal_z, begin, Vec3::Zero());
-        // Term (n_w.d) (n_x.d) / |d|^4; a piece may reach in front of the wall point when its
-        // centre does not.
-        const auto look_from = [&](const WallPoint& from, Simd& facing) {
-            const UnitPoints d =
-                load_points(block.center_x, block.center_y, block.center_z, begin, from.position);
-            const Simd d2 = d.dot(d);
-            const Simd front = core::larger_of(d.dot(from.normal) + block.longest_edge_m, 0.0);
-            facing = -d.dot(normal);
-            return Simd(front * core::larger_of(facing, -facing) / (d2 * d2));
-        };
-        Simd facing;
-        const Simd term = look_from(point_, facing);
-        Simd other_term = block.kind == PieceKind::Retroreflective ? Simd(1.0) : term;
-        if (looks_twice) {
-            Simd other_facing;
-            other_term = look_from(other, other_facing);
-        }
-        const Simd unit_mass =
-            load(block.area_m2, begin) * load(block.mean_reflectance, begin) * term * other_term;
-        store(unit_mass, masses_[b].of_lane, begin);
-        const core::SimdMask seen =
-            (0.0 < unit_mass) & !(load(block.one_sided, begin) * facing < 0.0);
-        lanes |= seen.bits() << begin;
-    });
-    return lanes;
-}
-
-// Pieces of which some path may have a length within the axis.
-std::uint64_t VisibilityTracer::lanes_within_axis(std::uint32_t b,
-                                                  const VisibilityRules& rules) const {
-    const PieceBlock& block = set_.blocks[b];
-    const bool exact = rules.other_legs.empty();
-    const bool confocal = exact && rules.other_end.position == point_.position;
     // For a point x = sum of l_c c over corners c, |x-w|^2 = sum of l_c |c-w|^2 - sum of l_c
     // |c-x|^2, and the last term is at most edge^2/3 ([Jung1901]).
     const double most_below2 = block.longest_edge_m * block.longest_edge_m / 3.0;
@@ -197,7 +205,7 @@ std::uint64_t VisibilityTracer::lanes_within_axis(std::uint32_t b,
         Simd least, most;
     };
     std::uint64_t lanes = 0;
-    for_each_unit(units_within_axis(b, rules), [&](std::size_t begin) {
+    for_each_unit(units_within_axis(b, p), [&](std::size_t begin) {
         const auto legs_from = [&](const Vec3& from) {
             std::array<Simd, 3> d2;
             for (std::size_t c = 0; c < 3; ++c) {
@@ -209,205 +217,286 @@ std::uint64_t VisibilityTracer::lanes_within_axis(std::uint32_t b,
             const Simd most2 = core::larger_of(core::larger_of(d2[0], d2[1]), d2[2]);
             return Legs{core::square_root(core::larger_of(least2, 0.0)), core::square_root(most2)};
         };
-        const Legs legs = legs_from(point_.position);
+        const Legs legs = legs_from(points_.position(p));
         Legs others = legs;
-        if (!exact) {
-            others = {rules.other_legs[b].least_m, rules.other_legs[b].most_m};
-        } else if (!confocal) {
-            others = legs_from(rules.other_end.position);
+        if (!rules_->other_legs.empty()) {
+            others = {rules_->other_legs[b].least_m, rules_->other_legs[b].most_m};
+        } else if (rules_->other_end) {
+            others = legs_from(rules_->other_end->position);
         }
-        const core::SimdMask within = (rules.opl_begin_m <= legs.most + others.most) &
-                                      (legs.least + others.least <= rules.opl_end_m);
+        const core::SimdMask within = (opl_begin_m_[p] <= legs.most + others.most) &
+                                      (legs.least + others.least <= opl_end_m_[p]);
         lanes |= within.bits() << begin;
     });
     return lanes;
 }
 
-// Every part is as likely as any other, so that shadows count by what they cover.
-inline VisibilityTracer::FirstBits VisibilityTracer::first_bits(std::uint32_t piece) const {
-    const std::uint32_t number =
-        set_.blocks[piece / PieceBlock::kSize].number[piece % PieceBlock::kSize];
-    return {static_cast<std::uint32_t>(core::Rng(0, number, point_.index).next_bits())};
+// Points to which a piece shows a side that reflects. It may reach in front of a wall point when
+// its centre does not.
+PointMask VisibilityTracer::points_facing(const PieceBlock& block, std::size_t i) const {
+    if (!(block.area_m2[i] * block.mean_reflectance[i] > 0.0)) return 0;
+    const Vec3 center(block.center_x[i], block.center_y[i], block.center_z[i]);
+    const Vec3 normal(block.normal_x[i], block.normal_y[i], block.normal_z[i]);
+    const bool has_one_end =
+        rules_->other_legs.empty() && rules_->other_end && block.kind != PieceKind::Retroreflective;
+    if (has_one_end) {
+        const auto& [position, other_normal, index] = *rules_->other_end;
+        const Vec3 away = position - center;
+        if (away.dot(other_normal) >= block.longest_edge_m || away.dot(normal) == 0.0) return 0;
+    }
+    PointMask facing = 0;
+    for (std::size_t begin = 0; begin < kPoints; begin += Simd::size()) {
+        const UnitPoints away = positions(points_, begin, center);
+        const Simd side = away.dot(normal);
+        const core::SimdMask in_front =
+            away.dot(normals(points_, begin)) < Simd(block.longest_edge_m);
+        const core::SimdMask reflects = (side != 0.0) & (0.0 <= Simd(block.one_sided[i]) * side);
+        facing = combine(facing, point_mask(in_front & reflects, begin));
+    }
+    return facing;
+}
+
+// Terms (n_w.d) (n_x.d) / |d|^4 of both legs.
+VisibilityTracer::Masses VisibilityTracer::masses_of(std::uint32_t piece) const {
+    const PieceBlock& block = set_.blocks[piece / PieceBlock::kSize];
+    const std::size_t i = piece % PieceBlock::kSize;
+    const Vec3 center(block.center_x[i], block.center_y[i], block.center_z[i]);
+    const Vec3 normal(block.normal_x[i], block.normal_y[i], block.normal_z[i]);
+    const double reflected = block.area_m2[i] * block.mean_reflectance[i];
+    const bool looks_back = block.kind == PieceKind::Retroreflective;
+    double other_term = 1.0;
+    if (rules_->other_end && !looks_back) {
+        const auto& [position, other_normal, index] = *rules_->other_end;
+        const Vec3 away = position - center;
+        const double front = block.longest_edge_m - away.dot(other_normal);
+        other_term =
+            std::max(0.0, front) * std::abs(away.dot(normal)) / std::pow(away.squaredNorm(), 2);
+    }
+    Masses masses;
+    for (std::size_t begin = 0; begin < kPoints; begin += Simd::size()) {
+        const UnitPoints away = positions(points_, begin, center);
+        const Simd d2 = away.dot(away);
+        const Simd front =
+            core::larger_of(Simd(block.longest_edge_m) - away.dot(normals(points_, begin)), 0.0);
+        const Simd side = away.dot(normal);
+        const Simd term = front * core::larger_of(side, -side) / (d2 * d2);
+        const bool confocal = !rules_->other_end && !looks_back;
+        store(term * (confocal ? term : Simd(other_term)) * reflected, masses.of_point, begin);
+    }
+    return masses;
+}
+
+// Points to which a wrong share of what they may see is not negligible.
+PointMask VisibilityTracer::points_that_matter(const Masses& masses, double share) const {
+    PointMask points = 0;
+    for (std::size_t p = 0; p < kPoints; ++p) {
+        const bool matters = share * masses.of_point[p] > rules_->negligible_error;
+        points = static_cast<PointMask>(points | std::uint32_t{matters} << p);
+    }
+    return points;
 }
 
 // In each group, the relevant piece next to the middle gets the ray: drawn ones disagree with those
 // of neighbouring groups more often, and cost a fifth more rays.
 void VisibilityTracer::choose_representatives(std::uint32_t b) {
-    const std::uint64_t relevant = lanes_[b].relevant;
     for (std::uint32_t g = set_.first_group[b]; g < set_.first_group[b + 1]; ++g) {
-        const PieceGroup& group = set_.groups[g];
-        const std::uint64_t lanes = relevant & group.lanes;
-        if (lanes == 0) continue;
-        const int middle = std::countr_zero(group.lanes) + std::popcount(group.lanes) / 2;
-        const std::uint64_t upper = lanes >> middle;
-        const int lane =
-            upper != 0 ? middle + std::countr_zero(upper) : 63 - std::countl_zero(lanes);
-        group_states_[g] = kBlocked;
-        active_groups_.push_back(
-            {g,
-             static_cast<std::uint32_t>(b * PieceBlock::kSize) + static_cast<std::uint32_t>(lane)});
+        const auto [begin, end] = pieces_of(set_.groups[g]);
+        PointMask left = 0;
+        for (std::uint32_t piece = begin; piece < end; ++piece) {
+            left = combine(left, pieces_[piece].relevant);
+        }
+        if (left == 0) continue;
+        groups_[g].relevant = left;
+        active_groups_.push_back(g);
+        const auto offer = [&](std::uint32_t piece) {
+            const PointMask points = common(left, pieces_[piece].relevant);
+            if (points == 0) return;
+            shadow_rays_.push_back({piece, points, ShadowRays::drawn(0)});
+            represented_[piece] = points;
+            left = without(left, points);
+        };
+        const std::uint32_t middle = begin + (end - begin) / 2;
+        for (std::uint32_t piece = middle; piece < end && left != 0; ++piece) offer(piece);
+        for (std::uint32_t piece = middle; piece > begin && left != 0; --piece) offer(piece - 1);
     }
 }
 
 void VisibilityTracer::trace_groups() {
-    targets_.clear();
-    for (const ActiveGroup& active : active_groups_) {
-        const std::uint32_t piece = active.representative;
-        targets_.push_back({piece, first_bits(piece).first()});
+    rays_.trace(shadow_rays_);
+    // Those of a group follow one another.
+    auto rays = shadow_rays_.begin();
+    for (const std::uint32_t g : active_groups_) {
+        const auto [begin, end] = pieces_of(set_.groups[g]);
+        PointMask seen = 0;
+        for (; rays != shadow_rays_.end() && rays->piece >= begin && rays->piece < end; ++rays) {
+            seen = combine(seen, rays->seen);
+        }
+        groups_[g].visible = seen;
+        for (std::uint32_t piece = begin; piece < end; ++piece) {
+            pieces_[piece].visible = common(pieces_[piece].relevant, seen);
+        }
     }
-    shoot();
-    for (std::size_t i = 0; i < active_groups_.size(); ++i) {
-        if (!results_[i]) continue;
-        const std::uint32_t g = active_groups_[i].group;
-        group_states_[g] = kVisible;
-        BlockLanes& lanes = lanes_[set_.groups[g].block];
-        lanes.visible |= lanes.relevant & set_.groups[g].lanes;
-    }
 }
 
-VisibilityTracer::State VisibilityTracer::state_of(std::uint32_t piece) const {
-    const BlockLanes& lanes = lanes_[piece / PieceBlock::kSize];
-    const std::uint32_t lane = piece % PieceBlock::kSize;
-    if ((lanes.relevant >> lane & 1U) == 0) return kIrrelevant;
-    return (lanes.visible >> lane & 1U) != 0 ? kVisible : kBlocked;
-}
-
-void VisibilityTracer::set_visible(std::uint32_t piece, bool is_visible) {
-    std::uint64_t& visible = lanes_[piece / PieceBlock::kSize].visible;
-    const std::uint64_t bit = std::uint64_t{1} << (piece % PieceBlock::kSize);
-    visible = is_visible ? visible | bit : visible & ~bit;
-}
-
-template <class StateOf>
-bool VisibilityTracer::is_mixed(const NeighbourLists& lists,
-                                std::uint32_t item,
-                                const StateOf& state_of_item) {
-    const State own = state_of_item(item);
-    int num_asked = 0;
+// Points for which an item's neighbours are not of its state; without neighbours to ask, it has to
+// be looked at closely.
+PointMask VisibilityTracer::mixed_points(const NeighbourLists& lists,
+                                         std::uint32_t item,
+                                         const std::vector<State>& states) {
+    const PointMask visible = states[item].visible;
+    PointMask differ = 0;
+    PointMask asked = 0;
+    PointMask asked_twice = 0;
     for (std::uint32_t i = lists.begin[item]; i < lists.begin[item + 1]; ++i) {
-        const State other = state_of_item(lists.items[i]);
-        if (other == kIrrelevant) continue;
-        if (other != own) return true;
-        ++num_asked;
+        const State& other = states[lists.items[i]];
+        differ = combine(differ, common(other.relevant, other.visible ^ visible));
+        asked_twice = combine(asked_twice, common(asked, other.relevant));
+        asked = combine(asked, other.relevant);
     }
-    // Without neighbours to ask, the item has to be looked at closely.
-    return num_asked < 2;
+    return without(states[item].relevant, without(asked_twice, differ));
 }
 
-void VisibilityTracer::trace_pieces_of_mixed_groups(double negligible_error) {
-    targets_.clear();
-    for (const auto& [g, representative] : active_groups_) {
-        const auto state_of_group = [&](std::uint32_t other) { return group_states_[other]; };
-        if (!is_mixed(set_.group_neighbours, g, state_of_group)) continue;
-        const PieceGroup& group = set_.groups[g];
-        const auto base = static_cast<std::uint32_t>(group.block * PieceBlock::kSize);
-        const std::uint64_t relevant = lanes_[group.block].relevant & group.lanes;
-        double mass = 0.0;
-        for_each_bit(relevant,
-                     [&](std::size_t lane) { mass += masses_[group.block].of_lane[lane]; });
-        if (kErrorFromOne * mass <= negligible_error) continue;
-        for_each_bit(relevant, [&](std::size_t lane) {
-            const auto piece = static_cast<std::uint32_t>(base + lane);
-            opened_pieces_.push_back(piece);
-            if (piece == representative) return;
-            targets_.push_back({piece, first_bits(piece).first()});
+void VisibilityTracer::open_mixed_groups() {
+    shadow_rays_.clear();
+    opened_.clear();
+    for (const std::uint32_t g : active_groups_) {
+        PointMask mixed = mixed_points(set_.group_neighbours, g, groups_);
+        if (mixed == 0) continue;
+        const auto [begin, end] = pieces_of(set_.groups[g]);
+        Masses mass;
+        for (std::uint32_t piece = begin; piece < end; ++piece) {
+            const PointMask relevant = pieces_[piece].relevant;
+            if (relevant == 0) continue;
+            const Masses of_piece = masses_of(piece);
+            for (std::size_t p = 0; p < kPoints; ++p) {
+                mass.of_point[p] += (relevant >> p & 1U) != 0 ? of_piece.of_point[p] : 0.0;
+            }
+        }
+        mixed = common(mixed, points_that_matter(mass, kErrorFromOne));
+        if (mixed == 0) continue;
+        for (std::uint32_t piece = begin; piece < end; ++piece) {
+            const PointMask points = common(mixed, pieces_[piece].relevant);
+            if (points == 0) continue;
+            opened_.push_back({piece, points});
+            const PointMask unknown = without(points, represented_[piece]);
+            if (unknown != 0) shadow_rays_.push_back({piece, unknown, ShadowRays::drawn(0)});
+        }
+    }
+    rays_.trace(shadow_rays_);
+    for (const ShadowRays& rays : shadow_rays_) {
+        PointMask& visible = pieces_[rays.piece].visible;
+        visible = combine(without(visible, rays.points), rays.seen);
+    }
+}
+
+void VisibilityTracer::refine_mixed_pieces() {
+    shadow_rays_.clear();
+    refined_.clear();
+    for (const auto& [piece, opened] : opened_) {
+        PointMask points = common(opened, mixed_points(set_.piece_neighbours, piece, pieces_));
+        if (points == 0) continue;
+        points = common(points, points_that_matter(masses_of(piece), kErrorFromOne));
+        if (points == 0) continue;
+        refined_.push_back({piece, points, {}});
+        for (std::uint32_t k = 1; k < 4; ++k) {
+            shadow_rays_.push_back({piece, points, ShadowRays::drawn(k)});
+        }
+    }
+    rays_.trace(shadow_rays_);
+    for (std::size_t i = 0; i < refined_.size(); ++i) {
+        auto& [piece, points, masks] = refined_[i];
+        const DrawnParts parts = rays_.drawn_parts(piece);
+        const std::array<PointMask, 4> seen{pieces_[piece].visible,
+                                            shadow_rays_[3 * i].seen,
+                                            shadow_rays_[3 * i + 1].seen,
+                                            shadow_rays_[3 * i + 2].seen};
+        PointMask visible = 0;
+        for_each_bit(points, [&](std::size_t p) {
+            for (std::uint32_t k = 0; k < 4; ++k) {
+                if ((seen[k] >> p & 1U) == 0) continue;
+                masks[p] =
+                    static_cast<VisibilityMask>(masks[p] | quarter_mask(parts.quarter(p, k)));
+            }
+            visible = static_cast<PointMask>(visible | std::uint32_t{masks[p] != 0} << p);
+        });
+        pieces_[piece].visible = combine(without(pieces_[piece].visible, points), visible);
+    }
+    refine_quarters();
+}
+
+// Pieces of which only some quarters are seen get rays to all their parts.
+void VisibilityTracer::refine_quarters() {
+    shadow_rays_.clear();
+    std::vector<std::size_t> refined_of_rays;
+    for (std::size_t i = 0; i < refined_.size(); ++i) {
+        const auto& [piece, refined, masks] = refined_[i];
+        PointMask points = 0;
+        for_each_bit(refined, [&, &masks = masks](std::size_t p) {
+            const bool is_partial = masks[p] != 0 && masks[p] != kAllVisible;
+            points = static_cast<PointMask>(points | std::uint32_t{is_partial} << p);
+        });
+        if (points == 0) continue;
+        const Masses mass = masses_of(piece);
+        points = common(points, points_that_matter(mass, kErrorFromQuarters));
+        if (points == 0) continue;
+        for_each_bit(points, [&](std::size_t p) {
+            squared_errors_[p] += std::pow(kErrorFromSixteenths * mass.of_point[p], 2);
+        });
+        const DrawnParts parts = rays_.drawn_parts(piece);
+        for (std::uint32_t bit = 0; bit < 16; ++bit) {
+            PointMask unknown = 0;
+            for_each_bit(points, [&](std::size_t p) {
+                const bool is_known = parts.bit(p, bit / 4) == bit;
+                unknown = static_cast<PointMask>(unknown | std::uint32_t{!is_known} << p);
+            });
+            if (unknown == 0) continue;
+            shadow_rays_.push_back({piece, unknown, ShadowRays::fixed(bit)});
+            refined_of_rays.push_back(i);
+        }
+    }
+    rays_.trace(shadow_rays_);
+    for (std::size_t i = 0; i < shadow_rays_.size(); ++i) {
+        auto& masks = refined_[refined_of_rays[i]].masks;
+        const auto bit =
+            static_cast<VisibilityMask>(1U << (shadow_rays_[i].part - ShadowRays::kFirstFixed));
+        for_each_bit(shadow_rays_[i].points, [&](std::size_t p) {
+            const bool is_seen = (shadow_rays_[i].seen >> p & 1U) != 0;
+            masks[p] = static_cast<VisibilityMask>(is_seen ? masks[p] | bit : masks[p] & ~bit);
         });
     }
-    shoot();
-    for (std::size_t i = 0; i < targets_.size(); ++i) {
-        set_visible(targets_[i].piece, results_[i] != 0);
-    }
 }
 
-void VisibilityTracer::refine_mixed_pieces(double negligible_error,
-                                           std::vector<VisibilityMask>& masks) {
-    mixed_.clear();
-    targets_.clear();
-    const auto state_of_piece = [&](std::uint32_t piece) { return state_of(piece); };
-    for (const std::uint32_t piece : opened_pieces_) {
-        if (kErrorFromOne * mass_of(piece) <= negligible_error) continue;
-        if (!is_mixed(set_.piece_neighbours, piece, state_of_piece)) continue;
-        mixed_.push_back(piece);
-        const FirstBits bits = first_bits(piece);
-        for (std::uint32_t quarter = 0; quarter < 4; ++quarter) {
-            if (quarter == bits.first_quarter()) continue;
-            targets_.push_back({piece, bits.of_quarter(quarter)});
+void VisibilityTracer::write(std::span<VisiblePieces> seen) const {
+    for (std::size_t p = 0; p < points_.count; ++p) {
+        seen[p].units.assign(set_.blocks.size(), 0);
+        seen[p].masks.resize(pieces_.size());
+        seen[p].squared_error = squared_errors_[p];
+    }
+    for (const std::uint32_t block : active_blocks_) {
+        const State* const pieces = pieces_.data() + block * PieceBlock::kSize;
+        BlockPoints visible;
+        for (std::size_t i = 0; i < visible.size(); ++i) visible[i] = pieces[i].visible;
+        for (std::size_t p = 0; p < points_.count; ++p) {
+            VisibilityMask* const masks = seen[p].masks.data() + block * PieceBlock::kSize;
+            for (std::size_t i = 0; i < visible.size(); ++i) {
+                masks[i] = static_cast<VisibilityMask>(-(visible[i] >> p & 1));
+            }
+        }
+        for (std::size_t u = 0; u < PieceBlock::kUnits; ++u) {
+            PointMask any = 0;
+            for (std::size_t i = 0; i < PieceBlock::kUnitSize; ++i) {
+                any = combine(any, visible[u * PieceBlock::kUnitSize + i]);
+            }
+            for (std::size_t p = 0; p < points_.count; ++p) {
+                seen[p].units[block] |= static_cast<UnitMask>(any >> p & 1U) << u;
+            }
         }
     }
-    shoot();
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < mixed_.size(); ++i) {
-        const auto quarter_of = [](std::uint32_t bit) { return 0xfU << (bit & ~3U); };
-        std::uint32_t seen =
-            state_of(mixed_[i]) == kVisible ? quarter_of(first_bits(mixed_[i]).first()) : 0;
-        for (std::size_t ray = 3 * i; ray < 3 * i + 3; ++ray) {
-            if (results_[ray]) seen |= quarter_of(targets_[ray].bit);
-        }
-        const auto mask = static_cast<VisibilityMask>(seen);
-        masks[mixed_[i]] = mask;
-        set_visible(mixed_[i], mask != 0);
-        if (mask == 0 || mask == kAllVisible) continue;
-        if (kErrorFromQuarters * mass_of(mixed_[i]) <= negligible_error) continue;
-        mixed_[kept++] = mixed_[i];
+    for (const auto& [piece, points, masks] : refined_) {
+        for_each_bit(points, [&, piece = piece, &masks = masks](std::size_t p) {
+            seen[p].masks[piece] = masks[p];
+        });
     }
-    mixed_.resize(kept);
-
-    targets_.clear();
-    for (const std::uint32_t piece : mixed_) {
-        const double error = kErrorFromSixteenths * mass_of(piece);
-        cost_.squared_error += error * error;
-        const FirstBits bits = first_bits(piece);
-        for (std::uint32_t bit = 0; bit < 16; ++bit) {
-            if (bit != bits.of_quarter(bit / 4)) targets_.push_back({piece, bit});
-        }
-    }
-    shoot();
-    for (std::size_t i = 0; i < targets_.size(); ++i) {
-        VisibilityMask& mask = masks[targets_[i].piece];
-        const auto bit = static_cast<VisibilityMask>(1U << targets_[i].bit);
-        mask = static_cast<VisibilityMask>(results_[i] ? mask | bit : mask & ~bit);
-    }
-}
-
-void VisibilityTracer::shoot() {
-    const core::Stopwatch watch;
-    results_.resize(targets_.size());
-    SegmentPacket packet;
-    SegmentEnds ends;
-    alignas(64) SegmentEnds::Lanes rise_m{};
-    const auto& centers = centers_of_bits();
-    for (std::size_t begin = 0; begin < targets_.size(); begin += SegmentPacket::kSize) {
-        const std::size_t count =
-            std::min<std::size_t>(targets_.size() - begin, SegmentPacket::kSize);
-        for (std::size_t lane = 0; lane < count; ++lane) {
-            const Target& target = targets_[begin + lane];
-            const PieceBlock& block = set_.blocks[target.piece / PieceBlock::kSize];
-            const std::size_t i = target.piece % PieceBlock::kSize;
-            const auto& b = centers[target.bit];
-            const auto at = [&](const std::array<PieceBlock::Lanes, 3>& corners) {
-                return b[0] * corners[0][i] + b[1] * corners[1][i] + b[2] * corners[2][i];
-            };
-            ends.x[lane] = at(block.x);
-            ends.y[lane] = at(block.y);
-            ends.z[lane] = at(block.z);
-            ends.normal_x[lane] = block.normal_x[i];
-            ends.normal_y[lane] = block.normal_y[i];
-            ends.normal_z[lane] = block.normal_z[i];
-            rise_m[lane] = block.rise_m[i];
-        }
-        lift(ends, rise_m, point_.position, set_.origin);
-        scene_.rays().aim(packet,
-                          point_.position + set_.origin,
-                          point_.normal,
-                          ends.lanes(),
-                          static_cast<int>(count));
-        scene_.rays().trace(packet);
-        for (std::size_t lane = 0; lane < count; ++lane) {
-            results_[begin + lane] = packet.blocked[lane] ? 0 : 1;
-        }
-    }
-    cost_.num_rays += targets_.size();
-    cost_.tracing_seconds += watch.seconds();
 }
 
 }  // namespace renderer

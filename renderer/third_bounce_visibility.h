@@ -2,127 +2,125 @@
 #pragma once
 
 #include "renderer/piece_units.h"
+#include "renderer/shadow_rays.h"
 #include "renderer/visibility_mask.h"
 #include "renderer/wall_boxes.h"
+#include "renderer/wall_point_lanes.h"
 
 #include <array>
 #include <cstdint>
-#include <memory>
+#include <optional>
+#include <span>
 #include <vector>
 
 namespace renderer {
 
-/// A wall point as the integrator sees it; position relative to PieceSet::origin.
-struct WallPoint {
-    core::Vec3 position;
-    core::Vec3 normal;
-    std::uint32_t index = 0;  ///< among the points of its side
-};
-
-/// What limits the work of one wall point.
+/// What limits the work of some wall points.
 struct VisibilityRules {
-    double opl_begin_m = 0.0;  ///< of the axis, device legs left out
-    double opl_end_m = 0.0;
-    WallPoint other_end;  ///< the other end of the paths, or one that stands for all of them
-    /// Per block, bounds of the other end's leg; empty: `other_end` is the only one.
+    /// Lengths of the axis, device legs left out, per point or one for all.
+    std::vector<LengthBounds> opl;
+    /// The other end of the paths, or one that stands for all of them; empty: confocal.
+    std::optional<WallPoint> other_end;
+    /// Per block, bounds of the other end's leg; empty: there is only one other end.
     std::vector<LengthBounds> other_legs;
     double negligible_error = 0.0;  ///< errors of a value of H that need no more rays
+
+    const LengthBounds& opl_of(std::size_t point) const { return opl[opl.size() > 1 ? point : 0]; }
 };
 
 /// What a wall point sees of the pieces.
 struct VisiblePieces {
     std::vector<UnitMask> units;        ///< per block: those with pieces of which a part is seen
     std::vector<VisibilityMask> masks;  ///< block * kSize + lane, of these units; others: anything
+    /// Expected, of H: of shadow edges that 16 rays leave uncertain.
+    double squared_error = 0.0;
 };
 
-/// What a look around took, and how good it is.
-struct VisibilityCost {
-    std::uint64_t num_rays = 0;
-    double tracing_seconds = 0.0;  ///< aiming rays, tracing them, reading the answers
-    double squared_error = 0.0;    ///< expected, of H: of shadow edges that 16 rays leave uncertain
-};
-
-/// Finds what wall points see of the pieces.
+/// Finds what wall points see of the pieces, for several of them at once.
 ///
-/// One ray goes to each group, to a part of a piece that is drawn anew for every wall point: of
-/// shadows that cover less than half of many pieces, as bumps cast, fixed parts would see nothing.
-/// Where neighbouring groups disagree, each piece of theirs gets a ray, where neighbouring pieces
+/// One ray goes from every point to each group, to a part of a piece that is drawn. Where
+/// neighbouring groups disagree, each piece of theirs gets a ray, where neighbouring pieces
 /// disagree, 4 and then 16: each step only if what the piece could add wrongly to H is not
-/// negligible.
+/// negligible. What is known of a group or piece is one bit per point, so that all points are asked
+/// by one operation.
 class VisibilityTracer {
  public:
     /// scene, pieces   must outlive the tracer
     VisibilityTracer(const Scene& scene, const PieceSet& pieces);
 
     /// Sets `seen`; pieces that cannot matter are not.
-    VisibilityCost trace(const WallPoint& point, const VisibilityRules& rules, VisiblePieces& seen);
+    ///
+    /// points   1 to WallPointLanes::kSize, best close to each other; what one of them sees does
+    /// not
+    ///          depend on the others
+    /// seen     one per point
+    void trace(std::span<const WallPoint> points,
+               const VisibilityRules& rules,
+               std::span<VisiblePieces> seen);
+
+    std::uint64_t num_rays() const { return rays_.num_rays(); }
+    /// What aiming rays, tracing them and reading the answers took.
+    double tracing_seconds() const { return rays_.seconds(); }
 
  private:
-    enum State : std::uint8_t { kIrrelevant, kBlocked, kVisible };
-    struct Target {
+    /// What is known of a group or a piece; `visible` is part of `relevant`.
+    struct State {
+        PointMask relevant = 0;
+        PointMask visible = 0;
+    };
+    /// Pieces that neighbouring groups disagree about.
+    struct Opened {
         std::uint32_t piece;
-        std::uint32_t bit;
+        PointMask points;
     };
-    /// Bit i: lane i of a block.
-    struct BlockLanes {
-        std::uint64_t relevant = 0;
-        std::uint64_t visible = 0;  ///< of the relevant ones
+    /// Pieces of which parts are seen.
+    struct Refined {
+        std::uint32_t piece;
+        PointMask points;
+        std::array<VisibilityMask, WallPointLanes::kSize> masks;
     };
-    struct alignas(64) BlockMasses {
-        PieceBlock::Lanes of_lane;  ///< contribution to H if all visible
+    /// What a piece adds to H if all of it is seen, per point.
+    struct alignas(64) Masses {
+        WallPointLanes::Lanes of_point{};
     };
-    struct ActiveGroup {
-        std::uint32_t group;
-        std::uint32_t representative;  ///< the piece that its first ray goes to
-    };
-    /// The parts of a piece that its first rays go to, one in each quarter.
-    struct FirstBits {
-        std::uint32_t draw;
-        std::uint32_t of_quarter(std::uint32_t q) const {
-            return 4 * q + (draw >> (2 * q + 2) & 3U);
-        }
-        /// Whose ray comes before the others.
-        std::uint32_t first_quarter() const { return draw & 3U; }
-        std::uint32_t first() const { return of_quarter(first_quarter()); }
-    };
+    /// Per lane of a block.
+    using BlockPoints = std::array<PointMask, PieceBlock::kSize>;
 
-    void classify(const VisibilityRules& rules);
-    void classify_block(std::uint32_t block, const VisibilityRules& rules);
-    LengthBounds path_lengths(std::uint32_t block, const VisibilityRules& rules) const;
-    UnitMask units_within_axis(std::uint32_t block, const VisibilityRules& rules) const;
-    std::uint64_t lanes_seen(std::uint32_t block, UnitMask units, const WallPoint& other);
-    std::uint64_t lanes_within_axis(std::uint32_t block, const VisibilityRules& rules) const;
-    inline FirstBits first_bits(std::uint32_t piece) const;
+    void classify();
+    PointMask points_reaching(std::uint32_t block, PointMask& crossing) const;
+    UnitMask units_within_axis(std::uint32_t block, std::size_t point) const;
+    std::uint64_t lanes_within_axis(std::uint32_t block, std::size_t point) const;
+    BlockPoints points_within_axis(std::uint32_t block,
+                                   PointMask reaching,
+                                   PointMask crossing) const;
+    PointMask points_facing(const PieceBlock& block, std::size_t lane) const;
+    Masses masses_of(std::uint32_t piece) const;
+    PointMask points_that_matter(const Masses& masses, double share) const;
     void choose_representatives(std::uint32_t block);
     void trace_groups();
-    void trace_pieces_of_mixed_groups(double negligible_error);
-    void refine_mixed_pieces(double negligible_error, std::vector<VisibilityMask>& masks);
-    State state_of(std::uint32_t piece) const;
-    double mass_of(std::uint32_t piece) const {
-        return masses_[piece / PieceBlock::kSize].of_lane[piece % PieceBlock::kSize];
-    }
-    void set_visible(std::uint32_t piece, bool is_visible);
-    /// state_of_item   gives the state of the list's items
-    template <class StateOf>
-    static bool is_mixed(const NeighbourLists& lists,
-                         std::uint32_t item,
-                         const StateOf& state_of_item);
-    /// Shoots at all targets; results_[i] is true where targets_[i] is seen.
-    void shoot();
+    void open_mixed_groups();
+    void refine_mixed_pieces();
+    void refine_quarters();
+    static PointMask mixed_points(const NeighbourLists& lists,
+                                  std::uint32_t item,
+                                  const std::vector<State>& states);
+    void write(std::span<VisiblePieces> seen) const;
 
-    const Scene& scene_;
     const PieceSet& set_;
-    WallPoint point_;
-    std::vector<State> group_states_;
-    std::vector<BlockLanes> lanes_;          ///< per block
-    std::unique_ptr<BlockMasses[]> masses_;  ///< per block, of relevant lanes
-    std::vector<ActiveGroup> active_groups_;
+    ShadowRayTracer rays_;
+    WallPointLanes points_;
+    const VisibilityRules* rules_ = nullptr;         ///< while trace() runs
+    alignas(64) WallPointLanes::Lanes opl_begin_m_;  ///< per point
+    alignas(64) WallPointLanes::Lanes opl_end_m_;
+    std::vector<State> groups_;
+    std::vector<State> pieces_;
+    std::vector<PointMask> represented_;  ///< per piece: whose first ray to the group went to it
+    std::vector<std::uint32_t> active_groups_;
     std::vector<std::uint32_t> active_blocks_;
-    std::vector<std::uint32_t> opened_pieces_;
-    std::vector<std::uint32_t> mixed_;
-    std::vector<Target> targets_;
-    std::vector<std::uint8_t> results_;
-    VisibilityCost cost_;
+    std::vector<ShadowRays> shadow_rays_;
+    std::vector<Opened> opened_;
+    std::vector<Refined> refined_;
+    WallPointLanes::Lanes squared_errors_;
 };
 
 }  // namespace renderer

@@ -36,6 +36,8 @@ TEST_P(PairTilesOf, HoldEveryPairOnceWithinMemory) {
         for (const PairTiles::Batch& batch : tiles.batches(part, kParts)) {
             EXPECT_LE(batch.lights.size() + batch.sensors.size(), at_once);
             for (const PairTiles::Tile& tile : batch.tiles) {
+                EXPECT_EQ(batch.lights.begin % PairTiles::kPointsTogether, 0U);
+                EXPECT_EQ(batch.sensors.begin % PairTiles::kPointsTogether, 0U);
                 EXPECT_GE(tile.lights.begin, batch.lights.begin);
                 EXPECT_LE(tile.lights.end, batch.lights.end);
                 EXPECT_GE(tile.sensors.begin, batch.sensors.begin);
@@ -71,9 +73,9 @@ TEST_P(PairTilesOf, KeepTheTilesOfPartsWhateverMemoryHolds) {
     }
 }
 
-// Where all sensors fit beside the lights of a tile, nothing is looked at twice.
+// Where all sensors fit beside the lights looked from together, nothing is looked at twice.
 TEST(PairTiles, LookOnceAtEveryPointWhereAllSensorsFit) {
-    const PairTiles tiles(100, 64, 64 + 8);
+    const PairTiles tiles(100, 64, 64 + PairTiles::kPointsTogether);
     std::size_t looked_at = 0;
     renderer::PointRange lights;
     renderer::PointRange sensors;

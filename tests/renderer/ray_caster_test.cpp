@@ -107,7 +107,7 @@ TEST_P(RayCasterOnSphere, PacketsAnswerAsSingleRays) {
         rays.aim(packet, centroid_of(a), normal_of(a), ends.lanes(), count);
         rays.trace(packet);
         for (std::size_t lane = 0; lane < expected.size(); ++lane) {
-            EXPECT_EQ(packet.blocked[lane], expected[lane]);
+            EXPECT_EQ((packet.blocked >> lane & 1U) != 0, expected[lane]);
             blocked += expected[lane];
             ++traced;
         }

@@ -328,13 +328,16 @@ TEST(ThirdBounceScenes, PatternsAgreeOnTheSamePairs) {
 }
 
 TEST(ThirdBounceScenes, InterruptedRenderIsCompleteButCoarser) {
-    std::vector<Vec3> points;
-    for (int i = 0; i < 64; ++i) {
-        points.emplace_back(-0.4 + 0.1 * (i % 8), -0.4 + 0.1 * (i / 8), 0.0);
-    }
-    const std::vector<Vec3> lights(points.begin(), points.begin() + 32);
-    for (const core::Scan& scan :
-         {test_support::confocal_scan(points), test_support::exhaustive_scan(lights, points)}) {
+    const auto grid = [](int width, int height) {
+        std::vector<Vec3> points;
+        for (int i = 0; i < width * height; ++i) {
+            points.emplace_back(
+                -0.4 + 0.8 / width * (i % width), -0.4 + 0.8 / height * (i / width), 0.0);
+        }
+        return points;
+    };
+    for (const core::Scan& scan : {test_support::confocal_scan(grid(20, 20)),
+                                   test_support::exhaustive_scan(grid(8, 4), grid(8, 8))}) {
         const renderer::Scene scene = scene_of(geometry_of({kHidden, kOccluder}), scan);
         const auto whole = renderer::render(scene, scan, kAxis, settings_for(1e-3), {});
         for (const int patience : {1, 4}) {
@@ -350,6 +353,19 @@ TEST(ThirdBounceScenes, InterruptedRenderIsCompleteButCoarser) {
             EXPECT_LT(error, *early.estimated_error + *whole.estimated_error);
         }
     }
+}
+
+// Where so few points are left that they are integrated at once, too.
+TEST(ThirdBounceScenes, RenderInterruptedBeforeItBeginsSaysSo) {
+    const core::Scan scan = test_support::confocal_scan(kPoints);
+    const renderer::Scene scene = scene_of(geometry_of({kHidden, kOccluder}), scan);
+    core::Progress progress;
+    progress.stop_requested = [] { return true; };
+    const auto early = renderer::render(scene, scan, kAxis, settings_for(1e-4), progress);
+    EXPECT_TRUE(early.interrupted);
+    EXPECT_GT(
+        sum_of({early.capture.transient.values().begin(), early.capture.transient.values().end()}),
+        0.0);
 }
 
 TEST(ThirdBounceScenes, MethodNamesWhatItCannotDo) {

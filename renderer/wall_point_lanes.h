@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/ray_caster.h"
+
+#include <cstdint>
+#include <span>
+
+namespace renderer {
+
+/// A wall point as the integrator sees it; position relative to PieceSet::origin.
+struct WallPoint {
+    core::Vec3 position;
+    core::Vec3 normal;
+    std::uint32_t index = 0;  ///< among the points of its side
+};
+
+/// Some wall points of a WallPointLanes: point p is bit p.
+using PointMask = std::uint16_t;
+
+/// Wall points that are looked from together, as many as a packet has rays: point p in lane p of
+/// all arrays. Lanes beyond `count` repeat the first point.
+struct alignas(64) WallPointLanes {
+    static constexpr std::size_t kSize = SegmentPacket::kSize;
+    using Lanes = std::array<double, kSize>;
+
+    Lanes x, y, z;
+    Lanes normal_x, normal_y, normal_z;
+    std::array<std::uint32_t, kSize> index;
+    std::size_t count = 0;
+
+    WallPointLanes() = default;
+    /// points   1 to kSize of them
+    explicit WallPointLanes(std::span<const WallPoint> points) : count(points.size()) {
+        for (std::size_t p = 0; p < kSize; ++p) {
+            const WallPoint& point = points[p < count ? p : 0];
+            x[p] = point.position.x();
+            y[p] = point.position.y();
+            z[p] = point.position.z();
+            normal_x[p] = point.normal.x();
+            normal_y[p] = point.normal.y();
+            normal_z[p] = point.normal.z();
+            index[p] = point.index;
+        }
+    }
+    PointMask all() const { return static_cast<PointMask>((std::uint32_t{1} << count) - 1U); }
+    core::Vec3 position(std::size_t p) const { return {x[p], y[p], z[p]}; }
+};
+
+}  // namespace renderer
