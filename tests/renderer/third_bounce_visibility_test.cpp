@@ -150,7 +150,7 @@ TEST(DrawnParts, AreUniformAndIndependent) {
 
 class VisibilityTracerTowards : public testing::TestWithParam<std::optional<WallPoint>> {};
 
-// And with as many rays.
+// With the same number of rays, too.
 TEST_P(VisibilityTracerTowards, PointsSeeTogetherWhatTheySeeAlone) {
     const HalfHiddenSheet setup;
     renderer::VisibilityTracer tracer(setup.scene, setup.pieces);
