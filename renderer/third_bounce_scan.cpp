@@ -97,7 +97,10 @@ int ThirdBounceScan::integrate(int first_part,
     for (int part = first_part; part < kParts; ++part) {
         const std::size_t begin = begin_of_part(part, scan_.num_pairs());
         const std::size_t end = begin_of_part(part + 1, scan_.num_pairs());
-        integrate_confocal(begin, end);
+        core::parallel_blocks(
+            end - begin, kPointsPerBlock, [&](std::size_t first, std::size_t last) {
+                integrate_confocal(begin + first, begin + last);
+            });
         const bool goes_on =
             go_on(static_cast<double>(end) / static_cast<double>(scan_.num_pairs()));
         if (end == scan_.num_pairs()) break;
@@ -110,6 +113,15 @@ WallPoint ThirdBounceScan::wall_point(const core::WallPoints& points, std::size_
     return {points.positions[index] - pieces_.origin,
             points.normals[index],
             static_cast<std::uint32_t>(index)};
+}
+
+std::vector<WallPoint> ThirdBounceScan::wall_points(const core::WallPoints& points,
+                                                    const PointRange& range) const {
+    std::vector<WallPoint> result;
+    for (std::size_t i = range.begin; i < range.end; ++i) {
+        result.push_back(wall_point(points, i));
+    }
+    return result;
 }
 
 core::TimeAxis ThirdBounceScan::axis_of_pair(std::size_t pair) const {
@@ -130,43 +142,40 @@ void ThirdBounceScan::store(std::size_t pair, std::span<const double> histogram)
         });
 }
 
-void ThirdBounceScan::integrate_confocal(std::size_t first, std::size_t last) {
-    core::parallel_blocks(
-        last - first, kPointsPerBlock, [&](std::size_t block_begin, std::size_t block_end) {
-            VisibilityTracer tracer(scene_, pieces_);
-            VisibilityRules rules;
-            rules.negligible_error = negligible_error_;
-            std::vector<WallPoint> points;
-            std::vector<core::TimeAxis> axes;
-            for (std::size_t pair = first + block_begin; pair < first + block_end; ++pair) {
-                points.push_back(wall_point(scan_.sensing, pair));
-                axes.push_back(axis_of_pair(pair));
-                rules.opl.push_back({axes.back().opl_start_m, axes.back().opl_end_m()});
-            }
-            std::vector<VisiblePieces> seen(points.size());
-            tracer.trace(points, rules, seen);
-            add_costs(tracer);
-            BlockTable table;
-            const auto num_bins = static_cast<std::size_t>(axis_.num_bins);
-            std::vector<double> histograms(points.size() * num_bins);
-            const auto histogram_of = [&](std::size_t i) {
-                return std::span(histograms).subspan(i * num_bins, num_bins);
-            };
-            for (std::size_t b = 0; b < pieces_.blocks.size(); ++b) {
-                for (std::size_t i = 0; i < points.size(); ++i) {
-                    const UnitMask units = seen[i].units[b];
-                    if (units == 0) continue;
-                    compute_table(pieces_.blocks[b], points[i], units, table);
-                    const PairEnd end{
-                        &points[i], &table, seen[i].masks.data() + b * PieceBlock::kSize};
-                    add_pair(pieces_.blocks[b], end, end, axes[i], histogram_of(i));
-                }
-            }
-            for (std::size_t i = 0; i < points.size(); ++i) {
-                sensor_errors_[first + block_begin + i] = seen[i].squared_error;
-                store(first + block_begin + i, histogram_of(i));
-            }
-        });
+// Looks from all points [begin, end) together.
+void ThirdBounceScan::integrate_confocal(std::size_t begin, std::size_t end) {
+    const std::vector<WallPoint> points = wall_points(scan_.sensing, {begin, end});
+    std::vector<core::TimeAxis> axes;
+    VisibilityRules rules;
+    rules.negligible_error = negligible_error_;
+    for (std::size_t pair = begin; pair < end; ++pair) {
+        axes.push_back(axis_of_pair(pair));
+        rules.opl.push_back({axes.back().opl_start_m, axes.back().opl_end_m()});
+    }
+    std::vector<VisiblePieces> seen(points.size());
+    VisibilityTracer tracer(scene_, pieces_);
+    tracer.trace(points, rules, seen);
+    add_costs(tracer);
+    BlockTable table;
+    const auto num_bins = static_cast<std::size_t>(axis_.num_bins);
+    std::vector<double> histograms(points.size() * num_bins);
+    const auto histogram_of = [&](std::size_t i) {
+        return std::span(histograms).subspan(i * num_bins, num_bins);
+    };
+    for (std::size_t b = 0; b < pieces_.blocks.size(); ++b) {
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const UnitMask units = seen[i].units[b];
+            if (units == 0) continue;
+            compute_table(pieces_.blocks[b], points[i], units, table);
+            const PairEnd end_of_pair{
+                &points[i], &table, seen[i].masks.data() + b * PieceBlock::kSize};
+            add_pair(pieces_.blocks[b], end_of_pair, end_of_pair, axes[i], histogram_of(i));
+        }
+    }
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        sensor_errors_[begin + i] = seen[i].squared_error;
+        store(begin + i, histogram_of(i));
+    }
 }
 
 // What the points of one side need to know of the other side, all of it: so that a point sees the
@@ -204,12 +213,9 @@ void ThirdBounceScan::look_from(const core::WallPoints& points,
     views.seen.resize(range.size());
     core::parallel_blocks(range.size(), kPointsPerBlock, [&](std::size_t begin, std::size_t end) {
         VisibilityTracer tracer(scene_, pieces_);
-        std::vector<WallPoint> looked_from;
-        for (std::size_t i = begin; i < end; ++i) {
-            looked_from.push_back(wall_point(points, range.begin + i));
-        }
-        const auto seen = std::span(views.seen).subspan(begin, end - begin);
-        tracer.trace(looked_from, rules, seen);
+        tracer.trace(wall_points(points, {range.begin + begin, range.begin + end}),
+                     rules,
+                     std::span(views.seen).subspan(begin, end - begin));
         add_costs(tracer);
         for (std::size_t i = begin; i < end; ++i) {
             squared_errors[range.begin + i] = views.seen[i].squared_error;
@@ -262,12 +268,8 @@ void ThirdBounceScan::integrate_tile(const PairTiles::Tile& tile,
                                      const Views& sensor_views) {
     const auto tables =
         [&](const core::WallPoints& all, const PointRange& range, const Views& views) {
-            std::vector<WallPoint> points;
-            for (std::size_t i = range.begin; i < range.end; ++i) {
-                points.push_back(wall_point(all, i));
-            }
             return TileTables(
-                std::move(points),
+                wall_points(all, range),
                 std::span(views.seen).subspan(range.begin - views.range.begin, range.size()));
         };
     TileTables lights = tables(scan_.illumination, tile.lights, light_views);

@@ -55,6 +55,8 @@ class ThirdBounceScan {
     };
 
     WallPoint wall_point(const core::WallPoints& points, std::size_t index) const;
+    std::vector<WallPoint> wall_points(const core::WallPoints& points,
+                                       const PointRange& range) const;
     core::TimeAxis axis_of_pair(std::size_t pair) const;
     void integrate_confocal(std::size_t begin, std::size_t end);
     int integrate_pairs(int first_part, const std::function<bool(double share)>& go_on);

@@ -2,31 +2,15 @@
 #pragma once
 
 #include "renderer/piece_units.h"
+#include "renderer/relevant_pieces.h"
 #include "renderer/shadow_rays.h"
-#include "renderer/visibility_mask.h"
-#include "renderer/wall_boxes.h"
-#include "renderer/wall_point_lanes.h"
 
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
 namespace renderer {
-
-/// What limits the work of some wall points.
-struct VisibilityRules {
-    /// Lengths of the axis, device legs left out, per point or one for all.
-    std::vector<LengthBounds> opl;
-    /// The other end of the paths, or one that stands for all of them; empty: confocal.
-    std::optional<WallPoint> other_end;
-    /// Per block, bounds of the other end's leg; empty: there is only one other end.
-    std::vector<LengthBounds> other_legs;
-    double negligible_error = 0.0;  ///< errors of a value of H that need no more rays
-
-    const LengthBounds& opl_of(std::size_t point) const { return opl[opl.size() > 1 ? point : 0]; }
-};
 
 /// What a wall point sees of the pieces.
 struct VisiblePieces {
@@ -51,8 +35,7 @@ class VisibilityTracer {
     /// Sets `seen`; pieces that cannot matter are not.
     ///
     /// points   1 to WallPointLanes::kSize, best close to each other; what one of them sees does
-    /// not
-    ///          depend on the others
+    ///          not depend on the others
     /// seen     one per point
     void trace(std::span<const WallPoint> points,
                const VisibilityRules& rules,
@@ -79,23 +62,9 @@ class VisibilityTracer {
         PointMask points;
         std::array<VisibilityMask, WallPointLanes::kSize> masks;
     };
-    /// What a piece adds to H if all of it is seen, per point.
-    struct alignas(64) Masses {
-        WallPointLanes::Lanes of_point{};
-    };
-    /// Per lane of a block.
-    using BlockPoints = std::array<PointMask, PieceBlock::kSize>;
 
     void classify();
-    PointMask points_reaching(std::uint32_t block, PointMask& crossing) const;
-    UnitMask units_within_axis(std::uint32_t block, std::size_t point) const;
-    std::uint64_t lanes_within_axis(std::uint32_t block, std::size_t point) const;
-    BlockPoints points_within_axis(std::uint32_t block,
-                                   PointMask reaching,
-                                   PointMask crossing) const;
-    PointMask points_facing(const PieceBlock& block, std::size_t lane) const;
-    Masses masses_of(std::uint32_t piece) const;
-    PointMask points_that_matter(const Masses& masses, double share) const;
+    PointMask points_that_matter(const RelevantPieces::Masses& masses, double share) const;
     void choose_representatives(std::uint32_t block);
     void trace_groups();
     void open_mixed_groups();
@@ -107,11 +76,9 @@ class VisibilityTracer {
     void write(std::span<VisiblePieces> seen) const;
 
     const PieceSet& set_;
+    RelevantPieces relevant_;
     ShadowRayTracer rays_;
-    WallPointLanes points_;
-    const VisibilityRules* rules_ = nullptr;         ///< while trace() runs
-    alignas(64) WallPointLanes::Lanes opl_begin_m_;  ///< per point
-    alignas(64) WallPointLanes::Lanes opl_end_m_;
+    double negligible_error_ = 0.0;
     std::vector<State> groups_;
     std::vector<State> pieces_;
     std::vector<PointMask> represented_;  ///< per piece: whose first ray to the group went to it
