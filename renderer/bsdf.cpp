@@ -2,6 +2,7 @@
 #include "renderer/bsdf.h"
 
 #include "renderer/core/sampling.h"
+#include "renderer/ggx.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,23 +14,11 @@ using core::kPi;
 using core::Vec2;
 using core::Vec3;
 
-double ggx_normal_density(double alpha, const Vec3& half) {
-    const double a2 = alpha * alpha;
-    const double scaled = (half.x() * half.x() + half.y() * half.y()) / a2 + half.z() * half.z();
-    return 1.0 / (kPi * a2 * scaled * scaled);
-}
-
 // Smith's Lambda: the mean invisible area of the microsurface per visible area.
 double smith_lambda(double alpha, const Vec3& direction) {
     const double cos2 = direction.z() * direction.z();
     const double tan2 = std::max(0.0, 1.0 - cos2) / cos2;
     return 0.5 * (std::sqrt(1.0 + alpha * alpha * tan2) - 1.0);
-}
-
-double schlick(double at_normal, double cosine) {
-    const double rest = std::clamp(1.0 - cosine, 0.0, 1.0);
-    const double rest2 = rest * rest;
-    return at_normal + (1.0 - at_normal) * rest2 * rest2 * rest;
 }
 
 // All overloads see incoming.z > 0 and outgoing.z > 0.
@@ -44,19 +33,25 @@ std::optional<Vec3> sample_(const Lambertian&, const Vec3&, const Vec2& u) {
     return core::sample_cosine_hemisphere(u);
 }
 
+double normal_density(const Ggx& bsdf, const Vec3& half) {
+    return ggx_normal_density(bsdf.alpha, half.z() * half.z(), half.head<2>().squaredNorm());
+}
+
 double evaluate_(const Ggx& bsdf, const Vec3& incoming, const Vec3& outgoing) {
     const Vec3 half = (incoming + outgoing).normalized();
-    const double shadowing =
-        1.0 / (1.0 + smith_lambda(bsdf.alpha, incoming) + smith_lambda(bsdf.alpha, outgoing));
-    return ggx_normal_density(bsdf.alpha, half) * shadowing *
-           schlick(bsdf.albedo, half.dot(incoming)) / (4.0 * incoming.z() * outgoing.z());
+    return ggx_value(bsdf.albedo,
+                     bsdf.alpha,
+                     normal_density(bsdf, half),
+                     incoming.z(),
+                     outgoing.z(),
+                     half.dot(incoming));
 }
 
 // The density of visible normals is D max(0, i.h) / ((1 + Lambda(i)) i_z), and reflection about h
 // divides it by 4 i.h.
 double pdf_(const Ggx& bsdf, const Vec3& incoming, const Vec3& outgoing) {
     const Vec3 half = (incoming + outgoing).normalized();
-    return ggx_normal_density(bsdf.alpha, half) /
+    return normal_density(bsdf, half) /
            (4.0 * incoming.z() * (1.0 + smith_lambda(bsdf.alpha, incoming)));
 }
 

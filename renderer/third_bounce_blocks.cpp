@@ -10,6 +10,7 @@
 #include <cmath>
 #include <span>
 #include <utility>
+#include <variant>
 
 namespace renderer {
 namespace {
@@ -109,7 +110,7 @@ void PieceArranger::fill_lane(PieceBlock& block,
         const Bsdf bsdf = scene_.bsdf_at({position + set_.origin, piece.facet});
         block.reflectance[node][lane] = reflectance(bsdf, block.kind, rules_.laser_spot_m2);
         block.mean_reflectance[lane] += share * block.reflectance[node][lane];
-        if (block.kind == PieceKind::Glossy) block.glossy[lane] = bsdf;
+        if (const auto* ggx = std::get_if<Ggx>(&bsdf)) block.glossy_alpha[lane] = ggx->alpha;
     }
 }
 

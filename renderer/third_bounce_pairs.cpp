@@ -2,6 +2,7 @@
 #include "renderer/third_bounce_pairs.h"
 
 #include "renderer/core/triangle_histogram.h"
+#include "renderer/ggx.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,31 +18,67 @@ using core::store;
 
 using NodeWeights = std::array<Simd, PieceBlock::kNodes>;
 
-Vec3 node_of(const PieceBlock& block, std::size_t node, std::size_t i) {
-    if (node == 6) return {block.center_x[i], block.center_y[i], block.center_z[i]};
-    const auto corner = [&](std::size_t c) {
-        return Vec3(block.x[c][i], block.y[c][i], block.z[c][i]);
-    };
-    return node < 3 ? corner(node) : 0.5 * (corner(node - 3) + corner((node - 2) % 3));
+using Nodes = std::array<UnitPoints, PieceBlock::kNodes>;
+
+// Nodes of the pieces of the unit that starts at lane `begin`, relative to a wall point.
+[[gnu::always_inline]] inline Nodes load_nodes(const PieceBlock& block,
+                                               std::size_t begin,
+                                               const WallPoint& point) {
+    const Vec3& origin = point.position;
+    Nodes nodes;
+    for (std::size_t j = 0; j < 3; ++j) {
+        nodes[j] = load_points(block.x[j], block.y[j], block.z[j], begin, origin);
+    }
+    for (std::size_t j = 0; j < 3; ++j) {
+        const UnitPoints& p = nodes[j];
+        const UnitPoints& q = nodes[(j + 1) % 3];
+        nodes[3 + j] = {0.5 * (p.x + q.x), 0.5 * (p.y + q.y), 0.5 * (p.z + q.z)};
+    }
+    nodes[6] = load_points(block.center_x, block.center_y, block.center_z, begin, origin);
+    return nodes;
 }
 
-// Weights of one glossy piece at the nodes.
-void weigh_by_bsdf(const PieceBlock& block,
-                   std::size_t i,
-                   const PairEnd& light,
-                   const PairEnd& sensor,
-                   std::array<double, PieceBlock::kNodes>& weights) {
-    const Vec3 normal(block.normal_x[i], block.normal_y[i], block.normal_z[i]);
-    const Vec3 edge = node_of(block, 1, i) - node_of(block, 0, i);
-    const core::Mat3 facet_from_world = core::frame_from_normal(normal, edge).transpose();
-    for (std::size_t node = 0; node < PieceBlock::kNodes; ++node) {
-        const Vec3 position = node_of(block, node, i);
-        const Vec3 in = (light.point->position - position).normalized();
-        const Vec3 out = (sensor.point->position - position).normalized();
-        const double value =
-            evaluate_bsdf(block.glossy[i], facet_from_world * in, facet_from_world * out);
-        weights[node] = value * light.table->factor[node][i] * sensor.table->factor[node][i];
+// Keeps products of a piece's squared distances from becoming 0 [m^2].
+constexpr double kLeastSquaredDistance = 1e-40;
+
+[[gnu::always_inline]] inline Simd squared_length(const UnitPoints& d) {
+    return core::larger_of(d.dot(d), kLeastSquaredDistance);
+}
+
+// BSDF of glossy pieces at their nodes [1/sr].
+NodeWeights glossy_values(const PieceBlock& block,
+                          std::size_t begin,
+                          const PairEnd& light,
+                          const PairEnd& sensor) {
+    const Nodes from_light = load_nodes(block, begin, *light.point);
+    const Nodes from_sensor = load_nodes(block, begin, *sensor.point);
+    const Simd alpha = load(block.glossy_alpha, begin);
+    const auto distance_to_plane = [&](const PairEnd& end) {
+        const Simd side = load(end.table->side, begin);
+        return core::larger_of(side, -side);
+    };
+    const Simd light_height = distance_to_plane(light);
+    const Simd sensor_height = distance_to_plane(sensor);
+    NodeWeights values;
+    for (std::size_t node = 0; node < values.size(); ++node) {
+        const UnitPoints& in = from_light[node];
+        const UnitPoints& out = from_sensor[node];
+        const Simd per_in = 1.0 / core::square_root(squared_length(in));
+        const Simd per_out = 1.0 / core::square_root(squared_length(out));
+        const Simd cos_in = light_height * per_in;
+        const Simd cos_out = sensor_height * per_out;
+        // Of the sum of both directions: its squared length, and what of that is along the normal.
+        const Simd up2 = (cos_in + cos_out) * (cos_in + cos_out);
+        const Simd sum2 = core::larger_of(2.0 + 2.0 * in.dot(out) * (per_in * per_out), up2);
+        const Simd cos2 = up2 / sum2;
+        values[node] = ggx_value<Simd>(core::kPi * load(block.reflectance[node], begin),
+                                       alpha,
+                                       ggx_normal_density<Simd>(alpha, cos2, 1.0 - cos2),
+                                       cos_in,
+                                       cos_out,
+                                       0.5 * core::square_root(sum2));
     }
+    return values;
 }
 
 // Weights of the pieces of the unit that starts at lane `begin`.
@@ -51,24 +88,14 @@ void weigh_by_bsdf(const PieceBlock& block,
                                                       const PairEnd& sensor) {
     NodeWeights weights;
     if (block.kind == PieceKind::Glossy) {
-        alignas(64) std::array<UnitLanes, PieceBlock::kNodes> values{};
-        for (std::size_t j = 0; j < PieceBlock::kUnitSize; ++j) {
-            const std::size_t i = begin + j;
-            if ((light.masks[i] & sensor.masks[i]) == 0) continue;
-            std::array<double, PieceBlock::kNodes> of_piece;
-            weigh_by_bsdf(block, i, light, sensor, of_piece);
-            for (std::size_t node = 0; node < of_piece.size(); ++node) {
-                values[node][j] = of_piece[node];
-            }
-        }
+        weights = glossy_values(block, begin, light, sensor);
+    } else {
         for (std::size_t node = 0; node < weights.size(); ++node) {
-            weights[node] = load(values[node], 0);
+            weights[node] = load(block.reflectance[node], begin);
         }
-        return weights;
     }
     for (std::size_t node = 0; node < weights.size(); ++node) {
-        weights[node] =
-            load(block.reflectance[node], begin) * load(light.table->factor[node], begin);
+        weights[node] *= load(light.table->factor[node], begin);
         if (block.kind != PieceKind::Retroreflective) {
             weights[node] *= load(sensor.table->factor[node], begin);
         }
@@ -92,9 +119,6 @@ void weigh_by_bsdf(const PieceBlock& block,
         store(mean + spread * (k[c] - corner_mean), fitted.weight[c], begin);
     }
 }
-
-// Keeps products of a piece's squared distances from becoming 0 [m^2].
-constexpr double kLeastSquaredDistance = 1e-40;
 
 // By one division, which takes as long as a dozen products.
 template <std::size_t N>
@@ -159,31 +183,19 @@ void compute_table(const PieceBlock& block,
                    const WallPoint& point,
                    UnitMask units,
                    BlockTable& table) {
-    const Vec3 w = point.position;
     const Vec3 n = point.normal;
     table.units = units;
     for_each_unit(units, [&](std::size_t begin) {
-        std::array<UnitPoints, 3> corners;
-        for (std::size_t j = 0; j < 3; ++j) {
-            corners[j] = load_points(block.x[j], block.y[j], block.z[j], begin, w);
-        }
+        const Nodes nodes = load_nodes(block, begin, point);
         const UnitPoints normal =
             load_points(block.normal_x, block.normal_y, block.normal_z, begin, Vec3::Zero());
-        // All points of the piece have the same distance from w along its normal.
-        const Simd side = -corners[0].dot(normal);
+        // All points of the piece have the same distance from the wall point along its normal.
+        const Simd side = -nodes[0].dot(normal);
         const Simd facing = core::larger_of(side, -side);
         store(side, table.side, begin);
-        std::array<UnitPoints, PieceBlock::kNodes> nodes;
-        for (std::size_t j = 0; j < 3; ++j) {
-            const UnitPoints& p = corners[j];
-            const UnitPoints& q = corners[(j + 1) % 3];
-            nodes[j] = p;
-            nodes[3 + j] = {0.5 * (p.x + q.x), 0.5 * (p.y + q.y), 0.5 * (p.z + q.z)};
-        }
-        nodes[6] = load_points(block.center_x, block.center_y, block.center_z, begin, w);
         std::array<Simd, PieceBlock::kNodes> d2;
         for (std::size_t node = 0; node < nodes.size(); ++node) {
-            d2[node] = core::larger_of(nodes[node].dot(nodes[node]), kLeastSquaredDistance);
+            d2[node] = squared_length(nodes[node]);
         }
         const auto per_d2 = reciprocals(d2);
         for (std::size_t node = 0; node < nodes.size(); ++node) {

@@ -51,7 +51,7 @@ struct alignas(64) PieceBlock {
     Lanes one_sided;                    ///< +-1: only this side of the normal is ever seen; 0: both
     std::array<Lanes, kNodes> reflectance;  ///< at the nodes; albedo/pi or albedo/spot area
     Lanes mean_reflectance;
-    std::array<Bsdf, kSize> glossy;  ///< set for glossy pieces only
+    Lanes glossy_alpha;  ///< GGX width, set for glossy pieces only
     std::array<std::uint32_t, kSize> facet;
     std::array<std::uint32_t, kSize> random_bits;  ///< from Piece::number
     PieceKind kind = PieceKind::Lambertian;

@@ -138,6 +138,14 @@ NLOS_INLINE Simd square_root(const Simd& a) {
     return result;
 }
 
+/// The same of single numbers, for templates of both.
+NLOS_INLINE double square_root(double a) {
+    return std::sqrt(a);
+}
+NLOS_INLINE double larger_of(double a, double b) {
+    return a < b ? b : a;
+}
+
 NLOS_INLINE SimdMask operator<(const Simd& a, const Simd& b) {
     SimdMask result;
     for (std::size_t p = 0; p < Simd::kParts; ++p) result.parts[p] = a.parts[p] < b.parts[p];

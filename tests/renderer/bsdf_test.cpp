@@ -3,10 +3,14 @@
 
 #include "renderer/core/random.h"
 #include "renderer/core/sampling.h"
+#include "renderer/core/simd.h"
+#include "renderer/ggx.h"
 #include "tests/support/statistics.h"
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
 #include <vector>
 
 namespace {
@@ -125,6 +129,41 @@ TEST(Bsdf, RetroreflectorsAreBlackForBsdfSampling) {
     const Bsdf bsdf = renderer::Retroreflective{1.0};
     EXPECT_EQ(renderer::evaluate_bsdf(bsdf, Vec3::UnitZ(), Vec3::UnitZ()), 0.0);
     EXPECT_FALSE(renderer::sample_bsdf(bsdf, Vec3::UnitZ(), {0.3, 0.3}));
+}
+
+TEST(Bsdf, GgxInVectorsIsGgx) {
+    core::Rng rng(test_support::seed_of("Bsdf.GgxInVectors"), 0, 0);
+    // Widths and cosines down to a thousandth.
+    const auto down_to_thousandth = [&] { return std::pow(10.0, -3.0 * rng.uniform()); };
+    constexpr std::size_t kSize = core::Simd::size();
+    using Lanes = std::array<double, kSize>;
+    for (int round = 0; round < 1000; ++round) {
+        alignas(64) Lanes albedo, alpha, cos2, sin2, cos_in, cos_out, cos_half, expected;
+        for (std::size_t i = 0; i < kSize; ++i) {
+            const renderer::Ggx ggx{rng.uniform(), down_to_thousandth()};
+            const double in_cosine = down_to_thousandth();
+            const Vec3 in = direction_at(in_cosine, 7.0 * rng.uniform());
+            const double out_cosine = down_to_thousandth();
+            const Vec3 out = direction_at(out_cosine, 7.0 * rng.uniform());
+            const Vec3 half = (in + out).normalized();
+            albedo[i] = ggx.albedo;
+            alpha[i] = ggx.alpha;
+            cos2[i] = half.z() * half.z();
+            sin2[i] = half.head<2>().squaredNorm();
+            cos_in[i] = in.z();
+            cos_out[i] = out.z();
+            cos_half[i] = half.dot(in);
+            expected[i] = renderer::evaluate_bsdf(ggx, in, out);
+        }
+        const auto all = [](const Lanes& lanes) { return core::load(lanes, 0); };
+        const core::Simd density =
+            renderer::ggx_normal_density<core::Simd>(all(alpha), all(cos2), all(sin2));
+        const core::Simd value = renderer::ggx_value<core::Simd>(
+            all(albedo), all(alpha), density, all(cos_in), all(cos_out), all(cos_half));
+        for (std::size_t i = 0; i < kSize; ++i) {
+            EXPECT_NEAR(value[i] / expected[i], 1.0, 1e-12);
+        }
+    }
 }
 
 }  // namespace

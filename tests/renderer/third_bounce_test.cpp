@@ -91,6 +91,18 @@ TEST_P(ThirdBounce, MatchesBruteForceBehindAnOccluder) {
     }
 }
 
+TEST_P(ThirdBounce, MatchesBruteForceOfGlossySurfaces) {
+    for (const double roughness : {0.4, 0.8}) {
+        Parallelogram glossy = kHidden;
+        glossy.roughness = roughness;
+        const auto expected = test_support::third_bounce_by_quadrature(
+            glossy, kNoOccluder, scan(), kAxis, kWallAlbedo, /*steps=*/1000);
+        const auto result = render_shapes({glossy}, scan(), kAxis, 1e-3);
+        EXPECT_LT(test_support::relative_l2(result, expected), 3e-3) << roughness;
+        EXPECT_NEAR(sum_of(result) / sum_of(expected), 1.0, 1e-4) << roughness;
+    }
+}
+
 TEST_P(ThirdBounce, SameBitsForAnyNumberOfThreads) {
     std::vector<std::vector<float>> results;
     for (const int threads : {1, 7}) {

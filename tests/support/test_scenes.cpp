@@ -53,6 +53,10 @@ renderer::Object parallelogram_object(const Parallelogram& shape) {
                             shape.corner + shape.v};
     object.mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
     object.material.albedo = shape.albedo;
+    if (shape.roughness) {
+        object.material.model = renderer::SurfaceModel::Ggx;
+        object.material.roughness = *shape.roughness;
+    }
     return object;
 }
 
@@ -130,8 +134,10 @@ std::vector<float> third_bounce_by_quadrature(const Parallelogram& hidden,
     const Vec3 area_vector = hidden.u.cross(hidden.v);
     const Vec3 normal = area_vector.normalized();
     const double cell_area = area_vector.norm() / (double(steps) * steps);
-    const double front =
-        std::pow(wall_albedo / core::kPi, 2) * hidden.albedo / core::kPi * cell_area;
+    const double front = std::pow(wall_albedo / core::kPi, 2) * cell_area;
+    renderer::Bsdf bsdf = renderer::Lambertian{hidden.albedo};
+    if (hidden.roughness) bsdf = renderer::Ggx{hidden.albedo, std::pow(*hidden.roughness, 2)};
+    const core::Mat3 facet_from_world = core::frame_from_normal(normal, hidden.u).transpose();
     for (int i = 0; i < steps; ++i) {
         for (int j = 0; j < steps; ++j) {
             const Vec3 p =
@@ -152,8 +158,10 @@ std::vector<float> third_bounce_by_quadrature(const Parallelogram& hidden,
                     static_cast<int>(std::floor((rl + rs - axis.opl_start_m) / axis.bin_width_m));
                 if (bin < 0 || bin >= axis.num_bins) continue;
                 if (crosses(p, l, occluder) || crosses(p, s, occluder)) continue;
+                const double value = renderer::evaluate_bsdf(
+                    bsdf, facet_from_world * (to_l / rl), facet_from_world * (to_s / rs));
                 sums[pair * num_bins + static_cast<std::size_t>(bin)] +=
-                    front * cos_l * cos_s * cos_pl * cos_ps / (rl * rl * rs * rs);
+                    front * value * cos_l * cos_s * cos_pl * cos_ps / (rl * rl * rs * rs);
             }
         }
     }

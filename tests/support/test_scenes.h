@@ -3,6 +3,7 @@
 
 #include "renderer/render.h"
 
+#include <optional>
 #include <vector>
 
 namespace test_support {
@@ -13,6 +14,7 @@ struct Parallelogram {
     core::Vec3 u;
     core::Vec3 v;
     double albedo = 1.0;
+    std::optional<double> roughness = std::nullopt;  ///< of a GGX surface; none: Lambertian
 };
 
 renderer::Object parallelogram_object(const Parallelogram& shape);
