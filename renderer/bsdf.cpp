@@ -14,13 +14,6 @@ using core::kPi;
 using core::Vec2;
 using core::Vec3;
 
-// Smith's Lambda: the mean invisible area of the microsurface per visible area.
-double smith_lambda(double alpha, const Vec3& direction) {
-    const double cos2 = direction.z() * direction.z();
-    const double tan2 = std::max(0.0, 1.0 - cos2) / cos2;
-    return 0.5 * (std::sqrt(1.0 + alpha * alpha * tan2) - 1.0);
-}
-
 // All overloads see incoming.z > 0 and outgoing.z > 0.
 
 double evaluate_(const Lambertian& bsdf, const Vec3&, const Vec3&) {
@@ -52,7 +45,7 @@ double evaluate_(const Ggx& bsdf, const Vec3& incoming, const Vec3& outgoing) {
 double pdf_(const Ggx& bsdf, const Vec3& incoming, const Vec3& outgoing) {
     const Vec3 half = (incoming + outgoing).normalized();
     return normal_density(bsdf, half) /
-           (4.0 * incoming.z() * (1.0 + smith_lambda(bsdf.alpha, incoming)));
+           (2.0 * (incoming.z() + ggx_masking(bsdf.alpha, incoming.z())));
 }
 
 std::optional<Vec3> sample_(const Ggx& bsdf, const Vec3& incoming, const Vec2& u) {

@@ -20,6 +20,18 @@ template <class T>
     return a2 / (core::kPi * scaled * scaled);
 }
 
+/// (1 + 2 Lambda) times the cosine, Lambda being Smith's mean invisible area of the microsurface
+/// per visible area in a direction.
+///
+/// T         double or core::Simd
+/// cosine    of the direction with the normal, above 0
+/// source    [Heitz2014]
+template <class T>
+[[gnu::always_inline]] inline T ggx_masking(const T& alpha, const T& cosine) {
+    const T a2 = alpha * alpha;
+    return core::square_root(a2 + (1.0 - a2) * (cosine * cosine));
+}
+
 /// Value of renderer::Ggx [1/sr], without cosine.
 ///
 /// T                 double or core::Simd
@@ -35,11 +47,8 @@ template <class T>
                                           const T& cos_in,
                                           const T& cos_out,
                                           const T& cos_half) {
-    const T a2 = alpha * alpha;
-    const auto masking = [&](const T& cosine) {
-        return core::square_root(a2 + (1.0 - a2) * (cosine * cosine));
-    };
-    const T visible = 2.0 * (cos_out * masking(cos_in) + cos_in * masking(cos_out));
+    const T visible =
+        2.0 * (cos_out * ggx_masking(alpha, cos_in) + cos_in * ggx_masking(alpha, cos_out));
     const T rest = core::larger_of(1.0 - cos_half, 0.0);
     const T rest2 = rest * rest;
     const T fresnel = albedo + (1.0 - albedo) * (rest2 * rest2 * rest);

@@ -51,7 +51,7 @@ RelevantPieces::BlockPoints RelevantPieces::of_block(std::uint32_t b) const {
     const PieceBlock& block = set_.blocks[b];
     for (std::size_t lane = 0; lane < relevant.size(); ++lane) {
         if (relevant[lane] == 0) continue;
-        relevant[lane] = static_cast<PointMask>(relevant[lane] & points_facing(block, lane));
+        relevant[lane] = common(relevant[lane], points_facing(block, lane));
     }
     return relevant;
 }
@@ -86,11 +86,11 @@ PointMask RelevantPieces::points_reaching(std::uint32_t b, PointMask& crossing) 
         const core::SimdMask in_front = away.dot(normals(points_, begin)) <= radius;
         const core::SimdMask within = in_front & (opl_begin <= most) & (least <= opl_end);
         const core::SimdMask inside = (opl_begin <= least) & (most <= opl_end);
-        reaching = static_cast<PointMask>(reaching | point_mask(within, begin));
-        crossing = static_cast<PointMask>(crossing | point_mask(within & !inside, begin));
+        reaching = combine(reaching, point_mask(within, begin));
+        crossing = combine(crossing, point_mask(within & !inside, begin));
     }
-    crossing = static_cast<PointMask>(crossing & points_.all());
-    return static_cast<PointMask>(reaching & points_.all());
+    crossing = common(crossing, points_.all());
+    return common(reaching, points_.all());
 }
 
 // Per lane, the points from which some path by way of the piece may have a length within the axis.
@@ -98,7 +98,7 @@ RelevantPieces::BlockPoints RelevantPieces::points_within_axis(std::uint32_t b,
                                                                PointMask reaching,
                                                                PointMask crossing) const {
     BlockPoints within;
-    within.fill(static_cast<PointMask>(reaching & ~crossing));
+    within.fill(without(reaching, crossing));
     for_each_bit(crossing, [&](std::size_t p) {
         for_each_bit(lanes_within_axis(b, p), [&](std::size_t lane) {
             within[lane] = static_cast<PointMask>(within[lane] | 1U << p);
@@ -187,7 +187,7 @@ PointMask RelevantPieces::points_facing(const PieceBlock& block, std::size_t i) 
         const core::SimdMask in_front =
             away.dot(normals(points_, begin)) < Simd(block.longest_edge_m);
         const core::SimdMask reflects = (side != 0.0) & (0.0 <= Simd(block.one_sided[i]) * side);
-        facing = static_cast<PointMask>(facing | point_mask(in_front & reflects, begin));
+        facing = combine(facing, point_mask(in_front & reflects, begin));
     }
     return facing;
 }

@@ -16,8 +16,9 @@ struct alignas(64) BlockTable {
     std::array<PieceBlock::Lanes, 3> leg_m, bend_m;
     /// (n_w.d) |n_x.d| / |d|^4 at the nodes [1/m^2], 0 behind the wall point.
     std::array<PieceBlock::Lanes, PieceBlock::kNodes> factor;
-    PieceBlock::Lanes side;  ///< sign of the side of the piece that the wall point is on
-    UnitMask units = 0;      ///< the others are not filled
+    /// Distance of the wall point from the piece's plane, above 0 on the normal's side [m].
+    PieceBlock::Lanes side;
+    UnitMask units = 0;  ///< the others are not filled
 };
 
 /// Fills `table` for one wall point.

@@ -16,18 +16,6 @@ constexpr double kErrorFromOne = 0.34;
 constexpr double kErrorFromQuarters = 0.12;
 constexpr double kErrorFromSixteenths = 0.03;
 
-PointMask combine(PointMask a, PointMask b) {
-    return static_cast<PointMask>(a | b);
-}
-
-PointMask without(PointMask a, PointMask b) {
-    return static_cast<PointMask>(a & ~b);
-}
-
-PointMask common(PointMask a, PointMask b) {
-    return static_cast<PointMask>(a & b);
-}
-
 // Pieces [begin, end).
 struct PieceRange {
     std::uint32_t begin;

@@ -18,6 +18,19 @@ struct WallPoint {
 /// Some wall points of a WallPointLanes: point p is bit p.
 using PointMask = std::uint16_t;
 
+/// Points of either mask.
+inline PointMask combine(PointMask a, PointMask b) {
+    return static_cast<PointMask>(a | b);
+}
+/// Points of the first mask that are not in the second one.
+inline PointMask without(PointMask a, PointMask b) {
+    return static_cast<PointMask>(a & ~b);
+}
+/// Points of both masks.
+inline PointMask common(PointMask a, PointMask b) {
+    return static_cast<PointMask>(a & b);
+}
+
 /// Wall points that are looked from together, as many as a packet has rays: point p in lane p of
 /// all arrays. Lanes beyond `count` repeat the first point.
 struct alignas(64) WallPointLanes {
