@@ -44,11 +44,15 @@ void RelevantPieces::look_from(const WallPointLanes& points, const VisibilityRul
 }
 
 RelevantPieces::BlockPoints RelevantPieces::of_block(std::uint32_t b) const {
+    const PieceBlock& block = set_.blocks[b];
     PointMask crossing = 0;
-    const PointMask reaching = points_reaching(b, crossing);
+    PointMask reaching = points_reaching(b, crossing);
+    if (block.kind == PieceKind::Retroreflective) {
+        reaching = common(reaching, points_.confocal);
+        crossing = common(crossing, points_.confocal);
+    }
     if (reaching == 0) return {};
     BlockPoints relevant = points_within_axis(b, reaching, crossing);
-    const PieceBlock& block = set_.blocks[b];
     for (std::size_t lane = 0; lane < relevant.size(); ++lane) {
         if (relevant[lane] == 0) continue;
         relevant[lane] = common(relevant[lane], points_facing(block, lane));
@@ -176,8 +180,8 @@ PointMask RelevantPieces::points_facing(const PieceBlock& block, std::size_t i) 
     const bool has_one_end =
         rules_->other_legs.empty() && rules_->other_end && block.kind != PieceKind::Retroreflective;
     if (has_one_end) {
-        const auto& [position, other_normal, index] = *rules_->other_end;
-        const Vec3 away = position - center;
+        const Vec3& other_normal = rules_->other_end->normal;
+        const Vec3 away = rules_->other_end->position - center;
         if (away.dot(other_normal) >= block.longest_edge_m || away.dot(normal) == 0.0) return 0;
     }
     PointMask facing = 0;
@@ -202,8 +206,8 @@ RelevantPieces::Masses RelevantPieces::masses_of(std::uint32_t piece) const {
     const bool looks_back = block.kind == PieceKind::Retroreflective;
     double other_term = 1.0;
     if (rules_->other_end && !looks_back) {
-        const auto& [position, other_normal, index] = *rules_->other_end;
-        const Vec3 away = position - center;
+        const Vec3& other_normal = rules_->other_end->normal;
+        const Vec3 away = rules_->other_end->position - center;
         const double front = block.longest_edge_m - away.dot(other_normal);
         other_term =
             std::max(0.0, front) * std::abs(away.dot(normal)) / std::pow(away.squaredNorm(), 2);

@@ -21,6 +21,8 @@ struct VisibilityRules {
     /// Per block, bounds of the other end's leg; empty: there is only one other end.
     std::vector<LengthBounds> other_legs;
     double negligible_error = 0.0;  ///< errors of a value of H that need no more rays
+    /// Pairs that a point is an end of; retroreflectors return light in one of them.
+    double pairs_per_point = 1.0;
 
     const LengthBounds& opl_of(std::size_t point) const { return opl[opl.size() > 1 ? point : 0]; }
 };

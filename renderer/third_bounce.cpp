@@ -4,11 +4,13 @@
 #include "renderer/core/process.h"
 #include "renderer/core/stopwatch.h"
 #include "renderer/third_bounce_scan.h"
+#include "renderer/trial_scan.h"
 
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <limits>
 #include <map>
 #include <optional>
@@ -21,16 +23,10 @@ using core::Transient;
 
 constexpr double kDefaultTargetError = 0.01;
 
-// The pairs that are computed at several finenesses.
-constexpr std::size_t kTrialPoints = 32;         // confocal and single
-constexpr std::size_t kTrialPointsPerSide = 12;  // exhaustive
-// With few bins there is less to compare per pair.
-constexpr int kFewBins = 16;
-constexpr std::size_t kTrialPointsForFewBins = 128;
-constexpr std::size_t kTrialPointsPerSideForFewBins = 16;
-
-// Fineness k has the tolerance target * 2^k.
+// Fineness k has the tolerance target * 2^k. The first one tried meets the target more often than
+// not.
 constexpr int kCoarsest = 5;
+constexpr int kFirst = 1;
 constexpr int kFinest = -10;
 constexpr int kReferenceSteps = 2;  // a reference is at least this much finer
 // A cut with this times the pieces of the coarsest one is as coarse as can be: facets limit it.
@@ -47,50 +43,6 @@ constexpr double kShareOfMemory = 0.5;
 
 double memory_for_visibility() {
     return kShareOfMemory * static_cast<double>(core::available_memory_bytes());
-}
-
-// `count` indices below `size`, spread evenly and out of step with rows of a grid.
-std::vector<std::size_t> spread_indices(std::size_t size, std::size_t count) {
-    constexpr double kGolden = 0.6180339887498949;
-    std::vector<std::size_t> indices;
-    for (std::size_t i = 0; i < std::min(size, count); ++i) {
-        const double share = (static_cast<double>(i) + 0.5) * kGolden;
-        indices.push_back(count >= size ? i
-                                        : static_cast<std::size_t>(static_cast<double>(size) *
-                                                                   (share - std::floor(share))));
-    }
-    std::sort(indices.begin(), indices.end());
-    indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
-    return indices;
-}
-
-core::WallPoints subset(const core::WallPoints& points, std::size_t count) {
-    core::WallPoints chosen;
-    for (const std::size_t i : spread_indices(points.size(), count)) {
-        chosen.positions.push_back(points.positions[i]);
-        chosen.normals.push_back(points.normals[i]);
-    }
-    return chosen;
-}
-
-core::Scan trial_scan(const core::Scan& scan, int num_bins) {
-    core::Scan trial = scan;
-    const bool exhaustive = scan.pattern == core::ScanPattern::Exhaustive;
-    const bool few_bins = num_bins < kFewBins;
-    const std::size_t num_points = few_bins ? kTrialPointsForFewBins : kTrialPoints;
-    const std::size_t per_side = few_bins ? kTrialPointsPerSideForFewBins : kTrialPointsPerSide;
-    trial.sensing = subset(scan.sensing, exhaustive ? per_side : num_points);
-    if (exhaustive) trial.illumination = subset(scan.illumination, per_side);
-    if (scan.pattern == core::ScanPattern::Confocal) trial.illumination = trial.sensing;
-    return trial;
-}
-
-// Trials see bins that begin at multiples of their width, so that a shift of the axis by part of a
-// bin changes no choice and no energy; few bins are tried as they are.
-core::TimeAxis trial_axis(const core::TimeAxis& axis) {
-    if (axis.num_bins < kFewBins) return axis;
-    const double first_bin = std::floor(axis.opl_start_m / axis.bin_width_m);
-    return {first_bin * axis.bin_width_m, axis.bin_width_m, axis.num_bins + 1};
 }
 
 double squared_norm(const Transient& transient) {
@@ -119,7 +71,7 @@ class Integrator {
                const RenderSettings& settings)
         : scene_(scene),
           scan_(scan),
-          trial_scan_(trial_scan(scan, axis.num_bins)),
+          trial_scan_(trial_scan(scene, scan, axis.num_bins)),
           axis_(axis),
           trial_axis_(trial_axis(axis)),
           target_(settings.target_error.value_or(kDefaultTargetError)),
@@ -155,8 +107,8 @@ class Integrator {
     double target_;
     std::optional<double> seconds_;
     PieceCutter cutter_;
-    std::optional<std::pair<int, PieceSet>> cut_;  ///< the latest
-    bool stopped_ = false;                         ///< before all trials were made
+    std::deque<std::pair<int, PieceSet>> cuts_;  ///< the latest
+    bool stopped_ = false;                       ///< before all trials were made
     double norm_per_pair_ = 0.0;
     std::map<int, Transient> trials_;
     std::map<int, std::size_t> num_pieces_;
@@ -169,13 +121,15 @@ class Integrator {
     double tracing_seconds_ = 0.0;
 };
 
-// Valid until another fineness is asked for.
+// Valid until two others are asked for: the fineness chosen is often the one before that which
+// missed the target.
 const PieceSet& Integrator::cut(int fineness) {
-    if (!cut_ || cut_->first != fineness) {
-        cut_.reset();
-        cut_.emplace(fineness, cutter_.cut(tolerance(fineness)));
+    constexpr std::size_t kMostCuts = 2;
+    for (const auto& [cut_fineness, pieces] : cuts_) {
+        if (cut_fineness == fineness) return pieces;
     }
-    return cut_->second;
+    if (cuts_.size() == kMostCuts) cuts_.pop_front();
+    return cuts_.emplace_back(fineness, cutter_.cut(tolerance(fineness))).second;
 }
 
 const Transient& Integrator::try_out(int fineness) {
@@ -248,7 +202,10 @@ int Integrator::finest_in_time(const core::Progress& progress) {
 // wait.
 int Integrator::choose_fineness(const core::Progress& progress) {
     if (seconds_) return finest_in_time(progress);
-    int fineness = 0;
+    int fineness = kFirst;
+    // Fine enough for the next finer one, too. A coarser reference misses shadows that both leave
+    // out.
+    try_out(fineness - 1 - kReferenceSteps);
     if (error_of(fineness) > target_) {
         while (fineness > kFinest && error_of(--fineness) > target_) {
             if (!progress.should_stop()) continue;

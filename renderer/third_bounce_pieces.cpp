@@ -2,6 +2,7 @@
 #include "renderer/third_bounce_pieces.h"
 
 #include "renderer/closed_surface.h"
+#include "renderer/coinciding_points.h"
 #include "renderer/core/error.h"
 #include "renderer/merged_pieces.h"
 #include "renderer/third_bounce_blocks.h"
@@ -116,6 +117,7 @@ PieceCutter::PieceCutter(const Scene& scene,
       axis_(axis),
       laser_spot_m2_(laser_spot_m2),
       origin_(scene.rays().origin()),
+      returns_light_(CoincidingPoints(scan).any()),
       boxes_(scan, origin_) {
     for (const Object& object : scene.objects()) {
         visible_sides_.push_back(visible_side(object, scan));
@@ -179,11 +181,7 @@ std::vector<Piece> PieceCutter::cut_all(double tolerance) const {
         const Object& object = scene_.object_of(i);
         const Material& material = object.material;
         if (!scene_.is_hidden(i) || !is_integrable(material) || material.albedo == 0.0) continue;
-        // Nothing comes back to another point than the light's.
-        if (kind_of(material) == PieceKind::Retroreflective &&
-            scan_.pattern != core::ScanPattern::Confocal) {
-            continue;
-        }
+        if (kind_of(material) == PieceKind::Retroreflective && !returns_light_) continue;
         Piece whole;
         whole.facet = i;
         const auto& triangle = object.mesh.triangles[scene_.facet(i).triangle];

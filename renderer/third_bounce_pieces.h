@@ -131,6 +131,7 @@ class PieceCutter {
     core::TimeAxis axis_;
     double laser_spot_m2_;
     core::Vec3 origin_;
+    bool returns_light_;  ///< retroreflectors do, to some point
     WallBoxes boxes_;
     std::vector<int> visible_sides_;  ///< per object, see closed_surface.h
 };

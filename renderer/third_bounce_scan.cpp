@@ -52,6 +52,10 @@ class TileTables {
     std::vector<PairEnd> ends_;
 };
 
+bool coincide(const WallPoint& a, const WallPoint& b) {
+    return a.position == b.position && a.normal == b.normal;
+}
+
 // True when no path of the two points through the block has a length within the axis.
 bool misses_axis(const BlockSphere& sphere,
                  const WallPoint& light,
@@ -75,18 +79,15 @@ ThirdBounceScan::ThirdBounceScan(const Scene& scene,
       scan_(scan),
       axis_(axis),
       pieces_(pieces),
+      coinciding_(scan),
       negligible_error_(negligible_error),
       memory_bytes_(memory_bytes),
       light_errors_(scan.illumination.size()),
       sensor_errors_(scan.sensing.size()) {}
 
 double ThirdBounceScan::squared_shadow_error() const {
-    const double pairs_per_sensor =
-        static_cast<double>(scan_.num_pairs()) / static_cast<double>(sensor_errors_.size());
-    const double pairs_per_light =
-        static_cast<double>(scan_.num_pairs()) / static_cast<double>(light_errors_.size());
-    return pairs_per_sensor * std::accumulate(sensor_errors_.begin(), sensor_errors_.end(), 0.0) +
-           pairs_per_light * std::accumulate(light_errors_.begin(), light_errors_.end(), 0.0);
+    return std::accumulate(sensor_errors_.begin(), sensor_errors_.end(), 0.0) +
+           std::accumulate(light_errors_.begin(), light_errors_.end(), 0.0);
 }
 
 int ThirdBounceScan::integrate(int first_part,
@@ -110,9 +111,12 @@ int ThirdBounceScan::integrate(int first_part,
 }
 
 WallPoint ThirdBounceScan::wall_point(const core::WallPoints& points, std::size_t index) const {
+    const std::vector<bool>& confocal =
+        &points == &scan_.sensing ? coinciding_.sensing : coinciding_.illumination;
     return {points.positions[index] - pieces_.origin,
             points.normals[index],
-            static_cast<std::uint32_t>(index)};
+            static_cast<std::uint32_t>(index),
+            confocal[index]};
 }
 
 std::vector<WallPoint> ThirdBounceScan::wall_points(const core::WallPoints& points,
@@ -178,11 +182,14 @@ void ThirdBounceScan::integrate_confocal(std::size_t begin, std::size_t end) {
     }
 }
 
-// What the points of one side need to know of the other side, all of it: so that a point sees the
-// same whatever is looked at with it.
-VisibilityRules ThirdBounceScan::rules_towards(const core::WallPoints& others) const {
+// What the `num_points` points of one side need to know of the other side, all of it: so that a
+// point sees the same whatever is looked at with it.
+VisibilityRules ThirdBounceScan::rules_towards(const core::WallPoints& others,
+                                               std::size_t num_points) const {
     VisibilityRules rules;
     rules.negligible_error = negligible_error_;
+    rules.pairs_per_point =
+        static_cast<double>(scan_.num_pairs()) / static_cast<double>(num_points);
     const auto [least_legs, most_legs] = core::device_leg_range_m(scan_);
     rules.opl.push_back({axis_.opl_start_m - most_legs, axis_.opl_end_m() - least_legs});
     WallPoint& middle = rules.other_end.emplace(WallPoint{Vec3::Zero(), Vec3::Zero()});
@@ -243,8 +250,8 @@ int ThirdBounceScan::integrate_pairs(int first_part,
         static_cast<double>(num_lights + scan_.sensing.size() + PairTiles::kFewestPoints);
     const PairTiles tiles(
         num_lights, scan_.sensing.size(), static_cast<std::size_t>(std::min(fitting, enough)));
-    const VisibilityRules from_lights = rules_towards(scan_.sensing);
-    const VisibilityRules from_sensors = rules_towards(scan_.illumination);
+    const VisibilityRules from_lights = rules_towards(scan_.sensing, scan_.illumination.size());
+    const VisibilityRules from_sensors = rules_towards(scan_.illumination, scan_.sensing.size());
     Views lights;
     Views sensors;
     constexpr double kShareOfLooking = 0.25;
@@ -289,6 +296,10 @@ void ThirdBounceScan::integrate_tile(const PairTiles::Tile& tile,
             for (std::size_t s = 0; s < num_sensors; ++s) {
                 const PairEnd& sensor = sensors.ends()[s];
                 if ((light.table->units & sensor.table->units) == 0) continue;
+                if (block.kind == PieceKind::Retroreflective &&
+                    !coincide(*light.point, *sensor.point)) {
+                    continue;
+                }
                 const core::TimeAxis axis = axis_of_pair(pair_of(l, s));
                 if (misses_axis(pieces_.spheres[b], *light.point, *sensor.point, axis)) continue;
                 add_pair(block,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "renderer/coinciding_points.h"
 #include "renderer/core/capture.h"
 #include "renderer/pair_tiles.h"
 #include "renderer/third_bounce_visibility.h"
@@ -60,7 +61,7 @@ class ThirdBounceScan {
     core::TimeAxis axis_of_pair(std::size_t pair) const;
     void integrate_confocal(std::size_t begin, std::size_t end);
     int integrate_pairs(int first_part, const std::function<bool(double share)>& go_on);
-    VisibilityRules rules_towards(const core::WallPoints& others) const;
+    VisibilityRules rules_towards(const core::WallPoints& others, std::size_t num_points) const;
     void look_from(const core::WallPoints& points,
                    const PointRange& range,
                    const VisibilityRules& rules,
@@ -74,10 +75,11 @@ class ThirdBounceScan {
     const core::Scan& scan_;
     const core::TimeAxis& axis_;
     const PieceSet& pieces_;
+    CoincidingPoints coinciding_;
     double negligible_error_;
     double memory_bytes_;
     core::Transient* result_ = nullptr;  ///< while integrate() runs
-    std::vector<double> light_errors_;   ///< squared, per illumination point and pair
+    std::vector<double> light_errors_;   ///< squared, of all pairs of each illumination point
     std::vector<double> sensor_errors_;
     std::atomic<std::uint64_t> num_rays_{0};
     std::atomic<double> tracing_seconds_{0.0};

@@ -49,6 +49,7 @@ void VisibilityTracer::trace(std::span<const WallPoint> points,
     relevant_.look_from(lanes, rules);
     rays_.look_from(lanes);
     negligible_error_ = rules.negligible_error;
+    pairs_per_point_ = rules.pairs_per_point;
     squared_errors_.fill(0.0);
     classify();
     trace_groups();
@@ -234,8 +235,10 @@ void VisibilityTracer::refine_quarters() {
         const RelevantPieces::Masses mass = relevant_.masses_of(piece);
         points = common(points, points_that_matter(mass, kErrorFromQuarters));
         if (points == 0) continue;
+        const PieceKind kind = set_.blocks[piece / PieceBlock::kSize].kind;
+        const double num_pairs = kind == PieceKind::Retroreflective ? 1.0 : pairs_per_point_;
         for_each_bit(points, [&](std::size_t p) {
-            squared_errors_[p] += std::pow(kErrorFromSixteenths * mass.of_point[p], 2);
+            squared_errors_[p] += num_pairs * std::pow(kErrorFromSixteenths * mass.of_point[p], 2);
         });
         const DrawnParts parts = rays_.drawn_parts(piece);
         for (std::uint32_t bit = 0; bit < 16; ++bit) {

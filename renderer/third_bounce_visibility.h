@@ -16,7 +16,7 @@ namespace renderer {
 struct VisiblePieces {
     std::vector<UnitMask> units;        ///< per block: those with pieces of which a part is seen
     std::vector<VisibilityMask> masks;  ///< block * kSize + lane, of these units; others: anything
-    /// Expected, of H: of shadow edges that 16 rays leave uncertain.
+    /// Expected, of H, in all pairs of the point: of shadow edges that 16 rays leave uncertain.
     double squared_error = 0.0;
 };
 
@@ -79,6 +79,7 @@ class VisibilityTracer {
     RelevantPieces relevant_;
     ShadowRayTracer rays_;
     double negligible_error_ = 0.0;
+    double pairs_per_point_ = 1.0;
     std::vector<State> groups_;
     std::vector<State> pieces_;
     std::vector<PointMask> represented_;  ///< per piece: whose first ray to the group went to it

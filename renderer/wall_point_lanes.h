@@ -13,6 +13,7 @@ struct WallPoint {
     core::Vec3 position;
     core::Vec3 normal;
     std::uint32_t index = 0;  ///< among the points of its side
+    bool is_confocal = true;  ///< some pair has both its ends here, see CoincidingPoints
 };
 
 /// Some wall points of a WallPointLanes: point p is bit p.
@@ -40,6 +41,7 @@ struct alignas(64) WallPointLanes {
     Lanes x, y, z;
     Lanes normal_x, normal_y, normal_z;
     std::array<std::uint32_t, kSize> index;
+    PointMask confocal = 0;  ///< those with WallPoint::is_confocal
     std::size_t count = 0;
 
     WallPointLanes() = default;
@@ -54,6 +56,7 @@ struct alignas(64) WallPointLanes {
             normal_y[p] = point.normal.y();
             normal_z[p] = point.normal.z();
             index[p] = point.index;
+            confocal = static_cast<PointMask>(confocal | std::uint32_t{point.is_confocal} << p);
         }
     }
     PointMask all() const { return static_cast<PointMask>((std::uint32_t{1} << count) - 1U); }
