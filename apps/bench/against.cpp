@@ -56,6 +56,8 @@ const std::map<std::string_view, Quantity> kQuantities{{"cpu_seconds", kTime},
 // Fields that name a row.
 constexpr std::array kNames{"name",
                             "scene",
+                            "pattern",
+                            "target_error",
                             "sequence",
                             "method",
                             "choice",

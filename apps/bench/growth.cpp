@@ -2,6 +2,7 @@
 #include "apps/bench/growth.h"
 
 #include "apps/bench/limits.h"
+#include "apps/bench/meshes.h"
 #include "apps/bench/power_law.h"
 #include "renderer/core/parallel.h"
 #include "renderer/core/process.h"
@@ -33,23 +34,9 @@ struct Sizes {
 // A sheet of 0.8 m with waves of 4 cm, 1 m behind the wall.
 renderer::Object sheet(int cells) {
     renderer::Object object;
-    for (int j = 0; j <= cells; ++j) {
-        for (int i = 0; i <= cells; ++i) {
-            const double x = 2.0 * i / cells - 1.0;
-            const double y = 2.0 * j / cells - 1.0;
-            const double z = 1.0 + 0.04 * std::sin(5.0 * x + 1.0) * std::cos(4.0 * y);
-            object.mesh.vertices.emplace_back(0.4 * x, 0.4 * y, z);
-        }
-    }
-    const auto index = [&](int i, int j) {
-        return static_cast<std::uint32_t>(j * (cells + 1) + i);
-    };
-    for (int j = 0; j < cells; ++j) {
-        for (int i = 0; i < cells; ++i) {
-            object.mesh.triangles.push_back({index(i, j), index(i + 1, j + 1), index(i + 1, j)});
-            object.mesh.triangles.push_back({index(i, j), index(i, j + 1), index(i + 1, j + 1)});
-        }
-    }
+    object.mesh = make_grid_mesh(cells, [](double u, double v) {
+        return Vec3(0.4 * u, 0.4 * v, 1.0 + 0.04 * std::sin(5.0 * u + 1.0) * std::cos(4.0 * v));
+    });
     return object;
 }
 

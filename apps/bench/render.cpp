@@ -4,7 +4,6 @@
 #include "apps/bench/limits.h"
 #include "apps/bench/power_law.h"
 #include "apps/bench/scene.h"
-#include "nlos/compare.h"
 #include "renderer/core/parallel.h"
 #include "renderer/core/process.h"
 
@@ -29,10 +28,6 @@ struct Effort {
     std::string name;
     renderer::RenderSettings settings;
 };
-
-double relative_l2(const core::Capture& a, const core::Capture& b) {
-    return nlos::compare_captures(a, b).rel_l2.value_or(0.0);
-}
 
 // The integrator far below every error to be measured. Path tracing shares no code with it beyond
 // the rays; how far a long run of it lies from the reference bounds the reference's own error,
@@ -237,6 +232,10 @@ RenderBench bench_render(const RenderBenchSettings& settings, const core::Progre
     if (settings.has("curves")) measure_curves(settings, progress, result);
     if (settings.has("third_bounce")) {
         result.third_bounce = bench_third_bounce_costs(settings.scene, settings.repeats);
+    }
+    if (settings.has("accuracy")) {
+        result.target_errors = bench_target_errors(settings.quick ? 6 : 24, progress);
+        result.agreement = bench_agreement(settings.agreement_scenes, progress);
     }
     if (settings.has("gates")) {
         result.gates.push_back(bench_gates(settings.scene, 3, gate_runs, progress));

@@ -4,6 +4,7 @@
 #include "apps/bench/gates.h"
 #include "apps/bench/growth.h"
 #include "apps/bench/output.h"
+#include "apps/bench/third_bounce_accuracy.h"
 #include "apps/bench/third_bounce_costs.h"
 
 #include <string>
@@ -82,6 +83,8 @@ struct RenderBench {
     std::vector<BenchCurve> curves;
     std::vector<EqualError> equal_error;
     std::vector<ThirdBounceCost> third_bounce;
+    std::vector<TargetError> target_errors;
+    std::vector<Agreement> agreement;
     std::vector<GateTable> gates;
     std::vector<ExclusionBench> exclusion;
     std::vector<RenderGrowth> growth;
@@ -100,6 +103,8 @@ void for_each_field(RenderBench& bench, Visitor&& visit) {
     visit("curves", bench.curves, "error against time");
     visit("equal_error", bench.equal_error, "every estimator against path");
     visit("third_bounce", bench.third_bounce, "histogram, gates and pairs to 1 %");
+    visit("target_errors", bench.target_errors, "of third_bounce on random scenes");
+    visit("agreement", bench.agreement, "of third_bounce and path bin by bin");
     visit("gates", bench.gates, "every estimator in equal time");
     visit("exclusion", bench.exclusion, "ellipsoidal with and without excluded surfaces");
     visit("growth", bench.growth, "time against sizes");
@@ -113,7 +118,14 @@ struct RenderBenchSettings {
     /// and a back wall with its neighbours.
     std::vector<std::string> exclusion_scenes = {
         "scenes/bars/scene.json", "scenes/curved/scene.json", "scenes/corner/scene.json"};
-    std::string part = "all";  ///< or curves, third_bounce, gates, exclusion, growth
+    /// Where third_bounce and path are compared bin by bin.
+    std::vector<std::string> agreement_scenes = {"scenes/letter/scene.json",
+                                                 "scenes/bars/scene.json",
+                                                 "scenes/corner/scene.json",
+                                                 "scenes/glossy/scene.json",
+                                                 "scenes/animal/scene.json",
+                                                 "scenes/curved/scene.json"};
+    std::string part = "all";  ///< or curves, third_bounce, accuracy, gates, exclusion, growth
     int repeats = 3;           ///< runs per point; those that take long are not repeated
     bool quick = false;        ///< leaves out what takes longest
 

@@ -34,9 +34,15 @@ void add_bench_render_command(CLI::App& bench) {
                      settings.exclusion_scenes,
                      "Scenes with surfaces to exclude from ellipsoidal connections")
         ->capture_default_str();
+    render
+        ->add_option("--agreement-scenes",
+                     settings.agreement_scenes,
+                     "Confocal scans on which third_bounce and path are compared bin by bin")
+        ->capture_default_str();
     render->add_option("--part", settings.part, "What to measure")
         ->capture_default_str()
-        ->check(CLI::IsMember({"all", "curves", "third_bounce", "gates", "exclusion", "growth"}));
+        ->check(CLI::IsMember(
+            {"all", "curves", "third_bounce", "accuracy", "gates", "exclusion", "growth"}));
     render->add_option("--repeats", settings.repeats, "Runs per point")
         ->capture_default_str()
         ->check(CLI::Range(1, 1000));

@@ -83,15 +83,90 @@ std::string exclusion_text(const std::vector<ExclusionBench>& benches) {
 
 std::string third_bounce_text(const RenderBench& bench) {
     if (bench.third_bounce.empty()) return "";
-    std::string text = fmt::format("\nthird_bounce to 1 %, {}\n", bench.scene);
-    text += fmt::format(
-        "{:<28} {:>10} {:>13} {:>10}\n", "measurement", "CPU s", "of histogram", "rel. L2");
+    std::string text = fmt::format(
+        "\nthird_bounce to 1 %, {}; millions of rays, and of them per second: while they are "
+        "traced, "
+        "of the whole, and of Embree alone from single points to places drawn by area\n",
+        bench.scene);
+    text += fmt::format("{:<28} {:>10} {:>13} {:>10} {:>8} {:>8} {:>8} {:>8}\n",
+                        "measurement",
+                        "CPU s",
+                        "of histogram",
+                        "rel. L2",
+                        "rays",
+                        "tracing",
+                        "whole",
+                        "Embree");
     for (const ThirdBounceCost& cost : bench.third_bounce) {
-        text += fmt::format("{:<28} {:>10.3f} {:>13.3f} {:>10.2e}\n",
-                            cost.measurement,
-                            cost.cpu_seconds,
-                            cost.share,
-                            cost.rel_l2);
+        text += fmt::format(
+            "{:<28} {:>10.3f} {:>13.3f} {:>10.2e} {:>8.3g} {:>8.2f} {:>8.2f} {:>8.2f}\n",
+            cost.measurement,
+            cost.cpu_seconds,
+            cost.share,
+            cost.rel_l2,
+            cost.million_rays,
+            cost.tracing_rate,
+            cost.whole_rate,
+            cost.embree_rate);
+    }
+    return text;
+}
+
+std::string target_errors_text(const std::vector<TargetError>& errors) {
+    if (errors.empty()) return "";
+    const auto count = [&](auto member) { return std::ranges::count(errors, true, member); };
+    std::string text = fmt::format(
+        "\nthird_bounce to its target on {} random scenes: {} of {} below, {} more than five times "
+        "below although a coarser cut is left, {} cut as coarsely as can be; the others:\n",
+        errors.back().scene + 1,
+        count(&TargetError::met),
+        errors.size(),
+        count(&TargetError::is_far_below),
+        count(&TargetError::is_coarsest));
+    text += fmt::format("{:<6} {:<11} {:>7} {:>10} {:>10} {:>8}\n",
+                        "scene",
+                        "pattern",
+                        "target",
+                        "rel. L2",
+                        "stated",
+                        "pieces");
+    for (const TargetError& error : errors) {
+        if (error.met && !error.is_far_below) continue;
+        text += fmt::format("{:<6} {:<11} {:>7} {:>10.2e} {:>10.2e} {:>8}\n",
+                            error.scene,
+                            error.pattern,
+                            error.target,
+                            error.rel_l2,
+                            error.stated,
+                            error.pieces);
+    }
+    return text;
+}
+
+std::string agreement_text(const std::vector<Agreement>& agreements) {
+    if (agreements.empty()) return "";
+    std::string text =
+        "\nthird_bounce to 0.05 % and path: bins within their 95 % interval, the one farthest off "
+        "and "
+        "its chance\n";
+    text += fmt::format("{:<28} {:<11} {:>6} {:>7} {:>10} {:>8} {:>20}\n",
+                        "scene",
+                        "pattern",
+                        "bins",
+                        "within",
+                        "largest z",
+                        "chance",
+                        "energy ratio");
+    for (const Agreement& agreement : agreements) {
+        text += fmt::format("{:<28} {:<11} {:>6} {:>7.3f} {:>10.2f} {:>8.2g} {:>9.5f} +- {:.5f}\n",
+                            agreement.scene,
+                            agreement.pattern,
+                            agreement.num_bins,
+                            agreement.within_95,
+                            agreement.largest_z,
+                            agreement.p_value,
+                            agreement.energy_ratio,
+                            agreement.energy_sigma);
     }
     return text;
 }
@@ -143,7 +218,8 @@ std::string curves_text(const RenderBench& bench) {
 }
 
 std::string table_of(const RenderBench& bench) {
-    std::string text = curves_text(bench) + third_bounce_text(bench);
+    std::string text = curves_text(bench) + third_bounce_text(bench) +
+                       target_errors_text(bench.target_errors) + agreement_text(bench.agreement);
     for (const GateTable& table : bench.gates) text += gates_text(table);
     return text + exclusion_text(bench.exclusion) + growth_text(bench.growth);
 }

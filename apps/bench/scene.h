@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "nlos/compare.h"
 #include "renderer/render.h"
 #include "renderer/scene_file.h"
 
@@ -39,6 +40,22 @@ class BenchScene {
     core::Scan scan_;
     renderer::Scene scene_;
 };
+
+/// What an estimator of its own computed, as a capture.
+inline core::Capture capture_of(const core::Scan& scan,
+                                const core::TimeAxis& axis,
+                                const core::Transient& transient) {
+    core::Capture capture;
+    capture.scan = scan;
+    capture.time_axis = axis;
+    capture.transient = transient;
+    return capture;
+}
+
+/// Relative L2 distance of one capture from another.
+inline double relative_l2(const core::Capture& a, const core::Capture& b) {
+    return nlos::compare_captures(a, b).rel_l2.value_or(0.0);
+}
 
 /// The bin in which this share of the capture's light has arrived.
 inline int bin_of_share(const core::Capture& capture, double share) {

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "apps/bench/third_bounce_costs.h"
 
+#include "apps/bench/limits.h"
 #include "apps/bench/scene.h"
-#include "nlos/compare.h"
 #include "nlos/compare_scores.h"
 #include "renderer/core/parallel.h"
 #include "renderer/core/process.h"
+#include "renderer/third_bounce.h"
 
 #include <fmt/core.h>
 
@@ -21,20 +22,30 @@ ThirdBounceCost measure(const std::string& measurement,
                         const core::TimeAxis& axis,
                         int repeats) {
     renderer::RenderSettings settings = bench.settings();
-    settings.method = renderer::Estimator::ThirdBounce;
-    settings.target_error = kReferenceTarget;
-    const core::Capture reference = bench.render(axis, settings);
-    settings.target_error = kTarget;
+    const auto integrate = [&](double target) {
+        settings.target_error = target;
+        return renderer::integrate_third_bounce(bench.scene(), bench.scan(), axis, settings, {});
+    };
+    const core::Capture reference =
+        capture_of(bench.scan(), axis, integrate(kReferenceTarget).transient);
     ThirdBounceCost cost;
     cost.measurement = measurement;
     std::vector<double> seconds;
+    std::vector<double> tracing_seconds;
+    std::vector<double> ray_seconds;
     for (int i = 0; i < repeats; ++i) {
         const double start = core::cpu_seconds();
-        const core::Capture capture = bench.render(axis, settings);
+        const renderer::ThirdBounce result = integrate(kTarget);
         seconds.push_back(core::cpu_seconds() - start);
-        cost.rel_l2 = nlos::compare_captures(capture, reference).rel_l2.value_or(0.0);
+        tracing_seconds.push_back(result.tracing_seconds);
+        ray_seconds.push_back(shadow_ray_seconds(bench.scene(), bench.scan()));
+        cost.million_rays = 1e-6 * static_cast<double>(result.num_rays);
+        cost.rel_l2 = relative_l2(capture_of(bench.scan(), axis, result.transient), reference);
     }
     cost.cpu_seconds = nlos::median(seconds);
+    cost.tracing_rate = cost.million_rays / nlos::median(tracing_seconds);
+    cost.whole_rate = cost.million_rays / cost.cpu_seconds;
+    cost.embree_rate = 1e-6 / nlos::median(ray_seconds);
     return cost;
 }
 

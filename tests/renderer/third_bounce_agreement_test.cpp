@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The deterministic third bounce against path tracing, and against its own target.
-#include "renderer/core/random.h"
+// The deterministic third bounce against path tracing.
 #include "renderer/render.h"
 #include "renderer/scene_file.h"
-#include "renderer/third_bounce.h"
 #include "tests/support/statistics.h"
 #include "tests/support/test_scenes.h"
 
@@ -153,76 +151,6 @@ TEST(AutoMethod, AddsPathsForNarrowLobesAndHigherOrders) {
         both.variance->values()[i] += mixed.capture.variance->values()[i];
     }
     expect_bins_agree(mixed.capture, both, 2.5e-3);
-}
-
-// Spheres and parallelograms at random, which hide and touch one another.
-renderer::SceneGeometry random_geometry(core::Rng& rng) {
-    const auto between = [&](double low, double high) {
-        return low + (high - low) * rng.uniform();
-    };
-    renderer::SceneGeometry geometry;
-    const int num_spheres = 1 + static_cast<int>(2.0 * rng.uniform());
-    for (int i = 0; i < num_spheres; ++i) {
-        const Vec3 center(between(-0.3, 0.3), between(-0.3, 0.3), between(0.5, 0.9));
-        const int subdivisions = 1 + static_cast<int>(2.0 * rng.uniform());
-        geometry.objects.push_back(test_support::sphere_object(
-            center, between(0.05, 0.15), subdivisions, between(0.3, 1.0)));
-    }
-    const int num_sheets = 1 + static_cast<int>(3.0 * rng.uniform());
-    for (int i = 0; i < num_sheets; ++i) {
-        const auto edge = [&] {
-            return Vec3(between(-0.3, 0.3), between(-0.3, 0.3), between(-0.1, 0.1));
-        };
-        const Vec3 corner(between(-0.4, 0.4), between(-0.4, 0.4), between(0.3, 1.0));
-        geometry.objects.push_back(
-            test_support::parallelogram_object({corner, edge(), edge(), between(0.1, 1.0)}));
-    }
-    return geometry;
-}
-
-core::Scan random_scan(core::Rng& rng, int pattern) {
-    const int side = pattern == 2 ? 4 : 8;
-    std::vector<Vec3> points;
-    for (int i = 0; i < side; ++i) {
-        for (int j = 0; j < side; ++j) {
-            points.emplace_back((i + 0.5) / side - 0.5, (j + 0.5) / side - 0.5, 0.0);
-        }
-    }
-    if (pattern == 0) return test_support::confocal_scan(points);
-    if (pattern == 2) return test_support::exhaustive_scan(points, points);
-    return test_support::single_scan({rng.uniform() - 0.5, rng.uniform() - 0.5, 0.0}, points);
-}
-
-TEST(TargetError, IsHonouredOnRandomScenesAndNotFarUndercut) {
-    int num_cases = 0;
-    int num_above = 0;
-    int num_far_below = 0;
-    for (int i = 0; i < 6; ++i) {
-        core::Rng rng(test_support::seed_of("IsHonoured"), static_cast<std::uint64_t>(i), 0);
-        const core::Scan scan = random_scan(rng, i % 3);
-        const renderer::Scene scene(random_geometry(rng), scan, renderer::RelayWall{});
-        const double bin_width = 0.006 + 0.02 * rng.uniform();
-        const core::TimeAxis axis{0.4, bin_width, static_cast<int>(2.4 / bin_width)};
-        renderer::RenderSettings settings;
-        settings.target_error = 1e-3;
-        const auto reference = integrate_third_bounce(scene, scan, axis, settings, {});
-        settings.target_error = 10.0;
-        const auto coarsest = integrate_third_bounce(scene, scan, axis, settings, {});
-        for (const double target : {0.05, 0.02, 0.01}) {
-            settings.target_error = target;
-            const auto result = integrate_third_bounce(scene, scan, axis, settings, {});
-            const double error =
-                test_support::relative_l2(result.transient.values(), reference.transient.values());
-            ++num_cases;
-            if (error > target) ++num_above;
-            const bool is_coarsest = result.num_pieces == coarsest.num_pieces;
-            if (error < target / 5.0 && !is_coarsest) ++num_far_below;
-            EXPECT_LT(error, 2.0 * target) << "scene " << i;
-        }
-    }
-    EXPECT_EQ(num_cases, 18);
-    EXPECT_LE(num_above, 1);
-    EXPECT_LE(num_far_below, 1);
 }
 
 }  // namespace
