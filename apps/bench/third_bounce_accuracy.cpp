@@ -17,9 +17,6 @@ namespace {
 using core::Vec3;
 using renderer::ThirdBounce;
 
-constexpr double kReferenceTarget = 1e-3;
-constexpr double kNoTarget = 10.0;  ///< as coarse as can be
-constexpr double kFarBelow = 5.0;
 constexpr std::array kPatterns{
     core::ScanPattern::Confocal, core::ScanPattern::Single, core::ScanPattern::Exhaustive};
 
@@ -85,6 +82,9 @@ core::Scan random_scan(core::Rng& rng, core::ScanPattern pattern) {
 }
 
 std::vector<TargetError> try_targets(int number) {
+    constexpr double kReferenceTarget = 1e-3;
+    constexpr double kNoTarget = 10.0;  // as coarse as can be
+    constexpr double kFarBelow = 5.0;
     const core::ScanPattern pattern =
         kPatterns[static_cast<std::size_t>(number) % kPatterns.size()];
     core::Rng rng(0, static_cast<std::uint64_t>(number), 0);
