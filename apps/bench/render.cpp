@@ -234,8 +234,8 @@ RenderBench bench_render(const RenderBenchSettings& settings, const core::Progre
         result.third_bounce = bench_third_bounce_costs(settings.scene, settings.repeats);
     }
     if (settings.has("accuracy")) {
-        result.target_errors = bench_target_errors(settings.quick ? 6 : 24, progress);
         result.agreement = bench_agreement(settings.agreement_scenes, progress);
+        result.target_errors = bench_target_errors(settings.quick ? 6 : 24, progress);
     }
     if (settings.has("gates")) {
         result.gates.push_back(bench_gates(settings.scene, 3, gate_runs, progress));

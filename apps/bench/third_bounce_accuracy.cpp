@@ -187,6 +187,9 @@ Agreement compare_with_path(const std::string& path, core::ScanPattern pattern) 
     constexpr double kTarget = 5e-4;
     constexpr int kSamples = 100'000;
     const BenchScene bench(path);
+    if (bench.scan().camera) {
+        throw core::Error(path, "has a camera", "must have wall points to compare estimators on");
+    }
     const core::Scan scan = few_points(bench.scan(), pattern);
     const auto render = [&](const renderer::RenderSettings& settings) {
         return renderer::render(bench.scene(), scan, bench.axis(), settings, {}).capture;

@@ -67,6 +67,8 @@ std::vector<TargetError> bench_target_errors(int num_scenes, const core::Progres
 
 /// `third_bounce` to 0.05 % against `path` bin by bin, on scenes as they are but for 16 of their
 /// wall points, in confocal, single and exhaustive scans.
+///
+/// throws   core::Error for a scene with a camera
 std::vector<Agreement> bench_agreement(const std::vector<std::string>& scenes,
                                        const core::Progress& progress);
 

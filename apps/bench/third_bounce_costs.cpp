@@ -54,10 +54,10 @@ ThirdBounceCost measure(const std::string& measurement,
 std::vector<ThirdBounceCost> bench_third_bounce_costs(const std::string& scene_path, int repeats) {
     const core::ThreadLimit one_thread(1);
     const BenchScene bench(scene_path);
-    std::vector<ThirdBounceCost> costs{measure("histogram", bench, bench.axis(), repeats)};
     renderer::RenderSettings settings = bench.settings();
     settings.method = renderer::Estimator::ThirdBounce;
     const core::Capture capture = bench.render(settings);
+    std::vector<ThirdBounceCost> costs{measure("histogram", bench, bench.axis(), repeats)};
     for (const double share : {0.1, 0.5, 0.9}) {
         const double opl = bench.axis().bin_begin_m(bin_of_share(capture, share));
         costs.push_back(measure(fmt::format("gate of {:g} mm at {:.2f} m", 1e3 * kGate_m, opl),
