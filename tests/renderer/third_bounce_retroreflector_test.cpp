@@ -8,8 +8,9 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
+#include <array>
 #include <numeric>
+#include <span>
 
 namespace {
 
