@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/ground_truth.h"
+#include "renderer/scene/ground_truth.h"
 
 #include <string>
 

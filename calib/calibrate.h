@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "calib/boards.h"
-#include "calib/direct_returns.h"
-#include "calib/setup_geometry.h"
+#include "calib/setup/boards.h"
+#include "calib/setup/direct_returns.h"
+#include "calib/setup/setup_geometry.h"
 #include "renderer/core/capture.h"
 #include "renderer/core/instrument_response.h"
 

@@ -3,7 +3,7 @@
 
 #include "calib/fit.h"
 #include "renderer/core/mesh.h"
-#include "renderer/geometry.h"
+#include "renderer/material/scene_geometry.h"
 
 #include <optional>
 #include <vector>

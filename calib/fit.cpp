@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "calib/fit.h"
 
-#include "calib/alternatives.h"
-#include "calib/fit_checks.h"
-#include "calib/fit_driver.h"
-#include "calib/poisson_deviance.h"
-#include "calib/shadow_refinement.h"
-#include "calib/simulated_refits.h"
-#include "calib/uncertainty.h"
+#include "calib/fit/fit_checks.h"
+#include "calib/fit/fit_driver.h"
+#include "calib/fit/shadow_refinement.h"
+#include "calib/fit/simulated_refits.h"
+#include "calib/model/alternatives.h"
+#include "calib/statistics/poisson_deviance.h"
+#include "calib/statistics/uncertainty.h"
 #include "renderer/core/error.h"
 #include "renderer/core/stopwatch.h"
 
@@ -44,7 +44,7 @@ void store_fit(const FitDriver& driver,
                FitResult& result) {
     result.axis = stage.data->axis;
     result.data = stage.data->values;
-    stage.model->update(state, core::Slopes::Without);
+    stage.model->update(state, renderer::Slopes::Without);
     const auto bins = static_cast<double>(stage.model->settings().bins_per_ambient);
     double variance = 0.0;
     PairModel expected;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/render.h"
+#include "renderer/core/progress.h"
+#include "renderer/render_result.h"
+#include "renderer/scene/scene.h"
 
 namespace renderer {
 

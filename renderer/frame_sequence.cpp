@@ -2,6 +2,7 @@
 #include "renderer/frame_sequence.h"
 
 #include "renderer/core/random.h"
+#include "renderer/render.h"
 #include "renderer/restir_render.h"
 
 #include <fmt/core.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/ellipsoidal_tracer.h"
-#include "renderer/path_tracer.h"
+#include "renderer/ellipsoidal/ellipsoidal_tracer.h"
+#include "renderer/path/path_tracer.h"
 
 #include <functional>
 

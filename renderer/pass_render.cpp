@@ -4,8 +4,8 @@
 #include "renderer/core/parallel.h"
 #include "renderer/core/process.h"
 #include "renderer/core/stopwatch.h"
-#include "renderer/short_paths.h"
-#include "renderer/transient_accumulator.h"
+#include "renderer/film/transient_accumulator.h"
+#include "renderer/path/short_paths.h"
 
 #include <fmt/core.h>
 

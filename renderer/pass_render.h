@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "renderer/core/progress.h"
+#include "renderer/film/stopping_rule.h"
 #include "renderer/pair_estimator.h"
-#include "renderer/render.h"
-#include "renderer/stopping_rule.h"
+#include "renderer/render_result.h"
+#include "renderer/scene/scene.h"
 
 namespace renderer {
 

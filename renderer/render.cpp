@@ -2,11 +2,10 @@
 #include "renderer/render.h"
 
 #include "renderer/ellipsoidal_render.h"
-#include "renderer/measurement.h"
 #include "renderer/pass_render.h"
+#include "renderer/path/measurement.h"
 #include "renderer/restir_render.h"
-#include "renderer/third_bounce.h"
-#include "renderer/third_bounce_pieces.h"
+#include "renderer/third_bounce/third_bounce.h"
 #include "renderer/worthwhile_orders.h"
 
 #include <fmt/core.h>

@@ -1,41 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/core/capture.h"
 #include "renderer/core/progress.h"
-#include "renderer/excluded_facets.h"
-#include "renderer/render_settings.h"
-#include "renderer/restir_counts.h"
-#include "renderer/scene.h"
-
-#include <cstdint>
-#include <optional>
-#include <string>
-#include <vector>
+#include "renderer/render_result.h"
+#include "renderer/scene/scene.h"
+#include "renderer/settings/render_settings.h"
 
 namespace renderer {
-
-/// Which estimator computed which bounce orders, of which surfaces.
-struct OrderSource {
-    int first_order = 3;
-    int last_order = 3;
-    Estimator estimator = Estimator::Path;
-    std::string surfaces = "all";
-};
-
-/// What render() computed and what it took.
-struct RenderResult {
-    core::Capture capture;
-    std::vector<OrderSource> sources;       ///< orders 1 and 2 need no estimator
-    std::optional<double> estimated_error;  ///< relative L2 over all of H; empty: not known
-    std::uint64_t samples_per_pair = 0;     ///< candidate paths used, whole passes
-    std::uint64_t num_rays = 0;
-    double seconds = 0.0;
-    ExcludedObjects excluded;  ///< from ellipsoidal connections, when there are any
-    std::vector<std::string> warnings;
-    RestirCounts restir_counts;  ///< of restir
-    bool interrupted = false;    ///< stopped early; every pair has a result
-};
 
 /// Renders the transients that a scan, or a camera, records of a scene.
 ///

@@ -6,11 +6,11 @@
 #include "renderer/core/sampling.h"
 #include "renderer/core/stopwatch.h"
 #include "renderer/ellipsoidal_render.h"
-#include "renderer/measurement.h"
-#include "renderer/restir_renderer.h"
-#include "renderer/short_paths.h"
-#include "renderer/stopping_rule.h"
-#include "renderer/transient_accumulator.h"
+#include "renderer/film/stopping_rule.h"
+#include "renderer/film/transient_accumulator.h"
+#include "renderer/path/measurement.h"
+#include "renderer/path/short_paths.h"
+#include "renderer/restir/restir_renderer.h"
 
 #include <fmt/core.h>
 

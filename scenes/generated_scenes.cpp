@@ -2,7 +2,7 @@
 #include "scenes/generated_scenes.h"
 
 #include "renderer/core/output_file.h"
-#include "renderer/gltf.h"
+#include "renderer/gltf/gltf.h"
 
 namespace scenes {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/geometry.h"
+#include "renderer/material/scene_geometry.h"
 
 #include <string>
 #include <vector>

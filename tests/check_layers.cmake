@@ -1,49 +1,129 @@
-# Fails when a file includes something its folder may not know about.
-# Debian installs third-party headers in /usr/include, so PRIVATE linking alone cannot hide them.
+# The order of the rooms, and a test that no include goes against it.
+#
+#   cmake -DROOT=. -P tests/check_layers.cmake             fails with the offending include
+#   cmake -DROOT=. -DWRITE=ON -P tests/check_layers.cmake  also writes the table in CONTRIBUTING.md
+#
+# A room is one folder of sources. It may include itself and rooms on lower floors of its own top
+# folder, and the top folders that `below_` lists; so no two rooms include each other.
+cmake_minimum_required(VERSION 3.25)
 
-# Own headers: which folders each folder may include.
-set(own_renderer/core "renderer/core/")
-set(own_renderer      "renderer/")
-set(own_nlos          "renderer/core/|nlos/")
-set(own_calib         "renderer/|calib/")
-set(own_apps          "renderer/|nlos/|calib/|apps/")
+set(floors_renderer
+    "renderer/core"
+    "renderer/settings|renderer/material|renderer/triangle"
+    "renderer/gltf|renderer/film"
+    "renderer/scene"
+    "renderer/geometry|renderer/path"
+    "renderer/third_bounce|renderer/ellipsoidal|renderer/shift"
+    "renderer/restir"
+    "renderer")
+set(floors_nlos
+    "nlos/containers|nlos/fourier|nlos/detector|nlos/reconstruction"
+    "nlos/formats|nlos/compare|nlos/preparation"
+    "nlos/methods|nlos/pictures"
+    "nlos")
+set(floors_calib
+    "calib/statistics|calib/model"
+    "calib/forward|calib/setup"
+    "calib/fit"
+    "calib")
+set(floors_apps
+    "apps"
+    "apps/bench|apps/report"
+    "apps/bench/render|apps/bench/reconstruct|apps/bench/fit"
+    "apps/commands")
 
-# Third-party headers: which may appear in the .cpp files of each folder. Headers get only "anywhere".
+# What lies below a whole top folder.
+set(below_renderer "")
+set(below_nlos "renderer/core/")
+set(below_calib "renderer/")
+set(below_apps "renderer/|nlos/|calib/")
+
+# Third-party headers. Debian installs them in /usr/include, so PRIVATE linking alone cannot hide
+# them. "anywhere" may stand in every file, the others only in .cpp files of the rooms named (in
+# apps, which is nobody's library, also in headers).
 set(anywhere
     "Eigen/|tbb/|nlohmann/|fmt/|sys/|unistd\\.h|fcntl\\.h|immintrin\\.h|experimental/simd")
-set(third_renderer/core "${anywhere}|flann/|malloc\\.h")
-set(third_renderer      "${anywhere}|embree3/|tiny_gltf")
-set(third_nlos          "${anywhere}|fftw3\\.h|hdf5\\.h|matio\\.h|Imf|OpenEXR/|opencv2/")
-set(third_calib         "${anywhere}|ceres/|opencv2/")
-set(third_apps          "${anywhere}|CLI/|opencv2/")
+set(third_renderer/core "flann/|malloc\\.h")
+set(third_renderer/gltf "tiny_gltf")
+set(third_renderer/scene "embree3/")
+set(third_nlos/containers "hdf5\\.h|matio\\.h|OpenEXR/")
+set(third_nlos/fourier "fftw3\\.h")
+set(third_nlos/pictures "opencv2/")
+set(third_calib/setup "ceres/|opencv2/")
+set(third_calib/forward "ceres/")
+set(third_calib/fit "ceres/")
+set(third_apps "CLI/")
+set(third_apps/bench "CLI/")
 
+get_filename_component(ROOT ${ROOT} ABSOLUTE)
 set(errors "")
-foreach(folder renderer/core renderer nlos calib apps)
-  file(GLOB_RECURSE files RELATIVE ${ROOT} ${ROOT}/${folder}/*.h ${ROOT}/${folder}/*.cpp)
-  if(folder STREQUAL "renderer")
-    list(FILTER files EXCLUDE REGEX "^renderer/core/")
-  endif()
-  foreach(file ${files})
-    file(STRINGS ${ROOT}/${file} lines REGEX "^[ \t]*#[ \t]*include[ \t]*[\"<]")
-    foreach(line ${lines})
-      if(line MATCHES "include[ \t]*\"([^\"]+)\"")
-        set(included ${CMAKE_MATCH_1})
-        set(allowed "${own_${folder}}")
-      elseif(line MATCHES "include[ \t]*<([^>]*[/.][^>]*)>")  # <vector> and other bare names are standard
-        set(included ${CMAKE_MATCH_1})
-        set(allowed "${third_${folder}}")
-        if(file MATCHES "\\.h$" AND NOT folder STREQUAL "apps")  # apps is nobody's library
-          set(allowed "${anywhere}")
-        endif()
-      else()
-        continue()
-      endif()
-      if(NOT included MATCHES "^(${allowed})")
-        string(APPEND errors "\n  ${file} includes ${included}")
-      endif()
+set(table "| floor | room | includes | files | lines |\n|---|---|---|---|---|\n")
+foreach(top renderer nlos calib apps)
+  set(lower "")  # rooms on the floors below
+  set(floor 0)
+  foreach(rooms ${floors_${top}})
+    math(EXPR floor "${floor} + 1")
+    string(REPLACE "|" ";" rooms "${rooms}")
+    foreach(room ${rooms})
+      list(APPEND known ${room})
+      file(GLOB files RELATIVE ${ROOT} ${ROOT}/${room}/*.h ${ROOT}/${room}/*.cpp)
+      set(uses "")
+      set(num_lines 0)
+      foreach(file ${files})
+        file(STRINGS ${ROOT}/${file} text)
+        list(LENGTH text length)
+        math(EXPR num_lines "${num_lines} + ${length}")
+        file(STRINGS ${ROOT}/${file} lines REGEX "^[ \t]*#[ \t]*include[ \t]*[\"<]")
+        foreach(line ${lines})
+          if(line MATCHES "include[ \t]*\"([^\"]+)\"")
+            set(included ${CMAKE_MATCH_1})
+            get_filename_component(used ${included} DIRECTORY)
+            set(below "${below_${top}}")
+            if(NOT used IN_LIST lower AND NOT used STREQUAL room
+               AND (below STREQUAL "" OR NOT included MATCHES "^(${below})"))
+              string(APPEND errors "\n  ${file} includes ${included}")
+            elseif(NOT used STREQUAL room)
+              list(APPEND uses ${used})
+            endif()
+          elseif(line MATCHES "include[ \t]*<([^>]*[/.][^>]*)>")  # <vector> and other bare names are standard
+            set(included ${CMAKE_MATCH_1})
+            set(allowed "${anywhere}")
+            if(DEFINED third_${room} AND (file MATCHES "\\.cpp$" OR top STREQUAL "apps"))
+              string(APPEND allowed "|${third_${room}}")
+            endif()
+            if(NOT included MATCHES "^(${allowed})")
+              string(APPEND errors "\n  ${file} includes ${included}")
+            endif()
+          endif()
+        endforeach()
+      endforeach()
+      list(REMOVE_DUPLICATES uses)
+      list(SORT uses)
+      list(FILTER uses EXCLUDE REGEX "^renderer/core$")
+      list(JOIN uses ", " uses)
+      list(LENGTH files num_files)
+      string(APPEND table "| ${top} ${floor} | ${room} | ${uses} | ${num_files} | ${num_lines} |\n")
     endforeach()
+    list(APPEND lower ${rooms})
   endforeach()
 endforeach()
+
+# A folder of sources that no floor names would go unchecked.
+foreach(top renderer nlos calib apps)
+  file(GLOB_RECURSE files RELATIVE ${ROOT} ${ROOT}/${top}/*.h ${ROOT}/${top}/*.cpp)
+  foreach(file ${files})
+    get_filename_component(room ${file} DIRECTORY)
+    if(NOT room IN_LIST known)
+      string(APPEND errors "\n  ${file} stands in no room known to tests/check_layers.cmake")
+    endif()
+  endforeach()
+endforeach()
+
 if(errors)
-  message(FATAL_ERROR "Forbidden includes (see CONTRIBUTING.md, layers):${errors}")
+  message(FATAL_ERROR "Forbidden includes (see CONTRIBUTING.md, rooms):${errors}")
+endif()
+if(WRITE)
+  file(READ ${ROOT}/CONTRIBUTING.md text)
+  string(REGEX REPLACE "\\| floor \\| room \\|[^\n]*\n(\\|[^\n]*\n)*" "${table}" text "${text}")
+  file(WRITE ${ROOT}/CONTRIBUTING.md "${text}")
 endif()

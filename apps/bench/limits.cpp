@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "apps/bench/limits.h"
 
-#include "nlos/light_cone.h"
-#include "nlos/padded_plane.h"
-#include "nlos/phasor_field.h"
-#include "renderer/area_sampler.h"
+#include "nlos/fourier/padded_plane.h"
+#include "nlos/methods/light_cone.h"
+#include "nlos/methods/phasor_field.h"
 #include "renderer/core/process.h"
 #include "renderer/core/random.h"
+#include "renderer/scene/area_sampler.h"
 
 #include <algorithm>
 #include <vector>

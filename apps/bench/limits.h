@@ -2,7 +2,7 @@
 #pragma once
 
 #include "nlos/reconstruct.h"
-#include "renderer/scene.h"
+#include "renderer/scene/scene.h"
 
 namespace apps {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "nlos/compare.h"
+#include "nlos/compare/compare.h"
 #include "renderer/render.h"
-#include "renderer/scene_file.h"
+#include "renderer/scene/scene_file.h"
 
 #include <algorithm>
 #include <numeric>

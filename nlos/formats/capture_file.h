@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "nlos/formats/capture_settings.h"
 #include "renderer/core/capture.h"
 
 #include <optional>
@@ -8,22 +9,6 @@
 #include <vector>
 
 namespace nlos {
-
-/// What a capture file leaves open; empty fields take the format's own defaults.
-struct CaptureReadSettings {
-    std::optional<int> zero_bins;       ///< leading bins set to 0 (Stanford: 600)
-    std::optional<double> bin_width_m;  ///< replaces the file's bin width [m of path]
-    std::optional<double> pitch_m;  ///< distance of grid neighbours, where only indices are stored
-    std::optional<double> opl_shift_m;  ///< added to the axis start (time zero)
-};
-
-template <class Visitor>
-void for_each_field(CaptureReadSettings& s, Visitor&& visit) {
-    visit("zero_bins", s.zero_bins, "leading bins set to 0; null: the format's own (Stanford 600)");
-    visit("bin_width_m", s.bin_width_m, "replaces the file's bin width [m of path length]");
-    visit("pitch_m", s.pitch_m, "distance of grid neighbours where only indices are stored [m]");
-    visit("opl_shift_m", s.opl_shift_m, "added to the start of the axis (time zero) [m]");
-}
 
 /// Reads a capture in any known format, recognised by its content.
 ///
@@ -40,13 +25,6 @@ bool lacks_scale(const std::string& path);
 
 /// A capture in a few lines for people: wall, points, bins, depth range, unit.
 std::vector<std::string> describe_capture(const core::Capture& capture);
-
-/// How a capture is written where a format leaves a choice.
-struct CaptureWriteSettings {
-    /// HDF5: leave out the group /nlos, with which y-tal refuses a file; the unit stands in
-    /// scene_info then.
-    bool for_ytal = false;
-};
 
 /// Writes a capture in the format that the suffix names; whole or not at all: .h5 and .hdf5 the
 /// y-tal layout, .exr a streak image, .mat the Stanford 2018 layout.

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "nlos/formats/capture_file.h"
+#include "nlos/formats/capture_settings.h"
+#include "renderer/core/capture.h"
 
 #include <array>
 #include <string>

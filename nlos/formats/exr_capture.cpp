@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
+#include "nlos/containers/exr_table.h"
 #include "nlos/formats/capture_format.h"
 #include "nlos/formats/exr_image.h"
-#include "nlos/formats/exr_table.h"
 #include "renderer/core/error.h"
 
 #include <fmt/core.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "nlos/formats/exr_table.h"
+#include "nlos/containers/exr_table.h"
 #include "renderer/core/capture.h"
 
 #include <string>

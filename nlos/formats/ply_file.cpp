@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/formats/ply_file.h"
 
-#include "nlos/formats/file_memory.h"
+#include "nlos/containers/file_memory.h"
 #include "renderer/core/error.h"
 #include "renderer/core/output_file.h"
 

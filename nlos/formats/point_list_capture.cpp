@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include "nlos/containers/mat_file.h"
 #include "nlos/formats/capture_format.h"
-#include "nlos/formats/mat_file.h"
 #include "renderer/core/error.h"
 
 #include <fmt/core.h>

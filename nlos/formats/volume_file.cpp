@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/formats/volume_file.h"
 
-#include "nlos/formats/hdf5_reader.h"
-#include "nlos/formats/hdf5_writer.h"
+#include "nlos/containers/hdf5_reader.h"
+#include "nlos/containers/hdf5_writer.h"
 #include "renderer/core/error.h"
 
 #include <fmt/core.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "nlos/reconstruct.h"
+#include "nlos/reconstruction/reconstruction.h"
 
 #include <string>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
+#include "nlos/containers/file_memory.h"
+#include "nlos/containers/hdf5_reader.h"
 #include "nlos/formats/capture_format.h"
-#include "nlos/formats/file_memory.h"
-#include "nlos/formats/hdf5_reader.h"
 #include "nlos/formats/ytal_layout.h"
 #include "nlos/formats/ytal_scan.h"
 #include "renderer/core/error.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "nlos/formats/hdf5_reader.h"
+#include "nlos/containers/hdf5_reader.h"
 #include "renderer/core/capture.h"
 
 namespace nlos {

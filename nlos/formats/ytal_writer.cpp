@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include "nlos/containers/hdf5_writer.h"
 #include "nlos/formats/capture_format.h"
-#include "nlos/formats/hdf5_writer.h"
 #include "nlos/formats/ytal_layout.h"
 
 namespace nlos {

@@ -3,7 +3,7 @@
 #include "nlos/formats/capture_file.h"
 #include "nlos/formats/volume_file.h"
 #include "renderer/core/settings.h"
-#include "renderer/gltf.h"
+#include "renderer/gltf/gltf.h"
 #include "tests/support/file_bytes.h"
 #include "tests/support/temporary_folder.h"
 

@@ -8,8 +8,8 @@
 #include "renderer/core/parallel.h"
 #include "renderer/core/process.h"
 #include "renderer/render.h"
-#include "renderer/scene_file.h"
-#include "renderer/third_bounce.h"
+#include "renderer/scene/scene_file.h"
+#include "renderer/third_bounce/third_bounce.h"
 
 #include <embree3/rtcore.h>
 #include <fmt/core.h>

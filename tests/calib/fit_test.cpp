@@ -3,9 +3,9 @@
 #include "calib/fit.h"
 
 #include "calib/compare_fit.h"
-#include "calib/fit_data.h"
+#include "calib/fit/fit_data.h"
+#include "calib/fit/fit_objective.h"
 #include "calib/fit_file.h"
-#include "calib/fit_objective.h"
 #include "renderer/core/output_file.h"
 #include "renderer/core/parallel.h"
 #include "tests/support/error_message.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/gltf.h"
+#include "renderer/gltf/gltf.h"
 #include "tests/fuzz/fuzzed_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

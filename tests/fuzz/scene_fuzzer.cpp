@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/scene_file.h"
+#include "renderer/scene/scene_file.h"
 #include "tests/fuzz/fuzzed_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

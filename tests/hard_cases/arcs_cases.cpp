@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Triangles seen from a wall point: exact arcs and the kernel that stands for them. Facets at
 // grazing angles, around the tangent point, of aspect 1e6 and next to the wall:
-// tests/core/triangle_histogram_test.cpp.
-#include "renderer/core/exact_arcs.h"
+// tests/renderer/triangle/triangle_histogram_test.cpp.
 #include "renderer/core/random.h"
-#include "renderer/core/triangle_histogram.h"
+#include "renderer/triangle/exact_arcs.h"
+#include "renderer/triangle/triangle_histogram.h"
 #include "tests/hard_cases/cases.h"
 #include "tests/hard_cases/extended_precision.h"
 #include "tests/hard_cases/hard_case.h"
@@ -18,8 +18,8 @@ namespace hard_cases {
 namespace {
 
 using core::TimeAxis;
-using core::TriangleKnots;
 using core::Vec3;
+using renderer::TriangleKnots;
 using truth::Quad;
 using truth::QuadVec;
 
@@ -84,7 +84,7 @@ double exact_arcs_of_tiny_triangles() {
         const double reach =
             4.0 * (corners[1] - corners[0]).norm() + 4.0 * (corners[2] - corners[0]).norm();
         const TimeAxis axis{2.0 * corners[0].norm() - reach, reach, 2};
-        const auto bins = core::confocal_arcs(corners, Vec3::Zero(), Vec3::UnitZ(), axis);
+        const auto bins = renderer::confocal_arcs(corners, Vec3::Zero(), Vec3::UnitZ(), axis);
         worst.add(truth::relative_error(bins[0] + bins[1], integrate(corners).energy));
     }
     return worst.value();
@@ -106,11 +106,11 @@ double kernel_of_tiny_triangles_and_slivers() {
             at_midpoints.opl_m[k] = 2.0 * middle.norm();
             at_midpoints.weight[k] = confocal_weight(middle, normal);
         }
-        const TriangleKnots knots = core::match_midpoints(at_corners, at_midpoints);
+        const TriangleKnots knots = renderer::match_midpoints(at_corners, at_midpoints);
         // Of bins of 1 mm: energy, and the mean length to a part of a bin.
         const TimeAxis axis{0.0, 0.001, 5000};
         std::vector<double> histogram(5000, 0.0);
-        core::add_triangle(knots, area_vector.norm(), axis, histogram);
+        renderer::add_triangle(knots, area_vector.norm(), axis, histogram);
         double energy = 0.0;
         for (const double value : histogram) energy += value;
         double moment = 0.0;  // of the linear triangle: A/12 sum K_j r_k (1 + [j == k])
@@ -134,7 +134,7 @@ double exact_arcs_of_coplanar_triangles() {
         const std::array<Vec3, 3> corners{
             0.5 * along, 0.9 * along + 0.3 * Vec3::UnitY(), 0.7 * along - 0.2 * Vec3::UnitY()};
         for (const double value :
-             core::confocal_arcs(corners, Vec3::Zero(), Vec3::UnitZ(), {0.0, 0.01, 300})) {
+             renderer::confocal_arcs(corners, Vec3::Zero(), Vec3::UnitZ(), {0.0, 0.01, 300})) {
             worst.add(std::abs(value));
         }
     }
@@ -149,7 +149,8 @@ double exact_arcs_of_a_facet_of_kilometres() {
         const std::array<Vec3, 3> corners{Vec3(-4e3, -3e3, z), Vec3(5e3, -3e3, z), Vec3(0, 4e3, z)};
         const TimeAxis axis{0.0, 0.04 * z, 1000};
         double found = 0.0;
-        for (const double value : core::confocal_arcs(corners, Vec3::Zero(), Vec3::UnitZ(), axis)) {
+        for (const double value :
+             renderer::confocal_arcs(corners, Vec3::Zero(), Vec3::UnitZ(), axis)) {
             found += value;
         }
         const Quad z2 = Quad(z) * Quad(z);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Mirror-like surfaces: the narrowest lobe that files may ask for, at every incidence.
-#include "renderer/bsdf.h"
 #include "renderer/core/random.h"
+#include "renderer/material/bsdf.h"
 #include "tests/hard_cases/cases.h"
 #include "tests/hard_cases/extended_precision.h"
 #include "tests/hard_cases/hard_case.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/ellipsoid.h"
+#include "renderer/geometry/ellipsoid.h"
 #include "tests/hard_cases/extended_precision.h"
 
 #include <algorithm>

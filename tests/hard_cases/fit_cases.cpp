@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Ill-posed fits. Grazing tilts, nearly symmetric objects, few photons, hidden and missing objects:
 // tests/calib/hard_fits_test.cpp; set-ups that the data cannot determine: calibrate_test.cpp.
-#include "calib/direct_returns.h"
-#include "calib/forward_model.h"
-#include "calib/jet_model.h"
-#include "calib/uncertainty.h"
+#include "calib/forward/forward_model.h"
+#include "calib/forward/jet_model.h"
+#include "calib/setup/direct_returns.h"
+#include "calib/statistics/uncertainty.h"
 #include "renderer/core/instrument_response.h"
 #include "renderer/core/random.h"
 #include "tests/hard_cases/cases.h"
@@ -97,7 +97,7 @@ double slopes_of_the_light_of_tiny_and_large_objects() {
         calib::ForwardModel light(model, scan, calib::WallMotion(scan), forward);
         const calib::SceneState state = model.start();
         light.refresh(state);
-        light.update(state, core::Slopes::With);
+        light.update(state, renderer::Slopes::With);
         const auto columns = static_cast<std::size_t>(model.num_columns());
         for (std::size_t pair = 0; pair < scan.num_pairs(); ++pair) {
             calib::PairModel found;

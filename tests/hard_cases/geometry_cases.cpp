@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Lengths, areas, cosines and rays. Leaks between facets, tiny facets in large scenes and scenes a
-// kilometre away: tests/renderer/ray_caster_test.cpp and third_bounce_test.cpp.
-#include "renderer/surface_walk.h"
+// kilometre away: tests/renderer/scene/ray_caster_test.cpp and third_bounce_test.cpp.
+#include "renderer/path/surface_walk.h"
 #include "tests/hard_cases/cases.h"
 #include "tests/hard_cases/ellipsoid_truth.h"
 #include "tests/hard_cases/hard_case.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The histogram of a triangle whose length and weight are linear.
 #include "renderer/core/random.h"
-#include "renderer/core/triangle_histogram.h"
+#include "renderer/triangle/triangle_histogram.h"
 #include "tests/hard_cases/cases.h"
 #include "tests/hard_cases/extended_precision.h"
 #include "tests/hard_cases/hard_case.h"
@@ -16,8 +16,8 @@ namespace hard_cases {
 namespace {
 
 using core::TimeAxis;
-using core::TriangleKnots;
 using core::Vec3;
+using renderer::TriangleKnots;
 using truth::Quad;
 using truth::QuadVec;
 
@@ -162,7 +162,7 @@ double box_kernel_error(std::string_view seed, double start, double from, double
         const TriangleKnots knots =
             random_knots(rng, axis.bin_begin_m(2.0 + rng.uniform()), width * spread);
         std::vector<double> histogram(64, 0.0);
-        core::add_triangle(knots, 1.0, axis, histogram);
+        renderer::add_triangle(knots, 1.0, axis, histogram);
         const double whole = mean_weight(knots);
         for (int bin = 0; bin < 64; ++bin) {
             const auto edge = [&](int k) {
@@ -193,11 +193,11 @@ double box_kernel_a_million_bins_out() {
 double smeared_kernel_at_all_widths() {
     core::Rng rng(test_support::seed_of("smeared_kernel_at_all_widths"), 0, 0);
     Worst worst;
-    core::TriangleBins bins;
+    renderer::TriangleBins bins;
     for (int i = 0; i < 150; ++i) {
         const SmearedTriangle triangle = random_smeared_triangle(rng);
         const auto& [knots, sigma, axis] = triangle;
-        core::evaluate_triangle(knots, sigma, axis, core::Slopes::Without, bins);
+        renderer::evaluate_triangle(knots, sigma, axis, renderer::Slopes::Without, bins);
         for (int k = 0; k < static_cast<int>(bins.bins.size()); k += 4) {
             worst.add(truth::relative_error(bins.bins[static_cast<std::size_t>(k)].slots[0],
                                             triangle.bin(lengths_of(knots), bins.first_bin + k),
@@ -210,11 +210,11 @@ double smeared_kernel_at_all_widths() {
 double slopes_of_the_smeared_kernel() {
     core::Rng rng(test_support::seed_of("slopes_of_the_smeared_kernel"), 0, 0);
     Worst worst;
-    core::TriangleBins bins;
+    renderer::TriangleBins bins;
     for (int i = 0; i < 100; ++i) {
         const SmearedTriangle triangle = random_smeared_triangle(rng);
         const auto& [knots, sigma, axis] = triangle;
-        core::evaluate_triangle(knots, sigma, axis, core::Slopes::With, bins);
+        renderer::evaluate_triangle(knots, sigma, axis, renderer::Slopes::With, bins);
         if (bins.bins.empty()) continue;  // behind the axis
         const auto k = static_cast<std::size_t>(rng.uniform() * double(bins.bins.size()));
         const int bin = bins.first_bin + static_cast<int>(k);

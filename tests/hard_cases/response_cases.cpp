@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Instrument responses and resampling of the time axis.
-#include "nlos/conservative_resampling.h"
-#include "nlos/unit_phasor.h"
+#include "nlos/fourier/unit_phasor.h"
+#include "nlos/preparation/conservative_resampling.h"
 #include "renderer/core/instrument_response.h"
 #include "renderer/core/random.h"
 #include "tests/hard_cases/cases.h"

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Scans of unusual shape. One point, few points and one line for every reconstruction method:
 // tests/nlos/reconstruction_hard_cases_test.cpp.
-#include "nlos/wall_frame.h"
+#include "nlos/preparation/wall_frame.h"
 #include "renderer/core/nearest_neighbours.h"
 #include "renderer/core/random.h"
 #include "renderer/render.h"
 #include "tests/hard_cases/cases.h"
 #include "tests/hard_cases/extended_precision.h"
 #include "tests/hard_cases/hard_case.h"
-#include "tests/nlos/confocal_scene.h"
+#include "tests/nlos/methods/confocal_scene.h"
 #include "tests/support/random_geometry.h"
 #include "tests/support/statistics.h"
 #include "tests/support/test_scenes.h"

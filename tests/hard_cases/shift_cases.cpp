@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Shift mappings at their limits. Which degenerate shifts must be refused, and that none is
 // accepted wrongly, is measured by tests/support/hard_shift_cases.h; second roots among them.
-#include "renderer/plane_shift.h"
-#include "renderer/shift_mapping.h"
+#include "renderer/shift/plane_shift.h"
+#include "renderer/shift/shift_mapping.h"
 #include "tests/hard_cases/cases.h"
 #include "tests/hard_cases/ellipsoid_truth.h"
 #include "tests/hard_cases/hard_case.h"

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Counts: none, one, a great many, and detectors that see no more. Darkness, negative and
 // saturated values in reconstruction: tests/nlos/reconstruction_hard_cases_test.cpp.
-#include "calib/poisson_deviance.h"
-#include "nlos/compare_image.h"
-#include "nlos/dead_time.h"
-#include "nlos/detector.h"
+#include "calib/statistics/poisson_deviance.h"
+#include "nlos/compare/compare_image.h"
+#include "nlos/detector/dead_time.h"
+#include "nlos/detector/detector.h"
 #include "renderer/core/random.h"
 #include "tests/hard_cases/cases.h"
 #include "tests/hard_cases/extended_precision.h"

@@ -3,8 +3,8 @@
 // method: tests/nlos/reconstruction_hard_cases_test.cpp.
 #include "renderer/core/capture.h"
 #include "renderer/core/velocity_axis.h"
+#include "renderer/film/time_gate.h"
 #include "renderer/render.h"
-#include "renderer/time_gate.h"
 #include "tests/hard_cases/cases.h"
 #include "tests/hard_cases/ellipsoid_truth.h"
 #include "tests/hard_cases/hard_case.h"

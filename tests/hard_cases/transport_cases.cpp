@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Ellipsoidal connections, derivatives of the length and the velocity near the foci. Random
 // degenerate configurations at large are those of tests/support/ellipsoid_stress.h.
-#include "renderer/path_functional.h"
+#include "renderer/shift/path_functional.h"
 #include "tests/hard_cases/cases.h"
 #include "tests/hard_cases/ellipsoid_truth.h"
 #include "tests/hard_cases/hard_case.h"

@@ -3,7 +3,7 @@
 
 #include "renderer/core/parallel.h"
 #include "renderer/core/process.h"
-#include "tests/nlos/confocal_scene.h"
+#include "tests/nlos/methods/confocal_scene.h"
 #include "tests/support/error_message.h"
 #include "tests/support/example_capture.h"
 #include "tests/support/statistics.h"

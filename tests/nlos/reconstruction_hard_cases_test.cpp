@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/reconstruct.h"
-#include "tests/nlos/confocal_scene.h"
+#include "tests/nlos/methods/confocal_scene.h"
 #include "tests/support/error_message.h"
 
 #include <gtest/gtest.h>

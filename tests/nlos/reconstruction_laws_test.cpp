@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/reconstruct.h"
 #include "renderer/core/parallel.h"
-#include "tests/nlos/confocal_scene.h"
-#include "tests/nlos/peak_fit.h"
+#include "tests/nlos/methods/confocal_scene.h"
+#include "tests/nlos/methods/peak_fit.h"
 #include "tests/support/statistics.h"
 
 #include <gtest/gtest.h>

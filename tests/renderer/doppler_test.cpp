@@ -2,8 +2,8 @@
 // Path velocities against closed forms, against moved scenes and between estimators.
 #include "renderer/core/parallel.h"
 #include "renderer/core/random.h"
+#include "renderer/film/path_extent.h"
 #include "renderer/frame_sequence.h"
-#include "renderer/path_extent.h"
 #include "tests/support/error_message.h"
 #include "tests/support/repeated_estimates.h"
 #include "tests/support/statistics.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Errors that renders state of themselves, and that they are asked to reach.
+#include "renderer/film/stopping_rule.h"
 #include "renderer/frame_sequence.h"
-#include "renderer/stopping_rule.h"
 #include "renderer/worthwhile_orders.h"
 #include "tests/support/error_message.h"
 #include "tests/support/test_scenes.h"

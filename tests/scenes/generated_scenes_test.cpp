@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "scenes/generated_scenes.h"
 
-#include "renderer/gltf.h"
-#include "tests/renderer/gltf_files.h"
+#include "renderer/gltf/gltf.h"
+#include "tests/renderer/gltf/gltf_files.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/ellipsoid.h"
+#include "renderer/geometry/ellipsoid.h"
 #include "tests/support/random_geometry.h"
 
 #include <cmath>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "calib/fit.h"
-#include "calib/forward_model.h"
+#include "calib/forward/forward_model.h"
 #include "tests/support/statistics.h"
 #include "tests/support/test_scenes.h"
 
@@ -55,7 +55,7 @@ inline core::Capture expected_capture(const renderer::SceneGeometry& geometry,
     forward.tolerance = 2e-3;
     calib::ForwardModel light(model, scan, calib::WallMotion(scan), forward);
     light.refresh(model.start());
-    light.update(model.start(), core::Slopes::Without);
+    light.update(model.start(), renderer::Slopes::Without);
     core::Capture capture;
     capture.scan = scan;
     capture.time_axis = kFitAxis;

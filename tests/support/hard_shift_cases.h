@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/scene.h"
-#include "renderer/shift_mapping.h"
+#include "renderer/scene/scene.h"
+#include "renderer/shift/shift_mapping.h"
 #include "tests/support/shift_cases.h"
 
 #include <array>

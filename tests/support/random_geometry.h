@@ -2,7 +2,7 @@
 #pragma once
 
 #include "renderer/core/random.h"
-#include "renderer/scene.h"
+#include "renderer/scene/scene.h"
 
 #include <cmath>
 

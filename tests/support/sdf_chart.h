@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/charts.h"
+#include "renderer/shift/charts.h"
 
 #include <cmath>
 #include <optional>

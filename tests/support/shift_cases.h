@@ -2,8 +2,8 @@
 #pragma once
 
 #include "renderer/core/random.h"
-#include "renderer/scene.h"
-#include "renderer/shift_mapping.h"
+#include "renderer/scene/scene.h"
+#include "renderer/shift/shift_mapping.h"
 
 #include <optional>
 #include <vector>

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: MIT
+#include "apps/arguments.h"
+#include "apps/bench/output.h"
+#include "apps/bench/render/comparison_pictures.h"
+#include "apps/bench/render/comparisons.h"
+#include "apps/commands.h"
+#include "nlos/pictures/picture.h"
+
+#include <fmt/core.h>
+
+#include <memory>
+
+namespace apps {
+namespace {
+
+struct ComparisonArguments {
+    BenchOutput output;
+    std::string chart_scene = "scenes/relief/scene.json";
+    std::string progress_scene = "scenes/room/scene.json";
+    std::string only;
+    double seconds = 5.0;
+    int frames = 20;
+    int repeats = 1;
+    int reference_samples = 60'000;
+};
+
+constexpr int kProgressFrames = 8;
+
+const char* const kWalks = "render.restir.walks";
+
+// A gate that moves by a quarter of its width per frame: history is worth something, if the shift
+// can take it along.
+SequenceCase moving_gate(const std::string& name, const ComparisonArguments& arguments) {
+    return {.name = name,
+            .scene = arguments.chart_scene,
+            .overrides = {},
+            .gate_start_m = 4.0,
+            .gate_width_mm = 20.0,
+            .gate_step_mm = 5.0,
+            .num_frames = arguments.frames,
+            .reference_samples = arguments.reference_samples};
+}
+
+// The late light of a scene at rest, as a histogram, frame by frame.
+SequenceCase resting_histogram(const ComparisonArguments& arguments) {
+    return {.name = "progress",
+            .scene = arguments.progress_scene,
+            .overrides = {"camera.resolution=[64,48]", "render.max_bounces=4"},
+            .gate_start_m = 3.8,
+            .gate_width_mm = 20.0,
+            .gate_step_mm = 0.0,
+            .num_frames = kProgressFrames,
+            .num_bins = 24,
+            .reference_samples = arguments.reference_samples};
+}
+
+ComparedMethod restir_with(const std::string& name, const std::vector<std::string>& overrides) {
+    ComparedMethod method{name,
+                          {"render.method=restir",
+                           "render.restir.candidates=ellipsoidal",
+                           "render.restir.confidence_cap=8",
+                           "render.restir.neighbours=3"},
+                          kWalks};
+    method.overrides.insert(method.overrides.end(), overrides.begin(), overrides.end());
+    return method;
+}
+
+std::vector<ComparedMethod> methods_with(const std::string& key,
+                                         const std::vector<std::string>& values,
+                                         const std::vector<std::string>& overrides) {
+    std::vector<ComparedMethod> methods;
+    for (const std::string& value : values) {
+        std::vector<std::string> all = overrides;
+        all.push_back(key + "=" + value);
+        methods.push_back(restir_with(value, all));
+    }
+    return methods;
+}
+
+std::vector<ComparedMethod> progress_methods() {
+    const std::vector<std::string> memory{"render.restir.confidence_cap=20",
+                                          "render.restir.neighbours=1"};
+    std::vector<std::string> naive = memory;
+    naive.emplace_back("render.restir.reuse=naive");
+    return {{"path", {"render.method=path"}, "render.samples"},
+            restir_with("naive reuse", naive),
+            restir_with("restir", memory)};
+}
+
+std::string table_of(const Comparison& comparison) {
+    std::string text = fmt::format("{}, {}: {:.3g} CPU s per frame\n",
+                                   comparison.name,
+                                   comparison.scene,
+                                   comparison.seconds_per_frame);
+    text += fmt::format("{:<14} {:>7} {:>9} {:>10} {:>10} {:>10} {:>10} {:>9}  {}\n",
+                        "method",
+                        "effort",
+                        "CPU ms",
+                        "relMSE",
+                        "trimmed",
+                        "planes",
+                        "meshes",
+                        "accepted",
+                        "frame by frame");
+    for (const MethodComparison& m : comparison.methods) {
+        text +=
+            fmt::format("{:<14} {:>7} {:>9.1f} {:>10.3e} {:>10.3e} {:>10.3e} {:>10.3e} {:>9.2f} ",
+                        m.method,
+                        m.effort,
+                        1e3 * m.seconds_per_frame,
+                        m.rel_mse,
+                        m.trimmed_rel_mse,
+                        m.planes_rel_mse,
+                        m.meshes_rel_mse,
+                        m.accepted_share);
+        for (std::size_t f = 1; f <= m.rel_mse_of_frames.size(); f *= 2) {
+            text += fmt::format(" {:.2g}", m.rel_mse_of_frames[f - 1]);
+        }
+        text += "\n";
+    }
+    return text + "\n";
+}
+
+// One of the figures: what is rendered, by which methods, in how much time per frame.
+struct FigurePlan {
+    SequenceCase sequence;
+    std::vector<ComparedMethod> methods;
+    double seconds_per_frame;
+};
+
+std::vector<FigurePlan> plan_figures(const ComparisonArguments& arguments) {
+    const double per_frame = arguments.seconds / arguments.frames;
+    return {{moving_gate("charts", arguments),
+             methods_with("render.restir.chart", {"plane", "hemisphere", "adaptive"}, {}),
+             per_frame},
+            {moving_gate("gauges", arguments),
+             methods_with("render.restir.gauge",
+                          {"average", "start", "fixed", "midpoint", "symmetric", "flow"},
+                          {"render.restir.chart=plane"}),
+             per_frame},
+            {resting_histogram(arguments), progress_methods(), per_frame}};
+}
+
+BenchResult measure(const ComparisonArguments& arguments, const core::Progress& progress) {
+    BenchResult result;
+    for (const FigurePlan& plan : plan_figures(arguments)) {
+        const std::string& name = plan.sequence.name;
+        if (!arguments.only.empty() && name != arguments.only) continue;
+        const Comparison comparison = compare_methods(
+            plan.sequence, plan.methods, plan.seconds_per_frame, arguments.repeats, progress);
+        const bool shows_progress = name == "progress";
+        result.pictures["_" + name] = shows_progress
+                                          ? nlos::encode_panels_png(progress_panels(comparison), 5)
+                                          : nlos::encode_panels_png(error_panels(comparison), 3);
+        if (shows_progress) result.plots["_progress_error"] = progress_plot(comparison);
+        result.figures["comparisons"].push_back(core::write_value(comparison));
+        result.table += table_of(comparison);
+    }
+    return result;
+}
+
+}  // namespace
+
+void add_bench_comparisons_command(CLI::App& bench) {
+    const auto arguments = std::make_shared<ComparisonArguments>();
+    CLI::App* comparisons = bench.add_subcommand(
+        "comparisons", "Equal-time pictures: charts, gauges, progress from frame to frame");
+    add_output_options(*comparisons, arguments->output);
+    comparisons->add_option("--only", arguments->only, "One of them")
+        ->check(CLI::IsMember({"charts", "gauges", "progress"}));
+    comparisons->add_option("--chart-scene", arguments->chart_scene, "Image for charts and gauges")
+        ->capture_default_str();
+    comparisons->add_option("--progress-scene", arguments->progress_scene, "Image for progress")
+        ->capture_default_str();
+    comparisons
+        ->add_option("--seconds", arguments->seconds, "CPU time of a method for all frames [s]")
+        ->capture_default_str()
+        ->check(CLI::PositiveNumber);
+    comparisons->add_option("--frames", arguments->frames, "Frames of the moving gate")
+        ->capture_default_str()
+        ->check(CLI::Range(4, 10'000));
+    comparisons->add_option("--repeats", arguments->repeats, "Runs per method")
+        ->capture_default_str()
+        ->check(CLI::Range(1, 1000));
+    comparisons
+        ->add_option("--reference-samples",
+                     arguments->reference_samples,
+                     "Paths per pair of each of the two references")
+        ->capture_default_str()
+        ->check(CLI::Range(1, 100'000'000));
+    comparisons->footer(settings_footer({}, "nlos bench comparisons -o out/bench --only charts"));
+    comparisons->callback([arguments] {
+        run_benchmark(arguments->output, "comparisons", [&](const core::Progress& progress) {
+            return measure(*arguments, progress);
+        });
+    });
+}
+
+}  // namespace apps

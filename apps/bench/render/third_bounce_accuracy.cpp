@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: MIT
+#include "apps/bench/render/third_bounce_accuracy.h"
+
+#include "apps/bench/meshes.h"
+#include "apps/bench/scene.h"
+#include "renderer/core/random.h"
+#include "renderer/third_bounce/third_bounce.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace apps {
+namespace {
+
+using core::Vec3;
+using renderer::ThirdBounce;
+
+constexpr std::array kPatterns{
+    core::ScanPattern::Confocal, core::ScanPattern::Single, core::ScanPattern::Exhaustive};
+
+renderer::Object object_of(core::TriangleMesh mesh, double albedo) {
+    renderer::Object object;
+    object.mesh = std::move(mesh);
+    object.material.albedo = albedo;
+    return object;
+}
+
+renderer::SceneGeometry random_geometry(core::Rng& rng) {
+    const auto between = [&](double low, double high) {
+        return low + (high - low) * rng.uniform();
+    };
+    // One by one: the order in which arguments are evaluated is not fixed.
+    const auto vector = [&](double most_xy, double least_z, double most_z) {
+        const double x = between(-most_xy, most_xy);
+        const double y = between(-most_xy, most_xy);
+        return Vec3(x, y, between(least_z, most_z));
+    };
+    renderer::SceneGeometry geometry;
+    const int num_spheres = 1 + static_cast<int>(2.0 * rng.uniform());
+    for (int i = 0; i < num_spheres; ++i) {
+        const Vec3 center = vector(0.3, 0.5, 0.9);
+        const double radius = between(0.05, 0.15);
+        const int cells = 6 * (1 + static_cast<int>(2.0 * rng.uniform()));
+        geometry.objects.push_back(
+            object_of(make_sphere_mesh(center, radius, cells), between(0.3, 1.0)));
+    }
+    const int num_sheets = 1 + static_cast<int>(3.0 * rng.uniform());
+    for (int i = 0; i < num_sheets; ++i) {
+        const Vec3 middle = vector(0.4, 0.3, 1.0);
+        const Vec3 half_u = vector(0.15, -0.05, 0.05);
+        const Vec3 half_v = vector(0.15, -0.05, 0.05);
+        geometry.objects.push_back(object_of(
+            make_grid_mesh(
+                1, [&](double u, double v) { return Vec3(middle + u * half_u + v * half_v); }),
+            between(0.1, 1.0)));
+    }
+    return geometry;
+}
+
+core::Scan random_scan(core::Rng& rng, core::ScanPattern pattern) {
+    const int side = pattern == core::ScanPattern::Exhaustive ? 4 : 8;
+    core::Scan scan;
+    scan.pattern = pattern;
+    const auto add = [](core::WallPoints& points, double x, double y) {
+        points.positions.emplace_back(x, y, 0.0);
+        points.normals.push_back(Vec3::UnitZ());
+    };
+    for (int i = 0; i < side; ++i) {
+        for (int j = 0; j < side; ++j) {
+            add(scan.sensing, (i + 0.5) / side - 0.5, (j + 0.5) / side - 0.5);
+        }
+    }
+    if (pattern == core::ScanPattern::Single) {
+        const double x = rng.uniform() - 0.5;
+        add(scan.illumination, x, rng.uniform() - 0.5);
+    } else {
+        scan.illumination = scan.sensing;
+    }
+    return scan;
+}
+
+std::vector<TargetError> try_targets(int number) {
+    constexpr double kReferenceTarget = 1e-3;
+    constexpr double kNoTarget = 10.0;  // as coarse as can be
+    constexpr double kFarBelow = 5.0;
+    const core::ScanPattern pattern =
+        kPatterns[static_cast<std::size_t>(number) % kPatterns.size()];
+    core::Rng rng(0, static_cast<std::uint64_t>(number), 0);
+    const core::Scan scan = random_scan(rng, pattern);
+    const renderer::Scene scene(random_geometry(rng), scan, renderer::RelayWall{});
+    const double bin_width = 0.006 + 0.02 * rng.uniform();
+    const core::TimeAxis axis{0.4, bin_width, static_cast<int>(2.4 / bin_width)};
+    const auto integrate = [&](double target) {
+        renderer::RenderSettings settings;
+        settings.target_error = target;
+        return renderer::integrate_third_bounce(scene, scan, axis, settings, {});
+    };
+    const core::Capture reference = capture_of(scan, axis, integrate(kReferenceTarget).transient);
+    const std::size_t fewest_pieces = integrate(kNoTarget).num_pieces;
+    std::vector<TargetError> errors;
+    for (const double target : {0.05, 0.02, 0.01}) {
+        const ThirdBounce result = integrate(target);
+        TargetError& error = errors.emplace_back();
+        error.scene = number;
+        error.pattern = core::enum_name(pattern);
+        error.target = target;
+        error.rel_l2 = relative_l2(capture_of(scan, axis, result.transient), reference);
+        error.stated = result.estimated_error;
+        error.pieces = result.num_pieces;
+        error.is_coarsest = result.num_pieces == fewest_pieces;
+        error.met = error.rel_l2 <= target;
+        error.is_far_below = error.rel_l2 < target / kFarBelow && !error.is_coarsest;
+    }
+    return errors;
+}
+
+// Bins that path knows to 10 %, and both bins beside them, stand for normal variables: next to
+// others there may be rare bright paths of which a bin, and its variance, has not seen any. The
+// integrator may err by `error` of the pair's largest bin.
+Agreement compare_bins(const core::Capture& integrated, const core::Capture& paths, double error) {
+    constexpr double kLargestRelativeSigma = 0.1;
+    constexpr double kTwoSided95 = 1.959964;
+    Agreement agreement;
+    std::uint64_t num_within = 0;
+    double sum_integrated = 0.0;
+    double sum_paths = 0.0;
+    double sum_variance = 0.0;
+    for (std::size_t pair = 0; pair < paths.transient.num_pairs(); ++pair) {
+        const auto a = integrated.transient.histogram(pair);
+        const auto b = paths.transient.histogram(pair);
+        const auto variance = paths.variance.value().histogram(pair);
+        const double allowed = error * double{*std::max_element(a.begin(), a.end())};
+        const auto is_known = [&](std::size_t bin) {
+            const double sigma = std::sqrt(double{variance[bin]});
+            return sigma > 0.0 && sigma <= kLargestRelativeSigma * double{b[bin]};
+        };
+        for (std::size_t bin = 0; bin < a.size(); ++bin) {
+            sum_integrated += double{a[bin]};
+            sum_paths += double{b[bin]};
+            sum_variance += double{variance[bin]};
+            if (bin == 0 || bin + 1 == a.size()) continue;
+            if (!is_known(bin - 1) || !is_known(bin) || !is_known(bin + 1)) continue;
+            const double sigma = std::sqrt(double{variance[bin]});
+            const double difference = std::abs(double{a[bin]} - double{b[bin]});
+            const double z = std::max(0.0, difference - allowed) / sigma;
+            ++agreement.num_bins;
+            if (z <= kTwoSided95) ++num_within;
+            agreement.largest_z = std::max(agreement.largest_z, z);
+        }
+    }
+    const auto num_bins = static_cast<double>(agreement.num_bins);
+    agreement.within_95 = num_bins > 0.0 ? static_cast<double>(num_within) / num_bins : 0.0;
+    const double tail = std::erfc(agreement.largest_z / std::sqrt(2.0));
+    agreement.p_value = -std::expm1(num_bins * std::log1p(-tail));
+    agreement.energy_ratio = sum_integrated / sum_paths;
+    agreement.energy_sigma = std::sqrt(sum_variance) / sum_paths;
+    return agreement;
+}
+
+// Some points of a confocal scan, spread over all of them and out of step with its rows; the laser
+// point of a single scan is none of the others, those of an exhaustive one are.
+core::Scan few_points(const core::Scan& all, core::ScanPattern pattern) {
+    constexpr double kGolden = 0.6180339887498949;
+    const auto spread = [&](std::size_t count, double phase) {
+        core::WallPoints points;
+        for (std::size_t i = 0; i < count; ++i) {
+            const double share = std::fmod((static_cast<double>(i) + phase) * kGolden, 1.0);
+            const auto index =
+                static_cast<std::size_t>(share * static_cast<double>(all.sensing.size()));
+            points.positions.push_back(all.sensing.positions[index]);
+            points.normals.push_back(all.sensing.normals[index]);
+        }
+        return points;
+    };
+    core::Scan scan = all;
+    scan.pattern = pattern;
+    scan.sensing = spread(16, 0.5);
+    scan.illumination = pattern == core::ScanPattern::Confocal ? scan.sensing
+                        : pattern == core::ScanPattern::Single ? spread(1, 0.8)
+                                                               : spread(3, 0.5);
+    return scan;
+}
+
+Agreement compare_with_path(const std::string& path, core::ScanPattern pattern) {
+    constexpr double kTarget = 5e-4;
+    constexpr int kSamples = 100'000;
+    const BenchScene bench(path);
+    if (bench.scan().camera) {
+        throw core::Error(path, "has a camera", "must have wall points to compare estimators on");
+    }
+    const core::Scan scan = few_points(bench.scan(), pattern);
+    const auto render = [&](const renderer::RenderSettings& settings) {
+        return renderer::render(bench.scene(), scan, bench.axis(), settings, {}).capture;
+    };
+    renderer::RenderSettings settings = bench.settings();
+    settings.max_bounces = 3;
+    settings.by_order = false;
+    settings.method = renderer::Estimator::ThirdBounce;
+    settings.target_error = kTarget;
+    const core::Capture integrated = render(settings);
+    settings.method = renderer::Estimator::Path;
+    settings.target_error.reset();
+    settings.samples = kSamples;
+    settings.variance = true;
+    Agreement agreement = compare_bins(integrated, render(settings), kTarget);
+    agreement.scene = path;
+    agreement.pattern = core::enum_name(pattern);
+    return agreement;
+}
+
+}  // namespace
+
+std::vector<TargetError> bench_target_errors(int num_scenes, const core::Progress& progress) {
+    std::vector<TargetError> errors;
+    for (int scene = 0; scene < num_scenes; ++scene) {
+        if (progress.should_stop()) throw core::Failure("bench", "interrupted");
+        progress.update(static_cast<double>(scene) / num_scenes, "target errors");
+        const std::vector<TargetError> of_scene = try_targets(scene);
+        errors.insert(errors.end(), of_scene.begin(), of_scene.end());
+    }
+    return errors;
+}
+
+std::vector<Agreement> bench_agreement(const std::vector<std::string>& scenes,
+                                       const core::Progress& progress) {
+    std::vector<Agreement> agreements;
+    for (const std::string& scene : scenes) {
+        for (const core::ScanPattern pattern : kPatterns) {
+            if (progress.should_stop()) throw core::Failure("bench", "interrupted");
+            const auto num_comparisons = static_cast<double>(kPatterns.size() * scenes.size());
+            progress.update(static_cast<double>(agreements.size()) / num_comparisons,
+                            "agreement with path");
+            agreements.push_back(compare_with_path(scene, pattern));
+        }
+    }
+    return agreements;
+}
+
+}  // namespace apps

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+#include "apps/arguments.h"
+#include "apps/bench/fit/fit.h"
+#include "apps/bench/reconstruct/reconstruct.h"
+#include "apps/bench/render/render.h"
+#include "apps/commands.h"
+#include "renderer/core/output_file.h"
+
+#include <fmt/core.h>
+
+#include <filesystem>
+#include <memory>
+
+namespace apps {
+namespace {
+
+constexpr int kFitTrials = 30;
+constexpr int kQuickFitTrials = 3;
+constexpr int kQuickLargest = 64;
+
+struct AllArguments {
+    BenchOutput output;
+    bool quick = false;
+};
+
+// The three after each other, each with files of its own, and all in one JSON file to hold a later
+// run against.
+void run_all(const AllArguments& arguments) {
+    RenderBenchSettings render;
+    ReconstructBenchSettings reconstruct;
+    if (arguments.quick) {
+        render.part = "curves";
+        render.quick = true;
+        reconstruct.repeats = 1;
+        reconstruct.largest = kQuickLargest;
+    }
+    const int trials = arguments.quick ? kQuickFitTrials : kFitTrials;
+    core::Json all;
+    const auto add = [&](const std::string& name, const Benchmark& benchmark) {
+        all[name] = run_benchmark(arguments.output, name, benchmark);
+    };
+    add("render", [&](const core::Progress& progress) {
+        return render_result(bench_render(render, progress));
+    });
+    add("reconstruct", [&](const core::Progress& progress) {
+        return reconstruct_result(bench_reconstruct(reconstruct, progress));
+    });
+    add("fit", [&](const core::Progress& progress) {
+        return fit_result(bench_fit(trials, {}, progress));
+    });
+    const auto path = std::filesystem::path(arguments.output.folder) / "bench_all.json";
+    core::write_text_file(path.string(), all.dump(2) + "\n");
+    fmt::print("wrote {}\n", path.string());
+}
+
+}  // namespace
+
+void add_bench_command(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("bench", "Measure speed against error");
+    command->require_subcommand(1);
+    command->footer(
+        settings_footer({}, "nlos bench reconstruct -o out/bench --part growth --largest 32"));
+    add_bench_render_command(*command);
+    add_bench_reconstruct_command(*command);
+    add_bench_fit_command(*command);
+    const auto arguments = std::make_shared<AllArguments>();
+    CLI::App* all = command->add_subcommand("all", "These three: render, reconstruct, fit");
+    add_output_options(*all, arguments->output);
+    all->add_flag(
+        "--quick", arguments->quick, "Fewer and smaller runs: minutes instead of an hour");
+    all->footer(settings_footer({}, "nlos bench all -o out/bench --quick"));
+    all->callback([arguments] { run_all(*arguments); });
+    add_bench_noise_command(*command);
+    add_bench_comparisons_command(*command);
+    add_bench_sequences_command(*command);
+    add_bench_shift_command(*command);
+}
+
+}  // namespace apps

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: MIT
+#include "apps/commands/compare_job.h"
+
+#include "apps/arguments.h"
+#include "apps/commands/fit_pictures.h"
+#include "apps/file_kind.h"
+#include "apps/scene_truth.h"
+#include "calib/compare_fit.h"
+#include "calib/fit_file.h"
+#include "nlos/formats/capture_file.h"
+#include "nlos/formats/ply_file.h"
+#include "nlos/formats/volume_file.h"
+#include "nlos/pictures/picture.h"
+#include "nlos/pictures/pictures.h"
+#include "renderer/core/output_file.h"
+#include "renderer/gltf/gltf.h"
+
+#include <filesystem>
+
+namespace apps {
+namespace {
+
+constexpr std::size_t kSurfaceSamples = 100'000;
+constexpr std::uint64_t kSurfaceSeed = 0;
+
+core::PointCloud points_of_file(const std::string& path) {
+    core::TriangleMesh mesh;
+    if (std::filesystem::path(path).extension() == ".ply") {
+        mesh = nlos::read_ply(path);
+        if (mesh.triangles.empty()) return {mesh.vertices, mesh.normals};
+    } else {
+        for (const renderer::Object& object : renderer::load_gltf(path).objects) {
+            const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
+            for (const auto& vertex : object.mesh.vertices) mesh.vertices.push_back(vertex);
+            for (const auto& [v0, v1, v2] : object.mesh.triangles) {
+                mesh.triangles.push_back({base + v0, base + v1, base + v2});
+            }
+        }
+    }
+    return core::sample_surface(mesh, kSurfaceSamples, kSurfaceSeed);
+}
+
+nlos::Metrics compare_volume_to_scene(const std::string& a,
+                                      const std::string& b,
+                                      const std::string& picture_path) {
+    const nlos::Reconstruction result = nlos::read_volume(a);
+    const nlos::VolumeAxes& axes = result.volume.axes;
+    const core::DepthMap truth = SceneTruth(b).depth_map(axes.world_from_wall, axes.x_m, axes.y_m);
+    if (!picture_path.empty()) {
+        nlos::write_panels_png(picture_path, nlos::comparison_panels(result, truth), 3);
+    }
+    return nlos::compare_to_truth(result, truth);
+}
+
+// A fit's poses and, beside them, its surfaces as samples; `b` is a scene, or a fit and its scene.
+nlos::Metrics compare_fit_to_scene(const std::string& a,
+                                   const std::string& b,
+                                   const std::string& picture_path,
+                                   double threshold_m) {
+    const calib::FitResult fit = calib::read_fit(a);
+    const bool is_fit = kind_of_file(b) == FileKind::Fit;
+    const renderer::SceneDescription scene =
+        renderer::read_scene_description(is_fit ? with_suffix(b, ".scene.json") : b, {});
+    const calib::FitErrors errors =
+        calib::compare_fit(fit,
+                           renderer::load_gltf(with_suffix(a, ".glb")),
+                           renderer::load_gltf(scene.geometry),
+                           is_fit ? calib::read_fit(b).points : std::vector<calib::FittedPoint>());
+    nlos::Metrics metrics;
+    if (!errors.fitted_points.positions.empty()) {
+        metrics = nlos::compare_points(errors.fitted_points, errors.true_points, threshold_m);
+    }
+    const std::vector<nlos::Panel> overlay = overlay_panels(errors);
+    if (!picture_path.empty() && !overlay.empty()) {
+        nlos::write_panels_png(picture_path, overlay, 3);
+    }
+    metrics.position_error_m = errors.position_m;
+    metrics.rotation_error_deg = errors.rotation_deg;
+    metrics.size_error = errors.size;
+    metrics.albedo_error = errors.albedo;
+    metrics.seconds = fit.seconds;
+    return metrics;
+}
+
+bool is_surface(FileKind kind) {
+    return kind == FileKind::Geometry || kind == FileKind::PointCloud;
+}
+
+nlos::Metrics compare_kinds(const std::string& a,
+                            const std::string& b,
+                            const std::string& picture_path,
+                            double threshold_m) {
+    const FileKind kind_a = kind_of_file(a);
+    const FileKind kind_b = kind_of_file(b);
+    if (kind_a == FileKind::Volume && kind_b == FileKind::Scene) {
+        return compare_volume_to_scene(a, b, picture_path);
+    }
+    if (kind_a == FileKind::Fit && (kind_b == FileKind::Scene || kind_b == FileKind::Fit)) {
+        return compare_fit_to_scene(a, b, picture_path, threshold_m);
+    }
+    if (is_surface(kind_a) && kind_b == FileKind::Scene) {
+        return nlos::compare_points(
+            points_of_file(a), core::surface_points(SceneTruth(b).depth_map()), threshold_m);
+    }
+    if (kind_a == FileKind::Volume && kind_b == FileKind::Volume) {
+        return nlos::compare_volumes(nlos::read_volume(a), nlos::read_volume(b));
+    }
+    if (is_surface(kind_a) && is_surface(kind_b)) {
+        return nlos::compare_points(points_of_file(a), points_of_file(b), threshold_m);
+    }
+    if (kind_a == FileKind::Capture && kind_b == FileKind::Capture) {
+        return nlos::compare_captures(nlos::read_capture(a), nlos::read_capture(b));
+    }
+    throw core::Error(
+        a,
+        "cannot be compared with " + b,
+        "must be a volume, mesh, point cloud or fit against a scene.json, or two files of "
+        "one kind");
+}
+
+}  // namespace
+
+nlos::Metrics compare_files(const std::string& a,
+                            const std::string& b,
+                            const std::string& metrics_path,
+                            double fscore_threshold_m) {
+    const std::string picture = metrics_path.empty() ? "" : with_suffix(metrics_path, ".png");
+    require_suffix(metrics_path, {".json"});
+    core::check_targets({metrics_path, picture}, {a, b});
+    const nlos::Metrics metrics = compare_kinds(a, b, picture, fscore_threshold_m);
+    if (!metrics_path.empty()) {
+        core::Json json = core::write_value(metrics);
+        json["result"] = a;
+        json["reference"] = b;
+        core::write_text_file(metrics_path, json.dump(2) + "\n");
+    }
+    return metrics;
+}
+
+}  // namespace apps

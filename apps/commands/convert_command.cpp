@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+#include "apps/arguments.h"
+#include "apps/capture_options.h"
+#include "apps/commands.h"
+#include "nlos/formats/capture_file.h"
+#include "nlos/preparation/gated_capture.h"
+#include "renderer/core/output_file.h"
+
+#include <fmt/core.h>
+
+#include <memory>
+
+namespace apps {
+namespace {
+
+struct ConvertArguments {
+    std::string input;
+    std::string output;
+    bool steady = false;
+    std::vector<double> gate_m;
+    nlos::CaptureWriteSettings write;
+    std::vector<std::string> overrides;
+};
+
+void run(const ConvertArguments& arguments) {
+    nlos::check_capture_suffix(arguments.output);
+    core::check_targets({arguments.output}, {arguments.input});
+    core::Capture capture =
+        nlos::read_capture(arguments.input, capture_options(arguments.overrides).capture);
+    const core::TimeAxis axis = capture.time_axis;
+    if (arguments.steady) {
+        capture = nlos::gated_capture(capture, axis.opl_start_m, axis.num_bins * axis.bin_width_m);
+    } else if (!arguments.gate_m.empty()) {
+        capture = nlos::gated_capture(capture, arguments.gate_m[0], arguments.gate_m[1]);
+    }
+    for (const std::string& note : capture.notes) fmt::print("read: {}\n", note);
+    for (const std::string& loss :
+         nlos::write_capture(arguments.output, capture, arguments.write)) {
+        fmt::print("not kept: {}\n", loss);
+    }
+    fmt::print("wrote {} ({} pairs x {} bins, {})\n",
+               arguments.output,
+               capture.transient.num_pairs(),
+               capture.transient.num_bins(),
+               core::enum_name(capture.unit));
+}
+
+}  // namespace
+
+void add_convert_command(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("convert", "Write a capture in another format");
+    const auto arguments = std::make_shared<ConvertArguments>();
+    command->add_option("IN", arguments->input, "Capture in any readable format")->required();
+    command
+        ->add_option("OUT",
+                     arguments->output,
+                     "Capture to write: .h5 or .hdf5 (y-tal), .exr (a streak image), .mat "
+                     "(Stanford 2018)")
+        ->required();
+    CLI::Option* steady =
+        command->add_flag("--steady", arguments->steady, "Sum over all bins: a steady-state image");
+    command
+        ->add_option("--gate-m",
+                     arguments->gate_m,
+                     "Sum over a time gate: its start and width [m of path length]")
+        ->type_name("START WIDTH")
+        ->expected(2)
+        ->excludes(steady);
+    command->add_flag("--for-ytal",
+                      arguments->write.for_ytal,
+                      "HDF5 without the group /nlos, with which y-tal refuses files");
+    add_set_option(*command, arguments->overrides);
+    command->footer(settings_footer(core::settings_help(CaptureOptions{}),
+                                    "nlos convert data/letter.h5 letter.exr"));
+    command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace apps

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+#include "apps/arguments.h"
+#include "apps/commands.h"
+#include "apps/commands/compare_job.h"
+#include "apps/commands/file_picture.h"
+#include "apps/commands/fit_job.h"
+#include "apps/commands/reconstruct_job.h"
+#include "apps/commands/render_job.h"
+#include "apps/report/report.h"
+#include "apps/terminal.h"
+#include "renderer/core/error.h"
+
+#include <fmt/core.h>
+
+#include <filesystem>
+#include <memory>
+
+namespace apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct DemoArguments {
+    std::string folder = "out/demo";
+};
+
+std::string letter_scene() {
+    const fs::path in_working_folder = "scenes/letter/scene.json";
+    if (fs::exists(in_working_folder)) return in_working_folder.string();
+    return std::string(NLOS_SCENES_DIR) + "/letter/scene.json";
+}
+
+void stop_if_interrupted() {
+    if (interrupt_requested()) throw core::Failure("demo", "interrupted");
+}
+
+void run(const DemoArguments& arguments) {
+    const fs::path folder = arguments.folder;
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error) throw core::Error(folder.string(), "cannot be made", "must be a writable folder");
+    const auto file = [&](const std::string& name) { return (folder / name).string(); };
+
+    const std::string scene = letter_scene();
+    fmt::print("scene        {}\n", scene);
+    write_picture(scene, file("ground_truth.png"));
+    const RenderJob render = render_to_file(scene, {}, file("capture.h5"));
+    fmt::print("capture      {} ({:.2f} s)\n", file("capture.h5"), render.seconds);
+    for (const std::string method : {"lct", "bp"}) {
+        stop_if_interrupted();
+        const std::string volume = file("volume_" + method + ".h5");
+        const auto result =
+            reconstruct_to_file(file("capture.h5"), {"method=" + method}, volume, "");
+        const auto metrics =
+            compare_files(volume, scene, file("metrics_" + method + ".json"), 0.01);
+        fmt::print("{:<12} {} ({:.2f} s, depth error {:.2f} mm, mask IoU {:.3f})\n",
+                   method,
+                   volume,
+                   result.seconds,
+                   1e3 * metrics.depth_mae_m.value_or(0.0),
+                   metrics.mask_iou_best.value_or(0.0));
+    }
+    stop_if_interrupted();
+    const std::string model = (fs::path(scene).parent_path() / "model.json").string();
+    const calib::FitResult fit = fit_to_file(file("capture.h5"), model, {}, "", file("fit.json"));
+    const auto errors = compare_files(file("fit.json"), scene, file("metrics_fit.json"), 0.01);
+    fmt::print("{:<12} {} ({:.2f} s, position error {:.2f} mm, rotation error {:.2f} deg)\n",
+               "fit",
+               file("fit.json"),
+               fit.seconds,
+               1e3 * errors.position_error_m.value_or(0.0),
+               errors.rotation_error_deg.value_or(0.0));
+    write_report(folder.string(), file("report.html"));
+    fmt::print("wrote {}\n", file("report.html"));
+}
+
+}  // namespace
+
+void add_demo_command(CLI::App& app) {
+    CLI::App* command = app.add_subcommand(
+        "demo", "Scene, capture, reconstruction, fit, comparison and report in one go");
+    const auto arguments = std::make_shared<DemoArguments>();
+    command->add_option("-o,--output", arguments->folder, "Folder for the results")
+        ->capture_default_str();
+    command->footer(settings_footer({}, "nlos demo -o out/demo"));
+    command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace apps

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+#include "apps/arguments.h"
+#include "apps/commands.h"
+#include "apps/commands/fit_job.h"
+#include "renderer/core/error.h"
+#include "renderer/core/parallel.h"
+
+#include <fmt/core.h>
+
+#include <memory>
+
+namespace apps {
+namespace {
+
+struct FitArguments {
+    std::string capture;
+    std::string model;
+    std::string output;
+    std::string calibration;
+    std::vector<std::string> overrides;
+    int threads = 0;
+};
+
+void print_object(const calib::FittedObject& object) {
+    const auto& p = object.position_m;
+    const auto& s = object.position_sigma_m;
+    fmt::print(
+        "{:<14} at ({:.4f}, {:.4f}, {:.4f}) m +- ({:.2f}, {:.2f}, {:.2f}) mm, turned +- "
+        "{:.2f} deg, size {:.4f}, albedo {:.3f}\n",
+        object.name,
+        p.x(),
+        p.y(),
+        p.z(),
+        1e3 * s.x(),
+        1e3 * s.y(),
+        1e3 * s.z(),
+        object.rotation_sigma_deg.norm(),
+        object.size,
+        object.albedo);
+}
+
+void run(const FitArguments& arguments) {
+    const core::ThreadLimit threads(arguments.threads);
+    const calib::FitResult result = fit_to_file(arguments.capture,
+                                                arguments.model,
+                                                arguments.overrides,
+                                                arguments.calibration,
+                                                arguments.output);
+    for (const calib::FittedObject& object : result.objects) print_object(object);
+    for (const calib::FittedPoint& point : result.points) {
+        const auto& p = point.position_m;
+        const auto& s = point.position_sigma_m;
+        fmt::print("point          at ({:.4f}, {:.4f}, {:.4f}) m +- ({:.2f}, {:.2f}, {:.2f}) mm\n",
+                   p.x(),
+                   p.y(),
+                   p.z(),
+                   1e3 * s.x(),
+                   1e3 * s.y(),
+                   1e3 * s.z());
+    }
+    fmt::print(
+        "wrote {}, {}, {}, {} ({}, deviance {:.4g} of {:.4g} expected, {} iterations, "
+        "{:.2f} s)\n",
+        arguments.output,
+        with_suffix(arguments.output, ".scene.json"),
+        with_suffix(arguments.output, ".glb"),
+        with_suffix(arguments.output, ".png"),
+        result.residual,
+        result.deviance,
+        result.expected_deviance,
+        result.iterations,
+        result.seconds);
+    if (!result.converged) {
+        // One line, as for every failure; the warnings stand in the file.
+        throw core::Failure("fit",
+                            fmt::format("not converged after {} iterations ({}); {} holds the "
+                                        "state reached",
+                                        result.iterations,
+                                        result.message,
+                                        arguments.output));
+    }
+    for (const std::string& text : result.unidentifiable) {
+        fmt::print(stderr, "unidentifiable: {}\n", text);
+    }
+    for (const std::string& text : result.warnings) fmt::print(stderr, "warning: {}\n", text);
+}
+
+}  // namespace
+
+void add_fit_command(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("fit", "Fit a hidden scene to a capture");
+    const auto arguments = std::make_shared<FitArguments>();
+    command->add_option("CAPTURE", arguments->capture, "Capture in any readable format")
+        ->required();
+    command->add_option("MODEL", arguments->model, "What is fitted and from where (.json)")
+        ->required();
+    command
+        ->add_option("-o,--output",
+                     arguments->output,
+                     "Fit to write (.json); the fitted scene and a picture go beside it")
+        ->required();
+    command->add_option(
+        "--calibration", arguments->calibration, "Calibration of the set-up (.json)");
+    add_threads_option(*command, arguments->threads);
+    add_set_option(*command, arguments->overrides);
+    command->footer(
+        settings_footer(core::settings_help(calib::FitSettings{}),
+                        "nlos fit data/letter.h5 scenes/letter/model.json -o fit.json"));
+    command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace apps

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+#include "apps/commands/fit_job.h"
+
+#include "apps/arguments.h"
+#include "apps/commands/fit_pictures.h"
+#include "apps/terminal.h"
+#include "apps/version.h"
+#include "calib/calibrate.h"
+#include "calib/fit_file.h"
+#include "nlos/formats/capture_file.h"
+#include "nlos/formats/volume_file.h"
+#include "renderer/core/output_file.h"
+#include "renderer/gltf/gltf.h"
+
+#include <filesystem>
+
+namespace apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+calib::FitInput make_input(const std::string& capture_path,
+                           const std::string& model_path,
+                           const std::vector<std::string>& overrides) {
+    calib::FitInput input;
+    input.settings = calib::read_fit_settings(model_path, overrides);
+    input.capture = nlos::read_capture(capture_path);
+    input.scene = renderer::read_scene_description(input.settings.scene, {});
+    input.geometry = renderer::load_gltf(input.scene.geometry);
+    if (input.capture.scan.camera || input.scene.camera) {
+        throw core::Error(input.scene.camera ? input.settings.scene : capture_path,
+                          "has a camera in place of a relay wall",
+                          "must be a scan of a relay wall");
+    }
+    if (input.settings.start != "given" && input.settings.start != "search") {
+        if (!fs::exists(input.settings.start)) {
+            throw core::Error(model_path + ": start",
+                              "found '" + input.settings.start + "', which does not exist",
+                              "must be given, search or a VOLUME.h5");
+        }
+        input.start_points = nlos::read_volume(input.settings.start).points.positions;
+    }
+    return input;
+}
+
+// The data stay as they are: offsets go into the model, where they cost no light.
+void use_calibration(const calib::AppliedCalibration& calibration, calib::FitInput& input) {
+    calib::replace_points(calibration, input.capture.scan);
+    input.offset_m = calib::pair_offsets(calibration, input.capture.scan);
+    if (!core::is_stated(input.settings.response)) input.settings.response = calibration.response;
+}
+
+void write_results(const calib::FitInput& input,
+                   const calib::FitResult& result,
+                   const std::string& fit_path) {
+    const std::string stem = fs::path(fit_path).replace_extension().string();
+    renderer::write_gltf(stem + ".glb", result.geometry);
+    const std::string geometry = fs::path(stem + ".glb").filename().string();
+    core::write_text_file(stem + ".scene.json",
+                          calib::fitted_scene_json(input, geometry).dump(2) + "\n");
+    nlos::write_panels_png(stem + ".png", fit_panels(result), 3);
+    core::Json json = calib::fit_json(result);
+    json["program"] = version_text();
+    json["command"] = command_line();
+    json["settings"] = core::write_value(input.settings);
+    core::write_text_file(fit_path, json.dump(2) + "\n");
+}
+
+}  // namespace
+
+calib::FitResult fit_to_file(const std::string& capture_path,
+                             const std::string& model_path,
+                             const std::vector<std::string>& overrides,
+                             const std::string& calibration,
+                             const std::string& fit_path) {
+    require_suffix(fit_path, {".json"});
+    calib::FitInput input = make_input(capture_path, model_path, overrides);
+    core::check_targets({fit_path,
+                         with_suffix(fit_path, ".scene.json"),
+                         with_suffix(fit_path, ".glb"),
+                         with_suffix(fit_path, ".png")},
+                        {capture_path,
+                         model_path,
+                         calibration,
+                         input.settings.scene,
+                         input.scene.geometry,
+                         input.settings.start});
+    if (!calibration.empty()) use_calibration(calib::read_calibration(calibration), input);
+    ProgressBar bar("fit");
+    calib::FitResult result = calib::fit_scene(input, bar.progress());
+    write_results(input, result, fit_path);
+    return result;
+}
+
+}  // namespace apps

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT
+#include "apps/commands/fit_pictures.h"
+
+#include "calib/statistics/poisson_deviance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace apps {
+namespace {
+
+using core::Vec3;
+
+// Rows of a picture; more wall points are averaged in groups.
+constexpr std::size_t kMostRows = 256;
+constexpr double kCellsAcross = 90.0;
+
+nlos::ImagePanel rows_panel(const calib::FitResult& result, const std::string& title) {
+    nlos::ImagePanel panel;
+    panel.title = title;
+    panel.width = static_cast<std::size_t>(result.axis.num_bins);
+    panel.x_range = {result.axis.opl_start_m, result.axis.opl_end_m()};
+    panel.x_label = "path length [m]";
+    panel.y_label = "pair";
+    panel.scale = nlos::AxisScale::Free;
+    return panel;
+}
+
+struct Box {
+    Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity());
+    Vec3 high = -low;
+};
+
+Box box_around(const calib::FitErrors& errors) {
+    Box box;
+    for (const auto* points : {&errors.true_points, &errors.fitted_points}) {
+        for (const Vec3& p : points->positions) {
+            box.low = box.low.cwiseMin(p);
+            box.high = box.high.cwiseMax(p);
+        }
+    }
+    const double margin = 0.05 * (box.high - box.low).maxCoeff() + 0.01;
+    box.low.array() -= margin;
+    box.high.array() += margin;
+    return box;
+}
+
+// Cells that hold truth get 1, those that hold the fit 2 more.
+nlos::ImagePanel overlay_view(
+    const calib::FitErrors& errors, const Box& box, const char* title, int across, int up) {
+    const std::array<const char*, 3> labels{"x [m]", "y [m]", "z [m]"};
+    const double cell = (box.high - box.low).maxCoeff() / kCellsAcross;
+    nlos::ImagePanel panel;
+    panel.title = title;
+    const auto cells = [&](int axis) {
+        return static_cast<std::size_t>(std::ceil((box.high - box.low)[axis] / cell));
+    };
+    panel.width = cells(across);
+    panel.height = cells(up);
+    panel.x_range = {box.low[across], box.low[across] + cell * static_cast<double>(panel.width)};
+    panel.y_range = {box.low[up], box.low[up] + cell * static_cast<double>(panel.height)};
+    panel.x_label = labels[static_cast<std::size_t>(across)];
+    panel.y_label = labels[static_cast<std::size_t>(up)];
+    panel.value_label = "1 truth, 2 fit, 3 both";
+    panel.value_range = std::array{0.0, 3.0};
+    std::vector<int> marks(panel.width * panel.height, 0);
+    const auto mark = [&](const core::PointCloud& points, int bit) {
+        for (const Vec3& p : points.positions) {
+            const auto x = static_cast<std::size_t>((p[across] - box.low[across]) / cell);
+            const auto y = static_cast<std::size_t>((p[up] - box.low[up]) / cell);
+            marks[y * panel.width + x] |= bit;
+        }
+    };
+    mark(errors.true_points, 1);
+    mark(errors.fitted_points, 2);
+    panel.values.assign(marks.begin(), marks.end());
+    return panel;
+}
+
+}  // namespace
+
+std::vector<nlos::Panel> fit_panels(const calib::FitResult& result) {
+    const auto bins = static_cast<std::size_t>(result.axis.num_bins);
+    const std::size_t pairs = result.data.size() / bins;
+    const std::size_t group = (pairs + kMostRows - 1) / kMostRows;
+    const std::size_t rows = (pairs + group - 1) / group;
+    nlos::ImagePanel data = rows_panel(result, "Data");
+    nlos::ImagePanel model = rows_panel(result, "Model");
+    nlos::ImagePanel residual = rows_panel(result, "Data - model");
+    const bool is_poisson = result.residual == "poisson";
+    for (std::size_t row = 0; row < rows; ++row) {
+        for (std::size_t bin = 0; bin < bins; ++bin) {
+            double counted = 0.0;
+            double expected = 0.0;
+            for (std::size_t i = row * group; i < std::min(pairs, (row + 1) * group); ++i) {
+                counted += result.data[i * bins + bin];
+                expected += result.model[i * bins + bin];
+            }
+            data.values.push_back(static_cast<float>(counted));
+            model.values.push_back(static_cast<float>(expected));
+            const double misfit = is_poisson && expected > 0.0
+                                      ? -calib::signed_deviance(expected, counted).value
+                                      : counted - expected;
+            residual.values.push_back(static_cast<float>(misfit));
+        }
+    }
+    const float most = *std::max_element(data.values.begin(), data.values.end());
+    double widest = 0.0;
+    for (const float value : residual.values) {
+        widest = std::max(widest, std::abs(static_cast<double>(value)));
+    }
+    for (nlos::ImagePanel* panel : {&data, &model, &residual}) {
+        panel->height = rows;
+        panel->y_range = {0.0, static_cast<double>(pairs)};
+    }
+    data.value_range = model.value_range = std::array{0.0, static_cast<double>(most)};
+    data.value_label = model.value_label = is_poisson ? "counts" : "value";
+    residual.value_label = is_poisson ? "standard deviations" : "value";
+    residual.colour_map = nlos::ColourMap::Diverging;
+    residual.value_range = std::array{-widest, widest};
+    return {data, model, residual};
+}
+
+std::vector<nlos::Panel> overlay_panels(const calib::FitErrors& errors) {
+    if (errors.true_points.positions.empty() && errors.fitted_points.positions.empty()) return {};
+    const Box box = box_around(errors);
+    nlos::ImagePanel front = overlay_view(errors, box, "Front (seen from the wall)", 0, 1);
+    nlos::ImagePanel side = overlay_view(errors, box, "Side (along x)", 2, 1);
+    nlos::ImagePanel top = overlay_view(errors, box, "Top (along y)", 0, 2);
+    front.x_direction = top.x_direction = nlos::AxisDirection::Reversed;
+    return {front, side, top};
+}
+
+}  // namespace apps

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT
+#include "apps/arguments.h"
+#include "apps/commands.h"
+#include "apps/commands/render_job.h"
+#include "renderer/core/parallel.h"
+
+#include <fmt/core.h>
+
+#include <filesystem>
+#include <memory>
+
+namespace apps {
+namespace {
+
+struct RenderArguments {
+    std::string scene;
+    std::string output;
+    std::string calibration;
+    std::vector<std::string> overrides;
+    std::vector<std::string> shorthands;  ///< --samples 64 becomes render.samples=64
+    int threads = 0;
+    bool verbose = false;
+};
+
+void add_shorthand(CLI::App& command,
+                   RenderArguments& arguments,
+                   const std::string& flag,
+                   const std::string& key,
+                   const std::string& type,
+                   const std::string& help) {
+    command
+        .add_option_function<std::string>(
+            flag,
+            [&arguments, key](const std::string& value) {
+                arguments.shorthands.push_back(key + "=" + value);
+            },
+            help)
+        ->type_name(type);
+}
+
+void run(const RenderArguments& arguments) {
+    const core::ThreadLimit threads(arguments.threads);
+    std::vector<std::string> overrides = arguments.overrides;
+    overrides.insert(overrides.end(), arguments.shorthands.begin(), arguments.shorthands.end());
+    const RenderJob job =
+        render_to_file(arguments.scene, overrides, arguments.output, arguments.calibration);
+    for (const std::string& warning : job.warnings) {
+        fmt::print(stderr, "warning: {}\n", warning);
+    }
+    std::string effort;
+    if (job.estimated_error) effort += fmt::format("error about {:.1e}, ", *job.estimated_error);
+    if (job.samples_per_pair > 0)
+        effort += fmt::format("{} samples per pair, ", job.samples_per_pair);
+    if (job.interrupted) {
+        throw core::Failure("render",
+                            fmt::format("interrupted; {} holds what was computed ({}{:.2f} s)",
+                                        arguments.output,
+                                        effort,
+                                        job.seconds));
+    }
+    if (arguments.verbose) fmt::print("{}\n", job.details.dump(2));
+    const std::string frames =
+        job.num_frames > 0 ? fmt::format("{} frames x ", job.num_frames) : "";
+    fmt::print("wrote {} ({}{} pairs x {} bins, {} by {}, {}{:.2f} s)\n",
+               arguments.output,
+               frames,
+               job.num_pairs,
+               job.num_bins,
+               job.pattern,
+               job.estimator,
+               effort,
+               job.seconds);
+}
+
+}  // namespace
+
+void add_render_command(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("render", "Simulate the transients a scan records");
+    const auto arguments = std::make_shared<RenderArguments>();
+    command->add_option("SCENE", arguments->scene, "Scene description (.json)")->required();
+    command->add_option("-o,--output", arguments->output, "Capture to write (.h5, .exr, .mat)")
+        ->required();
+    add_shorthand(*command,
+                  *arguments,
+                  "--method",
+                  "render.method",
+                  "NAME",
+                  "Estimator: auto, third_bounce, path, ellipsoidal or restir (default auto)");
+    add_shorthand(*command,
+                  *arguments,
+                  "--samples",
+                  "render.samples",
+                  "N",
+                  "Candidate paths per pair (default 256)");
+    add_shorthand(*command,
+                  *arguments,
+                  "--seconds",
+                  "render.seconds",
+                  "S",
+                  "Render for this long instead [s]; of a sequence, each frame");
+    add_shorthand(*command,
+                  *arguments,
+                  "--target-error",
+                  "render.target_error",
+                  "E",
+                  "Render until the relative L2 error over all of H is below this");
+    add_shorthand(*command,
+                  *arguments,
+                  "--max-bounces",
+                  "render.max_bounces",
+                  "K",
+                  "Bounces, both on the relay wall included (default 3)");
+    add_shorthand(*command,
+                  *arguments,
+                  "--seed",
+                  "render.seed",
+                  "N",
+                  "Seed of the random numbers (default 0)");
+    command->add_option("--calibration",
+                        arguments->calibration,
+                        "Calibration of the set-up to record with (.json)");
+    add_threads_option(*command, arguments->threads);
+    command->add_flag("--verbose",
+                      arguments->verbose,
+                      "Also print what the run did: estimators, excluded objects, shifts and why "
+                      "they were rejected");
+    add_set_option(*command, arguments->overrides);
+    command->footer(settings_footer(core::settings_help(renderer::SceneDescription{}),
+                                    "nlos render scenes/letter/scene.json -o letter.h5"));
+    command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace apps

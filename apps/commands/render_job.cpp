@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: MIT
+#include "apps/commands/render_job.h"
+
+#include "apps/arguments.h"
+#include "apps/terminal.h"
+#include "apps/version.h"
+#include "calib/calibrate.h"
+#include "nlos/formats/capture_file.h"
+#include "nlos/pictures/pictures.h"
+#include "renderer/core/output_file.h"
+#include "renderer/frame_sequence.h"
+
+#include <filesystem>
+
+namespace apps {
+namespace {
+
+// The estimators that ran, as in "third_bounce + path".
+std::string estimator_names(const renderer::RenderResult& result) {
+    std::string names;
+    for (const renderer::OrderSource& source : result.sources) {
+        const std::string name(core::enum_name(source.estimator));
+        if (names.find(name) == std::string::npos) names += (names.empty() ? "" : " + ") + name;
+    }
+    return names.empty() ? "closed form" : names;
+}
+
+// How reuse went: merges, shifts and why shifts were rejected, over all frames.
+core::Json resampling_of(const renderer::RenderResult& result) {
+    const renderer::RestirCounts& counts = result.restir_counts;
+    core::Json info;
+    info["merges"] = counts.num_merges;
+    info["shifts_tried"] = counts.shifts.tried();
+    info["shifts_accepted"] = counts.shifts.accepted;
+    info["shifts_accepted_by_ray"] = counts.shifts.by_ray;
+    for (std::size_t i = 0; i < counts.shifts.rejected.size(); ++i) {
+        info["shifts_rejected"][std::string(renderer::kShiftRejectionNames[i])] =
+            counts.shifts.rejected[i];
+    }
+    return info;
+}
+
+core::Json provenance(const std::string& scene_path,
+                      const renderer::SceneDescription& description,
+                      const renderer::RenderResult& result) {
+    core::Json info;
+    info["program"] = version_text();
+    info["command"] = command_line();
+    info["scene"] = std::filesystem::absolute(scene_path).lexically_normal().string();
+    const std::string names = estimator_names(result);
+    info["estimator"] = names;
+    for (const renderer::OrderSource& source : result.sources) {
+        info["orders"].push_back({{"first", source.first_order},
+                                  {"last", source.last_order},
+                                  {"estimator", std::string(core::enum_name(source.estimator))},
+                                  {"surfaces", source.surfaces}});
+    }
+    if (result.estimated_error) info["estimated_error"] = *result.estimated_error;
+    if (names == "ellipsoidal" || names == "restir") {
+        info["excluded"] = {{"mode", std::string(core::enum_name(description.render.exclude))},
+                            {"objects", result.excluded.names},
+                            {"connected", result.excluded.connected}};
+    }
+    if (!result.warnings.empty()) info["warnings"] = result.warnings;
+    info["samples_per_pair"] = result.samples_per_pair;
+    if (result.restir_counts.num_merges > 0) info["restir"] = resampling_of(result);
+    info["seconds"] = result.seconds;
+    info["interrupted"] = result.interrupted;
+    info["settings"] = core::write_value(description);
+    return info;
+}
+
+renderer::RenderResult run(const renderer::SceneDescription& description,
+                           const core::Scan& scan,
+                           const core::Progress& progress) {
+    const auto scene =
+        std::make_shared<const renderer::Scene>(renderer::load_scene(description, scan));
+    if (description.frames) {
+        return renderer::render_frames(scene,
+                                       scan,
+                                       description,
+                                       renderer::make_frame_renderer(scan, description.render),
+                                       progress);
+    }
+    return renderer::render(*scene,
+                            scan,
+                            {description.time_axis, description.velocity_axis},
+                            description.render,
+                            progress);
+}
+
+}  // namespace
+
+RenderJob render_to_file(const std::string& scene_path,
+                         const std::vector<std::string>& overrides,
+                         const std::string& capture_path,
+                         const std::string& calibration_path) {
+    nlos::check_capture_suffix(capture_path);
+    core::check_targets({capture_path}, {scene_path, calibration_path});
+    const renderer::SceneDescription description =
+        renderer::read_scene_description(scene_path, overrides);
+    core::Scan scan = renderer::make_scan(description);
+    renderer::SceneDescription rendered = description;
+    std::optional<calib::AppliedCalibration> calibration;
+    if (!calibration_path.empty()) {
+        if (scan.camera || description.frames || description.velocity_axis) {
+            throw core::Error("--calibration",
+                              "found a camera, frames or a velocity axis",
+                              "must be a scan without these");
+        }
+        calibration = calib::read_calibration(calibration_path);
+        calib::replace_points(*calibration, scan);
+        rendered.time_axis = calib::axis_to_render(*calibration, description.time_axis);
+    }
+    ProgressBar bar("render");
+    renderer::RenderResult result = run(rendered, scan, bar.progress());
+    if (calibration) {
+        result.capture = calib::record_with(*calibration, result.capture, description.time_axis);
+    }
+    result.capture.scene_info = provenance(scene_path, description, result);
+    const std::vector<std::string> left_out = nlos::write_capture(capture_path, result.capture);
+    if (scan.camera) {
+        core::write_text_file(with_suffix(capture_path, ".png"),
+                              nlos::encode_preview_png(result.capture));
+    }
+
+    RenderJob job;
+    job.num_pairs = scan.num_pairs();
+    if (result.capture.sequence) job.num_frames = result.capture.sequence->frames.size();
+    job.num_bins = description.time_axis.num_bins;
+    job.pattern = scan.camera ? "camera" : core::enum_name(scan.pattern);
+    job.estimator = estimator_names(result);
+    job.estimated_error = result.estimated_error;
+    job.samples_per_pair = result.samples_per_pair;
+    job.seconds = result.seconds;
+    job.interrupted = result.interrupted;
+    job.warnings = result.warnings;
+    job.details = result.capture.scene_info;
+    job.details.erase("settings");
+    job.warnings.insert(job.warnings.end(), left_out.begin(), left_out.end());
+    return job;
+}
+
+}  // namespace apps

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+#include "apps/arguments.h"
+#include "apps/commands.h"
+#include "apps/report/report.h"
+
+#include <fmt/core.h>
+
+#include <memory>
+
+namespace apps {
+namespace {
+
+struct ReportArguments {
+    std::string folder;
+    std::string output;
+};
+
+}  // namespace
+
+void add_report_command(CLI::App& app) {
+    CLI::App* command =
+        app.add_subcommand("report", "Make one self-contained page of a folder of results");
+    const auto arguments = std::make_shared<ReportArguments>();
+    command->add_option("DIR", arguments->folder, "Folder of captures, volumes and metrics")
+        ->required();
+    command->add_option("-o,--output", arguments->output, "Page to write (.html)")->required();
+    command->footer(settings_footer({}, "nlos report data -o report.html"));
+    command->callback([arguments] {
+        require_suffix(arguments->output, {".html", ".htm"});
+        write_report(arguments->folder, arguments->output);
+        fmt::print("wrote {}\n", arguments->output);
+    });
+}
+
+}  // namespace apps

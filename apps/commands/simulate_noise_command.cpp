@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: MIT
+#include "apps/arguments.h"
+#include "apps/commands.h"
+#include "apps/version.h"
+#include "nlos/detector/detector.h"
+#include "nlos/formats/capture_file.h"
+#include "renderer/core/output_file.h"
+#include "renderer/core/parallel.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <memory>
+#include <numeric>
+
+namespace apps {
+namespace {
+
+struct NoiseArguments {
+    std::string capture;
+    std::string output;
+    std::vector<std::string> overrides;
+    std::vector<std::string> shorthands;
+    int threads = 0;
+};
+
+/// What `--set` of simulate-noise reaches: the detector, and `capture.` for the file.
+struct NoiseOptions {
+    nlos::DetectorSettings detector;
+    nlos::CaptureReadSettings capture;
+};
+
+template <class Visitor>
+void for_each_field(NoiseOptions& options, Visitor&& visit) {
+    for_each_field(options.detector, visit);
+    visit("capture", options.capture, "what the capture file leaves open");
+}
+
+/// A flag with a value, or without one for settings that are true or false.
+struct Shorthand {
+    const char* flag;
+    const char* key;
+    const char* type;  ///< empty: a switch
+    const char* help;
+};
+
+constexpr std::array kShorthands{
+    Shorthand{"--photons", "photons", "N", "Expected signal photons in the whole capture"},
+    Shorthand{
+        "--photons-per-point", "photons_per_point", "N", "... per measurement pair, on average"},
+    Shorthand{"--exposure-s", "exposure_s", "T", "Time per pair [s]"},
+    Shorthand{"--jitter-fwhm-ps", "response.jitter_fwhm_ps", "J", "Width of pulse and jitter [ps]"},
+    Shorthand{"--tail-ps", "response.tail_ps", "T", "Mean of an exponential tail [ps]"},
+    Shorthand{"--response-curve", "response.curve", "FILE", "Measured response instead"},
+    Shorthand{"--dark-counts-hz", "dark_counts_hz", "R", "Dark counts [1/s]"},
+    Shorthand{"--ambient", "ambient", "N", "Expected ambient counts in every bin"},
+    Shorthand{"--dead-time-ns", "dead_time_ns", "T", "Blind time after a detection [ns]"},
+    Shorthand{"--repetition-hz", "repetition_hz", "R", "Laser pulses per second [1/s]"},
+    Shorthand{"--pile-up", "pile_up", "", "Record only the first photon of a pulse"},
+    Shorthand{"--expected", "expected", "", "Write expected counts instead of random ones"},
+    Shorthand{"--seed", "seed", "N", "Seed of the random numbers"}};
+
+void add_shorthands(CLI::App& command, const std::shared_ptr<NoiseArguments>& arguments) {
+    for (const Shorthand& shorthand : kShorthands) {
+        const std::string key = shorthand.key;
+        if (*shorthand.type == '\0') {
+            command.add_flag_callback(
+                shorthand.flag,
+                [arguments, key] { arguments->shorthands.push_back(key + "=true"); },
+                shorthand.help);
+            continue;
+        }
+        command
+            .add_option_function<std::string>(
+                shorthand.flag,
+                [arguments, key](const std::string& value) {
+                    arguments->shorthands.push_back(key + "=" + value);
+                },
+                shorthand.help)
+            ->type_name(shorthand.type);
+    }
+}
+
+void run(const NoiseArguments& arguments) {
+    const core::ThreadLimit threads(arguments.threads);
+    nlos::check_capture_suffix(arguments.output);
+    core::check_targets({arguments.output}, {arguments.capture});
+    NoiseOptions options;
+    for (const auto* texts : {&arguments.overrides, &arguments.shorthands}) {
+        for (const std::string& text : *texts) core::apply_override(options, text);
+    }
+    const core::Capture capture = nlos::read_capture(arguments.capture, options.capture);
+    core::Capture noisy = nlos::detect(capture, options.detector);
+    noisy.scene_info["detector"]["program"] = version_text();
+    noisy.scene_info["detector"]["command"] = command_line();
+    for (const std::string& loss : nlos::write_capture(arguments.output, noisy)) {
+        fmt::print("not kept: {}\n", loss);
+    }
+
+    const auto values = noisy.transient.values();
+    const double sum = std::accumulate(values.begin(), values.end(), 0.0);
+    fmt::print("wrote {} ({} pairs x {} bins, {:.6g} {}counts, at most {:.6g} in a bin)\n",
+               arguments.output,
+               noisy.transient.num_pairs(),
+               noisy.transient.num_bins(),
+               sum,
+               options.detector.expected ? "expected " : "",
+               *std::max_element(values.begin(), values.end()));
+}
+
+}  // namespace
+
+void add_simulate_noise_command(CLI::App& app) {
+    CLI::App* command =
+        app.add_subcommand("simulate-noise", "Turn a capture into what a detector counts");
+    const auto arguments = std::make_shared<NoiseArguments>();
+    command->add_option("CAPTURE", arguments->capture, "Capture in any readable format")
+        ->required();
+    command->add_option("-o,--output", arguments->output, "Capture to write (.h5, .exr, .mat)")
+        ->required();
+    add_shorthands(*command, arguments);
+    add_threads_option(*command, arguments->threads);
+    add_set_option(*command, arguments->overrides);
+    command->footer(settings_footer(core::settings_help(NoiseOptions{}),
+                                    "nlos simulate-noise data/letter.h5 -o noisy.h5 "
+                                    "--photons-per-point 1000 --jitter-fwhm-ps 60"));
+    command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace apps

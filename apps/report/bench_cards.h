@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "apps/report/result_cards.h"
+#include "renderer/core/settings.h"
+
+#include <string>
+#include <vector>
+
+namespace apps {
+
+/// A picture lying in the folder.
+struct Figure {
+    std::string file;
+    std::string mime_type;
+    std::string bytes;
+};
+
+/// What a benchmark found, see bench/output.h.
+struct BenchCard {
+    std::string file;
+    std::vector<Fact> facts;
+    std::string table;  ///< the text beside the JSON file; empty: none
+    std::vector<Figure> figures;
+};
+
+/// Whether a JSON file is what a benchmark writes, see output.h.
+bool is_bench(const core::Json& json);
+
+/// Whether it holds several of them, which have files of their own beside it.
+bool is_collection_of_benches(const core::Json& json);
+
+/// A benchmark's facts and table; its figures are still to be given to it.
+///
+/// path   of the JSON file; the table lies beside it
+BenchCard read_bench_card(const std::string& path, const core::Json& json);
+
+/// Moves figures whose names begin with a benchmark's to it, one format of each.
+void give_figures_to_benches(std::vector<Figure>& figures, std::vector<BenchCard>& benches);
+
+/// The benchmarks as HTML: what they ran on, plots, table.
+std::string benches_html(const std::vector<BenchCard>& benches);
+
+/// The table of hard cases as HTML.
+///
+/// cases   list of objects with `name`, `group`, `why`, `must_hold`, `worst`, `bound`,
+///         `explanation`
+std::string hard_cases_html(const core::Json& cases);
+
+}  // namespace apps

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: MIT
+#include "apps/report/metrics_table.h"
+
+#include "apps/report/html.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string_view>
+
+namespace apps {
+namespace {
+
+enum class Better { Lower, Higher, Neither };
+
+/// How a metric is shown: stored value x factor, in `unit`.
+struct MetricStyle {
+    std::string_view key;
+    std::string_view label;
+    double factor;
+    std::string_view unit;
+    Better better;
+};
+
+constexpr std::array<MetricStyle, 21> kStyles{{
+    {"depth_mae_m", "Depth error, mean", 1e3, "mm", Better::Lower},
+    {"depth_median_m", "Depth error, median", 1e3, "mm", Better::Lower},
+    {"depth_rmse_m", "Depth error, RMS", 1e3, "mm", Better::Lower},
+    {"mask_iou", "Mask IoU at 20 %", 1e2, "%", Better::Higher},
+    {"mask_iou_best", "Mask IoU, best threshold", 1e2, "%", Better::Higher},
+    {"normal_mae_deg", "Normal error, mean", 1.0, "deg", Better::Lower},
+    {"normal_median_deg", "Normal error, median", 1.0, "deg", Better::Lower},
+    {"chamfer_m", "Chamfer distance", 1e3, "mm", Better::Lower},
+    {"fscore", "F-score", 1e2, "%", Better::Higher},
+    {"fscore_threshold_m", "F-score threshold", 1e3, "mm", Better::Neither},
+    {"psnr_db", "PSNR", 1.0, "dB", Better::Higher},
+    {"ssim", "SSIM", 1.0, "", Better::Higher},
+    {"peak_distance_m", "Peak to truth", 1e3, "mm", Better::Lower},
+    {"position_error_m", "Position error", 1e3, "mm", Better::Lower},
+    {"rotation_error_deg", "Rotation error", 1.0, "deg", Better::Lower},
+    {"size_error", "Size error", 1e2, "%", Better::Lower},
+    {"albedo_error", "Albedo error", 1e2, "%", Better::Lower},
+    {"rel_l2", "Relative L2", 1e2, "%", Better::Lower},
+    {"rel_mse", "Relative MSE", 1.0, "", Better::Lower},
+    {"seconds", "Time", 1.0, "s", Better::Lower},
+    {"peak_rss_bytes", "Peak memory", 1e-6, "MB", Better::Lower},
+}};
+
+/// One metric of all results.
+struct MetricRow {
+    std::string key;
+    std::string meaning;
+    std::vector<std::optional<double>> values;  ///< one per result, as stored
+};
+
+/// The fields of Metrics, in their order, turned from columns into rows.
+std::vector<MetricRow> rows_of(const std::vector<ScoredResult>& scores) {
+    std::vector<MetricRow> rows;
+    for (const ScoredResult& scored : scores) {
+        nlos::Metrics metrics = scored.metrics;
+        std::size_t row = 0;
+        for_each_field(metrics, [&](const char* name, const auto& field, const char* meaning) {
+            if (row == rows.size()) rows.push_back({name, meaning, {}});
+            std::optional<double> value;
+            if (field) value = static_cast<double>(*field);
+            rows[row++].values.push_back(value);
+        });
+    }
+    std::erase_if(rows, [](const MetricRow& row) {
+        return std::none_of(row.values.begin(), row.values.end(), [](const auto& value) {
+            return value.has_value();
+        });
+    });
+    return rows;
+}
+
+MetricStyle style_of(const MetricRow& row) {
+    const auto it = std::find_if(kStyles.begin(), kStyles.end(), [&](const MetricStyle& style) {
+        return style.key == row.key;
+    });
+    if (it != kStyles.end()) return *it;
+    return {row.key, row.key, 1.0, "", Better::Neither};
+}
+
+/// Three significant digits, trailing zeros included, so that a column reads evenly.
+std::string three_digits(double value) {
+    const double size = std::abs(value);
+    if (size == 0.0) return "0";
+    if (size < 1e-3 || size >= 1e6) return fmt::format("{:.2e}", value);
+    if (size >= 99.95) return fmt::format("{:.0f}", value);
+    return fmt::format("{:#.3g}", value);
+}
+
+/// The best value of a row; nothing when best has no meaning here.
+std::optional<double> best_value(const MetricRow& row, Better better) {
+    if (better == Better::Neither) return std::nullopt;
+    std::optional<double> best;
+    for (const auto& value : row.values) {
+        if (!value) continue;
+        const bool improves = !best || (better == Better::Lower ? *value < *best : *value > *best);
+        if (improves) best = value;
+    }
+    return best;
+}
+
+/// The cells of a row. Results that read the same are equally good; where all do, none is marked.
+std::string value_cells(const MetricRow& row, const MetricStyle& style) {
+    const auto text_of = [&](const std::optional<double>& value) {
+        return value ? three_digits(*value * style.factor) : std::string();
+    };
+    const std::string best = text_of(best_value(row, style.better));
+    const bool is_contest =
+        std::any_of(row.values.begin(), row.values.end(), [&](const auto& value) {
+            return value && !best.empty() && text_of(value) != best;
+        });
+    std::string html;
+    for (const auto& value : row.values) {
+        if (!value) {
+            html += "<td class=\"none\">&ndash;</td>";
+        } else {
+            const bool is_best = is_contest && text_of(value) == best;
+            html += fmt::format("<td{}>{}</td>", is_best ? " class=\"best\"" : "", text_of(value));
+        }
+    }
+    return html;
+}
+
+}  // namespace
+
+std::string metrics_table(const std::vector<ScoredResult>& scores) {
+    std::string html = "<div class=\"scroll\"><table class=\"scores\"><thead><tr><th>Metric</th>";
+    for (const ScoredResult& scored : scores) {
+        html += fmt::format("<th>{}", escape_html(scored.name));
+        if (!scored.result.empty()) {
+            html += fmt::format("<small>{} against {}</small>",
+                                escape_html(scored.result),
+                                escape_html(scored.reference));
+        }
+        html += "</th>";
+    }
+    html += "</tr></thead><tbody>\n";
+    for (const MetricRow& row : rows_of(scores)) {
+        const MetricStyle style = style_of(row);
+        html += fmt::format("<tr><th title=\"{}\">{}<span class=\"unit\">{}</span></th>",
+                            escape_html(row.meaning),
+                            escape_html(style.label),
+                            escape_html(style.unit));
+        html += value_cells(row, style) + "</tr>\n";
+    }
+    return html + "</tbody></table></div>\n";
+}
+
+std::string metrics_tiles(const std::vector<ScoredResult>& scores) {
+    constexpr std::array<std::string_view, 4> kTelling{
+        "depth_mae_m", "mask_iou_best", "fscore", "ssim"};
+    std::string html;
+    for (const MetricRow& row : rows_of(scores)) {
+        if (std::find(kTelling.begin(), kTelling.end(), row.key) == kTelling.end()) continue;
+        const MetricStyle style = style_of(row);
+        const std::optional<double> best = best_value(row, style.better);
+        const auto winner = std::find(row.values.begin(), row.values.end(), best);
+        const auto& name = scores[static_cast<std::size_t>(winner - row.values.begin())].name;
+        html += fmt::format(
+            "<div class=\"tile\"><span>{}</span><b>{}<i>{}</i></b><small>{}</small></div>",
+            escape_html(style.label),
+            three_digits(*best * style.factor),
+            escape_html(style.unit),
+            escape_html(name));
+    }
+    return html.empty() ? html : "<div class=\"tiles\">" + html + "</div>\n";
+}
+
+}  // namespace apps

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: MIT
+#include "apps/report/result_cards.h"
+
+#include "calib/fit_file.h"
+#include "nlos/formats/capture_file.h"
+#include "nlos/formats/volume_file.h"
+#include "nlos/pictures/pictures.h"
+#include "nlos/preparation/wall_frame.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+namespace apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kCaptureColumns = 3;
+constexpr int kVolumeColumns = 2;
+
+std::string range_text(double low, double high, const std::string& unit) {
+    return fmt::format("{} to {} {}", short_number(low), short_number(high), unit);
+}
+
+std::string megabytes(double bytes) {
+    return short_number(bytes / 1e6) + " MB";
+}
+
+std::string points_text(const core::WallPoints& points) {
+    if (!points.grid) return fmt::format("{} (list)", points.size());
+    return fmt::format("{} x {}", (*points.grid)[0], (*points.grid)[1]);
+}
+
+std::vector<Fact> scan_facts(const core::Scan& scan) {
+    if (scan.camera) {
+        return {
+            {"Camera", fmt::format("{} x {} pixels", scan.camera->width(), scan.camera->height())},
+            {"Angle of view", short_number(scan.camera->fov_y_deg) + " degrees high"},
+            {"Light", scan.camera->light_spot_m ? "spot on a surface" : "point"}};
+    }
+    const nlos::WallFrame frame = nlos::derive_wall_frame(scan);
+    std::vector<Fact> facts{{"Scan", std::string(core::enum_name(scan.pattern))},
+                            {"Sensing points", points_text(scan.sensing)}};
+    if (scan.pattern != core::ScanPattern::Confocal) {
+        facts.emplace_back("Illumination points", points_text(scan.illumination));
+    }
+    facts.emplace_back("Wall covered",
+                       fmt::format("{} x {} m",
+                                   short_number(frame.max_m[0] - frame.min_m[0]),
+                                   short_number(frame.max_m[1] - frame.min_m[1])));
+    return facts;
+}
+
+std::string path_origin(const core::Scan& scan) {
+    if (scan.camera) return "the light";
+    return scan.opl_origin == core::OplOrigin::Device ? "the device" : "the relay wall";
+}
+
+std::vector<Fact> capture_facts(const core::Capture& capture) {
+    const core::TimeAxis& axis = capture.time_axis;
+    const auto values = capture.transient.values();
+    double total = 0.0;
+    for (const float value : values) total += value;
+    std::vector<Fact> facts = scan_facts(capture.scan);
+    if (capture.sequence) {
+        facts.emplace_back(
+            "Frames, of which H is the last",
+            fmt::format("{}, the path length moves by {} mm and time by {} s per frame",
+                        capture.sequence->frames.size(),
+                        short_number(1e3 * capture.sequence->gate_step_m),
+                        short_number(capture.sequence->frame_s)));
+    }
+    if (capture.velocity) {
+        const core::VelocityAxis& velocity = capture.velocity->axis;
+        facts.emplace_back("Path velocity",
+                           range_text(velocity.start_m_per_s, velocity.end_m_per_s(), "m/s"));
+        facts.emplace_back(
+            fmt::format("Frequency shift at {} GHz", short_number(1e-9 * velocity.carrier_hz)),
+            range_text(1e-3 * core::frequency_shift_hz(velocity.carrier_hz, velocity.start_m_per_s),
+                       1e-3 * core::frequency_shift_hz(velocity.carrier_hz, velocity.end_m_per_s()),
+                       "kHz"));
+    }
+    facts.insert(
+        facts.end(),
+        {{"Bins",
+          fmt::format("{} of {} mm of path", axis.num_bins, short_number(1e3 * axis.bin_width_m))},
+         {"Path length", range_text(axis.opl_start_m, axis.opl_end_m(), "m")},
+         {"Path begins at", path_origin(capture.scan)},
+         {"Unit", std::string(core::enum_name(capture.unit))},
+         {"Largest value", short_number(*std::max_element(values.begin(), values.end()))},
+         {"Sum of all values", short_number(total)}});
+    return facts;
+}
+
+double pitch_mm(const std::vector<double>& centres_m) {
+    if (centres_m.size() < 2) return 0.0;
+    return 1e3 * (centres_m.back() - centres_m.front()) / static_cast<double>(centres_m.size() - 1);
+}
+
+std::vector<Fact> volume_facts(const nlos::Reconstruction& result) {
+    const nlos::VolumeAxes& axes = result.volume.axes;
+    std::vector<Fact> facts{{"Method", result.method}};
+    if (!result.reason.empty()) facts.emplace_back("Chosen because", result.reason);
+    facts.insert(
+        facts.end(),
+        {{"Voxels", fmt::format("{} x {} x {}", axes.x_m.size(), axes.y_m.size(), axes.z_m.size())},
+         {"Voxel size",
+          fmt::format("{} x {} x {} mm",
+                      short_number(pitch_mm(axes.x_m)),
+                      short_number(pitch_mm(axes.y_m)),
+                      short_number(pitch_mm(axes.z_m)))}});
+    if (!axes.z_m.empty()) {
+        facts.emplace_back("Depth range", range_text(axes.z_m.front(), axes.z_m.back(), "m"));
+    }
+    facts.emplace_back("Surface points", fmt::format("{}", result.points.positions.size()));
+    facts.emplace_back("Time", short_number(result.seconds) + " s");
+    if (result.peak_bytes > 0) {
+        facts.emplace_back("Peak memory", megabytes(static_cast<double>(result.peak_bytes)));
+    }
+    return facts;
+}
+
+std::string with_sigma(double value, double sigma, double unit) {
+    const std::string text = short_number(unit * value);
+    if (sigma == calib::kFixed) return text;
+    if (!std::isfinite(sigma)) return text + " (unknown)";
+    return text + " +- " + short_number(unit * sigma);
+}
+
+std::string place_text(const core::Vec3& position_m, const core::Vec3& sigma_m) {
+    std::string text;
+    for (int a = 0; a < 3; ++a) {
+        text += (a == 0 ? "" : ", ") + with_sigma(position_m[a], sigma_m[a], 1e3);
+    }
+    return "(" + text + ") mm";
+}
+
+std::vector<Fact> fit_facts(const calib::FitResult& fit, const core::Json& json) {
+    std::vector<Fact> facts;
+    for (const calib::FittedObject& object : fit.objects) {
+        std::string text = place_text(object.position_m, object.position_sigma_m);
+        if (object.rotation_sigma_deg.norm() > 0.0) {
+            text += ", turned +- " + short_number(object.rotation_sigma_deg.norm()) + " deg";
+        }
+        text += ", size " + with_sigma(object.size, object.size_sigma, 1.0) + ", albedo " +
+                with_sigma(object.albedo, object.albedo_sigma, 1.0);
+        facts.emplace_back(object.name, text);
+    }
+    for (std::size_t i = 0; i < fit.points.size(); ++i) {
+        facts.emplace_back(fmt::format("Point {}", i),
+                           place_text(fit.points[i].position_m, fit.points[i].position_sigma_m));
+    }
+    const auto number = [&](const char* key) {
+        const auto it = json.find(key);
+        return it != json.end() && it->is_number() ? short_number(it->get<double>()) : "unknown";
+    };
+    facts.insert(
+        facts.end(),
+        {{"Time zero", number("time_zero_m") + " m"},
+         {"Ambient light per bin", number("ambient")},
+         {"Response", number("response_fwhm_ps") + " ps"},
+         {"Residual", json.value("residual", "unknown")},
+         {"Deviance, and expected", number("deviance") + ", " + number("expected_deviance")},
+         {"Condition number", number("condition_number")},
+         {"Iterations", number("iterations")},
+         {"Time", number("seconds") + " s"},
+         {"Converged", fit.converged ? "yes" : "no: " + json.value("message", "")}});
+    return facts;
+}
+
+}  // namespace
+
+std::string short_number(double value) {
+    const double size = std::abs(value);
+    if (size == 0.0) return "0";
+    if (size < 1e-3 || size >= 1e6) return fmt::format("{:.2e}", value);
+    if (size >= 100.0) return fmt::format("{:.0f}", value);
+    return fmt::format("{:.3g}", value);
+}
+
+std::string read_bytes(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    if (!file) throw core::Error(path, "cannot be opened", "must be a readable file");
+    std::ostringstream bytes;
+    bytes << file.rdbuf();
+    return bytes.str();
+}
+
+ResultCard capture_card(const std::string& path) {
+    const core::Capture capture = nlos::read_capture(path);
+    ResultCard card;
+    card.file = fs::path(path).filename().string();
+    card.picture_png = nlos::encode_panels_png(nlos::capture_panels(capture), kCaptureColumns);
+    card.facts = capture_facts(capture);
+    card.notes = capture.notes;
+    if (!capture.scene_info.empty()) card.settings = capture.scene_info;
+    return card;
+}
+
+ResultCard volume_card(const std::string& path) {
+    const nlos::Reconstruction result = nlos::read_volume(path);
+    ResultCard card;
+    card.file = fs::path(path).filename().string();
+    card.picture_png = nlos::encode_panels_png(nlos::volume_panels(result), kVolumeColumns);
+    card.facts = volume_facts(result);
+    card.settings = core::write_value(result.settings);
+    return card;
+}
+
+ResultCard fit_card(const std::string& path, const core::Json& json) {
+    ResultCard card;
+    card.file = fs::path(path).filename().string();
+    card.facts = fit_facts(calib::read_fit(path), json);
+    const fs::path picture = fs::path(path).replace_extension(".png");
+    if (fs::exists(picture)) card.picture_png = read_bytes(picture.string());
+    for (const char* key : {"warnings", "unidentifiable"}) {
+        for (const core::Json& text : json.value(key, core::Json::array())) {
+            const std::string prefix =
+                std::string(key) == "warnings" ? "Warning: " : "Unidentifiable: ";
+            card.notes.push_back(prefix + text.get<std::string>());
+        }
+    }
+    for (const core::Json& pair : json.value("correlations", core::Json::array())) {
+        card.notes.push_back(fmt::format("Correlated: {} with {} ({:.3f})",
+                                         pair.value("a", ""),
+                                         pair.value("b", ""),
+                                         pair.value("value", 0.0)));
+    }
+    card.settings = json;
+    return card;
+}
+
+}  // namespace apps

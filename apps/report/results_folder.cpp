@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+#include "apps/report/results_folder.h"
+
+#include "apps/report/bench_cards.h"
+#include "calib/fit_file.h"
+#include "nlos/formats/volume_file.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+namespace apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_metrics(const core::Json& json) {
+    return json.is_object() && json.contains("depth_mae_m") && json.contains("mask_iou") &&
+           json.contains("rel_l2");
+}
+
+std::string file_name_at(const core::Json& json, const char* key) {
+    const auto it = json.find(key);
+    if (it == json.end() || !it->is_string()) return "";
+    return fs::path(it->get<std::string>()).filename().string();
+}
+
+std::string shown_name(const std::string& stem) {
+    constexpr std::string_view kPrefix = "metrics_";
+    const bool has_more = stem.starts_with(kPrefix) && stem.size() > kPrefix.size();
+    return has_more ? stem.substr(kPrefix.size()) : stem;
+}
+
+ScoredResult scored_result(const fs::path& path, const core::Json& json) {
+    ScoredResult scored;
+    scored.file = path.filename().string();
+    scored.name = shown_name(path.stem().string());
+    scored.result = file_name_at(json, "result");
+    scored.reference = file_name_at(json, "reference");
+    for_each_field(scored.metrics, [&](const char* name, auto& field, const char*) {
+        const auto it = json.find(name);
+        if (it != json.end()) core::read_value(*it, path.string() + ": " + name, field);
+    });
+    const fs::path picture = fs::path(path).replace_extension(".png");
+    if (fs::exists(picture)) scored.picture_png = read_bytes(picture.string());
+    return scored;
+}
+
+/// Regular files in the order of their names; names that begin with a dot are temporary files.
+std::vector<fs::path> visible_files(const fs::path& folder) {
+    std::vector<fs::path> files;
+    for (const auto& entry : fs::directory_iterator(folder)) {
+        const bool hidden = entry.path().filename().string().starts_with('.');
+        if (entry.is_regular_file() && !hidden) files.push_back(entry.path());
+    }
+    std::sort(files.begin(), files.end());
+    return files;
+}
+
+bool is_measurement(const std::string& suffix) {
+    return suffix == ".h5" || suffix == ".hdf5" || suffix == ".mat" || suffix == ".exr";
+}
+
+void read_file(const fs::path& path, ResultsFolder& results) {
+    const std::string suffix = path.extension().string();
+    const std::string name = path.filename().string();
+    if (is_measurement(suffix)) {
+        if (nlos::is_volume_file(path.string())) {
+            results.volumes.push_back(volume_card(path.string()));
+        } else {
+            results.captures.push_back(capture_card(path.string()));
+        }
+    } else if (suffix == ".json") {
+        core::Json json = core::read_json_file(path.string());
+        if (is_metrics(json)) {
+            results.scores.push_back(scored_result(path, json));
+        } else if (calib::is_fit_file(path.string())) {
+            results.fits.push_back(fit_card(path.string(), json));
+        } else if (is_bench(json)) {
+            results.benches.push_back(read_bench_card(path.string(), json));
+        } else if (json.contains("hard_cases")) {
+            results.hard_cases = json["hard_cases"];
+        } else if (!is_collection_of_benches(json)) {
+            results.documents.push_back({name, std::move(json)});
+        }
+    } else if (suffix == ".png" || suffix == ".svg") {
+        const std::string mime_type = suffix == ".png" ? "image/png" : "image/svg+xml";
+        results.figures.push_back({name, mime_type, read_bytes(path.string())});
+    }
+}
+
+/// A message without the folder before file names: a page should not tell where it was made.
+std::string without_folder(std::string message, const fs::path& folder) {
+    const std::string prefix = (folder / "").string();
+    for (auto at = message.find(prefix); at != std::string::npos; at = message.find(prefix)) {
+        message.erase(at, prefix.size());
+    }
+    return message;
+}
+
+/// Drops pictures that belong to a file shown with a picture of its own.
+void drop_accompanying_figures(ResultsFolder& results) {
+    std::set<std::string> stems;
+    const auto add = [&](const std::string& file) { stems.insert(fs::path(file).stem().string()); };
+    for (const ResultCard& card : results.captures) add(card.file);
+    for (const ResultCard& card : results.volumes) add(card.file);
+    for (const ResultCard& card : results.fits) add(card.file);
+    for (const ScoredResult& scored : results.scores) add(scored.file);
+    std::erase_if(results.figures, [&](const Figure& figure) {
+        const fs::path file = figure.file;
+        return file.extension() == ".png" && stems.contains(file.stem().string());
+    });
+}
+
+}  // namespace
+
+ResultsFolder read_results_folder(const std::string& folder) {
+    std::error_code error;
+    if (!fs::is_directory(folder, error)) {
+        throw core::Error(folder, "is not a folder", "must be a folder of results");
+    }
+    ResultsFolder results;
+    results.name = fs::canonical(folder).filename().string();
+    for (const fs::path& path : visible_files(folder)) {
+        try {
+            read_file(path, results);
+        } catch (const std::exception& failure) {
+            results.unreadable.emplace_back(path.filename().string(),
+                                            without_folder(failure.what(), folder));
+        }
+    }
+    drop_accompanying_figures(results);
+    give_figures_to_benches(results.figures, results.benches);
+    if (results.empty()) {
+        throw core::Error(folder,
+                          "holds no result",
+                          "must hold captures or volumes (.h5), metrics (.json) or pictures");
+    }
+    return results;
+}
+
+}  // namespace apps

@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: MIT
+#include "calib/fit/fit_checks.h"
+
+#include "calib/statistics/poisson_deviance.h"
+
+#include <Eigen/Dense>
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace calib {
+namespace {
+
+constexpr double kNotableExcess = 5.0;  // standard deviations
+constexpr double kNotableStep = 5.0;
+constexpr std::size_t kMostNamed = 8;
+
+void warn_of_cut_light(const core::TimeAxis& axis, FitResult& result) {
+    constexpr double kNotableShare = 0.05;
+    const auto bins = static_cast<std::size_t>(result.axis.num_bins);
+    const auto pairs = static_cast<double>(result.model.size() / bins);
+    double most = 0.0;
+    double first = 0.0;
+    double last = 0.0;
+    for (std::size_t i = 0; i < result.model.size(); i += bins) {
+        first += result.model[i] / pairs;
+        last += result.model[i + bins - 1] / pairs;
+        for (std::size_t b = 0; b < bins; ++b) most = std::max(most, result.model[i + b]);
+    }
+    const auto warn = [&](double light, const char* end, double opl_m) {
+        if (light - result.ambient.value <= kNotableShare * most) return;
+        result.warnings.push_back(fmt::format(
+            "the model's light reaches beyond the {} of the time axis at {:.3f} m; what "
+            "lies there is not fitted",
+            end,
+            opl_m));
+    };
+    warn(first, "begin", axis.opl_start_m);
+    warn(last, "end", axis.opl_end_m());
+}
+
+struct Excess {
+    double deviance = 0.0;
+    double expected = 0.0;
+    double variance = 0.0;
+    double sigmas() const { return (deviance - expected) / std::sqrt(std::max(variance, 1e-300)); }
+};
+
+// Deviance per pair against its expectation.
+std::vector<Excess> pair_excesses(const FitResult& result, double least_mean) {
+    const auto bins = static_cast<std::size_t>(result.axis.num_bins);
+    std::vector<Excess> excesses(result.model.size() / bins);
+    for (std::size_t i = 0; i < result.model.size(); ++i) {
+        const double mean = std::max(result.model[i], least_mean);
+        const DevianceMoments moments = deviance_moments(mean);
+        Excess& pair = excesses[i / bins];
+        pair.deviance += std::pow(signed_deviance(mean, result.data[i]).value, 2.0);
+        pair.expected += moments.mean;
+        pair.variance += moments.variance;
+    }
+    return excesses;
+}
+
+// Wall points far off are named, since a loss or their removal helps against them alone; the rest
+// says whether the model is right elsewhere.
+void warn_of_deviance(const FitDriver& driver, double least_mean, FitResult& result) {
+    constexpr double kWild = 8.0;         // standard deviations
+    constexpr double kWildOfUsual = 6.0;  // of the median pair's
+    Excess rest;
+    std::string names;
+    std::size_t wild = 0;
+    const std::vector<Excess> excesses = pair_excesses(result, least_mean);
+    std::vector<double> sizes;
+    for (const Excess& pair : excesses) sizes.push_back(std::abs(pair.sigmas()));
+    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+    std::nth_element(sizes.begin(), middle, sizes.end());
+    const double limit = std::max(kWild, kWildOfUsual * *middle);
+    for (std::size_t i = 0; i < excesses.size(); ++i) {
+        const Excess& pair = excesses[i];
+        if (pair.sigmas() > limit) {
+            if (wild < kMostNamed) names += fmt::format("{}{}", wild == 0 ? "" : ", ", i);
+            ++wild;
+            continue;
+        }
+        rest.deviance += pair.deviance;
+        rest.expected += pair.expected;
+        rest.variance += pair.variance;
+    }
+    const bool are_outliers = wild > 0 && 4 * wild <= excesses.size();
+    if (are_outliers) {
+        const bool has_loss = driver.settings().loss != LossKind::None;
+        result.warnings.push_back(fmt::format(
+            "{} of {} pairs do not fit at all ({}{}): {}",
+            wild,
+            excesses.size(),
+            names,
+            wild > kMostNamed ? ", ..." : "",
+            has_loss
+                ? "the loss gives them little weight"
+                : "true errors exceed the stated ones; loss: cauchy gives them little weight"));
+    }
+    const double excess = are_outliers ? rest.sigmas()
+                                       : (result.deviance - result.expected_deviance) /
+                                             std::max(result.expected_deviance_sigma, 1e-300);
+    if (excess <= kNotableExcess) return;
+    result.warnings.push_back(
+        fmt::format("the deviance exceeds its expectation by {:.1f} standard deviations: the model "
+                    "does not explain the data, and true errors exceed the stated ones",
+                    excess));
+}
+
+// Data that ambient light alone explains nearly as well hold none of the model's.
+void check_for_light(double least_mean, FitResult& result) {
+    double total = 0.0;
+    for (const double value : result.data) total += value;
+    const double mean = std::max(total / static_cast<double>(result.data.size()), least_mean);
+    double dark = 0.0;
+    for (const double value : result.data) dark += std::pow(signed_deviance(mean, value).value, 2);
+    const double gain = dark - result.deviance;
+    const double by_chance = 25.0 + 2.0 * static_cast<double>(result.parameters.size());
+    if (gain > by_chance) return;
+    result.converged = false;
+    result.message = fmt::format(
+        "ambient light alone explains the data nearly as well (deviance {:.1f} more): they hold no "
+        "light that the model could be fitted to",
+        gain);
+}
+
+// Least squares takes its noise from the residual, as if that were independent from bin to bin:
+// neighbours that agree come from the model.
+void warn_of_patterns(FitResult& result) {
+    constexpr double kNotableCorrelation = 0.3;
+    constexpr double kNotableShare = 1e-3;  // of the data's energy
+    const auto bins = static_cast<std::size_t>(result.axis.num_bins);
+    double energy = 0.0;
+    double squares = 0.0;
+    double products = 0.0;
+    double last = 0.0;
+    for (std::size_t i = 0; i < result.data.size(); ++i) {
+        const double residual = result.data[i] - result.model[i];
+        energy += result.data[i] * result.data[i];
+        squares += residual * residual;
+        if (i % bins != 0) products += residual * last;
+        last = residual;
+    }
+    if (products < kNotableCorrelation * squares || squares < kNotableShare * energy) return;
+    result.warnings.push_back(
+        fmt::format("the residual holds {:.1f} % of the data's energy and is alike from bin to bin "
+                    "(correlation {:.2f}): the model does not explain the data, and true errors "
+                    "exceed the stated ones",
+                    100.0 * squares / energy,
+                    products / squares));
+}
+
+// What is fixed but could be free.
+struct Freedom {
+    ParameterKind kind;
+    const char* name;
+    double unit;
+    const char* unit_name;
+};
+
+FreeSettings with_all_freedoms(const FitDriver& driver) {
+    FreeSettings free = driver.settings().free;
+    const core::ResponseSettings& response = driver.settings().response;
+    free.time_zero = true;
+    free.wall_bow = free.wall_scale = true;
+    free.response_fwhm =
+        response.jitter_fwhm_ps > 0.0 && response.tail_ps == 0.0 && response.curve.empty();
+    return free;
+}
+
+// Score tests: how far one Newton step would move each fixed quantity, were it free beside all
+// that is, in standard deviations of that step.
+void warn_of_misfits(const FitDriver& driver, const SceneState& state, FitResult& result) {
+    FitSettings settings = driver.settings();
+    settings.free = with_all_freedoms(driver);
+    const SceneModel model(
+        driver.geometry(), settings, driver.model().find(ParameterKind::Scale) != nullptr);
+    const FitDriver::Stage stage = driver.make_stage(model);
+    stage.model->refresh(state);
+    stage.objective->evaluate(state, renderer::Slopes::With);
+    Eigen::VectorXd score = Eigen::VectorXd::Zero(model.num_columns());
+    for (std::size_t i = 0; i < stage.objective->num_pairs(); ++i) {
+        const FitObjective::PairRows& rows = stage.objective->pair(i);
+        score -= rows.jacobian.transpose() * rows.residual;
+    }
+    const Eigen::MatrixXd information = stage.objective->fisher(state, {});
+    for (const Freedom& freedom :
+         {Freedom{ParameterKind::TimeZero, "time zero", 1e3, "mm of path"},
+          Freedom{ParameterKind::ResponseWidth, "the response's width", 100.0, "%"},
+          Freedom{ParameterKind::WallBow, "the wall's bow", 1e3, "mm"},
+          Freedom{ParameterKind::WallScale, "the wall's scale", 100.0, "%"}}) {
+        if (driver.model().find(freedom.kind) != nullptr) continue;
+        const ParameterBlock* block = model.find(freedom.kind);
+        if (block == nullptr) continue;
+        // Beside what is free, but not beside the other fixed quantities.
+        std::vector<Eigen::Index> columns;
+        for (const ParameterBlock& other : model.blocks()) {
+            if (driver.model().find(other.kind, other.item) == nullptr) continue;
+            for (int c = 0; c < other.columns; ++c) columns.push_back(other.first_column + c);
+        }
+        columns.push_back(block->first_column);
+        const Eigen::MatrixXd part = information(columns, columns);
+        const Eigen::VectorXd right = score(columns);
+        const Eigen::MatrixXd covariance = part.completeOrthogonalDecomposition().pseudoInverse();
+        const double step = (covariance * right).tail<1>()[0];
+        const double sigma = std::sqrt(std::max(0.0, covariance.diagonal().tail<1>()[0]));
+        if (!(std::abs(step) > kNotableStep * sigma)) continue;
+        result.warnings.push_back(
+            fmt::format("the data ask for another value of {}: {:+.3g} {} ({:.0f} standard "
+                        "deviations); free or "
+                        "correct it",
+                        freedom.name,
+                        freedom.unit * step,
+                        freedom.unit_name,
+                        std::abs(step) / sigma));
+    }
+}
+
+}  // namespace
+
+void add_warnings(const FitDriver& driver,
+                  const FitDriver::Stage& stage,
+                  const SceneState& state,
+                  FitResult& result) {
+    warn_of_cut_light(driver.data().axis, result);
+    if (state.has_ambient &&
+        state.log_ambient < driver.solve_settings().lowest_log_ambient + 0.01) {
+        result.warnings.push_back("ambient: at its lower bound");
+    }
+    for (const FittedObject& object : result.objects) {
+        if (object.albedo <= 1.0 || object.albedo_sigma == kFixed) continue;
+        result.warnings.push_back(fmt::format(
+            "{}: its albedo of {:.3f} is above 1: data or units are not what the model assumes",
+            object.name,
+            object.albedo));
+    }
+    if (driver.is_poisson()) {
+        warn_of_deviance(driver, stage.data->least_mean, result);
+        check_for_light(stage.data->least_mean, result);
+        warn_of_misfits(driver, state, result);
+    } else {
+        warn_of_patterns(result);
+    }
+    if (driver.scale_is_unknown()) {
+        const std::string name =
+            driver.has_fixed_albedo() ? driver.fixed_albedo() : result.objects.front().name;
+        result.unidentifiable.push_back("scale with " + name +
+                                        ".albedo: counts of unknown scale; the albedo stays at "
+                                        "its start");
+    }
+}
+
+void check_dependence(const SceneModel& model, const Eigen::VectorXd& sigma, FitResult& result) {
+    for (const ParameterBlock& block : model.blocks()) {
+        const bool is_place = block.kind == ParameterKind::Translation ||
+                              block.kind == ParameterKind::Rotation ||
+                              block.kind == ParameterKind::PointPosition;
+        if (!is_place || sigma.segment(block.first_column, block.columns).allFinite()) continue;
+        result.converged = false;
+        result.message = "the light of " +
+                         block.names.front().substr(0, block.names.front().rfind('.')) +
+                         " has left the data; start nearer, or use start: search";
+        return;
+    }
+}
+
+double signal_photons(const FitResult& result) {
+    double sum = 0.0;
+    for (const double value : result.model) sum += value - result.ambient.value;
+    return sum;
+}
+
+}  // namespace calib

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "calib/fit/fit_driver.h"
+
+namespace calib {
+
+/// Adds warnings of what makes a fit's stated errors doubtful: light beyond the axis, bounds, data
+/// that the model does not explain and what would explain them, wild wall points. Without light of
+/// the model in the data, result.converged becomes false.
+///
+/// stage    the last one
+/// result   with model and deviance
+void add_warnings(const FitDriver& driver,
+                  const FitDriver::Stage& stage,
+                  const SceneState& state,
+                  FitResult& result);
+
+/// Sets result.converged to false when the data do not depend on where an object is.
+void check_dependence(const SceneModel& model, const Eigen::VectorXd& sigma, FitResult& result);
+
+/// Expected photons of the model's light.
+double signal_photons(const FitResult& result);
+
+}  // namespace calib

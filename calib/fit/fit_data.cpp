@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: MIT
+#include "calib/fit/fit_data.h"
+
+#include "renderer/core/instrument_response.h"
+#include "renderer/core/parallel.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace calib {
+
+FitData crop(const core::Capture& capture, const std::optional<std::array<double, 2>>& window_m) {
+    const core::TimeAxis& axis = capture.time_axis;
+    int first = 0;
+    int last = axis.num_bins;
+    if (window_m) {
+        const auto bin_at = [&](double opl_m) {
+            return std::clamp((opl_m - axis.opl_start_m) / axis.bin_width_m, 0.0, 1.0 * last);
+        };
+        first = static_cast<int>(std::ceil(bin_at((*window_m)[0])));
+        last = static_cast<int>(std::floor(bin_at((*window_m)[1])));
+    }
+    if (first >= last) {
+        throw core::Error(
+            "window_m",
+            fmt::format("found no bin in [{}, {}]", (*window_m)[0], (*window_m)[1]),
+            fmt::format("the data cover {} to {} m", axis.opl_start_m, axis.opl_end_m()));
+    }
+    FitData data;
+    data.axis = axis;
+    data.axis.opl_start_m = axis.bin_begin_m(first);
+    data.axis.num_bins = last - first;
+    for (std::size_t pair = 0; pair < capture.transient.num_pairs(); ++pair) {
+        const auto histogram = capture.transient.histogram(pair);
+        data.values.insert(data.values.end(), histogram.begin() + first, histogram.begin() + last);
+    }
+    return data;
+}
+
+FitData coarsen(const FitData& data, double blur_m, int merged) {
+    FitData result;
+    result.axis = data.axis;
+    result.axis.num_bins = data.axis.num_bins / merged;
+    result.axis.bin_width_m *= merged;
+    const auto bins = static_cast<std::size_t>(data.axis.num_bins);
+    const auto target_bins = static_cast<std::size_t>(result.axis.num_bins);
+    const std::size_t pairs = data.values.size() / bins;
+    result.values.assign(pairs * target_bins, 0.0);
+    core::ResponseFilter filter{0, {1.0}};
+    if (blur_m > 0.0) {
+        filter = core::sample_response(core::GaussianResponse{blur_m}, data.axis.bin_width_m);
+    }
+    core::parallel_for(pairs, [&](std::size_t pair) {
+        std::vector<double> smooth(bins);
+        core::apply_filter<double, double>(
+            filter, std::span(data.values).subspan(pair * bins, bins), smooth);
+        for (std::size_t b = 0; b < target_bins * static_cast<std::size_t>(merged); ++b) {
+            result.values[pair * target_bins + b / static_cast<std::size_t>(merged)] += smooth[b];
+        }
+    });
+    return result;
+}
+
+FitData trim(const FitData& data, int front, int back) {
+    FitData result = data;
+    result.axis.opl_start_m = data.axis.bin_begin_m(front);
+    result.axis.num_bins = std::max(0, data.axis.num_bins - front - back);
+    result.values.clear();
+    const auto bins = static_cast<std::size_t>(data.axis.num_bins);
+    for (std::size_t at = 0; at < data.values.size(); at += bins) {
+        const auto begin = data.values.begin() + static_cast<std::ptrdiff_t>(at) + front;
+        result.values.insert(result.values.end(), begin, begin + result.axis.num_bins);
+    }
+    return result;
+}
+
+std::array<bool, 2> light_is_cut(const FitData& data, double ambient) {
+    constexpr std::size_t kEdgeBins = 2;
+    constexpr double kShareOfBrightest = 0.05;
+    constexpr double kSignificance = 5.0;
+    const auto bins = static_cast<std::size_t>(data.axis.num_bins);
+    std::vector<double> sums(bins, 0.0);
+    for (std::size_t i = 0; i < data.values.size(); ++i) sums[i % bins] += data.values[i];
+    const double dark = ambient * static_cast<double>(data.values.size() / bins);
+    const double brightest = *std::max_element(sums.begin(), sums.end()) - dark;
+    const std::size_t width = std::min(kEdgeBins, bins);
+    const auto stands_out = [&](std::size_t first) {
+        double light = 0.0;
+        double counted = 0.0;
+        for (std::size_t b = first; b < first + width; ++b) {
+            light += sums[b] - dark;
+            counted += sums[b];
+        }
+        return light > kShareOfBrightest * static_cast<double>(width) * brightest &&
+               light > kSignificance * std::sqrt(counted);
+    };
+    return {stands_out(0), stands_out(bins - width)};
+}
+
+PairSubset thin(const core::Scan& scan, std::size_t most) {
+    const bool is_exhaustive = scan.pattern == core::ScanPattern::Exhaustive;
+    std::size_t step = 1;
+    const auto kept = [&](const core::WallPoints& points) {
+        std::vector<std::size_t> indices;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const std::size_t columns = points.grid ? (*points.grid)[1] : 1;
+            const std::size_t first = step / 2;
+            const bool on_grid =
+                points.grid ? (i / columns % step == std::min(first, (*points.grid)[0] - 1) &&
+                               i % columns % step == std::min(first, columns - 1))
+                            : i % (step * step) == 0;
+            if (on_grid) indices.push_back(i);
+        }
+        return indices;
+    };
+    const auto pick = [](const core::WallPoints& points, const std::vector<std::size_t>& indices) {
+        core::WallPoints result;
+        for (const std::size_t i : indices) {
+            result.positions.push_back(points.positions[i]);
+            result.normals.push_back(points.normals[i]);
+        }
+        return result;
+    };
+    std::vector<std::size_t> sensing = kept(scan.sensing);
+    std::vector<std::size_t> light = kept(scan.illumination);
+    const auto count = [&] { return sensing.size() * (is_exhaustive ? light.size() : 1); };
+    while (count() > most) {
+        ++step;
+        sensing = kept(scan.sensing);
+        if (is_exhaustive) light = kept(scan.illumination);
+    }
+    PairSubset subset{scan, {}};
+    subset.scan.sensing = pick(scan.sensing, sensing);
+    if (scan.pattern == core::ScanPattern::Confocal) subset.scan.illumination = subset.scan.sensing;
+    if (is_exhaustive) {
+        subset.scan.illumination = pick(scan.illumination, light);
+        for (const std::size_t l : light) {
+            for (const std::size_t s : sensing) {
+                subset.pairs.push_back(l * scan.sensing.size() + s);
+            }
+        }
+    } else {
+        subset.pairs = sensing;
+    }
+    return subset;
+}
+
+FitData select(const FitData& data, const std::vector<std::size_t>& pairs) {
+    FitData result;
+    result.axis = data.axis;
+    result.least_mean = data.least_mean;
+    const auto bins = static_cast<std::ptrdiff_t>(data.axis.num_bins);
+    for (const std::size_t pair : pairs) {
+        const auto begin = data.values.begin() + static_cast<std::ptrdiff_t>(pair) * bins;
+        result.values.insert(result.values.end(), begin, begin + bins);
+    }
+    return result;
+}
+
+bool is_integer_valued(const core::Capture& capture) {
+    const auto values = capture.transient.values();
+    return std::all_of(values.begin(), values.end(), [](float value) {
+        return value >= 0.0F && value == std::floor(value);
+    });
+}
+
+double quietest_level(const FitData& data) {
+    constexpr std::size_t kParts = 16;
+    const auto bins = static_cast<std::size_t>(data.axis.num_bins);
+    const std::size_t parts = std::min(kParts, bins);
+    std::vector<double> sums(parts, 0.0);
+    std::vector<double> counts(parts, 0.0);
+    for (std::size_t i = 0; i < data.values.size(); ++i) {
+        const std::size_t part = (i % bins) * parts / bins;
+        sums[part] += data.values[i];
+        counts[part] += 1.0;
+    }
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t p = 0; p < parts; ++p) least = std::min(least, sums[p] / counts[p]);
+    return std::max(0.0, least);
+}
+
+}  // namespace calib

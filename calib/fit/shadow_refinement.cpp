@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+#include "calib/fit/shadow_refinement.h"
+
+#include "calib/model/state_vector.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace calib {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+struct Newton {
+    MatrixXd information;
+    VectorXd step;
+    /// Of the step, in standard deviations per parameter.
+    double length() const {
+        return std::sqrt(step.dot(information * step) / static_cast<double>(step.size()));
+    }
+};
+
+// J^T W J and the step, by columns scaled to a like size.
+Newton newton_at(const FitDriver& driver, FitDriver::Stage& stage, const SceneState& state) {
+    const SceneModel& model = driver.model();
+    FitObjective& objective = *stage.objective;
+    objective.evaluate(state, renderer::Slopes::With);
+    const std::vector<double> weights = loss_weights(objective, driver.solve_settings());
+    const auto size = model.num_columns();
+    Newton newton{MatrixXd::Zero(size, size), VectorXd::Zero(size)};
+    VectorXd score = VectorXd::Zero(size);
+    for (std::size_t i = 0; i < objective.num_pairs(); ++i) {
+        const FitObjective::PairRows& rows = objective.pair(i);
+        const double weight = weights.empty() ? 1.0 : weights[i];
+        score -= weight * (rows.jacobian.transpose() * rows.residual);
+        newton.information += weight * (rows.jacobian.transpose() * rows.jacobian);
+    }
+    if (driver.is_poisson()) {
+        newton.information = objective.fisher(state, weights);
+    } else {
+        // Squares take their noise from the residual.
+        const double freedom = std::max(1.0, static_cast<double>(stage.data->values.size()) - size);
+        const double per_variance = freedom / std::max(objective.sum_of_squares(), 1e-300);
+        newton.information *= per_variance;
+        score *= per_variance;
+    }
+    // Priors pull to 0, where their parameters start.
+    const MatrixXd prior = prior_information(model, driver.solve_settings());
+    newton.information += prior;
+    score -= prior * difference(model, model.start(), state);
+
+    const VectorXd diagonal = newton.information.diagonal();
+    const VectorXd scale =
+        (diagonal.array() > 0.0).select(diagonal.array().max(1e-300).rsqrt(), 1.0);
+    const MatrixXd scaled = scale.asDiagonal() * newton.information * scale.asDiagonal();
+    newton.step = scale.asDiagonal() * scaled.completeOrthogonalDecomposition().solve(
+                                           VectorXd(scale.asDiagonal() * score));
+    return newton;
+}
+
+// Edges are to be known well, but every piece is seen or not from every point.
+double refinement(const ForwardModel& model) {
+    constexpr double kMostRefinement = 10.0;
+    constexpr double kMostViews = 4e5;  // points times pieces
+    const core::Scan& scan = model.scan();
+    const double points = static_cast<double>(scan.sensing.size());
+    const double views = points * static_cast<double>(model.num_pieces());
+    return std::clamp(kMostViews / views, 1.0, kMostRefinement);
+}
+
+}  // namespace
+
+RefinedSolution refine(const FitDriver& driver, FitDriver::Stage& stage, SceneState& state) {
+    constexpr int kMostSteps = 8;
+    constexpr double kSettled = 0.1;  // standard deviations per parameter
+    constexpr double kTooFar = 12.0;  // for Newton's method
+    const auto look_anew = [&] {
+        stage.model->refresh(state);
+        stage.model->find_shadow_edges(state);
+        return newton_at(driver, stage, state);
+    };
+    stage.model->refresh(state);
+    if (!stage.model->has_shadow_edges()) return {newton_at(driver, stage, state).information};
+    stage = driver.make_fine_stage(refinement(*stage.model));
+    Newton newton = look_anew();
+    for (int i = 0; i < kMostSteps; ++i) {
+        if (!(newton.length() > kSettled && newton.length() < kTooFar)) break;
+        state = moved_by(driver.model(), state, newton.step);
+        newton = look_anew();
+    }
+    return {newton.information, newton.length() < 1.0};
+}
+
+}  // namespace calib

@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: MIT
+#include "calib/fit/stage_solver.h"
+
+#include "calib/model/state_vector.h"
+#include "renderer/core/error.h"
+
+#include <ceres/ceres.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+
+namespace calib {
+namespace {
+
+using renderer::Slopes;
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+constexpr double kRoughness_m = 1e-3;  // that costs laplacian_weight
+
+// Renders once for all residual blocks.
+class SharedRender : public ceres::EvaluationCallback {
+ public:
+    SharedRender(FitObjective& objective, StateVector& values)
+        : objective_(objective), values_(values) {}
+
+    void PrepareForEvaluation(bool with_jacobians, bool is_new_point) override {
+        if (!is_new_point && (is_with_slopes_ || !with_jacobians)) return;
+        objective_.evaluate(values_.state(), with_jacobians ? Slopes::With : Slopes::Without);
+        is_with_slopes_ = with_jacobians;
+    }
+
+ private:
+    FitObjective& objective_;
+    StateVector& values_;
+    bool is_with_slopes_ = false;
+};
+
+// The rows of one wall point or pair: a loss then rejects it as a whole.
+class PairCost : public ceres::CostFunction {
+ public:
+    PairCost(const SceneModel& model, const FitObjective& objective, std::size_t pair)
+        : model_(model), objective_(objective), pair_(pair) {
+        set_num_residuals(model.num_columns() + 1);
+        for (const ParameterBlock& block : model.blocks()) {
+            mutable_parameter_block_sizes()->push_back(StateVector::ambient_size(block));
+        }
+    }
+
+    bool Evaluate(double const* const* parameters,
+                  double* residuals,
+                  double** jacobians) const override {
+        const FitObjective::PairRows& rows = objective_.pair(pair_);
+        Eigen::Map<Eigen::VectorXd>(residuals, rows.residual.size()) = rows.residual;
+        if (!rows.residual.allFinite()) return false;
+        if (jacobians == nullptr) return true;
+        for (std::size_t b = 0; b < model_.blocks().size(); ++b) {
+            if (jacobians[b] == nullptr) continue;
+            const ParameterBlock& block = model_.blocks()[b];
+            const auto columns = rows.jacobian.middleCols(block.first_column, block.columns);
+            Eigen::Map<RowMajor> target(
+                jacobians[b], columns.rows(), StateVector::ambient_size(block));
+            if (block.kind == ParameterKind::Rotation) {
+                target = columns * StateVector::turn_by_quaternion(parameters[b]);
+            } else {
+                target = columns;
+            }
+        }
+        return true;
+    }
+
+ private:
+    const SceneModel& model_;
+    const FitObjective& objective_;
+    std::size_t pair_;
+};
+
+// (value - 0) / sigma.
+class TimeZeroPrior : public ceres::SizedCostFunction<1, 1> {
+ public:
+    explicit TimeZeroPrior(double sigma_m) : sigma_m_(sigma_m) {}
+    bool Evaluate(double const* const* p, double* residuals, double** jacobians) const override {
+        residuals[0] = p[0][0] / sigma_m_;
+        if (jacobians != nullptr && jacobians[0] != nullptr) jacobians[0][0] = 1.0 / sigma_m_;
+        return true;
+    }
+
+ private:
+    double sigma_m_;
+};
+
+// Height of every vertex against the mean of its neighbours.
+Eigen::MatrixXd laplacian(const ModelBody& body, double weight) {
+    const auto size = static_cast<Eigen::Index>(body.vertices.size());
+    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(size, size);
+    const double factor = std::sqrt(weight) / kRoughness_m;
+    for (Eigen::Index v = 0; v < size; ++v) {
+        const auto& neighbours = body.neighbours[static_cast<std::size_t>(v)];
+        if (neighbours.empty()) continue;
+        rows(v, v) = factor;
+        for (const std::uint32_t n : neighbours) {
+            rows(v, n) -= factor / static_cast<double>(neighbours.size());
+        }
+    }
+    return rows;
+}
+
+class RoughnessPrior : public ceres::CostFunction {
+ public:
+    explicit RoughnessPrior(Eigen::MatrixXd rows) : rows_(std::move(rows)) {
+        set_num_residuals(static_cast<int>(rows_.rows()));
+        mutable_parameter_block_sizes()->push_back(static_cast<int>(rows_.cols()));
+    }
+    bool Evaluate(double const* const* p, double* residuals, double** jacobians) const override {
+        const Eigen::Map<const Eigen::VectorXd> heights(p[0], rows_.cols());
+        Eigen::Map<Eigen::VectorXd>(residuals, rows_.rows()) = rows_ * heights;
+        if (jacobians != nullptr && jacobians[0] != nullptr) {
+            Eigen::Map<RowMajor>(jacobians[0], rows_.rows(), rows_.cols()) = rows_;
+        }
+        return true;
+    }
+
+ private:
+    Eigen::MatrixXd rows_;
+};
+
+class StopCallback : public ceres::IterationCallback {
+ public:
+    explicit StopCallback(const std::function<bool()>& stop_requested) : stop_(stop_requested) {}
+    ceres::CallbackReturnType operator()(const ceres::IterationSummary&) override {
+        return stop_ && stop_() ? ceres::SOLVER_ABORT : ceres::SOLVER_CONTINUE;
+    }
+
+ private:
+    const std::function<bool()>& stop_;
+};
+
+// Misfits of wall points beyond this are outliers.
+double loss_width(const FitObjective& objective, const SolveSettings& settings) {
+    std::vector<double> squares;
+    for (std::size_t i = 0; i < objective.num_pairs(); ++i) {
+        squares.push_back(objective.pair(i).residual.squaredNorm());
+    }
+    const auto middle = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
+    std::nth_element(squares.begin(), middle, squares.end());
+    return settings.loss_scale * std::sqrt(std::max(*middle, 1e-300));
+}
+
+std::unique_ptr<ceres::LossFunction> make_loss(LossKind kind, double width) {
+    if (kind == LossKind::Huber) return std::make_unique<ceres::HuberLoss>(width);
+    if (kind == LossKind::Cauchy) return std::make_unique<ceres::CauchyLoss>(width);
+    return nullptr;
+}
+
+void add_priors(const SceneModel& model,
+                const SolveSettings& settings,
+                StateVector& values,
+                ceres::Problem& problem) {
+    for (std::size_t b = 0; b < model.blocks().size(); ++b) {
+        const ParameterBlock& block = model.blocks()[b];
+        double* parameters = values.block(b);
+        if (block.kind == ParameterKind::Rotation) {
+            problem.SetManifold(parameters, new ceres::QuaternionManifold);
+        } else if (block.kind == ParameterKind::Ambient) {
+            problem.SetParameterLowerBound(parameters, 0, settings.lowest_log_ambient);
+        } else if (block.kind == ParameterKind::TimeZero && settings.time_zero_sigma_m) {
+            problem.AddResidualBlock(
+                new TimeZeroPrior(*settings.time_zero_sigma_m), nullptr, parameters);
+        } else if (block.kind == ParameterKind::Heights && settings.laplacian_weight > 0.0) {
+            problem.AddResidualBlock(new RoughnessPrior(laplacian(model.bodies()[block.item],
+                                                                  settings.laplacian_weight)),
+                                     nullptr,
+                                     parameters);
+        }
+    }
+}
+
+}  // namespace
+
+SolveSummary solve_stage(const SceneModel& model,
+                         FitObjective& objective,
+                         const SolveSettings& settings,
+                         SceneState& state) {
+    StateVector values(model, state);
+    objective.evaluate(state, Slopes::Without);
+    const double start_cost = objective.sum_of_squares();
+    const auto loss = make_loss(settings.loss, loss_width(objective, settings));
+
+    SharedRender render(objective, values);
+    ceres::Problem::Options ownership;
+    ownership.evaluation_callback = &render;
+    ownership.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    ceres::Problem problem(ownership);
+    for (std::size_t pair = 0; pair < objective.num_pairs(); ++pair) {
+        problem.AddResidualBlock(new PairCost(model, objective, pair), loss.get(), values.blocks());
+    }
+    add_priors(model, settings, values, problem);
+
+    StopCallback stop(settings.stop_requested);
+    ceres::Solver::Options options;
+    options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
+    options.max_num_iterations = settings.max_iterations;
+    // Ceres' tolerance is relative to the cost, which grows with the number of bins: this makes it
+    // about a thousandth of a unit of deviance.
+    options.function_tolerance = 1e-3 / std::max(start_cost, 1.0);
+    options.parameter_tolerance = 1e-8;
+    options.num_threads = 1;  // parallel inside the render
+    options.logging_type = ceres::SILENT;
+    options.callbacks = {&stop};
+    ceres::Solver::Summary summary;
+    ceres::Solve(options, &problem, &summary);
+    if (summary.termination_type == ceres::USER_FAILURE) throw core::Failure("fit", "interrupted");
+    state = values.state();
+    SolveSummary result;
+    result.cost = summary.final_cost;
+    result.iterations = static_cast<int>(summary.iterations.size());
+    result.converged = summary.termination_type == ceres::CONVERGENCE;
+    result.message = summary.message;
+    return result;
+}
+
+Eigen::MatrixXd prior_information(const SceneModel& model, const SolveSettings& settings) {
+    Eigen::MatrixXd information = Eigen::MatrixXd::Zero(model.num_columns(), model.num_columns());
+    for (const ParameterBlock& block : model.blocks()) {
+        if (block.kind == ParameterKind::TimeZero && settings.time_zero_sigma_m) {
+            information(block.first_column, block.first_column) +=
+                1.0 / (*settings.time_zero_sigma_m * *settings.time_zero_sigma_m);
+        } else if (block.kind == ParameterKind::Heights && settings.laplacian_weight > 0.0) {
+            const auto rows = laplacian(model.bodies()[block.item], settings.laplacian_weight);
+            information.block(
+                block.first_column, block.first_column, block.columns, block.columns) +=
+                rows.transpose() * rows;
+        }
+    }
+    return information;
+}
+
+std::vector<double> loss_weights(const FitObjective& objective, const SolveSettings& settings) {
+    const auto loss = make_loss(settings.loss, loss_width(objective, settings));
+    if (!loss) return {};
+    std::vector<double> weights;
+    for (std::size_t i = 0; i < objective.num_pairs(); ++i) {
+        double rho[3];
+        loss->Evaluate(objective.pair(i).residual.squaredNorm(), rho);
+        weights.push_back(rho[1]);
+    }
+    return weights;
+}
+
+}  // namespace calib

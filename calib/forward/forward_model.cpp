@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: MIT
+#include "calib/forward/forward_model.h"
+
+#include "calib/forward/model_visibility.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace calib {
+namespace {
+
+using core::Vec3;
+using renderer::Slopes;
+
+// A measured response is applied to bins this much finer than the data's.
+constexpr int kOversampling = 3;
+
+}  // namespace
+
+ForwardModel::ForwardModel(const SceneModel& model,
+                           core::Scan scan,
+                           const WallMotion& wall,
+                           ForwardSettings settings)
+    : model_(model), scan_(std::move(scan)), settings_(std::move(settings)), wall_(wall) {
+    if (!settings_.measured) return;
+    oversampling_ = kOversampling;
+    const core::ResponseFilter filter =
+        core::sample_response(*settings_.measured, settings_.axis.bin_width_m / oversampling_);
+    first_delay_ = filter.first_delay;
+    const int taps = static_cast<int>(filter.weights.size());
+    const int reach = std::max(std::abs(first_delay_), std::abs(first_delay_ + taps));
+    margin_ = (reach / oversampling_ + 1) * oversampling_;
+    for (int phase = 0; phase < oversampling_; ++phase) {
+        auto& weights = phase_weights_.emplace_back((taps + phase) / oversampling_ + 1, 0.0);
+        for (int k = 0; k < taps; ++k) {
+            weights[static_cast<std::size_t>((k + phase) / oversampling_)] +=
+                filter.weights[static_cast<std::size_t>(k)];
+        }
+    }
+}
+
+core::TimeAxis ForwardModel::fine_axis() const {
+    core::TimeAxis axis = settings_.axis;
+    axis.bin_width_m /= oversampling_;
+    axis.num_bins = axis.num_bins * oversampling_ + 2 * margin_;
+    axis.opl_start_m -= margin_ * axis.bin_width_m;
+    return axis;
+}
+
+void ForwardModel::refresh(const SceneState& state) {
+    const double smear = settings_.measured || settings_.sigma_m == 0.0
+                             ? 0.5 * settings_.axis.bin_width_m
+                             : settings_.sigma_m;
+    const auto old_light = std::move(light_masks_);
+    const auto old_sensor = std::move(sensor_masks_);
+    light_masks_.clear();
+    sensor_masks_.clear();
+    edge_slopes_.clear();
+    pieces_ = cut_pieces(model_, state, scan_, smear, settings_.tolerance);
+    if (!is_planar(model_, state)) trace(state);
+    visibility_changed_ = old_light != light_masks_ || old_sensor != sensor_masks_;
+}
+
+void ForwardModel::update(const SceneState& state, Slopes slopes) {
+    state_ = state;
+    slopes_ = slopes;
+    const double width = std::exp(state.log_width);
+    const double response2 =
+        settings_.response_share * settings_.sigma_m * settings_.sigma_m * width * width;
+    const double blur2 = (1.0 - settings_.response_share) * settings_.sigma_m * settings_.sigma_m;
+    sigma_m_ = settings_.measured ? 0.0 : std::sqrt(response2 + blur2);
+    width_share_ = sigma_m_ > 0.0 ? response2 / (response2 + blur2) : 0.0;
+    sensor_points_ = wall_.moved(scan_.sensing, state);
+    light_points_ = scan_.pattern == core::ScanPattern::Confocal
+                        ? sensor_points_
+                        : wall_.moved(scan_.illumination, state);
+    posed_.clear();
+    posed_.reserve(pieces_.size());
+    FacetMotion motion;
+    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+        if (i == 0 || pieces_[i].facet != pieces_[i - 1].facet) {
+            motion = model_.motion(state, pieces_[i].facet);
+        }
+        posed_.push_back(pose(pieces_[i], motion));
+    }
+}
+
+ForwardModel::PosedPiece ForwardModel::pose(const ModelPiece& piece,
+                                            const FacetMotion& motion) const {
+    const ModelFacet& facet = model_.facets()[piece.facet];
+    const Vec3 edge1 = motion.corners[1] - motion.corners[0];
+    const Vec3 edge2 = motion.corners[2] - motion.corners[0];
+    const Vec3 across = edge1.cross(edge2);
+    const double norm = across.norm();
+    PosedPiece posed;
+    posed.normal = across / norm;
+    posed.is_retroreflective = facet.is_retroreflective;
+    posed.weight = 0.5 * norm * piece.area_share * facet.albedo_ratio *
+                   std::exp(state_.bodies[facet.body].log_albedo + state_.log_scale) *
+                   settings_.radiance_factor;
+    if (posed.is_retroreflective) posed.weight *= core::kPi / settings_.spot_m2;
+    const auto interpolate = [&](const std::array<Vec3, 3>& corners, std::array<Vec3, 6>& nodes) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Vec3& b = piece.barycentric[i];
+            nodes[i] = b[0] * corners[0] + b[1] * corners[1] + b[2] * corners[2];
+        }
+        for (std::size_t i = 0; i < 3; ++i) nodes[3 + i] = 0.5 * (nodes[i] + nodes[(i + 1) % 3]);
+    };
+    interpolate(motion.corners, posed.nodes);
+    if (slopes_ == Slopes::Without) return posed;
+
+    if (const auto* albedo = model_.find(ParameterKind::Albedo, facet.body)) {
+        posed.albedo_column = albedo->first_column;
+    }
+    posed.columns = motion.columns;
+    for (const auto& corners : motion.by_column) {
+        interpolate(corners, posed.node_slopes.emplace_back());
+        const Vec3 change =
+            (corners[1] - corners[0]).cross(edge2) + edge1.cross(Vec3(corners[2] - corners[0]));
+        const double along = posed.normal.dot(change) / norm;
+        posed.normal_slopes.push_back(change / norm - along * posed.normal);
+        posed.log_area_slopes.push_back(along);
+    }
+    return posed;
+}
+
+renderer::VisibilityMask ForwardModel::visible_part(std::size_t piece, std::size_t pair) const {
+    if (light_masks_.empty()) return renderer::kAllVisible;
+    const std::size_t l = scan_.illumination_index(pair) * pieces_.size() + piece;
+    const std::size_t s = scan_.sensing_index(pair) * pieces_.size() + piece;
+    return light_masks_[l] & sensor_masks_[s];
+}
+
+void ForwardModel::evaluate(std::size_t pair, PairModel& result) const {
+    thread_local PairModel fine;
+    const bool is_filtered = settings_.measured.has_value();
+    PairModel& target = is_filtered ? fine : result;
+    const auto bins = static_cast<std::size_t>(fine_axis().num_bins);
+    const auto columns = static_cast<std::size_t>(model_.num_columns());
+    target.mean.assign(bins, 0.0);
+    target.slopes.assign(slopes_ == Slopes::With ? bins * columns : 0, 0.0);
+    for (std::size_t i = 0; i < posed_.size(); ++i) {
+        const renderer::VisibilityMask mask = visible_part(i, pair);
+        if (mask != 0) add_piece(posed_[i], mask, pair, target);
+    }
+    for (std::size_t i = 0; i < state_.points.size(); ++i) add_point(i, pair, target);
+    finish(target, result);
+    if (slopes_ == Slopes::With) add_shadow_edges(pair, result);
+}
+
+// Every fine bin's light goes to the bins that the response delays it to.
+void ForwardModel::add_response(const PairModel& fine, PairModel& result) const {
+    const bool with_slopes = slopes_ == Slopes::With;
+    const auto columns = static_cast<std::size_t>(model_.num_columns());
+    const auto bins = static_cast<std::size_t>(settings_.axis.num_bins);
+    result.mean.assign(bins, 0.0);
+    result.slopes.assign(with_slopes ? bins * columns : 0, 0.0);
+    for (std::size_t f = 0; f < fine.mean.size(); ++f) {
+        if (fine.mean[f] == 0.0) continue;
+        // Counted from far enough ahead of the axis to divide without sign.
+        const int from = static_cast<int>(f) + first_delay_ + margin_;
+        const auto& weights = phase_weights_[static_cast<std::size_t>(from % oversampling_)];
+        const int first_bin = from / oversampling_ - 2 * margin_ / oversampling_;
+        const int begin = std::max(0, -first_bin);
+        const int end =
+            std::min(static_cast<int>(weights.size()), settings_.axis.num_bins - first_bin);
+        for (int k = begin; k < end; ++k) {
+            const double weight = weights[static_cast<std::size_t>(k)];
+            const auto b = static_cast<std::size_t>(first_bin + k);
+            result.mean[b] += weight * fine.mean[f];
+            if (!with_slopes) continue;
+            const double* row = fine.slopes.data() + f * columns;
+            double* target = result.slopes.data() + b * columns;
+            for (std::size_t c = 0; c < columns; ++c) target[c] += weight * row[c];
+        }
+    }
+}
+
+// Signal becomes data: scale, response, ambient light.
+void ForwardModel::finish(PairModel& fine, PairModel& result) const {
+    const auto columns = static_cast<std::size_t>(model_.num_columns());
+    const bool with_slopes = slopes_ == Slopes::With;
+    if (const auto* scale = model_.find(ParameterKind::Scale); scale && with_slopes) {
+        for (std::size_t b = 0; b < fine.mean.size(); ++b) {
+            fine.slopes[b * columns + static_cast<std::size_t>(scale->first_column)] = fine.mean[b];
+        }
+    }
+    const auto bins = static_cast<std::size_t>(settings_.axis.num_bins);
+    if (settings_.measured) add_response(fine, result);
+    if (!state_.has_ambient) return;
+    const double ambient = std::exp(state_.log_ambient) * settings_.bins_per_ambient;
+    const auto* block = model_.find(ParameterKind::Ambient);
+    for (std::size_t b = 0; b < bins; ++b) {
+        result.mean[b] += ambient;
+        if (with_slopes && block != nullptr) {
+            result.slopes[b * columns + static_cast<std::size_t>(block->first_column)] = ambient;
+        }
+    }
+}
+
+}  // namespace calib

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "calib/forward/model_pieces.h"
+#include "calib/forward/wall_motion.h"
+#include "calib/model/scene_model.h"
+#include "renderer/core/capture.h"
+#include "renderer/geometry/visibility_mask.h"
+#include "renderer/triangle/triangle_histogram.h"
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace calib {
+
+/// How the model's light becomes data.
+struct ForwardSettings {
+    core::TimeAxis axis;
+    int bins_per_ambient = 1;     ///< bins of the capture in one bin of the axis
+    double sigma_m = 0.0;         ///< Gaussian response and blur together, in path length
+    double response_share = 1.0;  ///< of sigma^2 that is the response's
+    std::optional<core::InstrumentResponse> measured;  ///< instead of sigma_m: filtered
+    double radiance_factor = 1.0;                      ///< Phi rho_w^2 / pi^3
+    double spot_m2 = 1e-4;                             ///< returned by retroreflectors
+    std::vector<double> offset_m;                      ///< per pair, added to path lengths
+    double tolerance = 0.02;                           ///< of pieces, relative L2
+};
+
+/// Expected data of one pair and its derivatives.
+struct PairModel {
+    std::vector<double> mean;    ///< [bin]
+    std::vector<double> slopes;  ///< [bin][column], columns of SceneModel; empty unless wanted
+};
+
+/// Expected transients of a model and their derivatives by its free parameters.
+///
+/// Surfaces are cut into pieces once; update() moves them. Path lengths and weights of a piece's
+/// corners and edge midpoints, with their gradients, go through the closed-form kernel of core.
+class ForwardModel {
+ public:
+    /// model   must outlive this
+    /// scan    the pairs to model
+    /// wall    how the points of the whole scan move
+    ForwardModel(const SceneModel& model,
+                 core::Scan scan,
+                 const WallMotion& wall,
+                 ForwardSettings settings);
+
+    /// Cuts the surfaces anew and finds what wall points see of them.
+    void refresh(const SceneState& state);
+    /// Whether the last refresh() saw other things than the one before.
+    bool visibility_changed() const { return visibility_changed_; }
+
+    /// Whether the edge of a shadow fell on any piece at the last refresh().
+    bool has_shadow_edges() const;
+    /// From now on slopes include how the data change because the edges of shadows move, which
+    /// they otherwise leave out; until the next refresh().
+    /// state   of the last refresh()
+    void find_shadow_edges(const SceneState& state);
+
+    /// Moves everything to a state; visibility and cuts stay.
+    void update(const SceneState& state, renderer::Slopes slopes);
+    /// Thread-safe between updates.
+    void evaluate(std::size_t pair, PairModel& result) const;
+
+    const core::Scan& scan() const { return scan_; }
+    const ForwardSettings& settings() const { return settings_; }
+    std::size_t num_pieces() const { return pieces_.size(); }
+    const std::vector<ModelPiece>& pieces() const { return pieces_; }
+
+ private:
+    /// A piece where the state puts it.
+    struct PosedPiece {
+        std::array<core::Vec3, 6> nodes;  ///< corners, then midpoints of edges 01, 12, 20
+        core::Vec3 normal;
+        double weight = 0.0;  ///< area and albedo and all constants
+        bool is_retroreflective = false;
+        int albedo_column = -1;
+        std::vector<int> columns;
+        std::vector<std::array<core::Vec3, 6>> node_slopes;  ///< per column
+        std::vector<core::Vec3> normal_slopes;
+        std::vector<double> log_area_slopes;
+    };
+
+    PosedPiece pose(const ModelPiece& piece, const FacetMotion& motion) const;
+    void add_piece(const PosedPiece& piece,
+                   renderer::VisibilityMask mask,
+                   std::size_t pair,
+                   PairModel& result) const;
+    void add_point(std::size_t point, std::size_t pair, PairModel& result) const;
+    void add_response(const PairModel& fine, PairModel& result) const;
+    void finish(PairModel& fine, PairModel& result) const;
+    core::TimeAxis fine_axis() const;
+    void trace(const SceneState& state);
+    std::vector<double> vertex_speeds(const SceneState& state) const;
+    std::vector<double> evaluate_all() const;
+    void add_shadow_edges(std::size_t pair, PairModel& result) const;
+    renderer::VisibilityMask visible_part(std::size_t piece, std::size_t pair) const;
+
+    const SceneModel& model_;
+    core::Scan scan_;
+    ForwardSettings settings_;
+    WallMotion wall_;
+    SceneState state_;
+    renderer::Slopes slopes_ = renderer::Slopes::Without;
+    double sigma_m_ = 0.0;  ///< at the present width
+    double width_share_ = 1.0;
+    std::vector<ModelPiece> pieces_;
+    std::vector<PosedPiece> posed_;
+    std::vector<MovedWallPoint> light_points_;
+    std::vector<MovedWallPoint> sensor_points_;
+    std::vector<renderer::VisibilityMask> light_masks_;  ///< [point][piece]; empty: all is visible
+    std::vector<renderer::VisibilityMask> sensor_masks_;
+    bool visibility_changed_ = false;
+    std::vector<double> edge_slopes_;  ///< [pair][bin][column]; or {}
+    /// Weights of the data's bins for each position of a fine bin within its bin.
+    std::vector<std::vector<double>> phase_weights_;
+    int first_delay_ = 0;  ///< in fine bins
+    int oversampling_ = 1;
+    int margin_ = 0;  ///< fine bins before and behind the axis
+};
+
+}  // namespace calib

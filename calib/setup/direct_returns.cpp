@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: MIT
+#include "calib/setup/direct_returns.h"
+
+#include "calib/statistics/poisson_deviance.h"
+#include "renderer/core/instrument_response.h"
+
+#include <ceres/ceres.h>
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace calib {
+namespace {
+
+// A peak is looked at this many response widths around its highest bin.
+constexpr double kWindow = 12.0;
+constexpr double kLeastMean = 1e-9;
+
+struct Shared {
+    double log_sigma = 0.0;
+    double log_tail = 0.0;
+    double log_ambient = 0.0;
+};
+
+struct Peak {
+    double log_counts = 0.0;
+    double opl_m = 0.0;
+    int first_bin = 0;
+    int last_bin = 0;
+};
+
+template <class T>
+T cumulative(const T& delay, const T& sigma, const T& tail, ResponseShape shape) {
+    if (shape == ResponseShape::Gaussian) return core::gaussian_cdf(delay, sigma);
+    return core::exponential_gaussian_cdf(delay, sigma, tail);
+}
+
+// Expected counts of a bin, for numbers or automatic derivatives.
+template <class T>
+T expected_counts(
+    const T* peak, const T* shared, const core::TimeAxis& axis, int bin, ResponseShape shape) {
+    using std::exp;
+    const T sigma = exp(shared[0]);
+    const T tail = exp(shared[1]);
+    const T above = cumulative<T>(T(axis.bin_begin_m(bin + 1)) - peak[1], sigma, tail, shape);
+    const T below = cumulative<T>(T(axis.bin_begin_m(bin)) - peak[1], sigma, tail, shape);
+    return exp(peak[0]) * (above - below) + exp(shared[2]);
+}
+
+struct PeakCost {
+    std::span<const float> histogram;
+    core::TimeAxis axis;
+    int first_bin;
+    int last_bin;
+    ResponseShape shape;
+
+    template <class T>
+    bool operator()(const T* peak, const T* shared, T* residuals) const {
+        for (int bin = first_bin; bin <= last_bin; ++bin) {
+            const T mean = expected_counts(peak, shared, axis, bin, shape);
+            residuals[bin - first_bin] =
+                deviance_of(mean, static_cast<double>(histogram[static_cast<std::size_t>(bin)]));
+        }
+        return true;
+    }
+
+ private:
+    static double deviance_of(double mean, double counted) {
+        return signed_deviance(std::max(mean, kLeastMean), counted).value;
+    }
+    template <int N>
+    static ceres::Jet<double, N> deviance_of(const ceres::Jet<double, N>& mean, double counted) {
+        const Residual residual = signed_deviance(std::max(mean.a, kLeastMean), counted);
+        return {residual.value, residual.slope * mean.v};
+    }
+};
+
+Peak first_guess(std::span<const float> histogram,
+                 const core::TimeAxis& axis,
+                 std::size_t point,
+                 double sigma_m) {
+    const auto highest = std::max_element(histogram.begin(), histogram.end());
+    if (!(*highest > 0.0F)) {
+        throw core::Error(fmt::format("direct_returns: point {}", point),
+                          "found no light",
+                          "every histogram must hold its direct return");
+    }
+    Peak peak;
+    const int bin = static_cast<int>(highest - histogram.begin());
+    const int reach = static_cast<int>(kWindow * sigma_m / axis.bin_width_m) + 2;
+    peak.first_bin = std::max(0, bin - reach);
+    peak.last_bin = std::min(axis.num_bins - 1, bin + reach);
+    double sum = 0.0;
+    double moment = 0.0;
+    const int core_reach = static_cast<int>(2.0 * sigma_m / axis.bin_width_m) + 1;
+    for (int b = std::max(0, bin - core_reach); b <= std::min(axis.num_bins - 1, bin + core_reach);
+         ++b) {
+        const double counts = static_cast<double>(histogram[static_cast<std::size_t>(b)]);
+        sum += counts;
+        moment += counts * axis.bin_center_m(b);
+    }
+    peak.log_counts = std::log(sum);
+    peak.opl_m = moment / sum;
+    return peak;
+}
+
+// Width of the sum of all histograms, each moved to its highest bin.
+double rough_width(const core::Capture& capture) {
+    constexpr int kReach = 400;
+    std::vector<double> sum(2 * kReach + 1, 0.0);
+    for (std::size_t p = 0; p < capture.transient.num_pairs(); ++p) {
+        const auto histogram = capture.transient.histogram(p);
+        const auto highest = std::max_element(histogram.begin(), histogram.end());
+        const auto bin = highest - histogram.begin();
+        for (std::ptrdiff_t d = -kReach; d <= kReach; ++d) {
+            const std::ptrdiff_t b = bin + d;
+            if (b < 0 || b >= static_cast<std::ptrdiff_t>(histogram.size())) continue;
+            sum[static_cast<std::size_t>(d + kReach)] +=
+                static_cast<double>(histogram[static_cast<std::size_t>(b)]);
+        }
+    }
+    const double top = sum[kReach];
+    int width = 0;  // bins above half the maximum
+    for (const double value : sum) width += value > 0.5 * top ? 1 : 0;
+    return std::max(0.4, width / 2.355) * capture.time_axis.bin_width_m;
+}
+
+double mean_outside(const core::Capture& capture, const std::vector<Peak>& peaks) {
+    double sum = 0.0;
+    double count = 0.0;
+    for (std::size_t p = 0; p < peaks.size(); ++p) {
+        const auto histogram = capture.transient.histogram(p);
+        for (int b = 0; b < capture.time_axis.num_bins; ++b) {
+            if (b >= peaks[p].first_bin && b <= peaks[p].last_bin) continue;
+            sum += static_cast<double>(histogram[static_cast<std::size_t>(b)]);
+            count += 1.0;
+        }
+    }
+    return count > 0.0 ? std::max(sum / count, 1e-6) : 1e-3;
+}
+
+// Fisher information of one point's [log counts, opl], and its coupling to the shared three.
+struct PointInformation {
+    Eigen::Matrix2d own;
+    Eigen::Matrix<double, 2, 3> coupling;
+};
+
+// Fisher information of the shared three, points eliminated; stores what the points' own errors
+// need, and the deviance.
+Eigen::Matrix3d schur_of_shared(const core::Capture& capture,
+                                const std::vector<Peak>& peaks,
+                                const Shared& shared,
+                                ResponseShape shape,
+                                std::vector<PointInformation>& points,
+                                DirectReturns& result) {
+    using Jet = ceres::Jet<double, 5>;
+    Eigen::Matrix3d total = Eigen::Matrix3d::Zero();
+    for (const Peak& peak : peaks) {
+        const Jet p[2]{Jet(peak.log_counts, 0), Jet(peak.opl_m, 1)};
+        const Jet s[3]{
+            Jet(shared.log_sigma, 2), Jet(shared.log_tail, 3), Jet(shared.log_ambient, 4)};
+        Eigen::Matrix<double, 5, 5> information = Eigen::Matrix<double, 5, 5>::Zero();
+        const auto index = static_cast<std::size_t>(&peak - peaks.data());
+        for (int bin = peak.first_bin; bin <= peak.last_bin; ++bin) {
+            const Jet mean = expected_counts(p, s, capture.time_axis, bin, shape);
+            const double safe = std::max(mean.a, kLeastMean);
+            information += mean.v * mean.v.transpose() / safe;
+            const double counted = static_cast<double>(
+                capture.transient.histogram(index)[static_cast<std::size_t>(bin)]);
+            const double residual = signed_deviance(safe, counted).value;
+            result.deviance += residual * residual;
+            result.expected_deviance += deviance_moments(safe).mean;
+        }
+        const PointInformation& point = points.emplace_back(PointInformation{
+            information.topLeftCorner<2, 2>(), information.topRightCorner<2, 3>()});
+        total += information.bottomRightCorner<3, 3>() -
+                 point.coupling.transpose() * point.own.inverse() * point.coupling;
+    }
+    if (shape == ResponseShape::Gaussian) total(1, 1) += 1.0;  // no tail to know
+    return total;
+}
+
+void store_errors(const core::Capture& capture,
+                  const std::vector<Peak>& peaks,
+                  const Shared& shared,
+                  ResponseShape shape,
+                  DirectReturns& result) {
+    std::vector<PointInformation> points;
+    const Eigen::Matrix3d covariance =
+        schur_of_shared(capture, peaks, shared, shape, points, result).inverse();
+    result.sigma_error_m = result.sigma_m * std::sqrt(covariance(0, 0));
+    result.tail_error_m = result.tail_m * std::sqrt(covariance(1, 1));
+    result.ambient_error = result.ambient * std::sqrt(covariance(2, 2));
+    for (std::size_t p = 0; p < peaks.size(); ++p) {
+        const Eigen::Matrix2d own = points[p].own.inverse();
+        const Eigen::Matrix<double, 2, 3> lever = own * points[p].coupling;
+        const Eigen::Matrix2d whole = own + lever * covariance * lever.transpose();
+        result.points.push_back(
+            {peaks[p].opl_m, std::sqrt(whole(1, 1)), std::exp(peaks[p].log_counts)});
+    }
+}
+
+}  // namespace
+
+DirectReturns fit_direct_returns(const core::Capture& capture, ResponseShape shape) {
+    const double width_m = rough_width(capture);
+    std::vector<Peak> peaks;
+    for (std::size_t p = 0; p < capture.transient.num_pairs(); ++p) {
+        peaks.push_back(first_guess(capture.transient.histogram(p), capture.time_axis, p, width_m));
+    }
+    Shared shared{
+        std::log(0.8 * width_m), std::log(width_m), std::log(mean_outside(capture, peaks))};
+    std::vector<std::array<double, 2>> values;
+    for (const Peak& peak : peaks) values.push_back({peak.log_counts, peak.opl_m});
+    std::array<double, 3> common{shared.log_sigma, shared.log_tail, shared.log_ambient};
+
+    ceres::Problem problem;
+    for (std::size_t p = 0; p < peaks.size(); ++p) {
+        auto* cost = new ceres::AutoDiffCostFunction<PeakCost, ceres::DYNAMIC, 2, 3>(
+            new PeakCost{capture.transient.histogram(p),
+                         capture.time_axis,
+                         peaks[p].first_bin,
+                         peaks[p].last_bin,
+                         shape},
+            peaks[p].last_bin - peaks[p].first_bin + 1);
+        problem.AddResidualBlock(cost, nullptr, values[p].data(), common.data());
+    }
+    if (shape == ResponseShape::Gaussian) {
+        problem.SetManifold(common.data(), new ceres::SubsetManifold(3, {1}));
+    }
+    ceres::Solver::Options options;
+    options.linear_solver_type = ceres::DENSE_SCHUR;  // points meet only in the shared three
+    options.max_num_iterations = 200;
+    options.function_tolerance = 1e-10;
+    options.parameter_tolerance = 1e-10;
+    options.logging_type = ceres::SILENT;
+    options.num_threads = 1;
+    ceres::Solver::Summary summary;
+    ceres::Solve(options, &problem, &summary);
+    if (summary.termination_type != ceres::CONVERGENCE) {
+        throw core::Failure("direct_returns", "the peaks' fit did not converge");
+    }
+    for (std::size_t p = 0; p < peaks.size(); ++p) {
+        peaks[p].log_counts = values[p][0];
+        peaks[p].opl_m = values[p][1];
+    }
+    shared = {common[0], common[1], common[2]};
+    DirectReturns result;
+    result.sigma_m = std::exp(shared.log_sigma);
+    result.tail_m = shape == ResponseShape::Gaussian ? 0.0 : std::exp(shared.log_tail);
+    result.ambient = std::exp(shared.log_ambient);
+    store_errors(capture, peaks, shared, shape, result);
+    if (shape != ResponseShape::Gaussian && !(result.tail_error_m < result.tail_m)) {
+        // A tail shorter than its own error is none; its delay would only blur the peaks' places.
+        return fit_direct_returns(capture, ResponseShape::Gaussian);
+    }
+    return result;
+}
+
+}  // namespace calib

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: MIT
+#include "nlos/compare/compare.h"
+
+#include "nlos/compare/compare_image.h"
+#include "nlos/compare/compare_scores.h"
+#include "renderer/core/nearest_neighbours.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace nlos {
+namespace {
+
+constexpr double kMaskShare = 0.2;
+
+/// The neighbour distance of evenly spaced voxel centres; 0 for a single one.
+double pitch_m(const std::vector<double>& centres_m) {
+    if (centres_m.size() < 2) return 0.0;
+    return std::abs(centres_m.back() - centres_m.front()) /
+           static_cast<double>(centres_m.size() - 1);
+}
+
+double voxel_diagonal_m(const VolumeAxes& axes) {
+    return std::hypot(pitch_m(axes.x_m), pitch_m(axes.y_m), pitch_m(axes.z_m));
+}
+
+/// Throws unless both axes have the same centres, within a thousandth of their distance.
+void check_same_axis(const std::vector<double>& found,
+                     const std::vector<double>& wanted,
+                     const std::string& name) {
+    if (found.size() != wanted.size()) {
+        throw core::Error("compare: " + name,
+                          fmt::format("found {} values against {}", found.size(), wanted.size()),
+                          "both must have the same grid");
+    }
+    const double tolerance = 1e-6 + 1e-3 * pitch_m(wanted);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        if (!(std::abs(found[i] - wanted[i]) <= tolerance)) {
+            throw core::Error("compare: " + name,
+                              fmt::format("value {} is {} m against {} m", i, found[i], wanted[i]),
+                              "both must have the same grid");
+        }
+    }
+}
+
+void check_same_wall(const core::Transform& found, const core::Transform& wanted) {
+    constexpr double kTolerance = 1e-6;  // of rotation entries and metres
+    for (int row = 0; row < 3; ++row) {
+        for (int column = 0; column < 4; ++column) {
+            if (std::abs(found(row, column) - wanted(row, column)) <= kTolerance) continue;
+            throw core::Error("compare: wall",
+                              "found two different poses",
+                              "both must lie in the same wall's frame");
+        }
+    }
+}
+
+void check_same_columns(const VolumeAxes& axes, const core::DepthMap& map) {
+    check_same_axis(axes.x_m, map.x_m, "x");
+    check_same_axis(axes.y_m, map.y_m, "y");
+    check_same_wall(axes.world_from_wall, map.world_from_wall);
+}
+
+/// Columns in which both masks are set and both depths exist.
+std::vector<std::size_t> common_columns(const Mask& mask,
+                                        const core::DepthMap& depth,
+                                        const core::DepthMap& truth) {
+    std::vector<std::size_t> columns;
+    if (depth.depth_m.size() != mask.size()) return columns;
+    for (std::size_t i = 0; i < mask.size(); ++i) {
+        if (mask[i] && truth.is_foreground(i) && depth.is_foreground(i)) columns.push_back(i);
+    }
+    return columns;
+}
+
+void score_depth(const core::DepthMap& depth,
+                 const core::DepthMap& truth,
+                 const std::vector<std::size_t>& columns,
+                 Metrics& metrics) {
+    if (columns.empty()) return;
+    std::vector<double> errors_m;
+    double sum = 0.0;
+    double squares = 0.0;
+    for (const std::size_t i : columns) {
+        errors_m.push_back(std::abs(depth.depth_m[i] - truth.depth_m[i]));
+        sum += errors_m.back();
+        squares += errors_m.back() * errors_m.back();
+    }
+    const auto count = static_cast<double>(errors_m.size());
+    metrics.depth_mae_m = sum / count;
+    metrics.depth_rmse_m = std::sqrt(squares / count);
+    metrics.depth_median_m = median(std::move(errors_m));
+}
+
+void score_normals(const Volume& volume,
+                   const core::DepthMap& truth,
+                   const std::vector<std::size_t>& columns,
+                   Metrics& metrics) {
+    if (volume.normals.size() != truth.depth_m.size() || truth.normals.empty()) return;
+    const core::Mat3 world_from_wall = volume.axes.world_from_wall.linear();
+    std::vector<double> angles_deg;
+    for (const std::size_t i : columns) {
+        const core::Vec3 normal = world_from_wall * volume.normals[i].cast<double>();
+        if (!normal.allFinite() || !(normal.norm() > 0.0)) continue;
+        angles_deg.push_back(angle_deg(normal, truth.normals[i]));
+    }
+    score_angles(angles_deg, metrics);
+}
+
+void score_image(const std::vector<float>& image,
+                 const std::vector<float>& truth,
+                 const VolumeAxes& axes,
+                 Metrics& metrics) {
+    const auto a = normalised(image);
+    const auto b = normalised(truth);
+    if (!a || !b) return;
+    metrics.psnr_db = psnr_db(*a, *b);
+    metrics.ssim = ssim(*a, *b, axes.x_m.size(), axes.y_m.size());
+}
+
+void score_points(const core::PointCloud& result,
+                  const core::PointCloud& truth,
+                  const VolumeAxes& axes,
+                  Metrics& metrics) {
+    const Metrics scores = compare_points(result, truth, voxel_diagonal_m(axes));
+    metrics.chamfer_m = scores.chamfer_m;
+    metrics.fscore = scores.fscore;
+    metrics.fscore_threshold_m = scores.fscore_threshold_m;
+    if (metrics.normal_mae_deg) return;
+    metrics.normal_mae_deg = scores.normal_mae_deg;
+    metrics.normal_median_deg = scores.normal_median_deg;
+}
+
+/// World position of the brightest voxel; nothing when no value is positive.
+std::optional<core::Vec3> peak_world(const Volume& volume) {
+    const auto it = std::max_element(volume.values.begin(), volume.values.end());
+    if (it == volume.values.end() || !(*it > 0.0F)) return std::nullopt;
+    const auto index = static_cast<std::size_t>(it - volume.values.begin());
+    const VolumeAxes& axes = volume.axes;
+    const std::size_t column = index / axes.z_m.size();
+    return axes.world_from_wall * core::Vec3(axes.x_m[column / axes.y_m.size()],
+                                             axes.y_m[column % axes.y_m.size()],
+                                             axes.z_m[index % axes.z_m.size()]);
+}
+
+void record_cost(const Reconstruction& result, Metrics& metrics) {
+    if (result.seconds > 0.0) metrics.seconds = result.seconds;
+    if (result.peak_bytes > 0) metrics.peak_rss_bytes = result.peak_bytes;
+}
+
+Mask foreground_of(const core::DepthMap& map) {
+    Mask mask(map.depth_m.size());
+    for (std::size_t i = 0; i < mask.size(); ++i) mask[i] = map.is_foreground(i);
+    return mask;
+}
+
+/// The picture an eye at the wall would see: albedo of the surface, 0 in the background.
+std::vector<float> albedo_image(const core::DepthMap& map) {
+    std::vector<float> image(map.depth_m.size(), 0.0F);
+    for (std::size_t i = 0; i < image.size(); ++i) {
+        if (!map.is_foreground(i)) continue;
+        image[i] = map.albedo.empty() ? 1.0F : static_cast<float>(map.albedo[i]);
+    }
+    return image;
+}
+
+}  // namespace
+
+Metrics compare_to_truth(const Reconstruction& result, const core::DepthMap& truth) {
+    check_same_columns(result.volume.axes, truth);
+    const std::vector<float> projection = max_projection(result.volume);
+    const Mask mask = mask_above_share(projection, kMaskShare);
+    const Mask true_mask = foreground_of(truth);
+    const std::vector<std::size_t> columns = common_columns(mask, result.depth, truth);
+    const core::PointCloud true_points = surface_points(truth);
+
+    Metrics metrics;
+    score_depth(result.depth, truth, columns, metrics);
+    metrics.mask_iou = mask_iou(mask, true_mask);
+    metrics.mask_iou_best = best_mask_iou(projection, true_mask);
+    score_normals(result.volume, truth, columns, metrics);
+    score_points(result.points, true_points, result.volume.axes, metrics);
+    score_image(projection, albedo_image(truth), result.volume.axes, metrics);
+    const auto peak = peak_world(result.volume);
+    if (peak && !true_points.positions.empty()) {
+        metrics.peak_distance_m =
+            core::nearest_neighbours({*peak}, true_points.positions).distances_m.front();
+    }
+    record_cost(result, metrics);
+    return metrics;
+}
+
+Metrics compare_volumes(const Reconstruction& result, const Reconstruction& reference) {
+    const VolumeAxes& axes = reference.volume.axes;
+    check_same_axis(result.volume.axes.x_m, axes.x_m, "x");
+    check_same_axis(result.volume.axes.y_m, axes.y_m, "y");
+    check_same_axis(result.volume.axes.z_m, axes.z_m, "z");
+    check_same_wall(result.volume.axes.world_from_wall, axes.world_from_wall);
+    const std::vector<float> projection = max_projection(result.volume);
+    const std::vector<float> reference_projection = max_projection(reference.volume);
+    const Mask mask = mask_above_share(projection, kMaskShare);
+    const Mask reference_mask = mask_above_share(reference_projection, kMaskShare);
+
+    Metrics metrics;
+    if (reference.depth.depth_m.size() == mask.size()) {
+        Mask both = mask;
+        for (std::size_t i = 0; i < both.size(); ++i) both[i] &= reference_mask[i];
+        score_depth(result.depth,
+                    reference.depth,
+                    common_columns(both, result.depth, reference.depth),
+                    metrics);
+    }
+    metrics.mask_iou = mask_iou(mask, reference_mask);
+    metrics.mask_iou_best = best_mask_iou(projection, reference_mask);
+    score_points(result.points, reference.points, axes, metrics);
+    score_image(projection, reference_projection, axes, metrics);
+    const auto peak = peak_world(result.volume);
+    const auto reference_peak = peak_world(reference.volume);
+    if (peak && reference_peak) metrics.peak_distance_m = (*peak - *reference_peak).norm();
+    metrics.rel_mse = relative_mse(result.volume.values, reference.volume.values);
+    if (metrics.rel_mse) metrics.rel_l2 = std::sqrt(*metrics.rel_mse);
+    record_cost(result, metrics);
+    return metrics;
+}
+
+}  // namespace nlos

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "nlos/compare/metrics.h"
+#include "nlos/reconstruction/reconstruction.h"
+#include "renderer/core/capture.h"
+#include "renderer/core/depth_map.h"
+#include "renderer/core/mesh.h"
+
+namespace nlos {
+
+/// Scores a reconstructed volume against the scene's depth map.
+///
+/// Masks: the true one is the truth's foreground, the reconstructed one the columns whose maximum
+/// projection exceeds 20 % of its maximum. Depth and normal errors are taken where both masks and
+/// `result.depth` have a value. The true image is the albedo seen (1 when unknown), divided by its
+/// maximum; the surface samples are the truth's foreground columns; a match is a voxel diagonal.
+///
+/// result   volume with depth and points; its normals, if any, point towards the wall
+/// truth    what the wall's orthographic view sees at exactly the volume's (x, y) columns
+/// returns  no value for a score that lacks its data: an empty mask, no points, no positive voxel
+/// throws   core::Error when the columns or the walls differ
+Metrics compare_to_truth(const Reconstruction& result, const core::DepthMap& truth);
+
+/// Scores surface points against surface samples of the truth (Chamfer, F-score, normals).
+///
+/// result, truth  points in the same frame; normals are compared at nearest neighbours,
+///                whichever side they point to
+/// threshold_m    distance that counts as a match [m]
+/// returns        no score when either has no point
+/// source         F-score [Knapitsch2017]
+Metrics compare_points(const core::PointCloud& result,
+                       const core::PointCloud& truth,
+                       double threshold_m);
+
+/// Scores one volume against another on the same grid: projections, depths, points, voxels.
+///
+/// Both masks are at 20 % of their own maximum; peak_distance_m is the distance of the two
+/// brightest voxels; rel_l2 and rel_mse compare the voxels as they are, without scaling.
+///
+/// throws    core::Error when the grids or the walls differ
+Metrics compare_volumes(const Reconstruction& result, const Reconstruction& reference);
+
+/// Relative differences of two captures; rel_l2 = |a-b|/|b|, rel_mse its square. Pairs are those of
+/// the same wall points, in whatever order they stand; where the points differ, those of one index.
+///
+/// throws    core::Error when shapes, units or time axes differ
+Metrics compare_captures(const core::Capture& result, const core::Capture& reference);
+
+}  // namespace nlos

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+#include "nlos/compare/compare.h"
+#include "nlos/compare/compare_image.h"
+#include "renderer/core/nearest_neighbours.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace nlos {
+namespace {
+
+void check_same_shape(const core::Transient& found, const core::Transient& wanted) {
+    if (found.num_pairs() == wanted.num_pairs() && found.num_bins() == wanted.num_bins()) return;
+    throw core::Error("compare: H",
+                      fmt::format("found {} pairs x {} bins against {} x {}",
+                                  found.num_pairs(),
+                                  found.num_bins(),
+                                  wanted.num_pairs(),
+                                  wanted.num_bins()),
+                      "both captures must have the same shape");
+}
+
+void check_same_unit(core::TransientUnit found, core::TransientUnit wanted) {
+    if (found == wanted) return;
+    throw core::Error(
+        "compare: unit",
+        fmt::format("found {} against {}", core::enum_name(found), core::enum_name(wanted)),
+        "both captures must have the same unit");
+}
+
+/// Throws when a bin lies more than a hundredth of its width beside its counterpart.
+void check_same_bins(const core::TimeAxis& found, const core::TimeAxis& wanted) {
+    const double start_gap_m = std::abs(found.opl_start_m - wanted.opl_start_m);
+    const double end_gap_m = std::abs(found.opl_end_m() - wanted.opl_end_m());
+    if (std::max(start_gap_m, end_gap_m) <= 0.01 * wanted.bin_width_m) return;
+    throw core::Error("compare: time axis",
+                      fmt::format("found {} m to {} m against {} m to {} m",
+                                  found.opl_start_m,
+                                  found.opl_end_m(),
+                                  wanted.opl_start_m,
+                                  wanted.opl_end_m()),
+                      "both captures must have the same bins");
+}
+
+/// Which of the points are the wanted ones; as they stand unless all of them are there, reordered.
+std::vector<std::size_t> counterparts(const std::vector<core::Vec3>& wanted,
+                                      const std::vector<core::Vec3>& points) {
+    constexpr double kRounding_m = 1e-5;  // files hold points in single precision
+    std::vector<std::size_t> indices(wanted.size());
+    std::iota(indices.begin(), indices.end(), std::size_t{0});
+    const auto agree = [&](std::size_t i) { return (wanted[i] - points[i]).norm() <= kRounding_m; };
+    if (wanted.size() != points.size() || std::ranges::all_of(indices, agree)) return indices;
+    const core::NearestNeighbours nearest = core::nearest_neighbours(wanted, points);
+    const bool all_are_there = *std::ranges::max_element(nearest.distances_m) <= kRounding_m;
+    return all_are_there ? nearest.indices : indices;
+}
+
+/// The result's histograms in the order of the reference's pairs: formats run through the wall's
+/// points in different directions.
+core::Transient in_order_of(const core::Capture& reference, const core::Capture& result) {
+    const core::Scan& scan = reference.scan;
+    if (scan.camera || scan.pattern != result.scan.pattern) return result.transient;
+    const auto sensing = counterparts(scan.sensing.positions, result.scan.sensing.positions);
+    const auto lit = counterparts(scan.illumination.positions, result.scan.illumination.positions);
+    core::Transient ordered = result.transient;
+    for (std::size_t pair = 0; pair < scan.num_pairs(); ++pair) {
+        std::size_t from = sensing[scan.sensing_index(pair)];
+        if (scan.pattern == core::ScanPattern::Exhaustive) {
+            from += lit[scan.illumination_index(pair)] * sensing.size();
+        }
+        std::ranges::copy(result.transient.histogram(from), ordered.histogram(pair).begin());
+    }
+    return ordered;
+}
+
+}  // namespace
+
+Metrics compare_captures(const core::Capture& result, const core::Capture& reference) {
+    check_same_shape(result.transient, reference.transient);
+    check_same_unit(result.unit, reference.unit);
+    check_same_bins(result.time_axis, reference.time_axis);
+    Metrics metrics;
+    const core::Transient ordered = in_order_of(reference, result);
+    metrics.rel_mse = relative_mse(ordered.values(), reference.transient.values());
+    if (metrics.rel_mse) metrics.rel_l2 = std::sqrt(*metrics.rel_mse);
+    return metrics;
+}
+
+}  // namespace nlos

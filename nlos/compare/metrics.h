@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+namespace nlos {
+
+/// Scores of a result against the truth; empty where a score does not apply.
+struct Metrics {
+    std::optional<double> depth_mae_m;     ///< inside the true and the reconstructed mask
+    std::optional<double> depth_median_m;  ///< of the absolute error
+    std::optional<double> depth_rmse_m;
+    std::optional<double> mask_iou;       ///< foreground above 20 % of the maximum projection
+    std::optional<double> mask_iou_best;  ///< at the best threshold of the maximum projection
+    std::optional<double> normal_mae_deg;
+    std::optional<double> normal_median_deg;
+    std::optional<double> chamfer_m;
+    std::optional<double> fscore;
+    std::optional<double> fscore_threshold_m;
+    std::optional<double> psnr_db;
+    std::optional<double> ssim;
+    std::optional<double> peak_distance_m;
+    std::optional<double> position_error_m;
+    std::optional<double> rotation_error_deg;
+    std::optional<double> size_error;
+    std::optional<double> albedo_error;
+    std::optional<double> rel_l2;
+    std::optional<double> rel_mse;
+    std::optional<double> seconds;
+    std::optional<std::uint64_t> peak_rss_bytes;
+};
+
+template <class Visitor>
+void for_each_field(Metrics& m, Visitor&& visit) {
+    visit("depth_mae_m", m.depth_mae_m, "mean absolute depth error in both masks [m]");
+    visit("depth_median_m", m.depth_median_m, "median absolute depth error [m]");
+    visit("depth_rmse_m", m.depth_rmse_m, "root mean square depth error [m]");
+    visit("mask_iou", m.mask_iou, "intersection over union of the masks at 20 % of the maximum");
+    visit("mask_iou_best", m.mask_iou_best, "the same at the best threshold");
+    visit("normal_mae_deg", m.normal_mae_deg, "mean angle between normals [deg]");
+    visit("normal_median_deg", m.normal_median_deg, "median angle between normals [deg]");
+    visit("chamfer_m", m.chamfer_m, "mean of the two mean nearest-neighbour distances [m]");
+    visit("fscore", m.fscore, "harmonic mean of precision and recall at the threshold");
+    visit("fscore_threshold_m", m.fscore_threshold_m, "distance that counts as a match [m]");
+    visit("psnr_db", m.psnr_db, "of the maximum projection on [0, 1] [dB]");
+    visit("ssim", m.ssim, "structural similarity of the maximum projection on [0, 1]");
+    visit("peak_distance_m", m.peak_distance_m, "from the brightest voxel to the truth [m]");
+    visit("position_error_m", m.position_error_m, "of a fitted object [m]");
+    visit("rotation_error_deg", m.rotation_error_deg, "of a fitted object, modulo symmetry [deg]");
+    visit("size_error", m.size_error, "relative, of a fitted object");
+    visit("albedo_error", m.albedo_error, "relative, of a fitted object");
+    visit("rel_l2", m.rel_l2, "relative L2 distance of two captures or volumes");
+    visit("rel_mse", m.rel_mse, "mean square distance over mean square reference");
+    visit("seconds", m.seconds, "time the result took [s]");
+    visit("peak_rss_bytes", m.peak_rss_bytes, "memory the result took [bytes]");
+}
+
+}  // namespace nlos

@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: MIT
+#include "nlos/containers/exr_table.h"
+
+#include "nlos/containers/contained_process.h"
+#include "nlos/containers/file_memory.h"
+#include "renderer/core/error.h"
+#include "renderer/core/output_file.h"
+#include "renderer/core/settings.h"
+
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfDoubleAttribute.h>
+#include <OpenEXR/ImfFloatVectorAttribute.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfStringAttribute.h>
+#include <fmt/core.h>
+
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+namespace nlos {
+namespace {
+
+constexpr std::size_t kColumnBytes = sizeof(float);
+constexpr std::uint64_t kMostChannels = 1 << 16;
+
+[[noreturn]] void throw_damaged_table(const std::string& path) {
+    throw core::Error(path, "is damaged or cut short", "must be a complete OpenEXR file");
+}
+
+/// Reads the header's parts, each checked against the file's end, which the library does not do
+/// before it allocates.
+class HeaderReader {
+ public:
+    explicit HeaderReader(const std::string& path)
+        : path_(path), file_(path, std::ios::binary), left_(std::filesystem::file_size(path)) {}
+
+    std::uint64_t left() const { return left_; }
+
+    std::uint32_t number() {
+        std::array<unsigned char, 4> bytes{};
+        take(reinterpret_cast<char*>(bytes.data()), bytes.size());
+        std::uint32_t value = 0;
+        for (std::size_t i = bytes.size(); i-- > 0;) value = value << 8 | bytes[i];
+        return value;
+    }
+    /// A name, which ends with a zero.
+    std::string name() {
+        constexpr std::size_t kLongestName = 255;
+        std::string text;
+        while (text.size() <= kLongestName) {
+            char c = 0;
+            take(&c, 1);
+            if (c == '\0') return text;
+            text += c;
+        }
+        throw_damaged_table(path_);
+    }
+    void skip(std::uint64_t count) {
+        if (count > left_) throw_damaged_table(path_);
+        file_.seekg(static_cast<std::streamoff>(count), std::ios::cur);
+        left_ -= count;
+    }
+
+ private:
+    void take(char* bytes, std::size_t count) {
+        if (count > left_ || !file_.read(bytes, static_cast<std::streamsize>(count))) {
+            throw_damaged_table(path_);
+        }
+        left_ -= count;
+    }
+
+    const std::string& path_;
+    std::ifstream file_;
+    std::uint64_t left_;
+};
+
+/// Checks that all attributes lie within the file and that its image may be as large as it claims.
+void check_header(const std::string& path) {
+    constexpr std::uint32_t kVersion = 2;
+    constexpr std::uint32_t kLongNames = 0x400;
+    // The strongest compression, deflate, shrinks by less than 1032 to 1.
+    constexpr std::uint64_t kLargestRatio = 1100;
+    HeaderReader header(path);
+    header.number();  // the signature
+    const std::uint32_t version = header.number();
+    if ((version & ~kLongNames) != kVersion) {
+        throw core::Error(path,
+                          fmt::format("has version flags {:#x}", version),
+                          "must be a single image of scan lines");
+    }
+    std::uint64_t pixels = 0;
+    while (true) {
+        const std::string name = header.name();
+        if (name.empty()) break;
+        const std::string type = header.name();
+        const std::uint32_t bytes = header.number();
+        if (name != "dataWindow" || type != "box2i" || bytes != 16) {
+            header.skip(bytes);
+            continue;
+        }
+        std::array<std::int64_t, 4> window{};  // x and y of the first, x and y of the last pixel
+        for (std::int64_t& edge : window) edge = static_cast<std::int32_t>(header.number());
+        const std::int64_t width = window[2] - window[0] + 1;
+        const std::int64_t height = window[3] - window[1] + 1;
+        if (width < 1 || height < 1) throw_damaged_table(path);
+        pixels = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
+    }
+    if (pixels == 0 || pixels > header.left() * kLargestRatio) throw_damaged_table(path);
+}
+
+core::Json to_json(const ExrTable& table) {
+    core::Json json;
+    json["size"] = {table.width, table.height};
+    json["numbers"] = table.numbers;
+    json["texts"] = table.texts;
+    const auto add = [&](const char* key, const auto& lists) {
+        json[key] = core::Json::object();
+        for (const auto& [name, values] : lists) {
+            const auto* bytes = reinterpret_cast<const std::uint8_t*>(values.data());
+            json[key][name] = core::Json::binary({bytes, bytes + values.size() * kColumnBytes});
+        }
+    };
+    add("lists", table.lists);
+    add("channels", table.channels);
+    return json;
+}
+
+ExrTable from_json(const core::Json& json) {
+    ExrTable table;
+    table.width = json.at("size").at(0);
+    table.height = json.at("size").at(1);
+    json.at("numbers").get_to(table.numbers);
+    json.at("texts").get_to(table.texts);
+    const auto take = [&](const char* key, auto& lists) {
+        for (const auto& [name, value] : json.at(key).items()) {
+            const auto& bytes = value.get_binary();
+            std::vector<float>& values = lists[name];
+            values.resize(bytes.size() / kColumnBytes);
+            std::memcpy(values.data(), bytes.data(), values.size() * kColumnBytes);
+        }
+    };
+    take("lists", table.lists);
+    take("channels", table.channels);
+    return table;
+}
+
+/// Floats at consecutive columns and rows of a table.
+Imf::Slice slice_of(float* values, const ExrTable& table, int first_x, int first_y) {
+    // The library adds the pixel's coordinates to the base.
+    const auto stride = static_cast<std::ptrdiff_t>(table.width * kColumnBytes);
+    char* base = reinterpret_cast<char*>(values) -
+                 static_cast<std::ptrdiff_t>(kColumnBytes) * first_x - stride * first_y;
+    return {Imf::FLOAT, base, kColumnBytes, static_cast<std::size_t>(stride)};
+}
+
+ExrTable read_with_library(const std::string& path) {
+    check_header(path);
+    Imf::InputFile file(path.c_str());
+    const Imf::Header& header = file.header();
+    const Imath::Box2i window = header.dataWindow();
+    ExrTable table;
+    table.width = static_cast<std::size_t>(window.max.x - window.min.x + 1);
+    table.height = static_cast<std::size_t>(window.max.y - window.min.y + 1);
+    std::uint64_t channels = 0;
+    for (auto c = header.channels().begin(); c != header.channels().end(); ++c) {
+        if (c.channel().xSampling != 1 || c.channel().ySampling != 1 ||
+            ++channels > kMostChannels) {
+            throw core::Error(path, "has subsampled or too many channels", "must have full ones");
+        }
+    }
+    require_memory(4 * channels * table.width * table.height * kColumnBytes, path);
+    Imf::FrameBuffer buffer;
+    for (auto c = header.channels().begin(); c != header.channels().end(); ++c) {
+        std::vector<float>& values = table.channels[c.name()];
+        values.resize(table.width * table.height);
+        buffer.insert(c.name(), slice_of(values.data(), table, window.min.x, window.min.y));
+    }
+    file.setFrameBuffer(buffer);
+    file.readPixels(window.min.y, window.max.y);
+    for (auto a = header.begin(); a != header.end(); ++a) {
+        const Imf::Attribute& attribute = a.attribute();
+        if (const auto* number = dynamic_cast<const Imf::DoubleAttribute*>(&attribute)) {
+            table.numbers[a.name()] = number->value();
+        } else if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&attribute)) {
+            table.texts[a.name()] = text->value();
+        } else if (const auto* list = dynamic_cast<const Imf::FloatVectorAttribute*>(&attribute)) {
+            table.lists[a.name()] = list->value();
+        }
+    }
+    return table;
+}
+
+}  // namespace
+
+bool is_exr_file(const std::string& path) {
+    constexpr std::array<char, 4> kSignature{'\x76', '\x2f', '\x31', '\x01'};
+    std::ifstream file(path, std::ios::binary);
+    std::array<char, 4> start{};
+    return file.read(start.data(), start.size()) && start == kSignature;
+}
+
+ExrTable read_exr_table(const std::string& path) {
+    const std::string answer = run_contained(path, [&] {
+        try {
+            std::string bytes;
+            core::Json::to_cbor(to_json(read_with_library(path)), bytes);
+            return bytes;
+        } catch (const core::Error&) {
+            throw;
+        } catch (const core::Failure&) {
+            throw;
+        } catch (const std::bad_alloc&) {
+            throw;
+        } catch (const std::exception&) {  // the library's own, and texts that are not UTF-8
+            throw_damaged_table(path);
+        }
+    });
+    return from_json(core::Json::from_cbor(answer));
+}
+
+void write_exr_table(const std::string& path, const ExrTable& table) {
+    core::OutputFile output(path);
+    Imf::Header header(static_cast<int>(table.width), static_cast<int>(table.height));
+    header.compression() = Imf::ZIP_COMPRESSION;
+    for (const auto& [name, value] : table.numbers) {
+        header.insert(name, Imf::DoubleAttribute(value));
+    }
+    for (const auto& [name, value] : table.texts) {
+        header.insert(name, Imf::StringAttribute(value));
+    }
+    for (const auto& [name, values] : table.lists) {
+        header.insert(name, Imf::FloatVectorAttribute(values));
+    }
+    Imf::FrameBuffer buffer;
+    for (const auto& [name, values] : table.channels) {
+        header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+        buffer.insert(name, slice_of(const_cast<float*>(values.data()), table, 0, 0));
+    }
+    try {
+        Imf::OutputFile file(output.temporary().c_str(), header);
+        file.setFrameBuffer(buffer);
+        file.writePixels(static_cast<int>(table.height));
+    } catch (const std::exception& error) {
+        throw core::Failure(path, std::string("cannot be written (") + error.what() + ")");
+    }
+    output.commit();
+}
+
+}  // namespace nlos

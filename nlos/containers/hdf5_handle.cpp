@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+#include "nlos/containers/hdf5_handle.h"
+
+#include <fmt/ranges.h>
+#include <hdf5.h>
+
+#include <array>
+#include <fstream>
+
+namespace nlos {
+
+static_assert(std::is_same_v<hid_t, std::int64_t>, "Hdf5Handle stores HDF5 identifiers");
+
+std::string shape_text(const Shape& shape) {
+    return shape.size() == 1 ? fmt::format("({},)", shape[0])
+                             : fmt::format("({})", fmt::join(shape, ", "));
+}
+
+bool is_hdf5_file(const std::string& path) {
+    constexpr std::array<char, 8> kSignature{'\x89', 'H', 'D', 'F', '\r', '\n', '\x1a', '\n'};
+    std::ifstream file(path, std::ios::binary);
+    std::array<char, 8> start{};
+    return file.read(start.data(), start.size()) && start == kSignature;
+}
+
+void prepare_hdf5() {
+    // The library's own clean-up at exit crashes after a file could not be closed (disk full).
+    // Handles close everything, so nothing is left to clean up.
+    H5dont_atexit();
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
+
+}  // namespace nlos

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: MIT
+#include "nlos/containers/hdf5_writer.h"
+
+#include "renderer/core/error.h"
+
+#include <hdf5.h>
+
+#include <cassert>
+#include <cstdint>
+
+namespace nlos {
+namespace {
+
+Hdf5Handle create_space(const Shape& shape) {
+    const std::vector<hsize_t> extents(shape.begin(), shape.end());
+    return extents.empty()
+               ? Hdf5Handle(H5Screate(H5S_SCALAR), H5Sclose)
+               : Hdf5Handle(
+                     H5Screate_simple(static_cast<int>(extents.size()), extents.data(), nullptr),
+                     H5Sclose);
+}
+
+[[maybe_unused]] std::size_t count_values(const Shape& shape) {
+    std::size_t count = 1;
+    for (const std::size_t extent : shape) count *= extent;
+    return count;
+}
+
+Hdf5Handle utf8_type() {
+    Hdf5Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+    H5Tset_size(type.id(), H5T_VARIABLE);
+    H5Tset_cset(type.id(), H5T_CSET_UTF8);
+    return type;
+}
+
+}  // namespace
+
+Hdf5Writer::Hdf5Writer(std::string target) : target_(std::move(target)), output_(target_) {
+    prepare_hdf5();
+    const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+    H5Pset_fclose_degree(access.id(), H5F_CLOSE_STRONG);
+    // The format of HDF5 1.8 guards its headers by checksums, so that damage is noticed when read.
+    H5Pset_libver_bounds(access.id(), H5F_LIBVER_V18, H5F_LIBVER_LATEST);
+    file_ = Hdf5Handle(
+        H5Fcreate(output_.temporary().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()), H5Fclose);
+    check(file_.is_valid());
+}
+
+void Hdf5Writer::check(bool ok) const {
+    if (!ok) throw core::Failure(target_, "cannot be written (disk full?)");
+}
+
+void Hdf5Writer::create_group(const std::string& name) {
+    const Hdf5Handle group(
+        H5Gcreate2(file_.id(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
+    check(group.is_valid());
+}
+
+void Hdf5Writer::write_dataset(const std::string& name,
+                               std::int64_t type,
+                               const Hdf5Handle& space,
+                               const void* values) {
+    Hdf5Handle dataset(
+        H5Dcreate2(
+            file_.id(), name.c_str(), type, space.id(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+        H5Dclose);
+    check(dataset.is_valid());
+    check(H5Dwrite(dataset.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0);
+    check(dataset.close());
+}
+
+void Hdf5Writer::write(const std::string& name, const Shape& shape, std::span<const float> values) {
+    assert(values.size() == count_values(shape));
+    write_dataset(name, H5T_NATIVE_FLOAT, create_space(shape), values.data());
+}
+
+void Hdf5Writer::write(const std::string& name,
+                       const Shape& shape,
+                       std::span<const double> values) {
+    assert(values.size() == count_values(shape));
+    write_dataset(name, H5T_NATIVE_DOUBLE, create_space(shape), values.data());
+}
+
+void Hdf5Writer::write(const std::string& name, const Shape& shape, std::span<const int> values) {
+    assert(values.size() == count_values(shape));
+    write_dataset(name, H5T_NATIVE_INT, create_space(shape), values.data());
+}
+
+void Hdf5Writer::write_real(const std::string& name, double value) {
+    write(name, {}, {&value, 1});
+}
+
+void Hdf5Writer::write_bool(const std::string& name, bool value) {
+    const Hdf5Handle type(H5Tenum_create(H5T_NATIVE_INT8), H5Tclose);
+    const std::int8_t no = 0;
+    const std::int8_t yes = 1;
+    H5Tenum_insert(type.id(), "FALSE", &no);
+    H5Tenum_insert(type.id(), "TRUE", &yes);
+    write_dataset(name, type.id(), create_space({}), value ? &yes : &no);
+}
+
+void Hdf5Writer::write_enum(const std::string& name,
+                            const std::vector<std::pair<const char*, int>>& members,
+                            int value) {
+    const Hdf5Handle type(H5Tenum_create(H5T_NATIVE_INT32), H5Tclose);
+    for (const auto& [member, number] : members) H5Tenum_insert(type.id(), member, &number);
+    write_dataset(name, type.id(), create_space({1}), &value);
+}
+
+void Hdf5Writer::write_text(const std::string& name, const std::string& text) {
+    const char* characters = text.c_str();
+    const Hdf5Handle type = utf8_type();
+    write_dataset(name, type.id(), create_space({}), &characters);
+}
+
+void Hdf5Writer::write_null(const std::string& name) {
+    const Hdf5Handle space(H5Screate(H5S_NULL), H5Sclose);
+    const Hdf5Handle dataset(H5Dcreate2(file_.id(),
+                                        name.c_str(),
+                                        H5T_NATIVE_FLOAT,
+                                        space.id(),
+                                        H5P_DEFAULT,
+                                        H5P_DEFAULT,
+                                        H5P_DEFAULT),
+                             H5Dclose);
+    check(dataset.id() >= 0);
+}
+
+Hdf5Handle Hdf5Writer::create_float_dataset(const std::string& name, const Shape& shape) {
+    const Hdf5Handle space = create_space(shape);
+    Hdf5Handle dataset(H5Dcreate2(file_.id(),
+                                  name.c_str(),
+                                  H5T_NATIVE_FLOAT,
+                                  space.id(),
+                                  H5P_DEFAULT,
+                                  H5P_DEFAULT,
+                                  H5P_DEFAULT),
+                       H5Dclose);
+    check(dataset.is_valid());
+    return dataset;
+}
+
+void Hdf5Writer::write_row_range(const Hdf5Handle& dataset,
+                                 const Shape& shape,
+                                 RowRange rows,
+                                 const std::vector<float>& values) {
+    std::vector<hsize_t> start(shape.size(), 0);
+    std::vector<hsize_t> size(shape.begin(), shape.end());
+    start[0] = rows.first;
+    size[0] = rows.count;
+    const Hdf5Handle memory = create_space({size.begin(), size.end()});
+    const Hdf5Handle space(H5Dget_space(dataset.id()), H5Sclose);
+    H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, start.data(), nullptr, size.data(), nullptr);
+    check(
+        H5Dwrite(
+            dataset.id(), H5T_NATIVE_FLOAT, memory.id(), space.id(), H5P_DEFAULT, values.data()) >=
+        0);
+}
+
+void Hdf5Writer::write_attribute(const std::string& object,
+                                 const std::string& name,
+                                 const std::string& text) {
+    const Hdf5Handle type = utf8_type();
+    const Hdf5Handle space = create_space({});
+    const Hdf5Handle attribute(H5Acreate_by_name(file_.id(),
+                                                 object.c_str(),
+                                                 name.c_str(),
+                                                 type.id(),
+                                                 space.id(),
+                                                 H5P_DEFAULT,
+                                                 H5P_DEFAULT,
+                                                 H5P_DEFAULT),
+                               H5Aclose);
+    check(attribute.is_valid());
+    const char* characters = text.c_str();
+    check(H5Awrite(attribute.id(), type.id(), &characters) >= 0);
+}
+
+void Hdf5Writer::write_attribute(const std::string& object,
+                                 const std::string& name,
+                                 const Shape& shape,
+                                 std::span<const double> values) {
+    assert(values.size() == count_values(shape));
+    const Hdf5Handle space = create_space(shape);
+    const Hdf5Handle attribute(H5Acreate_by_name(file_.id(),
+                                                 object.c_str(),
+                                                 name.c_str(),
+                                                 H5T_NATIVE_DOUBLE,
+                                                 space.id(),
+                                                 H5P_DEFAULT,
+                                                 H5P_DEFAULT,
+                                                 H5P_DEFAULT),
+                               H5Aclose);
+    check(attribute.is_valid());
+    check(H5Awrite(attribute.id(), H5T_NATIVE_DOUBLE, values.data()) >= 0);
+}
+
+void Hdf5Writer::finish() {
+    check(H5Fflush(file_.id(), H5F_SCOPE_LOCAL) >= 0);
+    check(file_.close());
+    output_.commit();
+}
+
+}  // namespace nlos

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "nlos/containers/hdf5_handle.h"
+#include "renderer/core/output_file.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace nlos {
+
+/// An HDF5 file being written under a temporary name; finish() puts it in place.
+///
+/// Writes that fail (disk full) throw core::Failure and leave an older file as it was.
+class Hdf5Writer {
+ public:
+    /// Throws core::Error when the target's folder does not exist or cannot be written.
+    explicit Hdf5Writer(std::string target);
+
+    void create_group(const std::string& name);
+    void write(const std::string& name, const Shape& shape, std::span<const float> values);
+    void write(const std::string& name, const Shape& shape, std::span<const double> values);
+    void write(const std::string& name, const Shape& shape, std::span<const int> values);
+    void write_real(const std::string& name, double value);             ///< scalar float64
+    void write_bool(const std::string& name, bool value);               ///< as h5py writes a bool
+    void write_text(const std::string& name, const std::string& text);  ///< UTF-8, any length
+
+    void write_null(const std::string& name);  ///< what h5py calls Empty and y-tal None
+
+    /// A named value as h5py writes an enumeration: shape (1,), on 32-bit integers.
+    void write_enum(const std::string& name,
+                    const std::vector<std::pair<const char*, int>>& members,
+                    int value);
+
+    /// Writes a large float array piece by piece: `fill(first, count, values)` is asked for
+    /// consecutive ranges of the slowest index.
+    template <class Fill>
+    void write_rows(const std::string& name, const Shape& shape, Fill&& fill) {
+        constexpr std::size_t kValuesPerWrite = std::size_t{1} << 22;
+        std::size_t row_values = 1;
+        for (std::size_t axis = 1; axis < shape.size(); ++axis) row_values *= shape[axis];
+        const std::size_t step = std::max<std::size_t>(1, kValuesPerWrite / row_values);
+        const Hdf5Handle dataset = create_float_dataset(name, shape);
+        std::vector<float> values;
+        for (std::size_t first = 0; first < shape[0]; first += step) {
+            const std::size_t count = std::min(step, shape[0] - first);
+            values.resize(count * row_values);
+            fill(first, count, values);
+            write_row_range(dataset, shape, {first, count}, values);
+        }
+    }
+
+    /// Attributes of an object ("/" is the file itself).
+    void write_attribute(const std::string& object,
+                         const std::string& name,
+                         const std::string& text);
+    void write_attribute(const std::string& object,
+                         const std::string& name,
+                         const Shape& shape,
+                         std::span<const double> values);
+
+    /// Closes the file and moves it to its final name.
+    void finish();
+
+ private:
+    struct RowRange {
+        std::size_t first;
+        std::size_t count;
+    };
+    Hdf5Handle create_float_dataset(const std::string& name, const Shape& shape);
+    void write_row_range(const Hdf5Handle& dataset,
+                         const Shape& shape,
+                         RowRange rows,
+                         const std::vector<float>& values);
+    void write_dataset(const std::string& name,
+                       std::int64_t type,
+                       const Hdf5Handle& space,
+                       const void* values);
+    void check(bool ok) const;
+
+    std::string target_;
+    core::OutputFile output_;
+    Hdf5Handle file_;
+};
+
+}  // namespace nlos

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: MIT
+#include "nlos/detector/detector.h"
+
+#include "nlos/detector/count_sampling.h"
+#include "nlos/detector/dead_time.h"
+#include "renderer/core/parallel.h"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+namespace nlos {
+namespace {
+
+constexpr double kPlanck_J_s = 6.62607015e-34;
+constexpr double kMostPulses = 1e15;
+constexpr double kMostCounts = 1e15;  // expected in all pairs; sums of counts stay exact in double
+constexpr double kLongestBlindPeriods = 16.0;
+
+void require(bool holds, const std::string& key, double found, const std::string& allowed) {
+    if (!holds) throw core::Error(key, fmt::format("found {}", found), allowed);
+}
+
+bool is_blind_at_times(const DetectorSettings& s) {
+    return s.pile_up || s.dead_time_ns > 0.0;
+}
+
+void validate(const DetectorSettings& s) {
+    const auto positive = [](const std::string& key, double value, const char* unit) {
+        require(value > 0.0 && std::isfinite(value),
+                key,
+                value,
+                fmt::format("must be positive and finite{}", unit));
+    };
+    const auto not_negative = [](const std::string& key, double value, const char* unit) {
+        require(value >= 0.0 && std::isfinite(value),
+                key,
+                value,
+                fmt::format("must be finite and not negative{}", unit));
+    };
+    if (s.photons && s.photons_per_point) {
+        throw core::Error("photons", "found beside photons_per_point", "must be one of the two");
+    }
+    if (!s.photons && !s.photons_per_point && !s.exposure_s) {
+        throw core::Error("photons",
+                          "found neither photons, photons_per_point nor exposure_s",
+                          "must be one of them");
+    }
+    if (s.photons) positive("photons", *s.photons, "");
+    if (s.photons_per_point) positive("photons_per_point", *s.photons_per_point, "");
+    if (s.exposure_s) positive("exposure_s", *s.exposure_s, " [s]");
+    not_negative("dark_counts_hz", s.dark_counts_hz, " [1/s]");
+    not_negative("ambient", s.ambient, " [counts per bin]");
+    not_negative("dead_time_ns", s.dead_time_ns, " [ns]");
+    positive("repetition_hz", s.repetition_hz, " [1/s]");
+    positive("radiometry.laser_w", s.radiometry.laser_w, " [W]");
+    positive("radiometry.wavelength_nm", s.radiometry.wavelength_nm, " [nm]");
+    positive("radiometry.etendue_m2_sr", s.radiometry.etendue_m2_sr, " [m^2 sr]");
+    require(s.radiometry.efficiency > 0.0 && s.radiometry.efficiency <= 1.0,
+            "radiometry.efficiency",
+            s.radiometry.efficiency,
+            "must be above 0 and at most 1");
+    const double pulses = s.repetition_hz * s.exposure_s.value_or(1.0);
+    require(pulses <= kMostPulses,
+            "exposure_s",
+            s.exposure_s.value_or(1.0),
+            fmt::format("must be at most {:g}: 1e15 pulses", kMostPulses / s.repetition_hz));
+    const double blind_periods = 1e-9 * s.dead_time_ns * s.repetition_hz;
+    require(blind_periods <= kLongestBlindPeriods,
+            "dead_time_ns",
+            s.dead_time_ns,
+            fmt::format("must be at most {} periods of repetition_hz", kLongestBlindPeriods));
+}
+
+double sum_of(const core::Capture& capture) {
+    double sum = 0.0;
+    for (const float value : capture.transient.values()) {
+        require(
+            value >= 0.0F, "capture", static_cast<double>(value), "must hold no negative light");
+        sum += static_cast<double>(value);
+    }
+    return sum;
+}
+
+/// Expected counts for one unit of the capture.
+double counts_per_value(const core::Capture& capture, const DetectorSettings& s) {
+    const double sum = sum_of(capture);
+    if (s.photons || s.photons_per_point) {
+        require(sum > 0.0, "capture", sum, "must hold light to scale to a number of photons");
+        const auto pairs = static_cast<double>(capture.scan.num_pairs());
+        return s.photons.value_or(s.photons_per_point.value_or(0.0) * pairs) / sum;
+    }
+    if (capture.unit != core::TransientUnit::Radiance) {
+        throw core::Error("exposure_s",
+                          "found alone for a capture in counts",
+                          "must stand beside photons; only radiance has a rate of photons");
+    }
+    const RadiometrySettings& r = s.radiometry;
+    const double photon_J = kPlanck_J_s * core::kSpeedOfLight / (1e-9 * r.wavelength_nm);
+    return *s.exposure_s * r.laser_w * r.etendue_m2_sr * r.efficiency / photon_J;
+}
+
+/// Everything about the detector that is the same for all pairs.
+struct Detector {
+    double counts_per_value = 0.0;
+    double background = 0.0;  ///< expected counts per bin
+    core::ResponseFilter filter;
+    bool is_blind_at_times = false;
+    PulseTrain train;
+    bool expected = false;
+    std::uint64_t seed = 0;
+};
+
+PulseTrain make_train(const core::TimeAxis& axis, const DetectorSettings& s, double background) {
+    const double bin_s = axis.bin_width_m / core::kSpeedOfLight;
+    const double period_bins = 1.0 / (s.repetition_hz * bin_s);
+    const double gap_bins = std::round(period_bins) - axis.num_bins;
+    require(gap_bins >= 0.0,
+            "repetition_hz",
+            s.repetition_hz,
+            fmt::format("must be at most {:.6g}: the axis has to fit between two pulses",
+                        1.0 / (axis.num_bins * bin_s)));
+    PulseTrain train;
+    train.pulses =
+        std::max<std::int64_t>(1, std::llround(s.repetition_hz * s.exposure_s.value_or(1.0)));
+    train.first_photon_only = s.pile_up;
+    // A detection lies half a bin, on average, before its bin's end.
+    train.blind_bins =
+        static_cast<std::size_t>(std::max(0.0, std::round(1e-9 * s.dead_time_ns / bin_s - 0.5)));
+    // Without dead time nothing of the gap is felt on the axis.
+    if (train.blind_bins > 0) train.gap_bins = static_cast<std::size_t>(gap_bins);
+    if (!s.pile_up) train.gap_rate = background / static_cast<double>(train.pulses);
+    return train;
+}
+
+Detector make_detector(const core::Capture& capture, const DetectorSettings& s) {
+    const core::TimeAxis& axis = capture.time_axis;
+    Detector detector;
+    detector.counts_per_value = counts_per_value(capture, s);
+    const double signal = detector.counts_per_value * sum_of(capture);
+    require(signal <= kMostCounts, "photons", signal, "must give at most 1e15 counts");
+    const double open_s = axis.bin_width_m / core::kSpeedOfLight * s.repetition_hz *
+                          s.exposure_s.value_or(1.0);  // time per bin over all pulses
+    detector.background = s.ambient + s.dark_counts_hz * open_s;
+    const double background =
+        detector.background * static_cast<double>(capture.transient.values().size());
+    require(background <= kMostCounts,
+            "ambient and dark_counts_hz",
+            background,
+            "must give at most 1e15 counts");
+    detector.filter =
+        core::sample_response(core::make_response(s.response, "response"), axis.bin_width_m);
+    detector.is_blind_at_times = is_blind_at_times(s);
+    if (detector.is_blind_at_times) detector.train = make_train(axis, s, detector.background);
+    detector.expected = s.expected;
+    detector.seed = s.seed;
+    return detector;
+}
+
+/// Records one pair: radiance or counts in, counts out.
+void record(const Detector& detector,
+            std::size_t pair,
+            std::span<const float> input,
+            std::span<float> output) {
+    std::vector<double> means(input.size());
+    core::apply_filter<float, double>(detector.filter, input, means);
+    for (double& mean : means) mean = mean * detector.counts_per_value + detector.background;
+    core::Rng rng(detector.seed, pair, 0);
+    if (detector.is_blind_at_times) {
+        for (double& mean : means) mean /= static_cast<double>(detector.train.pulses);
+        const std::vector<double> counts =
+            count_with_dead_time(means, detector.train, detector.expected ? nullptr : &rng);
+        std::transform(counts.begin(), counts.end(), output.begin(), [](double count) {
+            return static_cast<float>(count);
+        });
+        return;
+    }
+    for (std::size_t bin = 0; bin < means.size(); ++bin) {
+        output[bin] = detector.expected ? static_cast<float>(means[bin])
+                                        : static_cast<float>(sample_poisson(rng, means[bin]));
+    }
+}
+
+}  // namespace
+
+core::Capture detect(const core::Capture& capture, const DetectorSettings& settings) {
+    validate(settings);
+    core::validate(capture, "capture");
+    const Detector detector = make_detector(capture, settings);
+
+    core::Capture result;
+    result.scan = capture.scan;
+    result.time_axis = capture.time_axis;
+    result.unit = core::TransientUnit::Counts;
+    if (capture.unit == core::TransientUnit::Radiance) {
+        result.counts_per_radiance = detector.counts_per_value;
+    } else if (capture.counts_per_radiance) {
+        result.counts_per_radiance = *capture.counts_per_radiance * detector.counts_per_value;
+    }
+    result.scene_info = capture.scene_info;
+    result.scene_info["detector"] = core::write_value(settings);
+    if (detector.is_blind_at_times) result.scene_info["detector"]["pulses"] = detector.train.pulses;
+    result.notes = capture.notes;
+
+    result.transient = core::Transient(capture.scan.num_pairs(), capture.time_axis.num_bins);
+    core::parallel_for(capture.scan.num_pairs(), [&](std::size_t pair) {
+        record(detector, pair, capture.transient.histogram(pair), result.transient.histogram(pair));
+    });
+    return result;
+}
+
+}  // namespace nlos

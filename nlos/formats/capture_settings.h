@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+
+namespace nlos {
+
+/// What a capture file leaves open; empty fields take the format's own defaults.
+struct CaptureReadSettings {
+    std::optional<int> zero_bins;       ///< leading bins set to 0 (Stanford: 600)
+    std::optional<double> bin_width_m;  ///< replaces the file's bin width [m of path]
+    std::optional<double> pitch_m;  ///< distance of grid neighbours, where only indices are stored
+    std::optional<double> opl_shift_m;  ///< added to the axis start (time zero)
+};
+
+template <class Visitor>
+void for_each_field(CaptureReadSettings& s, Visitor&& visit) {
+    visit("zero_bins", s.zero_bins, "leading bins set to 0; null: the format's own (Stanford 600)");
+    visit("bin_width_m", s.bin_width_m, "replaces the file's bin width [m of path length]");
+    visit("pitch_m", s.pitch_m, "distance of grid neighbours where only indices are stored [m]");
+    visit("opl_shift_m", s.opl_shift_m, "added to the start of the axis (time zero) [m]");
+}
+
+/// How a capture is written where a format leaves a choice.
+struct CaptureWriteSettings {
+    /// HDF5: leave out the group /nlos, with which y-tal refuses a file; the unit stands in
+    /// scene_info then.
+    bool for_ytal = false;
+};
+
+}  // namespace nlos

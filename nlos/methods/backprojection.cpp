@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+#include "nlos/methods/backprojection.h"
+
+#include "nlos/methods/slabs.h"
+
+namespace nlos {
+namespace {
+
+bool takes_fast_way(const MethodInput& input) {
+    return input.scan.pattern == core::ScanPattern::Confocal && input.wall.grid &&
+           shares_lattice(*input.wall.grid, input.axes);
+}
+
+std::vector<core::Vec3> in_frame(const core::Transform& wall_from_world,
+                                 const core::WallPoints& points) {
+    std::vector<core::Vec3> result;
+    result.reserve(points.size());
+    for (const core::Vec3& position : points.positions)
+        result.push_back(wall_from_world * position);
+    return result;
+}
+
+std::vector<double> device_legs(const core::Scan& scan,
+                                const core::WallPoints& points,
+                                const core::Vec3& device) {
+    std::vector<double> legs(points.size(), 0.0);
+    if (scan.opl_origin == core::OplOrigin::RelayWall) return legs;
+    for (std::size_t i = 0; i < legs.size(); ++i) {
+        legs[i] = (points.positions[i] - device).norm();
+    }
+    return legs;
+}
+
+void run_fast(const MethodInput& input,
+              Compensation compensation,
+              std::size_t num_slabs,
+              std::span<float> values) {
+    ConfocalGrid<float> data{
+        *input.wall.grid, input.time_axis, input.transient.values(), {}, compensation};
+    if (input.scan.opl_origin == core::OplOrigin::Device) {
+        for (std::size_t pair = 0; pair < input.scan.num_pairs(); ++pair) {
+            data.device_legs_m.push_back(input.scan.device_legs_m(pair));
+        }
+    }
+    backproject_confocal_grid<float>(data, input.axes, values, input.progress, num_slabs);
+}
+
+void run_general(const MethodInput& input, Compensation compensation, std::span<float> values) {
+    const core::Scan& scan = input.scan;
+    const core::Transform wall_from_world = input.axes.world_from_wall.inverse(Eigen::Isometry);
+    const PairList<float> data{scan.pattern,
+                               input.time_axis,
+                               input.transient.values(),
+                               in_frame(wall_from_world, scan.illumination),
+                               in_frame(wall_from_world, scan.sensing),
+                               device_legs(scan, scan.illumination, scan.laser_position),
+                               device_legs(scan, scan.sensing, scan.detector_position),
+                               compensation};
+    backproject_pairs<float>(data, input.axes, values, input.progress);
+}
+
+}  // namespace
+
+Volume backproject(const MethodInput& input, Compensation compensation, std::size_t num_slabs) {
+    Volume volume{input.axes, std::vector<float>(input.axes.num_voxels(), 0.0F), {}};
+    if (takes_fast_way(input)) {
+        run_fast(input, compensation, num_slabs, volume.values);
+    } else {
+        run_general(input, compensation, volume.values);
+    }
+    return volume;
+}
+
+double backproject_bytes(const MethodInput& input, std::size_t num_slabs) {
+    const double volume = 4.0 * static_cast<double>(input.axes.num_voxels());
+    if (takes_fast_way(input)) {
+        const auto bins = static_cast<double>(input.time_axis.num_bins);
+        const WallGrid& grid = *input.wall.grid;
+        const auto rows = static_cast<double>(largest_slab(grid.size[0], num_slabs));
+        const auto row = static_cast<double>(grid.size[1] + 120);  // four classes, padded
+        return volume + 4.0 * rows * (bins + 2.0) * row;
+    }
+    const auto points =
+        static_cast<double>(input.scan.illumination.size() + input.scan.sensing.size());
+    return volume + points * (4096.0 * core::thread_count() + 64.0);
+}
+
+}  // namespace nlos

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: MIT
+#include "nlos/methods/backprojection.h"
+
+#include <algorithm>
+
+// Any scan. Voxels are taken in blocks: the distance of every voxel of a block to a wall point is
+// computed once per point, so an exhaustive scan costs one addition and one look-up per pair.
+
+namespace nlos {
+namespace {
+
+constexpr std::size_t kVoxelsPerBlock = 512;
+
+/// Positions of one block's voxels, one array per coordinate for vector instructions.
+template <class Real>
+struct VoxelBlock {
+    std::vector<Real> x, y, z;
+    std::vector<Real> sums;
+
+    VoxelBlock(const VolumeAxes& axes, std::size_t begin, std::size_t end) : sums(end - begin) {
+        const std::size_t nz = axes.z_m.size();
+        const std::size_t ny = axes.y_m.size();
+        for (std::size_t i = begin; i < end; ++i) {
+            x.push_back(static_cast<Real>(axes.x_m[i / (ny * nz)]));
+            y.push_back(static_cast<Real>(axes.y_m[i / nz % ny]));
+            z.push_back(static_cast<Real>(axes.z_m[i % nz]));
+        }
+    }
+    std::size_t size() const { return sums.size(); }
+};
+
+/// One leg of the light's way to every voxel of a block.
+template <class Real>
+struct Leg {
+    std::vector<Real> distances;  ///< to a wall point, plus an offset, in bins
+    std::vector<Real> factors;    ///< make up for the light lost; empty: none
+};
+
+/// A wall point and what the path to it is longer by.
+struct LegEnd {
+    core::Vec3 point;
+    double offset_m = 0.0;
+};
+
+template <class Real>
+void fill_leg(const VoxelBlock<Real>& block,
+              const LegEnd& end,
+              double bin_width_m,
+              Compensation compensation,
+              Leg<Real>& leg) {
+    const auto px = static_cast<Real>(end.point.x());
+    const auto py = static_cast<Real>(end.point.y());
+    const auto pz = static_cast<Real>(end.point.z());
+    const auto per_bin = static_cast<Real>(1.0 / bin_width_m);
+    const auto offset = static_cast<Real>(end.offset_m / bin_width_m);
+    const std::size_t count = block.size();
+    leg.distances.resize(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const Real dx = block.x[i] - px;
+        const Real dy = block.y[i] - py;
+        const Real dz = block.z[i] - pz;
+        leg.distances[i] = std::sqrt(dx * dx + dy * dy + dz * dz) * per_bin + offset;
+    }
+    if (compensation == Compensation::None) return;
+    leg.factors.resize(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto distance = (leg.distances[i] - offset) * static_cast<Real>(bin_width_m);
+        leg.factors[i] = compensation == Compensation::Diffuse ? distance * distance : distance;
+    }
+}
+
+/// Adds interpolated histogram values at the sums of two legs (in bins, 1 = centre of bin 0).
+///
+/// padded   histogram with one zero before and two behind it
+template <class Real>
+void add_lookups(const Real* padded,
+                 std::size_t num_bins,
+                 const Leg<Real>& out,
+                 const Leg<Real>& back,
+                 VoxelBlock<Real>& block) {
+    Real* __restrict sums = block.sums.data();
+    const Real* __restrict a = out.distances.data();
+    const Real* __restrict b = back.distances.data();
+    const auto last = static_cast<Real>(num_bins + 1);
+    const std::size_t count = block.size();
+    const auto look_up = [=](std::size_t i) {
+        // Plain comparisons: std::min and std::max take references, which bars vector code here.
+        Real position = a[i] + b[i];
+        position = position > Real{0} ? position : Real{0};
+        position = position < last ? position : last;
+        const int bin = static_cast<int>(position);
+        const Real late = position - static_cast<Real>(bin);
+        return padded[bin] + late * (padded[bin + 1] - padded[bin]);
+    };
+    if (out.factors.empty()) {
+        for (std::size_t i = 0; i < count; ++i) sums[i] += look_up(i);
+        return;
+    }
+    const Real* __restrict fa = out.factors.data();
+    const Real* __restrict fb = back.factors.data();
+    for (std::size_t i = 0; i < count; ++i) sums[i] += fa[i] * fb[i] * look_up(i);
+}
+
+template <class Real>
+class PairBackprojector {
+ public:
+    PairBackprojector(const PairList<Real>& data, const VolumeAxes& axes)
+        : data_(data), axes_(axes), num_bins_(static_cast<std::size_t>(data.time_axis.num_bins)) {}
+
+    void fill(std::size_t begin, std::size_t end, std::span<Real> volume) const {
+        VoxelBlock<Real> block(axes_, begin, end);
+        std::vector<Real> padded(num_bins_ + 3, Real{0});
+        const bool is_confocal = data_.pattern == core::ScanPattern::Confocal;
+        std::vector<Leg<Real>> out(is_confocal ? 1 : data_.illumination.size());
+        for (std::size_t l = 0; l < out.size() && !is_confocal; ++l) {
+            fill_illumination_leg(l, block, out[l]);
+        }
+        Leg<Real> back;
+        const std::size_t num_sensing = data_.sensing.size();
+        for (std::size_t s = 0; s < num_sensing; ++s) {
+            fill_sensing_leg(s, block, back);
+            if (is_confocal) {
+                fill_illumination_leg(s, block, out[0]);
+                add_pair(s, out[0], back, padded, block);
+                continue;
+            }
+            for (std::size_t l = 0; l < out.size(); ++l) {
+                add_pair(l * num_sensing + s, out[l], back, padded, block);
+            }
+        }
+        for (std::size_t i = begin; i < end; ++i) volume[i] += block.sums[i - begin];
+    }
+
+ private:
+    void fill_illumination_leg(std::size_t l, const VoxelBlock<Real>& block, Leg<Real>& leg) const {
+        fill_leg(block,
+                 {data_.illumination[l], data_.illumination_legs_m[l]},
+                 data_.time_axis.bin_width_m,
+                 data_.compensation,
+                 leg);
+    }
+
+    /// Bin 0's centre stands half a bin behind the axis start and at 1 in a padded histogram.
+    void fill_sensing_leg(std::size_t s, const VoxelBlock<Real>& block, Leg<Real>& leg) const {
+        const double start = data_.time_axis.opl_start_m - 0.5 * data_.time_axis.bin_width_m;
+        fill_leg(block,
+                 {data_.sensing[s], data_.sensing_legs_m[s] - start},
+                 data_.time_axis.bin_width_m,
+                 data_.compensation,
+                 leg);
+    }
+
+    void add_pair(std::size_t pair,
+                  const Leg<Real>& out,
+                  const Leg<Real>& back,
+                  std::vector<Real>& padded,
+                  VoxelBlock<Real>& block) const {
+        std::copy_n(data_.histograms.data() + pair * num_bins_, num_bins_, padded.begin() + 1);
+        add_lookups(padded.data(), num_bins_, out, back, block);
+    }
+
+    const PairList<Real>& data_;
+    const VolumeAxes& axes_;
+    std::size_t num_bins_;
+};
+
+}  // namespace
+
+template <class Real>
+void backproject_pairs(const PairList<Real>& data,
+                       const VolumeAxes& axes,
+                       std::span<Real> volume,
+                       const core::Progress& progress) {
+    const PairBackprojector<Real> backprojector(data, axes);
+    const ProgressSpan span{progress, 0.0, 1.0, "backprojection"};
+    parallel_blocks_with_progress(
+        volume.size(), kVoxelsPerBlock, span, [&](std::size_t begin, std::size_t end) {
+            backprojector.fill(begin, end, volume);
+        });
+}
+
+template void backproject_pairs<float>(const PairList<float>&,
+                                       const VolumeAxes&,
+                                       std::span<float>,
+                                       const core::Progress&);
+template void backproject_pairs<double>(const PairList<double>&,
+                                        const VolumeAxes&,
+                                        std::span<double>,
+                                        const core::Progress&);
+
+}  // namespace nlos

@@ -1,0 +1,468 @@
+// SPDX-License-Identifier: MIT
+#include "nlos/methods/fk_migration.h"
+
+#include "nlos/fourier/fft.h"
+#include "nlos/fourier/padded_plane.h"
+#include "nlos/fourier/unit_phasor.h"
+#include "nlos/methods/slabs.h"
+
+#include <cmath>
+#include <vector>
+
+// Frequencies f are cycles per metre of range r = path length / 2. The data's phase is taken
+// relative to the middle of the range covered: the spectrum is then smooth enough to be read
+// between its samples by linear interpolation, whose known damping towards both ends of the range
+// (a squared sinc) is taken off beforehand.
+
+namespace nlos {
+namespace {
+
+constexpr std::size_t kColumnsPerBlock = 16;
+constexpr std::size_t kPlanesPerBlock = 8;
+
+double squared_sinc(double x) {
+    const double angle = core::kPi * x;
+    return std::abs(angle) < 1e-9 ? 1.0 : std::pow(std::sin(angle) / angle, 2);
+}
+
+/// Sizes and positions of data, spectrum and volume.
+struct Grids {
+    std::size_t nx = 0, ny = 0;    ///< wall points
+    std::size_t px = 0, py = 0;    ///< padded to at least twice
+    std::size_t length = 0;        ///< padded number of range bins
+    double bin_m = 0.0;            ///< of range
+    double center_m = 0.0;         ///< middle of the range covered
+    std::size_t num_z = 0;         ///< voxels along z
+    std::size_t samples = 1;       ///< of depth per voxel: no bin falls between them
+    double step_m = 0.0;           ///< of depth samples
+    double first_z_m = 0.0;        ///< of depth samples
+    std::size_t depth_length = 0;  ///< period in depth samples
+
+    std::size_t num_frequencies() const { return length / 2 + 1; }
+    std::size_t num_depths() const { return num_z * samples; }
+    std::size_t num_planes() const { return std::max(num_frequencies(), num_depths()); }
+    std::size_t num_columns() const { return nx * ny; }
+    double period_m() const { return static_cast<double>(length) * bin_m; }
+};
+
+Grids make_grids(const MethodInput& input) {
+    const core::TimeAxis& axis = input.time_axis;
+    const auto [shortest, longest] = core::device_leg_range_m(input.scan);
+    const double begin = std::max(0.0, 0.5 * (axis.opl_start_m - longest));
+    const double end = std::max(begin + axis.bin_width_m, 0.5 * (axis.opl_end_m() - shortest));
+    Grids grids;
+    grids.nx = input.wall.grid->size[0];
+    grids.ny = input.wall.grid->size[1];
+    grids.px = 2 * good_fft_size(grids.nx);
+    grids.py = 2 * good_fft_size(grids.ny);
+    grids.bin_m = 0.5 * axis.bin_width_m;
+    grids.center_m = 0.5 * (begin + end);
+    const auto covered = static_cast<std::size_t>(std::ceil((end - begin) / grids.bin_m - 1e-6));
+    grids.length = 2 * good_fft_size(std::max(covered, static_cast<std::size_t>(axis.num_bins)));
+    grids.num_z = input.axes.z_m.size();
+    const double voxel_m =
+        (input.z_range_m[1] - input.z_range_m[0]) / static_cast<double>(grids.num_z);
+    grids.samples = static_cast<std::size_t>(std::ceil(voxel_m / grids.bin_m - 1e-6));
+    grids.step_m = voxel_m / static_cast<double>(grids.samples);
+    grids.first_z_m = input.z_range_m[0] + 0.5 * grids.step_m;
+    // Depths outside the volume must not be folded into it.
+    const double period = std::max(grids.period_m(), end + input.z_range_m[1] - input.z_range_m[0]);
+    grids.depth_length =
+        good_fft_size(std::max(static_cast<std::size_t>(std::ceil(period / grids.step_m - 1e-6)),
+                               grids.num_z * grids.samples));
+    return grids;
+}
+
+/// Amplitude of the virtual wave at each wall point, transformed along range with its phase
+/// relative to the centre; `out` is stored [frequency][x][y].
+class RangeTransform {
+ public:
+    RangeTransform(const MethodInput& input, const Grids& grids, Falloff falloff)
+        : input_(input),
+          grids_(grids),
+          falloff_(falloff),
+          forward_(Fft::real_to_complex(grids.length, kColumnsPerBlock)) {}
+
+    void fill(std::size_t begin, std::size_t end, ComplexF* out) const {
+        const std::size_t row_floats = grids_.length + 2;
+        const std::size_t num_columns = grids_.num_columns();
+        FftBuffer rows(kColumnsPerBlock * row_floats);
+        for (std::size_t column = begin; column < end; ++column) {
+            fill_amplitudes(column, rows.data() + (column - begin) * row_floats);
+        }
+        forward_.run(rows);
+        std::vector<double> first_range_m;
+        for (std::size_t column = begin; column < end; ++column) {
+            first_range_m.push_back(range_m(pair_of(column), 0));
+        }
+        for (std::size_t f = 0; f < grids_.num_frequencies(); ++f) {
+            const double frequency = static_cast<double>(f) / grids_.period_m();
+            for (std::size_t i = 0; i < end - begin; ++i) {
+                const UnitPhasor phase =
+                    unit_phasor(-frequency * (first_range_m[i] - grids_.center_m));
+                out[f * num_columns + begin + i] =
+                    multiply(rows.complex()[i * (row_floats / 2) + f], {phase.re, phase.im});
+            }
+        }
+    }
+
+ private:
+    std::size_t pair_of(std::size_t column) const {
+        return input_.wall.grid->point(column / grids_.ny, column % grids_.ny);
+    }
+    double range_m(std::size_t pair, std::size_t bin) const {
+        return 0.5 * (input_.time_axis.bin_center_m(static_cast<double>(bin)) -
+                      input_.scan.device_legs_m(pair));
+    }
+
+    void fill_amplitudes(std::size_t column, float* amplitudes) const {
+        const std::size_t pair = pair_of(column);
+        const auto histogram = input_.transient.histogram(pair);
+        const double first = range_m(pair, 0);
+        for (std::size_t bin = 0; bin < histogram.size(); ++bin) {
+            const double range = first + static_cast<double>(bin) * grids_.bin_m;
+            const double power = falloff_ == Falloff::Diffuse ? range : 1.0;
+            const double damping = squared_sinc((range - grids_.center_m) / grids_.period_m());
+            const double amplitude =
+                range > 0.0 && histogram[bin] > 0.0F
+                    ? power * std::sqrt(static_cast<double>(histogram[bin])) / damping
+                    : 0.0;
+            amplitudes[bin] = static_cast<float>(amplitude);
+        }
+    }
+
+    const MethodInput& input_;
+    const Grids& grids_;
+    Falloff falloff_;
+    Fft forward_;
+};
+
+/// Rows of the lateral spectrum that are held at a time: those of some |kx|, each kx followed by
+/// its mirror image.
+struct RowSlab {
+    std::vector<std::size_t> kx;     ///< index of each row held
+    std::vector<std::size_t> begin;  ///< first row of each |kx|, and one past the last row
+    std::size_t py = 0;
+
+    std::size_t num_pairs() const { return begin.size() - 1; }
+    /// Where row `row` of a plane begins.
+    std::size_t offset(std::size_t plane, std::size_t row) const {
+        return (plane * kx.size() + row) * py;
+    }
+};
+
+/// How many |kx| a grid has.
+std::size_t num_pairs(const Grids& grids) {
+    return grids.px / 2 + 1;
+}
+
+/// Rows of some of the |kx|.
+RowSlab rows_of(const Grids& grids, const Slab& pairs) {
+    RowSlab slab;
+    slab.py = grids.py;
+    for (std::size_t ix = pairs.begin; ix < pairs.end; ++ix) {
+        slab.begin.push_back(slab.kx.size());
+        slab.kx.push_back(ix);
+        const std::size_t mirror = (grids.px - ix) % grids.px;
+        if (mirror != ix) slab.kx.push_back(mirror);
+    }
+    slab.begin.push_back(slab.kx.size());
+    return slab;
+}
+
+/// Reads the spectrum at the f that belongs to each kz and transforms along kz: one row of (kx, ky)
+/// and its mirror image at a time, as they share all weights.
+class StoltMap {
+ public:
+    StoltMap(const WallGrid& wall, const Grids& grids)
+        : wall_(wall),
+          grids_(grids),
+          inverse_(Fft::complex_batch({grids.depth_length, 1, 1, grids.depth_length},
+                                      Fft::Direction::Inverse)),
+          num_kz_((grids.depth_length - 1) / 2) {}
+
+    /// Maps the rows of the slab's pair `pair` of `field` [f][row][ky] into [z][row][ky].
+    void apply(const RowSlab& slab, std::size_t pair, ComplexF* field) const {
+        const std::size_t first = slab.begin[pair];
+        const std::size_t num_rows = slab.begin[pair + 1] - first;
+        const std::size_t num_f = grids_.num_frequencies();
+        const std::size_t num_depths = grids_.num_depths();
+        std::vector<ComplexF> spectra(num_rows * grids_.py * (num_f + 1));
+        for (std::size_t r = 0; r < num_rows; ++r) {
+            gather(field, slab, first + r, spectra.data() + r * grids_.py * (num_f + 1));
+        }
+        std::vector<ComplexF> depths(num_rows * grids_.py * num_depths);
+        FftBuffer column(2 * grids_.depth_length);
+        Readings readings(num_kz_);
+        for (std::size_t iy = 0; iy <= grids_.py / 2; ++iy) {
+            fill_readings(slab.kx[first], iy, readings);
+            for (std::size_t r = 0; r < num_rows; ++r) {
+                for (const std::size_t y : {iy, (grids_.py - iy) % grids_.py}) {
+                    const std::size_t i = r * grids_.py + y;
+                    read_column(readings, spectra.data() + i * (num_f + 1), column);
+                    std::copy_n(column.complex(), num_depths, depths.data() + i * num_depths);
+                    if (2 * iy % grids_.py == 0) break;  // its own mirror image
+                }
+            }
+        }
+        for (std::size_t r = 0; r < num_rows; ++r) {
+            scatter(depths.data() + r * grids_.py * num_depths, slab, first + r, field);
+        }
+    }
+
+ private:
+    /// Where in the spectrum each kz reads, and the factor of what is read there.
+    struct Readings {
+        explicit Readings(std::size_t n) : below(n), late(n), re(n), im(n) {}
+        std::size_t count = 0;  ///< larger kz lie beyond the highest frequency
+        std::vector<int> below;
+        std::vector<float> late, re, im;
+    };
+
+    void fill_readings(std::size_t ix, std::size_t iy, Readings& r) const {
+        const double kx =
+            static_cast<double>(ix) / (static_cast<double>(grids_.px) * wall_.pitch_m[0]);
+        const double ky =
+            static_cast<double>(iy) / (static_cast<double>(grids_.py) * wall_.pitch_m[1]);
+        const double lateral = kx * kx + ky * ky;
+        const double kz_step = 1.0 / (static_cast<double>(grids_.depth_length) * grids_.step_m);
+        const double period = grids_.period_m();
+        const auto highest = static_cast<double>(grids_.num_frequencies() - 1) / period;
+        const double kz_end = std::sqrt(std::max(0.0, highest * highest - lateral)) / kz_step;
+        r.count = std::min(num_kz_, static_cast<std::size_t>(kz_end));
+        for (std::size_t i = 0; i < r.count; ++i) {
+            const double kz = static_cast<double>(i + 1) * kz_step;
+            const double f = std::sqrt(lateral + kz * kz);
+            const double position = f * period;
+            const int below = static_cast<int>(position);
+            const UnitPhasor phase = unit_phasor(kz * grids_.first_z_m - f * grids_.center_m);
+            const auto jacobian = static_cast<float>(kz / f);
+            r.below[i] = below;
+            r.late[i] = static_cast<float>(position - below);
+            r.re[i] = jacobian * phase.re;
+            r.im[i] = jacobian * phase.im;
+        }
+    }
+
+    void read_column(const Readings& r, const ComplexF* spectrum, FftBuffer& column) const {
+        ComplexF* out = column.complex();
+        out[0] = {};
+        for (std::size_t i = 0; i < r.count; ++i) {
+            const ComplexF* below = spectrum + r.below[i];
+            const ComplexF value = below[0] + r.late[i] * (below[1] - below[0]);
+            out[i + 1] = multiply(value, {r.re[i], r.im[i]});
+        }
+        std::fill(out + r.count + 1, out + grids_.depth_length, ComplexF{});
+        inverse_.run(column);
+    }
+
+    /// [f][ky] of one row -> [ky][f], with one element to spare behind each column.
+    void gather(const ComplexF* field,
+                const RowSlab& slab,
+                std::size_t row,
+                ComplexF* columns) const {
+        const std::size_t num_f = grids_.num_frequencies();
+        for (std::size_t f = 0; f < num_f; ++f) {
+            const ComplexF* in = field + slab.offset(f, row);
+            for (std::size_t y = 0; y < grids_.py; ++y) columns[y * (num_f + 1) + f] = in[y];
+        }
+    }
+
+    /// [ky][z] -> [z][ky] of one row.
+    void scatter(const ComplexF* columns,
+                 const RowSlab& slab,
+                 std::size_t row,
+                 ComplexF* field) const {
+        const std::size_t num_depths = grids_.num_depths();
+        for (std::size_t z = 0; z < num_depths; ++z) {
+            ComplexF* out = field + slab.offset(z, row);
+            for (std::size_t y = 0; y < grids_.py; ++y) out[y] = columns[y * num_depths + z];
+        }
+    }
+
+    const WallGrid& wall_;
+    const Grids& grids_;
+    Fft inverse_;
+    std::size_t num_kz_;
+};
+
+/// Lateral transforms of the planes of a slab's field, those of frequencies and of depth samples.
+class LateralTransform {
+ public:
+    using Workspace = PaddedPlane::Workspace;
+
+    explicit LateralTransform(const Grids& grids)
+        : grids_(grids), plane_({grids.nx, grids.ny}, {grids.px, grids.py}) {}
+
+    Workspace make_workspace() const { return plane_.make_workspace(); }
+
+    /// Transforms (x, y) of one frequency and keeps the slab's rows.
+    void forward(const ComplexF* columns,
+                 const RowSlab& slab,
+                 std::size_t f,
+                 Workspace& work,
+                 ComplexF* field) const {
+        plane_.load(columns, work);
+        plane_.forward(work);
+        for (std::size_t row = 0; row < slab.kx.size(); ++row) {
+            std::copy_n(plane_.row(work, slab.kx[row]), grids_.py, field + slab.offset(f, row));
+        }
+    }
+
+    /// Adds the slab's share of depth sample `z` to `amplitudes` (x, y).
+    void add_amplitudes(const ComplexF* field,
+                        const RowSlab& slab,
+                        std::size_t z,
+                        Workspace& work,
+                        ComplexF* amplitudes) const {
+        if (slab.kx.size() < grids_.px) std::fill_n(work.data(), work.num_floats(), 0.0F);
+        for (std::size_t row = 0; row < slab.kx.size(); ++row) {
+            std::copy_n(field + slab.offset(z, row), grids_.py, plane_.row(work, slab.kx[row]));
+        }
+        plane_.inverse(work);
+        for (std::size_t ix = 0; ix < grids_.nx; ++ix) {
+            const ComplexF* in = plane_.row(work, ix);
+            ComplexF* out = amplitudes + ix * grids_.ny;
+            for (std::size_t iy = 0; iy < grids_.ny; ++iy) out[iy] += in[iy];
+        }
+    }
+
+ private:
+    const Grids& grids_;
+    PaddedPlane plane_;
+};
+
+/// Squared magnitudes of voxels [begin, end) along z, each an average over its depth samples.
+///
+/// field    of the last slab
+/// others   amplitudes of the slabs before it [z][x][y]; empty: there are none
+void fill_voxels(const Grids& grids,
+                 const LateralTransform& lateral,
+                 const RowSlab& slab,
+                 const ComplexF* field,
+                 const std::vector<ComplexF>& others,
+                 std::size_t begin,
+                 std::size_t end,
+                 Volume& volume) {
+    LateralTransform::Workspace work = lateral.make_workspace();
+    const std::size_t count = end - begin;
+    const std::size_t num_columns = grids.num_columns();
+    const float share = 1.0F / static_cast<float>(grids.samples);
+    std::vector<float> sums(num_columns * count, 0.0F);
+    std::vector<ComplexF> amplitudes(num_columns);
+    for (std::size_t z = begin * grids.samples; z < end * grids.samples; ++z) {
+        if (others.empty()) {
+            std::fill(amplitudes.begin(), amplitudes.end(), ComplexF{});
+        } else {
+            std::copy_n(others.data() + z * num_columns, num_columns, amplitudes.data());
+        }
+        lateral.add_amplitudes(field, slab, z, work, amplitudes.data());
+        float* sum = sums.data() + z / grids.samples - begin;
+        for (std::size_t column = 0; column < num_columns; ++column) {
+            const ComplexF a = amplitudes[column];
+            sum[column * count] += share * (a.real() * a.real() + a.imag() * a.imag());
+        }
+    }
+    for (std::size_t column = 0; column < num_columns; ++column) {
+        std::copy_n(sums.data() + column * count,
+                    count,
+                    volume.values.data() + column * grids.num_z + begin);
+    }
+}
+
+/// Field [z][row][ky] of one slab of rows.
+///
+/// spectrum   [f][x][y]
+FftBuffer migrate(const MethodInput& input,
+                  const Grids& grids,
+                  const LateralTransform& lateral,
+                  const RowSlab& slab,
+                  FftBuffer& spectrum,
+                  const core::Progress& progress) {
+    FftBuffer field(2 * slab.offset(grids.num_planes(), 0));
+    parallel_blocks_with_progress(
+        grids.num_frequencies(),
+        kPlanesPerBlock,
+        {progress, 0.0, 0.3, "lateral transform"},
+        [&](std::size_t begin, std::size_t end) {
+            auto work = lateral.make_workspace();
+            for (std::size_t f = begin; f < end; ++f) {
+                lateral.forward(
+                    spectrum.complex() + f * grids.num_columns(), slab, f, work, field.complex());
+            }
+        });
+    const StoltMap map(*input.wall.grid, grids);
+    parallel_blocks_with_progress(
+        slab.num_pairs(),
+        1,
+        {progress, 0.3, 0.7, "migration"},
+        [&](std::size_t begin, std::size_t) { map.apply(slab, begin, field.complex()); });
+    return field;
+}
+
+}  // namespace
+
+Volume fk_migration(const MethodInput& input, Falloff falloff, std::size_t num_slabs) {
+    const Grids grids = make_grids(input);
+    const std::size_t num_columns = grids.num_columns();
+
+    FftBuffer spectrum(2 * grids.num_frequencies() * num_columns);
+    const RangeTransform transform(input, grids, falloff);
+    parallel_blocks_with_progress(num_columns,
+                                  kColumnsPerBlock,
+                                  {input.progress, 0.0, 0.1, "range to frequency"},
+                                  [&](std::size_t begin, std::size_t end) {
+                                      transform.fill(begin, end, spectrum.complex());
+                                  });
+
+    const LateralTransform lateral(grids);
+    const core::Progress migration = input.progress.part(0.1, 1.0);
+    std::vector<ComplexF> amplitudes;  // [z][x][y], of all slabs but the last
+    Volume volume{input.axes, {}, {}};
+    for (const Slab& pairs : split_into_slabs(num_pairs(grids), num_slabs)) {
+        const core::Progress progress = pairs.part_of(migration, num_pairs(grids));
+        const RowSlab slab = rows_of(grids, pairs);
+        FftBuffer field = migrate(input, grids, lateral, slab, spectrum, progress);
+        const ProgressSpan span{progress, 0.7, 1.0, "lateral transform"};
+        if (pairs.end < num_pairs(grids)) {
+            amplitudes.resize(num_columns * grids.num_depths());
+            parallel_blocks_with_progress(
+                grids.num_depths(),
+                kPlanesPerBlock,
+                span,
+                [&](std::size_t begin, std::size_t last) {
+                    auto work = lateral.make_workspace();
+                    for (std::size_t z = begin; z < last; ++z) {
+                        lateral.add_amplitudes(
+                            field.complex(), slab, z, work, amplitudes.data() + z * num_columns);
+                    }
+                });
+            continue;
+        }
+        spectrum = FftBuffer(0);
+        volume.values.resize(num_columns * grids.num_z);
+        parallel_blocks_with_progress(
+            grids.num_z, kPlanesPerBlock, span, [&](std::size_t begin, std::size_t last) {
+                fill_voxels(grids, lateral, slab, field.complex(), amplitudes, begin, last, volume);
+            });
+    }
+    return volume;
+}
+
+double fk_migration_bytes(const MethodInput& input, std::size_t num_slabs) {
+    const Grids grids = make_grids(input);
+    const auto columns = static_cast<double>(grids.num_columns());
+    const auto plane = static_cast<double>(grids.px * (grids.py + 8));
+    const std::size_t pairs = largest_slab(num_pairs(grids), num_slabs);
+    const auto rows = static_cast<double>(std::min(grids.px, 2 * pairs));
+    const double field = 8.0 * rows * static_cast<double>(grids.py * grids.num_planes());
+    const double spectrum = 8.0 * columns * static_cast<double>(grids.num_frequencies());
+    const double amplitudes =
+        num_slabs > 1 ? 8.0 * columns * static_cast<double>(grids.num_depths()) : 0.0;
+    const double volume = 4.0 * columns * static_cast<double>(grids.num_z);
+    const double lines = 2.0 * static_cast<double>(grids.py * 2 * grids.num_planes());
+    const double per_thread = 8.0 * (plane + lines + columns) + 4.0 * columns * kPlanesPerBlock;
+    return field + amplitudes + std::max(spectrum, volume) + per_thread * core::thread_count();
+}
+
+}  // namespace nlos

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: MIT
+#include "nlos/methods/light_cone.h"
+
+#include "nlos/fourier/padded_plane.h"
+
+#include <cmath>
+
+namespace nlos {
+namespace {
+
+constexpr std::size_t kColumnsPerBlock = 16;
+
+/// Histogram of path length -> g(v), the convolution's data: bins of range [r_k, r_k+1] moved to
+/// bins of v = r^2, each multiplied by r^p; dr/dv is in the bins' widths.
+ConservativeResampling path_length_to_squared_range(const core::TimeAxis& axis,
+                                                    double leg_m,
+                                                    const Cone& cone,
+                                                    double power) {
+    const auto num_bins = static_cast<std::size_t>(axis.num_bins);
+    std::vector<double> edges(num_bins + 1);
+    std::vector<double> scale(num_bins);
+    double previous = 0.0;
+    for (std::size_t k = 0; k <= num_bins; ++k) {
+        const double range =
+            std::max(0.0, 0.5 * (axis.bin_begin_m(static_cast<double>(k)) - leg_m));
+        edges[k] = range * range;
+        if (k > 0) scale[k - 1] = std::pow(0.5 * (previous + range), power);
+        previous = range;
+    }
+    return {edges, cone.v_edges, scale};
+}
+
+}  // namespace
+
+Cone make_cone(const MethodInput& input, std::size_t bins_per_bin) {
+    Cone cone;
+    const auto [shortest_leg, longest_leg] = core::device_leg_range_m(input.scan);
+    cone.min_leg_m = shortest_leg;
+    const core::TimeAxis& axis = input.time_axis;
+    cone.is_same_for_all = longest_leg - shortest_leg < 1e-6 * axis.bin_width_m;
+    const double begin = std::max(0.0, 0.5 * (axis.opl_start_m - longest_leg));
+    const double end = 0.5 * (axis.opl_end_m() - shortest_leg);
+    const double num_bins = std::ceil((end - begin) / (0.5 * axis.bin_width_m) - 1e-6);
+    if (!(num_bins >= 4.0)) {
+        throw core::Error("method",
+                          "lct was given a time axis with fewer than 4 bins of positive range",
+                          "method=bp works for any axis");
+    }
+    cone.v_edges =
+        even_edges(begin * begin, end * end, bins_per_bin * static_cast<std::size_t>(num_bins));
+    cone.nx = input.wall.grid->size[0];
+    cone.ny = input.wall.grid->size[1];
+    cone.px = 2 * good_fft_size(cone.nx);
+    cone.py = 2 * good_fft_size(cone.ny);
+    cone.length = 2 * good_fft_size(cone.num_v());
+    return cone;
+}
+
+ConeData::ConeData(const MethodInput& input, const Cone& cone, double power)
+    : input_(input),
+      cone_(cone),
+      power_(power),
+      common_(path_length_to_squared_range(input.time_axis, cone.min_leg_m, cone, power)) {}
+
+void ConeData::fill(std::size_t column, float* row) const {
+    const std::size_t pair = input_.wall.grid->point(column / cone_.ny, column % cone_.ny);
+    const float* histogram = input_.transient.histogram(pair).data();
+    if (cone_.is_same_for_all) {
+        common_.apply(histogram, row);
+        return;
+    }
+    path_length_to_squared_range(input_.time_axis, input_.scan.device_legs_m(pair), cone_, power_)
+        .apply(histogram, row);
+}
+
+ConservativeResampling squared_range_to_depth(const MethodInput& input, const Cone& cone) {
+    const std::size_t nz = input.axes.z_m.size();
+    std::vector<double> z_edges = even_edges(input.z_range_m[0], input.z_range_m[1], nz);
+    const double per_metre = 1.0 / (z_edges[1] - z_edges[0]);
+    for (double& edge : z_edges) edge *= edge;
+    return {cone.v_edges, z_edges, std::vector<double>(cone.num_v(), per_metre)};
+}
+
+ConeKernel::ConeKernel(const Cone& cone, const WallGrid& grid)
+    : qx_(cone.px / 2 + 1), qy_(cone.py / 2 + 1), length_(cone.length) {
+    for (std::size_t ix = 0; ix < qx_; ++ix) {
+        for (std::size_t iy = 0; iy < qy_; ++iy) {
+            const double dx = static_cast<double>(ix) * grid.pitch_m[0];
+            const double dy = static_cast<double>(iy) * grid.pitch_m[1];
+            const double shift = (dx * dx + dy * dy) / cone.v_width();
+            const bool is_inside = shift < static_cast<double>(cone.num_v() - 1);
+            const double whole = std::floor(is_inside ? shift : 0.0);
+            const double next = is_inside ? shift - whole : 0.0;
+            const double here = is_inside ? 1.0 - next : 0.0;
+            entries_.push_back({static_cast<std::size_t>(whole),
+                                static_cast<float>(here),
+                                static_cast<float>(next)});
+            const double copies =
+                (ix == 0 || ix + 1 == qx_ ? 1.0 : 2.0) * (iy == 0 || iy + 1 == qy_ ? 1.0 : 2.0);
+            squared_norm_ += copies * (here * here + next * next);
+        }
+    }
+    for (std::size_t i = 0; i < length_; ++i) {
+        const double angle =
+            -2.0 * core::kPi * static_cast<double>(i) / static_cast<double>(length_);
+        phases_.emplace_back(static_cast<float>(std::cos(angle)),
+                             static_cast<float>(std::sin(angle)));
+    }
+}
+
+void ConeKernel::fill(std::size_t k, ComplexF* quadrant) const {
+    const ComplexF step = phases_[k % length_];
+    for (std::size_t i = 0; i < entries_.size(); ++i) {
+        const ConeEntry& e = entries_[i];
+        const ComplexF split{e.here + e.next * step.real(), e.next * step.imag()};
+        quadrant[i] = multiply(phases_[(e.shift * k) % length_], split);
+    }
+}
+
+FftBuffer make_slab_spectrum(const Cone& cone, std::size_t num_slabs) {
+    return FftBuffer(2 * largest_slab(cone.num_frequencies(), num_slabs) * cone.num_columns());
+}
+
+void fill_cone_spectrum(const MethodInput& input,
+                        const Cone& cone,
+                        double power,
+                        const Slab& slab,
+                        FftBuffer& spectrum,
+                        const ProgressSpan& span) {
+    const std::size_t num_columns = cone.num_columns();
+    const std::size_t row_floats = cone.length + 2;
+    const Fft forward = Fft::real_to_complex(cone.length, kColumnsPerBlock);
+    const ConeData data(input, cone, power);
+    parallel_blocks_with_progress(
+        num_columns, kColumnsPerBlock, span, [&](std::size_t begin, std::size_t end) {
+            FftBuffer rows(kColumnsPerBlock * row_floats);
+            for (std::size_t column = begin; column < end; ++column) {
+                data.fill(column, rows.data() + (column - begin) * row_floats);
+            }
+            forward.run(rows);
+            for (std::size_t k = slab.begin; k < slab.end; ++k) {
+                for (std::size_t column = begin; column < end; ++column) {
+                    spectrum.complex()[(k - slab.begin) * num_columns + column] =
+                        rows.complex()[(column - begin) * (row_floats / 2) + k];
+                }
+            }
+        });
+}
+
+void add_spectrum_to_depth(const MethodInput& input,
+                           const Cone& cone,
+                           FftBuffer& spectrum,
+                           const Slab& slab,
+                           std::vector<float>& values,
+                           const ProgressSpan& span) {
+    const std::size_t num_columns = cone.num_columns();
+    const std::size_t row_floats = cone.length + 2;
+    const std::size_t nz = input.axes.z_m.size();
+    const Fft inverse = Fft::complex_to_real(cone.length, kColumnsPerBlock);
+    const ConservativeResampling to_depth = squared_range_to_depth(input, cone);
+    parallel_blocks_with_progress(
+        num_columns, kColumnsPerBlock, span, [&](std::size_t begin, std::size_t end) {
+            FftBuffer rows(kColumnsPerBlock * row_floats);
+            for (std::size_t k = slab.begin; k < slab.end; ++k) {
+                for (std::size_t column = begin; column < end; ++column) {
+                    rows.complex()[(column - begin) * (row_floats / 2) + k] =
+                        spectrum.complex()[(k - slab.begin) * num_columns + column];
+                }
+            }
+            inverse.run(rows);
+            std::vector<float> share(nz);
+            for (std::size_t column = begin; column < end; ++column) {
+                to_depth.apply(rows.data() + (column - begin) * row_floats, share.data());
+                float* voxels = values.data() + column * nz;
+                for (std::size_t iz = 0; iz < nz; ++iz) voxels[iz] += share[iz];
+            }
+        });
+}
+
+}  // namespace nlos

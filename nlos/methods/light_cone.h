@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "nlos/fourier/fft.h"
+#include "nlos/methods/method_input.h"
+#include "nlos/methods/slabs.h"
+#include "nlos/preparation/conservative_resampling.h"
+
+#include <vector>
+
+namespace nlos {
+
+/// The light cone: with v = (path length / 2)^2 and u = z^2, light from (x, y, u) reaches a wall
+/// point (dx, dy) away at v = u + dx^2 + dy^2. Even bins of v, and the padded sizes of transforms.
+struct Cone {
+    std::vector<double> v_edges;  ///< squared range [m^2]
+    std::size_t nx = 0, ny = 0;   ///< wall points
+    std::size_t px = 0, py = 0;   ///< padded to at least twice
+    std::size_t length = 0;       ///< padded number of v bins
+    bool is_same_for_all = true;  ///< device legs are the same for every pair
+    double min_leg_m = 0.0;       ///< the shortest device legs
+
+    std::size_t num_v() const { return v_edges.size() - 1; }
+    double v_width() const { return v_edges[1] - v_edges[0]; }
+    std::size_t num_frequencies() const { return length / 2 + 1; }
+    std::size_t num_columns() const { return nx * ny; }
+};
+
+/// input          confocal scan with input.wall.grid
+/// bins_per_bin   bins of v for every bin of range
+/// throws         core::Error when the axis has no positive range
+Cone make_cone(const MethodInput& input, std::size_t bins_per_bin);
+
+/// The convolution's data g(v) of one wall point: bins of range [r_k, r_k+1] moved to bins of
+/// v = r^2, each multiplied by r^power; dr/dv is in the bins' widths.
+class ConeData {
+ public:
+    ConeData(const MethodInput& input, const Cone& cone, double power);
+
+    /// Fills `row` with num_v() values of wall point (column / ny, column % ny).
+    void fill(std::size_t column, float* row) const;
+
+ private:
+    const MethodInput& input_;
+    const Cone& cone_;
+    double power_;
+    ConservativeResampling common_;
+};
+
+/// f(u) -> rho(z): contents of the bins of u = z^2 moved to bins of z, per metre; this is
+/// rho = 2 z f(z^2).
+ConservativeResampling squared_range_to_depth(const MethodInput& input, const Cone& cone);
+
+/// Where the cone meets one lateral offset: bin `shift` with weight `here`, the next one with
+/// `next`; the two sum to 1 unless the offset is off the axis.
+struct ConeEntry {
+    std::size_t shift = 0;
+    float here = 0.0F, next = 0.0F;
+};
+
+/// The light cone delta(v - dx^2 - dy^2), split linearly between two v bins so that each (dx, dy)
+/// sums to 1. It is even in dx and dy: a quadrant says it all.
+class ConeKernel {
+ public:
+    ConeKernel(const Cone& cone, const WallGrid& grid);
+
+    std::size_t qx() const { return qx_; }
+    std::size_t qy() const { return qy_; }
+    double squared_norm() const { return squared_norm_; }
+    const ConeEntry& entry(std::size_t ix, std::size_t iy) const { return entries_[ix * qy_ + iy]; }
+
+    /// Writes the quadrant's transform along v at frequency k.
+    void fill(std::size_t k, ComplexF* quadrant) const;
+
+ private:
+    std::size_t qx_, qy_, length_;
+    double squared_norm_ = 0.0;
+    std::vector<ConeEntry> entries_;
+    std::vector<ComplexF> phases_;
+};
+
+/// Room for the spectrum of the largest of `num_slabs` slabs. One for all of them: buffers that
+/// are given back and asked for again leave gaps behind, by which more than stated would be taken.
+FftBuffer make_slab_spectrum(const Cone& cone, std::size_t num_slabs);
+
+/// g(v) of all wall points, transformed along v at a slab of its frequencies: stored [frequency of
+/// the slab][x][y].
+void fill_cone_spectrum(const MethodInput& input,
+                        const Cone& cone,
+                        double power,
+                        const Slab& slab,
+                        FftBuffer& spectrum,
+                        const ProgressSpan& span);
+
+/// Back from frequencies along v to voxels along z, negative values kept: adds the slab's share to
+/// `values`, stored [x][y][z].
+void add_spectrum_to_depth(const MethodInput& input,
+                           const Cone& cone,
+                           FftBuffer& spectrum,
+                           const Slab& slab,
+                           std::vector<float>& values,
+                           const ProgressSpan& span);
+
+}  // namespace nlos

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+#include "nlos/methods/light_cone_transform.h"
+
+#include "nlos/fourier/padded_plane.h"
+#include "nlos/methods/light_cone.h"
+
+namespace nlos {
+namespace {
+
+constexpr std::size_t kSlabsPerBlock = 8;
+
+// Even bins of v = r^2 are 1 / (2 r) wide in r: as many as there are range bins would be coarser
+// than those in the near half of the volume and pull depths there towards the wall.
+constexpr std::size_t kSquaredRangeBinsPerBin = 2;
+
+/// Wiener deconvolution of one frequency along v: a lateral 2-D problem that fits in cache.
+class SlabFilter {
+ public:
+    SlabFilter(const Cone& cone, const WallGrid& grid, double snr)
+        : cone_(cone),
+          kernel_(cone, grid),
+          noise_over_signal_(1.0 / snr),
+          plane_({cone.nx, cone.ny}, {cone.px, cone.py}),
+          kernel_transform_(Fft::even_2d(kernel_.qx(), kernel_.qy())) {}
+
+    struct Workspace {
+        PaddedPlane::Workspace slab;
+        FftBuffer quadrant;
+    };
+    Workspace make_workspace() const {
+        return {plane_.make_workspace(), FftBuffer(2 * kernel_.qx() * kernel_.qy())};
+    }
+
+    /// Filters frequency k of `slab` (nx, ny) in place.
+    void apply(std::size_t k, ComplexF* slab, Workspace& work) const {
+        kernel_.fill(k, work.quadrant.complex());
+        kernel_transform_.run(work.quadrant);
+        turn_into_wiener_filter(work.quadrant.complex());
+        plane_.load(slab, work.slab);
+        plane_.forward(work.slab);
+        plane_.multiply_by_quadrant(work.quadrant.complex(), work.slab);
+        plane_.inverse(work.slab);
+        plane_.store(work.slab, slab);
+    }
+
+ private:
+    /// With the kernel K = |K| k, k of unit norm: conj(k) / (|k|^2 + 1/snr) / |K|, and the
+    /// transforms' normalisation.
+    void turn_into_wiener_filter(ComplexF* quadrant) const {
+        const double norm = kernel_.squared_norm();
+        const auto size = static_cast<double>(cone_.px * cone_.py * cone_.length);
+        const auto scale = static_cast<float>(1.0 / (norm * size));
+        const auto per_norm = static_cast<float>(1.0 / norm);
+        const auto floor = static_cast<float>(noise_over_signal_);
+        for (std::size_t i = 0; i < kernel_.qx() * kernel_.qy(); ++i) {
+            const float re = quadrant[i].real();
+            const float im = quadrant[i].imag();
+            const float factor = scale / ((re * re + im * im) * per_norm + floor);
+            quadrant[i] = {re * factor, -im * factor};
+        }
+    }
+
+    const Cone& cone_;
+    ConeKernel kernel_;
+    double noise_over_signal_;
+    PaddedPlane plane_;
+    Fft kernel_transform_;
+};
+
+}  // namespace
+
+Volume light_cone_transform(const MethodInput& input,
+                            Falloff falloff,
+                            double snr,
+                            std::size_t num_slabs) {
+    const Cone cone = make_cone(input, kSquaredRangeBinsPerBin);
+    const double power = falloff_power(falloff);
+    const SlabFilter filter(cone, *input.wall.grid, snr);
+    Volume volume{input.axes, std::vector<float>(input.axes.num_voxels()), {}};
+    FftBuffer spectrum = make_slab_spectrum(cone, num_slabs);
+    for (const Slab& slab : split_into_slabs(cone.num_frequencies(), num_slabs)) {
+        const core::Progress progress = slab.part_of(input.progress, cone.num_frequencies());
+        fill_cone_spectrum(
+            input, cone, power, slab, spectrum, {progress, 0.0, 0.2, "time to depth"});
+        parallel_blocks_with_progress(
+            slab.size(),
+            kSlabsPerBlock,
+            {progress, 0.2, 0.8, "deconvolution"},
+            [&](std::size_t begin, std::size_t end) {
+                SlabFilter::Workspace work = filter.make_workspace();
+                for (std::size_t k = begin; k < end; ++k) {
+                    filter.apply(slab.begin + k, spectrum.complex() + k * cone.num_columns(), work);
+                }
+            });
+        add_spectrum_to_depth(
+            input, cone, spectrum, slab, volume.values, {progress, 0.8, 1.0, "to depth"});
+    }
+    for (float& value : volume.values) value = std::max(0.0F, value);
+    return volume;
+}
+
+double light_cone_transform_bytes(const MethodInput& input, std::size_t num_slabs) {
+    const Cone cone = make_cone(input, kSquaredRangeBinsPerBin);
+    const auto columns = static_cast<double>(cone.num_columns());
+    const auto padded = static_cast<double>(cone.px * (cone.py + 8));
+    const auto frequencies = static_cast<double>(largest_slab(cone.num_frequencies(), num_slabs));
+    const double spectrum = 8.0 * frequencies * columns;
+    const double volume = 4.0 * columns * static_cast<double>(input.axes.z_m.size());
+    const double per_thread = 12.0 * padded + 64.0 * static_cast<double>(cone.length + 2);
+    return spectrum + volume + per_thread * core::thread_count() + 16.0 * padded;
+}
+
+}  // namespace nlos

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "nlos/preparation/wall_frame.h"
+#include "nlos/reconstruction/volume.h"
+#include "renderer/core/capture.h"
+#include "renderer/core/error.h"
+#include "renderer/core/parallel.h"
+#include "renderer/core/progress.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <functional>
+
+namespace nlos {
+
+/// What every reconstruction method gets: measurements, where they were taken, what to fill.
+struct MethodInput {
+    const core::Scan& scan;
+    const core::TimeAxis& time_axis;
+    const core::Transient& transient;  ///< (num_pairs, num_bins)
+    const WallFrame& wall;
+    const VolumeAxes& axes;
+    std::array<double, 2> z_range_m;  ///< the voxels along z divide it evenly
+    const core::Progress& progress;
+};
+
+/// Ends the work with core::Failure when the caller asked for it.
+inline void check_stop(const core::Progress& progress) {
+    if (progress.should_stop()) throw core::Failure("reconstruct", "interrupted");
+}
+
+/// A part of a method's work in the shares it reports.
+struct ProgressSpan {
+    const core::Progress& progress;
+    double begin = 0.0;
+    double end = 1.0;
+    const char* detail = "";
+};
+
+/// Calls `body(begin, end)` for blocks of [0, count) in parallel, reporting and listening in
+/// between. The blocks depend on `count` and `block` only.
+inline void parallel_blocks_with_progress(
+    std::size_t count,
+    std::size_t block,
+    const ProgressSpan& span,
+    const std::function<void(std::size_t begin, std::size_t end)>& body) {
+    constexpr std::size_t kReports = 16;
+    const std::size_t num_blocks = (count + block - 1) / block;
+    const std::size_t stage =
+        block * std::max<std::size_t>(1, (num_blocks + kReports - 1) / kReports);
+    for (std::size_t done = 0; done < count; done += stage) {
+        check_stop(span.progress);
+        core::parallel_blocks(
+            std::min(stage, count - done), block, [&](std::size_t begin, std::size_t end) {
+                body(done + begin, done + end);
+            });
+        const double share =
+            static_cast<double>(std::min(count, done + stage)) / static_cast<double>(count);
+        span.progress.update(span.begin + share * (span.end - span.begin), span.detail);
+    }
+}
+
+}  // namespace nlos

@@ -1,0 +1,341 @@
+// SPDX-License-Identifier: MIT
+#include "nlos/methods/phasor_field.h"
+
+#include "nlos/fourier/padded_plane.h"
+#include "nlos/fourier/unit_phasor.h"
+#include "nlos/methods/filtered_backprojection.h"
+#include "nlos/methods/slabs.h"
+#include "nlos/methods/virtual_wave.h"
+
+#include <array>
+#include <cmath>
+
+namespace nlos {
+namespace {
+
+// Spectra of as many illumination points at a time as fit: fixed, so that sums always come in the
+// same order.
+constexpr double kSpectrumBytes = 5e8;
+
+/// True when plane-to-plane propagation serves: sensing points on the wall's grid, voxel columns
+/// at the same places.
+bool is_planar(const MethodInput& input) {
+    const std::optional<WallGrid>& grid = input.wall.grid;
+    if (!grid || grid->size[0] * grid->size[1] != input.scan.sensing.size()) return false;
+    if (input.axes.x_m.size() != grid->size[0] || input.axes.y_m.size() != grid->size[1])
+        return false;
+    const double tolerance = 1e-6 * std::min(grid->pitch_m[0], grid->pitch_m[1]);
+    return std::abs(input.axes.x_m.front() - grid->x_m(0)) < tolerance &&
+           std::abs(input.axes.x_m.back() - grid->x_m(grid->size[0] - 1)) < tolerance &&
+           std::abs(input.axes.y_m.front() - grid->y_m(0)) < tolerance &&
+           std::abs(input.axes.y_m.back() - grid->y_m(grid->size[1] - 1)) < tolerance;
+}
+
+/// Illumination points in the wall's frame; confocal scans have none of their own.
+std::vector<core::Vec3> illumination_of(const MethodInput& input) {
+    std::vector<core::Vec3> points;
+    if (input.scan.pattern == core::ScanPattern::Confocal) return points;
+    const core::Transform wall_from_world = input.axes.world_from_wall.inverse(Eigen::Isometry);
+    for (const core::Vec3& point : input.scan.illumination.positions) {
+        points.push_back(wall_from_world * point);
+    }
+    return points;
+}
+
+/// Shortest and longest path length over wall points and voxels, from bounds of both.
+std::array<double, 2> path_lengths(const MethodInput& input) {
+    const auto [low_z, high_z] = std::minmax_element(input.axes.z_m.begin(), input.axes.z_m.end());
+    const double wide = std::max(input.wall.max_m[0], input.axes.x_m.back()) -
+                        std::min(input.wall.min_m[0], input.axes.x_m.front());
+    const double high = std::max(input.wall.max_m[1], input.axes.y_m.back()) -
+                        std::min(input.wall.min_m[1], input.axes.y_m.front());
+    return {2.0 * *low_z, 2.0 * std::sqrt(wide * wide + high * high + *high_z * *high_z)};
+}
+
+/// The wave and the bins that can reach a voxel.
+struct Band {
+    VirtualWave wave;
+    BinRange bins;
+};
+
+Band make_band(const MethodInput& input, const PhasorSettings& settings) {
+    const core::TimeAxis& axis = input.time_axis;
+    const std::array<double, 2> legs = core::device_leg_range_m(input.scan);
+    const double shortest_leg = legs[0];
+    const double longest_leg = legs[1];
+    const double reach = 4.0 * settings.cycles * *settings.wavelength_m / 6.0;
+    const auto [shortest, longest] = path_lengths(input);
+    const auto bin_at = [&](double opl) {
+        const double bin = std::floor((opl - axis.opl_start_m) / axis.bin_width_m);
+        return static_cast<std::size_t>(std::clamp(bin, 0.0, static_cast<double>(axis.num_bins)));
+    };
+    Band band;
+    band.bins = {bin_at(shortest + shortest_leg - reach), bin_at(longest + longest_leg + reach)};
+    const double begin = axis.bin_begin_m(static_cast<double>(band.bins.begin)) - longest_leg;
+    const double end = axis.bin_begin_m(static_cast<double>(band.bins.end)) - shortest_leg;
+    band.wave = make_virtual_wave(settings, std::max(longest - begin, end - shortest));
+    return band;
+}
+
+/// exp(2 pi i f d) of given distances for one frequency of a wave after the other.
+class PhaseSeries {
+ public:
+    PhaseSeries(const std::vector<double>& distances_m, const VirtualWave& wave)
+        : values_(distances_m.size()), steps_(distances_m.size()) {
+        for (std::size_t i = 0; i < values_.size(); ++i) {
+            const UnitPhasor first = unit_phasor(wave.first_frequency * distances_m[i]);
+            const UnitPhasor step = unit_phasor(wave.frequency_step * distances_m[i]);
+            values_[i] = {first.re, first.im};
+            steps_[i] = {step.re, step.im};
+        }
+    }
+
+    const std::vector<ComplexF>& values() const { return values_; }
+    void advance() {
+        for (std::size_t i = 0; i < values_.size(); ++i) {
+            values_[i] = multiply(values_[i], steps_[i]);
+        }
+    }
+
+ private:
+    std::vector<ComplexF> values_;
+    std::vector<ComplexF> steps_;
+};
+
+/// Values of one frequency's lateral transform, padded by zeros to twice the grid.
+std::size_t padded_size(const WallGrid& grid) {
+    return 4 * good_fft_size(grid.size[0]) * good_fft_size(grid.size[1]);
+}
+
+/// Propagation from the wall to planes of voxels.
+class PlanePropagator {
+ public:
+    PlanePropagator(const MethodInput& input, const VirtualWave& wave)
+        : input_(input),
+          grid_(*input.wall.grid),
+          wave_(wave),
+          padded_{2 * good_fft_size(grid_.size[0]), 2 * good_fft_size(grid_.size[1])},
+          plane_(grid_.size, padded_),
+          kernel_transform_(Fft::even_2d(padded_[0] / 2 + 1, padded_[1] / 2 + 1)),
+          illumination_(illumination_of(input)) {}
+
+    std::size_t spectrum_size() const { return padded_[0] * padded_[1]; }
+    std::size_t num_columns() const { return grid_.size[0] * grid_.size[1]; }
+
+    /// Transforms coefficients [frequency][pair of the capture] of one or more illumination points
+    /// laterally, into [illumination][frequency][kx][ky].
+    std::vector<ComplexF> spectra(const std::vector<ComplexF>& coefficients,
+                                  std::size_t num_illumination) const {
+        const std::size_t num_pairs = num_illumination * num_columns();
+        std::vector<ComplexF> result(num_illumination * wave_.size() * spectrum_size());
+        const auto scale = 1.0F / static_cast<float>(spectrum_size());  // of the transforms
+        core::parallel_blocks(
+            num_illumination * wave_.size(), 4, [&](std::size_t begin, std::size_t end) {
+                PaddedPlane::Workspace work = plane_.make_workspace();
+                std::vector<ComplexF> slab(num_columns());
+                for (std::size_t i = begin; i < end; ++i) {
+                    const ComplexF* values = coefficients.data() + i % wave_.size() * num_pairs +
+                                             i / wave_.size() * num_columns();
+                    for (std::size_t column = 0; column < slab.size(); ++column) {
+                        slab[column] =
+                            scale *
+                            values[grid_.point(column / grid_.size[1], column % grid_.size[1])];
+                    }
+                    plane_.load(slab.data(), work);
+                    plane_.forward(work);
+                    plane_.store_spectrum(work, result.data() + i * spectrum_size());
+                }
+            });
+        return result;
+    }
+
+    /// Adds the field at depth z from illumination points [first, first + count) to `field` (x, y).
+    ///
+    /// spectra   of spectra(), of these illumination points
+    void add_plane(double z,
+                   const std::vector<ComplexF>& spectra,
+                   std::array<std::size_t, 2> illumination,
+                   std::vector<ComplexF>& field) const {
+        PhaseSeries kernel(kernel_distances(z), wave_);
+        std::vector<PhaseSeries> arriving;
+        for (std::size_t l = illumination[0]; l < illumination[1] && !is_confocal(); ++l) {
+            arriving.emplace_back(illumination_distances(l, z), wave_);
+        }
+        FftBuffer quadrant(2 * kernel.values().size());
+        PaddedPlane::Workspace work = plane_.make_workspace();
+        std::vector<ComplexF> sum(is_confocal() ? spectrum_size() : 0);
+        std::vector<ComplexF> slab(num_columns());
+        for (std::size_t f = 0; f < wave_.size(); ++f) {
+            std::copy(kernel.values().begin(), kernel.values().end(), quadrant.complex());
+            kernel_transform_.run(quadrant);
+            for (std::size_t l = 0; l < illumination[1] - illumination[0]; ++l) {
+                plane_.load_spectrum(spectra.data() + (l * wave_.size() + f) * spectrum_size(),
+                                     work);
+                plane_.multiply_by_quadrant(quadrant.complex(), work);
+                if (is_confocal()) {
+                    plane_.add_spectrum(work, sum.data());
+                    continue;
+                }
+                plane_.inverse(work);
+                plane_.store(work, slab.data());
+                add_product(slab, arriving[l].values(), field);
+                arriving[l].advance();
+            }
+            kernel.advance();
+        }
+        if (!is_confocal()) return;
+        plane_.load_spectrum(sum.data(), work);
+        plane_.inverse(work);
+        plane_.store(work, slab.data());
+        for (std::size_t i = 0; i < field.size(); ++i) field[i] += slab[i];
+    }
+
+ private:
+    bool is_confocal() const { return input_.scan.pattern == core::ScanPattern::Confocal; }
+
+    static void add_product(const std::vector<ComplexF>& a,
+                            const std::vector<ComplexF>& b,
+                            std::vector<ComplexF>& sum) {
+        for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += multiply(a[i], b[i]);
+    }
+
+    /// From a wall point to a voxel, for all lateral offsets; confocal light goes there and back.
+    std::vector<double> kernel_distances(double z) const {
+        std::vector<double> distances;
+        for (std::size_t ix = 0; ix <= padded_[0] / 2; ++ix) {
+            for (std::size_t iy = 0; iy <= padded_[1] / 2; ++iy) {
+                const double dx = static_cast<double>(ix) * grid_.pitch_m[0];
+                const double dy = static_cast<double>(iy) * grid_.pitch_m[1];
+                distances.push_back((is_confocal() ? 2.0 : 1.0) *
+                                    std::sqrt(dx * dx + dy * dy + z * z));
+            }
+        }
+        return distances;
+    }
+
+    std::vector<double> illumination_distances(std::size_t l, double z) const {
+        std::vector<double> distances;
+        for (const double x : input_.axes.x_m) {
+            for (const double y : input_.axes.y_m) {
+                distances.push_back((core::Vec3(x, y, z) - illumination_[l]).norm());
+            }
+        }
+        return distances;
+    }
+
+    const MethodInput& input_;
+    const WallGrid& grid_;
+    const VirtualWave& wave_;
+    std::array<std::size_t, 2> padded_;
+    PaddedPlane plane_;
+    Fft kernel_transform_;
+    std::vector<core::Vec3> illumination_;
+};
+
+std::size_t illumination_count(const MethodInput& input) {
+    return input.scan.pattern == core::ScanPattern::Exhaustive ? input.scan.illumination.size() : 1;
+}
+
+/// How many illumination points' spectra are held at a time.
+///
+/// num_frequencies   of each
+std::size_t illumination_per_chunk(const MethodInput& input,
+                                   std::size_t num_frequencies,
+                                   std::size_t spectrum_size,
+                                   std::size_t num_slabs) {
+    const double bytes = 8.0 * static_cast<double>(num_frequencies * spectrum_size * num_slabs);
+    const auto fitting = static_cast<std::size_t>(std::max(1.0, kSpectrumBytes / bytes));
+    return std::min(illumination_count(input), fitting);
+}
+
+/// Adds what a wave, or a part of one, brings to all voxels to `field` [z][x][y].
+///
+/// chunk   illumination points at a time
+void add_wave(const MethodInput& input,
+              const VirtualWave& wave,
+              const BinRange& bins,
+              std::size_t chunk,
+              const core::Progress& progress,
+              std::vector<ComplexF>& field) {
+    const PlanePropagator propagator(input, wave);
+    const std::size_t num_columns = propagator.num_columns();
+    const std::size_t num_illumination = illumination_count(input);
+    for (std::size_t first = 0; first < num_illumination; first += chunk) {
+        const std::size_t end = std::min(num_illumination, first + chunk);
+        const std::vector<ComplexF> spectra = propagator.spectra(
+            analyse(input, wave, bins, {first * num_columns, end * num_columns}), end - first);
+        const auto share = [&](std::size_t done) {
+            return static_cast<double>(done) / static_cast<double>(num_illumination);
+        };
+        parallel_blocks_with_progress(
+            input.axes.z_m.size(),
+            1,
+            {progress, share(first), share(end), "propagation"},
+            [&](std::size_t iz, std::size_t) {
+                std::vector<ComplexF> plane(num_columns);
+                propagator.add_plane(input.axes.z_m[iz], spectra, {first, end}, plane);
+                for (std::size_t i = 0; i < num_columns; ++i) {
+                    field[iz * num_columns + i] += plane[i];
+                }
+            });
+    }
+}
+
+Volume propagate(const MethodInput& input, const PhasorSettings& settings, std::size_t num_slabs) {
+    const Band band = make_band(input, settings);
+    const std::size_t num_columns = input.axes.x_m.size() * input.axes.y_m.size();
+    const std::size_t num_z = input.axes.z_m.size();
+    const std::size_t num_frequencies = band.wave.size();
+    const std::size_t chunk = illumination_per_chunk(
+        input, largest_slab(num_frequencies, num_slabs), padded_size(*input.wall.grid), num_slabs);
+
+    std::vector<ComplexF> field(num_columns * num_z);  // [z][x][y]
+    for (const Slab& slab : split_into_slabs(num_frequencies, num_slabs)) {
+        add_wave(input,
+                 band.wave.part(slab.begin, slab.end),
+                 band.bins,
+                 chunk,
+                 slab.part_of(input.progress, num_frequencies),
+                 field);
+    }
+    Volume volume{input.axes, std::vector<float>(field.size()), {}};
+    for (std::size_t column = 0; column < num_columns; ++column) {
+        for (std::size_t iz = 0; iz < num_z; ++iz) {
+            const ComplexF value = field[iz * num_columns + column];
+            volume.values[column * num_z + iz] =
+                std::sqrt(value.real() * value.real() + value.imag() * value.imag());
+        }
+    }
+    return volume;
+}
+
+}  // namespace
+
+Volume phasor_field(const MethodInput& input,
+                    const PhasorSettings& settings,
+                    std::size_t num_slabs) {
+    return is_planar(input) ? propagate(input, settings, num_slabs)
+                            : phasor_backprojection(input, settings, num_slabs);
+}
+
+std::size_t phasor_frequency_count(const MethodInput& input, const PhasorSettings& settings) {
+    return make_band(input, settings).wave.size();
+}
+
+double phasor_field_bytes(const MethodInput& input,
+                          const PhasorSettings& settings,
+                          std::size_t num_slabs) {
+    if (!is_planar(input)) return phasor_backprojection_bytes(input, settings, num_slabs);
+    const auto [nx, ny] = input.wall.grid->size;
+    const std::size_t padded = padded_size(*input.wall.grid);
+    const std::size_t size = largest_slab(phasor_frequency_count(input, settings), num_slabs);
+    const auto chunk = static_cast<double>(illumination_per_chunk(input, size, padded, num_slabs));
+    const double spectra =
+        8.0 * chunk * static_cast<double>(size) * static_cast<double>(padded + nx * ny);
+    const double per_thread =
+        8.0 * static_cast<double>(padded) * 4.0 + 16.0 * chunk * static_cast<double>(nx * ny);
+    return spectra + per_thread * core::thread_count() +
+           12.0 * static_cast<double>(input.axes.num_voxels());
+}
+
+}  // namespace nlos

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "nlos/pictures/colour_map.h"
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace nlos {
+
+/// How an axis runs in the picture. Usual: x to the right, y upwards.
+enum class AxisDirection { Usual, Reversed };
+
+/// Whether a metre is as long along x as along y.
+enum class AxisScale { Equal, Free };
+
+/// Values on a regular grid, drawn as colours with axes and a colour bar.
+struct ImagePanel {
+    std::string title;
+    std::size_t width = 0;      ///< values along x
+    std::size_t height = 0;     ///< values along y
+    std::vector<float> values;  ///< stored [y][x], x fastest; NaN is drawn as background
+    std::array<double, 2> x_range{0.0, 1.0};  ///< outer edges of the first and last value
+    std::array<double, 2> y_range{0.0, 1.0};
+    std::string x_label;  ///< with unit: "x [m]"
+    std::string y_label;
+    std::string value_label;  ///< beside the colour bar, with unit
+    ColourMap colour_map = ColourMap::Inferno;
+    AxisDirection x_direction = AxisDirection::Usual;
+    AxisDirection y_direction = AxisDirection::Usual;
+    AxisScale scale = AxisScale::Equal;
+    std::optional<std::array<double, 2>> value_range;  ///< empty: from the values
+};
+
+/// A curve through (x, y), drawn as a line with axes; y starts at 0 or below.
+struct CurvePanel {
+    std::string title;
+    std::vector<double> x;
+    std::vector<double> y;
+    std::string x_label;  ///< with unit
+    std::string y_label;
+};
+
+using Panel = std::variant<ImagePanel, CurvePanel>;
+
+}  // namespace nlos

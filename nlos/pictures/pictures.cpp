@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: MIT
+#include "nlos/pictures/pictures.h"
+
+#include "renderer/core/error.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace nlos {
+namespace {
+
+constexpr double kNarrowestDepthRange_m = 0.1;
+constexpr double kNarrowestErrorRange_mm = 1.0;
+
+using Range = std::array<double, 2>;
+
+/// Outer edges of cells around evenly spaced centres.
+Range cell_edges(const std::vector<double>& centres) {
+    if (centres.empty()) return {0.0, 1.0};
+    const double half_pitch = centres.size() > 1 ? 0.5 * (centres.back() - centres.front()) /
+                                                       static_cast<double>(centres.size() - 1)
+                                                 : 0.5;
+    return {centres.front() - half_pitch, centres.back() + half_pitch};
+}
+
+/// A panel of the wall's plane as seen from the wall.
+ImagePanel front_view(const std::vector<double>& x_m, const std::vector<double>& y_m) {
+    ImagePanel panel;
+    panel.width = x_m.size();
+    panel.height = y_m.size();
+    panel.values.assign(panel.width * panel.height, NAN);
+    panel.x_range = cell_edges(x_m);
+    panel.y_range = cell_edges(y_m);
+    panel.x_label = "x [m]";
+    panel.y_label = "y [m]";
+    panel.x_direction = AxisDirection::Reversed;
+    return panel;
+}
+
+/// A front view whose pixels are `value_of(column)`, columns stored [x][y].
+template <class ValueOf>
+ImagePanel front_view_of(const std::vector<double>& x_m,
+                         const std::vector<double>& y_m,
+                         ValueOf value_of) {
+    ImagePanel panel = front_view(x_m, y_m);
+    for (std::size_t ix = 0; ix < x_m.size(); ++ix) {
+        for (std::size_t iy = 0; iy < y_m.size(); ++iy) {
+            panel.values[iy * x_m.size() + ix] = static_cast<float>(value_of(ix * y_m.size() + iy));
+        }
+    }
+    return panel;
+}
+
+/// The brightest share of the volume's maximum along the axis that a view looks along.
+struct Projections {
+    ImagePanel front;
+    ImagePanel side;  ///< looks along x: z to the right, y upwards
+    ImagePanel top;   ///< looks along y: x as in the front view, z upwards
+};
+
+ImagePanel empty_projection(const std::string& title) {
+    ImagePanel panel;
+    panel.title = title;
+    panel.value_label = "share of maximum";
+    panel.value_range = Range{0.0, 1.0};
+    return panel;
+}
+
+Projections project(const Volume& volume) {
+    const VolumeAxes& axes = volume.axes;
+    const std::size_t nx = axes.x_m.size();
+    const std::size_t ny = axes.y_m.size();
+    const std::size_t nz = axes.z_m.size();
+    const auto set = [](ImagePanel& panel, std::size_t width, std::size_t height) {
+        panel.width = width;
+        panel.height = height;
+        panel.values.assign(width * height, 0.0F);
+    };
+    Projections views{empty_projection("Front (seen from the wall)"),
+                      empty_projection("Side (along x)"),
+                      empty_projection("Top (along y)")};
+    set(views.front, nx, ny);
+    set(views.side, nz, ny);
+    set(views.top, nx, nz);
+    float maximum = 0.0F;
+    for (const float value : volume.values) maximum = std::max(maximum, value);
+    const float scale = maximum > 0.0F ? 1.0F / maximum : 0.0F;
+    for (std::size_t ix = 0; ix < nx; ++ix) {
+        for (std::size_t iy = 0; iy < ny; ++iy) {
+            for (std::size_t iz = 0; iz < nz; ++iz) {
+                const float value = scale * volume.values[volume.index(ix, iy, iz)];
+                const auto raise = [&](float& pixel) { pixel = std::max(pixel, value); };
+                raise(views.front.values[iy * nx + ix]);
+                raise(views.side.values[iy * nz + iz]);
+                raise(views.top.values[iz * nx + ix]);
+            }
+        }
+    }
+    return views;
+}
+
+void label_projections(const VolumeAxes& axes, Projections& views) {
+    const Range x = cell_edges(axes.x_m);
+    const Range y = cell_edges(axes.y_m);
+    const Range z = cell_edges(axes.z_m);
+    const auto label =
+        [](ImagePanel& panel, Range across, const char* x_label, Range up, const char* y_label) {
+            panel.x_range = across;
+            panel.x_label = x_label;
+            panel.y_range = up;
+            panel.y_label = y_label;
+        };
+    label(views.front, x, "x [m]", y, "y [m]");
+    label(views.side, z, "z [m]", y, "y [m]");
+    label(views.top, x, "x [m]", z, "z [m]");
+    views.front.x_direction = AxisDirection::Reversed;
+    views.top.x_direction = AxisDirection::Reversed;
+    // A volume deeper than the wall is large would shrink the wall beside it.
+    if (z[1] - z[0] > std::max(x[1] - x[0], y[1] - y[0])) {
+        views.side.scale = AxisScale::Free;
+        views.top.scale = AxisScale::Free;
+    }
+}
+
+/// The value below which `share` of the finite values lie; NaN when there is none.
+double percentile(std::vector<double> values, double share) {
+    std::erase_if(values, [](double value) { return !std::isfinite(value); });
+    if (values.empty()) return NAN;
+    const auto rank = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), values.begin() + rank, values.end());
+    return values[static_cast<std::size_t>(rank)];
+}
+
+/// Range of depths without the outermost hundredth at either end; flat things get some room.
+std::optional<Range> depth_range(const std::vector<double>& depths_m) {
+    double low = percentile(depths_m, 0.01);
+    double high = percentile(depths_m, 0.99);
+    if (std::isnan(low)) return std::nullopt;
+    const double missing = kNarrowestDepthRange_m - (high - low);
+    if (missing > 0.0) {
+        low -= 0.5 * missing;
+        high += 0.5 * missing;
+    }
+    return Range{low, high};
+}
+
+ImagePanel depth_panel(const core::DepthMap& map,
+                       const std::string& title,
+                       const std::optional<Range>& range) {
+    ImagePanel panel =
+        front_view_of(map.x_m, map.y_m, [&](std::size_t i) { return map.depth_m[i]; });
+    panel.title = title;
+    panel.value_label = "depth z [m]";
+    panel.colour_map = ColourMap::Viridis;
+    panel.value_range = range;
+    return panel;
+}
+
+}  // namespace
+
+std::vector<Panel> volume_panels(const Reconstruction& reconstruction) {
+    Projections views = project(reconstruction.volume);
+    label_projections(reconstruction.volume.axes, views);
+    std::vector<Panel> panels{views.front, views.side, views.top};
+    const core::DepthMap& depth = reconstruction.depth;
+    if (!depth.depth_m.empty()) {
+        panels.emplace_back(depth_panel(depth, "Depth map", depth_range(depth.depth_m)));
+    }
+    return panels;
+}
+
+std::vector<Panel> comparison_panels(const Reconstruction& reconstruction,
+                                     const core::DepthMap& truth) {
+    const core::DepthMap& found = reconstruction.depth;
+    if (found.x_m.size() != truth.x_m.size() || found.y_m.size() != truth.y_m.size()) {
+        throw core::Error("comparison picture",
+                          fmt::format("found {} x {} columns against {} x {}",
+                                      found.x_m.size(),
+                                      found.y_m.size(),
+                                      truth.x_m.size(),
+                                      truth.y_m.size()),
+                          "both must have the same columns");
+    }
+    // The truth sets the colours: far-off depths of a poor result would wash out both maps.
+    std::optional<Range> range = depth_range(truth.depth_m);
+    if (!range) range = depth_range(found.depth_m);
+    std::vector<double> errors_mm(truth.depth_m.size());
+    std::vector<double> sizes_mm(truth.depth_m.size());
+    for (std::size_t i = 0; i < errors_mm.size(); ++i) {
+        errors_mm[i] = 1000.0 * (found.depth_m[i] - truth.depth_m[i]);
+        sizes_mm[i] = std::abs(errors_mm[i]);
+    }
+    ImagePanel error =
+        front_view_of(truth.x_m, truth.y_m, [&](std::size_t i) { return errors_mm[i]; });
+    error.title = "Error where both are";
+    error.value_label = "found - true [mm]";
+    error.colour_map = ColourMap::Diverging;
+    // fmax also drops the NaN of an error map without a common column.
+    const double limit_mm = std::fmax(kNarrowestErrorRange_mm, percentile(sizes_mm, 0.95));
+    error.value_range = Range{-limit_mm, limit_mm};
+    return {depth_panel(truth, "True depth", range),
+            depth_panel(found, "Reconstructed depth", range),
+            error};
+}
+
+std::vector<Panel> truth_panels(const core::DepthMap& truth) {
+    std::vector<Panel> panels{depth_panel(truth, "True depth", depth_range(truth.depth_m))};
+    if (!truth.albedo.empty()) {
+        ImagePanel panel = front_view_of(truth.x_m, truth.y_m, [&](std::size_t i) {
+            return truth.is_foreground(i) ? truth.albedo[i] : NAN;
+        });
+        panel.title = "True albedo";
+        panel.value_label = "albedo";
+        panel.colour_map = ColourMap::Grey;
+        panel.value_range = Range{0.0, 1.0};
+        panels.emplace_back(std::move(panel));
+    }
+    if (!truth.normals.empty()) {
+        const core::Vec3 to_wall = -truth.world_from_wall.linear().col(2).normalized();
+        ImagePanel panel = front_view_of(truth.x_m, truth.y_m, [&](std::size_t i) {
+            return truth.is_foreground(i) ? truth.normals[i].dot(to_wall) : NAN;
+        });
+        panel.title = "Facing the wall";
+        panel.value_label = "cosine of the normal";
+        panel.colour_map = ColourMap::Grey;
+        panel.value_range = Range{0.0, 1.0};
+        panels.emplace_back(std::move(panel));
+    }
+    return panels;
+}
+
+}  // namespace nlos

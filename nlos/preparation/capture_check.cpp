@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: MIT
+#include "nlos/preparation/capture_check.h"
+
+#include "nlos/preparation/first_light.h"
+#include "nlos/preparation/histogram_preparation.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace nlos {
+namespace {
+
+constexpr double kEarlyShare = 0.01;    // of all light; less may be noise
+constexpr double kFastestOnset = 1.25;  // of what is possible, for half of all neighbours
+constexpr std::size_t kFewestPoints = 16;
+constexpr std::size_t kSteps = 8;  // neighbours are so many to a side: noise moves onsets little
+constexpr double kStrongestBend = 1.15;  // of first light: 1 is what a path allows
+constexpr double kWeakestBend = 0.7;     // edges and tips reach 1
+constexpr double kBendOfAPlane = 0.1;    // says nothing
+constexpr double kSignificance = 3.0;    // standard deviations
+
+const core::Vec3& illumination_point(const core::Scan& scan, std::size_t pair) {
+    return scan.illumination.positions[scan.illumination_index(pair)];
+}
+
+const core::Vec3& sensing_point(const core::Scan& scan, std::size_t pair) {
+    return scan.sensing.positions[scan.sensing_index(pair)];
+}
+
+/// Constant background of each pair; 0 where it cannot be told.
+std::vector<double> ambient_of(const core::Capture& capture) {
+    if (capture.unit == core::TransientUnit::Counts) {
+        if (auto signal = find_signal(capture.transient)) {
+            return std::move(signal->ambient_per_bin);
+        }
+    }
+    return std::vector<double>(capture.scan.num_pairs(), 0.0);
+}
+
+/// Light, above the background, in bins that end before the shortest possible path.
+std::optional<std::string> early_light(const core::Capture& capture,
+                                       const std::vector<double>& ambient) {
+    const core::TimeAxis& axis = capture.time_axis;
+    double early = 0.0;
+    double total = 0.0;
+    double earliest_m = 0.0;
+    for (std::size_t pair = 0; pair < capture.scan.num_pairs(); ++pair) {
+        const double shortest =
+            (illumination_point(capture.scan, pair) - sensing_point(capture.scan, pair)).norm() +
+            capture.scan.device_legs_m(pair);
+        const auto histogram = capture.transient.histogram(pair);
+        for (std::size_t bin = 0; bin < histogram.size(); ++bin) {
+            const double light = static_cast<double>(histogram[bin]) - ambient[pair];
+            total += light;
+            const double before = shortest - axis.bin_begin_m(static_cast<double>(bin) + 1.0);
+            if (before < axis.bin_width_m) continue;
+            early += light;
+            if (light > 0.0) earliest_m = std::max(earliest_m, before);
+        }
+    }
+    if (!(total > 0.0) || early < kEarlyShare * total) return std::nullopt;
+    return fmt::format(
+        "{:.1f} % of the light arrives before the shortest possible path, up to "
+        "{:.3g} m early; time zero looks late (capture.opl_shift_m moves it)",
+        100.0 * early / total,
+        earliest_m);
+}
+
+/// First light that moves along the wall faster than path lengths can.
+std::optional<std::string> fast_onset(const core::Capture& capture,
+                                      const std::vector<double>& ambient) {
+    const core::Scan& scan = capture.scan;
+    if (!scan.sensing.grid) return std::nullopt;
+    const auto [nx, ny] = *scan.sensing.grid;
+    if (nx < kFewestPoints || ny < kFewestPoints) return std::nullopt;
+    std::vector<std::optional<double>> onsets(nx * ny);
+    for (std::size_t i = 0; i < onsets.size(); ++i) {
+        onsets[i] = first_light_m(capture, i, ambient[i]);
+    }
+    const double most = scan.pattern == core::ScanPattern::Confocal ? 2.0 : 1.0;
+    std::vector<double> speeds;
+    const auto compare = [&](std::size_t a, std::size_t b) {
+        if (!onsets[a] || !onsets[b]) return;
+        const double moved = std::abs(*onsets[a] - *onsets[b]) - capture.time_axis.bin_width_m;
+        const double distance = (scan.sensing.positions[a] - scan.sensing.positions[b]).norm();
+        if (distance > 0.0) speeds.push_back(moved / (most * distance));
+    };
+    for (std::size_t ix = 0; ix < nx; ++ix) {
+        for (std::size_t iy = 0; iy < ny; ++iy) {
+            if (ix + nx / kSteps < nx) compare(ix * ny + iy, (ix + nx / kSteps) * ny + iy);
+            if (iy + ny / kSteps < ny) compare(ix * ny + iy, ix * ny + iy + ny / kSteps);
+        }
+    }
+    if (speeds.empty()) return std::nullopt;
+    const auto middle = speeds.begin() + static_cast<std::ptrdiff_t>(speeds.size() / 2);
+    std::nth_element(speeds.begin(), middle, speeds.end());
+    if (*middle < kFastestOnset) return std::nullopt;
+    return fmt::format(
+        "first light moves along the wall {:.2f} times as fast as a path length can "
+        "change; bins look narrower than {:.4g} m (capture.bin_width_m sets them)",
+        *middle,
+        capture.time_axis.bin_width_m);
+}
+
+/// First light that bends over the wall otherwise than that of points, edges and tips does.
+std::optional<std::string> bent_onset(const core::Capture& capture,
+                                      const std::vector<double>& ambient) {
+    const auto bend = bend_of_first_light(capture, ambient);
+    if (!bend || bend->k < kBendOfAPlane) return std::nullopt;
+    const double fitting_m = capture.time_axis.bin_width_m / std::sqrt(bend->k);
+    if (bend->k - kSignificance * bend->uncertainty > kStrongestBend) {
+        return fmt::format(
+            "first light bends over the wall {:.2f} times as much as a path length can; bins look "
+            "narrower than {:.4g} m: {:.4g} m would fit (capture.bin_width_m sets them), or a wall "
+            "{:.2f} times as large",
+            bend->k,
+            capture.time_axis.bin_width_m,
+            fitting_m,
+            std::sqrt(bend->k));
+    }
+    if (bend->k + kSignificance * bend->uncertainty < kWeakestBend) {
+        return fmt::format(
+            "first light bends over the wall {:.2f} times as much as that of points, edges and "
+            "tips; bins look wider than {:.4g} m: {:.4g} m would fit (capture.bin_width_m sets "
+            "them), or a wall {:.2f} times as large, unless all that is hidden is round and large",
+            bend->k,
+            capture.time_axis.bin_width_m,
+            fitting_m,
+            std::sqrt(bend->k));
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+std::vector<std::string> timing_warnings(const core::Capture& capture) {
+    if (capture.scan.camera) return {};
+    const std::vector<double> ambient = ambient_of(capture);
+    std::vector<std::string> warnings;
+    if (auto warning = early_light(capture, ambient)) warnings.push_back(*warning);
+    if (auto warning = fast_onset(capture, ambient)) {
+        warnings.push_back(*warning);
+    } else if (auto other = bent_onset(capture, ambient)) {
+        warnings.push_back(*other);
+    }
+    return warnings;
+}
+
+}  // namespace nlos

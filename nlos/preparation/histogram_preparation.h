@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "nlos/preparation/response_deconvolution.h"
+#include "renderer/core/capture.h"
+#include "renderer/core/time_axis.h"
+#include "renderer/core/transient.h"
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace nlos {
+
+/// Ambient light of a capture and where its signal ends.
+struct SignalExtent {
+    std::vector<double> ambient_per_bin;  ///< per pair
+    int end_bin = 0;                      ///< bins from here on hold nothing but ambient light
+};
+
+/// Finds constant background light and the end of the signal in photon counts.
+///
+/// Of 32 segments of the axis (zeroed bins at its start left out), the eight that are darkest over
+/// all pairs give each pair's ambient level. The signal ends with the last segment whose sum over
+/// all pairs exceeds the ambient light by 5 standard deviations and by 1 % of the strongest
+/// segment: noise behind it would be raised by range^4 and outshine the scene.
+///
+/// returns   nothing when the axis is too short to tell (fewer than 64 filled bins)
+/// throws    nothing
+std::optional<SignalExtent> find_signal(const core::Transient& transient);
+
+/// What to do to histograms before a method sees them.
+struct PreparationPlan {
+    int merge_bins = 1;
+    int num_bins = 0;                     ///< after merging; later bins are dropped
+    std::vector<double> ambient_per_bin;  ///< per pair, before merging; empty: none
+    /// Of histograms of the capture's length, null: none.
+    std::shared_ptr<const ResponseDeconvolution> deconvolution = nullptr;
+};
+
+/// Takes off ambient light, then the set-up's response, adds up neighbouring bins and drops those
+/// behind the plan's end. Bins zeroed at the start of a histogram stay 0.
+core::Transient prepare_histograms(const core::Transient& transient, const PreparationPlan& plan);
+
+/// Multiplies every bin by range^power, range being half its path length without device legs; bins
+/// before the wall become 0. The power of the light's falloff makes equal scatterers equally bright
+/// wherever they are, without moving them.
+void multiply_by_range(const core::Scan& scan,
+                       const core::TimeAxis& axis,
+                       double power,
+                       core::Transient& transient);
+
+}  // namespace nlos

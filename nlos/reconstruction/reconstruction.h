@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "nlos/reconstruction/reconstruct_settings.h"
+#include "nlos/reconstruction/volume.h"
+#include "renderer/core/depth_map.h"
+#include "renderer/core/mesh.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace nlos {
+
+/// What reconstruct() found, and what it took.
+struct Reconstruction {
+    Volume volume;
+    core::DepthMap depth;     ///< sub-bin depth of the brightest voxel per column; NaN = background
+    core::PointCloud points;  ///< foreground of `depth` in world coordinates, normals to the wall
+    std::string method;       ///< the one that ran
+    std::string reason;       ///< why `auto` took it
+    ReconstructSettings settings;       ///< with every choice filled in
+    std::vector<std::string> warnings;  ///< what looks wrong about the capture
+    core::Json provenance;              ///< who made it from what, as the caller says
+    double seconds = 0.0;
+    double stated_bytes = 0.0;  ///< memory on top of the capture, announced before the run
+    std::uint64_t peak_bytes = 0;
+};
+
+}  // namespace nlos

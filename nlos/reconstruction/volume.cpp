@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#include "nlos/reconstruction/volume.h"
+
+#include <algorithm>
+
+namespace nlos {
+
+std::vector<float> max_projection(const Volume& volume) {
+    const std::size_t nz = volume.axes.z_m.size();
+    std::vector<float> projection(volume.axes.x_m.size() * volume.axes.y_m.size(), 0.0F);
+    if (nz == 0) return projection;
+    for (std::size_t column = 0; column < projection.size(); ++column) {
+        const float* values = volume.values.data() + column * nz;
+        projection[column] = *std::max_element(values, values + nz);
+    }
+    return projection;
+}
+
+std::vector<double> cell_centers(double begin, double end, std::size_t count) {
+    std::vector<double> centers(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        centers[i] =
+            begin + (end - begin) * (static_cast<double>(i) + 0.5) / static_cast<double>(count);
+    }
+    return centers;
+}
+
+}  // namespace nlos

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/ellipsoidal/triangle_hierarchy.h"
+
+namespace renderer {
+
+/// The top of a hierarchy as one pair of ends sees it: for many draws with the same ends.
+///
+/// The descent to these entries is made once; a draw searches a table, and descends further only
+/// where an entry is not a single facet.
+class HierarchyCut {
+ public:
+    explicit HierarchyCut(const TriangleHierarchy& hierarchy) : hierarchy_(&hierarchy) {}
+
+    /// Finds at most about `most_entries` entries.
+    void rebuild(const ConnectionEnds& ends, const OplBand& lengths, std::size_t most_entries);
+
+    bool empty() const { return entries_.empty(); }
+    /// Of what all lengths carry, about, the share within the interval.
+    double share_asked() const { return share_asked_; }
+    const FocusPair& foci() const { return ends_.foci; }
+
+    /// As TriangleHierarchy::sample() for the ends of rebuild(). `hint` is updated so that calls
+    /// with rising u are quick (start with 0).
+    std::optional<FacetChoice> sample(double u, std::size_t& hint) const;
+    FacetChoice evaluate(std::uint32_t facet) const;
+
+ private:
+    struct Entry {
+        std::int32_t child = 0;   ///< as Node::child
+        std::uint32_t first = 0;  ///< position of its first facet
+        double weight = 0.0;
+        double end = 0.0;  ///< upper end of its share of [0, 1)
+        OplBand lengths;   ///< of a single facet
+    };
+
+    bool expand(std::size_t most_entries);
+    void append_children(std::int32_t node);
+    double facet_weight(std::uint32_t facet, OplBand& lengths) const;
+    double share(std::size_t entry) const;
+
+    const TriangleHierarchy* hierarchy_;
+    ConnectionEnds ends_;
+    OplBand lengths_;
+    TriangleHierarchy::Query query_;
+    double share_asked_ = 0.0;
+    std::vector<Entry> entries_;
+    std::vector<Entry> next_;
+};
+
+}  // namespace renderer

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/film/pass_histogram.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace renderer {
+
+PassHistogram::PassHistogram(const core::HistogramAxes& axes, GateShape gate, int num_channels)
+    : axis_(axes.time),
+      gate_(gate),
+      values_(static_cast<std::size_t>(num_channels) *
+                  static_cast<std::size_t>(axes.time.num_bins) +
+              1),
+      first_touched_(axes.time.num_bins) {
+    if (axes.velocity) velocity_.emplace(*axes.velocity, axes.time.num_bins);
+}
+
+void PassHistogram::add(int channel, const PathExtent& path, double value) {
+    if (!std::isfinite(value) || !std::isfinite(path.opl_m)) {
+        ++num_non_finite_;
+        return;
+    }
+    int bin = 0;
+    const double weight = gate_weight(path.opl_m, bin);
+    add_to_bin(channel, bin, path.velocity_m_per_s, value * weight);
+}
+
+void PassHistogram::add_to_bin(int channel, int bin, double velocity_m_per_s, double value) {
+    if (!std::isfinite(value) || std::isnan(velocity_m_per_s)) {
+        ++num_non_finite_;
+        return;
+    }
+    if (value == 0.0) return;
+    first_touched_ = std::min(first_touched_, bin);
+    last_touched_ = std::max(last_touched_, bin);
+    values_[static_cast<std::size_t>(channel * axis_.num_bins + bin)] += value;
+    if (velocity_) velocity_->add(velocity_m_per_s, bin, value);
+}
+
+void PassHistogram::add(int channel,
+                        std::span<const double> opl_m,
+                        std::span<const double> velocities,
+                        std::span<const double> values) {
+    // Short loops without branches, so that the compiler fills vector units.
+    constexpr double kMost = std::numeric_limits<double>::max();
+    const std::size_t size = values.size();
+    int num_non_finite = 0;
+    for (std::size_t i = 0; i < size; ++i) {
+        num_non_finite += std::abs(values[i]) + std::abs(opl_m[i]) <= kMost ? 0 : 1;
+    }
+    if (gate_ != GateShape::Box || velocity_ || num_non_finite > 0) {
+        for (std::size_t i = 0; i < size; ++i) {
+            add(channel, {opl_m[i], velocity_ ? velocities[i] : 0.0}, values[i]);
+        }
+        return;
+    }
+    // As TimeAxis::bin_of(), all at once; what lies outside the axis goes to one place.
+    std::array<int, kMostAtOnce> places;
+    const double start = axis_.opl_start_m;
+    const double width = axis_.bin_width_m;
+    const int num_bins = axis_.num_bins;
+    const double end = num_bins;
+    for (std::size_t i = 0; i < size; ++i) {
+        double position = (opl_m[i] - start) / width;
+        position = position >= 0.0 ? position : end;
+        position = values[i] != 0.0 ? position : end;
+        places[i] = static_cast<int>(position < end ? position : end);
+    }
+    int lowest = num_bins;
+    int highest = -1;
+    for (std::size_t i = 0; i < size; ++i) {
+        const int bin = places[i];
+        const int inside = bin < num_bins ? bin : -1;
+        lowest = bin < lowest ? bin : lowest;
+        highest = inside > highest ? inside : highest;
+    }
+    const int first = channel * num_bins;
+    const int outside = static_cast<int>(values_.size()) - 1;
+    for (std::size_t i = 0; i < size; ++i) {
+        places[i] = places[i] < num_bins ? first + places[i] : outside;
+    }
+    first_touched_ = std::min(first_touched_, lowest);
+    last_touched_ = std::max(last_touched_, highest);
+    // Neighbours often share a bin, and such additions wait for each other: so four parts in turn.
+    const std::size_t part = size / 4;
+    for (std::size_t i = 0; i < part; ++i) {
+        values_[static_cast<std::size_t>(places[i])] += values[i];
+        values_[static_cast<std::size_t>(places[i + part])] += values[i + part];
+        values_[static_cast<std::size_t>(places[i + 2 * part])] += values[i + 2 * part];
+        values_[static_cast<std::size_t>(places[i + 3 * part])] += values[i + 3 * part];
+    }
+    for (std::size_t i = 4 * part; i < size; ++i) {
+        values_[static_cast<std::size_t>(places[i])] += values[i];
+    }
+}
+
+bool PassHistogram::lets_through(double opl_m) const {
+    int bin = 0;
+    return gate_weight(opl_m, bin) > 1e-17;  // a Gaussian never ends, sums of doubles do
+}
+
+double PassHistogram::gate_weight(double opl_m, int& bin) const {
+    if (gate_ == GateShape::Box) {
+        const std::optional<int> found = axis_.bin_of(opl_m);
+        bin = found.value_or(0);
+        return found ? 1.0 : 0.0;
+    }
+    const double offset = (opl_m - axis_.bin_center_m(0)) / axis_.bin_width_m;
+    if (gate_ == GateShape::Tent) return std::max(0.0, 1.0 - std::abs(offset));
+    return std::exp(-0.5 * offset * offset);
+}
+
+}  // namespace renderer

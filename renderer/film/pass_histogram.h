@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/film/pass_velocity_histogram.h"
+#include "renderer/film/path_extent.h"
+#include "renderer/settings/render_settings.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace renderer {
+
+/// Collects the contributions of one pair during one pass, and remembers which bins it touched.
+///
+/// A channel is a bounce order, or channel 0 holds all of them. With a velocity axis what counts is
+/// collected by path velocity, too.
+class PassHistogram {
+ public:
+    PassHistogram(const core::HistogramAxes& axes, GateShape gate, int num_channels);
+
+    /// Adds a contribution of a path, weighted by the gate.
+    void add(int channel, const PathExtent& path, double value);
+    /// Adds what the gate has weighted already, of a path in a bin.
+    void add_to_bin(int channel, int bin, double velocity_m_per_s, double value);
+    /// Whether a path of this length counts at all.
+    bool admits(double opl_m) const {
+        int bin = 0;
+        return gate_weight(opl_m, bin) > 0.0;
+    }
+    /// Adds many contributions, those of 0 left out.
+    ///
+    /// opl_m, values   one entry per path, at most kMostAtOnce
+    /// velocities      [m/s] likewise; not looked at unless resolves_velocity()
+    void add(int channel,
+             std::span<const double> opl_m,
+             std::span<const double> velocities,
+             std::span<const double> values);
+    static constexpr std::size_t kMostAtOnce = 128;
+    bool resolves_velocity() const { return velocity_.has_value(); }
+    /// What was collected by velocity; only if resolves_velocity().
+    PassVelocityHistogram& velocity() { return *velocity_; }
+    /// Whether a path of this length may count.
+    bool lets_through(double opl_m) const;
+
+    /// Hands over what was collected and clears it, for a range that holds all touched bins: first
+    /// `visit_values(channel * num_bins + first bin, values)` for every channel, then
+    /// `visit_totals(first bin, sums over channels)`; the last arguments are spans.
+    template <class VisitValues, class VisitTotals>
+    void drain(VisitValues&& visit_values, VisitTotals&& visit_totals) {
+        if (last_touched_ < 0) return;
+        const auto num_bins = static_cast<std::size_t>(axis_.num_bins);
+        const auto first = static_cast<std::size_t>(first_touched_);
+        const auto count = static_cast<std::size_t>(last_touched_) - first + 1;
+        const std::span<double> totals{values_.data() + first, count};
+        visit_values(first, std::span<const double>(totals));
+        for (std::size_t begin = num_bins; begin + num_bins < values_.size(); begin += num_bins) {
+            const std::span<double> row{values_.data() + begin + first, count};
+            visit_values(begin + first, std::span<const double>(row));
+            for (std::size_t i = 0; i < count; ++i) totals[i] += row[i];
+            std::fill(row.begin(), row.end(), 0.0);
+        }
+        visit_totals(first, std::span<const double>(totals));
+        std::fill(totals.begin(), totals.end(), 0.0);
+        first_touched_ = axis_.num_bins;
+        last_touched_ = -1;
+    }
+
+    /// Contributions so far that were not finite numbers; they are left out of the bins.
+    std::uint64_t num_non_finite() const { return num_non_finite_; }
+
+ private:
+    /// Bin and weight of a path length; weight 0 when it lies outside.
+    double gate_weight(double opl_m, int& bin) const;
+
+    core::TimeAxis axis_;
+    GateShape gate_;
+    std::vector<double> values_;  ///< [channel][bin], and one for what lies outside the axis
+    int first_touched_;
+    int last_touched_ = -1;
+    std::optional<PassVelocityHistogram> velocity_;
+    std::uint64_t num_non_finite_ = 0;
+};
+
+}  // namespace renderer

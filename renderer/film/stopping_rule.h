@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/film/transient_accumulator.h"
+#include "renderer/settings/render_settings.h"
+
+#include <optional>
+
+namespace renderer {
+
+/// What is known of H before sampling starts.
+struct KnownPart {
+    const core::Transient* transient = nullptr;  ///< to be added to what is sampled; null: nothing
+    double squared_error = 0.0;  ///< of it, and of what is left out [squared L2 norm]
+    double left_out = 0.0;       ///< relative L2 over all of H of orders that are left out
+};
+
+/// Relative L2 error over all of H, from norms over all pairs and bins.
+///
+/// returns   0 when nothing is uncertain, even where there is no signal
+double relative_error(const TransientAccumulator::SquaredNorms& norms, const KnownPart& known);
+
+/// When passes over all pairs have done enough: after a number of them, after some time, or when
+/// the error that their spread tells is below the target. A target needs a few passes at least, so
+/// that the spread can be trusted.
+class StoppingRule {
+ public:
+    /// passes_for_samples   that `samples` asks for; counts when neither time nor target is set
+    StoppingRule(const RenderSettings& settings, int passes_for_samples, const KnownPart& known);
+
+    /// Looks at the sums after a pass.
+    ///
+    /// elapsed_s   since the first pass began
+    /// returns     the share of the work done so far; 1: enough
+    double share_done(int passes, double elapsed_s, const TransientAccumulator& sums);
+
+ private:
+    double share_of_target(int passes, const TransientAccumulator& sums);
+
+    std::optional<double> seconds_;
+    std::optional<double> target_;
+    int passes_for_samples_;
+    KnownPart known_;
+    int next_look_;
+    double predicted_passes_ = 0.0;
+};
+
+}  // namespace renderer

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/core/time_axis.h"
+#include "renderer/settings/render_settings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace renderer {
+
+/// What one bin, or a shaped gate, admits: a weight of the path length with peak 1.
+struct TimeGate {
+    double start_m = 0.0;
+    double width_m = 0.0;
+    GateShape shape = GateShape::Box;
+
+    static TimeGate of_bin(const core::TimeAxis& axis, int bin, GateShape shape) {
+        return {axis.bin_begin_m(bin), axis.bin_width_m, shape};
+    }
+
+    bool operator==(const TimeGate&) const = default;
+
+    double weight(double opl_m) const {
+        if (shape == GateShape::Box) return opl_m >= begin_m() && opl_m < end_m() ? 1.0 : 0.0;
+        const double offset = (opl_m - start_m) / width_m - 0.5;
+        if (shape == GateShape::Tent) return std::max(0.0, 1.0 - std::abs(offset));
+        return std::exp(-0.5 * offset * offset);
+    }
+
+    /// The lengths of positive weight; a Gaussian is cut where it has fallen to rounding.
+    double begin_m() const { return start_m - overhang() * width_m; }
+    double end_m() const { return start_m + (1.0 + overhang()) * width_m; }
+
+ private:
+    double overhang() const {
+        if (shape == GateShape::Box) return 0.0;
+        return shape == GateShape::Tent ? 0.5 : 8.0;
+    }
+};
+
+}  // namespace renderer

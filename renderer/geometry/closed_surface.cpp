@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/geometry/closed_surface.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+
+namespace renderer {
+namespace {
+
+using core::TriangleMesh;
+using core::Vec3;
+
+// Vertices with equal positions are one: files repeat them where normals or textures differ.
+std::vector<std::uint32_t> welded_vertices(const TriangleMesh& mesh) {
+    std::map<std::array<double, 3>, std::uint32_t> first;
+    std::vector<std::uint32_t> welded;
+    for (const Vec3& v : mesh.vertices) {
+        const auto index = static_cast<std::uint32_t>(welded.size());
+        welded.push_back(first.try_emplace({v.x(), v.y(), v.z()}, index).first->second);
+    }
+    return welded;
+}
+
+// Every edge belongs to exactly two facets, which run along it in opposite directions.
+bool is_closed(const TriangleMesh& mesh) {
+    const std::vector<std::uint32_t> welded = welded_vertices(mesh);
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
+    for (const auto& triangle : mesh.triangles) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            edges.emplace_back(welded[triangle[i]], welded[triangle[(i + 1) % 3]]);
+        }
+    }
+    std::sort(edges.begin(), edges.end());
+    if (std::adjacent_find(edges.begin(), edges.end()) != edges.end()) return false;
+    return std::all_of(edges.begin(), edges.end(), [&](const auto& edge) {
+        return std::binary_search(edges.begin(), edges.end(), std::pair(edge.second, edge.first));
+    });
+}
+
+double signed_volume(const TriangleMesh& mesh) {
+    const Vec3& apex = mesh.vertices.front();
+    double volume = 0.0;
+    for (const auto& [a, b, c] : mesh.triangles) {
+        volume +=
+            (mesh.vertices[a] - apex).dot((mesh.vertices[b] - apex).cross(mesh.vertices[c] - apex));
+    }
+    return volume / 6.0;
+}
+
+}  // namespace
+
+int visible_side(const Object& object, const core::Scan& scan) {
+    Eigen::AlignedBox3d box;
+    for (const Vec3& vertex : object.mesh.vertices) box.extend(vertex);
+    const auto inside = [&](const Vec3& point) { return box.contains(point); };
+    if (scan.camera && (inside(scan.camera->position_m) || inside(scan.camera->light_position()))) {
+        return 0;
+    }
+    if (std::any_of(scan.sensing.positions.begin(), scan.sensing.positions.end(), inside) ||
+        std::any_of(
+            scan.illumination.positions.begin(), scan.illumination.positions.end(), inside)) {
+        return 0;
+    }
+    if (!is_closed(object.mesh)) return 0;
+    const double volume = signed_volume(object.mesh);
+    if (volume == 0.0) return 0;
+    return volume > 0.0 ? 1 : -1;
+}
+
+}  // namespace renderer

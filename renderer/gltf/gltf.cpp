@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/gltf/gltf.h"
+
+#include "renderer/core/error.h"
+#include "renderer/core/process.h"
+#include "renderer/gltf/gltf_document.h"
+#include "renderer/gltf/gltf_material.h"
+#include "renderer/gltf/gltf_primitive.h"
+
+#include <fmt/core.h>
+#include <tiny_gltf.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace renderer {
+namespace {
+
+core::Transform node_transform(const tinygltf::Node& node, const std::string& where) {
+    core::Transform parent_from_node = core::Transform::Identity();
+    if (node.matrix.size() == 16) {
+        parent_from_node.matrix() = Eigen::Map<const Eigen::Matrix4d>(node.matrix.data());
+        if (parent_from_node.matrix().row(3) != Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0)) {
+            throw core::Error(where + ".matrix", "is not affine", "its last row must be 0 0 0 1");
+        }
+        return parent_from_node;
+    }
+    if (node.translation.size() == 3) {
+        parent_from_node.translate(Eigen::Map<const core::Vec3>(node.translation.data()));
+    }
+    if (node.rotation.size() == 4) {
+        const auto& r = node.rotation;
+        const Eigen::Quaterniond rotation(r[3], r[0], r[1], r[2]);
+        if (!(std::abs(rotation.norm() - 1.0) < 1e-2)) {
+            throw core::Error(where + ".rotation",
+                              fmt::format("has length {:g}", rotation.norm()),
+                              "must be a unit quaternion x, y, z, w");
+        }
+        parent_from_node.rotate(rotation.normalized());
+    }
+    if (node.scale.size() == 3) {
+        parent_from_node.scale(Eigen::Map<const core::Vec3>(node.scale.data()));
+    }
+    return parent_from_node;
+}
+
+/// Walks the node tree and gathers objects and cameras in world coordinates.
+class SceneReader {
+ public:
+    explicit SceneReader(const GltfDocument& document)
+        : document_(document),
+          model_(*document.model),
+          materials_(document),
+          primitives_(document, materials_) {}
+
+    SceneGeometry read() {
+        const std::vector<Visit> visits = walk_nodes();
+        check_memory(visits);
+        for (const Visit& visit : visits) {
+            const tinygltf::Node& node = model_.nodes[static_cast<std::size_t>(visit.node)];
+            if (node.mesh >= 0) add_objects(visit, node.mesh);
+            if (node.camera >= 0) add_camera(visit, node.camera);
+        }
+        if (geometry_.objects.empty()) {
+            throw core::Error(document_.path, "has no triangles", "must have at least one");
+        }
+        return std::move(geometry_);
+    }
+
+ private:
+    /// A node with its parent's transform and extras until entered, then its own.
+    struct Visit {
+        int node = 0;
+        core::Transform world_from_node = core::Transform::Identity();
+        NlosExtras extras;
+    };
+
+    /// The nodes of the default scene, else of the first one, else all that have no parent.
+    std::vector<int> root_nodes() const {
+        if (!model_.scenes.empty()) {
+            return model_.scenes[static_cast<std::size_t>(std::max(model_.defaultScene, 0))].nodes;
+        }
+        std::vector<bool> is_child(model_.nodes.size(), false);
+        for (const auto& node : model_.nodes) {
+            for (const int child : node.children) is_child[static_cast<std::size_t>(child)] = true;
+        }
+        std::vector<int> roots;
+        for (std::size_t i = 0; i < is_child.size(); ++i) {
+            if (!is_child[i]) roots.push_back(static_cast<int>(i));
+        }
+        return roots;
+    }
+
+    /// All nodes of the scene, parents first, with their place in the world.
+    std::vector<Visit> walk_nodes() const {
+        std::vector<Visit> pending;
+        for (const int root : root_nodes())
+            pending.push_back({root, core::Transform::Identity(), {}});
+        std::reverse(pending.begin(), pending.end());
+        std::vector<Visit> visits;
+        std::vector<bool> visited(model_.nodes.size(), false);
+        while (!pending.empty()) {
+            Visit visit = pending.back();
+            pending.pop_back();
+            const auto index = static_cast<std::size_t>(visit.node);
+            if (visited[index]) {
+                throw core::Error(document_.where(fmt::format("nodes[{}]", index)),
+                                  "is reached twice (a cycle or two parents)",
+                                  "nodes must form trees");
+            }
+            visited[index] = true;
+            enter(visit);
+            const auto& children = model_.nodes[index].children;
+            for (auto child = children.rbegin(); child != children.rend(); ++child) {
+                pending.push_back({*child, visit.world_from_node, visit.extras});
+            }
+            visits.push_back(std::move(visit));
+        }
+        return visits;
+    }
+
+    void enter(Visit& visit) const {
+        const auto index = static_cast<std::size_t>(visit.node);
+        const std::string where = document_.where(fmt::format("nodes[{}]", index));
+        visit.world_from_node = visit.world_from_node * node_transform(model_.nodes[index], where);
+        visit.extras =
+            read_nlos_extras(document_.json["nodes"][index], where).or_else(visit.extras);
+        if (!visit.world_from_node.matrix().allFinite()) {
+            throw core::Error(where, "its transform overflows", "must be finite");
+        }
+    }
+
+    /// Instances can multiply a small file beyond any memory.
+    void check_memory(const std::vector<Visit>& visits) {
+        double bytes = 0.0;
+        for (const Visit& visit : visits) {
+            const int mesh = model_.nodes[static_cast<std::size_t>(visit.node)].mesh;
+            if (mesh < 0) continue;
+            for (const Primitive& primitive : primitives_.read(mesh)) {
+                bytes += static_cast<double>(sizeof(Object) +
+                                             primitive.positions.size() * sizeof(core::Vec3) +
+                                             primitive.uv.size() * sizeof(core::Vec2) +
+                                             primitive.triangles.size() * sizeof(Triangle));
+            }
+        }
+        constexpr double kAlwaysThere = 1e8;  // asking the system takes milliseconds
+        if (bytes < kAlwaysThere) return;
+        const auto available = static_cast<double>(core::available_memory_bytes());
+        if (bytes > available / 2.0) {
+            throw core::Error(
+                document_.path,
+                fmt::format("needs {:.3g} bytes with all its instances", bytes),
+                fmt::format("must fit into half of the {:.3g} free bytes", available));
+        }
+    }
+
+    void add_objects(const Visit& visit, int mesh_index) {
+        const tinygltf::Node& node = model_.nodes[static_cast<std::size_t>(visit.node)];
+        const tinygltf::Mesh& mesh = model_.meshes[static_cast<std::size_t>(mesh_index)];
+        for (const Primitive& primitive : primitives_.read(mesh_index)) {
+            const LoadedMaterial& loaded = materials_.read(primitive.material);
+            const NlosExtras extras = visit.extras.or_else(loaded.extras);
+            Object object;
+            object.name = !node.name.empty()   ? node.name
+                          : !mesh.name.empty() ? mesh.name
+                                               : fmt::format("node{}", visit.node);
+            object.material = loaded.material;
+            if (extras.retroreflective.value_or(false)) {
+                object.material.model = SurfaceModel::Retroreflective;
+            }
+            object.role = extras.role.value_or(Role::Hidden);
+            object.ellipsoidal_exclude = extras.ellipsoidal_exclude.value_or(false);
+            object.velocity_m_per_s = extras.velocity_m_per_s.value_or(core::Vec3::Zero());
+            object.world_from_node = visit.world_from_node;
+            object.uv = primitive.uv;
+            object.mesh = world_mesh(primitive, visit);
+            geometry_.objects.push_back(std::move(object));
+        }
+    }
+
+    core::TriangleMesh world_mesh(const Primitive& primitive, const Visit& visit) const {
+        const std::string where = document_.where(fmt::format("nodes[{}]", visit.node));
+        core::TriangleMesh mesh;
+        mesh.vertices.reserve(primitive.positions.size());
+        for (const core::Vec3& position : primitive.positions) {
+            mesh.vertices.push_back(visit.world_from_node * position);
+            if (!mesh.vertices.back().allFinite()) {
+                throw core::Error(where, "its vertices overflow", "must be finite");
+            }
+        }
+        // A mirroring transform turns front faces over; keeping them in front is glTF's rule.
+        const core::Mat3 linear = visit.world_from_node.linear();
+        const bool mirrored = linear.determinant() < 0.0;
+        for (const auto& [a, b, c] : primitive.triangles) {
+            // Edges are transformed on their own: differences of far world points lose digits.
+            const core::Vec3 ab = linear * (primitive.positions[b] - primitive.positions[a]);
+            const core::Vec3 ac = linear * (primitive.positions[c] - primitive.positions[a]);
+            if (!has_area(ab, ac)) continue;
+            mesh.triangles.push_back(mirrored ? Triangle{a, c, b} : Triangle{a, b, c});
+        }
+        if (mesh.triangles.empty()) {
+            throw core::Error(where, "its mesh has no triangle with an area", "must have one");
+        }
+        return mesh;
+    }
+
+    static bool has_area(const core::Vec3& ab, const core::Vec3& ac) {
+        constexpr double kSmallestAspect = 1e-12;  // far above rounding, far below any real sliver
+        const double longest = std::max({ab.norm(), ac.norm(), (ac - ab).norm()});
+        return longest > 0.0 && (ab / longest).cross(ac / longest).norm() > kSmallestAspect;
+    }
+
+    void add_camera(const Visit& visit, int camera_index) {
+        const tinygltf::Camera& source = model_.cameras[static_cast<std::size_t>(camera_index)];
+        if (source.type != "perspective") return;
+        const tinygltf::Node& node = model_.nodes[static_cast<std::size_t>(visit.node)];
+        const core::Mat3 linear = visit.world_from_node.linear();
+        Camera camera;
+        camera.name = node.name.empty() ? source.name : node.name;
+        camera.position = visit.world_from_node.translation();
+        camera.forward = -linear.col(2).normalized();
+        camera.up =
+            (linear.col(1) - linear.col(1).dot(camera.forward) * camera.forward).normalized();
+        camera.fov_y_rad = source.perspective.yfov;
+        camera.lens_name = source.name;
+        if (!(linear.determinant() != 0.0)) {
+            throw core::Error(document_.where(fmt::format("nodes[{}]", visit.node)),
+                              "its camera's transform is singular",
+                              "must be invertible");
+        }
+        geometry_.cameras.push_back(std::move(camera));
+    }
+
+    const GltfDocument& document_;
+    const tinygltf::Model& model_;
+    MaterialReader materials_;
+    PrimitiveReader primitives_;
+    SceneGeometry geometry_;
+};
+
+}  // namespace
+
+SceneGeometry load_gltf(const std::string& path) {
+    const GltfDocument document = read_gltf_document(path);
+    return SceneReader(document).read();
+}
+
+}  // namespace renderer

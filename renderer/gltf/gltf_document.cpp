@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/gltf/gltf_document.h"
+
+#include <tiny_gltf.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <string_view>
+
+namespace renderer {
+namespace {
+
+constexpr std::size_t kHeaderBytes = 12;
+constexpr std::size_t kChunkHeaderBytes = 8;
+constexpr const char* kAllowed = "must be a whole glTF 2.0 file (.gltf or .glb)";
+
+std::string read_bytes(const std::string& path) {
+    std::error_code ignored;
+    if (std::filesystem::is_directory(path, ignored)) {
+        throw core::Error(path, "is a folder", "must be a readable glTF file (.gltf or .glb)");
+    }
+    std::ifstream file(path, std::ios::binary);
+    if (!file) {
+        throw core::Error(path, "cannot be opened", "must be a readable glTF file (.gltf or .glb)");
+    }
+    std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+    if (bytes.size() > std::numeric_limits<std::uint32_t>::max()) {
+        throw core::Error(path,
+                          "has " + std::to_string(bytes.size()) + " bytes",
+                          "a glTF file must be smaller than 4 GiB");
+    }
+    return bytes;
+}
+
+bool is_binary_gltf(std::string_view bytes) {
+    return bytes.starts_with("glTF");
+}
+
+std::uint32_t little_endian_word(std::string_view bytes, std::size_t offset) {
+    std::uint32_t word = 0;
+    for (std::size_t i = 4; i-- > 0;) {
+        word = (word << 8) | static_cast<unsigned char>(bytes[offset + i]);
+    }
+    return word;
+}
+
+/// The JSON chunk of a .glb. Checks every chunk's extent itself: tinygltf 2.7 forgets a chunk's
+/// header when it compares the length, and reads up to eight bytes past a truncated file.
+std::string_view find_json_chunk(std::string_view bytes, const std::string& path) {
+    const auto cut_short = [&](std::size_t needed) {
+        return core::Error(path,
+                           "is cut short (" + std::to_string(bytes.size()) + " of " +
+                               std::to_string(needed) + " bytes)",
+                           kAllowed);
+    };
+    if (bytes.size() < kHeaderBytes) throw cut_short(kHeaderBytes);
+    if (const std::uint32_t version = little_endian_word(bytes, 4); version != 2) {
+        throw core::Error(path, "is binary glTF version " + std::to_string(version), kAllowed);
+    }
+    const std::size_t length = little_endian_word(bytes, 8);
+    if (length > bytes.size()) throw cut_short(length);
+
+    std::string_view json;
+    for (std::size_t at = kHeaderBytes, chunk = 0; at < length; ++chunk) {
+        if (length - at < kChunkHeaderBytes ||
+            little_endian_word(bytes, at) > length - at - kChunkHeaderBytes) {
+            throw core::Error(path,
+                              "chunk " + std::to_string(chunk) + " runs past the end of the file",
+                              kAllowed);
+        }
+        const std::size_t chunk_bytes = little_endian_word(bytes, at);
+        if (chunk == 0 && bytes.substr(at + 4, 4) == "JSON") {
+            json = bytes.substr(at + kChunkHeaderBytes, chunk_bytes);
+        }
+        at += kChunkHeaderBytes + chunk_bytes;
+    }
+    if (json.empty()) throw core::Error(path, "has no JSON chunk", kAllowed);
+    return json;
+}
+
+/// Parses with a bound on the nesting, since tinygltf recurses into extras and extensions.
+core::Json parse_json(std::string_view text, const std::string& path) {
+    constexpr int kDeepestNesting = 64;
+    const auto check_depth = [&](int depth, core::Json::parse_event_t, core::Json&) {
+        if (depth > kDeepestNesting) {
+            throw core::Error(path,
+                              "its JSON is nested deeper than " + std::to_string(kDeepestNesting),
+                              "must be nested less");
+        }
+        return true;
+    };
+    try {
+        return core::Json::parse(text, check_depth);
+    } catch (const core::Json::parse_error& error) {
+        throw core::Error(
+            path, "is not valid JSON near byte " + std::to_string(error.byte), kAllowed);
+    } catch (const core::Json::exception&) {
+        throw core::Error(path, "has a number that is out of range", kAllowed);
+    }
+}
+
+/// Keeps an image as the bytes it came in; only textures that are used get decoded.
+bool keep_image_bytes(tinygltf::Image* image,
+                      const int /*index*/,
+                      std::string* /*error*/,
+                      std::string* /*warning*/,
+                      int /*width*/,
+                      int /*height*/,
+                      const unsigned char* bytes,
+                      int num_bytes,
+                      void* /*user_data*/) {
+    image->image.assign(bytes, bytes + num_bytes);
+    image->as_is = true;
+    return true;
+}
+
+/// The first line of a message of tinygltf, shortened: it may quote whole data URIs.
+std::string first_line(const std::string& message) {
+    constexpr std::size_t kLongest = 160;
+    std::string line = message.substr(0, message.find('\n'));
+    if (line.size() > kLongest) line = line.substr(0, kLongest) + "...";
+    std::replace_if(
+        line.begin(), line.end(), [](unsigned char c) { return c < ' '; }, ' ');
+    return line;
+}
+
+std::shared_ptr<const tinygltf::Model> load_model(const std::string& bytes,
+                                                  const std::string& path) {
+    auto model = std::make_shared<tinygltf::Model>();
+    tinygltf::TinyGLTF loader;
+    loader.SetImageLoader(&keep_image_bytes, nullptr);
+    const std::string folder = std::filesystem::path(path).parent_path().string();
+    const auto num_bytes = static_cast<unsigned int>(bytes.size());
+    std::string error;
+    std::string warning;
+    bool loaded = false;
+    try {
+        loaded =
+            is_binary_gltf(bytes)
+                ? loader.LoadBinaryFromMemory(model.get(),
+                                              &error,
+                                              &warning,
+                                              reinterpret_cast<const unsigned char*>(bytes.data()),
+                                              num_bytes,
+                                              folder)
+                : loader.LoadASCIIFromString(
+                      model.get(), &error, &warning, bytes.data(), num_bytes, folder);
+    } catch (const std::exception& exception) {
+        error = exception.what();
+    }
+    if (!loaded || !error.empty()) {
+        throw core::Error(path, "cannot be read (" + first_line(error) + ")", kAllowed);
+    }
+    return model;
+}
+
+}  // namespace
+
+GltfDocument read_gltf_document(const std::string& path) {
+    const std::string bytes = read_bytes(path);
+    GltfDocument document;
+    document.path = path;
+    document.json = parse_json(is_binary_gltf(bytes) ? find_json_chunk(bytes, path) : bytes, path);
+    check_gltf_json(document.json, path);
+    document.model = load_model(bytes, path);
+    return document;
+}
+
+}  // namespace renderer

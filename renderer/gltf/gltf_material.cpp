@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/gltf/gltf_material.h"
+
+#include "renderer/core/error.h"
+
+#include <fmt/core.h>
+#include <tiny_gltf.h>
+
+#include <array>
+#include <cstring>
+
+namespace renderer {
+namespace {
+
+TextureWrap wrap_from_gltf(int wrap, const std::string& where) {
+    switch (wrap) {
+        case TINYGLTF_TEXTURE_WRAP_REPEAT:
+            return TextureWrap::Repeat;
+        case TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE:
+            return TextureWrap::ClampToEdge;
+        case TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT:
+            return TextureWrap::MirroredRepeat;
+        default:
+            throw core::Error(
+                where, fmt::format("found wrap mode {}", wrap), "must be 10497, 33071 or 33648");
+    }
+}
+
+/// Decodes an image that was kept as bytes. Throws Error when there is none or it is broken.
+tinygltf::Image decode_image(const GltfDocument& document, int index) {
+    const std::string where = document.where(fmt::format("images[{}]", index));
+    const tinygltf::Image& source = document.model->images[static_cast<std::size_t>(index)];
+    if (source.image.empty()) {
+        throw core::Error(where,
+                          "'" + source.uri + "' cannot be read",
+                          "must be a PNG or JPEG file beside the glTF file");
+    }
+    tinygltf::Image image;
+    std::string error;
+    std::string warning;
+    const bool decoded = tinygltf::LoadImageData(&image,
+                                                 index,
+                                                 &error,
+                                                 &warning,
+                                                 0,
+                                                 0,
+                                                 source.image.data(),
+                                                 static_cast<int>(source.image.size()),
+                                                 nullptr);
+    if (!decoded) throw core::Error(where, "cannot be decoded", "must be a PNG or JPEG image");
+    return image;
+}
+
+/// One stored channel in [0, 1], still sRGB-encoded.
+double encoded_channel(const tinygltf::Image& image, std::size_t index) {
+    if (image.bits != 16) return image.image[index] / 255.0;
+    std::uint16_t value = 0;
+    std::memcpy(&value, image.image.data() + 2 * index, sizeof(value));
+    return value / 65535.0;
+}
+
+/// The base colour's mean over red, green and blue, relative to that of the factor alone: a grey
+/// texture that multiplies the albedo and keeps coloured factors on coloured textures exact.
+std::shared_ptr<const Texture> read_texture(const GltfDocument& document,
+                                            const tinygltf::TextureInfo& info,
+                                            const std::array<double, 3>& factor) {
+    const auto texture_index = static_cast<std::size_t>(info.index);
+    const tinygltf::Texture& source = document.model->textures[texture_index];
+    if (source.source < 0) {
+        throw core::Error(document.where(fmt::format("textures[{}]", texture_index)),
+                          "has no source",
+                          "must name an image (PNG or JPEG)");
+    }
+    const tinygltf::Image image = decode_image(document, source.source);
+
+    auto texture = std::make_shared<Texture>();
+    texture->width = image.width;
+    texture->height = image.height;
+    if (source.sampler >= 0) {
+        const auto& sampler = document.model->samplers[static_cast<std::size_t>(source.sampler)];
+        const std::string where = document.where(fmt::format("samplers[{}]", source.sampler));
+        texture->wrap_u = wrap_from_gltf(sampler.wrapS, where);
+        texture->wrap_v = wrap_from_gltf(sampler.wrapT, where);
+    }
+    const auto num_texels =
+        static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+    const auto num_channels = static_cast<std::size_t>(image.component);
+    const double factor_sum = factor[0] + factor[1] + factor[2];
+    texture->luminance.resize(num_texels);
+    for (std::size_t i = 0; i < num_texels; ++i) {
+        double sum = 0.0;
+        for (std::size_t c = 0; c < 3; ++c) {
+            sum += factor[c] * linear_from_srgb(encoded_channel(image, i * num_channels + c));
+        }
+        texture->luminance[i] = static_cast<float>(factor_sum > 0.0 ? sum / factor_sum : 0.0);
+    }
+    return texture;
+}
+
+LoadedMaterial read_material(const GltfDocument& document, int index) {
+    const tinygltf::Material& source = document.model->materials[static_cast<std::size_t>(index)];
+    const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
+    const std::array<double, 3> factor{
+        pbr.baseColorFactor[0], pbr.baseColorFactor[1], pbr.baseColorFactor[2]};
+
+    LoadedMaterial loaded;
+    loaded.material.name = source.name;
+    loaded.material.model = pbr.metallicFactor > 0.0 ? SurfaceModel::Ggx : SurfaceModel::Lambertian;
+    // The mean, written so that equal components keep their value to the last bit.
+    loaded.material.albedo = factor[0] + ((factor[1] - factor[0]) + (factor[2] - factor[0])) / 3.0;
+    loaded.material.roughness = pbr.roughnessFactor;
+    if (pbr.baseColorTexture.index >= 0) {
+        loaded.material.albedo_texture = read_texture(document, pbr.baseColorTexture, factor);
+        loaded.texture_coordinate_set = pbr.baseColorTexture.texCoord;
+    }
+    loaded.extras = read_nlos_extras(document.json["materials"][static_cast<std::size_t>(index)],
+                                     document.where(fmt::format("materials[{}]", index)));
+    return loaded;
+}
+
+}  // namespace
+
+NlosExtras NlosExtras::or_else(const NlosExtras& fallback) const {
+    NlosExtras merged = *this;
+    if (!merged.role) merged.role = fallback.role;
+    if (!merged.ellipsoidal_exclude) merged.ellipsoidal_exclude = fallback.ellipsoidal_exclude;
+    if (!merged.velocity_m_per_s) merged.velocity_m_per_s = fallback.velocity_m_per_s;
+    if (!merged.retroreflective) merged.retroreflective = fallback.retroreflective;
+    return merged;
+}
+
+NlosExtras read_nlos_extras(const core::Json& owner, const std::string& where) {
+    core::Json ours = core::Json::object();
+    if (const auto extras = owner.find("extras"); extras != owner.end() && extras->is_object()) {
+        for (const auto& [key, value] : extras->items()) {
+            if (key.starts_with("nlos_")) ours[key] = value;
+        }
+    }
+    NlosExtras result;
+    core::read_value(ours, where + ".extras", result);
+    return result;
+}
+
+const LoadedMaterial& MaterialReader::read(int index) {
+    const auto found = loaded_.find(index);
+    if (found != loaded_.end()) return found->second;
+    return loaded_.emplace(index, index < 0 ? LoadedMaterial{} : read_material(document_, index))
+        .first->second;
+}
+
+}  // namespace renderer

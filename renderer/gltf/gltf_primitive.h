@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/core/types.h"
+#include "renderer/gltf/gltf_document.h"
+#include "renderer/gltf/gltf_material.h"
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace tinygltf {
+struct Primitive;
+}
+
+namespace renderer {
+
+using Triangle = std::array<std::uint32_t, 3>;
+
+/// Triangles of one material in node coordinates, with the vertices that they use.
+struct Primitive {
+    std::vector<core::Vec3> positions;
+    std::vector<core::Vec2> uv;  ///< per vertex; empty when there are none
+    std::vector<Triangle> triangles;
+    int material = -1;  ///< -1: none
+};
+
+/// Reads meshes, each once.
+class PrimitiveReader {
+ public:
+    PrimitiveReader(const GltfDocument& document, MaterialReader& materials)
+        : document_(document), materials_(materials) {}
+
+    /// The triangles of a mesh: lists, strips and fans; points and lines are left out.
+    ///
+    /// mesh_index   an existing mesh
+    /// throws       core::Error naming the part whose data are wrong
+    const std::vector<Primitive>& read(int mesh_index);
+
+ private:
+    Primitive read_primitive(const tinygltf::Primitive& source, const std::string& where);
+    void read_uv(const tinygltf::Primitive& source, const std::string& where, Primitive& primitive);
+
+    const GltfDocument& document_;
+    MaterialReader& materials_;
+    std::map<int, std::vector<Primitive>> loaded_;
+};
+
+}  // namespace renderer

@@ -1,0 +1,309 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/core/error.h"
+#include "renderer/core/output_file.h"
+#include "renderer/gltf/gltf.h"
+
+#include <fmt/core.h>
+#include <tiny_gltf.h>
+
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <limits>
+#include <map>
+
+namespace renderer {
+namespace {
+
+tinygltf::Value number_list(const core::Vec3& v) {
+    tinygltf::Value::Array list;
+    for (const double x : v) list.emplace_back(x);
+    return tinygltf::Value(std::move(list));
+}
+
+/// Collects objects and cameras into a glTF model with one binary buffer.
+class ModelBuilder {
+ public:
+    explicit ModelBuilder(const std::string& path) : path_(path) {
+        model_.asset.version = "2.0";
+        model_.asset.generator = "nlos";
+        model_.scenes.emplace_back();
+        model_.defaultScene = 0;
+        model_.buffers.emplace_back();
+    }
+
+    void add(const Object& object) {
+        if (object.mesh.triangles.empty()) fail(object, "has no triangles", "must have one");
+        tinygltf::Node node;
+        node.name = object.name;
+        set_transform(object.world_from_node, node);
+        node.mesh = add_mesh(object);
+        node.extras = node_extras(object);
+        add_node(std::move(node));
+    }
+
+    void add(const Camera& camera) {
+        tinygltf::Camera target;
+        target.name = camera.name;
+        target.type = "perspective";
+        target.perspective.yfov = camera.fov_y_rad;
+        target.perspective.znear = 0.01;  // glTF wants clipping planes; nothing here uses them
+        target.perspective.zfar = 1000.0;
+        model_.cameras.push_back(std::move(target));
+
+        core::Transform world_from_camera = core::Transform::Identity();
+        world_from_camera.translation() = camera.position;
+        world_from_camera.linear().col(0) = camera.forward.cross(camera.up);
+        world_from_camera.linear().col(1) = camera.up;
+        world_from_camera.linear().col(2) = -camera.forward;
+        tinygltf::Node node;
+        node.name = camera.name;
+        node.camera = static_cast<int>(model_.cameras.size()) - 1;
+        set_transform(world_from_camera, node);
+        add_node(std::move(node));
+    }
+
+    const tinygltf::Model& finish() {
+        if (model_.buffers[0].data.size() > std::numeric_limits<std::int32_t>::max()) {
+            throw core::Error(path_,
+                              fmt::format("needs {} bytes", model_.buffers[0].data.size()),
+                              "a .glb file of ours holds less than 2 GiB");
+        }
+        return model_;
+    }
+
+ private:
+    [[noreturn]] void fail(const Object& object,
+                           const std::string& found,
+                           const std::string& allowed) const {
+        throw core::Error(path_ + ": object " + object.name, found, allowed);
+    }
+
+    void add_node(tinygltf::Node node) {
+        model_.scenes[0].nodes.push_back(static_cast<int>(model_.nodes.size()));
+        model_.nodes.push_back(std::move(node));
+    }
+
+    static void set_transform(const core::Transform& world_from_node, tinygltf::Node& node) {
+        if (world_from_node.linear() != core::Mat3::Identity()) {
+            const double* first = world_from_node.matrix().data();
+            node.matrix.assign(first, first + 16);
+        } else if (!world_from_node.translation().isZero(0.0)) {
+            const double* first = world_from_node.matrix().col(3).data();
+            node.translation.assign(first, first + 3);
+        }
+    }
+
+    static tinygltf::Value node_extras(const Object& object) {
+        tinygltf::Value::Object extras;
+        if (object.role != Role::Hidden) {
+            extras.emplace("nlos_role", tinygltf::Value(std::string(core::enum_name(object.role))));
+        }
+        if (object.ellipsoidal_exclude) {
+            extras.emplace("nlos_ellipsoidal_exclude", tinygltf::Value(true));
+        }
+        if (!object.velocity_m_per_s.isZero(0.0)) {
+            extras.emplace("nlos_velocity_m_per_s", number_list(object.velocity_m_per_s));
+        }
+        if (object.material.model == SurfaceModel::Retroreflective) {
+            extras.emplace("nlos_retroreflective", tinygltf::Value(true));
+        }
+        return extras.empty() ? tinygltf::Value() : tinygltf::Value(std::move(extras));
+    }
+
+    int add_mesh(const Object& object) {
+        tinygltf::Primitive primitive;
+        primitive.mode = TINYGLTF_MODE_TRIANGLES;
+        primitive.material = add_material(object);
+        primitive.attributes["POSITION"] = add_positions(object);
+        if (!object.uv.empty()) primitive.attributes["TEXCOORD_0"] = add_uv(object);
+        primitive.indices = add_indices(object.mesh);
+        tinygltf::Mesh mesh;
+        mesh.name = object.name;
+        mesh.primitives.push_back(std::move(primitive));
+        model_.meshes.push_back(std::move(mesh));
+        return static_cast<int>(model_.meshes.size()) - 1;
+    }
+
+    int add_material(const Object& object) {
+        const Material& material = object.material;
+        const auto is_fraction = [](double value) { return value >= 0.0 && value <= 1.0; };
+        if (!is_fraction(material.albedo) || !is_fraction(material.roughness)) {
+            fail(object,
+                 fmt::format("has albedo {} and roughness {}", material.albedo, material.roughness),
+                 "must be from 0 to 1");
+        }
+        tinygltf::Material target;
+        target.name = material.name;
+        auto& pbr = target.pbrMetallicRoughness;
+        pbr.baseColorFactor = {material.albedo, material.albedo, material.albedo, 1.0};
+        pbr.metallicFactor = material.model == SurfaceModel::Ggx ? 1.0 : 0.0;
+        pbr.roughnessFactor = material.roughness;
+        if (material.albedo_texture) {
+            if (object.uv.empty()) {
+                fail(object, "has a texture and no texture coordinates", "needs both");
+            }
+            pbr.baseColorTexture.index = add_texture(material.albedo_texture.get());
+        }
+        model_.materials.push_back(std::move(target));
+        return static_cast<int>(model_.materials.size()) - 1;
+    }
+
+    int add_texture(const Texture* texture) {
+        const auto found = textures_.find(texture);
+        if (found != textures_.end()) return found->second;
+        tinygltf::Image image;
+        image.mimeType = "image/png";
+        image.width = texture->width;
+        image.height = texture->height;
+        image.component = 1;
+        image.bits = 8;
+        image.pixel_type = TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE;
+        for (const float value : texture->luminance) {
+            const double encoded = srgb_from_linear(static_cast<double>(value));
+            image.image.push_back(static_cast<unsigned char>(std::lround(255.0 * encoded)));
+        }
+        tinygltf::Sampler sampler;
+        sampler.wrapS = gltf_wrap(texture->wrap_u);
+        sampler.wrapT = gltf_wrap(texture->wrap_v);
+        tinygltf::Texture target;
+        target.source = static_cast<int>(model_.images.size());
+        target.sampler = static_cast<int>(model_.samplers.size());
+        model_.images.push_back(std::move(image));
+        model_.samplers.push_back(sampler);
+        model_.textures.push_back(target);
+        const int index = static_cast<int>(model_.textures.size()) - 1;
+        textures_.emplace(texture, index);
+        return index;
+    }
+
+    static int gltf_wrap(TextureWrap wrap) {
+        switch (wrap) {
+            case TextureWrap::ClampToEdge:
+                return TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
+            case TextureWrap::MirroredRepeat:
+                return TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT;
+            case TextureWrap::Repeat:
+                break;
+        }
+        return TINYGLTF_TEXTURE_WRAP_REPEAT;
+    }
+
+    int add_positions(const Object& object) {
+        const core::Transform node_from_world = object.world_from_node.inverse();
+        std::vector<float> values;
+        core::Vec3 low = core::Vec3::Constant(std::numeric_limits<double>::infinity());
+        core::Vec3 high = -low;
+        for (const core::Vec3& vertex : object.mesh.vertices) {
+            const Eigen::Vector3f position = (node_from_world * vertex).cast<float>();
+            if (!position.allFinite()) {
+                fail(object,
+                     "has a vertex or transform that cannot be stored",
+                     "vertices must be finite floats in the node's frame");
+            }
+            values.insert(values.end(), position.begin(), position.end());
+            low = low.cwiseMin(position.cast<double>());
+            high = high.cwiseMax(position.cast<double>());
+        }
+        const int index = add_accessor(values,
+                                       TINYGLTF_COMPONENT_TYPE_FLOAT,
+                                       TINYGLTF_TYPE_VEC3,
+                                       TINYGLTF_TARGET_ARRAY_BUFFER);
+        model_.accessors.back().minValues.assign(low.begin(), low.end());
+        model_.accessors.back().maxValues.assign(high.begin(), high.end());
+        return index;
+    }
+
+    int add_uv(const Object& object) {
+        if (object.uv.size() != object.mesh.vertices.size()) {
+            fail(object,
+                 fmt::format("has {} vertices and {} texture coordinates",
+                             object.mesh.vertices.size(),
+                             object.uv.size()),
+                 "must be as many");
+        }
+        std::vector<float> values;
+        for (const core::Vec2& uv : object.uv) {
+            values.push_back(static_cast<float>(uv.x()));
+            values.push_back(static_cast<float>(uv.y()));
+        }
+        return add_accessor(values,
+                            TINYGLTF_COMPONENT_TYPE_FLOAT,
+                            TINYGLTF_TYPE_VEC2,
+                            TINYGLTF_TARGET_ARRAY_BUFFER);
+    }
+
+    int add_indices(const core::TriangleMesh& mesh) {
+        // The largest value of a type is reserved (primitive restart, [glTF2] 3.7.2.1).
+        if (mesh.vertices.size() < std::numeric_limits<std::uint16_t>::max()) {
+            std::vector<std::uint16_t> values;
+            for (const auto& triangle : mesh.triangles) {
+                for (const std::uint32_t v : triangle) {
+                    values.push_back(static_cast<std::uint16_t>(v));
+                }
+            }
+            return add_accessor(values,
+                                TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT,
+                                TINYGLTF_TYPE_SCALAR,
+                                TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
+        }
+        std::vector<std::uint32_t> values;
+        for (const auto& triangle : mesh.triangles) {
+            values.insert(values.end(), triangle.begin(), triangle.end());
+        }
+        return add_accessor(values,
+                            TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT,
+                            TINYGLTF_TYPE_SCALAR,
+                            TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
+    }
+
+    /// Appends values to the buffer, on a 4-byte boundary, with a view and an accessor of their
+    /// own.
+    template <class T>
+    int add_accessor(const std::vector<T>& values, int component_type, int type, int target) {
+        std::vector<unsigned char>& bytes = model_.buffers[0].data;
+        bytes.resize((bytes.size() + 3) / 4 * 4);
+        tinygltf::BufferView view;
+        view.buffer = 0;
+        view.byteOffset = bytes.size();
+        view.byteLength = values.size() * sizeof(T);
+        view.target = target;
+        bytes.resize(bytes.size() + view.byteLength);
+        std::memcpy(bytes.data() + view.byteOffset, values.data(), view.byteLength);
+
+        tinygltf::Accessor accessor;
+        accessor.bufferView = static_cast<int>(model_.bufferViews.size());
+        accessor.componentType = component_type;
+        accessor.type = type;
+        accessor.count =
+            values.size() /
+            static_cast<std::size_t>(tinygltf::GetNumComponentsInType(static_cast<uint32_t>(type)));
+        model_.bufferViews.push_back(std::move(view));
+        model_.accessors.push_back(std::move(accessor));
+        return static_cast<int>(model_.accessors.size()) - 1;
+    }
+
+    const std::string& path_;
+    tinygltf::Model model_;
+    std::map<const Texture*, int> textures_;
+};
+
+}  // namespace
+
+void write_gltf(const std::string& path, const SceneGeometry& geometry) {
+    if (geometry.objects.empty()) throw core::Error(path, "no objects to write", "needs one");
+    ModelBuilder builder(path);
+    for (const Object& object : geometry.objects) builder.add(object);
+    for (const Camera& camera : geometry.cameras) builder.add(camera);
+
+    core::OutputFile output(path);
+    std::ofstream stream(output.temporary(), std::ios::binary);
+    tinygltf::TinyGLTF writer;
+    writer.WriteGltfSceneToStream(
+        &builder.finish(), stream, /*prettyPrint=*/false, /*writeBinary=*/true);
+    stream.close();
+    if (!stream) throw core::Failure(path, "cannot be written (disk full?)");
+    output.commit();
+}
+
+}  // namespace renderer

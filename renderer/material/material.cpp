@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/material/material.h"
+
+namespace renderer {
+
+// Narrower GGX lobes are left to Monte Carlo.
+constexpr double kSmallestGlossyAlpha = 0.03;
+
+bool is_integrable(const Material& material) {
+    return material.model != SurfaceModel::Ggx ||
+           material.roughness * material.roughness >= kSmallestGlossyAlpha;
+}
+
+}  // namespace renderer

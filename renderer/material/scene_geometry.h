@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/core/mesh.h"
+#include "renderer/core/settings.h"
+#include "renderer/core/types.h"
+#include "renderer/material/material.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace renderer {
+
+/// What a surface is to the measurement.
+enum class Role { Hidden, RelayWall, BackWall };
+
+/// Triangles of one material that move as one.
+struct Object {
+    std::string name;  ///< of the glTF node; several objects share it when a node has several
+    core::TriangleMesh mesh;     ///< world coordinates; no triangle without area
+    std::vector<core::Vec2> uv;  ///< texture coordinate per vertex; empty when there are none
+    Material material;
+    Role role = Role::Hidden;
+    bool ellipsoidal_exclude = false;  ///< left out of the ellipsoidal connection technique
+    core::Vec3 velocity_m_per_s = core::Vec3::Zero();  ///< world
+    core::Transform world_from_node =
+        core::Transform::Identity();  ///< where the node put it; translation() is its origin
+};
+
+/// A pinhole camera.
+struct Camera {
+    std::string name;                           ///< of the glTF node, else of the camera
+    core::Vec3 position = core::Vec3::Zero();   ///< [m, world]
+    core::Vec3 forward = -core::Vec3::UnitZ();  ///< unit
+    core::Vec3 up = core::Vec3::UnitY();        ///< unit, perpendicular to forward
+    double fov_y_rad = 0.0;                     ///< full vertical angle of view
+    std::string lens_name;                      ///< of the glTF camera, which nodes may share
+};
+
+/// What a glTF file holds, flattened to world coordinates.
+struct SceneGeometry {
+    std::vector<Object> objects;  ///< an instanced mesh appears once per instance
+    std::vector<Camera> cameras;  ///< perspective ones
+};
+
+}  // namespace renderer
+
+template <>
+struct core::EnumNames<renderer::Role> {
+    static constexpr std::array<std::pair<renderer::Role, std::string_view>, 3> value{
+        {{renderer::Role::Hidden, "hidden"},
+         {renderer::Role::RelayWall, "relay_wall"},
+         {renderer::Role::BackWall, "back_wall"}}};
+};

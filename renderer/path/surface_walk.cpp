@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/path/surface_walk.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace renderer {
+namespace {
+
+using core::kPi;
+using core::Vec3;
+
+// Share of vertices drawn from the hidden area. Seen from the wall, hidden objects are small and
+// most BSDF samples miss; between surfaces BSDF samples follow the lobes and nearby surfaces.
+constexpr double kAreaShareFromWall = 0.75;
+constexpr double kAreaShareBetweenSurfaces = 0.25;
+
+// Paths are always continued up to this order; above it Russian roulette may end them.
+constexpr int kFirstRouletteOrder = 5;
+constexpr double kLeastSurvival = 0.1;
+
+// Steps within the plane of a surface, up to rounding. On which side of it they lie would be
+// chance, and differ between a lobe and its density.
+constexpr double kLeastCosine = 1e-12;
+
+}  // namespace
+
+double SurfaceWalk::evaluate(const PathVertex& vertex, const Vec3& outgoing) const {
+    if (const auto* lambertian = std::get_if<Lambertian>(&vertex.bsdf)) {
+        const bool same_side =
+            vertex.normal.dot(vertex.to_previous) * vertex.normal.dot(outgoing) > 0.0;
+        return same_side ? lambertian->albedo / kPi : 0.0;
+    }
+    const core::Mat3 facet_from_world =
+        scene_->facet(vertex.point.facet).world_from_facet().transpose();
+    return evaluate_bsdf(
+        vertex.bsdf, facet_from_world * vertex.to_previous, facet_from_world * outgoing);
+}
+
+double SurfaceWalk::connection_value(const PathVertex& vertex, const PathEnds& ends) const {
+    if (const auto* retro = std::get_if<Retroreflective>(&vertex.bsdf)) {
+        if (!ends.coincide || vertex.order != 3) return 0.0;
+        return vertex.throughput * retro->albedo / laser_spot_m2_ * ends.light.strength;
+    }
+    const Vec3 offset = ends.light.position - vertex.point.position;
+    const double distance2 = offset.squaredNorm();
+    const Vec3 direction = offset / std::sqrt(distance2);
+    return vertex.throughput * evaluate(vertex, direction) *
+           std::abs(vertex.normal.dot(direction)) * ends.light.factor(-direction) / distance2;
+}
+
+PathExtent SurfaceWalk::extent_to_light(const PathVertex& vertex, const PathEnds& ends) const {
+    PathExtent extent = vertex.extent;
+    extent.add_segment(ends.light.position - vertex.point.position,
+                       scene_->velocity_m_per_s(vertex.point.facet),
+                       ends.light.velocity_m_per_s);
+    extent.opl_m += ends.device_legs_m;
+    return extent;
+}
+
+bool SurfaceWalk::survives(PathVertex& vertex, core::Rng& rng) const {
+    if (vertex.order < kFirstRouletteOrder) return true;
+    const double survival = std::clamp(albedo_of(vertex.bsdf), kLeastSurvival, 1.0);
+    if (rng.uniform() >= survival) return false;
+    vertex.throughput /= survival;
+    return true;
+}
+
+std::optional<SurfaceWalk::Step> SurfaceWalk::step_to(const PathVertex& vertex,
+                                                      const SurfacePoint& next) const {
+    const Vec3 offset = next.position - vertex.point.position;
+    const double distance2 = offset.squaredNorm();
+    if (!(distance2 > 0.0)) return std::nullopt;
+    Step step;
+    step.distance_m = std::sqrt(distance2);
+    step.direction = offset / step.distance_m;
+    const double cosine = std::abs(vertex.normal.dot(step.direction));
+    const double next_cosine = std::abs(scene_->facet(next.facet).normal.dot(step.direction));
+    if (cosine < kLeastCosine || next_cosine < kLeastCosine) return std::nullopt;
+    const double per_area = next_cosine / distance2;
+    step.transport = evaluate(vertex, step.direction) * cosine * per_area;
+    if (!(step.transport > 0.0)) return std::nullopt;
+
+    const core::Mat3 facet_from_world =
+        scene_->facet(vertex.point.facet).world_from_facet().transpose();
+    const double pdf_direction = pdf_bsdf(
+        vertex.bsdf, facet_from_world * vertex.to_previous, facet_from_world * step.direction);
+    const double area_share =
+        scene_->is_hidden(vertex.point.facet) ? kAreaShareBetweenSurfaces : kAreaShareFromWall;
+    const double area_pdf = scene_->is_hidden(next.facet) ? area_sampler_.pdf_area() : 0.0;
+    step.pdf_area = area_share * area_pdf + (1.0 - area_share) * pdf_direction * per_area;
+    return step;
+}
+
+std::optional<double> SurfaceWalk::draw_next(PathVertex& vertex,
+                                             core::Rng& rng,
+                                             std::uint64_t& num_rays) const {
+    const double area_share =
+        scene_->is_hidden(vertex.point.facet) ? kAreaShareBetweenSurfaces : kAreaShareFromWall;
+    SurfacePoint next;
+    const bool from_area = rng.uniform() < area_share;
+    if (from_area) {
+        const double u1 = rng.uniform();
+        next = area_sampler_.sample(u1, rng.uniform());
+    } else {
+        const core::Mat3 world_from_facet = scene_->facet(vertex.point.facet).world_from_facet();
+        const double u1 = rng.uniform();
+        const auto local = sample_bsdf(
+            vertex.bsdf, world_from_facet.transpose() * vertex.to_previous, {u1, rng.uniform()});
+        if (!local) return std::nullopt;
+        ++num_rays;
+        const auto hit =
+            scene_->first_hit(vertex.point.position, vertex.normal, world_from_facet * *local);
+        if (!hit) return std::nullopt;
+        next = *hit;
+    }
+    const auto step = step_to(vertex, next);
+    if (!step) return std::nullopt;
+    if (from_area) {
+        ++num_rays;
+        if (scene_->rays().is_blocked(vertex.point.position,
+                                      vertex.normal,
+                                      next.position,
+                                      scene_->facet(next.facet).normal)) {
+            return std::nullopt;
+        }
+    }
+    vertex = advance(vertex, next, *step, step->pdf_area);
+    return step->pdf_area;
+}
+
+PathVertex SurfaceWalk::advance(const PathVertex& vertex,
+                                const SurfacePoint& next,
+                                const Step& step,
+                                double pdf_area) const {
+    PathVertex advanced;
+    advanced.point = next;
+    advanced.normal = scene_->facet(next.facet).normal;
+    advanced.to_previous = -step.direction;
+    advanced.bsdf = scene_->bsdf_at(next);
+    advanced.throughput = vertex.throughput * step.transport / pdf_area;
+    advanced.extent.opl_m = vertex.extent.opl_m + step.distance_m;
+    advanced.extent.velocity_m_per_s =
+        vertex.extent.velocity_m_per_s +
+        step.direction.dot(scene_->velocity_m_per_s(next.facet) -
+                           scene_->velocity_m_per_s(vertex.point.facet));
+    advanced.order = vertex.order + 1;
+    return advanced;
+}
+
+}  // namespace renderer

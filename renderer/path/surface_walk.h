@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/core/random.h"
+#include "renderer/path/light_path.h"
+#include "renderer/scene/area_sampler.h"
+
+#include <optional>
+
+namespace renderer {
+
+/// How paths go on from surface vertices, and what they carry to the light: shared by the
+/// estimators.
+///
+/// The next vertex is drawn either from the hidden area or from the BSDF; both kinds are weighted
+/// by the balance heuristic (source [Veach1997]).
+class SurfaceWalk {
+ public:
+    /// A segment between two surface points, visibility aside.
+    struct Step {
+        core::Vec3 direction;  ///< unit, away from the first point
+        double distance_m = 0.0;
+        double transport =
+            0.0;                ///< BSDF at the first point times both cosines / distance^2 [1/m^2]
+        double pdf_area = 0.0;  ///< with which draw_next() takes it [1/m^2]
+    };
+
+    /// scene           must outlive the walk
+    /// laser_spot_m2   area of the laser spot, for retroreflectors
+    SurfaceWalk(const Scene& scene, double laser_spot_m2)
+        : scene_(&scene), area_sampler_(scene), laser_spot_m2_(laser_spot_m2) {}
+
+    const AreaSampler& area_sampler() const { return area_sampler_; }
+
+    /// BSDF value [1/sr] at a vertex towards `outgoing` (unit).
+    double evaluate(const PathVertex& vertex, const core::Vec3& outgoing) const;
+
+    /// What the path carries when it goes from `vertex` straight to the light, unless blocked.
+    double connection_value(const PathVertex& vertex, const PathEnds& ends) const;
+    /// Length and velocity of that path, legs to the devices included.
+    PathExtent extent_to_light(const PathVertex& vertex, const PathEnds& ends) const;
+    bool light_is_hidden(const PathVertex& vertex, const PathEnds& ends) const {
+        return scene_->rays().is_blocked(
+            vertex.point.position, vertex.normal, ends.light.position, ends.light.normal);
+    }
+
+    /// Russian roulette; false when the path ends here, else its throughput makes up for it.
+    bool survives(PathVertex& vertex, core::Rng& rng) const;
+
+    /// The step from a vertex to a point; nothing when it carries nothing.
+    std::optional<Step> step_to(const PathVertex& vertex, const SurfacePoint& next) const;
+
+    /// Replaces `vertex` by the next one of the path.
+    ///
+    /// num_rays   raised by the rays traced
+    /// returns    the step's density pdf_area [1/m^2]; nothing when the path ends
+    std::optional<double> draw_next(PathVertex& vertex,
+                                    core::Rng& rng,
+                                    std::uint64_t& num_rays) const;
+
+    /// The vertex after a step, with what the path carries to it over the density `pdf_area`.
+    PathVertex advance(const PathVertex& vertex,
+                       const SurfacePoint& next,
+                       const Step& step,
+                       double pdf_area) const;
+
+ private:
+    const Scene* scene_;
+    AreaSampler area_sampler_;
+    double laser_spot_m2_;
+};
+
+}  // namespace renderer

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/ellipsoidal/connection_technique.h"
+#include "renderer/restir/light_vertices.h"
+#include "renderer/restir/reusable_path.h"
+
+#include <functional>
+#include <optional>
+
+namespace renderer {
+
+/// Draws paths of a pair for reservoirs to choose from.
+///
+/// Techniques are weighted by the balance heuristic on the paths' densities: walks from the sensor
+/// and, as asked for, an ellipsoidal connection from each of their vertices to the light, or a
+/// stretch of shared walks from the light (source [Veach1997], [Pediredla2019]).
+class PathCandidates {
+ public:
+    /// A path that is open from end to end and whose length lies within the interval asked for.
+    ///
+    /// value     what it carries
+    /// density   of all techniques together, samples counted: the sum of value / density over all
+    ///           offers estimates the integral over all paths
+    using Offer = std::function<void(const ReusablePath&, const PathValue& value, double density)>;
+
+    /// How many samples the techniques take of one pair.
+    struct Effort {
+        int walks = 1;
+        int shared_walks = 0;
+    };
+
+    /// Where to draw: a pair, and path lengths within [opl_begin_m, opl_end_m).
+    struct Request {
+        const PathDomain& domain;
+        double opl_begin_m;
+        double opl_end_m;
+        Effort effort;
+    };
+
+    /// All references but `axis` must outlive this. scan: where sensors and lights may be.
+    /// axis: lengths asked for, by whose span surfaces are excluded; see ExcludedFacets.
+    PathCandidates(const Scene& scene,
+                   const core::Scan& scan,
+                   const Measurement& measurement,
+                   const SurfaceWalk& walk,
+                   const core::TimeAxis& axis,
+                   const RenderSettings& settings);
+
+    const PathIntegrand& integrand() const { return integrand_; }
+    const ExcludedFacets& excluded() const { return excluded_; }
+    int max_vertices() const { return max_vertices_; }
+
+    /// Traces the shared walks of a frame. returns the number of rays
+    std::uint64_t prepare(std::uint64_t seed, std::uint64_t frame);
+
+    /// Draws paths and offers those that carry something. returns the number of rays
+    std::uint64_t generate(const Request& request, core::Rng& rng, const Offer& offer) const;
+
+ private:
+    struct Job;
+
+    void walk_from_sensor(Job& job) const;
+    void connect_by_ellipsoid(Job& job, const PathVertex* from, ReusablePath path) const;
+    void try_shared(Job& job) const;
+    bool draw_first(Job& job, PathVertex& vertex) const;
+    std::optional<SurfaceWalk::Step> first_step(const PathDomain& domain,
+                                                const SurfacePoint& next) const;
+    std::optional<PathValue> value_within(const Job& job, const ReusablePath& path) const;
+    double density(Job& job, const ReusablePath& path) const;
+    double ellipsoidal_pdf(Job& job, const PathVertex* from, const SurfacePoint& point) const;
+    std::optional<LobeOnFacet> lobe_of(Job& job, const PathVertex* vertex) const;
+
+    const Scene* scene_;
+    const SurfaceWalk* walk_;
+    ExcludedFacets excluded_;
+    PathIntegrand integrand_;
+    LightVertices light_vertices_;
+    std::optional<ConnectionTechnique> connections_;
+    int shared_walks_;  ///< per pair; several times as many are traced
+    int max_vertices_;
+};
+
+}  // namespace renderer

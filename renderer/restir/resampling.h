@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/restir/reservoir.h"
+
+#include <optional>
+
+namespace renderer {
+
+/// A sample carried into another domain.
+template <class Sample>
+struct Carried {
+    Sample sample{};
+    double target_value = 0.0;  ///< p-hat there, in that domain's measure
+    double jacobian = 1.0;      ///< of the map that carried it
+};
+
+/// Weighs two domains' samples against each other by confidence times density: the generalised
+/// balance heuristic m_i = c_i p_{<-i} / sum_j c_j p_{<-j} for two (source [Lin2022]).
+///
+/// own           c p-hat of the sample in the domain it comes from, per area there
+/// foreign       c p-hat of its image in the other domain, per area there; 0 without an image
+/// jacobian      of the map from its own domain to the other one
+inline double balance_weight(double own, double foreign, double jacobian) {
+    const double both = own + foreign * jacobian;
+    return both > 0.0 ? own / both : 0.0;
+}
+
+/// Merges the reservoirs of two domains by the generalised balance heuristic.
+///
+/// canonical     of the domain that is built for
+/// other         of another domain, its confidence already capped
+/// here          image of `other`'s sample in the canonical domain; nothing if it has none
+/// there         image of `canonical`'s sample in the other domain; likewise
+/// u1, u2        uniform in [0, 1)
+template <class Sample>
+Reservoir<Sample> merge_balanced(const Reservoir<Sample>& canonical,
+                                 const Reservoir<Sample>& other,
+                                 const std::optional<Carried<Sample>>& here,
+                                 const std::optional<Carried<Sample>>& there,
+                                 double u1,
+                                 double u2) {
+    ReservoirBuilder<Sample> builder;
+    if (!canonical.empty()) {
+        const double own = canonical.confidence * canonical.target_value;
+        const double weight =
+            there ? balance_weight(own, other.confidence * there->target_value, there->jacobian)
+                  : 1.0;
+        builder.add(canonical.sample, canonical.target_value, weight * canonical.estimate(), u1);
+    }
+    if (!other.empty() && here && here->target_value > 0.0) {
+        const double weight = balance_weight(other.confidence * other.target_value,
+                                             canonical.confidence * here->target_value,
+                                             here->jacobian);
+        builder.add(here->sample,
+                    here->target_value,
+                    weight * here->target_value * other.contribution_weight * here->jacobian,
+                    u2);
+    }
+    return builder.finish(canonical.confidence + other.confidence);
+}
+
+/// Merges a canonical reservoir with a number of neighbours that was fixed before any sample was
+/// looked at, by defensive pairwise MIS (source [Bitterli2022], weights as in [Lin2022]).
+///
+/// A neighbour whose sample cannot be carried over, or that has none, still counts: its share goes
+/// to the canonical sample. Counting only the successful ones would be biased.
+template <class Sample>
+class PairwiseMerge {
+ public:
+    using Carry = std::optional<Carried<Sample>>;
+
+    PairwiseMerge(const Reservoir<Sample>& canonical, int num_neighbours)
+        : canonical_(canonical),
+          num_neighbours_(num_neighbours),
+          canonical_share_(num_neighbours > 0 ? canonical.confidence / num_neighbours : 0.0),
+          confidence_(canonical.confidence) {}
+
+    /// here    image of the neighbour's sample in the canonical domain, nothing if it has none
+    /// there   image of the canonical sample in the neighbour's domain, likewise
+    /// u       uniform in [0, 1)
+    void add_neighbour(const Reservoir<Sample>& neighbour,
+                       const Carry& here,
+                       const Carry& there,
+                       double u) {
+        confidence_ += neighbour.confidence;
+        if (!canonical_.empty()) {
+            const double own = canonical_share_ * canonical_.target_value;
+            canonical_weight_ +=
+                there ? balance_weight(
+                            own, neighbour.confidence * there->target_value, there->jacobian)
+                      : 1.0;
+        }
+        if (neighbour.empty() || !here || !(here->target_value > 0.0)) return;
+        const double weight = balance_weight(neighbour.confidence * neighbour.target_value,
+                                             canonical_share_ * here->target_value,
+                                             here->jacobian);
+        builder_.add(here->sample,
+                     here->target_value,
+                     weight * here->target_value * neighbour.contribution_weight * here->jacobian,
+                     u);
+    }
+
+    /// u   uniform in [0, 1)
+    Reservoir<Sample> finish(double u) {
+        builder_.add(canonical_.sample,
+                     canonical_.target_value,
+                     canonical_weight_ * canonical_.estimate(),
+                     u);
+        return builder_.finish(confidence_, 1.0 / (num_neighbours_ + 1.0));
+    }
+
+ private:
+    const Reservoir<Sample>& canonical_;
+    int num_neighbours_;
+    double canonical_share_;  ///< M_c / N
+    double confidence_;
+    double canonical_weight_ = 1.0;
+    ReservoirBuilder<Sample> builder_;
+};
+
+}  // namespace renderer

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/restir/restir_frame.h"
+
+namespace renderer {
+namespace {
+
+using core::Vec3;
+
+ShiftQuantity kept_quantity(const core::HistogramAxes& axes) {
+    return axes.velocity ? ShiftQuantity::PathVelocity : ShiftQuantity::PathLength;
+}
+
+std::optional<ShiftMapping> make_shift(const Scene& scene,
+                                       const RestirSettings& settings,
+                                       ShiftQuantity quantity) {
+    if (settings.reuse != Reuse::PathLength) return std::nullopt;
+    ShiftSettings shift;
+    shift.chart = settings.chart;
+    shift.gauge = settings.gauge;
+    shift.reverse_check = settings.reverse_check;
+    return ShiftMapping(scene, shift, quantity);
+}
+
+// How far a facet lies in `to` from where it lies in `from`.
+Vec3 motion(const RestirScene& from, const RestirScene& to, std::uint32_t facet) {
+    if (&from == &to) return Vec3::Zero();
+    return to.scene->facet(facet).corner - from.scene->facet(facet).corner;
+}
+
+// A path behind its first vertex's two legs, and before them.
+PathExtent rest_of(const RestirSide& side, const ReusablePath& path) {
+    const Scene& scene = *side.scene->scene;
+    PathExtent rest = side.domain->extra();
+    if (path.num_vertices == 1) return rest;
+    for (int i = 2; i < path.num_vertices; ++i) {
+        rest.add_segment(path.at(i).position - path.at(i - 1).position,
+                         scene.velocity_m_per_s(path.at(i - 1).facet),
+                         scene.velocity_m_per_s(path.at(i).facet));
+    }
+    const PathEnd& light = side.domain->ends.light;
+    rest.add_segment(light.position - path.last().position,
+                     scene.velocity_m_per_s(path.last().facet),
+                     light.velocity_m_per_s);
+    return rest;
+}
+
+// How the two legs of the first vertex must change for a path to fit its new place. Velocity bins
+// are all of one width.
+LengthChange change_between(const RestirSide& from,
+                            const ReusablePath& path_from,
+                            const RestirSide& to,
+                            const ReusablePath& path_to) {
+    const PathExtent rest_from = rest_of(from, path_from);
+    const PathExtent rest_to = rest_of(to, path_to);
+    LengthChange change;
+    if (from.gate.velocity) {
+        change.offset_m = to.gate.velocity->start_m_per_s() - rest_to.velocity_m_per_s -
+                          (from.gate.velocity->start_m_per_s() - rest_from.velocity_m_per_s);
+        return change;
+    }
+    change.ratio = to.gate.time.width_m / from.gate.time.width_m;
+    change.offset_m = to.gate.time.start_m - rest_to.opl_m -
+                      change.ratio * (from.gate.time.start_m - rest_from.opl_m);
+    return change;
+}
+
+// Neighbours of the first vertex, moved along with it.
+ShiftEnd shift_end(const RestirSide& side, const ReusablePath& path, const Vec3& moved) {
+    ShiftEnd end;
+    const Scene& scene = *side.scene->scene;
+    end.a = side.domain->start() + moved;
+    end.velocity_a = side.domain->start_velocity(scene);
+    if (path.num_vertices == 1) {
+        end.y = side.domain->ends.light.position + moved;
+        end.normal_y = side.domain->ends.light.normal;
+        end.velocity_y = side.domain->ends.light.velocity_m_per_s;
+    } else {
+        end.y = path.at(1).position + moved;
+        end.normal_y = scene.facet(path.at(1).facet).normal;
+        end.velocity_y = scene.velocity_m_per_s(path.at(1).facet);
+    }
+    return end;
+}
+
+bool is_same(const ShiftEnd& a, const ShiftEnd& b) {
+    return a.a == b.a && a.y == b.y && a.velocity_a == b.velocity_a && a.velocity_y == b.velocity_y;
+}
+
+// Whether the path velocity of the two legs is 0 wherever on its surface the vertex lies.
+bool is_at_rest(const ShiftEnd& end, const Vec3& surface_velocity) {
+    return end.velocity_a == surface_velocity && end.velocity_y == surface_velocity;
+}
+
+// Moves the first vertex of `path`, whose other vertices are in place already.
+// returns   the Jacobian; nothing when the shift is not defined
+std::optional<double> shift_first(const PathReservoir& reservoir,
+                                  const RestirSide& from,
+                                  const RestirSide& to,
+                                  const RestirScene& current,
+                                  ReusablePath& path,
+                                  ShiftCounts& counts) {
+    const std::uint32_t facet = path.first().facet;
+    const Vec3 from_moved = motion(*from.scene, current, facet);
+    const Vec3 to_moved = motion(*to.scene, current, facet);
+    const ShiftEnd source = shift_end(from, reservoir.sample, from_moved);
+    const ShiftEnd target = shift_end(to, path, to_moved);
+    const LengthChange change = change_between(from, reservoir.sample, to, path);
+    SurfacePoint& x = path.at(0);
+    const Vec3& velocity = current.scene->velocity_m_per_s(facet);
+    // Where nothing moves there is no velocity to change: the vertex stays, from either side.
+    const bool stays =
+        from.gate.velocity && is_at_rest(source, velocity) && is_at_rest(target, velocity);
+    if (stays || (change.ratio == 1.0 && change.offset_m == 0.0 && is_same(source, target))) {
+        x.position = reservoir.sample.first().position + from_moved - to_moved;
+        return 1.0;
+    }
+    const SurfacePoint start{reservoir.sample.first().position + from_moved, facet};
+    const auto shifted = current.shift->shift_path(start, source, target, change, counts);
+    if (!shifted) return std::nullopt;
+    // Another object may have moved otherwise.
+    if (motion(*to.scene, current, shifted->point.facet) != to_moved) return std::nullopt;
+    x = shifted->point;
+    x.position -= to_moved;
+    return shifted->jacobian;
+}
+
+// Whether the legs that a move has changed are open.
+bool is_open(const RestirSide& from,
+             const RestirSide& to,
+             const ReusablePath& path,
+             std::uint64_t& num_rays) {
+    const PathIntegrand& integrand = to.scene->candidates.integrand();
+    if (from.scene != to.scene) return !integrand.is_any_blocked(*to.domain, path, num_rays);
+    const bool there_and_back = to.domain->ends.coincide && path.num_vertices == 1;
+    const bool light_moved =
+        path.num_vertices > 1 && from.domain->ends.light.position != to.domain->ends.light.position;
+    for (const int leg : {0, 1, path.num_vertices}) {
+        if (leg == 1 && there_and_back) break;
+        if (leg > 1 && !light_moved) break;
+        ++num_rays;
+        if (integrand.is_blocked(*to.domain, path, leg)) return false;
+        if (leg == 1 && path.num_vertices == 1) break;
+    }
+    return true;
+}
+
+}  // namespace
+
+RestirScene::RestirScene(std::shared_ptr<const Scene> scene_of_frames,
+                         const core::Scan& scan,
+                         const core::HistogramAxes& axes,
+                         const RenderSettings& settings)
+    : scene(std::move(scene_of_frames)),
+      measurement(*scene, scan),
+      walk(*scene, settings.laser_spot_m2),
+      candidates(*scene, scan, measurement, walk, axes.time, settings),
+      shift(make_shift(*scene, settings.restir, kept_quantity(axes))) {
+    if (measurement.is_image()) pixel_places.emplace(measurement, *scan.camera);
+}
+
+PathDomain pixel_domain(const Measurement& measurement,
+                        std::size_t pixel,
+                        const core::Vec2& pixel_u) {
+    PathDomain domain;
+    domain.ends = measurement.ends(pixel);
+    domain.pixel_u = pixel_u;
+    domain.seen = measurement.first_vertex(pixel, pixel_u);
+    domain.is_dark = !domain.seen;
+    return domain;
+}
+
+CarriedPath carry_path(const PathReservoir& reservoir,
+                       RestirSide from,
+                       RestirSide to,
+                       const RestirScene& current,
+                       RestirCounts& counts) {
+    if (reservoir.empty()) return std::nullopt;
+    Carried<ReusablePath> carried{reservoir.sample, 0.0, 1.0};
+    if (from.scene == to.scene && from.pair == to.pair && from.gate == to.gate) {
+        carried.target_value = reservoir.target_value;
+        return carried;
+    }
+    PathDomain seen_from;
+    PathDomain seen_to;
+    if (current.measurement.is_image()) {
+        const core::Vec2& pixel_u = reservoir.sample.pixel_u;
+        seen_from = pixel_domain(from.scene->measurement, from.pair, pixel_u);
+        seen_to = pixel_domain(to.scene->measurement, to.pair, pixel_u);
+        counts.num_rays += 2;
+        from.domain = &seen_from;
+        to.domain = &seen_to;
+    }
+    if (from.domain->is_dark || to.domain->is_dark) return std::nullopt;
+    if (from.scene != to.scene) {
+        for (int i = 0; i < carried.sample.num_vertices; ++i) {
+            SurfacePoint& vertex = carried.sample.at(i);
+            vertex.position += motion(*from.scene, *to.scene, vertex.facet);
+        }
+    }
+    if (current.shift) {
+        const auto jacobian =
+            shift_first(reservoir, from, to, current, carried.sample, counts.shifts);
+        if (!jacobian) return std::nullopt;
+        carried.jacobian = *jacobian;
+    }
+    const PathValue value = to.scene->candidates.integrand().evaluate(*to.domain, carried.sample);
+    carried.target_value = value.radiance * to.gate.weight(value.extent);
+    if (!(carried.target_value > 0.0) || !is_open(from, to, carried.sample, counts.num_rays)) {
+        carried.target_value = 0.0;
+    }
+    return carried;
+}
+
+}  // namespace renderer

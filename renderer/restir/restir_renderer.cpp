@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/restir/restir_renderer.h"
+
+#include "renderer/core/parallel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+
+namespace renderer {
+namespace {
+
+constexpr std::size_t kPairsPerTask = 16;
+
+// Streams of random numbers of one frame: one for the candidates, one for each round of reuse, and
+// one for the places within pixels.
+constexpr std::uint64_t kStreamsPerFrame = 64;
+constexpr int kCandidateStage = 0;
+constexpr std::uint64_t kPixelStream = kStreamsPerFrame - 1;
+
+// Walks against a wider gate are shifted into the narrow one by this ratio of widths.
+constexpr double kShrink = 0.2;
+
+// Pixels that see surfaces turned this far from each other have little to give each other.
+constexpr double kLeastNormalCosine = 0.5;
+
+// One frame's candidates count as one, whatever their number.
+constexpr double kConfidenceOfFrame = 1.0;
+
+PathReservoir limited(PathReservoir reservoir, double most) {
+    reservoir.confidence = std::min(reservoir.confidence, most);
+    return reservoir;
+}
+
+}  // namespace
+
+// What a thread needs while it works on some pairs.
+struct RestirRenderer::Worker {
+    core::Rng rng{0, 0, 0};
+    std::size_t pair = 0;
+    RestirCounts counts;
+    std::vector<ReservoirBuilder<ReusablePath>> builders;  // per bin
+    std::vector<std::size_t> neighbours;
+};
+
+RestirRenderer::RestirRenderer(const core::Scan& scan, const RenderSettings& settings)
+    : scan_(&scan),
+      settings_(settings),
+      max_vertices_(std::max(0, settings.max_bounces - (scan.camera ? 1 : 2))),
+      neighbours_(scan) {}
+
+double RestirRenderer::bytes_needed(const core::HistogramAxes& axes) const {
+    const double reservoirs = static_cast<double>(scan_->num_pairs()) *
+                              static_cast<double>(ReservoirBins(axes, settings_.gate).count());
+    // The frame's, those of a round of reuse, and the previous frame's.
+    return 3.0 * reservoirs * PackedReservoirs::bytes_per_reservoir(max_vertices_);
+}
+
+void RestirRenderer::for_each_pair(const FrameInput& input,
+                                   int stage,
+                                   const std::function<void(Worker&, std::size_t)>& body) {
+    std::mutex mutex;
+    core::parallel_blocks(
+        scan_->num_pairs(), kPairsPerTask, [&](std::size_t begin, std::size_t end) {
+            Worker worker;
+            worker.builders.resize(ReservoirBins(input.axes, settings_.gate).count());
+            for (std::size_t pair = begin; pair < end; ++pair) {
+                worker.pair = pair;
+                worker.rng =
+                    core::Rng(settings_.seed,
+                              pair,
+                              input.number * kStreamsPerFrame + static_cast<std::uint64_t>(stage));
+                body(worker, pair);
+            }
+            const std::lock_guard lock(mutex);
+            counts_ += worker.counts;
+        });
+}
+
+RestirFrame RestirRenderer::render(const FrameInput& input) {
+    RestirFrame frame;
+    frame.scene = input.scene;
+    frame.bins = ReservoirBins(input.axes, settings_.gate);
+    frame.domains.resize(scan_->num_pairs());
+    frame.reservoirs = PackedReservoirs(scan_->num_pairs() * frame.bins.count(), max_vertices_);
+    find_domains(input, frame);
+    counts_.num_rays += input.scene->candidates.prepare(settings_.seed, input.number);
+    fill(input, frame);
+    if (settings_.restir.reuse == Reuse::None) return frame;
+    for (int round = 0; round < settings_.restir.rounds; ++round) {
+        reuse_neighbours(input, round, frame);
+    }
+    return frame;
+}
+
+void RestirRenderer::find_domains(const FrameInput& input, RestirFrame& frame) const {
+    const Measurement& measurement = input.scene->measurement;
+    core::parallel_for(frame.domains.size(), [&](std::size_t pair) {
+        PathDomain& domain = frame.domains[pair];
+        domain.ends = measurement.ends(pair);
+        if (!measurement.is_image()) return;
+        core::Rng rng(settings_.seed, pair, input.number * kStreamsPerFrame + kPixelStream);
+        const double u1 = rng.uniform();
+        domain = pixel_domain(measurement, pair, {u1, rng.uniform()});
+    });
+}
+
+void RestirRenderer::fill(const FrameInput& input, RestirFrame& frame) {
+    const std::size_t num_bins = frame.bins.count();
+    const bool reuses = settings_.restir.reuse != Reuse::None && input.previous != nullptr;
+    for_each_pair(input, kCandidateStage, [&](Worker& worker, std::size_t pair) {
+        draw(worker, frame, pair);
+        for (std::size_t bin = 0; bin < num_bins; ++bin) {
+            const double share = 1.0 - settings_.restir.shrink_fraction;
+            PathReservoir fresh = worker.builders[bin].finish(share * kConfidenceOfFrame);
+            if (share < 1.0) fresh = draw_wide(worker, frame, fresh);
+            const std::size_t index = pair * num_bins + bin;
+            const bool is_reused = reuses && !frame.bins.is_left_out(bin);
+            frame.reservoirs.store(
+                index,
+                is_reused ? with_history(worker, frame, *input.previous, index, fresh) : fresh);
+        }
+    });
+}
+
+namespace {
+
+ReusablePath placed(ReusablePath path, const PathDomain& domain) {
+    path.pixel_u = domain.pixel_u;
+    return path;
+}
+
+PathCandidates::Effort effort_of(const RestirSettings& settings, double share) {
+    PathCandidates::Effort effort;
+    effort.walks = std::max(1, static_cast<int>(std::lround(share * settings.walks)));
+    if (has_shared_walks(settings.candidates)) {
+        effort.shared_walks = static_cast<int>(std::lround(share * settings.shared_walks));
+    }
+    return effort;
+}
+
+}  // namespace
+
+// Candidates of all bins of a pair.
+void RestirRenderer::draw(Worker& worker, const RestirFrame& frame, std::size_t pair) const {
+    std::fill(worker.builders.begin(), worker.builders.end(), ReservoirBuilder<ReusablePath>());
+    const TimeGate lengths = frame.bins.lengths();
+    const PathCandidates::Request request{
+        frame.domains[pair],
+        lengths.begin_m(),
+        lengths.end_m(),
+        effort_of(settings_.restir, 1.0 - settings_.restir.shrink_fraction)};
+    worker.counts.num_rays += frame.scene->candidates.generate(
+        request, worker.rng, [&](const ReusablePath& path, const PathValue& value, double density) {
+            const auto bin = frame.bins.bin_of(value.extent);
+            if (!bin) return;
+            const double target = value.radiance * lengths.weight(value.extent.opl_m);
+            worker.builders[*bin].add(
+                placed(path, request.domain), target, target / density, worker.rng.uniform());
+        });
+}
+
+// Candidates against a wider gate, shifted into the narrow one (source [Kim2026]).
+PathReservoir RestirRenderer::draw_wide(Worker& worker,
+                                        const RestirFrame& frame,
+                                        const PathReservoir& narrow) const {
+    const double share = settings_.restir.shrink_fraction;
+    const RestirSide here(frame, worker.pair, 0);
+    RestirSide wide = here;
+    TimeGate& gate = wide.gate.time;
+    gate.width_m /= kShrink;
+    gate.start_m -= 0.5 * (gate.width_m - here.gate.time.width_m);
+    ReservoirBuilder<ReusablePath> builder;
+    const PathCandidates::Request request{
+        *wide.domain, gate.begin_m(), gate.end_m(), effort_of(settings_.restir, share)};
+    worker.counts.num_rays += frame.scene->candidates.generate(
+        request, worker.rng, [&](const ReusablePath& path, const PathValue& value, double density) {
+            const double target = value.radiance * gate.weight(value.extent.opl_m);
+            builder.add(
+                placed(path, request.domain), target, target / density, worker.rng.uniform());
+        });
+    const PathReservoir other = builder.finish(share * kConfidenceOfFrame);
+    const CarriedPath in = carry_path(other, wide, here, *frame.scene, worker.counts);
+    const CarriedPath out = carry_path(narrow, here, wide, *frame.scene, worker.counts);
+    ++worker.counts.num_merges;
+    return merge_balanced(narrow, other, in, out, worker.rng.uniform(), worker.rng.uniform());
+}
+
+PathReservoir RestirRenderer::with_history(Worker& worker,
+                                           const RestirFrame& frame,
+                                           const RestirFrame& previous,
+                                           std::size_t index,
+                                           const PathReservoir& fresh) const {
+    const std::size_t bin = index % frame.bins.count();
+    const RestirSide here(frame, worker.pair, bin);
+    const RestirSide before(previous, worker.pair, bin);
+    const PathReservoir history =
+        limited(previous.reservoirs.load(index), settings_.restir.confidence_cap);
+    const CarriedPath in = carry_path(history, before, here, *frame.scene, worker.counts);
+    const CarriedPath out = carry_path(fresh, here, before, *frame.scene, worker.counts);
+    ++worker.counts.num_merges;
+    return merge_balanced(fresh, history, in, out, worker.rng.uniform(), worker.rng.uniform());
+}
+
+void RestirRenderer::reuse_neighbours(const FrameInput& input, int round, RestirFrame& frame) {
+    const std::size_t num_bins = frame.bins.count();
+    PackedReservoirs merged(frame.reservoirs.size(), max_vertices_);
+    for_each_pair(input, kCandidateStage + 1 + round, [&](Worker& worker, std::size_t pair) {
+        neighbours_.pick(pair, settings_.restir.neighbours, worker.rng, worker.neighbours);
+        // Which neighbours count depends on nothing that is random in their reservoirs: not on
+        // where in the pixels their paths start, either.
+        if (frame.scene->pixel_places) {
+            const std::vector<core::Vec3>& normals = frame.scene->pixel_places->normals();
+            std::erase_if(worker.neighbours, [&](std::size_t other) {
+                return std::abs(normals[other].dot(normals[pair])) < kLeastNormalCosine;
+            });
+        }
+        for (std::size_t bin = 0; bin < num_bins; ++bin) {
+            merged.store(pair * num_bins + bin,
+                         with_neighbours(worker, frame, pair * num_bins + bin));
+        }
+    });
+    frame.reservoirs = std::move(merged);
+}
+
+PathReservoir RestirRenderer::with_neighbours(Worker& worker,
+                                              const RestirFrame& frame,
+                                              std::size_t index) const {
+    const std::size_t num_bins = frame.bins.count();
+    const std::size_t bin = index % num_bins;
+    const PathReservoir canonical = frame.reservoirs.load(index);
+    if (frame.bins.is_left_out(bin)) return canonical;
+    std::optional<std::size_t> before;
+    std::optional<std::size_t> after;
+    if (settings_.restir.reuse_bins) {
+        before = frame.bins.beside(bin, -1);
+        after = frame.bins.beside(bin, 1);
+    }
+    const int num_neighbours =
+        static_cast<int>(worker.neighbours.size()) + (before ? 1 : 0) + (after ? 1 : 0);
+    const RestirSide here(frame, worker.pair, bin);
+    PairwiseMerge<ReusablePath> merge(canonical, num_neighbours);
+    const auto add = [&](std::size_t pair, std::size_t other_bin) {
+        const RestirSide there(frame, pair, other_bin);
+        const PathReservoir other = frame.reservoirs.load(pair * num_bins + other_bin);
+        const CarriedPath in = carry_path(other, there, here, *frame.scene, worker.counts);
+        const CarriedPath out = carry_path(canonical, here, there, *frame.scene, worker.counts);
+        merge.add_neighbour(other, in, out, worker.rng.uniform());
+        ++worker.counts.num_merges;
+    };
+    for (const std::size_t pair : worker.neighbours) add(pair, bin);
+    if (before) add(worker.pair, *before);
+    if (after) add(worker.pair, *after);
+    return limited(merge.finish(worker.rng.uniform()), settings_.restir.confidence_cap);
+}
+
+}  // namespace renderer

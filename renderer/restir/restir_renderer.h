@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/restir/restir_frame.h"
+#include "renderer/restir/restir_neighbours.h"
+
+namespace renderer {
+
+/// Spatio-temporal resampling of paths (source [Kim2026], [Lin2022]): every pair and bin keeps one
+/// path that stands for all that it has seen, and takes over those of its past and of its
+/// neighbours, shifted so that they have the length wanted here.
+class RestirRenderer {
+ public:
+    /// scan   must outlive the renderer
+    RestirRenderer(const core::Scan& scan, const RenderSettings& settings);
+
+    /// Memory that rendering frames takes [bytes].
+    double bytes_needed(const core::HistogramAxes& axes) const;
+
+    /// What one frame is made from.
+    struct FrameInput {
+        std::shared_ptr<RestirScene> scene;
+        core::HistogramAxes axes;
+        const RestirFrame* previous = nullptr;  ///< whose reservoirs to reuse; null: none
+        std::uint64_t number = 0;               ///< among all frames of one seed
+    };
+    /// Renders a frame. Its estimates are those of its reservoirs.
+    RestirFrame render(const FrameInput& input);
+
+    const RestirCounts& counts() const { return counts_; }
+
+ private:
+    struct Worker;
+
+    void find_domains(const FrameInput& input, RestirFrame& frame) const;
+    void fill(const FrameInput& input, RestirFrame& frame);
+    void draw(Worker& worker, const RestirFrame& frame, std::size_t pair) const;
+    PathReservoir draw_wide(Worker& worker,
+                            const RestirFrame& frame,
+                            const PathReservoir& narrow) const;
+    PathReservoir with_history(Worker& worker,
+                               const RestirFrame& frame,
+                               const RestirFrame& previous,
+                               std::size_t index,
+                               const PathReservoir& fresh) const;
+    void reuse_neighbours(const FrameInput& input, int round, RestirFrame& frame);
+    PathReservoir with_neighbours(Worker& worker,
+                                  const RestirFrame& frame,
+                                  std::size_t index) const;
+    void for_each_pair(const FrameInput& input,
+                       int stage,
+                       const std::function<void(Worker&, std::size_t pair)>& body);
+
+    const core::Scan* scan_;
+    RenderSettings settings_;
+    int max_vertices_;
+    RestirNeighbours neighbours_;
+    RestirCounts counts_;
+};
+
+}  // namespace renderer

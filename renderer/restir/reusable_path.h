@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/path/light_path.h"
+#include "renderer/path/surface_walk.h"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+namespace renderer {
+
+/// The surface vertices of a path between its start and the light, from the sensor's side.
+///
+/// The first one is the reconnection vertex: it moves when the path is reused; the others stay.
+struct ReusablePath {
+    static constexpr int kMostVertices = kMostRestirBounces - 1;  // a camera's first is seen
+
+    int num_vertices = 0;
+    std::array<SurfacePoint, kMostVertices> vertices;
+    core::Vec2 pixel_u =
+        core::Vec2::Zero();  ///< place within the pixel where an image's path starts
+
+    const SurfacePoint& first() const { return vertices[0]; }
+    const SurfacePoint& last() const { return at(num_vertices - 1); }
+    const SurfacePoint& at(int i) const { return vertices[static_cast<std::size_t>(i)]; }
+    SurfacePoint& at(int i) { return vertices[static_cast<std::size_t>(i)]; }
+    void append(const SurfacePoint& point) { at(num_vertices++) = point; }
+};
+
+/// Where paths of one pair start and end; of a pixel, those through one place of it.
+struct PathDomain {
+    PathEnds ends;
+    core::Vec2 pixel_u = core::Vec2::Zero();
+    std::optional<PathVertex> seen;  ///< of a pixel: what it sees, in place of the sensor
+    bool is_dark = false;            ///< of a pixel that sees nothing: there are no paths
+
+    const core::Vec3& start() const { return seen ? seen->point.position : ends.sensor.position; }
+    const core::Vec3& start_normal() const { return seen ? seen->normal : ends.sensor.normal; }
+    /// Length that the axis counts beside the path itself [m].
+    double extra_opl_m() const { return extra().opl_m; }
+    /// That length and how fast it changes.
+    PathExtent extra() const {
+        PathExtent extent = seen ? seen->extent : PathExtent{};
+        extent.opl_m += ends.device_legs_m;
+        return extent;
+    }
+    /// Of the surface where paths start; wall points stand still.
+    core::Vec3 start_velocity(const Scene& scene) const {
+        return seen ? scene.velocity_m_per_s(seen->point.facet) : core::Vec3(core::Vec3::Zero());
+    }
+};
+
+/// What a path carries, as a density over the areas at all its vertices.
+struct PathValue {
+    double radiance = 0.0;  ///< [W / (m^2 sr)] per product of areas, visibility aside
+    PathExtent extent;      ///< the whole length that the axis counts, and its rate
+};
+
+/// Evaluates reusable paths.
+class PathIntegrand {
+ public:
+    /// scene, walk   must outlive this
+    /// dropped       per facet, whether paths whose last vertex lies on it are left out; may be
+    ///               empty
+    PathIntegrand(const Scene& scene,
+                  const SurfaceWalk& walk,
+                  double laser_spot_m2,
+                  std::vector<bool> dropped);
+
+    /// A path of at least one vertex; radiance 0 when it carries nothing.
+    PathValue evaluate(const PathDomain& domain, const ReusablePath& path) const;
+
+    /// Segment `leg` goes to vertex `leg`, the last one to the light.
+    bool is_blocked(const PathDomain& domain, const ReusablePath& path, int leg) const;
+    /// Whether any segment is blocked; each counts as a ray.
+    bool is_any_blocked(const PathDomain& domain,
+                        const ReusablePath& path,
+                        std::uint64_t& num_rays) const;
+
+ private:
+    const Scene* scene_;
+    const SurfaceWalk* walk_;
+    double laser_spot_m2_;
+    std::vector<bool> dropped_;
+};
+
+}  // namespace renderer

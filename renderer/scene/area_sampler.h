@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/core/sampling.h"
+#include "renderer/scene/scene.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace renderer {
+
+/// Draws points uniformly by area on the hidden surfaces of a scene.
+///
+/// Facets keep the order of the file: it is usually local in space, which keeps the shadow rays of
+/// stratified numbers coherent (a space-filling curve gained nothing), and it turns with the scene.
+class AreaSampler {
+ public:
+    explicit AreaSampler(const Scene& scene);
+
+    SurfacePoint sample(double u1, double u2) const {
+        double remapped = 0.0;
+        const std::uint32_t facet = facets_[by_area_.sample(u1, remapped)];
+        const core::Vec2 b = core::sample_triangle({remapped, u2});
+        return {scene_->facet(facet).point(b.x(), b.y()), facet};
+    }
+
+    /// For rising numbers: the share of u1 that holds the next one; see facet_of().
+    ///
+    /// hint   index of the share before, at first 0
+    core::DiscreteDistribution::Share share_from(std::size_t hint, double u1) const {
+        return by_area_.share_from(hint, u1);
+    }
+    /// Where sample() finds the u1 of a share; its points there are those of
+    /// sample_triangle({share.remap(u1), u2}).
+    std::uint32_t facet_of(const core::DiscreteDistribution::Share& share) const {
+        return facets_[share.index];
+    }
+
+    /// Density of sample() on hidden facets, pdf_area [1/m^2].
+    double pdf_area() const { return 1.0 / by_area_.sum(); }
+
+ private:
+    const Scene* scene_;
+    std::vector<std::uint32_t> facets_;
+    core::DiscreteDistribution by_area_;
+};
+
+}  // namespace renderer

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/scene/coinciding_points.h"
+
+#include <algorithm>
+#include <array>
+#include <set>
+
+namespace renderer {
+namespace {
+
+using Place = std::array<double, 6>;  // position and normal
+
+Place place(const core::WallPoints& points, std::size_t i) {
+    const core::Vec3& p = points.positions[i];
+    const core::Vec3& n = points.normals[i];
+    return {p.x(), p.y(), p.z(), n.x(), n.y(), n.z()};
+}
+
+std::vector<bool> found_in(const core::WallPoints& points, const core::WallPoints& others) {
+    std::set<Place> places;
+    for (std::size_t i = 0; i < others.size(); ++i) places.insert(place(others, i));
+    std::vector<bool> found;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        found.push_back(places.contains(place(points, i)));
+    }
+    return found;
+}
+
+}  // namespace
+
+CoincidingPoints::CoincidingPoints(const core::Scan& scan) {
+    if (scan.pattern == core::ScanPattern::Confocal) {
+        illumination.assign(scan.illumination.size(), true);
+        sensing.assign(scan.sensing.size(), true);
+        return;
+    }
+    illumination = found_in(scan.illumination, scan.sensing);
+    sensing = found_in(scan.sensing, scan.illumination);
+}
+
+bool CoincidingPoints::any() const {
+    return std::ranges::find(sensing, true) != sensing.end();
+}
+
+}  // namespace renderer

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/core/depth_map.h"
+#include "renderer/scene/scene.h"
+
+#include <vector>
+
+namespace renderer {
+
+/// Traces what the relay wall sees along its normal: depth, normals and albedo of the hidden scene.
+///
+/// world_from_wall   frame of the view; rays start in its plane z = 0 and run along +z
+/// x_m, y_m          columns in that frame [m]
+/// returns           a map with NaN where nothing hidden is met; surfaces of the relay wall are
+///                   looked through
+core::DepthMap trace_depth_map(const Scene& scene,
+                               const core::Transform& world_from_wall,
+                               std::vector<double> x_m,
+                               std::vector<double> y_m);
+
+/// The same with the wall's own frame, over its whole size, at cell centres.
+core::DepthMap trace_ground_truth(const Scene& scene, const SceneDescription& description);
+
+}  // namespace renderer

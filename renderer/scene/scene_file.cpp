@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/scene/scene_file.h"
+
+#include "renderer/core/process.h"
+#include "renderer/gltf/gltf.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+
+namespace renderer {
+namespace {
+
+using core::Error;
+using core::Vec3;
+
+void require(bool holds, const std::string& where, double found, const std::string& allowed) {
+    if (!holds) throw Error(where, fmt::format("found {}", found), "must be " + allowed);
+}
+
+void validate_wall(const RelayWall& wall, const std::string& where) {
+    require(wall.normal.norm() > 1e-9, where + ".normal length", wall.normal.norm(), "above 0");
+    require(wall.up.cross(wall.normal.normalized()).norm() > 1e-9 * (1.0 + wall.up.norm()),
+            where + ".up part across the normal",
+            0.0,
+            "above 0");
+    for (const double size : wall.size_m) require(size > 0.0, where + ".size_m", size, "above 0");
+    require(wall.albedo >= 0.0 && wall.albedo <= 1.0,
+            where + ".albedo",
+            wall.albedo,
+            "between 0 and 1");
+}
+
+void validate_grid(const std::array<int, 2>& shape, const std::string& where) {
+    for (const int count : shape)
+        require(count >= 1, where, count, "at least 1 in both directions");
+}
+
+void validate_normals(const std::vector<Vec3>& points,
+                      const std::vector<Vec3>& normals,
+                      const std::string& where) {
+    if (points.size() != normals.size()) {
+        throw Error(where,
+                    fmt::format("found {} normals for {} points", normals.size(), points.size()),
+                    "must be one normal per point");
+    }
+    for (const Vec3& normal : normals) {
+        require(normal.norm() > 1e-9, where + " length", normal.norm(), "above 0");
+    }
+}
+
+void validate_scan(const ScanSettings& scan, const std::string& where) {
+    validate_grid(scan.sensing_points, where + ".sensing_points");
+    validate_grid(scan.illumination_points, where + ".illumination_points");
+    validate_normals(scan.sensing_points_m, scan.sensing_normals, where + ".sensing_normals");
+    validate_normals(
+        scan.illumination_points_m, scan.illumination_normals, where + ".illumination_normals");
+    const bool single = scan.pattern == core::ScanPattern::Single;
+    if (single && scan.illumination_points_m.size() > 1) {
+        require(false,
+                where + ".illumination_points_m",
+                static_cast<double>(scan.illumination_points_m.size()),
+                "one point for a single scan");
+    }
+    if (scan.pattern == core::ScanPattern::Confocal && !scan.illumination_points_m.empty()) {
+        throw Error(where + ".illumination_points_m",
+                    "found points for a confocal scan",
+                    "must be left out: the sensing points are lit");
+    }
+    if (scan.opl_origin == core::OplOrigin::Device && (!scan.laser_m || !scan.detector_m)) {
+        throw Error(where + ".opl_origin",
+                    "found device without laser_m and detector_m",
+                    "must be relay_wall, or both positions given");
+    }
+}
+
+void validate_frames(const FrameSettings& frames, const std::string& where) {
+    require(frames.count >= 1, where + ".count", frames.count, "at least 1");
+    require(frames.frame_s >= 0.0, where + ".frame_s", frames.frame_s, "at least 0");
+}
+
+// Refuses scans whose histograms alone could not be held, before anything is allocated.
+void validate_size(const SceneDescription& scene, const std::string& where) {
+    const ScanSettings& scan = scene.scan;
+    const auto count = [](const std::vector<Vec3>& points, const std::array<int, 2>& shape) {
+        return points.empty() ? static_cast<double>(shape[0]) * shape[1]
+                              : static_cast<double>(points.size());
+    };
+    double pairs = count(scan.sensing_points_m, scan.sensing_points);
+    if (scene.camera) {
+        pairs = static_cast<double>(scene.camera->num_pixels());
+    } else if (scan.pattern == core::ScanPattern::Exhaustive) {
+        pairs *= count(scan.illumination_points_m, scan.illumination_points);
+    }
+    const double available = static_cast<double>(core::available_memory_bytes());
+    const auto& [columns, rows] = scene.ground_truth.depth_resolution;
+    const double depth_map_bytes = sizeof(double) * static_cast<double>(columns) * rows;
+    if (depth_map_bytes > available) {
+        throw Error(where + "ground_truth.depth_resolution",
+                    fmt::format("found {} x {}", columns, rows),
+                    fmt::format("must fit into {:.1f} GB of memory", available * 1e-9));
+    }
+    double values = pairs * scene.time_axis.num_bins * (scene.frames ? scene.frames->count : 1);
+    if (scene.velocity_axis) {
+        const double time_bins = scene.velocity_axis->with_time ? scene.time_axis.num_bins : 1.0;
+        const double per_pair = scene.velocity_axis->num_bins * time_bins;
+        require(per_pair <= std::numeric_limits<int>::max(),
+                where + "velocity_axis with_time: values per pair",
+                per_pair,
+                fmt::format("at most {}", std::numeric_limits<int>::max()));
+        values += pairs * per_pair;
+    }
+    if (values * sizeof(float) > available) {
+        throw Error(where + (scene.camera ? "camera.resolution" : "scan.sensing_points") +
+                        " and time_axis.num_bins",
+                    fmt::format("found {:.3g} values in all", values),
+                    fmt::format("must fit into {:.1f} GB of memory", available * 1e-9));
+    }
+}
+
+core::WallPoints wall_grid(const RelayWall& wall, const std::array<int, 2>& shape) {
+    const core::Transform world_from_wall = wall.world_from_wall();
+    core::WallPoints points;
+    points.grid = {static_cast<std::size_t>(shape[0]), static_cast<std::size_t>(shape[1])};
+    for (int ix = 0; ix < shape[0]; ++ix) {
+        for (int iy = 0; iy < shape[1]; ++iy) {
+            const double x = wall.size_m[0] * ((ix + 0.5) / shape[0] - 0.5);
+            const double y = wall.size_m[1] * ((iy + 0.5) / shape[1] - 0.5);
+            points.positions.push_back(world_from_wall * Vec3(x, y, 0.0));
+        }
+    }
+    points.normals.assign(points.positions.size(), wall.normal.normalized());
+    return points;
+}
+
+core::WallPoints explicit_points(const std::vector<Vec3>& positions,
+                                 const std::vector<Vec3>& normals) {
+    core::WallPoints points;
+    points.positions = positions;
+    for (const Vec3& normal : normals) points.normals.push_back(normal.normalized());
+    return points;
+}
+
+core::WallPoints illumination_points(const SceneDescription& scene,
+                                     const core::WallPoints& sensing) {
+    const ScanSettings& scan = scene.scan;
+    if (scan.pattern == core::ScanPattern::Confocal) return sensing;
+    if (!scan.illumination_points_m.empty()) {
+        return explicit_points(scan.illumination_points_m, scan.illumination_normals);
+    }
+    if (scan.pattern == core::ScanPattern::Exhaustive) {
+        return wall_grid(scene.relay_wall, scan.illumination_points);
+    }
+    core::WallPoints spot;
+    spot.positions = {scan.illumination_m.value_or(scene.relay_wall.center_m)};
+    spot.normals = {scene.relay_wall.normal.normalized()};
+    spot.grid = {1, 1};
+    return spot;
+}
+
+core::Scan image_of(const core::PinholeCamera& camera) {
+    core::Scan scan;
+    scan.pattern = core::ScanPattern::Single;
+    scan.opl_origin = core::OplOrigin::Device;
+    scan.laser_position = camera.light_position();
+    scan.detector_position = camera.position_m;
+    scan.camera = camera;
+    return scan;
+}
+
+// Takes pose and angle of view from the glTF camera of the given name.
+void look_up_camera(const std::string& geometry, const std::string& where, CameraSettings& camera) {
+    std::string known;
+    for (const Camera& candidate : load_gltf(geometry).cameras) {
+        known += (known.empty() ? "" : ", ") + candidate.name;
+        if (candidate.name != camera.name && candidate.lens_name != camera.name) continue;
+        camera.position_m = candidate.position;
+        camera.look_at_m = candidate.position + candidate.forward;
+        camera.up = candidate.up;
+        camera.fov_y_deg = candidate.fov_y_rad * core::kDegreesPerRadian;
+        return;
+    }
+    throw Error(
+        where,
+        fmt::format("found \"{}\"", camera.name),
+        known.empty() ? geometry + " must have perspective cameras" : "must be one of " + known);
+}
+
+// A camera measures instead of wall and scan; a file that names both means something else.
+void refuse_two_setups(const core::Json& keys, const std::string& where) {
+    if (!keys.contains("camera") || keys["camera"].is_null()) return;
+    for (const char* other : {"relay_wall", "scan"}) {
+        if (!keys.contains(other)) continue;
+        throw Error(where + "camera",
+                    fmt::format("found together with {}", other),
+                    "must stand instead of relay_wall and scan");
+    }
+}
+
+}  // namespace
+
+void read_value(const core::Json& json, const std::string& where, CameraSettings& camera) {
+    if (json.is_string()) {
+        camera.name = json.get<std::string>();
+    } else {
+        core::read_value<CameraSettings>(json, where, camera);
+    }
+}
+
+core::Transform RelayWall::world_from_wall() const {
+    const Vec3 z = normal.normalized();
+    const Vec3 x = up.cross(z).normalized();
+    core::Transform transform = core::Transform::Identity();
+    transform.linear().col(0) = x;
+    transform.linear().col(1) = z.cross(x);
+    transform.linear().col(2) = z;
+    transform.translation() = center_m;
+    return transform;
+}
+
+SceneDescription read_scene_description(const std::string& path,
+                                        const std::vector<std::string>& overrides) {
+    SceneDescription scene;
+    core::Json keys = core::read_json_file(path);
+    core::read_value(keys, path + ": ", scene);
+    for (const std::string& text : overrides) {
+        core::apply_override(scene, text);
+        keys.update(core::parse_override(text));
+    }
+    refuse_two_setups(keys, path + ": ");
+    if (scene.geometry.empty()) {
+        throw Error(path + ": geometry", "found nothing", "must name a .glb or .gltf file");
+    }
+    scene.geometry = (std::filesystem::path(path).parent_path() / scene.geometry).string();
+    if (scene.camera && !scene.camera->name.empty()) {
+        look_up_camera(scene.geometry, path + ": camera", *scene.camera);
+    }
+    validate(scene, path + ": ");
+    return scene;
+}
+
+void validate(const SceneDescription& scene, const std::string& where) {
+    if (scene.camera) {
+        core::validate(*scene.camera, where + "camera");
+        if (scene.camera->light_spot_m && scene.render.max_bounces < 2) {
+            throw Error(where + "render.max_bounces",
+                        fmt::format("found {} with camera.light_spot_m", scene.render.max_bounces),
+                        "must be at least 2: the lit spot counts as a bounce");
+        }
+    } else {
+        validate_wall(scene.relay_wall, where + "relay_wall");
+        validate_scan(scene.scan, where + "scan");
+    }
+    core::validate(scene.time_axis, where + "time_axis");
+    if (scene.velocity_axis) core::validate(*scene.velocity_axis, where + "velocity_axis");
+    if (scene.frames) validate_frames(*scene.frames, where + "frames");
+    validate(scene.render, where + "render");
+    validate_grid(scene.ground_truth.depth_resolution, where + "ground_truth.depth_resolution");
+    validate_size(scene, where);
+    if (scene.time_axis.num_bins > 1 && scene.render.gate != GateShape::Box) {
+        throw Error(where + "render.gate",
+                    fmt::format("found {} for {} bins",
+                                core::enum_name(scene.render.gate),
+                                scene.time_axis.num_bins),
+                    "must be box unless time_axis.num_bins is 1");
+    }
+}
+
+core::Scan make_scan(const SceneDescription& scene) {
+    if (scene.camera) return image_of(*scene.camera);
+    core::Scan scan;
+    scan.pattern = scene.scan.pattern;
+    scan.sensing = scene.scan.sensing_points_m.empty()
+                       ? wall_grid(scene.relay_wall, scene.scan.sensing_points)
+                       : explicit_points(scene.scan.sensing_points_m, scene.scan.sensing_normals);
+    scan.illumination = illumination_points(scene, scan.sensing);
+    scan.opl_origin = scene.scan.opl_origin;
+    scan.laser_position = scene.scan.laser_m.value_or(Vec3::Zero());
+    scan.detector_position = scene.scan.detector_m.value_or(Vec3::Zero());
+    return scan;
+}
+
+bool rectangle_carries_scan(const RelayWall& wall, const core::Scan& scan) {
+    const core::Transform wall_from_world = wall.world_from_wall().inverse();
+    const double tolerance = 1e-6 * (wall.size_m[0] + wall.size_m[1]);
+    const auto lies_on_it = [&](const Vec3& point) {
+        const Vec3 p = wall_from_world * point;
+        return std::abs(p.z()) < tolerance && std::abs(p.x()) < 0.5 * wall.size_m[0] + tolerance &&
+               std::abs(p.y()) < 0.5 * wall.size_m[1] + tolerance;
+    };
+    return std::all_of(scan.sensing.positions.begin(), scan.sensing.positions.end(), lies_on_it) &&
+           std::all_of(
+               scan.illumination.positions.begin(), scan.illumination.positions.end(), lies_on_it);
+}
+
+}  // namespace renderer

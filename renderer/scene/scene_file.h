@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/core/capture.h"
+#include "renderer/settings/render_settings.h"
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace renderer {
+
+/// The rectangle that laser and detector are aimed at.
+struct RelayWall {
+    core::Vec3 center_m = core::Vec3::Zero();
+    core::Vec3 normal = core::Vec3::UnitZ();
+    core::Vec3 up = core::Vec3::UnitY();
+    std::array<double, 2> size_m{1.0, 1.0};
+    double albedo = 1.0;
+
+    /// x along up x normal, y up within the wall, z along the normal.
+    core::Transform world_from_wall() const;
+};
+
+/// Which wall points are lit and looked at. Explicit points replace the grids.
+struct ScanSettings {
+    core::ScanPattern pattern = core::ScanPattern::Confocal;
+    std::array<int, 2> sensing_points{64, 64};
+    std::optional<core::Vec3> illumination_m;
+    std::array<int, 2> illumination_points{16, 16};
+    core::OplOrigin opl_origin = core::OplOrigin::RelayWall;
+    std::optional<core::Vec3> laser_m;
+    std::optional<core::Vec3> detector_m;
+    std::vector<core::Vec3> sensing_points_m;
+    std::vector<core::Vec3> sensing_normals;
+    std::vector<core::Vec3> illumination_points_m;
+    std::vector<core::Vec3> illumination_normals;
+};
+
+/// The camera that takes the place of relay wall and scan: an object, or as text the name alone.
+struct CameraSettings : core::PinholeCamera {
+    std::string name;  ///< of a glTF camera, which then gives pose and angle of view; or empty
+};
+
+/// A sequence: the gate moves by a step and the objects by their velocities from frame to frame.
+struct FrameSettings {
+    int count = 1;
+    double gate_step_m = 0.0;
+    double frame_s = 0.0;
+};
+
+struct GroundTruthSettings {
+    std::array<int, 2> depth_resolution{256, 256};
+};
+
+/// What scene.json says.
+struct SceneDescription {
+    std::string geometry;  ///< glTF file, path relative to scene.json
+    RelayWall relay_wall;
+    ScanSettings scan;
+    std::optional<CameraSettings> camera;  ///< replaces relay_wall and scan
+    core::TimeAxis time_axis;
+    std::optional<core::VelocityAxis> velocity_axis;  ///< nothing: velocities are not resolved
+    std::optional<FrameSettings> frames;              ///< nothing: one frame
+    RenderSettings render;
+    GroundTruthSettings ground_truth;
+};
+
+template <class Visitor>
+void for_each_field(RelayWall& wall, Visitor&& visit) {
+    visit("center_m", wall.center_m, "centre of the relay wall, world [m]");
+    visit("normal", wall.normal, "towards the hidden side");
+    visit("up", wall.up, "the wall's y axis, up to its part along the normal");
+    visit("size_m", wall.size_m, "width and height [m]");
+    visit("albedo", wall.albedo, "diffuse albedo of the wall");
+}
+
+template <class Visitor>
+void for_each_field(ScanSettings& scan, Visitor&& visit) {
+    visit("pattern", scan.pattern, "how illumination and sensing points pair up");
+    visit("sensing_points", scan.sensing_points, "grid of sensing points at cell centres, x by y");
+    visit("illumination_m", scan.illumination_m, "single: the laser spot, world [m]");
+    visit("illumination_points", scan.illumination_points, "exhaustive: grid of laser spots");
+    visit("opl_origin", scan.opl_origin, "where path lengths start and end");
+    visit("laser_m", scan.laser_m, "laser position, world [m]; needed for opl_origin device");
+    visit("detector_m", scan.detector_m, "detector position, world [m]; likewise");
+    visit("sensing_points_m", scan.sensing_points_m, "explicit sensing points, world [m]");
+    visit("sensing_normals", scan.sensing_normals, "their normals, towards the hidden side");
+    visit("illumination_points_m", scan.illumination_points_m, "explicit laser spots, world [m]");
+    visit("illumination_normals", scan.illumination_normals, "their normals");
+}
+
+template <class Visitor>
+void for_each_field(CameraSettings& camera, Visitor&& visit) {
+    visit("name", camera.name, "glTF camera that gives position, view and fov_y_deg");
+    for_each_field(static_cast<core::PinholeCamera&>(camera), visit);
+}
+
+/// A camera is an object with fields or the name of a glTF camera.
+void read_value(const core::Json& json, const std::string& where, CameraSettings& camera);
+
+template <class Visitor>
+void for_each_field(FrameSettings& frames, Visitor&& visit) {
+    visit("count", frames.count, "number of frames");
+    visit("gate_step_m", frames.gate_step_m, "by which the time axis moves per frame [m]");
+    visit("frame_s", frames.frame_s, "in which objects move on per frame [s]");
+}
+
+template <class Visitor>
+void for_each_field(GroundTruthSettings& truth, Visitor&& visit) {
+    visit("depth_resolution", truth.depth_resolution, "columns of the true depth map, x by y");
+}
+
+template <class Visitor>
+void for_each_field(SceneDescription& scene, Visitor&& visit) {
+    visit("geometry", scene.geometry, "glTF 2.0 file (.glb or .gltf), beside this file");
+    visit("relay_wall", scene.relay_wall, "the wall that laser and detector see");
+    visit("scan", scene.scan, "points on the wall");
+    visit("camera",
+          scene.camera,
+          "instead of relay_wall and scan: an image; position_m, look_at_m, up, fov_y_deg, "
+          "resolution, light_m, light_spot_m, or the name of a glTF camera");
+    visit("time_axis", scene.time_axis, "bins of optical path length");
+    visit("velocity_axis",
+          scene.velocity_axis,
+          "Doppler: bins of path velocity; start_m_per_s, bin_width_m_per_s, num_bins, with_time, "
+          "carrier_hz");
+    visit("frames", scene.frames, "a sequence: count, gate_step_m, frame_s; seconds are per frame");
+    visit("render", scene.render, "estimator and effort");
+    visit("ground_truth", scene.ground_truth, "what compare uses as truth");
+}
+
+/// Reads scene.json and applies `--set key.path=value` texts to it. A camera that is named gets its
+/// pose from the glTF file.
+/// throws   core::Error naming file, key, what was found and what is allowed
+SceneDescription read_scene_description(const std::string& path,
+                                        const std::vector<std::string>& overrides);
+
+/// Throws core::Error naming the key that is out of range.
+void validate(const SceneDescription& scene, const std::string& where);
+
+/// The wall points, with unit normals, or the camera that the description asks for.
+/// scene   a validated description
+core::Scan make_scan(const SceneDescription& scene);
+
+/// True when the scan's points all lie on the description's rectangle, which is then a surface of
+/// the scene; explicit points may lie elsewhere, on a curved wall for instance.
+bool rectangle_carries_scan(const RelayWall& wall, const core::Scan& scan);
+
+}  // namespace renderer

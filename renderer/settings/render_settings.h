@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/core/settings.h"
+#include "renderer/settings/restir_settings.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace renderer {
+
+/// Which estimator computes the transient. Adding one: a name here, a case in render(), one .cpp.
+enum class Estimator { Auto, Path, ThirdBounce, Ellipsoidal, Restir };
+
+/// Reservoirs store paths of up to this many bounces.
+inline constexpr int kMostRestirBounces = 9;
+
+/// Shape of the time gate of a one-bin axis; peak 1.
+enum class GateShape { Box, Tent, Gaussian };
+
+/// How the ellipsoidal technique treats excluded surfaces.
+enum class Exclusion { None, Mis, Drop };
+
+/// What to compute and how hard to try.
+struct RenderSettings {
+    Estimator method = Estimator::Auto;
+    int max_bounces = 3;
+    int samples = 256;
+    std::optional<double> seconds;
+    std::optional<double> target_error;
+    std::uint64_t seed = 0;
+    GateShape gate = GateShape::Box;
+    Exclusion exclude = Exclusion::Mis;
+    std::optional<double> exclude_area_above_m2;
+    bool variance = false;
+    bool by_order = false;
+    bool direct_return = false;
+    double laser_spot_m2 = 1e-4;
+    RestirSettings restir;
+};
+
+template <class Visitor>
+void for_each_field(RenderSettings& s, Visitor&& visit) {
+    visit("method", s.method, "estimator");
+    visit("max_bounces", s.max_bounces, "bounces counted, both on the relay wall included");
+    visit("samples", s.samples, "candidate paths per measurement pair");
+    visit("seconds",
+          s.seconds,
+          "render for this long instead of a number of samples or an error [s]");
+    visit("target_error",
+          s.target_error,
+          "relative L2 error over all of H to stay below, instead of a number of samples; null: "
+          "0.01 for third_bounce");
+    visit("seed", s.seed, "seed of the random numbers");
+    visit("gate", s.gate, "shape of the gate of a one-bin axis");
+    visit("exclude",
+          s.exclude,
+          "excluded surfaces: mis leaves them to paths, drop ignores them, none excludes nothing");
+    visit("exclude_area_above_m2",
+          s.exclude_area_above_m2,
+          "exclude triangles above this area from ellipsoidal connections [m^2]");
+    visit("variance",
+          s.variance,
+          "also store the variance of every value, in group /nlos, which y-tal refuses");
+    visit("by_order", s.by_order, "also store the transient of every bounce order, likewise");
+    visit("direct_return", s.direct_return, "render the direct return of confocal pairs, order 1");
+    visit("laser_spot_m2",
+          s.laser_spot_m2,
+          "area of the laser spot on the wall: direct return and retroreflectors [m^2]");
+    visit("restir", s.restir, "reservoir reuse");
+}
+
+/// Throws core::Error naming the setting that is out of range.
+void validate(const RenderSettings& settings, const std::string& where);
+
+}  // namespace renderer
+
+template <>
+struct core::EnumNames<renderer::Estimator> {
+    static constexpr std::array<std::pair<renderer::Estimator, std::string_view>, 5> value{
+        {{renderer::Estimator::Auto, "auto"},
+         {renderer::Estimator::Path, "path"},
+         {renderer::Estimator::ThirdBounce, "third_bounce"},
+         {renderer::Estimator::Ellipsoidal, "ellipsoidal"},
+         {renderer::Estimator::Restir, "restir"}}};
+};
+template <>
+struct core::EnumNames<renderer::GateShape> {
+    static constexpr std::array<std::pair<renderer::GateShape, std::string_view>, 3> value{
+        {{renderer::GateShape::Box, "box"},
+         {renderer::GateShape::Tent, "tent"},
+         {renderer::GateShape::Gaussian, "gaussian"}}};
+};
+template <>
+struct core::EnumNames<renderer::Exclusion> {
+    static constexpr std::array<std::pair<renderer::Exclusion, std::string_view>, 3> value{
+        {{renderer::Exclusion::None, "none"},
+         {renderer::Exclusion::Mis, "mis"},
+         {renderer::Exclusion::Drop, "drop"}}};
+};

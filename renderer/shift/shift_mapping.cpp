@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/shift/shift_mapping.h"
+
+#include "renderer/core/error.h"
+#include "renderer/shift/charts.h"
+#include "renderer/shift/path_functional.h"
+#include "renderer/shift/shift_flow.h"
+#include "renderer/shift/shift_side.h"
+#include "renderer/shift/shift_solver.h"
+
+#include <algorithm>
+#include <limits>
+#include <type_traits>
+#include <variant>
+
+namespace renderer {
+namespace {
+
+using core::Vec2;
+using core::Vec3;
+
+// Rounding of the scene's coordinates [m].
+double rounding_of(const Scene& scene) {
+    double largest = 0.0;
+    for (const Facet& facet : scene.facets()) {
+        largest = std::max(largest, facet.corner.cwiseAbs().maxCoeff());
+    }
+    return std::numeric_limits<double>::epsilon() * largest;
+}
+
+AnyGauge make_gauge(const ShiftSettings& settings) {
+    switch (settings.gauge) {
+        case Gauge::Start:
+            return StartGauge{};
+        case Gauge::Fixed:
+            return FixedGauge{};
+        case Gauge::Midpoint:
+            return MidpointGauge{};
+        case Gauge::Symmetric:
+            return SymmetricGauge{};
+        case Gauge::Flow:
+            return FlowGauge{};
+        case Gauge::Average:
+            break;
+    }
+    // On planes both are the same, and the plain one is cheaper.
+    if (settings.metric_gauge && settings.chart != Chart::Plane) return MetricAverageGauge{};
+    return AverageGauge{};
+}
+
+// The kept quantity at one end, foci relative to `origin`.
+OpticalLength length_of(const ShiftEnd& end, const Vec3& origin) {
+    return {end.a - origin, end.y - origin};
+}
+PathVelocity velocity_of(const ShiftEnd& end, const Vec3& origin) {
+    return {end.a - origin, end.y - origin, end.velocity_a, end.velocity_y};
+}
+
+}  // namespace
+
+/// One call of shift_path.
+struct ShiftMapping::Task {
+    const SurfacePoint& x;
+    const ShiftEnd& source;
+    const ShiftEnd& target;
+    const LengthChange& change;
+
+    FocusPair foci_of(const ShiftEnd& end) const {
+        return {end.a - x.position, end.y - x.position};
+    }
+};
+
+ShiftMapping::ShiftMapping(const Scene& scene,
+                           const ShiftSettings& settings,
+                           ShiftQuantity quantity)
+    : scene_(&scene),
+      settings_(settings),
+      quantity_(quantity),
+      gauge_(make_gauge(settings)),
+      rounding_m_(rounding_of(scene)),
+      patches_(scene) {
+    if (settings.chart == Chart::Custom) {
+        throw core::Error("chart",
+                          "custom",
+                          "must be plane, hemisphere, barycentric or adaptive for triangle meshes; "
+                          "custom charts are written in C++");
+    }
+}
+
+bool ShiftMapping::is_bounded(double jacobian, double ratio) const {
+    const double stretch = jacobian / ratio;
+    return stretch * settings_.jacobian_bound >= 1.0 && stretch <= settings_.jacobian_bound;
+}
+
+std::optional<ShiftedPath> ShiftMapping::shift_path(const SurfacePoint& x,
+                                                    const ShiftEnd& source,
+                                                    const ShiftEnd& target,
+                                                    const LengthChange& change,
+                                                    ShiftCounts& counts) const {
+    ShiftTrace trace;
+    bool by_ray = false;
+    const Result result = shift_by_route({x, source, target, change}, trace, by_ray);
+    counts.iterations += static_cast<std::uint64_t>(trace.iterations);
+    if (!result) {
+        ++counts.rejected[static_cast<std::size_t>(trace.rejection)];
+        return std::nullopt;
+    }
+    ++counts.accepted;
+    counts.by_ray += by_ray ? 1 : 0;
+    return result;
+}
+
+ShiftMapping::Result ShiftMapping::shift_by_route(const Task& task,
+                                                  ShiftTrace& trace,
+                                                  bool& by_ray) const {
+    switch (settings_.chart) {
+        case Chart::Plane:
+            return shift_by_plane(task, trace);
+        case Chart::Barycentric:
+            return shift_in_facet(task, trace);
+        case Chart::Hemisphere:
+            by_ray = true;
+            return shift_by_ray(task, trace);
+        case Chart::Adaptive:
+        case Chart::Custom:
+            break;
+    }
+    return shift_adaptively(task, trace, by_ray);
+}
+
+// Let P be the points from which the plane route has a result. From P take the plane; its results
+// are the points from which the plane route leads back. From elsewhere take the ray, and keep only
+// results from which the plane route has no way back: two one-to-one maps with separate images.
+ShiftMapping::Result ShiftMapping::shift_adaptively(const Task& task,
+                                                    ShiftTrace& trace,
+                                                    bool& by_ray) const {
+    const auto is_large = [&](const SurfacePoint& point) {
+        return patches_.area_m2(patches_.patch_of(point.facet)) >= settings_.smallest_plane_area_m2;
+    };
+    if (is_large(task.x)) {
+        if (const Result by_plane = shift_by_plane(task, trace)) return by_plane;
+    }
+    const Result result = shift_by_ray(task, trace);
+    if (!result) return std::nullopt;
+    if (is_large(result->point)) {
+        ShiftTrace back_trace;
+        const Task back{result->point, task.target, task.source, task.change.inverse()};
+        if (shift_by_plane(back, back_trace)) return trace.reject(ShiftRejection::OtherRoute);
+        trace.iterations += back_trace.iterations;
+    }
+    by_ray = true;
+    return result;
+}
+
+ShiftMapping::Result ShiftMapping::shift_in_closed_form(const Task& task, ShiftTrace& trace) const {
+    const std::uint32_t patch = patches_.patch_of(task.x.facet);
+    const auto shift = shift_on_plane(patches_.plane(patch),
+                                      task.foci_of(task.source),
+                                      task.foci_of(task.target),
+                                      task.change,
+                                      rounding_m_,
+                                      trace);
+    if (!shift) return std::nullopt;
+    const Vec3 position = task.x.position + shift->displacement;
+    const auto facet = patches_.locate(patch, position, task.x.facet);
+    if (!facet) return trace.reject(ShiftRejection::LeftSurface);
+    if (!is_bounded(shift->jacobian, task.change.ratio)) {
+        return trace.reject(ShiftRejection::JacobianBound);
+    }
+    return ShiftedPath{{position, *facet}, shift->jacobian};
+}
+
+ShiftMapping::Result ShiftMapping::shift_by_plane(const Task& task, ShiftTrace& trace) const {
+    if (settings_.closed_form_on_planes && settings_.gauge == Gauge::Average &&
+        quantity_ == ShiftQuantity::PathLength) {
+        return shift_in_closed_form(task, trace);
+    }
+    const std::uint32_t patch = patches_.patch_of(task.x.facet);
+    const Facet& plane = patches_.plane(patch);
+    const AffineChart chart{Vec3::Zero(),
+                            plane.edge1,
+                            plane.edge2,
+                            scene_->object_of(task.x.facet).velocity_m_per_s,
+                            rounding_m_};
+    const auto at_x = chart.at(Vec2::Zero());
+    const auto solution = solve<AffineChart>(task, {chart, chart}, Vec2::Zero(), *at_x, trace);
+    if (!solution) return std::nullopt;
+    const Vec3 position = task.x.position + solution->at_target.position;
+    const auto facet = patches_.locate(patch, position, task.x.facet);
+    if (!facet) return trace.reject(ShiftRejection::LeftSurface);
+    return ShiftedPath{{position, *facet}, solution->jacobian};
+}
+
+ShiftMapping::Result ShiftMapping::shift_in_facet(const Task& task, ShiftTrace& trace) const {
+    const Facet& facet = scene_->facet(task.x.facet);
+    const Vec2 xi = barycentric_of(facet, task.x.position);
+    const AffineChart chart{facet.corner - task.x.position,
+                            facet.edge1,
+                            facet.edge2,
+                            scene_->object_of(task.x.facet).velocity_m_per_s,
+                            rounding_m_};
+    const auto at_x = chart.at(xi);
+    const auto solution = solve<AffineChart>(task, {chart, chart}, xi, *at_x, trace);
+    if (!solution) return std::nullopt;
+    if (!is_in_triangle(solution->xi)) return trace.reject(ShiftRejection::LeftSurface);
+    return ShiftedPath{{task.x.position + solution->at_target.position, task.x.facet},
+                       solution->jacobian};
+}
+
+ShiftMapping::Result ShiftMapping::shift_by_ray(const Task& task, ShiftTrace& trace) const {
+    const Vec3& x = task.x.position;
+    const auto chart_of = [&](const ShiftEnd& end) {
+        return HemisphereChart(*scene_, end.y, end.normal_y, x, rounding_m_);
+    };
+    const std::array charts{chart_of(task.source), chart_of(task.target)};
+    const auto xi = charts[0].coordinates_of(x);
+    if (!xi) return trace.reject(ShiftRejection::LeftChart);
+    auto at_x = charts[0].on_facet(*xi, task.x.facet);
+    if (!at_x) return trace.reject(ShiftRejection::LeftChart);
+    at_x->position.setZero();  // exactly, whatever the coordinates' rounding
+    const auto solution = solve(task, charts, *xi, *at_x, trace);
+    if (!solution) return std::nullopt;
+    // From the far end the source's chart must show the same side of y.
+    if (!charts[0].is_above(x + solution->at_target.position)) {
+        return trace.reject(ShiftRejection::LeftChart);
+    }
+    return ShiftedPath{{x + solution->at_target.position, solution->at_target.facet},
+                       solution->jacobian};
+}
+
+template <class Chart>
+std::optional<ShiftSolution> ShiftMapping::solve(const Task& task,
+                                                 const std::array<Chart, 2>& charts,
+                                                 const Vec2& xi,
+                                                 const ChartPoint& at_x,
+                                                 ShiftTrace& trace) const {
+    const auto check = settings_.reverse_check ? ReverseCheck::On : ReverseCheck::Off;
+    const auto with = [&](const auto& functional_of) {
+        using Functional = std::remove_cvref_t<decltype(functional_of(task.source))>;
+        const ShiftSide<Chart, Functional> source{
+            charts[0], functional_of(task.source), task.change.ratio};
+        const ShiftSide<Chart, Functional> target{charts[1], functional_of(task.target), 1.0};
+        const ShiftProblem problem{source, target, task.change.offset_m};
+        const ChartExpansion at_source = source.expand(at_x);
+        return std::visit(
+            [&](const auto& gauge) {
+                return shift_on_charts(gauge, problem, xi, at_source, check, trace);
+            },
+            gauge_);
+    };
+    const Vec3& origin = task.x.position;
+    const auto solution = quantity_ == ShiftQuantity::PathVelocity
+                              ? with([&](const ShiftEnd& end) { return velocity_of(end, origin); })
+                              : with([&](const ShiftEnd& end) { return length_of(end, origin); });
+    if (solution && !is_bounded(solution->jacobian, task.change.ratio)) {
+        return trace.reject(ShiftRejection::JacobianBound);
+    }
+    return solution;
+}
+
+}  // namespace renderer

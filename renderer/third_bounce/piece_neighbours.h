@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/third_bounce/third_bounce_pieces.h"
+
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace renderer {
+
+/// Pairs of pieces (indices into `pieces`) that share an edge, or of which one has half an edge of
+/// the other. Positions must agree to the last bit, as those of one cut do.
+std::vector<std::pair<std::uint32_t, std::uint32_t>> touching_pieces(std::span<const Piece> pieces);
+
+/// The lists of both ends of every pair, without duplicates, in rising order.
+NeighbourLists neighbour_lists(std::size_t num_items,
+                               const std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs);
+
+}  // namespace renderer

@@ -1,0 +1,319 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/third_bounce/third_bounce_scan.h"
+
+#include "renderer/core/parallel.h"
+#include "renderer/third_bounce/third_bounce_pairs.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace renderer {
+namespace {
+
+using core::Vec3;
+
+constexpr std::size_t kPointsPerBlock = PairTiles::kPointsTogether;
+static_assert(kPointsPerBlock == WallPointLanes::kSize);
+
+// Where part `part` of a confocal scan's points begins: parts hold whole blocks, a few at least for
+// threads to share, so that the last parts of small scans are empty.
+std::size_t begin_of_part(int part, std::size_t num_points) {
+    constexpr std::size_t kFewestBlocks = 4;
+    const std::size_t num_blocks = (num_points + kPointsPerBlock - 1) / kPointsPerBlock;
+    const std::size_t per_part =
+        (num_blocks + ThirdBounceScan::kParts - 1) / ThirdBounceScan::kParts;
+    const std::size_t block = static_cast<std::size_t>(part) * std::max(kFewestBlocks, per_part);
+    return std::min(block * kPointsPerBlock, num_points);
+}
+
+// Tables of some wall points for one block, where they see anything of it.
+class TileTables {
+ public:
+    TileTables(std::vector<WallPoint> points, std::span<const VisiblePieces> seen)
+        : points_(std::move(points)), seen_(seen), tables_(points_.size()), ends_(points_.size()) {}
+
+    void compute(const PieceBlock& block, std::size_t block_index) {
+        for (std::size_t i = 0; i < points_.size(); ++i) {
+            compute_table(block, points_[i], seen_[i].units[block_index], tables_[i]);
+            ends_[i] = {
+                &points_[i], &tables_[i], seen_[i].masks.data() + block_index * PieceBlock::kSize};
+        }
+    }
+
+    const std::vector<PairEnd>& ends() const { return ends_; }
+
+ private:
+    std::vector<WallPoint> points_;
+    std::span<const VisiblePieces> seen_;
+    std::vector<BlockTable> tables_;
+    std::vector<PairEnd> ends_;
+};
+
+bool coincide(const WallPoint& a, const WallPoint& b) {
+    return a.position == b.position && a.normal == b.normal;
+}
+
+// True when no path of the two points through the block has a length within the axis.
+bool misses_axis(const BlockSphere& sphere,
+                 const WallPoint& light,
+                 const WallPoint& sensor,
+                 const core::TimeAxis& axis) {
+    const double middle =
+        (sphere.center - light.position).norm() + (sphere.center - sensor.position).norm();
+    const double reach = 2.0 * sphere.radius_m;
+    return middle + reach < axis.opl_start_m || middle - reach > axis.opl_end_m();
+}
+
+}  // namespace
+
+ThirdBounceScan::ThirdBounceScan(const Scene& scene,
+                                 const core::Scan& scan,
+                                 const core::TimeAxis& axis,
+                                 const PieceSet& pieces,
+                                 double negligible_error,
+                                 double memory_bytes)
+    : scene_(scene),
+      scan_(scan),
+      axis_(axis),
+      pieces_(pieces),
+      coinciding_(scan),
+      negligible_error_(negligible_error),
+      memory_bytes_(memory_bytes),
+      light_errors_(scan.illumination.size()),
+      sensor_errors_(scan.sensing.size()) {}
+
+double ThirdBounceScan::squared_shadow_error() const {
+    return std::accumulate(sensor_errors_.begin(), sensor_errors_.end(), 0.0) +
+           std::accumulate(light_errors_.begin(), light_errors_.end(), 0.0);
+}
+
+int ThirdBounceScan::integrate(int first_part,
+                               const std::function<bool(double share)>& go_on,
+                               core::Transient& result) {
+    result_ = &result;
+    if (scan_.pattern != core::ScanPattern::Confocal) return integrate_pairs(first_part, go_on);
+    for (int part = first_part; part < kParts; ++part) {
+        const std::size_t begin = begin_of_part(part, scan_.num_pairs());
+        const std::size_t end = begin_of_part(part + 1, scan_.num_pairs());
+        core::parallel_blocks(
+            end - begin, kPointsPerBlock, [&](std::size_t first, std::size_t last) {
+                integrate_confocal(begin + first, begin + last);
+            });
+        const bool goes_on =
+            go_on(static_cast<double>(end) / static_cast<double>(scan_.num_pairs()));
+        if (end == scan_.num_pairs()) break;
+        if (!goes_on) return part + 1;
+    }
+    return kParts;
+}
+
+WallPoint ThirdBounceScan::wall_point(const core::WallPoints& points, std::size_t index) const {
+    const std::vector<bool>& confocal =
+        &points == &scan_.sensing ? coinciding_.sensing : coinciding_.illumination;
+    return {points.positions[index] - pieces_.origin,
+            points.normals[index],
+            static_cast<std::uint32_t>(index),
+            confocal[index]};
+}
+
+std::vector<WallPoint> ThirdBounceScan::wall_points(const core::WallPoints& points,
+                                                    const PointRange& range) const {
+    std::vector<WallPoint> result;
+    for (std::size_t i = range.begin; i < range.end; ++i) {
+        result.push_back(wall_point(points, i));
+    }
+    return result;
+}
+
+core::TimeAxis ThirdBounceScan::axis_of_pair(std::size_t pair) const {
+    core::TimeAxis axis = axis_;
+    axis.opl_start_m -= scan_.device_legs_m(pair);
+    return axis;
+}
+
+void ThirdBounceScan::add_costs(const VisibilityTracer& tracer) {
+    num_rays_ += tracer.num_rays();
+    tracing_seconds_ += tracer.tracing_seconds();
+}
+
+void ThirdBounceScan::store(std::size_t pair, std::span<const double> histogram) {
+    std::transform(
+        histogram.begin(), histogram.end(), result_->histogram(pair).begin(), [](double value) {
+            return static_cast<float>(value);
+        });
+}
+
+// Looks from all points [begin, end) together.
+void ThirdBounceScan::integrate_confocal(std::size_t begin, std::size_t end) {
+    const std::vector<WallPoint> points = wall_points(scan_.sensing, {begin, end});
+    std::vector<core::TimeAxis> axes;
+    VisibilityRules rules;
+    rules.negligible_error = negligible_error_;
+    for (std::size_t pair = begin; pair < end; ++pair) {
+        axes.push_back(axis_of_pair(pair));
+        rules.opl.push_back({axes.back().opl_start_m, axes.back().opl_end_m()});
+    }
+    std::vector<VisiblePieces> seen(points.size());
+    VisibilityTracer tracer(scene_, pieces_);
+    tracer.trace(points, rules, seen);
+    add_costs(tracer);
+    BlockTable table;
+    const auto num_bins = static_cast<std::size_t>(axis_.num_bins);
+    std::vector<double> histograms(points.size() * num_bins);
+    const auto histogram_of = [&](std::size_t i) {
+        return std::span(histograms).subspan(i * num_bins, num_bins);
+    };
+    for (std::size_t b = 0; b < pieces_.blocks.size(); ++b) {
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const UnitMask units = seen[i].units[b];
+            if (units == 0) continue;
+            compute_table(pieces_.blocks[b], points[i], units, table);
+            const PairEnd end_of_pair{
+                &points[i], &table, seen[i].masks.data() + b * PieceBlock::kSize};
+            add_pair(pieces_.blocks[b], end_of_pair, end_of_pair, axes[i], histogram_of(i));
+        }
+    }
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        sensor_errors_[begin + i] = seen[i].squared_error;
+        store(begin + i, histogram_of(i));
+    }
+}
+
+// What the `num_points` points of one side need to know of the other side, all of it: so that a
+// point sees the same whatever is looked at with it.
+VisibilityRules ThirdBounceScan::rules_towards(const core::WallPoints& others,
+                                               std::size_t num_points) const {
+    VisibilityRules rules;
+    rules.negligible_error = negligible_error_;
+    rules.pairs_per_point =
+        static_cast<double>(scan_.num_pairs()) / static_cast<double>(num_points);
+    const auto [least_legs, most_legs] = core::device_leg_range_m(scan_);
+    rules.opl.push_back({axis_.opl_start_m - most_legs, axis_.opl_end_m() - least_legs});
+    WallPoint& middle = rules.other_end.emplace(WallPoint{Vec3::Zero(), Vec3::Zero()});
+    Eigen::AlignedBox3d box;
+    for (std::size_t i = 0; i < others.size(); ++i) {
+        const WallPoint other = wall_point(others, i);
+        box.extend(other.position);
+        middle.position += other.position / static_cast<double>(others.size());
+        middle.normal += other.normal / static_cast<double>(others.size());
+    }
+    if (others.size() > 1) {
+        for (const auto& [c, radius_m] : pieces_.spheres) {
+            const Vec3 farthest = (c - box.min()).cwiseAbs().cwiseMax((c - box.max()).cwiseAbs());
+            rules.other_legs.push_back(
+                {box.exteriorDistance(c) - radius_m, farthest.norm() + radius_m});
+        }
+    }
+    return rules;
+}
+
+void ThirdBounceScan::look_from(const core::WallPoints& points,
+                                const PointRange& range,
+                                const VisibilityRules& rules,
+                                Views& views,
+                                std::vector<double>& squared_errors) {
+    if (views.range == range) return;
+    views.range = range;
+    views.seen.resize(range.size());
+    core::parallel_blocks(range.size(), kPointsPerBlock, [&](std::size_t begin, std::size_t end) {
+        VisibilityTracer tracer(scene_, pieces_);
+        tracer.trace(wall_points(points, {range.begin + begin, range.begin + end}),
+                     rules,
+                     std::span(views.seen).subspan(begin, end - begin));
+        add_costs(tracer);
+        for (std::size_t i = begin; i < end; ++i) {
+            squared_errors[range.begin + i] = views.seen[i].squared_error;
+        }
+    });
+}
+
+int ThirdBounceScan::integrate_pairs(int first_part,
+                                     const std::function<bool(double share)>& go_on) {
+    const auto bytes_per_point =
+        static_cast<double>(pieces_.blocks.size() * PieceBlock::kSize * sizeof(VisibilityMask));
+    const double fitting = memory_bytes_ / bytes_per_point;
+    if (fitting < PairTiles::kFewestPoints) {
+        throw core::Failure(
+            "third_bounce",
+            fmt::format("visibility of {} pieces needs {:.2f} GB, {:.2f} GB are free for it",
+                        pieces_.num_pieces,
+                        PairTiles::kFewestPoints * bytes_per_point * 1e-9,
+                        memory_bytes_ * 1e-9));
+    }
+    const std::size_t num_lights =
+        scan_.pattern == core::ScanPattern::Single ? 1 : scan_.illumination.size();
+    // Tiles at the edges count as whole ones.
+    const auto enough =
+        static_cast<double>(num_lights + scan_.sensing.size() + PairTiles::kFewestPoints);
+    const PairTiles tiles(
+        num_lights, scan_.sensing.size(), static_cast<std::size_t>(std::min(fitting, enough)));
+    const VisibilityRules from_lights = rules_towards(scan_.sensing, scan_.illumination.size());
+    const VisibilityRules from_sensors = rules_towards(scan_.illumination, scan_.sensing.size());
+    Views lights;
+    Views sensors;
+    constexpr double kShareOfLooking = 0.25;
+    for (int part = first_part; part < kParts; ++part) {
+        for (const PairTiles::Batch& batch :
+             tiles.batches(static_cast<std::size_t>(part), kParts)) {
+            look_from(scan_.illumination, batch.lights, from_lights, lights, light_errors_);
+            look_from(scan_.sensing, batch.sensors, from_sensors, sensors, sensor_errors_);
+            if (!go_on(kShareOfLooking + (1.0 - kShareOfLooking) * part / kParts)) return part;
+            core::parallel_for(batch.tiles.size(), [&](std::size_t i) {
+                integrate_tile(batch.tiles[i], lights, sensors);
+            });
+        }
+    }
+    go_on(1.0);
+    return kParts;
+}
+
+void ThirdBounceScan::integrate_tile(const PairTiles::Tile& tile,
+                                     const Views& light_views,
+                                     const Views& sensor_views) {
+    const auto tables =
+        [&](const core::WallPoints& all, const PointRange& range, const Views& views) {
+            return TileTables(
+                wall_points(all, range),
+                std::span(views.seen).subspan(range.begin - views.range.begin, range.size()));
+        };
+    TileTables lights = tables(scan_.illumination, tile.lights, light_views);
+    TileTables sensors = tables(scan_.sensing, tile.sensors, sensor_views);
+    const std::size_t num_sensors = tile.sensors.size();
+    const auto num_bins = static_cast<std::size_t>(axis_.num_bins);
+    std::vector<double> histograms(tile.lights.size() * num_sensors * num_bins);
+    const auto pair_of = [&](std::size_t l, std::size_t s) {
+        return (tile.lights.begin + l) * scan_.sensing.size() + tile.sensors.begin + s;
+    };
+    for (std::size_t b = 0; b < pieces_.blocks.size(); ++b) {
+        const PieceBlock& block = pieces_.blocks[b];
+        lights.compute(block, b);
+        sensors.compute(block, b);
+        for (std::size_t l = 0; l < tile.lights.size(); ++l) {
+            const PairEnd& light = lights.ends()[l];
+            for (std::size_t s = 0; s < num_sensors; ++s) {
+                const PairEnd& sensor = sensors.ends()[s];
+                if ((light.table->units & sensor.table->units) == 0) continue;
+                if (block.kind == PieceKind::Retroreflective &&
+                    !coincide(*light.point, *sensor.point)) {
+                    continue;
+                }
+                const core::TimeAxis axis = axis_of_pair(pair_of(l, s));
+                if (misses_axis(pieces_.spheres[b], *light.point, *sensor.point, axis)) continue;
+                add_pair(block,
+                         light,
+                         sensor,
+                         axis,
+                         std::span(histograms).subspan((l * num_sensors + s) * num_bins, num_bins));
+            }
+        }
+    }
+    for (std::size_t i = 0; i < tile.lights.size() * num_sensors; ++i) {
+        store(pair_of(i / num_sensors, i % num_sensors),
+              std::span(histograms).subspan(i * num_bins, num_bins));
+    }
+}
+
+}  // namespace renderer

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/core/capture.h"
+#include "renderer/film/pair_tiles.h"
+#include "renderer/scene/coinciding_points.h"
+#include "renderer/third_bounce/third_bounce_visibility.h"
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+namespace renderer {
+
+/// Integrates one cut of the surfaces for all pairs of a scan.
+class ThirdBounceScan {
+ public:
+    /// All references must outlive this.
+    ///
+    /// negligible_error   as in VisibilityRules
+    /// memory_bytes       that masks of a single or exhaustive scan may take; where it does not
+    ///                    hold those of all points, some points are looked at more than once
+    /// throws             core::Failure when it does not even hold PairTiles::kFewestPoints
+    ThirdBounceScan(const Scene& scene,
+                    const core::Scan& scan,
+                    const core::TimeAxis& axis,
+                    const PieceSet& pieces,
+                    double negligible_error,
+                    double memory_bytes);
+
+    /// The pairs are integrated in this many parts, the last of which may be empty.
+    static constexpr int kParts = 16;
+
+    /// Fills the pairs of parts [first_part, kParts) of `result` with H for wall albedos of pi.
+    ///
+    /// go_on     called from the calling thread with the share done after every part; false stops
+    /// returns   the number of the first part not integrated; kParts: none is left
+    int integrate(int first_part,
+                  const std::function<bool(double share)>& go_on,
+                  core::Transient& result);
+
+    std::uint64_t num_rays() const { return num_rays_; }
+    /// Of all threads together.
+    double tracing_seconds() const { return tracing_seconds_; }
+    /// Expected squared error of all of H at shadow edges, as far as pieces are too coarse for
+    /// them.
+    double squared_shadow_error() const;
+
+ private:
+    /// What some points of one side of the scan see of all pieces.
+    struct Views {
+        PointRange range;
+        std::vector<VisiblePieces> seen;  ///< one per point of the range
+    };
+
+    WallPoint wall_point(const core::WallPoints& points, std::size_t index) const;
+    std::vector<WallPoint> wall_points(const core::WallPoints& points,
+                                       const PointRange& range) const;
+    core::TimeAxis axis_of_pair(std::size_t pair) const;
+    void integrate_confocal(std::size_t begin, std::size_t end);
+    int integrate_pairs(int first_part, const std::function<bool(double share)>& go_on);
+    VisibilityRules rules_towards(const core::WallPoints& others, std::size_t num_points) const;
+    void look_from(const core::WallPoints& points,
+                   const PointRange& range,
+                   const VisibilityRules& rules,
+                   Views& views,
+                   std::vector<double>& squared_errors);
+    void integrate_tile(const PairTiles::Tile& tile, const Views& lights, const Views& sensors);
+    void add_costs(const VisibilityTracer& tracer);
+    void store(std::size_t pair, std::span<const double> histogram);
+
+    const Scene& scene_;
+    const core::Scan& scan_;
+    const core::TimeAxis& axis_;
+    const PieceSet& pieces_;
+    CoincidingPoints coinciding_;
+    double negligible_error_;
+    double memory_bytes_;
+    core::Transient* result_ = nullptr;  ///< while integrate() runs
+    std::vector<double> light_errors_;   ///< squared, of all pairs of each illumination point
+    std::vector<double> sensor_errors_;
+    std::atomic<std::uint64_t> num_rays_{0};
+    std::atomic<double> tracing_seconds_{0.0};
+};
+
+}  // namespace renderer

@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/third_bounce/third_bounce_visibility.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace renderer {
+namespace {
+
+constexpr std::size_t kPoints = WallPointLanes::kSize;
+
+// Standard deviation of the visible share of a piece that a shadow's straight edge crosses, known
+// from one part drawn of 16, from one drawn in each quarter, and from all 16 [found by simulation].
+constexpr double kErrorFromOne = 0.34;
+constexpr double kErrorFromQuarters = 0.12;
+constexpr double kErrorFromSixteenths = 0.03;
+
+// Pieces [begin, end).
+struct PieceRange {
+    std::uint32_t begin;
+    std::uint32_t end;
+};
+
+PieceRange pieces_of(const PieceGroup& group) {
+    const auto begin = static_cast<std::uint32_t>(group.block * PieceBlock::kSize) +
+                       static_cast<std::uint32_t>(std::countr_zero(group.lanes));
+    return {begin, begin + static_cast<std::uint32_t>(std::popcount(group.lanes))};
+}
+
+VisibilityMask quarter_mask(std::uint32_t quarter) {
+    return static_cast<VisibilityMask>(0xfU << (4 * quarter));
+}
+
+}  // namespace
+
+VisibilityTracer::VisibilityTracer(const Scene& scene, const PieceSet& pieces)
+    : set_(pieces),
+      relevant_(pieces),
+      rays_(scene, pieces),
+      groups_(pieces.groups.size()),
+      pieces_(pieces.blocks.size() * PieceBlock::kSize),
+      represented_(pieces_.size()) {}
+
+void VisibilityTracer::trace(std::span<const WallPoint> points,
+                             const VisibilityRules& rules,
+                             std::span<VisiblePieces> seen) {
+    const WallPointLanes lanes(points);
+    relevant_.look_from(lanes, rules);
+    rays_.look_from(lanes);
+    negligible_error_ = rules.negligible_error;
+    pairs_per_point_ = rules.pairs_per_point;
+    squared_errors_.fill(0.0);
+    classify();
+    trace_groups();
+    open_mixed_groups();
+    refine_mixed_pieces();
+    write(seen);
+}
+
+void VisibilityTracer::classify() {
+    for (const std::uint32_t group : active_groups_) groups_[group] = {};
+    for (const std::uint32_t block : active_blocks_) {
+        const auto begin = static_cast<std::ptrdiff_t>(block * PieceBlock::kSize);
+        std::fill_n(pieces_.begin() + begin, PieceBlock::kSize, State{});
+        std::fill_n(represented_.begin() + begin, PieceBlock::kSize, PointMask{0});
+    }
+    active_groups_.clear();
+    active_blocks_.clear();
+    shadow_rays_.clear();
+    for (std::uint32_t b = 0; b < set_.blocks.size(); ++b) {
+        const RelevantPieces::BlockPoints relevant = relevant_.of_block(b);
+        PointMask any = 0;
+        for (const PointMask points : relevant) any = combine(any, points);
+        if (any == 0) continue;
+        for (std::size_t lane = 0; lane < relevant.size(); ++lane) {
+            pieces_[b * PieceBlock::kSize + lane].relevant = relevant[lane];
+        }
+        active_blocks_.push_back(b);
+        choose_representatives(b);
+    }
+}
+
+// Points to which a wrong share of what they may see is not negligible.
+PointMask VisibilityTracer::points_that_matter(const RelevantPieces::Masses& masses,
+                                               double share) const {
+    PointMask points = 0;
+    for (std::size_t p = 0; p < kPoints; ++p) {
+        const bool matters = share * masses.of_point[p] > negligible_error_;
+        points = static_cast<PointMask>(points | std::uint32_t{matters} << p);
+    }
+    return points;
+}
+
+// In each group, the relevant piece next to the middle gets the ray: drawn ones disagree with those
+// of neighbouring groups more often, and cost a fifth more rays.
+void VisibilityTracer::choose_representatives(std::uint32_t b) {
+    for (std::uint32_t g = set_.first_group[b]; g < set_.first_group[b + 1]; ++g) {
+        const auto [begin, end] = pieces_of(set_.groups[g]);
+        PointMask left = 0;
+        for (std::uint32_t piece = begin; piece < end; ++piece) {
+            left = combine(left, pieces_[piece].relevant);
+        }
+        if (left == 0) continue;
+        groups_[g].relevant = left;
+        active_groups_.push_back(g);
+        const auto offer = [&](std::uint32_t piece) {
+            const PointMask points = common(left, pieces_[piece].relevant);
+            if (points == 0) return;
+            shadow_rays_.push_back({piece, points, ShadowRays::drawn(0)});
+            represented_[piece] = points;
+            left = without(left, points);
+        };
+        const std::uint32_t middle = begin + (end - begin) / 2;
+        for (std::uint32_t piece = middle; piece < end && left != 0; ++piece) offer(piece);
+        for (std::uint32_t piece = middle; piece > begin && left != 0; --piece) offer(piece - 1);
+    }
+}
+
+void VisibilityTracer::trace_groups() {
+    rays_.trace(shadow_rays_);
+    // Those of a group follow one another.
+    auto rays = shadow_rays_.begin();
+    for (const std::uint32_t g : active_groups_) {
+        const auto [begin, end] = pieces_of(set_.groups[g]);
+        PointMask seen = 0;
+        for (; rays != shadow_rays_.end() && rays->piece >= begin && rays->piece < end; ++rays) {
+            seen = combine(seen, rays->seen);
+        }
+        groups_[g].visible = seen;
+        for (std::uint32_t piece = begin; piece < end; ++piece) {
+            pieces_[piece].visible = common(pieces_[piece].relevant, seen);
+        }
+    }
+}
+
+// Points for which an item's neighbours are not of its state; without neighbours to ask, it has to
+// be looked at closely.
+PointMask VisibilityTracer::mixed_points(const NeighbourLists& lists,
+                                         std::uint32_t item,
+                                         const std::vector<State>& states) {
+    const PointMask visible = states[item].visible;
+    PointMask differ = 0;
+    PointMask asked = 0;
+    PointMask asked_twice = 0;
+    for (std::uint32_t i = lists.begin[item]; i < lists.begin[item + 1]; ++i) {
+        const State& other = states[lists.items[i]];
+        differ = combine(differ, common(other.relevant, other.visible ^ visible));
+        asked_twice = combine(asked_twice, common(asked, other.relevant));
+        asked = combine(asked, other.relevant);
+    }
+    return without(states[item].relevant, without(asked_twice, differ));
+}
+
+void VisibilityTracer::open_mixed_groups() {
+    shadow_rays_.clear();
+    opened_.clear();
+    for (const std::uint32_t g : active_groups_) {
+        PointMask mixed = mixed_points(set_.group_neighbours, g, groups_);
+        if (mixed == 0) continue;
+        const auto [begin, end] = pieces_of(set_.groups[g]);
+        RelevantPieces::Masses mass;
+        for (std::uint32_t piece = begin; piece < end; ++piece) {
+            const PointMask relevant = pieces_[piece].relevant;
+            if (relevant == 0) continue;
+            const RelevantPieces::Masses of_piece = relevant_.masses_of(piece);
+            for (std::size_t p = 0; p < kPoints; ++p) {
+                mass.of_point[p] += (relevant >> p & 1U) != 0 ? of_piece.of_point[p] : 0.0;
+            }
+        }
+        mixed = common(mixed, points_that_matter(mass, kErrorFromOne));
+        if (mixed == 0) continue;
+        for (std::uint32_t piece = begin; piece < end; ++piece) {
+            const PointMask points = common(mixed, pieces_[piece].relevant);
+            if (points == 0) continue;
+            opened_.push_back({piece, points});
+            const PointMask unknown = without(points, represented_[piece]);
+            if (unknown != 0) shadow_rays_.push_back({piece, unknown, ShadowRays::drawn(0)});
+        }
+    }
+    rays_.trace(shadow_rays_);
+    for (const ShadowRays& rays : shadow_rays_) {
+        PointMask& visible = pieces_[rays.piece].visible;
+        visible = combine(without(visible, rays.points), rays.seen);
+    }
+}
+
+void VisibilityTracer::refine_mixed_pieces() {
+    shadow_rays_.clear();
+    refined_.clear();
+    for (const auto& [piece, opened] : opened_) {
+        PointMask points = common(opened, mixed_points(set_.piece_neighbours, piece, pieces_));
+        if (points == 0) continue;
+        points = common(points, points_that_matter(relevant_.masses_of(piece), kErrorFromOne));
+        if (points == 0) continue;
+        refined_.push_back({piece, points, {}});
+        for (std::uint32_t k = 1; k < 4; ++k) {
+            shadow_rays_.push_back({piece, points, ShadowRays::drawn(k)});
+        }
+    }
+    rays_.trace(shadow_rays_);
+    for (std::size_t i = 0; i < refined_.size(); ++i) {
+        auto& [piece, points, masks] = refined_[i];
+        const DrawnParts parts = rays_.drawn_parts(piece);
+        const std::array<PointMask, 4> seen{pieces_[piece].visible,
+                                            shadow_rays_[3 * i].seen,
+                                            shadow_rays_[3 * i + 1].seen,
+                                            shadow_rays_[3 * i + 2].seen};
+        PointMask visible = 0;
+        for_each_bit(points, [&](std::size_t p) {
+            for (std::uint32_t k = 0; k < 4; ++k) {
+                if ((seen[k] >> p & 1U) == 0) continue;
+                masks[p] =
+                    static_cast<VisibilityMask>(masks[p] | quarter_mask(parts.quarter(p, k)));
+            }
+            visible = static_cast<PointMask>(visible | std::uint32_t{masks[p] != 0} << p);
+        });
+        pieces_[piece].visible = combine(without(pieces_[piece].visible, points), visible);
+    }
+    refine_quarters();
+}
+
+// Pieces of which only some quarters are seen get rays to all their parts.
+void VisibilityTracer::refine_quarters() {
+    shadow_rays_.clear();
+    std::vector<std::size_t> refined_of_rays;
+    for (std::size_t i = 0; i < refined_.size(); ++i) {
+        const auto& [piece, refined, masks] = refined_[i];
+        PointMask points = 0;
+        for_each_bit(refined, [&, &masks = masks](std::size_t p) {
+            const bool is_partial = masks[p] != 0 && masks[p] != kAllVisible;
+            points = static_cast<PointMask>(points | std::uint32_t{is_partial} << p);
+        });
+        if (points == 0) continue;
+        const RelevantPieces::Masses mass = relevant_.masses_of(piece);
+        points = common(points, points_that_matter(mass, kErrorFromQuarters));
+        if (points == 0) continue;
+        const PieceKind kind = set_.blocks[piece / PieceBlock::kSize].kind;
+        const double num_pairs = kind == PieceKind::Retroreflective ? 1.0 : pairs_per_point_;
+        for_each_bit(points, [&](std::size_t p) {
+            squared_errors_[p] += num_pairs * std::pow(kErrorFromSixteenths * mass.of_point[p], 2);
+        });
+        const DrawnParts parts = rays_.drawn_parts(piece);
+        for (std::uint32_t bit = 0; bit < 16; ++bit) {
+            PointMask unknown = 0;
+            for_each_bit(points, [&](std::size_t p) {
+                const bool is_known = parts.bit(p, bit / 4) == bit;
+                unknown = static_cast<PointMask>(unknown | std::uint32_t{!is_known} << p);
+            });
+            if (unknown == 0) continue;
+            shadow_rays_.push_back({piece, unknown, ShadowRays::fixed(bit)});
+            refined_of_rays.push_back(i);
+        }
+    }
+    rays_.trace(shadow_rays_);
+    for (std::size_t i = 0; i < shadow_rays_.size(); ++i) {
+        auto& masks = refined_[refined_of_rays[i]].masks;
+        const auto bit =
+            static_cast<VisibilityMask>(1U << (shadow_rays_[i].part - ShadowRays::kFirstFixed));
+        for_each_bit(shadow_rays_[i].points, [&](std::size_t p) {
+            const bool is_seen = (shadow_rays_[i].seen >> p & 1U) != 0;
+            masks[p] = static_cast<VisibilityMask>(is_seen ? masks[p] | bit : masks[p] & ~bit);
+        });
+    }
+}
+
+void VisibilityTracer::write(std::span<VisiblePieces> seen) const {
+    for (std::size_t p = 0; p < seen.size(); ++p) {
+        seen[p].units.assign(set_.blocks.size(), 0);
+        seen[p].masks.resize(pieces_.size());
+        seen[p].squared_error = squared_errors_[p];
+    }
+    for (const std::uint32_t block : active_blocks_) {
+        const State* const pieces = pieces_.data() + block * PieceBlock::kSize;
+        RelevantPieces::BlockPoints visible;
+        for (std::size_t i = 0; i < visible.size(); ++i) visible[i] = pieces[i].visible;
+        for (std::size_t p = 0; p < seen.size(); ++p) {
+            VisibilityMask* const masks = seen[p].masks.data() + block * PieceBlock::kSize;
+            for (std::size_t i = 0; i < visible.size(); ++i) {
+                masks[i] = static_cast<VisibilityMask>(-(visible[i] >> p & 1));
+            }
+        }
+        for (std::size_t u = 0; u < PieceBlock::kUnits; ++u) {
+            PointMask any = 0;
+            for (std::size_t i = 0; i < PieceBlock::kUnitSize; ++i) {
+                any = combine(any, visible[u * PieceBlock::kUnitSize + i]);
+            }
+            for (std::size_t p = 0; p < seen.size(); ++p) {
+                seen[p].units[block] |= static_cast<UnitMask>(any >> p & 1U) << u;
+            }
+        }
+    }
+    for (const auto& [piece, points, masks] : refined_) {
+        for_each_bit(points, [&, piece = piece, &masks = masks](std::size_t p) {
+            seen[p].masks[piece] = masks[p];
+        });
+    }
+}
+
+}  // namespace renderer

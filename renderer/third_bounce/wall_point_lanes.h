@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/scene/ray_caster.h"
+
+#include <cstdint>
+#include <span>
+
+namespace renderer {
+
+/// A wall point as the integrator sees it; position relative to PieceSet::origin.
+struct WallPoint {
+    core::Vec3 position;
+    core::Vec3 normal;
+    std::uint32_t index = 0;  ///< among the points of its side
+    bool is_confocal = true;  ///< some pair has both its ends here, see CoincidingPoints
+};
+
+/// Some wall points of a WallPointLanes: point p is bit p.
+using PointMask = std::uint16_t;
+
+/// Points of either mask.
+inline PointMask combine(PointMask a, PointMask b) {
+    return static_cast<PointMask>(a | b);
+}
+/// Points of the first mask that are not in the second one.
+inline PointMask without(PointMask a, PointMask b) {
+    return static_cast<PointMask>(a & ~b);
+}
+/// Points of both masks.
+inline PointMask common(PointMask a, PointMask b) {
+    return static_cast<PointMask>(a & b);
+}
+
+/// Wall points that are looked from together, as many as a packet has rays: point p in lane p of
+/// all arrays. Lanes beyond `count` repeat the first point.
+struct alignas(64) WallPointLanes {
+    static constexpr std::size_t kSize = SegmentPacket::kSize;
+    using Lanes = std::array<double, kSize>;
+
+    Lanes x, y, z;
+    Lanes normal_x, normal_y, normal_z;
+    std::array<std::uint32_t, kSize> index;
+    PointMask confocal = 0;  ///< those with WallPoint::is_confocal
+    std::size_t count = 0;
+
+    WallPointLanes() = default;
+    /// points   1 to kSize of them
+    explicit WallPointLanes(std::span<const WallPoint> points) : count(points.size()) {
+        for (std::size_t p = 0; p < kSize; ++p) {
+            const WallPoint& point = points[p < count ? p : 0];
+            x[p] = point.position.x();
+            y[p] = point.position.y();
+            z[p] = point.position.z();
+            normal_x[p] = point.normal.x();
+            normal_y[p] = point.normal.y();
+            normal_z[p] = point.normal.z();
+            index[p] = point.index;
+            confocal = static_cast<PointMask>(confocal | std::uint32_t{point.is_confocal} << p);
+        }
+    }
+    PointMask all() const { return static_cast<PointMask>((std::uint32_t{1} << count) - 1U); }
+    core::Vec3 position(std::size_t p) const { return {x[p], y[p], z[p]}; }
+};
+
+}  // namespace renderer

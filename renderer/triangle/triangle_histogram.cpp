@@ -1,0 +1,484 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/triangle/triangle_histogram.h"
+
+#include "renderer/core/simd.h"
+#include "renderer/triangle/triangle_splines.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+namespace renderer {
+namespace {
+
+using core::load;
+using core::Simd;
+using core::SimdMask;
+using core::TimeAxis;
+
+constexpr std::size_t kUnit = Simd::size();
+static_assert(TriangleLanes::kSize % kUnit == 0);
+
+constexpr double kThird = 1.0 / 3.0;
+constexpr double kSixth = 1.0 / 6.0;
+// The mean of bent positions lies below that of linear ones by this times the sum of the bends.
+constexpr double kSag = 1.0 / 24.0;
+
+// Triangles side by side with corners sorted by position along the axis; positions in any unit.
+//
+// Let p0 <= p1 <= p2 and K0, K1, K2 be positions and weights. The level set p = e cuts the edge 0-2
+// at the fraction b = (e-p0)/(p2-p0) and, for e < p1, the edge 0-1 at a = (e-p0)/(p1-p0). The part
+// below e is the triangle (corner 0, those two cuts), a share a*b of the area, and the mean of a
+// linear weight over a triangle is the mean of its corner values:
+//
+//     C(e) = a b [K0 + x/3],   x = a (K1-K0) + b (K2-K0),        e <= p1
+//
+// and the same seen from corner 2 for e >= p1, subtracted from the mean (K0+K1+K2)/3.
+//
+// Where positions bend away from linear ones by q, C(e) changes to first order by minus the
+// integral of K q over the cut. Per unit of e the cut is dC/de = 2 a / (p2-p0) of the area for
+// K = 1, its mean weight K0 + x/2, and with q = -(c2 l0 l1 + c1 l0 l2 + c0 l1 l2)/2, its mean over
+// the segment between the two cuts is
+//
+//     q = -[c2 a (3-2a-b) + c1 b (3-2b-a) + c0 a b]/12.
+//
+// p are the linear positions with the true mean, shifted by -(c0+c1+c2)/24, and q the rest. Where
+// a triangle bends more than it rises, this is too much of a correction, and 1/(p2-p0) is held at
+// 1/c.
+//
+// With the ratio r = b/a = (p1-p0)/(p2-p0), all this is a polynomial of a, which lies in [0, 1]
+// like r: nothing cancels, however small the triangle is.
+class SortedTriangles {
+    // Keeps reciprocals finite; in bins.
+    static constexpr double kLeastRise = 1e-100;
+
+ public:
+    // The unit of lanes that starts at `begin`, after sort_corners().
+    [[gnu::always_inline]] SortedTriangles(const TriangleLanes& lanes, std::size_t begin)
+        : p0_(load(lanes.opl_m[0], begin)),
+          p1_(load(lanes.opl_m[1], begin)),
+          p2_(load(lanes.opl_m[2], begin)) {
+        const Simd area = load(lanes.area_m2, begin);
+        const Simd k0 = area * load(lanes.weight[0], begin);
+        const Simd k1 = area * load(lanes.weight[1], begin);
+        const Simd k2 = area * load(lanes.weight[2], begin);
+        const Simd c0 = load(lanes.bend_m[0], begin);
+        const Simd c1 = load(lanes.bend_m[1], begin);
+        const Simd c2 = load(lanes.bend_m[2], begin);
+        whole_ = (k0 + k1 + k2) * kThird;
+        const Simd rise = larger_of(p2_ - p0_, kLeastRise);
+        const Simd per_02 = 1.0 / rise;
+        const Simd held = kSixth / larger_of(larger_of(rise, c0), larger_of(c1, c2));
+        const OfCorners bends{c0 * held, c1 * held, c2 * held};
+        low_ = Side(p1_ - p0_, per_02, {k0, k1, k2}, bends, 1.0);
+        high_ = Side(p2_ - p1_, per_02, {k2, k1, k0}, {bends[2], bends[1], bends[0]}, -1.0);
+    }
+
+    // Where the first of the triangles that weigh anything begins and the last one ends, if not
+    // beyond the given limits.
+    [[gnu::always_inline]] double lowest(double limit) const {
+        return least_of(select(whole_ != 0.0, p0_, limit));
+    }
+    [[gnu::always_inline]] double highest(double limit) const {
+        return most_of(select(whole_ != 0.0, p2_, limit));
+    }
+    /// What the longest one spans.
+    [[gnu::always_inline]] double longest() const {
+        return most_of(select(whole_ != 0.0, p2_ - p0_, 0.0));
+    }
+
+    /// C(e) times the area once all of a triangle lies below e.
+    const Simd& whole() const { return whole_; }
+
+    /// The same, with lane i alone.
+    SortedTriangles only(std::size_t i) const {
+        SortedTriangles one = *this;
+        alignas(64) std::array<double, kUnit> whole{};
+        whole[i] = whole_[i];
+        one.whole_ = load(whole, 0);
+        return one;
+    }
+
+    // C(e) times the area.
+    [[gnu::always_inline]] Simd below(double e) const {
+        const SimdMask low = e < p1_;
+        const Simd reach = larger_of(select(low, e - p0_, p2_ - e), 0.0);
+        const Simd a = reach * select(low, low_.per, high_.per);
+        Simd part = select(low, low_.factor[3], high_.factor[3]);
+        for (std::size_t k = 3; k-- > 0;) {
+            part = part * a + select(low, low_.factor[k], high_.factor[k]);
+        }
+        const Simd within = smaller_of(larger_of(part * a, 0.0), whole_);
+        return select(low, within, whole_ - within);
+    }
+
+ private:
+    using OfCorners = std::array<Simd, 3>;
+
+    // C(e), or what it lacks to all, as a polynomial of a without a constant term.
+    struct Side {
+        Simd per;  ///< a per distance from the corner
+        std::array<Simd, 4> factor;
+
+        Side() = default;
+        // k      weights of the corner that a counts from, of the middle one and of the other one
+        // c      bends opposite to them
+        // sign   +1 where the part below e is described, -1 for the part above
+        [[gnu::always_inline]] Side(const Simd& rise,
+                                    const Simd& per_02,
+                                    const OfCorners& k,
+                                    const OfCorners& c,
+                                    double sign)
+            : per(1.0 / larger_of(rise, kLeastRise)) {
+            const Simd ratio = rise * per_02;
+            const Simd slope = (k[1] - k[0]) + ratio * (k[2] - k[0]);  // x / a
+            // -2 q / (p2-p0), by powers of a
+            const Simd sum = c[0] + c[1] + c[2];
+            const Simd q0 = -0.5 * sign * sum;
+            const Simd q1 = 3.0 * sign * (c[2] + ratio * c[1]);
+            const Simd q2 =
+                sign * (ratio * (sum - 2.0 * (c[2] + c[1]) - 2.0 * ratio * c[1]) - 2.0 * c[2]);
+            factor[0] = q0 * k[0];
+            factor[1] = ratio * k[0] + q1 * k[0] + 0.5 * q0 * slope;
+            factor[2] = kThird * ratio * slope + q2 * k[0] + 0.5 * q1 * slope;
+            factor[3] = 0.5 * q2 * slope;
+        }
+    };
+
+    Simd p0_, p1_, p2_, whole_;
+    Side low_, high_;
+};
+
+struct Corner {
+    Simd p, k, c;
+};
+
+[[gnu::always_inline]] inline void order(Corner& a, Corner& b) {
+    const Corner first = a;
+    const SimdMask swap = b.p < first.p;
+    a = {select(swap, b.p, first.p), select(swap, b.k, first.k), select(swap, b.c, first.c)};
+    b = {select(swap, first.p, b.p), select(swap, first.k, b.k), select(swap, first.c, b.c)};
+}
+
+// Turns lengths into positions in bins, shifts them to the mean of the bent ones, and sorts corners
+// by them.
+void sort_corners(TriangleLanes& lanes, std::size_t count, double start_m, double bins_per_m) {
+    for (std::size_t begin = 0; begin < count; begin += kUnit) {
+        std::array<Corner, 3> corners;
+        for (std::size_t j = 0; j < 3; ++j) {
+            corners[j] = {load(lanes.opl_m[j], begin),
+                          load(lanes.weight[j], begin),
+                          load(lanes.bend_m[j], begin) * bins_per_m};
+        }
+        const Simd sag = (corners[0].c + corners[1].c + corners[2].c) * kSag;
+        for (Corner& corner : corners) corner.p = (corner.p - start_m) * bins_per_m - sag;
+        order(corners[0], corners[1]);
+        order(corners[1], corners[2]);
+        order(corners[0], corners[1]);
+        for (std::size_t j = 0; j < 3; ++j) {
+            store(corners[j].p, lanes.opl_m[j], begin);
+            store(corners[j].k, lanes.weight[j], begin);
+            store(corners[j].c, lanes.bend_m[j], begin);
+        }
+    }
+}
+
+// A triangle in the first lane.
+TriangleLanes single_lane(const TriangleKnots& knots, double area_m2) {
+    TriangleLanes lanes;
+    lanes.area_m2[0] = area_m2;
+    for (std::size_t j = 0; j < 3; ++j) {
+        lanes.opl_m[j][0] = knots.opl_m[j];
+        lanes.bend_m[j][0] = 0.0;
+        lanes.weight[j][0] = knots.weight[j];
+    }
+    return lanes;
+}
+
+// Adds a unit of triangles, whose corners lie at positions in bins, bin by bin.
+[[gnu::always_inline]] inline void add_together(const SortedTriangles& triangles,
+                                                std::span<double> histogram) {
+    const auto num_bins = static_cast<double>(histogram.size());
+    const double low = triangles.lowest(num_bins);
+    const double high = triangles.highest(-1.0);
+    const double first = std::floor(std::max(low, 0.0));
+    const double last = std::floor(std::min(high, num_bins - 1.0));
+    Simd below = low < first ? triangles.below(first) : Simd(0.0);
+    const auto add = [&](double bin, const Simd& next) {
+        const Simd rising = larger_of(below, next);
+        histogram[static_cast<std::size_t>(bin)] += sum_of(rising - below);
+        below = rising;
+    };
+    for (double bin = first; bin < last; bin += 1.0) add(bin, triangles.below(bin + 1.0));
+    if (first <= last) add(last, high < num_bins ? triangles.whole() : triangles.below(num_bins));
+}
+
+// Triangles that together reach over more bins than this and more than this many times the longest
+// one are added one by one.
+constexpr double kFewBins = 16.0;
+constexpr double kMostScatter = 4.0;
+
+void add_sorted(const SortedTriangles& triangles, std::span<double> histogram) {
+    const auto num_bins = static_cast<double>(histogram.size());
+    const double reached = triangles.highest(-1.0) - triangles.lowest(num_bins);
+    if (reached > kFewBins && reached > kMostScatter * triangles.longest()) {
+        for (std::size_t i = 0; i < kUnit; ++i) add_together(triangles.only(i), histogram);
+        return;
+    }
+    add_together(triangles, histogram);
+}
+
+// Triangles that bend more than this times what they rise are split where a bin's edge falls into
+// them, ...
+constexpr double kMostBend = 0.5;
+// ... unless they bend by a negligible part of a bin ...
+constexpr double kNegligibleBend = 1e-3;
+// ... or have been split this often.
+constexpr int kMostSplits = 4;
+
+// Which of the sorted triangles are to be split.
+std::uint64_t bent_lanes(const TriangleLanes& lanes, std::size_t count, double num_bins) {
+    std::uint64_t bits = 0;
+    for (std::size_t begin = 0; begin < count; begin += kUnit) {
+        const Simd low = load(lanes.opl_m[0], begin);
+        const Simd high = load(lanes.opl_m[2], begin);
+        const Simd most =
+            larger_of(larger_of(load(lanes.bend_m[0], begin), load(lanes.bend_m[1], begin)),
+                      load(lanes.bend_m[2], begin));
+        // Bent positions lie at most a sixth of this below the linear ones through the corners,
+        // from which those here are shifted down by at most an eighth of it.
+        const auto bin_of = [num_bins](const Simd& p) {
+            return floor(smaller_of(larger_of(p, -1.0), num_bins));
+        };
+        const Simd weight = load(lanes.weight[0], begin) + load(lanes.weight[1], begin) +
+                            load(lanes.weight[2], begin);
+        const SimdMask is_split = (0.0 < weight) &
+                                  (larger_of(kNegligibleBend, kMostBend * (high - low)) < most) &
+                                  (bin_of(low - most * kSixth) < bin_of(high + most * 0.125));
+        bits |= is_split.bits() << begin;
+    }
+    return bits;
+}
+
+// Numbers for the corners of the four quarters of a triangle, twice: lane 4t + part.
+struct QuarterCorner {
+    alignas(64) std::array<std::array<double, kUnit>, 3> of_corner;  ///< barycentric coordinates
+    alignas(64) std::array<std::array<double, kUnit>, 3> of_bend;
+};
+
+// Corner j of the part that keeps corner `part` lies there or in the middle of the edge opposite to
+// the third corner; the fourth part joins the middles.
+constexpr std::array<QuarterCorner, 3> quarter_corners() {
+    std::array<QuarterCorner, 3> corners{};
+    for (std::size_t lane = 0; lane < kUnit; ++lane) {
+        const std::size_t part = lane % 4;
+        for (std::size_t j = 0; j < 3; ++j) {
+            if (part == j) {
+                corners[j].of_corner[j][lane] = 1.0;
+                continue;
+            }
+            const std::size_t opposite = part == 3 ? j : 3 - part - j;
+            corners[j].of_corner[(opposite + 1) % 3][lane] = 0.5;
+            corners[j].of_corner[(opposite + 2) % 3][lane] = 0.5;
+            corners[j].of_bend[opposite][lane] = -0.125;
+        }
+    }
+    return corners;
+}
+
+constexpr std::array<QuarterCorner, 3> kQuarterCorners = quarter_corners();
+
+// 1 in the lanes of the second triangle.
+alignas(64) constexpr std::array<double, kUnit> kSecond{0, 0, 0, 0, 1, 1, 1, 1};
+
+// Sets the unit of `parts` from `begin` to the quarters of two sorted triangles.
+void quarter(const TriangleLanes& lanes,
+             std::size_t first,
+             std::size_t second,
+             TriangleLanes& parts,
+             std::size_t begin) {
+    const SimdMask is_first = load(kSecond, 0) < 0.5;
+    const auto both = [&](const TriangleLanes::Lanes& values) {
+        return select(is_first, values[first], values[second]);
+    };
+    std::array<Simd, 3> p, k, c;
+    for (std::size_t j = 0; j < 3; ++j) {
+        p[j] = both(lanes.opl_m[j]);
+        k[j] = both(lanes.weight[j]);
+        c[j] = both(lanes.bend_m[j]);
+    }
+    const Simd sag = (c[0] + c[1] + c[2]) * kSag;
+    for (std::size_t j = 0; j < 3; ++j) {
+        const QuarterCorner& corner = kQuarterCorners[j];
+        Simd position = sag;
+        Simd weight = 0.0;
+        for (std::size_t m = 0; m < 3; ++m) {
+            const Simd share = load(corner.of_corner[m], 0);
+            position += share * p[m] + load(corner.of_bend[m], 0) * c[m];
+            weight += share * k[m];
+        }
+        store(position, parts.opl_m[j], begin);
+        store(weight, parts.weight[j], begin);
+        store(0.25 * c[j], parts.bend_m[j], begin);
+    }
+    store(0.25 * both(lanes.area_m2), parts.area_m2, begin);
+}
+
+// Returns the lowest bit, and takes it away.
+std::size_t take_lowest(std::uint64_t& bits) {
+    const auto lowest = static_cast<std::size_t>(std::countr_zero(bits));
+    bits &= bits - 1;
+    return lowest;
+}
+
+// Adds triangles whose lengths start at start_m; those that bend too much as their quarters.
+void add_lanes(TriangleLanes& lanes,
+               std::size_t count,
+               double start_m,
+               double bins_per_m,
+               int num_splits,
+               std::span<double> histogram) {
+    for (; count % kUnit != 0; ++count) {
+        lanes.area_m2[count] = 0.0;
+        for (TriangleLanes::Lanes& weight : lanes.weight) weight[count] = 0.0;
+    }
+    sort_corners(lanes, count, start_m, bins_per_m);
+    std::uint64_t bent = num_splits == kMostSplits
+                             ? 0
+                             : bent_lanes(lanes, count, static_cast<double>(histogram.size()));
+    while (bent != 0) {
+        TriangleLanes parts;
+        std::size_t num_parts = 0;
+        while (bent != 0 && num_parts < TriangleLanes::kSize) {
+            const std::size_t first = take_lowest(bent);
+            const std::size_t second = bent != 0 ? take_lowest(bent) : first;
+            quarter(lanes, first, second, parts, num_parts);
+            num_parts += first == second ? 4 : kUnit;
+            for (TriangleLanes::Lanes& weight : lanes.weight) {
+                weight[first] = 0.0;
+                weight[second] = 0.0;
+            }
+        }
+        add_lanes(parts, num_parts, 0.0, 1.0, num_splits + 1, histogram);
+    }
+    for (std::size_t begin = 0; begin < count; begin += kUnit) {
+        add_sorted(SortedTriangles(lanes, begin), histogram);
+    }
+}
+
+double mean_of(const std::array<double, 3>& values) {
+    return (values[0] + values[1] + values[2]) * kThird;
+}
+
+// The Gaussian response is cut off this many standard deviations away: beyond, it holds 1e-11.
+constexpr double kReach = 6.8;
+
+using Slots = std::array<double, TriangleBins::kSlots>;
+
+// The cumulative histogram and its slopes from the splines, edge_m from the first knot; the mean
+// over a triangle is twice the integral over the barycentric coordinates.
+Slots cumulative_of(const TriangleSplines<double>::Values& values,
+                    const TriangleKnots& knots,
+                    double edge_m,
+                    double per_m,
+                    Slopes slopes) {
+    Slots cumulative{};
+    for (std::size_t j = 0; j < 3; ++j) {
+        cumulative[0] += 2.0 * values.share[j] * knots.weight[j];
+    }
+    if (slopes == Slopes::Without) return cumulative;
+    const auto& s = values.slope;
+    const auto& k = knots.weight;
+    cumulative[1] = 2.0 * per_m * (2.0 * s[0] * k[0] + s[1] * k[1] + s[2] * k[2]);
+    cumulative[2] = 2.0 * per_m * (s[1] * k[0] + 2.0 * s[3] * k[1] + s[4] * k[2]);
+    cumulative[3] = 2.0 * per_m * (s[2] * k[0] + s[4] * k[1] + 2.0 * s[5] * k[2]);
+    for (std::size_t j = 0; j < 3; ++j) {
+        cumulative[4 + j] = 2.0 * values.share[j];
+        // Shares depend on (edge, knots) / sigma only, and on differences of these.
+        cumulative[7] += (edge_m - (knots.opl_m[j] - knots.opl_m[0])) * cumulative[1 + j];
+    }
+    return cumulative;
+}
+
+// What is reached once the whole triangle lies below the edge.
+Slots whole_triangle(const TriangleKnots& knots) {
+    return {mean_of(knots.weight), 0.0, 0.0, 0.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0, 0.0};
+}
+
+}  // namespace
+
+TriangleKnots match_midpoints(const TriangleKnots& at_corners, const TriangleKnots& at_midpoints) {
+    TriangleKnots knots = at_corners;
+    const double shift = mean_of(at_midpoints.opl_m) - mean_of(at_corners.opl_m);
+    for (double& opl : knots.opl_m) opl += shift;
+
+    const double mean = mean_of(at_midpoints.weight);
+    const double corner_mean = mean_of(at_corners.weight);
+    const double lowest = *std::min_element(knots.weight.begin(), knots.weight.end()) - corner_mean;
+    const double spread = lowest < -mean ? mean / -lowest : 1.0;
+    for (double& weight : knots.weight) weight = mean + spread * (weight - corner_mean);
+    return knots;
+}
+
+double triangle_cumulative(const TriangleKnots& knots, double opl_m) {
+    TriangleLanes lanes = single_lane(knots, 1.0);
+    sort_corners(lanes, 1, 0.0, 1.0);
+    return SortedTriangles(lanes, 0).below(opl_m)[0];
+}
+
+void add_triangles(TriangleLanes& lanes,
+                   std::size_t count,
+                   const TimeAxis& axis,
+                   std::span<double> histogram) {
+    add_lanes(lanes, count, axis.opl_start_m, 1.0 / axis.bin_width_m, 0, histogram);
+}
+
+void add_triangle(const TriangleKnots& knots,
+                  double area_m2,
+                  const TimeAxis& axis,
+                  std::span<double> histogram) {
+    TriangleLanes lanes = single_lane(knots, area_m2);
+    add_triangles(lanes, 1, axis, histogram);
+}
+
+void evaluate_triangle(const TriangleKnots& knots,
+                       double sigma_m,
+                       const TimeAxis& axis,
+                       Slopes slopes,
+                       TriangleBins& bins) {
+    const auto [least, most] = std::minmax_element(knots.opl_m.begin(), knots.opl_m.end());
+    const double reach = kReach * sigma_m;
+    const double begin = (*least - reach - axis.opl_start_m) / axis.bin_width_m;
+    const double end = (*most + reach - axis.opl_start_m) / axis.bin_width_m;
+    bins.bins.clear();
+    bins.first_bin = 0;
+    if (!(end > 0.0) || !(begin < axis.num_bins)) return;
+    bins.first_bin = static_cast<int>(std::max(0.0, std::floor(begin)));
+    const int last_bin = static_cast<int>(std::min(axis.num_bins - 1.0, std::floor(end)));
+
+    const double per_m = 1.0 / (sigma_m > 0.0 ? sigma_m : axis.bin_width_m);
+    const TriangleSplines<double> splines(
+        {0.0, (knots.opl_m[1] - knots.opl_m[0]) * per_m, (knots.opl_m[2] - knots.opl_m[0]) * per_m},
+        sigma_m > 0.0 ? Smear::Gaussian : Smear::None);
+    TriangleSplines<double>::Values values;
+    const auto cumulative_at = [&](int edge) {
+        if (edge <= begin) return Slots{};
+        if (edge >= end) return whole_triangle(knots);
+        if (sigma_m == 0.0 && slopes == Slopes::Without) {
+            return Slots{triangle_cumulative(knots, axis.bin_begin_m(edge))};
+        }
+        const double edge_m = axis.bin_begin_m(edge) - knots.opl_m[0];
+        splines.evaluate(edge_m * per_m, slopes == Slopes::With, values);
+        return cumulative_of(values, knots, edge_m, per_m, slopes);
+    };
+    Slots below = cumulative_at(bins.first_bin);
+    for (int bin = bins.first_bin; bin <= last_bin; ++bin) {
+        const Slots next = cumulative_at(bin + 1);
+        TriangleBins::Bin& target = bins.bins.emplace_back();
+        for (std::size_t i = 0; i < below.size(); ++i) target.slots[i] = next[i] - below[i];
+        below = next;
+    }
+}
+
+}  // namespace renderer

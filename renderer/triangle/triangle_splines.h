@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/core/types.h"
+#include "renderer/triangle/normal_integrals.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <type_traits>
+#include <utility>
+
+namespace renderer {
+
+/// What smears a triangle's lengths: a Gaussian of standard deviation 1, or nothing.
+enum class Smear { Gaussian, None };
+
+/// Cubic splines on the three knots of a triangle: what share of it, weighted by a barycentric
+/// coordinate, lies below a length, and how that share changes with the knots.
+///
+/// With Phi the cumulative response, l the barycentric coordinates and integrals over the triangle
+/// {l_1 + l_2 <= 1} of area 1/2, Hermite and Genocchi's formula gives divided differences
+///
+///     share_j = Int l_j Phi(e - l.x) = -[x0,x1,x2,x_j] H3(e - .),   H3''' = Phi,
+///     d share_j / d x_k = -(1 + (j == k)) [x0,x1,x2,x_j,x_k] H3(e - .),
+///
+/// the factor being how often a knot stands in the difference. Past the middle of the knots,
+/// H3(u) = u^3/6 + H3(-u) is used from the other side, so that H3 never grows and little cancels.
+///
+/// T        double, or an automatic derivative
+/// source   [deBoor1978]
+template <class T>
+class TriangleSplines {
+ public:
+    struct Values {
+        std::array<T, 3> share;
+        /// Of d share_j / d x_k without the factor: symmetric, pairs 00 01 02 11 12 22.
+        std::array<T, 6> slope;
+    };
+
+    /// knots   in units of the response's standard deviation; in bins for Smear::None
+    TriangleSplines(const std::array<T, 3>& knots, Smear smear) : smear_(smear) {
+        for (std::size_t i : {0, 1, 0}) {
+            if (knots[order_[i + 1]] < knots[order_[i]]) std::swap(order_[i], order_[i + 1]);
+        }
+        for (std::size_t i = 0; i < 3; ++i) x_[i] = knots[order_[i]];
+        if (smear_ == Smear::Gaussian) return;
+        if (x_[1] - x_[0] < kLeastGap) x_[0] = x_[1] - kLeastGap;
+        if (x_[2] - x_[1] < kLeastGap) x_[2] = x_[1] + kLeastGap;
+    }
+
+    /// Shares below `edge` and, if wanted, their slopes, in the order of the given knots.
+    void evaluate(double edge, bool with_slopes, Values& values) const {
+        const double sign = edge + edge > x_[0] + x_[2] ? -1.0 : 1.0;
+        const double base = sign < 0.0 ? 1.0 / 6.0 : 0.0;
+        Differences d;
+        if (is_close(x_[0], x_[2], edge)) {
+            expand_all(edge, sign, with_slopes, d);
+        } else {
+            divide_all(edge, sign, with_slopes, d);
+        }
+        for (std::size_t j = 0; j < 3; ++j) values.share[order_[j]] = base - d.third[j];
+        if (!with_slopes) return;
+        for (std::size_t j = 0; j < 3; ++j) {
+            for (std::size_t k = j; k < 3; ++k) {
+                values.slope[pair_index(order_[j], order_[k])] = -d.fourth[pair_index(j, k)];
+            }
+        }
+    }
+
+    static std::size_t pair_index(std::size_t j, std::size_t k) {
+        const std::size_t low = std::min(j, k);
+        const std::size_t high = std::max(j, k);
+        return low == 0 ? high : low + high + 1;
+    }
+
+ private:
+    // Knots nearer than this are expanded about their mean: the series of kTerms terms is then
+    // exact to 1e-11, and division by a larger distance loses at most 1e-12. Without smear the
+    // series ends after the cubic term, and is used wherever no knot lies beyond the edge.
+    static constexpr double kClose = 0.25;
+    static constexpr double kLeastGap = 1e-6;
+    static constexpr std::size_t kTerms = 9;
+    static constexpr std::size_t kDerivatives = kTerms + 4;
+    using Derivatives = std::array<T, kDerivatives>;
+
+    struct Differences {
+        std::array<T, 3> third;
+        std::array<T, 6> fourth;
+    };
+    /// Of two knots a, b: [a,b], [a,a,b], [a,b,b], [a,a,a,b], [a,a,b,b], [a,b,b,b].
+    struct PairDifferences {
+        T ab, aab, abb, aaab, aabb, abbb;
+    };
+    /// f, f' and f''/2 at a knot.
+    struct Knot {
+        T f, f1, f2;
+    };
+
+    bool is_close(const T& low, const T& high, double edge) const {
+        if (!(high - low < kClose)) return false;
+        return smear_ == Smear::Gaussian || edge <= low || edge >= high;
+    }
+
+    // H3, H2 and H1 of u.
+    void antiderivatives(const T& u, T& h3, T& h2, T& h1) const {
+        using std::erfc;
+        using std::exp;
+        if (smear_ == Smear::None) {
+            h1 = u > 0.0 ? u : T(0.0);
+            h2 = 0.5 * h1 * u;
+            h3 = h2 * u * (1.0 / 3.0);
+            return;
+        }
+        if constexpr (std::is_same_v<T, double>) {
+            const NormalIntegrals integrals = table_->at(u);
+            h1 = integrals.h1;
+            h2 = integrals.h2;
+            h3 = integrals.h3;
+            return;
+        }
+        const T density = (1.0 / std::sqrt(2.0 * core::kPi)) * exp(-0.5 * u * u);
+        const T cumulative = 0.5 * erfc(-std::sqrt(0.5) * u);
+        h1 = u * cumulative + density;
+        h2 = 0.5 * (u * h1 + cumulative);
+        h3 = (u * h2 + h1) * (1.0 / 3.0);
+    }
+
+    // f(x) = H3(sign (edge - x)).
+    Knot at_knot(const T& x, double edge, double sign) const {
+        Knot knot;
+        antiderivatives(sign * (edge - x), knot.f, knot.f1, knot.f2);
+        knot.f1 = -sign * knot.f1;
+        knot.f2 = 0.5 * knot.f2;
+        return knot;
+    }
+
+    // f^(k)(x) / k!
+    Derivatives taylor(const T& x, double edge, double sign) const {
+        using std::erfc;
+        using std::exp;
+        const T u = sign * (edge - x);
+        Derivatives d;
+        antiderivatives(u, d[0], d[1], d[2]);
+        const bool is_smeared = smear_ == Smear::Gaussian;
+        d[3] = is_smeared ? T(0.5 * erfc(-std::sqrt(0.5) * u)) : T(u > 0.0 ? 1.0 : 0.0);
+        d[4] = is_smeared ? T((1.0 / std::sqrt(2.0 * core::kPi)) * exp(-0.5 * u * u)) : T(0.0);
+        d[5] = -u * d[4];
+        for (std::size_t k = 6; k < kDerivatives; ++k) {  // derivatives of the normal density
+            d[k] = -u * d[k - 1] - static_cast<double>(k - 5) * d[k - 2];
+        }
+        double factor = 1.0;
+        for (std::size_t k = 1; k < kDerivatives; ++k) {
+            factor *= -sign / static_cast<double>(k);
+            d[k] *= factor;
+        }
+        return d;
+    }
+
+    // [X] f = sum over k of f^(n+k)(m)/(n+k)! h_k(X - m), |X| = n + 1, h_k the complete homogeneous
+    // symmetric polynomials.
+    template <std::size_t N>
+    static T expand(const Derivatives& d, const std::array<T, N>& offsets) {
+        std::array<T, kTerms> h;
+        h.fill(T(0.0));
+        h[0] = T(1.0);
+        for (const T& offset : offsets) {
+            for (std::size_t k = 1; k < kTerms; ++k) h[k] += offset * h[k - 1];
+        }
+        T sum = d[N - 1];
+        for (std::size_t k = 1; k < kTerms; ++k) sum += d[N - 1 + k] * h[k];
+        return sum;
+    }
+
+    void expand_all(double edge, double sign, bool with_slopes, Differences& d) const {
+        const T mean = (x_[0] + x_[1] + x_[2]) * (1.0 / 3.0);
+        const Derivatives f = taylor(mean, edge, sign);
+        const std::array<T, 3> o{x_[0] - mean, x_[1] - mean, x_[2] - mean};
+        for (std::size_t j = 0; j < 3; ++j) {
+            d.third[j] = expand<4>(f, {o[0], o[1], o[2], o[j]});
+            if (!with_slopes) continue;
+            for (std::size_t k = j; k < 3; ++k) {
+                d.fourth[pair_index(j, k)] = expand<5>(f, {o[0], o[1], o[2], o[j], o[k]});
+            }
+        }
+    }
+
+    PairDifferences expand_pair(
+        const T& a, const T& b, double edge, double sign, bool with_slopes) const {
+        const T o = 0.5 * (b - a);
+        const Derivatives f = taylor(0.5 * (a + b), edge, sign);
+        PairDifferences d;
+        d.ab = expand<2>(f, {-o, o});
+        d.aab = expand<3>(f, {-o, -o, o});
+        d.abb = expand<3>(f, {-o, o, o});
+        if (!with_slopes) return d;
+        d.aaab = expand<4>(f, {-o, -o, -o, o});
+        d.aabb = expand<4>(f, {-o, -o, o, o});
+        d.abbb = expand<4>(f, {-o, o, o, o});
+        return d;
+    }
+
+    static PairDifferences divide_pair(const Knot& a,
+                                       const Knot& b,
+                                       const T& distance,
+                                       bool with_slopes) {
+        const T per = 1.0 / distance;
+        PairDifferences d;
+        d.ab = (b.f - a.f) * per;
+        d.aab = (d.ab - a.f1) * per;
+        d.abb = (b.f1 - d.ab) * per;
+        if (!with_slopes) return d;
+        d.aaab = (d.aab - a.f2) * per;
+        d.aabb = (d.abb - d.aab) * per;
+        d.abbb = (b.f2 - d.abb) * per;
+        return d;
+    }
+
+    void divide_all(double edge, double sign, bool with_slopes, Differences& d) const {
+        const std::array<Knot, 3> knots{
+            at_knot(x_[0], edge, sign), at_knot(x_[1], edge, sign), at_knot(x_[2], edge, sign)};
+        const auto pair = [&](std::size_t i) {
+            if (is_close(x_[i], x_[i + 1], edge))
+                return expand_pair(x_[i], x_[i + 1], edge, sign, with_slopes);
+            return divide_pair(knots[i], knots[i + 1], x_[i + 1] - x_[i], with_slopes);
+        };
+        const PairDifferences low = pair(0);   // of knots 0 and 1
+        const PairDifferences high = pair(1);  // of knots 1 and 2
+        const T per = 1.0 / (x_[2] - x_[0]);
+        const T d012 = (high.ab - low.ab) * per;
+        const T d0012 = (d012 - low.aab) * per;
+        const T d0112 = (high.aab - low.abb) * per;
+        const T d0122 = (high.abb - d012) * per;
+        d.third = {d0012, d0112, d0122};
+        if (!with_slopes) return;
+        d.fourth = {(d0012 - low.aaab) * per,
+                    (d0112 - low.aabb) * per,
+                    (d0122 - d0012) * per,
+                    (high.aaab - low.abbb) * per,
+                    (high.aabb - d0112) * per,
+                    (high.abbb - d0122) * per};
+    }
+
+    Smear smear_;
+    const NormalIntegralTable* table_ = &NormalIntegralTable::instance();
+    std::array<std::size_t, 3> order_{0, 1, 2};
+    std::array<T, 3> x_;  ///< sorted
+};
+
+}  // namespace renderer

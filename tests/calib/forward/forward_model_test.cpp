@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: MIT
+// The model against the renderer, against exact arcs, and its derivatives against differences.
+#include "calib/forward/forward_model.h"
+
+#include "calib/model/state_vector.h"
+#include "renderer/render.h"
+#include "renderer/triangle/exact_arcs.h"
+#include "tests/support/fit_examples.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace {
+
+using calib::ForwardModel;
+using calib::ForwardSettings;
+using calib::PairModel;
+using calib::SceneModel;
+using calib::SceneState;
+using core::Vec3;
+using renderer::Slopes;
+
+constexpr double kSigma_m = 0.012;
+
+// Everything free at once, two objects in one another's shade, one point.
+calib::FitSettings all_free() {
+    calib::FitSettings settings;
+    settings.free.objects = {{"front", true, true, true, true, false},
+                             {"back", false, false, false, true, true}};
+    settings.free.point_scatterers = 1;
+    settings.free.time_zero = true;
+    settings.free.response_fwhm = true;
+    settings.free.wall_bow = true;
+    settings.free.wall_scale = true;
+    return settings;
+}
+
+renderer::SceneGeometry two_objects() {
+    renderer::SceneGeometry geometry;
+    geometry.objects = {test_support::tilted_rectangle("front", Vec3(0.1, 0.0, 0.6), 0.4),
+                        test_support::tilted_rectangle("back", Vec3(-0.1, 0.1, 0.8), -0.3, 0.8)};
+    return geometry;
+}
+
+SceneState general_state(const SceneModel& model) {
+    SceneState state = model.start();
+    state.bodies[0].rotation = Eigen::AngleAxisd(0.2, Vec3(0.0, 0.6, 0.8));
+    state.bodies[0].log_size = 0.1;
+    state.bodies[1].heights_m = {0.01, -0.02, 0.0, 0.015};
+    state.points[0] = {Vec3(0.1, 0.2, 0.5), -4.0};
+    state.time_zero_m = 0.003;
+    state.log_ambient = -8.0;
+    state.log_width = 0.1;
+    state.bow_m = 0.01;
+    state.log_wall_scale = 0.02;
+    state.log_scale = 0.5;
+    return state;
+}
+
+ForwardSettings forward_settings(std::size_t pairs) {
+    ForwardSettings settings;
+    settings.axis = test_support::kFitAxis;
+    settings.sigma_m = kSigma_m;
+    settings.response_share = 0.7;
+    settings.offset_m.assign(pairs, 0.01);
+    return settings;
+}
+
+double norm(const std::vector<double>& values) {
+    double sum = 0.0;
+    for (const double value : values) sum += value * value;
+    return std::sqrt(sum);
+}
+
+void expect_slopes_match_differences(const core::Scan& scan, ForwardSettings settings) {
+    const SceneModel model(two_objects(), all_free(), true);
+    const SceneState state = general_state(model);
+    ForwardModel light(model, scan, calib::WallMotion(scan), std::move(settings));
+    light.refresh(state);
+    const auto columns = static_cast<std::size_t>(model.num_columns());
+    constexpr double kStep = 1e-6;
+    for (const std::size_t pair : {std::size_t{0}, scan.num_pairs() / 2}) {
+        PairModel slopes;
+        light.update(state, Slopes::With);
+        light.evaluate(pair, slopes);
+        for (std::size_t c = 0; c < columns; ++c) {
+            Eigen::VectorXd step = Eigen::VectorXd::Zero(model.num_columns());
+            step[static_cast<Eigen::Index>(c)] = kStep;
+            PairModel above;
+            PairModel below;
+            light.update(calib::moved_by(model, state, step), Slopes::Without);
+            light.evaluate(pair, above);
+            light.update(calib::moved_by(model, state, -step), Slopes::Without);
+            light.evaluate(pair, below);
+            std::vector<double> error;
+            std::vector<double> size;
+            for (std::size_t b = 0; b < above.mean.size(); ++b) {
+                const double slope = (above.mean[b] - below.mean[b]) / (2.0 * kStep);
+                error.push_back(slope - slopes.slopes[b * columns + c]);
+                size.push_back(slope);
+            }
+            EXPECT_LT(norm(error), 1e-5 * norm(size) + 1e-9) << model.column_names()[c];
+        }
+    }
+}
+
+TEST(ForwardModel, SlopesMatchFiniteDifferencesOnConfocalScans) {
+    const core::Scan scan = test_support::confocal_grid(4);
+    expect_slopes_match_differences(scan, forward_settings(scan.num_pairs()));
+}
+
+TEST(ForwardModel, SlopesMatchFiniteDifferencesOnExhaustiveScans) {
+    const core::Scan scan = test_support::exhaustive_scan(
+        {Vec3(0.1, 0.0, 0.0), Vec3(-0.3, 0.2, 0.0)}, {Vec3(-0.2, -0.1, 0.0), Vec3(0.3, 0.3, 0.0)});
+    expect_slopes_match_differences(scan, forward_settings(scan.num_pairs()));
+}
+
+TEST(ForwardModel, SlopesMatchFiniteDifferencesThroughAMeasuredResponse) {
+    const core::Scan scan = test_support::single_scan(Vec3(0.1, 0.0, 0.0),
+                                                      {Vec3(-0.2, -0.1, 0.0), Vec3(0.3, 0.3, 0.0)});
+    ForwardSettings settings = forward_settings(scan.num_pairs());
+    settings.measured = core::ExponentialGaussianResponse{0.01, 0.015};
+    expect_slopes_match_differences(scan, settings);
+}
+
+TEST(ForwardModel, AgreesWithExactArcs) {
+    const auto object = test_support::tilted_rectangle("target", Vec3(0.0, 0.0, 0.8), 0.44);
+    renderer::SceneGeometry geometry;
+    geometry.objects = {object};
+    calib::FitSettings free;
+    free.free.objects = {{"target", true, false, false, false, false}};
+    free.free.ambient = false;
+    const SceneModel model(geometry, free, false);
+    const core::Scan scan = test_support::confocal_grid(3);
+    ForwardSettings settings = forward_settings(scan.num_pairs());
+    settings.response_share = 1.0;
+    settings.offset_m.assign(scan.num_pairs(), 0.0);
+    settings.tolerance = 5e-3;
+    ForwardModel light(model, scan, calib::WallMotion(scan), settings);
+    light.refresh(model.start());
+    light.update(model.start(), Slopes::Without);
+
+    constexpr int kFine = 32;
+    core::TimeAxis fine = settings.axis;
+    fine.bin_width_m /= kFine;
+    fine.num_bins *= kFine;
+    const auto filter = core::sample_response(core::GaussianResponse{kSigma_m}, fine.bin_width_m);
+    for (std::size_t pair = 0; pair < scan.num_pairs(); ++pair) {
+        std::vector<double> sharp(static_cast<std::size_t>(fine.num_bins));
+        for (const auto& triangle : object.mesh.triangles) {
+            const auto part = renderer::confocal_arcs({object.mesh.vertices[triangle[0]],
+                                                       object.mesh.vertices[triangle[1]],
+                                                       object.mesh.vertices[triangle[2]]},
+                                                      scan.sensing.positions[pair],
+                                                      scan.sensing.normals[pair],
+                                                      fine);
+            for (std::size_t i = 0; i < sharp.size(); ++i) sharp[i] += 0.5 * part[i];
+        }
+        std::vector<double> smooth(sharp.size());
+        core::apply_filter<double, double>(filter, sharp, smooth);
+        std::vector<double> difference(static_cast<std::size_t>(settings.axis.num_bins));
+        for (std::size_t i = 0; i < smooth.size(); ++i) difference[i / kFine] += smooth[i];
+        const double size = norm(difference);
+        PairModel expected;
+        light.evaluate(pair, expected);
+        for (std::size_t b = 0; b < difference.size(); ++b) {
+            difference[b] -= expected.mean[b];
+        }
+        EXPECT_LT(norm(difference), 1e-2 * size);
+    }
+}
+
+TEST(ForwardModel, AgreesWithTheRendererBehindAnOccluder) {
+    const renderer::SceneGeometry geometry = two_objects();
+    calib::FitSettings free;
+    free.free.objects = {{"front", true, false, false, false, false}};
+    free.free.ambient = false;
+    const SceneModel model(geometry, free, false);
+    const core::Scan scan = test_support::confocal_grid(8);
+    ForwardSettings settings = forward_settings(scan.num_pairs());
+    settings.sigma_m = 0.0;
+    settings.offset_m.assign(scan.num_pairs(), 0.0);
+    settings.tolerance = 5e-3;
+    settings.radiance_factor = std::pow(core::kPi, -3.0);
+    ForwardModel light(model, scan, calib::WallMotion(scan), settings);
+    light.refresh(model.start());
+    light.update(model.start(), Slopes::Without);
+
+    renderer::RelayWall wall;
+    const renderer::Scene scene(geometry, scan, wall);
+    renderer::RenderSettings render_settings;
+    render_settings.target_error = 3e-3;
+    const auto rendered =
+        renderer::render(scene, scan, settings.axis, render_settings, {}).capture.transient;
+    double difference = 0.0;
+    double size = 0.0;
+    PairModel expected;
+    for (std::size_t pair = 0; pair < scan.num_pairs(); ++pair) {
+        light.evaluate(pair, expected);
+        for (std::size_t b = 0; b < expected.mean.size(); ++b) {
+            const double reference = static_cast<double>(rendered.histogram(pair)[b]);
+            difference += std::pow(expected.mean[b] - reference, 2.0);
+            size += reference * reference;
+        }
+    }
+    EXPECT_LT(std::sqrt(difference / size), 0.03);  // shadow edges are known to quarters of pieces
+}
+
+}  // namespace

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+#include "nlos/methods/total_variation.h"
+
+#include "nlos/reconstruct.h"
+#include "tests/nlos/methods/confocal_scene.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace nlos {
+namespace {
+
+using core::Vec3;
+
+/// A flat square plate of points 0.56 m before the wall.
+core::Capture plate_capture() {
+    core::Capture capture =
+        nlos_test::confocal_capture(nlos_test::wall_grid({24, 24}, {0.04, 0.04}), {0.8, 0.016, 64});
+    for (int ix = -10; ix <= 10; ++ix) {
+        for (int iy = -10; iy <= 10; ++iy) {
+            nlos_test::add_scatterer(capture, Vec3(0.02 * ix, 0.02 * iy, 0.56), 4.0);
+        }
+    }
+    return capture;
+}
+
+Reconstruction run(const core::Capture& capture, const std::vector<std::string>& overrides) {
+    ReconstructSettings settings;
+    settings.method = Method::Lct;
+    for (const std::string& text : overrides) core::apply_override(settings, text);
+    return reconstruct(capture, settings, {});
+}
+
+/// Root mean square difference of the maximum projection and the plate, both of maximum 1.
+double error(const Reconstruction& result) {
+    std::vector<float> image = max_projection(result.volume);
+    const float largest = *std::max_element(image.begin(), image.end());
+    double sum = 0.0;
+    for (std::size_t i = 0; i < image.size(); ++i) {
+        const double x = result.volume.axes.x_m[i / 24];
+        const double y = result.volume.axes.y_m[i % 24];
+        const double plate = std::abs(x) < 0.21 && std::abs(y) < 0.21 ? 1.0 : 0.0;
+        sum += std::pow(image[i] / largest - plate, 2);
+    }
+    return std::sqrt(sum / static_cast<double>(image.size()));
+}
+
+TEST(TotalVariation, SharpensANoisyPlateMoreThanTheWienerFilter) {
+    core::Capture capture = plate_capture();
+    const auto values = capture.transient.values();
+    const float largest = *std::max_element(values.begin(), values.end());
+    std::mt19937 generator(3);
+    std::normal_distribution<float> noise(0.0F, 0.02F * largest);
+    for (float& value : values) value += noise(generator);
+    const double with_prior = error(run(capture, {"prior=tv"}));
+    EXPECT_LT(with_prior, 0.8 * error(run(capture, {"snr=1"})));
+    EXPECT_LT(with_prior, 0.8 * error(run(capture, {"snr=0.1"})));
+}
+
+TEST(TotalVariation, FindsTheDepthOfThePlate) {
+    const Reconstruction result = run(plate_capture(), {"prior=tv"});
+    for (std::size_t ix = 8; ix < 16; ++ix) {
+        for (std::size_t iy = 8; iy < 16; ++iy) {
+            EXPECT_NEAR(result.depth.depth_m[result.depth.index(ix, iy)], 0.56, 0.004);
+        }
+    }
+}
+
+TEST(TotalVariation, IsZeroForDarkDataAndHasTheSameBitsForAnyNumberOfThreads) {
+    core::Capture capture = plate_capture();
+    const auto values = [&](int threads) {
+        const core::ThreadLimit limit(threads);
+        return run(capture, {"prior=tv", "tv.iterations=5"}).volume.values;
+    };
+    EXPECT_EQ(values(1), values(7));
+    std::fill(capture.transient.values().begin(), capture.transient.values().end(), 0.0F);
+    for (const float value : values(2)) ASSERT_EQ(value, 0.0F);
+}
+
+}  // namespace
+}  // namespace nlos

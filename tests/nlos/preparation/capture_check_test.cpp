@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+#include "nlos/preparation/capture_check.h"
+
+#include "nlos/detector/detector.h"
+#include "nlos/preparation/first_light.h"
+#include "tests/nlos/methods/confocal_scene.h"
+
+#include <gtest/gtest.h>
+
+namespace nlos {
+namespace {
+
+using core::Vec3;
+
+core::Capture lit_capture() {
+    core::Capture capture = nlos_test::confocal_capture(
+        nlos_test::wall_grid({16, 16}, {0.05, 0.05}), {-0.4, 0.01, 300});
+    nlos_test::add_scatterer(capture, Vec3(0.9, -0.8, 0.3), 4.0);
+    return capture;
+}
+
+TEST(CaptureCheck, HasNothingToSayAboutAGoodCapture) {
+    EXPECT_TRUE(timing_warnings(lit_capture()).empty());
+    core::Capture counts = lit_capture();
+    counts.unit = core::TransientUnit::Counts;
+    for (float& value : counts.transient.values()) value = std::round(100.0F * value) + 3.0F;
+    EXPECT_TRUE(timing_warnings(counts).empty());
+}
+
+TEST(CaptureCheck, WarnsOfLightBeforeTheShortestPath) {
+    core::Capture capture = lit_capture();
+    capture.time_axis.opl_start_m -= 2.5;
+    const auto warnings = timing_warnings(capture);
+    ASSERT_EQ(warnings.size(), 1U);
+    EXPECT_NE(warnings[0].find("time zero"), std::string::npos) << warnings[0];
+}
+
+TEST(CaptureCheck, WarnsOfBinsThatAreStatedTooWide) {
+    core::Capture capture = lit_capture();
+    capture.time_axis.bin_width_m *= 2.0;
+    const auto warnings = timing_warnings(capture);
+    ASSERT_EQ(warnings.size(), 1U);
+    EXPECT_NE(warnings[0].find("narrower"), std::string::npos) << warnings[0];
+}
+
+/// A bent bar of points before the middle of the wall, with counts if asked for.
+core::Capture bar_capture(core::TransientUnit unit) {
+    core::Capture capture = nlos_test::confocal_capture(
+        nlos_test::wall_grid({32, 32}, {0.03, 0.03}), {0.0, 0.008, 500});
+    for (int i = 0; i <= 20; ++i) {
+        const double t = 0.1 * i - 1.0;
+        nlos_test::add_scatterer(capture, Vec3(0.2 * t, 0.05 + 0.1 * t, 0.6 + 0.1 * t * t), 4.0);
+    }
+    if (unit == core::TransientUnit::Counts) {
+        DetectorSettings settings;
+        settings.photons = 2e6;
+        settings.ambient = 0.05;
+        capture = detect(capture, settings);
+    }
+    return capture;
+}
+
+TEST(CaptureCheck, WarnsOfBinsStatedTooWideOrTooNarrow) {
+    for (const auto unit : {core::TransientUnit::Radiance, core::TransientUnit::Counts}) {
+        const core::Capture right = bar_capture(unit);
+        EXPECT_TRUE(timing_warnings(right).empty());
+        for (const double factor : {0.5, 0.75, 1.25, 1.7}) {
+            core::Capture wrong = right;
+            wrong.time_axis.bin_width_m *= factor;
+            const auto warnings = timing_warnings(wrong);
+            ASSERT_EQ(warnings.size(), 1U) << factor;
+            EXPECT_NE(warnings[0].find(factor > 1.0 ? "look narrower" : "look wider"),
+                      std::string::npos)
+                << warnings[0];
+        }
+    }
+}
+
+TEST(CaptureCheck, TellsTheFactorOfWrongBinsAndOfAWrongWall) {
+    const core::Capture right = bar_capture(core::TransientUnit::Radiance);
+    const std::vector<double> dark(right.scan.num_pairs(), 0.0);
+    for (const double factor : {0.6, 1.0, 1.5}) {
+        core::Capture bins = right;
+        bins.time_axis.bin_width_m *= factor;
+        EXPECT_NEAR(std::sqrt(bend_of_first_light(bins, dark)->k), factor, 0.05 * factor);
+        core::Capture wall = right;
+        for (core::WallPoints* points : {&wall.scan.sensing, &wall.scan.illumination}) {
+            for (Vec3& position : points->positions) position /= factor;
+        }
+        EXPECT_NEAR(std::sqrt(bend_of_first_light(wall, dark)->k), factor, 0.05 * factor);
+    }
+}
+
+TEST(CaptureCheck, APlaneSaysNothingOfBins) {
+    core::Capture capture = nlos_test::confocal_capture(
+        nlos_test::wall_grid({24, 24}, {0.04, 0.04}), {0.0, 0.016, 200});
+    for (int ix = -40; ix <= 40; ++ix) {
+        for (int iy = -40; iy <= 40; ++iy) {
+            nlos_test::add_scatterer(capture, Vec3(0.02 * ix, 0.02 * iy, 0.5), 4.0);
+        }
+    }
+    for (const double factor : {0.5, 1.0, 2.0}) {
+        core::Capture scaled = capture;
+        scaled.time_axis.bin_width_m *= factor;
+        EXPECT_TRUE(timing_warnings(scaled).empty()) << factor;
+    }
+}
+
+TEST(CaptureCheck, SaysNothingAboutDarkness) {
+    core::Capture capture = lit_capture();
+    std::fill(capture.transient.values().begin(), capture.transient.values().end(), 0.0F);
+    EXPECT_TRUE(timing_warnings(capture).empty());
+}
+
+}  // namespace
+}  // namespace nlos

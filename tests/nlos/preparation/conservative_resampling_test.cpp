@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+#include "nlos/preparation/conservative_resampling.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+namespace nlos {
+namespace {
+
+TEST(ConservativeResampling, KeepsTheTotal) {
+    const std::vector<double> from{0.0, 0.1, 0.4, 0.9, 1.6};
+    const std::vector<double> to = even_edges(0.0, 1.6, 7);
+    const ConservativeResampling resampling(from, to, std::vector<double>(4, 1.0));
+    const std::vector<float> input{1.0F, 5.0F, 2.0F, 3.0F};
+    std::vector<float> output(resampling.num_outputs());
+    resampling.apply(input.data(), output.data());
+    EXPECT_NEAR(std::accumulate(output.begin(), output.end(), 0.0), 11.0, 1e-5);
+}
+
+TEST(ConservativeResampling, SplitsABinByOverlap) {
+    const std::vector<double> from{0.0, 1.0};
+    const std::vector<double> to{-1.0, 0.25, 0.5, 3.0};
+    const ConservativeResampling resampling(from, to, std::vector<double>{2.0});
+    const std::vector<float> input{10.0F};
+    std::vector<float> output(3);
+    resampling.apply(input.data(), output.data());
+    EXPECT_FLOAT_EQ(output[0], 5.0F);
+    EXPECT_FLOAT_EQ(output[1], 5.0F);
+    EXPECT_FLOAT_EQ(output[2], 10.0F);
+}
+
+TEST(ConservativeResampling, IgnoresEmptyBins) {
+    const std::vector<double> from{0.0, 0.0, 1.0};
+    const std::vector<double> to{0.0, 1.0};
+    const ConservativeResampling resampling(from, to, std::vector<double>(2, 1.0));
+    const std::vector<float> input{7.0F, 3.0F};
+    float output = 0.0F;
+    resampling.apply(input.data(), &output);
+    EXPECT_FLOAT_EQ(output, 3.0F);
+}
+
+}  // namespace
+}  // namespace nlos

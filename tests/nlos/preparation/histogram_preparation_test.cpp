@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+#include "nlos/preparation/histogram_preparation.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace nlos {
+namespace {
+
+/// Two pairs: 20 empty bins, then ambient light of 2 and 5 counts, a signal in bins [40, 80).
+core::Transient example() {
+    core::Transient transient(2, 340);
+    for (std::size_t pair = 0; pair < 2; ++pair) {
+        for (std::size_t bin = 20; bin < 340; ++bin) {
+            const float ambient = pair == 0 ? 2.0F : 5.0F;
+            transient.histogram(pair)[bin] = ambient + (bin >= 40 && bin < 80 ? 100.0F : 0.0F);
+        }
+    }
+    return transient;
+}
+
+TEST(HistogramPreparation, FindsAmbientLightAndTheSignalsEnd) {
+    const auto signal = find_signal(example());
+    ASSERT_TRUE(signal);
+    EXPECT_DOUBLE_EQ(signal->ambient_per_bin[0], 2.0);
+    EXPECT_DOUBLE_EQ(signal->ambient_per_bin[1], 5.0);
+    EXPECT_EQ(signal->end_bin, 80);
+}
+
+TEST(HistogramPreparation, KeepsTheWholeAxisWithoutASignal) {
+    core::Transient transient(1, 320);
+    for (float& value : transient.values()) value = 3.0F;
+    const auto signal = find_signal(transient);
+    ASSERT_TRUE(signal);
+    EXPECT_EQ(signal->end_bin, 320);
+    EXPECT_FALSE(find_signal(core::Transient(1, 320)));
+}
+
+TEST(HistogramPreparation, TakesOffAmbientLightAndAddsUpBins) {
+    const PreparationPlan plan{4, 20, {2.0, 5.0}};
+    const core::Transient prepared = prepare_histograms(example(), plan);
+    ASSERT_EQ(prepared.num_bins(), 20U);
+    for (std::size_t pair = 0; pair < 2; ++pair) {
+        for (std::size_t bin = 0; bin < 20; ++bin) {
+            EXPECT_FLOAT_EQ(prepared.histogram(pair)[bin], bin >= 10 ? 400.0F : 0.0F);
+        }
+    }
+}
+
+TEST(HistogramPreparation, MultiplyingByRangeUndoesTheFalloff) {
+    core::Scan scan;
+    scan.pattern = core::ScanPattern::Confocal;
+    scan.sensing.positions = {core::Vec3(0.0, 0.0, 0.0), core::Vec3(0.3, 0.0, 0.0)};
+    scan.sensing.normals.assign(2, core::Vec3::UnitZ());
+    scan.illumination = scan.sensing;
+    scan.opl_origin = core::OplOrigin::Device;
+    scan.laser_position = scan.detector_position = core::Vec3(0.0, 0.0, -0.4);
+    const core::TimeAxis axis{0.5, 0.1, 30};
+    core::Transient transient(2, axis.num_bins);
+    for (float& value : transient.values()) value = 2.0F;
+    multiply_by_range(scan, axis, 4.0, transient);
+    for (const int bin : {0, 1, 5, 29}) {
+        const double range = 0.5 * (0.55 + 0.1 * bin - 1.0);  // legs of 2 x 0.5 m
+        const double expected = range > 0.0 ? 2.0 * std::pow(range, 4.0) : 0.0;
+        EXPECT_NEAR(transient.histogram(1)[static_cast<std::size_t>(bin)], expected, 1e-6) << bin;
+    }
+}
+
+}  // namespace
+}  // namespace nlos

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/scene/ground_truth.h"
+
+#include "tests/support/test_scenes.h"
+
+#include <gtest/gtest.h>
+
+namespace {
+
+using core::Vec3;
+
+renderer::SceneDescription description_with(const Vec3& center,
+                                            const Vec3& normal,
+                                            const Vec3& up) {
+    renderer::SceneDescription description;
+    description.relay_wall.center_m = center;
+    description.relay_wall.normal = normal;
+    description.relay_wall.up = up;
+    description.ground_truth.depth_resolution = {40, 20};
+    return description;
+}
+
+TEST(GroundTruth, TiltedPlaneHasItsDepthNormalAndAlbedo) {
+    const auto description = description_with(Vec3::Zero(), Vec3::UnitZ(), Vec3::UnitY());
+    renderer::SceneGeometry geometry;
+    // z = 0.8 + 0.5 x over the left half of the wall.
+    geometry.objects.push_back(test_support::parallelogram_object(
+        {Vec3(-0.5, -0.5, 0.55), Vec3(0.5, 0, 0.25), Vec3(0, 1, 0), 0.3}));
+    const core::Scan scan = renderer::make_scan(description);
+    const renderer::Scene scene(std::move(geometry), scan, description.relay_wall);
+    const core::DepthMap map = renderer::trace_ground_truth(scene, description);
+    const Vec3 normal = Vec3(0.5, 0, -1).normalized();
+    for (std::size_t ix = 0; ix < 40; ++ix) {
+        for (std::size_t iy = 0; iy < 20; ++iy) {
+            const std::size_t i = map.index(ix, iy);
+            EXPECT_EQ(map.is_foreground(i), map.x_m[ix] < 0.0);
+            if (!map.is_foreground(i)) continue;
+            EXPECT_NEAR(map.depth_m[i], 0.8 + 0.5 * map.x_m[ix], 1e-9);
+            EXPECT_NEAR(map.normals[i].dot(normal), 1.0, 1e-9);
+            EXPECT_EQ(map.albedo[i], 0.3);
+        }
+    }
+    EXPECT_EQ(surface_points(map).positions.size(), 400U);
+}
+
+TEST(GroundTruth, FollowsThePoseOfTheWall) {
+    // A wall at x = 2 that looks along -x, with a plate 0.6 m in front of its upper part.
+    const auto description = description_with(Vec3(2, 0, 5), Vec3(-1, 0, 0), Vec3::UnitY());
+    renderer::SceneGeometry geometry;
+    geometry.objects.push_back(
+        test_support::parallelogram_object({Vec3(1.4, 0.0, 4.0), Vec3(0, 1, 0), Vec3(0, 0, 2)}));
+    const core::Scan scan = renderer::make_scan(description);
+    const renderer::Scene scene(std::move(geometry), scan, description.relay_wall);
+    const core::DepthMap map = renderer::trace_ground_truth(scene, description);
+    for (std::size_t ix = 0; ix < 40; ++ix) {
+        for (std::size_t iy = 0; iy < 20; ++iy) {
+            const std::size_t i = map.index(ix, iy);
+            EXPECT_EQ(map.is_foreground(i), map.y_m[iy] > 0.0);
+            if (!map.is_foreground(i)) continue;
+            EXPECT_NEAR(map.depth_m[i], 0.6, 1e-9);
+            EXPECT_NEAR(map.point_world(ix, iy).x(), 1.4, 1e-9);
+        }
+    }
+}
+
+}  // namespace

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: MIT
+// What wall points see of pieces: rays in packets against single ones, draws of parts, and many
+// points at once against one after the other.
+#include "renderer/third_bounce/third_bounce_visibility.h"
+
+#include "renderer/core/random.h"
+#include "renderer/third_bounce/third_bounce_scan.h"
+#include "tests/support/statistics.h"
+#include "tests/support/test_scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <numeric>
+#include <optional>
+
+namespace {
+
+using core::Vec3;
+using renderer::PieceBlock;
+using renderer::PointMask;
+using renderer::ShadowRays;
+using renderer::VisibilityMask;
+using renderer::WallPoint;
+using renderer::WallPointLanes;
+
+// A ball and a screen before a sheet, on a wall that bends a little.
+struct HalfHiddenSheet {
+    core::Scan scan = [] {
+        std::vector<Vec3> points;
+        for (int i = 0; i < 40; ++i) {
+            points.emplace_back(-0.4 + 0.1 * (i % 8), -0.4 + 0.1 * (i / 8), 0.002 * (i % 5));
+        }
+        return test_support::confocal_scan(points);
+    }();
+    renderer::Scene scene = [this] {
+        renderer::SceneGeometry geometry;
+        geometry.objects.push_back(test_support::parallelogram_object(
+            {Vec3(-0.3, -0.2, 0.7), Vec3(0.5, 0.0, 0.15), Vec3(-0.05, 0.45, -0.1), 0.6}));
+        geometry.objects.push_back(test_support::parallelogram_object(
+            {Vec3(-0.1, -0.1, 0.4), Vec3(0.2, 0.0, 0.02), Vec3(0.02, 0.2, 0.0), 0.3}));
+        geometry.objects.push_back(test_support::sphere_object(Vec3(0.2, 0.2, 0.5), 0.1, 3, 0.5));
+        return renderer::Scene(std::move(geometry), scan, {});
+    }();
+    core::TimeAxis axis{0.8, 0.02, 60};
+    renderer::PieceSet pieces = renderer::PieceCutter(scene, scan, axis, 0.0).cut(0.01);
+
+    std::vector<WallPoint> points(std::size_t begin, std::size_t count) const {
+        std::vector<WallPoint> result;
+        for (std::size_t i = begin; i < begin + count; ++i) {
+            result.push_back({scan.sensing.positions[i] - pieces.origin,
+                              scan.sensing.normals[i],
+                              static_cast<std::uint32_t>(i)});
+        }
+        return result;
+    }
+    std::uint32_t any_piece(core::Rng& rng) const {
+        const auto block =
+            static_cast<std::size_t>(rng.uniform() * static_cast<double>(pieces.blocks.size()));
+        const auto lane = static_cast<std::size_t>(rng.uniform() *
+                                                   static_cast<double>(pieces.blocks[block].count));
+        return static_cast<std::uint32_t>(block * PieceBlock::kSize + lane);
+    }
+};
+
+TEST(ShadowRayTracer, AnswersAsSingleRays) {
+    const HalfHiddenSheet setup;
+    core::Rng rng(test_support::seed_of("ShadowRayTracer.single"), 0, 0);
+    renderer::ShadowRayTracer tracer(setup.scene, setup.pieces);
+    std::uint64_t num_rays = 0;
+    int num_seen = 0;
+    for (const std::size_t count : {std::size_t{1}, std::size_t{7}, WallPointLanes::kSize}) {
+        const std::vector<WallPoint> points = setup.points(3, count);
+        const WallPointLanes lanes(points);
+        tracer.look_from(lanes);
+        std::vector<ShadowRays> all(300);
+        for (ShadowRays& rays : all) {
+            rays.piece = setup.any_piece(rng);
+            rays.points = static_cast<PointMask>(rng.next_bits() & lanes.all());
+            if (rng.uniform() < 0.3) rays.points = lanes.all();
+            rays.part = static_cast<std::uint8_t>(rng.uniform() * 20.0);
+        }
+        tracer.trace(all);
+        for (const ShadowRays& rays : all) {
+            num_rays += static_cast<std::uint64_t>(std::popcount(rays.points));
+            EXPECT_EQ(rays.seen & ~rays.points, 0);
+            const PieceBlock& block = setup.pieces.blocks[rays.piece / PieceBlock::kSize];
+            const std::size_t i = rays.piece % PieceBlock::kSize;
+            const Vec3 normal(block.normal_x[i], block.normal_y[i], block.normal_z[i]);
+            const renderer::DrawnParts parts = tracer.drawn_parts(rays.piece);
+            for (std::size_t p = 0; p < count; ++p) {
+                if ((rays.points >> p & 1U) == 0) continue;
+                const std::uint32_t bit = rays.part < ShadowRays::kFirstFixed
+                                              ? parts.bit(p, parts.quarter(p, rays.part))
+                                              : rays.part - ShadowRays::kFirstFixed;
+                const auto& share = renderer::centers_of_bits()[bit];
+                Vec3 end = setup.pieces.origin;
+                for (std::size_t c = 0; c < 3; ++c) {
+                    end += share[c] * Vec3(block.x[c][i], block.y[c][i], block.z[c][i]);
+                }
+                const Vec3 from = points[p].position + setup.pieces.origin;
+                end += std::copysign(block.rise_m[i], normal.dot(from - end)) * normal;
+                const bool blocked =
+                    setup.scene.rays().is_blocked(from, points[p].normal, end, normal);
+                EXPECT_EQ((rays.seen >> p & 1U) != 0, !blocked);
+                num_seen += !blocked;
+            }
+        }
+    }
+    EXPECT_EQ(tracer.num_rays(), num_rays);
+    EXPECT_GT(num_seen, static_cast<int>(num_rays / 4));
+    EXPECT_LT(num_seen, static_cast<int>(num_rays * 3 / 4));
+}
+
+// Together with those of another point and of another piece: 256 pairs of equal frequency.
+TEST(DrawnParts, AreUniformAndIndependent) {
+    const HalfHiddenSheet setup;
+    renderer::ShadowRayTracer tracer(setup.scene, setup.pieces);
+    const WallPointLanes lanes(setup.points(0, WallPointLanes::kSize));
+    tracer.look_from(lanes);
+    std::vector<std::uint32_t> firsts;  // by piece and point
+    for (std::uint32_t b = 0; b < setup.pieces.blocks.size(); ++b) {
+        for (std::uint32_t lane = 0; lane < setup.pieces.blocks[b].count; ++lane) {
+            const auto parts =
+                tracer.drawn_parts(b * static_cast<std::uint32_t>(PieceBlock::kSize) + lane);
+            for (std::size_t p = 0; p < WallPointLanes::kSize; ++p) {
+                std::uint32_t quarters = 0;
+                for (std::uint32_t k = 0; k < 4; ++k) {
+                    const std::uint32_t quarter = parts.quarter(p, k);
+                    EXPECT_EQ(parts.bit(p, quarter) / 4, quarter);
+                    quarters |= 1U << quarter;
+                }
+                EXPECT_EQ(quarters, 0xfU);
+                firsts.push_back(parts.bit(p, parts.quarter(p, 0)));
+            }
+        }
+    }
+    for (const std::size_t step : {std::size_t{1}, WallPointLanes::kSize}) {
+        std::vector<double> observed(256);
+        for (std::size_t i = 0; i + step < firsts.size(); ++i) {
+            observed[16 * firsts[i] + firsts[i + step]] += 1.0;
+        }
+        const double total = std::accumulate(observed.begin(), observed.end(), 0.0);
+        EXPECT_GT(total, 256.0 * 20.0);
+        const std::vector<double> expected(256, total / 256.0);
+        EXPECT_GT(test_support::chi_square_p_value(observed, expected), 1e-4) << step;
+    }
+}
+
+class VisibilityTracerTowards : public testing::TestWithParam<std::optional<WallPoint>> {};
+
+// With the same number of rays, too.
+TEST_P(VisibilityTracerTowards, PointsSeeTogetherWhatTheySeeAlone) {
+    const HalfHiddenSheet setup;
+    renderer::VisibilityTracer tracer(setup.scene, setup.pieces);
+    renderer::VisibilityRules rules;
+    rules.other_end = GetParam();
+    const std::vector<WallPoint> points = setup.points(5, WallPointLanes::kSize);
+    for (std::size_t p = 0; p < points.size(); ++p) {
+        // Some gates, some that hold everything.
+        const double begin = 1.0 + 0.01 * static_cast<double>(p);
+        rules.opl.push_back(p % 3 == 0 ? renderer::LengthBounds{0.0, 9.0}
+                                       : renderer::LengthBounds{begin, begin + 0.1});
+    }
+    std::vector<renderer::VisiblePieces> together(points.size());
+    tracer.trace(points, rules, together);
+    const std::uint64_t num_rays = tracer.num_rays();
+    std::size_t num_partial = 0;
+    for (std::size_t p = 0; p < points.size(); ++p) {
+        renderer::VisibilityRules own = rules;
+        own.opl = {rules.opl[p]};
+        std::vector<renderer::VisiblePieces> alone(1);
+        tracer.trace({&points[p], 1}, own, alone);
+        EXPECT_EQ(alone[0].units, together[p].units);
+        EXPECT_EQ(alone[0].squared_error, together[p].squared_error);
+        for (std::size_t b = 0; b < setup.pieces.blocks.size(); ++b) {
+            renderer::for_each_unit(alone[0].units[b], [&](std::size_t begin) {
+                for (std::size_t i = begin; i < begin + PieceBlock::kUnitSize; ++i) {
+                    const VisibilityMask mask = alone[0].masks[b * PieceBlock::kSize + i];
+                    EXPECT_EQ(mask, together[p].masks[b * PieceBlock::kSize + i]);
+                    num_partial += mask != 0 && mask != renderer::kAllVisible;
+                }
+            });
+        }
+    }
+    EXPECT_EQ(tracer.num_rays(), 2 * num_rays);
+    EXPECT_GT(num_partial, 20U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Ends,
+                         VisibilityTracerTowards,
+                         testing::Values(std::nullopt,
+                                         WallPoint{Vec3(0.1, 0.0, -0.4), Vec3::UnitZ(), 0}));
+
+// The ends of a curved wall have no plane in common; one behind which the sheet lies takes nothing
+// from another one that sees it.
+TEST(ThirdBounceScan, OtherEndsInOtherPlanesTakeNothingAway) {
+    const auto histogram = [](const std::vector<Vec3>& sensors) {
+        const core::Scan scan = test_support::exhaustive_scan({Vec3(0.1, 0.0, 0.0)}, sensors);
+        renderer::SceneGeometry geometry;
+        geometry.objects.push_back(test_support::parallelogram_object(
+            {Vec3(-0.2, -0.2, 0.5), Vec3(0.4, 0.0, 0.0), Vec3(0.0, 0.4, 0.05), 0.5}));
+        const renderer::Scene scene(std::move(geometry), scan, {});
+        const core::TimeAxis axis{0.8, 0.02, 60};
+        const renderer::PieceSet pieces = renderer::PieceCutter(scene, scan, axis, 0.0).cut(0.01);
+        renderer::ThirdBounceScan integrator(scene, scan, axis, pieces, 0.0, 1e9);
+        core::Transient result(scan.num_pairs(), axis.num_bins);
+        integrator.integrate(
+            0, [](double) { return true; }, result);
+        const auto values = result.histogram(0);
+        return std::vector<double>(values.begin(), values.end());
+    };
+    const Vec3 near_wall(0.0, 0.0, 0.0);
+    const std::vector<double> alone = histogram({near_wall});
+    const std::vector<double> beside = histogram({near_wall, Vec3(0.0, 2.0, 3.0)});
+    const double sum = std::accumulate(alone.begin(), alone.end(), 0.0);
+    EXPECT_GT(sum, 0.0);
+    EXPECT_NEAR(std::accumulate(beside.begin(), beside.end(), 0.0), sum, 1e-3 * sum);
+}
+
+}  // namespace
