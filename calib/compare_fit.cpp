@@ -84,8 +84,8 @@ std::vector<core::Mat3> symmetries(const Shape& shape) {
         local.push_back(rotation_of(shape).transpose() * (v - shape.centroid));
     }
     std::vector<core::Mat3> group{core::Mat3::Identity()};
-    constexpr std::size_t kMostVertices = 2000;
-    if (local.size() > kMostVertices) return group;
+    constexpr std::size_t kMaxVertices = 2000;
+    if (local.size() > kMaxVertices) return group;
     const core::Mat3 principal = principal_axes(shape);
     std::vector<core::Mat3> generators;
     for (const core::Mat3& axes : {core::Mat3(core::Mat3::Identity()), principal}) {

@@ -3,9 +3,9 @@
 
 #include "calib/fit/fit_checks.h"
 #include "calib/fit/fit_driver.h"
+#include "calib/fit/parametric_bootstrap.h"
 #include "calib/fit/shadow_refinement.h"
-#include "calib/fit/simulated_refits.h"
-#include "calib/model/alternatives.h"
+#include "calib/model/pose_ambiguity.h"
 #include "calib/statistics/poisson_deviance.h"
 #include "calib/statistics/uncertainty.h"
 #include "renderer/core/error.h"
@@ -44,7 +44,7 @@ void store_fit(const FitDriver& driver,
                FitResult& result) {
     result.axis = stage.data->axis;
     result.data = stage.data->values;
-    stage.model->update(state, renderer::Slopes::Without);
+    stage.model->update(state, renderer::Gradients::Without);
     const auto bins = static_cast<double>(stage.model->settings().bins_per_ambient);
     double variance = 0.0;
     PairModel expected;
@@ -60,7 +60,7 @@ void store_fit(const FitDriver& driver,
                 result.deviance += (value - counted) * (value - counted);
                 continue;
             }
-            const double mean = std::max(value, stage.data->least_mean);
+            const double mean = std::max(value, stage.data->min_mean);
             const double residual = signed_deviance(mean, counted).value;
             const DevianceMoments moments = deviance_moments(mean);
             result.deviance += residual * residual;
@@ -232,11 +232,11 @@ void store_rest(const FitInput& input,
 
 // Bodies that are nearly symmetric may have ended in the wrong one of several minima: the others
 // are tried, and named when the data cannot tell.
-void try_turns(const FitDriver& driver,
-               FitDriver::Stage& last,
-               int max_iterations,
-               std::vector<Candidate>& candidates,
-               FitResult& result) {
+void try_symmetric_poses(const FitDriver& driver,
+                         FitDriver::Stage& last,
+                         int max_iterations,
+                         std::vector<Candidate>& candidates,
+                         FitResult& result) {
     for (auto& [name, state] : driver.turned(candidates.front().state)) {
         Candidate turned{candidates.front().name + ", " + name, state, {}};
         turned.summary = driver.solve(last, turned.state, max_iterations);
@@ -275,7 +275,7 @@ void widen_sigma(const FitDriver& driver,
                  Uncertainty& uncertainty,
                  FitResult& result) {
     if (!driver.has_few_photons() || !uncertainty.sigma.allFinite()) return;
-    const Eigen::VectorXd scatter = scatter_of_refits(driver, last, state);
+    const Eigen::VectorXd scatter = bootstrap_scatter(driver, last, state);
     const Eigen::VectorXd grown = scatter.cwiseMax(uncertainty.sigma);
     for (Eigen::Index i = 0; i < grown.size(); ++i) {
         const double factor = grown[i] / uncertainty.sigma[i];
@@ -297,7 +297,7 @@ FitResult fit_scene(const FitInput& input, const core::Progress& progress) {
     FitResult result;
     FitDriver::Stage last = driver.make_stage(input.settings.blur_schedule_m.back());
     std::vector<Candidate> candidates = run_stages(driver, input, progress, last, result);
-    try_turns(driver, last, input.settings.max_iterations, candidates, result);
+    try_symmetric_poses(driver, last, input.settings.max_iterations, candidates, result);
     Candidate& best = candidates.front();
     const RefinedSolution refined = refine(driver, last, best.state);
     Uncertainty uncertainty = assess(refined.information, driver.model().column_names());
@@ -315,13 +315,13 @@ FitResult fit_scene(const FitInput& input, const core::Progress& progress) {
     result.covariance = uncertainty.covariance;
     result.converged = best.summary.converged;
     result.message = best.summary.message;
-    result.num_pieces = last.model->num_pieces();
+    result.num_elements = last.model->num_elements();
     result.geometry = driver.model().posed(best.state);
     check_dependence(driver.model(), uncertainty.sigma, result);
     add_warnings(driver, last, best.state, result);
     if (!refined.is_settled) {
         result.warnings.push_back(
-            "the edges of shadows on the model's pieces did not settle: true errors exceed the "
+            "the edges of shadows on the model's elements did not settle: true errors exceed the "
             "stated ones");
     }
     warn_of_ambiguity(driver, candidates, result);

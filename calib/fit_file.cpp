@@ -109,7 +109,7 @@ Json fit_json(const FitResult& result) {
     json["seconds"] = result.seconds;
     json["converged"] = result.converged;
     json["message"] = result.message;
-    json["pieces"] = result.num_pieces;
+    json["pieces"] = result.num_elements;
     json["starts"] = Json::array();
     for (const FitStart& s : result.starts) {
         json["starts"].push_back({{"name", s.name}, {"cost", number(s.cost)}});

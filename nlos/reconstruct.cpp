@@ -12,8 +12,8 @@
 #include "nlos/methods/virtual_wave.h"
 #include "nlos/preparation/capture_check.h"
 #include "nlos/preparation/histogram_preparation.h"
-#include "nlos/preparation/measurement.h"
 #include "nlos/preparation/memory_limit.h"
+#include "nlos/preparation/prepared_capture.h"
 #include "nlos/preparation/wiener_snr.h"
 #include "nlos/reconstruction/surface.h"
 #include "renderer/core/process.h"
@@ -27,7 +27,7 @@ namespace nlos {
 namespace {
 
 constexpr std::size_t kDefaultColumns = 64;
-constexpr std::size_t kMostSlabs = 64;  // each repeats a part of the work
+constexpr std::size_t kMaxSlabs = 64;  // each repeats a part of the work
 
 /// As many bins as keep the range they cover within a quarter of the wall points' distance: finer
 /// depth than that no aperture of this sampling resolves, and noise and work shrink with the bins.
@@ -35,7 +35,7 @@ int default_merge_bins(const core::TimeAxis& axis, const WallFrame& wall) {
     if (!wall.grid) return 1;
     const double limit_m = 0.25 * std::min(wall.grid->pitch_m[0], wall.grid->pitch_m[1]);
     int merge = 1;
-    while (axis.num_bins / (2 * merge) >= kFewestBins && merge * axis.bin_width_m <= limit_m)
+    while (axis.num_bins / (2 * merge) >= kMinBins && merge * axis.bin_width_m <= limit_m)
         merge *= 2;
     return merge;
 }
@@ -52,13 +52,13 @@ std::shared_ptr<const ResponseDeconvolution> deconvolution_of(const ReconstructS
 
 /// Fills in merge_bins, ambient and, where a method has it, snr, and says what becomes of the
 /// histograms.
-PreparationPlan choose_preparation(const Measurement& measurement, ReconstructSettings& settings) {
-    const core::TimeAxis& axis = measurement.time_axis;
-    const bool is_counts = measurement.unit == core::TransientUnit::Counts;
+PreparationPlan choose_preparation(const PreparedCapture& prepared, ReconstructSettings& settings) {
+    const core::TimeAxis& axis = prepared.time_axis;
+    const bool is_counts = prepared.unit == core::TransientUnit::Counts;
     if (settings.ambient == Ambient::Auto) {
         settings.ambient = is_counts || settings.noise_floor ? Ambient::Subtract : Ambient::Keep;
     }
-    if (!settings.merge_bins) settings.merge_bins = default_merge_bins(axis, measurement.wall);
+    if (!settings.merge_bins) settings.merge_bins = default_merge_bins(axis, prepared.wall);
     PreparationPlan plan;
     plan.merge_bins = *settings.merge_bins;
     if (plan.merge_bins > axis.num_bins) {
@@ -68,16 +68,15 @@ PreparationPlan choose_preparation(const Measurement& measurement, ReconstructSe
     }
     plan.num_bins = axis.num_bins / plan.merge_bins;
     if (settings.ambient == Ambient::Subtract) {
-        if (auto signal = find_signal(measurement.transient())) {
+        if (auto signal = find_signal(prepared.transient())) {
             plan.ambient_per_bin = std::move(signal->ambient_per_bin);
             const int end = (signal->end_bin + plan.merge_bins - 1) / plan.merge_bins;
             if (!settings.volume.z_range_m) {
-                plan.num_bins =
-                    std::clamp(end, std::min(kFewestBins, plan.num_bins), plan.num_bins);
+                plan.num_bins = std::clamp(end, std::min(kMinBins, plan.num_bins), plan.num_bins);
             }
         }
         if (settings.noise_floor) {
-            plan.ambient_per_bin.assign(measurement.scan.num_pairs(), *settings.noise_floor);
+            plan.ambient_per_bin.assign(prepared.scan.num_pairs(), *settings.noise_floor);
         }
     }
     plan.deconvolution = deconvolution_of(settings, axis);
@@ -85,9 +84,9 @@ PreparationPlan choose_preparation(const Measurement& measurement, ReconstructSe
                             (settings.method == Method::Lct && settings.prior == Prior::None);
     if (has_filter && !settings.snr) {
         settings.snr =
-            is_counts ? wiener_snr(
-                            measurement.scan, axis, measurement.transient(), plan, settings.falloff)
-                      : kNoiselessSnr;
+            is_counts
+                ? wiener_snr(prepared.scan, axis, prepared.transient(), plan, settings.falloff)
+                : kNoiselessSnr;
     }
     return plan;
 }
@@ -200,7 +199,7 @@ std::size_t choose_slabs(const MethodInput& input,
                          const ReconstructSettings& settings,
                          double other_bytes) {
     const double available = memory_budget(settings.memory_gb);
-    for (std::size_t num_slabs = 1; num_slabs <= kMostSlabs; ++num_slabs) {
+    for (std::size_t num_slabs = 1; num_slabs <= kMaxSlabs; ++num_slabs) {
         if (other_bytes + method_bytes(input, settings, num_slabs) <= available) return num_slabs;
     }
     return 1;
@@ -258,51 +257,51 @@ Reconstruction reconstruct(const core::Capture& capture,
     Reconstruction result;
     result.settings = settings;
     result.warnings = timing_warnings(capture);
-    Measurement measurement = select_measurement(capture, settings.crop);
-    const MethodChoice choice = choose_method(settings, measurement);
+    PreparedCapture prepared = crop_capture(capture, settings.crop);
+    const MethodChoice choice = choose_method(settings, prepared);
     result.settings.method = choice.method;
     result.method = core::enum_name(choice.method);
     result.reason = choice.reason;
 
-    const PreparationPlan plan = choose_preparation(measurement, result.settings);
-    core::TimeAxis axis = measurement.time_axis;
+    const PreparationPlan plan = choose_preparation(prepared, result.settings);
+    core::TimeAxis axis = prepared.time_axis;
     axis.bin_width_m *= plan.merge_bins;
     axis.num_bins = plan.num_bins;
     if (uses_wave(result.settings) && !result.settings.phasor.wavelength_m) {
         result.settings.phasor.wavelength_m =
-            default_wavelength_m(measurement.scan, measurement.wall, axis);
+            default_wavelength_m(prepared.scan, prepared.wall, axis);
     }
     VolumeAxes axes;
-    choose_axes(measurement.scan, axis, measurement.wall, result.settings, axes);
+    choose_axes(prepared.scan, axis, prepared.wall, result.settings, axes);
 
-    const bool is_ready = plan.num_bins == measurement.time_axis.num_bins &&
+    const bool is_ready = plan.num_bins == prepared.time_axis.num_bins &&
                           plan.ambient_per_bin.empty() && !plan.deconvolution &&
-                          !makes_up_for_falloff(measurement.scan, result.settings);
+                          !makes_up_for_falloff(prepared.scan, result.settings);
     const auto input_with = [&](const core::Transient& transient) {
-        return MethodInput{measurement.scan,
+        return MethodInput{prepared.scan,
                            axis,
                            transient,
-                           measurement.wall,
+                           prepared.wall,
                            axes,
                            *result.settings.volume.z_range_m,
                            progress};
     };
     const double prepared_bytes =
-        is_ready ? 0.0 : 4.0 * static_cast<double>(measurement.scan.num_pairs()) * axis.num_bins;
-    const MethodInput unprepared = input_with(measurement.transient());
+        is_ready ? 0.0 : 4.0 * static_cast<double>(prepared.scan.num_pairs()) * axis.num_bins;
+    const MethodInput unprepared = input_with(prepared.transient());
     const std::size_t num_slabs = choose_slabs(unprepared, result.settings, prepared_bytes);
     const double work_bytes = prepared_bytes + method_bytes(unprepared, result.settings, num_slabs);
     require_memory(work_bytes, settings.memory_gb);
-    result.stated_bytes = work_bytes + measurement.own_bytes();
+    result.stated_bytes = work_bytes + prepared.own_bytes();
     announce(result, num_slabs, progress);
     check_stop(progress);
-    core::Transient prepared;
-    if (!is_ready) prepared = prepare_histograms(measurement.transient(), plan);
-    if (makes_up_for_falloff(measurement.scan, result.settings)) {
-        multiply_by_range(measurement.scan, axis, falloff_power(settings.falloff), prepared);
+    core::Transient histograms;
+    if (!is_ready) histograms = prepare_histograms(prepared.transient(), plan);
+    if (makes_up_for_falloff(prepared.scan, result.settings)) {
+        multiply_by_range(prepared.scan, axis, falloff_power(settings.falloff), histograms);
     }
     result.volume = run_method(
-        input_with(is_ready ? measurement.transient() : prepared), result.settings, num_slabs);
+        input_with(is_ready ? prepared.transient() : histograms), result.settings, num_slabs);
 
     result.depth = extract_depth_map(result.volume, settings.mask_threshold);
     take_normals(result.volume, result.depth);

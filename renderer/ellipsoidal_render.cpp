@@ -54,9 +54,9 @@ DroppedSignal measure_dropped_signal(const Scene& scene,
                                      const core::Scan& scan,
                                      const core::TimeAxis& axis,
                                      const RenderSettings& settings,
-                                     std::size_t most_pairs) {
+                                     std::size_t max_pairs) {
     DroppedSignal dropped;
-    const std::size_t count = std::min(most_pairs, scan.num_pairs());
+    const std::size_t count = std::min(max_pairs, scan.num_pairs());
     for (std::size_t i = 0; i < count; ++i) {
         dropped.pairs.push_back((2 * i + 1) * scan.num_pairs() / (2 * count));
     }

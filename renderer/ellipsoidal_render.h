@@ -24,12 +24,12 @@ struct DroppedSignal {
     std::vector<std::size_t> pairs;
 };
 
-/// Measures it on at most `most_pairs` pairs, spread over the scan.
+/// Measures it on at most `max_pairs` pairs, spread over the scan.
 DroppedSignal measure_dropped_signal(const Scene& scene,
                                      const core::Scan& scan,
                                      const core::TimeAxis& axis,
                                      const RenderSettings& settings,
-                                     std::size_t most_pairs);
+                                     std::size_t max_pairs);
 
 /// Which surfaces connections end on, in words.
 std::string surfaces_kept(const RenderSettings& settings, const ExcludedObjects& excluded);

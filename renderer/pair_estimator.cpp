@@ -10,11 +10,11 @@ template <class Tracer>
 PairEstimator estimator_of(const Scene& scene,
                            const core::Scan& scan,
                            std::shared_ptr<const Tracer> tracer) {
-    return [measurement = Measurement(scene, scan), tracer = std::move(tracer)](
+    return [sensor_pairs = SensorPairs(scene, scan), tracer = std::move(tracer)](
                std::size_t pair, int num_samples, core::Rng& rng, PassHistogram& histogram) {
-        return measurement.is_image()
-                   ? tracer->trace_pixel(measurement, pair, num_samples, rng, histogram)
-                   : tracer->trace(measurement.ends(pair), num_samples, rng, histogram);
+        return sensor_pairs.is_image()
+                   ? tracer->trace_pixel(sensor_pairs, pair, num_samples, rng, histogram)
+                   : tracer->trace(sensor_pairs.ends(pair), num_samples, rng, histogram);
     };
 }
 

@@ -19,12 +19,12 @@ namespace {
 
 // Passes are long enough to keep shadow rays coherent and short enough to give a variance.
 constexpr int kPasses = 8;
-constexpr int kMostSamplesPerPass = 256;
+constexpr int kMaxSamplesPerPass = 256;
 constexpr int kSamplesPerTimedPass = 32;  ///< also when an error is to be reached
 constexpr std::size_t kPairsPerBlock = 16;
 // Passes run in rounds, all of a round for one pair after the other, so that its sums stay in the
 // cache. Between rounds the caller may end the run.
-constexpr double kMostSecondsPerRound = 0.1;
+constexpr double kMaxSecondsPerRound = 0.1;
 
 struct PassPlan {
     int samples_per_pass = 1;
@@ -39,7 +39,7 @@ bool is_open_ended(const RenderSettings& settings) {
 PassPlan plan_passes(const RenderSettings& settings, const PassWork& work) {
     if (!work.estimate) return {0, 1};
     if (is_open_ended(settings)) return {kSamplesPerTimedPass, std::numeric_limits<int>::max()};
-    int per_pass = std::clamp(settings.samples / kPasses, 1, kMostSamplesPerPass);
+    int per_pass = std::clamp(settings.samples / kPasses, 1, kMaxSamplesPerPass);
     // Multiples of 4 split into the path tracer's two kinds of samples without rounding noise.
     if (per_pass > 4) per_pass -= per_pass % 4;
     return {per_pass, (settings.samples + per_pass - 1) / per_pass};
@@ -48,7 +48,7 @@ PassPlan plan_passes(const RenderSettings& settings, const PassWork& work) {
 // How many passes the next round has when `done` of them took `elapsed_s`. It changes no result.
 int next_round(const PassPlan& plan, const RenderSettings& settings, int done, double elapsed_s) {
     if (done == 0 || is_open_ended(settings)) return 1;
-    const double fit = kMostSecondsPerRound * done / elapsed_s;
+    const double fit = kMaxSecondsPerRound * done / elapsed_s;
     return static_cast<int>(std::clamp(fit, 1.0, static_cast<double>(plan.num_passes - done)));
 }
 
@@ -71,9 +71,9 @@ double sums_bytes_per_pair(const core::HistogramAxes& axes, const RenderSettings
 std::size_t pairs_per_tile(const core::Scan& scan,
                            const core::HistogramAxes& axes,
                            const RenderSettings& settings,
-                           double most_sums_bytes) {
+                           double max_sums_bytes) {
     if (is_open_ended(settings)) return scan.num_pairs();
-    const double pairs = std::floor(most_sums_bytes / sums_bytes_per_pair(axes, settings));
+    const double pairs = std::floor(max_sums_bytes / sums_bytes_per_pair(axes, settings));
     return static_cast<std::size_t>(std::clamp(pairs, 1.0, static_cast<double>(scan.num_pairs())));
 }
 
@@ -118,7 +118,7 @@ class PassLoop {
           settings_(settings),
           work_(work),
           num_channels_(channel_count(settings)),
-          measurement_(scene, scan) {}
+          sensor_pairs_(scene, scan) {}
 
     /// Adds the tile's histograms, samples and rays to `result`.
     void run(const Tile& tile, const core::Progress& progress, RenderResult& result);
@@ -140,7 +140,7 @@ class PassLoop {
     const RenderSettings& settings_;
     const PassWork& work_;
     int num_channels_;
-    Measurement measurement_;
+    SensorPairs sensor_pairs_;
     std::atomic<std::uint64_t> num_rays_{0};
     TransientAccumulator::SquaredNorms norms_;  ///< of all tiles so far
 };
@@ -151,8 +151,8 @@ std::uint64_t PassLoop::trace_pair(std::size_t pair,
                                    PassHistogram& histogram) const {
     std::uint64_t num_rays = 0;
     if (work_.estimate) num_rays = work_.estimate(pair, samples, rng, histogram);
-    if (!measurement_.is_image()) {
-        add_short_paths(scene_, measurement_.ends(pair), settings_, histogram);
+    if (!sensor_pairs_.is_image()) {
+        add_short_paths(scene_, sensor_pairs_.ends(pair), settings_, histogram);
     }
     return num_rays;
 }
@@ -203,7 +203,7 @@ void PassLoop::run(const Tile& tile, const core::Progress& progress, RenderResul
     const core::Stopwatch watch;
     const PassPlan plan = plan_passes(settings_, work_);
     HistogramSums sums(tile.count, axes_, num_channels_, settings_.variance);
-    StoppingRule rule(settings_, plan.num_passes, work_.known);
+    StoppingRule rule(settings_, plan.num_passes, work_.precomputed);
     int pass = 0;
     for (bool enough = false; !enough;) {
         const int count = next_round(plan, settings_, pass, watch.seconds());
@@ -220,10 +220,10 @@ void PassLoop::run(const Tile& tile, const core::Progress& progress, RenderResul
         }
     }
     if (work_.estimate && pass > 1) {
-        const auto norms = sums.time.squared_norms(pass, work_.known.transient);
+        const auto norms = sums.time.squared_norms(pass, work_.precomputed.transient);
         norms_.noise += norms.noise;
         norms_.signal += norms.signal;
-        result.estimated_error = relative_error(norms_, work_.known);
+        result.estimated_error = relative_error(norms_, work_.precomputed);
     }
     fill_capture(tile, sums, pass, result.capture);
     result.samples_per_pair =
@@ -256,7 +256,7 @@ RenderResult render_passes(const Scene& scene,
                            const core::Progress& progress) {
     const core::Stopwatch watch;
     const std::size_t num_pairs = scan.num_pairs();
-    const std::size_t tile_pairs = pairs_per_tile(scan, axes, settings, work.most_sums_bytes);
+    const std::size_t tile_pairs = pairs_per_tile(scan, axes, settings, work.max_sums_bytes);
     require_memory(scan, axes, settings, tile_pairs);
     RenderResult result;
     result.capture = empty_capture(scan, axes, settings);

@@ -11,12 +11,12 @@ namespace renderer {
 
 /// What render_passes() is asked for beside the settings.
 struct PassWork {
-    PairEstimator estimate;  ///< empty: no paths are traced
-    KnownPart known;         ///< of H, for its error and when to stop
+    PairEstimator estimate;       ///< empty: no paths are traced
+    PrecomputedPart precomputed;  ///< of H, for its error and when to stop
 
     /// Memory for running sums [bytes]. Passes go over all pairs at once when their sums fit;
     /// larger scans are traced tile by tile, with the same result.
-    double most_sums_bytes = 1e9;
+    double max_sums_bytes = 1e9;
 };
 
 /// Renders by Monte Carlo, in passes over all pairs of a tile, and adds orders 1 and 2 of scans,

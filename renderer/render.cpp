@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/render.h"
 
+#include "renderer/bounce_truncation.h"
 #include "renderer/ellipsoidal_render.h"
 #include "renderer/pass_render.h"
-#include "renderer/path/measurement.h"
+#include "renderer/path/sensor_pairs.h"
 #include "renderer/restir_render.h"
 #include "renderer/third_bounce/third_bounce.h"
-#include "renderer/worthwhile_orders.h"
 
 #include <fmt/core.h>
 
@@ -104,9 +104,9 @@ RenderResult trace_paths(const Scene& scene,
                          const core::HistogramAxes& axes,
                          const RenderSettings& settings,
                          PathShare share,
-                         const KnownPart& known,
+                         const PrecomputedPart& precomputed,
                          const core::Progress& progress) {
-    PassWork work{{}, known};
+    PassWork work{{}, precomputed};
     if (share != PathShare::Nothing && (scan.camera || settings.max_bounces >= 3)) {
         work.estimate =
             path_estimator(scene,
@@ -129,7 +129,7 @@ double leave_out_orders(const Scene& scene,
     const bool may = settings.method == Estimator::Auto && settings.target_error &&
                      !settings.by_order && settings.max_bounces > 3;
     if (!may) return 0.0;
-    const WorthwhileOrders orders = find_worthwhile_orders(
+    const BounceTruncation orders = find_bounce_truncation(
         scene, scan, axes, settings, kShareOfTarget * *settings.target_error);
     if (orders.last == settings.max_bounces) return 0.0;
     warnings.push_back(fmt::format("orders {} to {} are left out: below {:.2g} of H (relative L2)",
@@ -168,9 +168,9 @@ RenderResult integrate_and_trace(const Scene& scene,
         tracing.seconds =
             std::max((1.0 - kShareOfTime) * *settings.seconds, *settings.seconds - third.seconds);
     }
-    const KnownPart known{&third.transient, third.squared_error, left_out};
+    const PrecomputedPart precomputed{&third.transient, third.squared_error, left_out};
     RenderResult result =
-        trace_paths(scene, scan, axes, tracing, share, known, progress.part(done, 1.0));
+        trace_paths(scene, scan, axes, tracing, share, precomputed, progress.part(done, 1.0));
     add(third.transient, result.capture.transient);
     if (settings.by_order) add(third.transient, result.capture.by_order[2]);
     if (is_all) result.estimated_error = std::hypot(third.estimated_error, left_out);

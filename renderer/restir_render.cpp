@@ -8,7 +8,7 @@
 #include "renderer/ellipsoidal_render.h"
 #include "renderer/film/stopping_rule.h"
 #include "renderer/film/transient_accumulator.h"
-#include "renderer/path/measurement.h"
+#include "renderer/path/sensor_pairs.h"
 #include "renderer/path/short_paths.h"
 #include "renderer/restir/restir_renderer.h"
 
@@ -25,7 +25,7 @@ namespace {
 constexpr std::size_t kDomainsPerBlock = 64;
 
 // Estimates of one frame of a sequence, at most: each has random numbers of its own.
-constexpr std::uint64_t kMostRepeats = 1 << 16;
+constexpr std::uint64_t kMaxRepeats = 1 << 16;
 
 int candidates_per_frame(const RestirSettings& settings) {
     return settings.walks + (has_shared_walks(settings.candidates) ? settings.shared_walks : 0);
@@ -80,14 +80,15 @@ void add_direct_light_of_pixel(const RestirFrame& frame,
                                const RenderSettings& settings,
                                PassHistogram& histogram) {
     constexpr int kPlaces = 32;
-    const PixelPlaces& places = *frame.scene->pixel_places;
+    const PixelPositionSampler& places = *frame.scene->pixel_places;
     const TimeGate lengths = frame.bins.lengths();
-    const PixelPlaces::Band band = places.band(pixel, {lengths.begin_m(), lengths.end_m()});
+    const PixelPositionSampler::Band band =
+        places.band(pixel, {lengths.begin_m(), lengths.end_m()});
     const int count = bin_may_end_in(places.around(pixel), frame.bins.axes()) ? kPlaces : 1;
     const PathDomain& domain = frame.domains[pixel];
     for (int i = 0; i < count; ++i) {
         const core::Vec2 place = band.sample(core::lattice_point(i, count, domain.pixel_u));
-        auto seen = frame.scene->measurement.first_vertex(pixel, place);
+        auto seen = frame.scene->sensor_pairs.first_vertex(pixel, place);
         if (!seen) continue;
         seen->throughput = 1.0 / (count * band.pdf(place));
         add_direct_light(*seen, domain.ends, frame.scene->walk, settings, histogram);
@@ -98,7 +99,7 @@ void add_paths_without_vertices(const RestirFrame& frame,
                                 std::size_t pair,
                                 const RenderSettings& settings,
                                 PassHistogram& histogram) {
-    if (frame.scene->measurement.is_image()) {
+    if (frame.scene->sensor_pairs.is_image()) {
         add_direct_light_of_pixel(frame, pair, settings, histogram);
     } else {
         add_short_paths(*frame.scene->scene, frame.domains[pair].ends, settings, histogram);
@@ -112,8 +113,8 @@ std::optional<int> time_bin_of(const RestirFrame& frame,
                                const ReusablePath& path) {
     if (const auto known = frame.bins.time_bin(bin)) return known;
     const RestirScene& scene = *frame.scene;
-    const PathDomain domain = scene.measurement.is_image()
-                                  ? pixel_domain(scene.measurement, pair, path.pixel_u)
+    const PathDomain domain = scene.sensor_pairs.is_image()
+                                  ? pixel_domain(scene.sensor_pairs, pair, path.pixel_u)
                                   : frame.domains[pair];
     return frame.bins.axes().time.bin_of(
         scene.candidates.integrand().evaluate(domain, path).extent.opl_m);
@@ -253,14 +254,14 @@ FrameRenderer make_restir_frame_renderer(const core::Scan& scan, const RenderSet
         RestirFrame rendered;
         int repeats = 0;
         do {
-            const std::uint64_t number = static_cast<std::uint64_t>(frame.index) * kMostRepeats +
+            const std::uint64_t number = static_cast<std::uint64_t>(frame.index) * kMaxRepeats +
                                          static_cast<std::uint64_t>(repeats);
             rendered = state->renderer.render(
                 {scene, frame.axes, is_first ? nullptr : &state->last, number});
             add_frame(rendered, state->settings, sums);
             ++repeats;
         } while (state->settings.seconds && watch.seconds() < *state->settings.seconds &&
-                 repeats < static_cast<int>(kMostRepeats));
+                 repeats < static_cast<int>(kMaxRepeats));
         state->last = std::move(rendered);
         RenderResult result = result_of(sums,
                                         repeats,

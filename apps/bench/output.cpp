@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "apps/bench/output.h"
 
-#include "apps/bench/against.h"
 #include "apps/bench/machine.h"
+#include "apps/bench/regression.h"
 #include "apps/terminal.h"
 #include "apps/version.h"
 #include "renderer/core/output_file.h"
@@ -59,7 +59,7 @@ core::Json run_benchmark(const BenchOutput& output,
     result.figures["machine"] = machine_text();
     result.figures["libraries"] = libraries_text();
     if (!earlier.is_null()) {
-        const BenchAgainst against = compare_benches(earlier, result.figures);
+        const BenchRegression against = compare_benches(earlier, result.figures);
         result.figures["against"] = core::write_value(against);
         result.table += against_table(against);
     }

@@ -59,7 +59,7 @@ void add_bench_command(CLI::App& app) {
     CLI::App* command = app.add_subcommand("bench", "Measure speed against error");
     command->require_subcommand(1);
     command->footer(
-        settings_footer({}, "nlos bench reconstruct -o out/bench --part growth --largest 32"));
+        settings_footer({}, "nlos bench reconstruct -o out/bench --part scaling --largest 32"));
     add_bench_render_command(*command);
     add_bench_reconstruct_command(*command);
     add_bench_fit_command(*command);

@@ -14,7 +14,7 @@ namespace {
 using core::Vec3;
 
 // Rows of a picture; more wall points are averaged in groups.
-constexpr std::size_t kMostRows = 256;
+constexpr std::size_t kMaxRows = 256;
 constexpr double kCellsAcross = 90.0;
 
 nlos::ImagePanel rows_panel(const calib::FitResult& result, const std::string& title) {
@@ -84,7 +84,7 @@ nlos::ImagePanel overlay_view(
 std::vector<nlos::Panel> fit_panels(const calib::FitResult& result) {
     const auto bins = static_cast<std::size_t>(result.axis.num_bins);
     const std::size_t pairs = result.data.size() / bins;
-    const std::size_t group = (pairs + kMostRows - 1) / kMostRows;
+    const std::size_t group = (pairs + kMaxRows - 1) / kMaxRows;
     const std::size_t rows = (pairs + group - 1) / group;
     nlos::ImagePanel data = rows_panel(result, "Data");
     nlos::ImagePanel model = rows_panel(result, "Model");

@@ -9,6 +9,7 @@
 #include "nlos/pictures/pictures.h"
 #include "renderer/core/output_file.h"
 #include "renderer/frame_sequence.h"
+#include "renderer/render.h"
 
 #include <filesystem>
 

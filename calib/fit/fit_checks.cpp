@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kNotableExcess = 5.0;  // standard deviations
 constexpr double kNotableStep = 5.0;
-constexpr std::size_t kMostNamed = 8;
+constexpr std::size_t kMaxNamed = 8;
 
 void warn_of_cut_light(const core::TimeAxis& axis, FitResult& result) {
     constexpr double kNotableShare = 0.05;
@@ -48,11 +48,11 @@ struct Excess {
 };
 
 // Deviance per pair against its expectation.
-std::vector<Excess> pair_excesses(const FitResult& result, double least_mean) {
+std::vector<Excess> pair_excesses(const FitResult& result, double min_mean) {
     const auto bins = static_cast<std::size_t>(result.axis.num_bins);
     std::vector<Excess> excesses(result.model.size() / bins);
     for (std::size_t i = 0; i < result.model.size(); ++i) {
-        const double mean = std::max(result.model[i], least_mean);
+        const double mean = std::max(result.model[i], min_mean);
         const DevianceMoments moments = deviance_moments(mean);
         Excess& pair = excesses[i / bins];
         pair.deviance += std::pow(signed_deviance(mean, result.data[i]).value, 2.0);
@@ -64,13 +64,13 @@ std::vector<Excess> pair_excesses(const FitResult& result, double least_mean) {
 
 // Wall points far off are named, since a loss or their removal helps against them alone; the rest
 // says whether the model is right elsewhere.
-void warn_of_deviance(const FitDriver& driver, double least_mean, FitResult& result) {
+void warn_of_deviance(const FitDriver& driver, double min_mean, FitResult& result) {
     constexpr double kWild = 8.0;         // standard deviations
     constexpr double kWildOfUsual = 6.0;  // of the median pair's
     Excess rest;
     std::string names;
     std::size_t wild = 0;
-    const std::vector<Excess> excesses = pair_excesses(result, least_mean);
+    const std::vector<Excess> excesses = pair_excesses(result, min_mean);
     std::vector<double> sizes;
     for (const Excess& pair : excesses) sizes.push_back(std::abs(pair.sigmas()));
     const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
@@ -79,7 +79,7 @@ void warn_of_deviance(const FitDriver& driver, double least_mean, FitResult& res
     for (std::size_t i = 0; i < excesses.size(); ++i) {
         const Excess& pair = excesses[i];
         if (pair.sigmas() > limit) {
-            if (wild < kMostNamed) names += fmt::format("{}{}", wild == 0 ? "" : ", ", i);
+            if (wild < kMaxNamed) names += fmt::format("{}{}", wild == 0 ? "" : ", ", i);
             ++wild;
             continue;
         }
@@ -95,7 +95,7 @@ void warn_of_deviance(const FitDriver& driver, double least_mean, FitResult& res
             wild,
             excesses.size(),
             names,
-            wild > kMostNamed ? ", ..." : "",
+            wild > kMaxNamed ? ", ..." : "",
             has_loss
                 ? "the loss gives them little weight"
                 : "true errors exceed the stated ones; loss: cauchy gives them little weight"));
@@ -111,10 +111,10 @@ void warn_of_deviance(const FitDriver& driver, double least_mean, FitResult& res
 }
 
 // Data that ambient light alone explains nearly as well hold none of the model's.
-void check_for_light(double least_mean, FitResult& result) {
+void check_for_light(double min_mean, FitResult& result) {
     double total = 0.0;
     for (const double value : result.data) total += value;
-    const double mean = std::max(total / static_cast<double>(result.data.size()), least_mean);
+    const double mean = std::max(total / static_cast<double>(result.data.size()), min_mean);
     double dark = 0.0;
     for (const double value : result.data) dark += std::pow(signed_deviance(mean, value).value, 2);
     const double gain = dark - result.deviance;
@@ -180,7 +180,7 @@ void warn_of_misfits(const FitDriver& driver, const SceneState& state, FitResult
         driver.geometry(), settings, driver.model().find(ParameterKind::Scale) != nullptr);
     const FitDriver::Stage stage = driver.make_stage(model);
     stage.model->refresh(state);
-    stage.objective->evaluate(state, renderer::Slopes::With);
+    stage.objective->evaluate(state, renderer::Gradients::With);
     Eigen::VectorXd score = Eigen::VectorXd::Zero(model.num_columns());
     for (std::size_t i = 0; i < stage.objective->num_pairs(); ++i) {
         const FitObjective::PairRows& rows = stage.objective->pair(i);
@@ -238,8 +238,8 @@ void add_warnings(const FitDriver& driver,
             object.albedo));
     }
     if (driver.is_poisson()) {
-        warn_of_deviance(driver, stage.data->least_mean, result);
-        check_for_light(stage.data->least_mean, result);
+        warn_of_deviance(driver, stage.data->min_mean, result);
+        check_for_light(stage.data->min_mean, result);
         warn_of_misfits(driver, state, result);
     } else {
         warn_of_patterns(result);

@@ -151,7 +151,7 @@ PairSubset thin(const core::Scan& scan, std::size_t most) {
 FitData select(const FitData& data, const std::vector<std::size_t>& pairs) {
     FitData result;
     result.axis = data.axis;
-    result.least_mean = data.least_mean;
+    result.min_mean = data.min_mean;
     const auto bins = static_cast<std::ptrdiff_t>(data.axis.num_bins);
     for (const std::size_t pair : pairs) {
         const auto begin = data.values.begin() + static_cast<std::ptrdiff_t>(pair) * bins;

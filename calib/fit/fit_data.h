@@ -13,7 +13,7 @@ namespace calib {
 struct FitData {
     std::vector<double> values;  ///< [pair][bin]
     core::TimeAxis axis;
-    double least_mean = 1e-12;  ///< expected counts are kept above it
+    double min_mean = 1e-12;  ///< expected counts are kept above it
 };
 
 /// The part of a capture's histograms whose bins lie in a window of path lengths.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "calib/fit/fit_driver.h"
 
-#include "calib/fit/starts.h"
-#include "calib/model/alternatives.h"
+#include "calib/fit/initial_guesses.h"
+#include "calib/model/pose_ambiguity.h"
 #include "renderer/core/error.h"
 #include "renderer/core/parallel.h"
 
@@ -20,17 +20,17 @@ using core::Vec3;
 // Bins are merged while they stay this narrow against the response with its blur.
 constexpr double kBinPerSigma = 0.7;
 constexpr double kBlurReach = 2.0;  // standard deviations of blur that cut light spoils
-constexpr int kFewestBins = 8;      // of a stage that is worth solving
+constexpr int kMinBins = 8;         // of a stage that is worth solving
 // Solves alternate with looking anew at what is seen until the cost, half the deviance, settles.
-constexpr int kMostVisibilityRounds = 3;
+constexpr int kMaxVisibilityRounds = 3;
 constexpr int kBlurredVisibilityRounds = 2;
 constexpr double kSettledCost = 0.02;
 constexpr std::size_t kPairsOfBlurredStages = 400;
 
-// Errors of pieces may be this large while a blurred stage leads the way.
+// Errors of elements may be this large while a blurred stage leads the way.
 constexpr double kBlurredTolerance = 0.1;
 
-// Noise of all data together is 1/sqrt(counts) of them; the rule for pieces bounds the worst
+// Noise of all data together is 1/sqrt(counts) of them; the rule for elements bounds the worst
 // histogram, several times above what matters for the whole.
 double tolerance_for(double counts) {
     return std::clamp(8.0 / std::sqrt(counts), 0.005, 0.1);
@@ -67,7 +67,7 @@ FitDriver::FitDriver(const FitInput& input, const core::Progress& progress)
     data_ = crop(input.capture, settings_.window_m);
     const double total = std::accumulate(data_.values.begin(), data_.values.end(), 0.0);
     if (!(total > 0.0)) throw core::Error("capture", "found no light", "must hold some to fit");
-    data_.least_mean = 1e-6 * total / static_cast<double>(data_.values.size());
+    data_.min_mean = 1e-6 * total / static_cast<double>(data_.values.size());
     offset_m_ = input.offset_m;
     for (std::size_t pair = 0; offset_m_.size() < input.capture.scan.num_pairs(); ++pair) {
         offset_m_.push_back(input.capture.scan.device_legs_m(pair));
@@ -93,14 +93,14 @@ FitDriver::FitDriver(const FitInput& input, const core::Progress& progress)
         std::make_unique<SceneModel>(input.geometry, settings_, scale_is_unknown_ && is_poisson_);
     ambient_guess_ = quietest_level(data_);
     is_cut_ = light_is_cut(data_, ambient_guess_);
-    tolerance_ = settings_.piece_tolerance.value_or(is_poisson_ ? tolerance_for(total)
-                                                                : kToleranceWithoutNoise);
+    tolerance_ = settings_.element_tolerance.value_or(is_poisson_ ? tolerance_for(total)
+                                                                  : kToleranceWithoutNoise);
 
     solve_.loss = settings_.loss;
     solve_.loss_scale = settings_.loss_scale;
     solve_.laplacian_weight = settings_.laplacian_weight;
     solve_.time_zero_sigma_m = settings_.free.time_zero_sigma_m;
-    solve_.lowest_log_ambient = std::log(data_.least_mean);
+    solve_.lowest_log_ambient = std::log(data_.min_mean);
     solve_.stop_requested = progress.stop_requested;
 }
 
@@ -125,7 +125,7 @@ FitDriver::Stage FitDriver::make_stage(const SceneModel& model,
     const int spoilt = static_cast<int>(std::ceil(kBlurReach * blur_m / coarse.axis.bin_width_m));
     stage.data =
         std::make_unique<FitData>(trim(coarse, is_cut_[0] ? spoilt : 0, is_cut_[1] ? spoilt : 0));
-    stage.data->least_mean = data_.least_mean * merged;
+    stage.data->min_mean = data_.min_mean * merged;
     forward.axis = stage.data->axis;
     forward.bins_per_ambient = merged;
     forward.sigma_m = sigma_m;
@@ -151,7 +151,7 @@ FitDriver::Stage FitDriver::make_stage(const SceneModel& model,
 }
 
 bool FitDriver::is_usable(const Stage& stage) const {
-    return stage.data->axis.num_bins >= std::min(kFewestBins, data_.axis.num_bins);
+    return stage.data->axis.num_bins >= std::min(kMinBins, data_.axis.num_bins);
 }
 
 void FitDriver::check_light(const Stage& stage, const SceneState& state) const {
@@ -251,7 +251,7 @@ std::vector<std::pair<std::string, SceneState>> FitDriver::starts() const {
     }
     for (auto& [name, state] : result) {
         place_points(state);
-        state.log_ambient = std::log(std::max(ambient_guess_, 10.0 * data_.least_mean));
+        state.log_ambient = std::log(std::max(ambient_guess_, 10.0 * data_.min_mean));
     }
     return result;
 }
@@ -266,14 +266,14 @@ bool FitDriver::has_few_photons() const {
 std::vector<std::pair<std::string, SceneState>> FitDriver::turned(const SceneState& state) const {
     constexpr double kNearlySame = 0.2;
     constexpr double kNearlySameInNoise = 0.6;
-    return turned_states(*model_, state, has_few_photons() ? kNearlySameInNoise : kNearlySame);
+    return symmetric_poses(*model_, state, has_few_photons() ? kNearlySameInNoise : kNearlySame);
 }
 
 // All of a state's light in the data's bins, without ambient light.
 double FitDriver::light_of(const Stage& stage, const SceneState& state) const {
     SceneState dark = state;
     dark.has_ambient = false;
-    stage.model->update(dark, renderer::Slopes::Without);
+    stage.model->update(dark, renderer::Gradients::Without);
     std::vector<double> sums(stage.model->scan().num_pairs());
     core::parallel_for(sums.size(), [&](std::size_t pair) {
         PairModel model;
@@ -306,7 +306,7 @@ SolveSummary FitDriver::solve(Stage& stage, SceneState& state, int max_iteration
     SolveSettings solve_settings = solve_;
     solve_settings.max_iterations = max_iterations;
     if (stage.blur_m > 0.0) solve_settings.laplacian_weight *= kBlurredSmoothness;
-    const int rounds = stage.blur_m > 0.0 ? kBlurredVisibilityRounds : kMostVisibilityRounds;
+    const int rounds = stage.blur_m > 0.0 ? kBlurredVisibilityRounds : kMaxVisibilityRounds;
     SolveSummary total;
     for (int round = 0; round < rounds; ++round) {
         stage.model->refresh(state);

@@ -42,7 +42,7 @@ class FitDriver {
     Stage make_stage(double blur_m) const { return make_stage(*model_, blur_m, tolerance_); }
     /// The last one for a model that has other freedoms.
     Stage make_stage(const SceneModel& model) const { return make_stage(model, 0.0, tolerance_); }
-    /// The last one with this many times as many pieces.
+    /// The last one with this many times as many elements.
     Stage make_fine_stage(double factor) const {
         return make_stage(*model_, 0.0, tolerance_ / factor);
     }
@@ -77,7 +77,7 @@ class FitDriver {
     double response_sigma_m_ = 0.0;
     double ambient_guess_ = 0.0;
     std::array<bool, 2> is_cut_{};  ///< data at the axis' begin and end
-    double tolerance_ = 0.02;       ///< of the last stage's pieces
+    double tolerance_ = 0.02;       ///< of the last stage's elements
     SolveSettings solve_;
 };
 

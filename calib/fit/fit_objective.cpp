@@ -12,9 +12,9 @@ namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using renderer::Slopes;
+using renderer::Gradients;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-using Slope = Eigen::Map<const RowMajor>;
+using Gradient = Eigen::Map<const RowMajor>;
 
 }  // namespace
 
@@ -30,35 +30,36 @@ FitObjective::FitObjective(ForwardModel& model,
       num_columns_(num_columns),
       rows_(model.scan().num_pairs()) {}
 
-void FitObjective::evaluate(const SceneState& state, Slopes slopes) {
-    model_.update(state, slopes);
-    const bool with_slopes = slopes == Slopes::With;
+void FitObjective::evaluate(const SceneState& state, Gradients gradients) {
+    model_.update(state, gradients);
+    const bool with_gradients = gradients == Gradients::With;
     std::vector<MatrixXd> grams(rows_.size());
     core::parallel_for(rows_.size(), [&](std::size_t pair) {
         thread_local PairModel expected;
         model_.evaluate(pair, expected);
         grams[pair] = is_poisson_ ? poisson_gram(pair, expected) : linear_gram(pair, expected);
     });
-    if (!is_poisson_) eliminate(grams, with_slopes);
-    core::parallel_for(rows_.size(),
-                       [&](std::size_t pair) { compress(grams[pair], with_slopes, rows_[pair]); });
+    if (!is_poisson_) eliminate(grams, with_gradients);
+    core::parallel_for(rows_.size(), [&](std::size_t pair) {
+        compress(grams[pair], with_gradients, rows_[pair]);
+    });
 }
 
 // [J r]^T [J r] of the signed deviances.
 MatrixXd FitObjective::poisson_gram(std::size_t pair, const PairModel& expected) const {
     const auto bins = static_cast<Eigen::Index>(expected.mean.size());
-    const bool with_slopes = !expected.slopes.empty();
-    const Eigen::Index columns = with_slopes ? num_columns_ : 0;
+    const bool with_gradients = !expected.gradients.empty();
+    const Eigen::Index columns = with_gradients ? num_columns_ : 0;
     thread_local RowMajor rows;
     rows.resize(bins, columns + 1);
     for (Eigen::Index b = 0; b < bins; ++b) {
         const auto i = static_cast<std::size_t>(b);
-        const double mean = std::max(expected.mean[i], data_.least_mean);
+        const double mean = std::max(expected.mean[i], data_.min_mean);
         const double counted = data_.values[pair * expected.mean.size() + i];
         const Residual residual = signed_deviance(mean, counted);
         rows(b, columns) = residual.value;
-        const double* slopes = expected.slopes.data() + i * static_cast<std::size_t>(columns);
-        for (Eigen::Index c = 0; c < columns; ++c) rows(b, c) = residual.slope * slopes[c];
+        const double* gradients = expected.gradients.data() + i * static_cast<std::size_t>(columns);
+        for (Eigen::Index c = 0; c < columns; ++c) rows(b, c) = residual.gradient * gradients[c];
     }
     MatrixXd gram = MatrixXd::Zero(columns + 1, columns + 1);
     gram.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose());
@@ -68,10 +69,10 @@ MatrixXd FitObjective::poisson_gram(std::size_t pair, const PairModel& expected)
 // [dm m 1 y]^T [dm m 1 y]: all that elimination and projection need.
 MatrixXd FitObjective::linear_gram(std::size_t pair, const PairModel& expected) const {
     const auto bins = static_cast<Eigen::Index>(expected.mean.size());
-    const Eigen::Index columns = expected.slopes.empty() ? 0 : num_columns_;
+    const Eigen::Index columns = expected.gradients.empty() ? 0 : num_columns_;
     thread_local RowMajor rows;
     rows.resize(bins, columns + 3);
-    if (columns > 0) rows.leftCols(columns) = Slope(expected.slopes.data(), bins, columns);
+    if (columns > 0) rows.leftCols(columns) = Gradient(expected.gradients.data(), bins, columns);
     for (Eigen::Index b = 0; b < bins; ++b) {
         const auto i = static_cast<std::size_t>(b);
         rows(b, columns) = expected.mean[i];
@@ -85,8 +86,8 @@ MatrixXd FitObjective::linear_gram(std::size_t pair, const PairModel& expected) 
 
 // With r = a m + b - y and (a, b) the least-squares solution over B = [m 1], B^T r = 0 gives
 // (B^T B) d(a, b) = -(dm^T r, 0) - B^T dm a for every parameter, and dr = a dm + m da + db.
-void FitObjective::eliminate(std::vector<MatrixXd>& grams, bool with_slopes) {
-    const Eigen::Index columns = with_slopes ? num_columns_ : 0;
+void FitObjective::eliminate(std::vector<MatrixXd>& grams, bool with_gradients) {
+    const Eigen::Index columns = with_gradients ? num_columns_ : 0;
     const Eigen::Index m = columns;
     const Eigen::Index one = columns + 1;
     const Eigen::Index y = columns + 2;
@@ -146,15 +147,15 @@ void FitObjective::eliminate(std::vector<MatrixXd>& grams, bool with_slopes) {
 // What a pair's bins do not tell leaves pivots that are rounding: there it ends, and the rest of
 // the residual gets a row of its own. Divided by such pivots, rounding would grow to residuals of
 // any size (Eigen's LDLT takes pivots by the diagonal it began with, and cannot be stopped there).
-void FitObjective::compress(const MatrixXd& gram, bool with_slopes, PairRows& rows) const {
+void FitObjective::compress(const MatrixXd& gram, bool with_gradients, PairRows& rows) const {
     const Eigen::Index columns = num_columns_;
     rows.residual = VectorXd::Zero(columns + 1);
-    if (!with_slopes) {
+    if (!with_gradients) {
         rows.jacobian.resize(0, 0);
         rows.residual(0) = std::sqrt(std::max(0.0, gram(0, 0)));
         return;
     }
-    constexpr double kLeastPivot = 1e-12;  // of columns of length 1
+    constexpr double kMinPivot = 1e-12;  // of columns of length 1
     const VectorXd lengths = gram.diagonal().head(columns).cwiseMax(0.0).cwiseSqrt();
     const VectorXd scale = (lengths.array() > 0.0).select(lengths, 1.0);
     const VectorXd inverse = scale.cwiseInverse();
@@ -165,7 +166,7 @@ void FitObjective::compress(const MatrixXd& gram, bool with_slopes, PairRows& ro
     for (Eigen::Index k = 0; k < columns; ++k) {
         Eigen::Index pivot = 0;
         const double largest = left.diagonal().maxCoeff(&pivot);
-        if (!(largest > kLeastPivot)) break;
+        if (!(largest > kMinPivot)) break;
         const double root = std::sqrt(largest);
         const VectorXd row = left.col(pivot) / root;
         rows.residual(k) = left_of_residual(pivot) / root;
@@ -186,16 +187,16 @@ double FitObjective::sum_of_squares() const {
 }
 
 MatrixXd FitObjective::fisher(const SceneState& state, const std::vector<double>& weights) {
-    model_.update(state, Slopes::With);
+    model_.update(state, Gradients::With);
     std::vector<MatrixXd> parts(rows_.size());
     core::parallel_for(rows_.size(), [&](std::size_t pair) {
         thread_local PairModel expected;
         model_.evaluate(pair, expected);
         const auto bins = static_cast<Eigen::Index>(expected.mean.size());
-        RowMajor rows = Slope(expected.slopes.data(), bins, num_columns_);
+        RowMajor rows = Gradient(expected.gradients.data(), bins, num_columns_);
         for (Eigen::Index b = 0; b < bins; ++b) {
             const double mean =
-                std::max(expected.mean[static_cast<std::size_t>(b)], data_.least_mean);
+                std::max(expected.mean[static_cast<std::size_t>(b)], data_.min_mean);
             rows.row(b) /= std::sqrt(mean);
         }
         parts[pair] = (weights.empty() ? 1.0 : weights[pair]) * (rows.transpose() * rows);

@@ -22,7 +22,7 @@ class FitObjective {
  public:
     /// One pair: rows of Jacobian and residual.
     struct PairRows {
-        Eigen::MatrixXd jacobian;  ///< empty unless slopes were wanted
+        Eigen::MatrixXd jacobian;  ///< empty unless gradients were wanted
         Eigen::VectorXd residual;
     };
 
@@ -33,7 +33,7 @@ class FitObjective {
                  Elimination elimination,
                  int num_columns);
 
-    void evaluate(const SceneState& state, renderer::Slopes slopes);
+    void evaluate(const SceneState& state, renderer::Gradients gradients);
     const PairRows& pair(std::size_t index) const { return rows_[index]; }
     std::size_t num_pairs() const { return rows_.size(); }
     int num_columns() const { return num_columns_; }
@@ -50,8 +50,8 @@ class FitObjective {
  private:
     Eigen::MatrixXd poisson_gram(std::size_t pair, const PairModel& model) const;
     Eigen::MatrixXd linear_gram(std::size_t pair, const PairModel& model) const;
-    void eliminate(std::vector<Eigen::MatrixXd>& grams, bool with_slopes);
-    void compress(const Eigen::MatrixXd& gram, bool with_slopes, PairRows& rows) const;
+    void eliminate(std::vector<Eigen::MatrixXd>& grams, bool with_gradients);
+    void compress(const Eigen::MatrixXd& gram, bool with_gradients, PairRows& rows) const;
 
     ForwardModel& model_;
     const FitData& data_;

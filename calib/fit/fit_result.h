@@ -79,7 +79,7 @@ struct FitResult {
     bool converged = false;
     std::string message;
     std::vector<FitStart> starts;
-    std::size_t num_pieces = 0;
+    std::size_t num_elements = 0;
 
     renderer::SceneGeometry geometry;  ///< the fitted scene
     core::TimeAxis axis;               ///< of data and model

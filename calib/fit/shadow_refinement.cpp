@@ -25,7 +25,7 @@ struct Newton {
 Newton newton_at(const FitDriver& driver, FitDriver::Stage& stage, const SceneState& state) {
     const SceneModel& model = driver.model();
     FitObjective& objective = *stage.objective;
-    objective.evaluate(state, renderer::Slopes::With);
+    objective.evaluate(state, renderer::Gradients::With);
     const std::vector<double> weights = loss_weights(objective, driver.solve_settings());
     const auto size = model.num_columns();
     Newton newton{MatrixXd::Zero(size, size), VectorXd::Zero(size)};
@@ -59,20 +59,20 @@ Newton newton_at(const FitDriver& driver, FitDriver::Stage& stage, const SceneSt
     return newton;
 }
 
-// Edges are to be known well, but every piece is seen or not from every point.
+// Edges are to be known well, but every element is seen or not from every point.
 double refinement(const ForwardModel& model) {
-    constexpr double kMostRefinement = 10.0;
-    constexpr double kMostViews = 4e5;  // points times pieces
+    constexpr double kMaxRefinement = 10.0;
+    constexpr double kMaxViews = 4e5;  // points times elements
     const core::Scan& scan = model.scan();
     const double points = static_cast<double>(scan.sensing.size());
-    const double views = points * static_cast<double>(model.num_pieces());
-    return std::clamp(kMostViews / views, 1.0, kMostRefinement);
+    const double views = points * static_cast<double>(model.num_elements());
+    return std::clamp(kMaxViews / views, 1.0, kMaxRefinement);
 }
 
 }  // namespace
 
 RefinedSolution refine(const FitDriver& driver, FitDriver::Stage& stage, SceneState& state) {
-    constexpr int kMostSteps = 8;
+    constexpr int kMaxSteps = 8;
     constexpr double kSettled = 0.1;  // standard deviations per parameter
     constexpr double kTooFar = 12.0;  // for Newton's method
     const auto look_anew = [&] {
@@ -84,7 +84,7 @@ RefinedSolution refine(const FitDriver& driver, FitDriver::Stage& stage, SceneSt
     if (!stage.model->has_shadow_edges()) return {newton_at(driver, stage, state).information};
     stage = driver.make_fine_stage(refinement(*stage.model));
     Newton newton = look_anew();
-    for (int i = 0; i < kMostSteps; ++i) {
+    for (int i = 0; i < kMaxSteps; ++i) {
         if (!(newton.length() > kSettled && newton.length() < kTooFar)) break;
         state = moved_by(driver.model(), state, newton.step);
         newton = look_anew();

@@ -17,14 +17,14 @@ struct RefinedSolution {
 ///
 /// Expected data m(p) = f(p, v(p)) depend on parameters p directly and by way of what wall points
 /// see, v. Solves hold v, and alternate with tracing it anew: they end where f_p^T W (n - m) = 0,
-/// f_p the slopes with v held, W the inverse variances and n the data. With all slopes
+/// f_p the gradients with v held, W the inverse variances and n the data. With all gradients
 /// J = f_p + f_v v_p, such solutions scatter with A^-1 (f_p^T W f_p) A^-T, A = f_p^T W J
 /// [Godambe1960], which is not the inverse of f_p^T W f_p, nor as narrow as that of J^T W J. So
 /// Newton's steps (J^T W J)^-1 J^T W (n - m), with v traced anew after each, lead on to the maximum
 /// of the likelihood, whose Fisher information J^T W J is. Without shadow edges J is f_p, and
 /// nothing moves.
 ///
-/// The edges tell as much as the model knows them: the pieces become so small that the steps
+/// The edges tell as much as the model knows them: the elements become so small that the steps
 /// settle. That needs a start within several standard deviations, which the solves give.
 ///
 /// stage    the last one; in a shadowed scene replaced by a finer one. Refreshed at `state`

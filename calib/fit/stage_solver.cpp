@@ -14,7 +14,7 @@
 namespace calib {
 namespace {
 
-using renderer::Slopes;
+using renderer::Gradients;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 constexpr double kRoughness_m = 1e-3;  // that costs laplacian_weight
@@ -26,15 +26,15 @@ class SharedRender : public ceres::EvaluationCallback {
         : objective_(objective), values_(values) {}
 
     void PrepareForEvaluation(bool with_jacobians, bool is_new_point) override {
-        if (!is_new_point && (is_with_slopes_ || !with_jacobians)) return;
-        objective_.evaluate(values_.state(), with_jacobians ? Slopes::With : Slopes::Without);
-        is_with_slopes_ = with_jacobians;
+        if (!is_new_point && (is_with_gradients_ || !with_jacobians)) return;
+        objective_.evaluate(values_.state(), with_jacobians ? Gradients::With : Gradients::Without);
+        is_with_gradients_ = with_jacobians;
     }
 
  private:
     FitObjective& objective_;
     StateVector& values_;
-    bool is_with_slopes_ = false;
+    bool is_with_gradients_ = false;
 };
 
 // The rows of one wall point or pair: a loss then rejects it as a whole.
@@ -183,7 +183,7 @@ SolveSummary solve_stage(const SceneModel& model,
                          const SolveSettings& settings,
                          SceneState& state) {
     StateVector values(model, state);
-    objective.evaluate(state, Slopes::Without);
+    objective.evaluate(state, Gradients::Without);
     const double start_cost = objective.sum_of_squares();
     const auto loss = make_loss(settings.loss, loss_width(objective, settings));
 

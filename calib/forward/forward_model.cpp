@@ -10,7 +10,7 @@ namespace calib {
 namespace {
 
 using core::Vec3;
-using renderer::Slopes;
+using renderer::Gradients;
 
 // A measured response is applied to bins this much finer than the data's.
 constexpr int kOversampling = 3;
@@ -55,15 +55,15 @@ void ForwardModel::refresh(const SceneState& state) {
     const auto old_sensor = std::move(sensor_masks_);
     light_masks_.clear();
     sensor_masks_.clear();
-    edge_slopes_.clear();
-    pieces_ = cut_pieces(model_, state, scan_, smear, settings_.tolerance);
+    edge_gradients_.clear();
+    elements_ = cut_elements(model_, state, scan_, smear, settings_.tolerance);
     if (!is_planar(model_, state)) trace(state);
     visibility_changed_ = old_light != light_masks_ || old_sensor != sensor_masks_;
 }
 
-void ForwardModel::update(const SceneState& state, Slopes slopes) {
+void ForwardModel::update(const SceneState& state, Gradients gradients) {
     state_ = state;
-    slopes_ = slopes;
+    gradients_ = gradients;
     const double width = std::exp(state.log_width);
     const double response2 =
         settings_.response_share * settings_.sigma_m * settings_.sigma_m * width * width;
@@ -75,59 +75,59 @@ void ForwardModel::update(const SceneState& state, Slopes slopes) {
                         ? sensor_points_
                         : wall_.moved(scan_.illumination, state);
     posed_.clear();
-    posed_.reserve(pieces_.size());
+    posed_.reserve(elements_.size());
     FacetMotion motion;
-    for (std::size_t i = 0; i < pieces_.size(); ++i) {
-        if (i == 0 || pieces_[i].facet != pieces_[i - 1].facet) {
-            motion = model_.motion(state, pieces_[i].facet);
+    for (std::size_t i = 0; i < elements_.size(); ++i) {
+        if (i == 0 || elements_[i].facet != elements_[i - 1].facet) {
+            motion = model_.motion(state, elements_[i].facet);
         }
-        posed_.push_back(pose(pieces_[i], motion));
+        posed_.push_back(pose(elements_[i], motion));
     }
 }
 
-ForwardModel::PosedPiece ForwardModel::pose(const ModelPiece& piece,
-                                            const FacetMotion& motion) const {
-    const ModelFacet& facet = model_.facets()[piece.facet];
+ForwardModel::PosedElement ForwardModel::pose(const ModelElement& element,
+                                              const FacetMotion& motion) const {
+    const ModelFacet& facet = model_.facets()[element.facet];
     const Vec3 edge1 = motion.corners[1] - motion.corners[0];
     const Vec3 edge2 = motion.corners[2] - motion.corners[0];
     const Vec3 across = edge1.cross(edge2);
     const double norm = across.norm();
-    PosedPiece posed;
+    PosedElement posed;
     posed.normal = across / norm;
     posed.is_retroreflective = facet.is_retroreflective;
-    posed.weight = 0.5 * norm * piece.area_share * facet.albedo_ratio *
+    posed.weight = 0.5 * norm * element.area_share * facet.albedo_ratio *
                    std::exp(state_.bodies[facet.body].log_albedo + state_.log_scale) *
                    settings_.radiance_factor;
     if (posed.is_retroreflective) posed.weight *= core::kPi / settings_.spot_m2;
     const auto interpolate = [&](const std::array<Vec3, 3>& corners, std::array<Vec3, 6>& nodes) {
         for (std::size_t i = 0; i < 3; ++i) {
-            const Vec3& b = piece.barycentric[i];
+            const Vec3& b = element.barycentric[i];
             nodes[i] = b[0] * corners[0] + b[1] * corners[1] + b[2] * corners[2];
         }
         for (std::size_t i = 0; i < 3; ++i) nodes[3 + i] = 0.5 * (nodes[i] + nodes[(i + 1) % 3]);
     };
     interpolate(motion.corners, posed.nodes);
-    if (slopes_ == Slopes::Without) return posed;
+    if (gradients_ == Gradients::Without) return posed;
 
     if (const auto* albedo = model_.find(ParameterKind::Albedo, facet.body)) {
         posed.albedo_column = albedo->first_column;
     }
     posed.columns = motion.columns;
     for (const auto& corners : motion.by_column) {
-        interpolate(corners, posed.node_slopes.emplace_back());
+        interpolate(corners, posed.node_gradients.emplace_back());
         const Vec3 change =
             (corners[1] - corners[0]).cross(edge2) + edge1.cross(Vec3(corners[2] - corners[0]));
         const double along = posed.normal.dot(change) / norm;
-        posed.normal_slopes.push_back(change / norm - along * posed.normal);
-        posed.log_area_slopes.push_back(along);
+        posed.normal_gradients.push_back(change / norm - along * posed.normal);
+        posed.log_area_gradients.push_back(along);
     }
     return posed;
 }
 
-renderer::VisibilityMask ForwardModel::visible_part(std::size_t piece, std::size_t pair) const {
+renderer::VisibilityMask ForwardModel::visible_part(std::size_t element, std::size_t pair) const {
     if (light_masks_.empty()) return renderer::kAllVisible;
-    const std::size_t l = scan_.illumination_index(pair) * pieces_.size() + piece;
-    const std::size_t s = scan_.sensing_index(pair) * pieces_.size() + piece;
+    const std::size_t l = scan_.illumination_index(pair) * elements_.size() + element;
+    const std::size_t s = scan_.sensing_index(pair) * elements_.size() + element;
     return light_masks_[l] & sensor_masks_[s];
 }
 
@@ -138,23 +138,23 @@ void ForwardModel::evaluate(std::size_t pair, PairModel& result) const {
     const auto bins = static_cast<std::size_t>(fine_axis().num_bins);
     const auto columns = static_cast<std::size_t>(model_.num_columns());
     target.mean.assign(bins, 0.0);
-    target.slopes.assign(slopes_ == Slopes::With ? bins * columns : 0, 0.0);
+    target.gradients.assign(gradients_ == Gradients::With ? bins * columns : 0, 0.0);
     for (std::size_t i = 0; i < posed_.size(); ++i) {
         const renderer::VisibilityMask mask = visible_part(i, pair);
-        if (mask != 0) add_piece(posed_[i], mask, pair, target);
+        if (mask != 0) add_element(posed_[i], mask, pair, target);
     }
     for (std::size_t i = 0; i < state_.points.size(); ++i) add_point(i, pair, target);
     finish(target, result);
-    if (slopes_ == Slopes::With) add_shadow_edges(pair, result);
+    if (gradients_ == Gradients::With) add_shadow_edges(pair, result);
 }
 
 // Every fine bin's light goes to the bins that the response delays it to.
 void ForwardModel::add_response(const PairModel& fine, PairModel& result) const {
-    const bool with_slopes = slopes_ == Slopes::With;
+    const bool with_gradients = gradients_ == Gradients::With;
     const auto columns = static_cast<std::size_t>(model_.num_columns());
     const auto bins = static_cast<std::size_t>(settings_.axis.num_bins);
     result.mean.assign(bins, 0.0);
-    result.slopes.assign(with_slopes ? bins * columns : 0, 0.0);
+    result.gradients.assign(with_gradients ? bins * columns : 0, 0.0);
     for (std::size_t f = 0; f < fine.mean.size(); ++f) {
         if (fine.mean[f] == 0.0) continue;
         // Counted from far enough ahead of the axis to divide without sign.
@@ -168,9 +168,9 @@ void ForwardModel::add_response(const PairModel& fine, PairModel& result) const 
             const double weight = weights[static_cast<std::size_t>(k)];
             const auto b = static_cast<std::size_t>(first_bin + k);
             result.mean[b] += weight * fine.mean[f];
-            if (!with_slopes) continue;
-            const double* row = fine.slopes.data() + f * columns;
-            double* target = result.slopes.data() + b * columns;
+            if (!with_gradients) continue;
+            const double* row = fine.gradients.data() + f * columns;
+            double* target = result.gradients.data() + b * columns;
             for (std::size_t c = 0; c < columns; ++c) target[c] += weight * row[c];
         }
     }
@@ -179,10 +179,11 @@ void ForwardModel::add_response(const PairModel& fine, PairModel& result) const 
 // Signal becomes data: scale, response, ambient light.
 void ForwardModel::finish(PairModel& fine, PairModel& result) const {
     const auto columns = static_cast<std::size_t>(model_.num_columns());
-    const bool with_slopes = slopes_ == Slopes::With;
-    if (const auto* scale = model_.find(ParameterKind::Scale); scale && with_slopes) {
+    const bool with_gradients = gradients_ == Gradients::With;
+    if (const auto* scale = model_.find(ParameterKind::Scale); scale && with_gradients) {
         for (std::size_t b = 0; b < fine.mean.size(); ++b) {
-            fine.slopes[b * columns + static_cast<std::size_t>(scale->first_column)] = fine.mean[b];
+            fine.gradients[b * columns + static_cast<std::size_t>(scale->first_column)] =
+                fine.mean[b];
         }
     }
     const auto bins = static_cast<std::size_t>(settings_.axis.num_bins);
@@ -192,8 +193,8 @@ void ForwardModel::finish(PairModel& fine, PairModel& result) const {
     const auto* block = model_.find(ParameterKind::Ambient);
     for (std::size_t b = 0; b < bins; ++b) {
         result.mean[b] += ambient;
-        if (with_slopes && block != nullptr) {
-            result.slopes[b * columns + static_cast<std::size_t>(block->first_column)] = ambient;
+        if (with_gradients && block != nullptr) {
+            result.gradients[b * columns + static_cast<std::size_t>(block->first_column)] = ambient;
         }
     }
 }

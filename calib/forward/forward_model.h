@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "calib/forward/model_pieces.h"
+#include "calib/forward/model_elements.h"
 #include "calib/forward/wall_motion.h"
 #include "calib/model/scene_model.h"
 #include "renderer/core/capture.h"
@@ -24,19 +24,20 @@ struct ForwardSettings {
     double radiance_factor = 1.0;                      ///< Phi rho_w^2 / pi^3
     double spot_m2 = 1e-4;                             ///< returned by retroreflectors
     std::vector<double> offset_m;                      ///< per pair, added to path lengths
-    double tolerance = 0.02;                           ///< of pieces, relative L2
+    double tolerance = 0.02;                           ///< of elements, relative L2
 };
 
 /// Expected data of one pair and its derivatives.
 struct PairModel {
-    std::vector<double> mean;    ///< [bin]
-    std::vector<double> slopes;  ///< [bin][column], columns of SceneModel; empty unless wanted
+    std::vector<double> mean;       ///< [bin]
+    std::vector<double> gradients;  ///< [bin][column], columns of SceneModel; empty unless wanted
 };
 
 /// Expected transients of a model and their derivatives by its free parameters.
 ///
-/// Surfaces are cut into pieces once; update() moves them. Path lengths and weights of a piece's
-/// corners and edge midpoints, with their gradients, go through the closed-form kernel of core.
+/// Surfaces are cut into elements once; update() moves them. Path lengths and weights of a
+/// element's corners and edge midpoints, with their gradients, go through the closed-form kernel of
+/// core.
 class ForwardModel {
  public:
     /// model   must outlive this
@@ -52,42 +53,42 @@ class ForwardModel {
     /// Whether the last refresh() saw other things than the one before.
     bool visibility_changed() const { return visibility_changed_; }
 
-    /// Whether the edge of a shadow fell on any piece at the last refresh().
+    /// Whether the edge of a shadow fell on any element at the last refresh().
     bool has_shadow_edges() const;
-    /// From now on slopes include how the data change because the edges of shadows move, which
+    /// From now on gradients include how the data change because the edges of shadows move, which
     /// they otherwise leave out; until the next refresh().
     /// state   of the last refresh()
     void find_shadow_edges(const SceneState& state);
 
     /// Moves everything to a state; visibility and cuts stay.
-    void update(const SceneState& state, renderer::Slopes slopes);
+    void update(const SceneState& state, renderer::Gradients gradients);
     /// Thread-safe between updates.
     void evaluate(std::size_t pair, PairModel& result) const;
 
     const core::Scan& scan() const { return scan_; }
     const ForwardSettings& settings() const { return settings_; }
-    std::size_t num_pieces() const { return pieces_.size(); }
-    const std::vector<ModelPiece>& pieces() const { return pieces_; }
+    std::size_t num_elements() const { return elements_.size(); }
+    const std::vector<ModelElement>& elements() const { return elements_; }
 
  private:
-    /// A piece where the state puts it.
-    struct PosedPiece {
+    /// An element where the state puts it.
+    struct PosedElement {
         std::array<core::Vec3, 6> nodes;  ///< corners, then midpoints of edges 01, 12, 20
         core::Vec3 normal;
         double weight = 0.0;  ///< area and albedo and all constants
         bool is_retroreflective = false;
         int albedo_column = -1;
         std::vector<int> columns;
-        std::vector<std::array<core::Vec3, 6>> node_slopes;  ///< per column
-        std::vector<core::Vec3> normal_slopes;
-        std::vector<double> log_area_slopes;
+        std::vector<std::array<core::Vec3, 6>> node_gradients;  ///< per column
+        std::vector<core::Vec3> normal_gradients;
+        std::vector<double> log_area_gradients;
     };
 
-    PosedPiece pose(const ModelPiece& piece, const FacetMotion& motion) const;
-    void add_piece(const PosedPiece& piece,
-                   renderer::VisibilityMask mask,
-                   std::size_t pair,
-                   PairModel& result) const;
+    PosedElement pose(const ModelElement& element, const FacetMotion& motion) const;
+    void add_element(const PosedElement& element,
+                     renderer::VisibilityMask mask,
+                     std::size_t pair,
+                     PairModel& result) const;
     void add_point(std::size_t point, std::size_t pair, PairModel& result) const;
     void add_response(const PairModel& fine, PairModel& result) const;
     void finish(PairModel& fine, PairModel& result) const;
@@ -96,24 +97,25 @@ class ForwardModel {
     std::vector<double> vertex_speeds(const SceneState& state) const;
     std::vector<double> evaluate_all() const;
     void add_shadow_edges(std::size_t pair, PairModel& result) const;
-    renderer::VisibilityMask visible_part(std::size_t piece, std::size_t pair) const;
+    renderer::VisibilityMask visible_part(std::size_t element, std::size_t pair) const;
 
     const SceneModel& model_;
     core::Scan scan_;
     ForwardSettings settings_;
     WallMotion wall_;
     SceneState state_;
-    renderer::Slopes slopes_ = renderer::Slopes::Without;
+    renderer::Gradients gradients_ = renderer::Gradients::Without;
     double sigma_m_ = 0.0;  ///< at the present width
     double width_share_ = 1.0;
-    std::vector<ModelPiece> pieces_;
-    std::vector<PosedPiece> posed_;
+    std::vector<ModelElement> elements_;
+    std::vector<PosedElement> posed_;
     std::vector<MovedWallPoint> light_points_;
     std::vector<MovedWallPoint> sensor_points_;
-    std::vector<renderer::VisibilityMask> light_masks_;  ///< [point][piece]; empty: all is visible
+    std::vector<renderer::VisibilityMask>
+        light_masks_;  ///< [point][element]; empty: all is visible
     std::vector<renderer::VisibilityMask> sensor_masks_;
     bool visibility_changed_ = false;
-    std::vector<double> edge_slopes_;  ///< [pair][bin][column]; or {}
+    std::vector<double> edge_gradients_;  ///< [pair][bin][column]; or {}
     /// Weights of the data's bins for each position of a fine bin within its bin.
     std::vector<std::vector<double>> phase_weights_;
     int first_delay_ = 0;  ///< in fine bins

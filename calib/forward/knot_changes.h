@@ -9,7 +9,7 @@
 
 namespace calib {
 
-/// How the knots of a piece change.
+/// How the knots of an element change.
 struct KnotChange {
     std::array<double, 3> opl;
     std::array<double, 3> weight;
@@ -20,8 +20,8 @@ inline double mean3(const std::array<double, 6>& values, std::size_t first) {
     return (values[first] + values[first + 1] + values[first + 2]) / 3.0;
 }
 
-/// renderer::match_midpoints and its derivative: the knots of a piece from path lengths and weights
-/// at its nodes, corners first, and how they change when these do.
+/// renderer::match_midpoints and its derivative: the knots of an element from path lengths and
+/// weights at its nodes, corners first, and how they change when these do.
 class KnotFit {
  public:
     KnotFit(const std::array<double, 6>& opl, const std::array<double, 6>& weight) {
@@ -69,7 +69,7 @@ class KnotFit {
     bool is_clamped_ = false;
 };
 
-/// The weights of a piece's visible part: the product of two linear functions, made linear again
+/// The weights of an element's visible part: the product of two linear functions, made linear again
 /// with its integral kept, and how it changes with the weights.
 ///
 /// With W, S and P the sums of weights w, shares s and products w s, the integral of the product is

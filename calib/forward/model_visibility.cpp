@@ -14,7 +14,7 @@ using renderer::VisibilityMask;
 
 constexpr std::uint32_t kParts = 16;
 
-// A piece in the world: the centres of its parts.
+// An element in the world: the centres of its parts.
 struct Target {
     std::array<Vec3, kParts> centers;
     Vec3 normal;
@@ -22,17 +22,18 @@ struct Target {
 
 std::vector<Target> make_targets(const SceneModel& model,
                                  const SceneState& state,
-                                 const std::vector<ModelPiece>& pieces) {
+                                 const std::vector<ModelElement>& elements) {
     std::vector<Target> targets;
-    targets.reserve(pieces.size());
-    for (const ModelPiece& piece : pieces) {
-        const auto corners = model.motion(state, piece.facet).corners;
+    targets.reserve(elements.size());
+    for (const ModelElement& element : elements) {
+        const auto corners = model.motion(state, element.facet).corners;
         Target& target = targets.emplace_back();
         target.normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
         for (std::uint32_t part = 0; part < kParts; ++part) {
             const auto& share = renderer::centers_of_bits()[part];
-            const Vec3 weights = share[0] * piece.barycentric[0] + share[1] * piece.barycentric[1] +
-                                 share[2] * piece.barycentric[2];
+            const Vec3 weights = share[0] * element.barycentric[0] +
+                                 share[1] * element.barycentric[1] +
+                                 share[2] * element.barycentric[2];
             target.centers[part] =
                 weights[0] * corners[0] + weights[1] * corners[1] + weights[2] * corners[2];
         }
@@ -82,7 +83,7 @@ bool is_planar(const SceneModel& model, const SceneState& state) {
 
 std::vector<VisibilityMask> trace_masks(const SceneModel& model,
                                         const SceneState& state,
-                                        const std::vector<ModelPiece>& pieces,
+                                        const std::vector<ModelElement>& elements,
                                         const core::Scan& scan,
                                         const core::WallPoints& points) {
     // The wall itself hides nothing from its own points; leaving it out keeps curved walls simple.
@@ -93,7 +94,7 @@ std::vector<VisibilityMask> trace_masks(const SceneModel& model,
     renderer::RelayWall nowhere;
     nowhere.center_m = Vec3(1e6, 1e6, 1e6);
     const renderer::Scene scene(std::move(geometry), scan, nowhere);
-    const std::vector<Target> targets = make_targets(model, state, pieces);
+    const std::vector<Target> targets = make_targets(model, state, elements);
     std::vector<VisibilityMask> masks(points.size() * targets.size());
     core::parallel_for(points.size(), [&](std::size_t p) {
         for (std::size_t i = 0; i < targets.size(); ++i) {

@@ -21,11 +21,11 @@ struct Leg {
     core::Vec3 by_wall_normal;  ///< by n_w
 };
 
-/// The leg to a point x of a surface with this normal; gradients only with slopes.
+/// The leg to a point x of a surface with this normal; gradients only with gradients.
 inline Leg make_leg(const MovedWallPoint& wall,
                     const core::Vec3& x,
                     const core::Vec3& normal,
-                    renderer::Slopes slopes) {
+                    renderer::Gradients gradients) {
     const core::Vec3 d = x - wall.position;
     const double squared = d.squaredNorm();
     const double front = wall.normal.dot(d);
@@ -37,7 +37,7 @@ inline Leg make_leg(const MovedWallPoint& wall,
     const double per4 = 1.0 / (squared * squared);
     const bool is_in_front = front > 0.0;
     leg.factor = is_in_front ? front * std::abs(facing) * per4 : 0.0;
-    if (slopes == renderer::Slopes::Without) return leg;
+    if (gradients == renderer::Gradients::Without) return leg;
     if (!is_in_front) {
         leg.by_position = leg.by_normal = leg.by_wall_normal = core::Vec3::Zero();
         return leg;
@@ -78,43 +78,45 @@ struct Path {
 };
 
 /// The wall points of a pair.
-struct PathEnds {
+struct PathEndpoints {
     const MovedWallPoint* light;
     const MovedWallPoint* sensor;
 };
 
 /// The path of two legs: the sum of their lengths, the product of their factors.
-inline Path join_legs(const PathEnds& ends,
+inline Path join_legs(const PathEndpoints& ends,
                       const Leg& light,
                       const Leg& sensor,
-                      renderer::Slopes slopes) {
+                      renderer::Gradients gradients) {
     Path path;
     path.opl = light.length + sensor.length;
     path.factor = light.factor * sensor.factor;
-    if (slopes == renderer::Slopes::Without) return path;
+    if (gradients == renderer::Gradients::Without) return path;
     path.opl_by_position = light.direction + sensor.direction;
     path.factor_by_position = sensor.factor * light.by_position + light.factor * sensor.by_position;
     path.factor_by_normal = sensor.factor * light.by_normal + light.factor * sensor.by_normal;
     for (std::size_t i = 0; i < 2; ++i) {
-        const auto& light_slope = ends.light->position_slope[i];
-        const auto& sensor_slope = ends.sensor->position_slope[i];
+        const auto& light_gradient = ends.light->position_gradient[i];
+        const auto& sensor_gradient = ends.sensor->position_gradient[i];
         path.opl_by_wall[i] =
-            -light.direction.dot(light_slope) - sensor.direction.dot(sensor_slope);
+            -light.direction.dot(light_gradient) - sensor.direction.dot(sensor_gradient);
         path.factor_by_wall[i] =
-            sensor.factor * (light.by_wall_normal.dot(ends.light->normal_slope[i]) -
-                             light.by_position.dot(light_slope)) +
-            light.factor * (sensor.by_wall_normal.dot(ends.sensor->normal_slope[i]) -
-                            sensor.by_position.dot(sensor_slope));
+            sensor.factor * (light.by_wall_normal.dot(ends.light->normal_gradient[i]) -
+                             light.by_position.dot(light_gradient)) +
+            light.factor * (sensor.by_wall_normal.dot(ends.sensor->normal_gradient[i]) -
+                            sensor.by_position.dot(sensor_gradient));
     }
     return path;
 }
 
 /// A retroreflector sends back one leg's factor.
-inline Path retroreflected(const PathEnds& ends, const Leg& leg, renderer::Slopes slopes) {
+inline Path retroreflected(const PathEndpoints& ends,
+                           const Leg& leg,
+                           renderer::Gradients gradients) {
     Leg mirror = leg;
     mirror.factor = 1.0;
     mirror.by_position = mirror.by_normal = mirror.by_wall_normal = core::Vec3::Zero();
-    return join_legs(ends, leg, mirror, slopes);
+    return join_legs(ends, leg, mirror, gradients);
 }
 
 }  // namespace calib

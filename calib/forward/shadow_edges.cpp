@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// What wall points see of the pieces, and how that changes while surfaces move. Why it is wanted:
+// What wall points see of the elements, and how that changes while surfaces move. Why it is wanted:
 // see shadow_refinement.h.
 //
-// Visibility is known in parts of pieces, a quarter of a piece's edge long. Central differences
+// Visibility is known in parts of elements, a quarter of an element's edge long. Central differences
 // over about such a length, with everything but visibility held, smooth the steps away.
 #include "calib/forward/forward_model.h"
 #include "calib/forward/model_visibility.h"
@@ -17,14 +17,14 @@ namespace {
 
 using core::Vec3;
 
-// Difference steps move no vertex farther than this share of a piece's mean edge.
+// Difference steps move no vertex farther than this share of an element's mean edge.
 constexpr double kStepPerEdge = 0.25;
 
 }  // namespace
 
 void ForwardModel::trace(const SceneState& state) {
     const auto masks = [&](const core::WallPoints& points) {
-        return trace_masks(model_, state, pieces_, scan_, wall_.moved_points(points, state));
+        return trace_masks(model_, state, elements_, scan_, wall_.moved_points(points, state));
     };
     sensor_masks_ = masks(scan_.sensing);
     light_masks_ =
@@ -42,21 +42,21 @@ bool ForwardModel::has_shadow_edges() const {
 // Per column, how far the fastest vertex or wall point moves per unit of the parameter.
 std::vector<double> ForwardModel::vertex_speeds(const SceneState& state) const {
     std::vector<double> speeds(static_cast<std::size_t>(model_.num_columns()), 0.0);
-    const auto add = [&](int column, const Vec3& slope) {
+    const auto add = [&](int column, const Vec3& gradient) {
         double& speed = speeds[static_cast<std::size_t>(column)];
-        speed = std::max(speed, slope.norm());
+        speed = std::max(speed, gradient.norm());
     };
     for (std::size_t f = 0; f < model_.facets().size(); ++f) {
         const FacetMotion motion = model_.motion(state, f);
         for (std::size_t c = 0; c < motion.columns.size(); ++c) {
-            for (const Vec3& slope : motion.by_column[c]) add(motion.columns[c], slope);
+            for (const Vec3& gradient : motion.by_column[c]) add(motion.columns[c], gradient);
         }
     }
     for (const std::size_t w : {0UL, 1UL}) {
         const auto* block = model_.find(w == 0 ? ParameterKind::WallBow : ParameterKind::WallScale);
         if (block == nullptr) continue;
         for (const MovedWallPoint& p : wall_.moved(scan_.sensing, state)) {
-            add(block->first_column, p.position_slope[w]);
+            add(block->first_column, p.position_gradient[w]);
         }
     }
     return speeds;
@@ -76,20 +76,21 @@ std::vector<double> ForwardModel::evaluate_all() const {
 }
 
 void ForwardModel::find_shadow_edges(const SceneState& state) {
-    edge_slopes_.clear();
+    edge_gradients_.clear();
     if (!has_shadow_edges()) return;
-    update(state, renderer::Slopes::Without);
+    update(state, renderer::Gradients::Without);
     double area = 0.0;
-    for (const ModelPiece& piece : pieces_) {
-        const auto corners = model_.motion(state, piece.facet).corners;
-        area += (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm() * piece.area_share;
+    for (const ModelElement& element : elements_) {
+        const auto corners = model_.motion(state, element.facet).corners;
+        area +=
+            (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm() * element.area_share;
     }
-    const double edge_m = std::sqrt(area / static_cast<double>(pieces_.size()));
+    const double edge_m = std::sqrt(area / static_cast<double>(elements_.size()));
     const std::vector<double> speeds = vertex_speeds(state);
     const auto light_masks = light_masks_;
     const auto sensor_masks = sensor_masks_;
     const auto columns = speeds.size();
-    std::vector<double> slopes;
+    std::vector<double> gradients;
     for (std::size_t column = 0; column < columns; ++column) {
         if (!(speeds[column] > 0.0)) continue;
         Eigen::VectorXd step = Eigen::VectorXd::Zero(model_.num_columns());
@@ -99,20 +100,20 @@ void ForwardModel::find_shadow_edges(const SceneState& state) {
         const std::vector<double> ahead = evaluate_all();
         trace(moved_by(model_, state, -step));
         const std::vector<double> behind = evaluate_all();
-        slopes.resize(ahead.size() * columns, 0.0);
+        gradients.resize(ahead.size() * columns, 0.0);
         for (std::size_t i = 0; i < ahead.size(); ++i) {
-            slopes[i * columns + column] = (ahead[i] - behind[i]) / (2.0 * size);
+            gradients[i * columns + column] = (ahead[i] - behind[i]) / (2.0 * size);
         }
     }
     light_masks_ = light_masks;
     sensor_masks_ = sensor_masks;
-    edge_slopes_ = std::move(slopes);
+    edge_gradients_ = std::move(gradients);
 }
 
 void ForwardModel::add_shadow_edges(std::size_t pair, PairModel& result) const {
-    if (edge_slopes_.empty()) return;
-    const double* edges = edge_slopes_.data() + pair * result.slopes.size();
-    for (std::size_t i = 0; i < result.slopes.size(); ++i) result.slopes[i] += edges[i];
+    if (edge_gradients_.empty()) return;
+    const double* edges = edge_gradients_.data() + pair * result.gradients.size();
+    for (std::size_t i = 0; i < result.gradients.size(); ++i) result.gradients[i] += edges[i];
 }
 
 }  // namespace calib

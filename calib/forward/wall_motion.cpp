@@ -31,16 +31,16 @@ std::vector<MovedWallPoint> WallMotion::moved(const core::WallPoints& points,
         const double rise = 1.0 - p.squaredNorm() / squared_radius_m2_;
         MovedWallPoint& target = result.emplace_back();
         target.position = center_ + scale * p + state.bow_m * rise * normal_;
-        target.position_slope = {rise * normal_, scale * p};
+        target.position_gradient = {rise * normal_, scale * p};
         // The surface z = bow rise(p) has the normal n - grad z.
         const Vec3 across = p - p.dot(normal_) * normal_;
         const Vec3 per_bow = 2.0 / (squared_radius_m2_ * scale) * across;
         const Vec3 tilted = points.normals[i] + state.bow_m * per_bow;
         target.normal = tilted.normalized();
-        const auto slope = [&](const Vec3& change) {
+        const auto gradient = [&](const Vec3& change) {
             return Vec3((change - target.normal.dot(change) * target.normal) / tilted.norm());
         };
-        target.normal_slope = {slope(per_bow), slope(-state.bow_m * per_bow)};
+        target.normal_gradient = {gradient(per_bow), gradient(-state.bow_m * per_bow)};
     }
     return result;
 }

@@ -13,8 +13,8 @@ namespace calib {
 struct MovedWallPoint {
     core::Vec3 position;
     core::Vec3 normal;
-    std::array<core::Vec3, 2> position_slope;  ///< by bow and by log scale
-    std::array<core::Vec3, 2> normal_slope;
+    std::array<core::Vec3, 2> position_gradient;  ///< by bow and by log scale
+    std::array<core::Vec3, 2> normal_gradient;
 };
 
 /// The wall as a paraboloid: points grow by `scale` about their centre and rise along the mean

@@ -50,7 +50,7 @@ struct FitSettings {
     LossKind loss = LossKind::None;
     double loss_scale = 1.5;
     double laplacian_weight = 1e-3;
-    std::optional<double> piece_tolerance;
+    std::optional<double> element_tolerance;
     std::optional<std::array<double, 2>> window_m;
     std::optional<int> max_pairs;
     int search_rotations = 10;
@@ -76,8 +76,8 @@ void for_each_field(FitSettings& s, Visitor&& visit) {
     visit("loss_scale", s.loss_scale, "where the loss sets in, in median misfits of wall points");
     visit("laplacian_weight", s.laplacian_weight, "cost of 1 mm of roughness of free vertices");
     visit("piece_tolerance",
-          s.piece_tolerance,
-          "relative L2 error of the model's pieces; null: small against the data's noise");
+          s.element_tolerance,
+          "relative L2 error of the model's elements; null: small against the data's noise");
     visit("window_m", s.window_m, "path lengths that count [m]; null: all");
     visit("max_pairs", s.max_pairs, "pairs that are used, spread over the wall; null: all");
     visit("search_rotations", s.search_rotations, "rotations that start: search tries");

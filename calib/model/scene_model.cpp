@@ -14,7 +14,7 @@ namespace {
 using core::Vec3;
 
 // Albedo that stands for a surface without any, whose logarithm would not exist.
-constexpr double kLeastAlbedo = 1e-6;
+constexpr double kMinAlbedo = 1e-6;
 
 std::vector<std::string> named(const std::string& owner, const std::vector<std::string>& parts) {
     std::vector<std::string> names;
@@ -88,7 +88,7 @@ void SceneModel::add_body(const renderer::Object& object, std::size_t index) {
         ModelBody body;
         body.name = object.name;
         body.origin_m = object.world_from_node.translation();
-        body.albedo = std::max(object.material.albedo, kLeastAlbedo);
+        body.albedo = std::max(object.material.albedo, kMinAlbedo);
         it = bodies_.insert(bodies_.end(), body);
     }
     it->objects.push_back(index);

@@ -16,7 +16,7 @@ namespace {
 
 // A peak is looked at this many response widths around its highest bin.
 constexpr double kWindow = 12.0;
-constexpr double kLeastMean = 1e-9;
+constexpr double kMinMean = 1e-9;
 
 struct Shared {
     double log_sigma = 0.0;
@@ -68,12 +68,12 @@ struct PeakCost {
 
  private:
     static double deviance_of(double mean, double counted) {
-        return signed_deviance(std::max(mean, kLeastMean), counted).value;
+        return signed_deviance(std::max(mean, kMinMean), counted).value;
     }
     template <int N>
     static ceres::Jet<double, N> deviance_of(const ceres::Jet<double, N>& mean, double counted) {
-        const Residual residual = signed_deviance(std::max(mean.a, kLeastMean), counted);
-        return {residual.value, residual.slope * mean.v};
+        const Residual residual = signed_deviance(std::max(mean.a, kMinMean), counted);
+        return {residual.value, residual.gradient * mean.v};
     }
 };
 
@@ -165,7 +165,7 @@ Eigen::Matrix3d schur_of_shared(const core::Capture& capture,
         const auto index = static_cast<std::size_t>(&peak - peaks.data());
         for (int bin = peak.first_bin; bin <= peak.last_bin; ++bin) {
             const Jet mean = expected_counts(p, s, capture.time_axis, bin, shape);
-            const double safe = std::max(mean.a, kLeastMean);
+            const double safe = std::max(mean.a, kMinMean);
             information += mean.v * mean.v.transpose() / safe;
             const double counted = static_cast<double>(
                 capture.transient.histogram(index)[static_cast<std::size_t>(bin)]);

@@ -6,7 +6,7 @@ namespace calib {
 /// A residual and its derivative by the expected count.
 struct Residual {
     double value = 0.0;
-    double slope = 0.0;
+    double gradient = 0.0;
 };
 
 /// Signed square root of the Poisson deviance 2 [mu - n + n ln(n / mu)].

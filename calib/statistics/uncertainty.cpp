@@ -10,7 +10,7 @@
 namespace calib {
 namespace {
 
-constexpr double kLeastEigenvalue = 0.01;
+constexpr double kMinEigenvalue = 0.01;
 constexpr double kSingular = 1e-12;
 constexpr double kNotableCorrelation = 0.9;
 
@@ -55,7 +55,7 @@ Uncertainty assess(const Eigen::MatrixXd& information, const std::vector<std::st
     Eigen::VectorXd inverse(size);
     for (Eigen::Index i = 0; i < size; ++i) {
         inverse[i] = 1.0 / std::max(values[i], kSingular * largest);
-        if (values[i] < kLeastEigenvalue) {
+        if (values[i] < kMinEigenvalue) {
             result.unidentifiable.push_back(describe(eigen.eigenvectors().col(i), names));
         }
     }

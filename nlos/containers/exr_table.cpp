@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/containers/exr_table.h"
 
-#include "nlos/containers/contained_process.h"
 #include "nlos/containers/file_memory.h"
+#include "nlos/containers/sandboxed_process.h"
 #include "renderer/core/error.h"
 #include "renderer/core/output_file.h"
 #include "renderer/core/settings.h"
@@ -27,7 +27,7 @@ namespace nlos {
 namespace {
 
 constexpr std::size_t kColumnBytes = sizeof(float);
-constexpr std::uint64_t kMostChannels = 1 << 16;
+constexpr std::uint64_t kMaxChannels = 1 << 16;
 
 [[noreturn]] void throw_damaged_table(const std::string& path) {
     throw core::Error(path, "is damaged or cut short", "must be a complete OpenEXR file");
@@ -169,8 +169,7 @@ ExrTable read_with_library(const std::string& path) {
     table.height = static_cast<std::size_t>(window.max.y - window.min.y + 1);
     std::uint64_t channels = 0;
     for (auto c = header.channels().begin(); c != header.channels().end(); ++c) {
-        if (c.channel().xSampling != 1 || c.channel().ySampling != 1 ||
-            ++channels > kMostChannels) {
+        if (c.channel().xSampling != 1 || c.channel().ySampling != 1 || ++channels > kMaxChannels) {
             throw core::Error(path, "has subsampled or too many channels", "must have full ones");
         }
     }
@@ -206,7 +205,7 @@ bool is_exr_file(const std::string& path) {
 }
 
 ExrTable read_exr_table(const std::string& path) {
-    const std::string answer = run_contained(path, [&] {
+    const std::string answer = run_sandboxed(path, [&] {
         try {
             std::string bytes;
             core::Json::to_cbor(to_json(read_with_library(path)), bytes);

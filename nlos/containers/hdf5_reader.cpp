@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/containers/hdf5_reader.h"
 
-#include "nlos/containers/contained_process.h"
 #include "nlos/containers/hdf5_session.h"
+#include "nlos/containers/sandboxed_process.h"
 #include "renderer/core/error.h"
 
 #include <cstring>
@@ -108,7 +108,7 @@ Hdf5Reader::Hdf5Reader(std::string path) : path_(std::move(path)) {
     }
     // The session lives in the child, from the first question on.
     const auto session = std::make_shared<std::optional<Hdf5Session>>();
-    process_ = std::make_unique<ContainedProcess>(path_, [session, this](const std::string& text) {
+    process_ = std::make_unique<SandboxedProcess>(path_, [session, this](const std::string& text) {
         if (!*session) session->emplace(path_);
         return answer(**session, Json::from_cbor(text));
     });

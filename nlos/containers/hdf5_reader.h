@@ -13,7 +13,7 @@
 
 namespace nlos {
 
-class ContainedProcess;
+class SandboxedProcess;
 
 /// An HDF5 file open for reading.
 ///
@@ -74,7 +74,7 @@ class Hdf5Reader {
                                       std::size_t count) const;
 
     std::string path_;
-    std::unique_ptr<ContainedProcess> process_;
+    std::unique_ptr<SandboxedProcess> process_;
 };
 
 }  // namespace nlos

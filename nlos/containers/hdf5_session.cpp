@@ -2,7 +2,7 @@
 #include "nlos/containers/hdf5_session.h"
 
 #include "nlos/containers/file_memory.h"
-#include "nlos/containers/hdf5_text_heaps.h"
+#include "nlos/containers/hdf5_global_heap.h"
 #include "renderer/core/error.h"
 
 #include <fmt/core.h>
@@ -311,7 +311,7 @@ std::optional<std::string> Hdf5Session::text_attribute(const std::string& object
 
 std::optional<std::vector<double>> Hdf5Session::real_attribute(const std::string& object,
                                                                const std::string& name) const {
-    constexpr std::uint64_t kMostValues = 4096;
+    constexpr std::uint64_t kMaxValues = 4096;
     const Hdf5Handle attribute = open_attribute(object, name);
     if (!attribute.is_valid()) return std::nullopt;
     const std::string place = where(object + " attribute " + name);
@@ -319,7 +319,7 @@ std::optional<std::vector<double>> Hdf5Session::real_attribute(const std::string
     const Hdf5Handle space(H5Aget_space(attribute.id()), H5Sclose);
     const H5T_class_t type_class = H5Tget_class(type.id());
     const std::uint64_t count = total_bytes(extents_of(space, place), 1);
-    if ((type_class != H5T_FLOAT && type_class != H5T_INTEGER) || count > kMostValues ||
+    if ((type_class != H5T_FLOAT && type_class != H5T_INTEGER) || count > kMaxValues ||
         H5Sget_simple_extent_type(space.id()) == H5S_NULL) {
         throw core::Error(place, "holds no numbers", "must hold a few numbers");
     }

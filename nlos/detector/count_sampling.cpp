@@ -10,7 +10,7 @@
 namespace nlos {
 namespace {
 
-constexpr double kFewestForRejection = 10.0;  // below, inversion is as fast, and it is simpler
+constexpr double kMinForRejection = 10.0;  // below, inversion is as fast, and it is simpler
 
 /// ln k!, by Stirling's series behind a table.
 double log_factorial(double k) {
@@ -71,17 +71,17 @@ double reject(core::Rng& rng, const Hat& hat, double most, LogRatio&& log_ratio)
 
 std::int64_t sample_poisson(core::Rng& rng, double mean) {
     assert(mean >= 0.0 && std::isfinite(mean));
-    constexpr double kMost = 9e18;
-    if (mean < kFewestForRejection) {
+    constexpr double kMax = 9e18;
+    if (mean < kMinForRejection) {
         return static_cast<std::int64_t>(
-            invert(rng, std::exp(-mean), kMost, [&](double k) { return mean / k; }));
+            invert(rng, std::exp(-mean), kMax, [&](double k) { return mean / k; }));
     }
     const double b = 0.931 + 2.53 * std::sqrt(mean);
     const double a = -0.059 + 0.02483 * b;
     const Hat hat{a, b, mean + 0.43, 1.1239 + 1.1328 / (b - 3.4), 0.9277 - 3.6224 / (b - 2.0)};
     const double log_mean = std::log(mean);
     return static_cast<std::int64_t>(
-        reject(rng, hat, kMost, [&](double k) { return k * log_mean - mean - log_factorial(k); }));
+        reject(rng, hat, kMax, [&](double k) { return k * log_mean - mean - log_factorial(k); }));
 }
 
 std::int64_t sample_binomial(core::Rng& rng, std::int64_t trials, double probability) {
@@ -91,7 +91,7 @@ std::int64_t sample_binomial(core::Rng& rng, std::int64_t trials, double probabi
     const auto n = static_cast<double>(trials);
     const double p = probability;
     const double odds = p / (1.0 - p);
-    if (n * p < kFewestForRejection) {
+    if (n * p < kMinForRejection) {
         return static_cast<std::int64_t>(
             invert(rng, std::exp(n * std::log1p(-p)), n, [&](double k) {
                 return odds * (n - k + 1.0) / k;

@@ -100,13 +100,13 @@ std::vector<double> solve_steady_state(const std::vector<double>& probabilities,
 std::vector<double> find_steady_state(const std::vector<double>& probabilities,
                                       const PulseTrain& train,
                                       std::size_t history_periods) {
-    constexpr int kMostSteps = 1000;     // from here on solving is quicker
+    constexpr int kMaxSteps = 1000;      // from here on solving is quicker
     constexpr double kTolerance = 1e-9;  // of all detections
     const auto period = static_cast<std::ptrdiff_t>(probabilities.size());
     std::vector<double> history((history_periods + 1) * probabilities.size());
     start_steadily(probabilities, train.blind_bins, history);
     const auto keep_probability = [](double seeing, double p) { return seeing * p; };
-    for (int step = 0; step < kMostSteps; ++step) {
+    for (int step = 0; step < kMaxSteps; ++step) {
         if (step > 0) std::rotate(history.begin(), history.begin() + period, history.end());
         follow_pulse(probabilities, train, 1.0, history, keep_probability);
         if (train.blind_bins == 0) return history;

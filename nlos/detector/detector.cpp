@@ -15,8 +15,8 @@ namespace nlos {
 namespace {
 
 constexpr double kPlanck_J_s = 6.62607015e-34;
-constexpr double kMostPulses = 1e15;
-constexpr double kMostCounts = 1e15;  // expected in all pairs; sums of counts stay exact in double
+constexpr double kMaxPulses = 1e15;
+constexpr double kMaxCounts = 1e15;  // expected in all pairs; sums of counts stay exact in double
 constexpr double kLongestBlindPeriods = 16.0;
 
 void require(bool holds, const std::string& key, double found, const std::string& allowed) {
@@ -63,10 +63,10 @@ void validate(const DetectorSettings& s) {
             s.radiometry.efficiency,
             "must be above 0 and at most 1");
     const double pulses = s.repetition_hz * s.exposure_s.value_or(1.0);
-    require(pulses <= kMostPulses,
+    require(pulses <= kMaxPulses,
             "exposure_s",
             s.exposure_s.value_or(1.0),
-            fmt::format("must be at most {:g}: 1e15 pulses", kMostPulses / s.repetition_hz));
+            fmt::format("must be at most {:g}: 1e15 pulses", kMaxPulses / s.repetition_hz));
     const double blind_periods = 1e-9 * s.dead_time_ns * s.repetition_hz;
     require(blind_periods <= kLongestBlindPeriods,
             "dead_time_ns",
@@ -140,13 +140,13 @@ Detector make_detector(const core::Capture& capture, const DetectorSettings& s) 
     Detector detector;
     detector.counts_per_value = counts_per_value(capture, s);
     const double signal = detector.counts_per_value * sum_of(capture);
-    require(signal <= kMostCounts, "photons", signal, "must give at most 1e15 counts");
+    require(signal <= kMaxCounts, "photons", signal, "must give at most 1e15 counts");
     const double open_s = axis.bin_width_m / core::kSpeedOfLight * s.repetition_hz *
                           s.exposure_s.value_or(1.0);  // time per bin over all pulses
     detector.background = s.ambient + s.dark_counts_hz * open_s;
     const double background =
         detector.background * static_cast<double>(capture.transient.values().size());
-    require(background <= kMostCounts,
+    require(background <= kMaxCounts,
             "ambient and dark_counts_hz",
             background,
             "must give at most 1e15 counts");

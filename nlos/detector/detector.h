@@ -48,7 +48,7 @@ void for_each_field(DetectorSettings& s, Visitor&& visit) {
     visit("photons", s.photons, "expected signal photons in the whole capture");
     visit("photons_per_point",
           s.photons_per_point,
-          "expected signal photons per measurement pair, on average over all pairs");
+          "expected signal photons per prepared pair, on average over all pairs");
     visit("exposure_s",
           s.exposure_s,
           "time per pair [s]; alone it gives the number of photons by `radiometry`, beside photons "

@@ -255,12 +255,12 @@ void read_element(const std::string& path,
                   const Element& element,
                   Body& body,
                   core::TriangleMesh& mesh) {
-    std::size_t least_bytes = 0;
+    std::size_t min_bytes = 0;
     for (const Property& property : element.properties) {
-        least_bytes +=
+        min_bytes +=
             kScalarBytes[static_cast<std::size_t>(property.list_count.value_or(property.type))];
     }
-    body.expect(element.count, least_bytes);
+    body.expect(element.count, min_bytes);
     if (element.name == "vertex") return read_vertices(path, element, body, mesh);
     std::vector<double> values;
     for (std::size_t i = 0; i < element.count; ++i) {

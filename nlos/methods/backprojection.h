@@ -35,7 +35,7 @@ struct ConfocalGrid {
     Compensation compensation = Compensation::None;
 };
 
-/// Measurement pairs in the wall's frame, in any arrangement.
+/// PreparedCapture pairs in the wall's frame, in any arrangement.
 template <class Real>
 struct PairList {
     core::ScanPattern pattern;

@@ -8,7 +8,7 @@
 namespace nlos {
 namespace {
 
-constexpr std::size_t kFewestPhasorPoints = 4;
+constexpr std::size_t kMinPhasorPoints = 4;
 
 bool is_confocal_method(Method method) {
     return method == Method::Lct || method == Method::Fk || method == Method::Dlct;
@@ -26,17 +26,17 @@ std::string name_of(core::ScanPattern pattern) {
     return "a confocal scan";
 }
 
-std::string why_too_few_bins(const Measurement& measurement) {
-    if (measurement.time_axis.num_bins >= kFewestBins) return "";
-    return fmt::format("a time axis of {} bins", measurement.time_axis.num_bins);
+std::string why_too_few_bins(const PreparedCapture& prepared) {
+    if (prepared.time_axis.num_bins >= kMinBins) return "";
+    return fmt::format("a time axis of {} bins", prepared.time_axis.num_bins);
 }
 
 /// Empty when methods for confocal grids can serve, else what stands in their way.
-std::string why_no_confocal_method(const Measurement& measurement, const VolumeSettings& volume) {
-    if (measurement.scan.pattern != core::ScanPattern::Confocal) {
-        return name_of(measurement.scan.pattern);
+std::string why_no_confocal_method(const PreparedCapture& prepared, const VolumeSettings& volume) {
+    if (prepared.scan.pattern != core::ScanPattern::Confocal) {
+        return name_of(prepared.scan.pattern);
     }
-    const WallFrame& wall = measurement.wall;
+    const WallFrame& wall = prepared.wall;
     if (!wall.grid) return wall.why_no_grid;
     const auto [nx, ny] = wall.grid->size;
     if (volume.voxels && (static_cast<std::size_t>((*volume.voxels)[0]) != nx ||
@@ -47,43 +47,43 @@ std::string why_no_confocal_method(const Measurement& measurement, const VolumeS
                            nx,
                            ny);
     }
-    return why_too_few_bins(measurement);
+    return why_too_few_bins(prepared);
 }
 
 /// Empty when the phasor field can serve.
-std::string why_no_phasor(const Measurement& measurement) {
-    const std::size_t points = measurement.scan.sensing.size();
-    if (points < kFewestPhasorPoints) return fmt::format("{} sensing points", points);
-    return why_too_few_bins(measurement);
+std::string why_no_phasor(const PreparedCapture& prepared) {
+    const std::size_t points = prepared.scan.sensing.size();
+    if (points < kMinPhasorPoints) return fmt::format("{} sensing points", points);
+    return why_too_few_bins(prepared);
 }
 
 /// The best method that serves without conversion.
-Method best_method(const Measurement& measurement, const VolumeSettings& volume) {
-    if (why_no_confocal_method(measurement, volume).empty()) return Method::Lct;
-    return why_no_phasor(measurement).empty() ? Method::Phasor : Method::Bp;
+Method best_method(const PreparedCapture& prepared, const VolumeSettings& volume) {
+    if (why_no_confocal_method(prepared, volume).empty()) return Method::Lct;
+    return why_no_phasor(prepared).empty() ? Method::Phasor : Method::Bp;
 }
 
 MethodChoice choose_automatically(const ReconstructSettings& settings,
-                                  const Measurement& measurement) {
-    const Method method = best_method(measurement, settings.volume);
+                                  const PreparedCapture& prepared) {
+    const Method method = best_method(prepared, settings.volume);
     if (method == Method::Lct) return {method, "confocal scan on an even planar grid"};
-    const std::string no_lct = why_no_confocal_method(measurement, settings.volume);
+    const std::string no_lct = why_no_confocal_method(prepared, settings.volume);
     if (method == Method::Phasor) return {method, no_lct};
-    const std::string no_phasor = why_no_phasor(measurement);
+    const std::string no_phasor = why_no_phasor(prepared);
     return {method, no_lct == no_phasor ? no_lct : no_lct + ", " + no_phasor};
 }
 
 }  // namespace
 
-MethodChoice choose_method(const ReconstructSettings& settings, Measurement& measurement) {
-    if (settings.method == Method::Auto) return choose_automatically(settings, measurement);
+MethodChoice choose_method(const ReconstructSettings& settings, PreparedCapture& prepared) {
+    if (settings.method == Method::Auto) return choose_automatically(settings, prepared);
     const std::string name(core::enum_name(settings.method));
-    const std::string other(core::enum_name(best_method(measurement, settings.volume)));
+    const std::string other(core::enum_name(best_method(prepared, settings.volume)));
     if (is_confocal_method(settings.method)) {
-        if (measurement.scan.pattern != core::ScanPattern::Confocal) {
-            convert_to_confocal(measurement);
+        if (prepared.scan.pattern != core::ScanPattern::Confocal) {
+            convert_to_confocal(prepared);
         }
-        const std::string obstacle = why_no_confocal_method(measurement, settings.volume);
+        const std::string obstacle = why_no_confocal_method(prepared, settings.volume);
         if (!obstacle.empty()) {
             throw core::Error(
                 "method=" + name,
@@ -92,21 +92,21 @@ MethodChoice choose_method(const ReconstructSettings& settings, Measurement& mea
                             "voxel columns at its points and at least {} bins; method={} works "
                             "for this capture",
                             name,
-                            kFewestBins,
+                            kMinBins,
                             other));
         }
     }
-    if (settings.method == Method::Phasor && !why_no_phasor(measurement).empty()) {
+    if (settings.method == Method::Phasor && !why_no_phasor(prepared).empty()) {
         throw core::Error("method=phasor",
-                          "found " + why_no_phasor(measurement),
+                          "found " + why_no_phasor(prepared),
                           fmt::format("phasor needs at least {} sensing points and {} bins; "
                                       "method={} works for this capture",
-                                      kFewestPhasorPoints,
-                                      kFewestBins,
+                                      kMinPhasorPoints,
+                                      kMinBins,
                                       other));
     }
     return {settings.method,
-            measurement.conversion.empty() ? "as set" : "as set; " + measurement.conversion};
+            prepared.conversion.empty() ? "as set" : "as set; " + prepared.conversion};
 }
 
 }  // namespace nlos

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "nlos/preparation/measurement.h"
+#include "nlos/preparation/prepared_capture.h"
 #include "nlos/reconstruction/reconstruct_settings.h"
 
 #include <string>
@@ -18,9 +18,9 @@ struct MethodChoice {
 /// measurements are converted in place when a confocal method was asked for.
 ///
 /// throws   core::Error when the method set cannot serve; names one that can
-MethodChoice choose_method(const ReconstructSettings& settings, Measurement& measurement);
+MethodChoice choose_method(const ReconstructSettings& settings, PreparedCapture& prepared);
 
 /// Fewest bins from which frequency-domain methods make sense.
-inline constexpr int kFewestBins = 8;
+inline constexpr int kMinBins = 8;
 
 }  // namespace nlos

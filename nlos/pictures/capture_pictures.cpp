@@ -19,9 +19,9 @@ constexpr double kBrightestShare = 0.0005;  // of a streak's values, drawn in th
 
 constexpr double kBrightestPixels = 0.01;  // of an image's values: highlights, fireflies
 constexpr double kScreenGamma = 2.2;
-constexpr int kPreviewWidth = 640;       // [pixels] that small images are enlarged to
-constexpr std::size_t kMostFrames = 12;  // of a sequence, drawn one by one
-constexpr std::size_t kMostGates = 4;    // of an image's histogram, drawn one by one
+constexpr int kPreviewWidth = 640;      // [pixels] that small images are enlarged to
+constexpr std::size_t kMaxFrames = 12;  // of a sequence, drawn one by one
+constexpr std::size_t kMaxGates = 4;    // of an image's histogram, drawn one by one
 
 using Range = std::array<double, 2>;
 
@@ -169,7 +169,7 @@ std::vector<Panel> image_panels(const core::Capture& capture) {
     const std::vector<double> mean = mean_transient(capture);
     const std::array<std::size_t, 2> shown = shown_bins(mean);
     panels.emplace_back(curve_panel(capture, mean, shown));
-    const std::size_t num_gates = std::min(kMostGates, shown[1] - shown[0]);
+    const std::size_t num_gates = std::min(kMaxGates, shown[1] - shown[0]);
     for (std::size_t i = 0; i < num_gates; ++i) {
         const std::size_t first = shown[0] + i * (shown[1] - shown[0]) / num_gates;
         const std::size_t last = shown[0] + (i + 1) * (shown[1] - shown[0]) / num_gates;
@@ -201,7 +201,7 @@ std::vector<Panel> film_strip(const core::Capture& capture) {
         capture.scan.camera ? std::nullopt : derive_wall_frame(capture.scan).grid;
     if (!capture.scan.camera && !grid) return {};
     const std::size_t count = sequence.frames.size();
-    const std::size_t num_shown = std::min(kMostFrames, count);
+    const std::size_t num_shown = std::min(kMaxFrames, count);
     std::vector<ImagePanel> images;
     std::vector<float> values;
     for (std::size_t i = 0; i < num_shown; ++i) {

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kEarlyShare = 0.01;    // of all light; less may be noise
 constexpr double kFastestOnset = 1.25;  // of what is possible, for half of all neighbours
-constexpr std::size_t kFewestPoints = 16;
+constexpr std::size_t kMinPoints = 16;
 constexpr std::size_t kSteps = 8;  // neighbours are so many to a side: noise moves onsets little
 constexpr double kStrongestBend = 1.15;  // of first light: 1 is what a path allows
 constexpr double kWeakestBend = 0.7;     // edges and tips reach 1
@@ -75,7 +75,7 @@ std::optional<std::string> fast_onset(const core::Capture& capture,
     const core::Scan& scan = capture.scan;
     if (!scan.sensing.grid) return std::nullopt;
     const auto [nx, ny] = *scan.sensing.grid;
-    if (nx < kFewestPoints || ny < kFewestPoints) return std::nullopt;
+    if (nx < kMinPoints || ny < kMinPoints) return std::nullopt;
     std::vector<std::optional<double>> onsets(nx * ny);
     for (std::size_t i = 0; i < onsets.size(); ++i) {
         onsets[i] = first_light_m(capture, i, ambient[i]);

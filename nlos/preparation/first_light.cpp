@@ -12,7 +12,7 @@ namespace nlos {
 namespace {
 
 constexpr double kOnsetShare = 0.3;  // of a histogram's maximum
-constexpr std::size_t kFewestPoints = 16;
+constexpr std::size_t kMinPoints = 16;
 constexpr std::size_t kWindowsPerSide = 4;
 constexpr double kLargestResidual_bins = 1.0;
 constexpr double kLargestUncertainty = 0.05;
@@ -102,7 +102,7 @@ std::optional<BendOfFirstLight> bend_of_first_light(const core::Capture& capture
                                                     const std::vector<double>& ambient) {
     if (capture.scan.pattern != core::ScanPattern::Confocal) return std::nullopt;
     const WallFrame wall = derive_wall_frame(capture.scan);
-    if (!wall.grid || std::min(wall.grid->size[0], wall.grid->size[1]) < kFewestPoints) {
+    if (!wall.grid || std::min(wall.grid->size[0], wall.grid->size[1]) < kMinPoints) {
         return std::nullopt;
     }
     const RangeMap map = make_range_map(capture, *wall.grid, ambient);

@@ -31,7 +31,7 @@ double opl_from_ps(double ps) {
 
 /// Reads lines of a delay [ps] and a weight; lines that start with # are comments.
 MeasuredResponse read_curve(const std::string& path) {
-    constexpr std::size_t kMostLines = std::size_t{1} << 20;
+    constexpr std::size_t kMaxLines = std::size_t{1} << 20;
     std::ifstream file(path);
     if (!file) throw Error(path, "cannot be opened", "must be a readable text file");
     MeasuredResponse response;
@@ -46,7 +46,7 @@ MeasuredResponse read_curve(const std::string& path) {
         const bool ascends =
             response.delays_m.empty() || opl_from_ps(delay_ps) > response.delays_m.back();
         if (!fields || !std::isfinite(delay_ps) || !std::isfinite(weight) || weight < 0.0 ||
-            !ascends || number > kMostLines) {
+            !ascends || number > kMaxLines) {
             throw Error(fmt::format("{} line {}", path, number),
                         "found '" + line.substr(0, 40) + "'",
                         "must be a delay [ps] above the last one and a weight of at least 0");

@@ -111,13 +111,13 @@ NLOS_INLINE Simd& operator*=(Simd& a, const Simd& b) {
     return a = a * b;
 }
 
-NLOS_INLINE Simd larger_of(const Simd& a, const Simd& b) {
+NLOS_INLINE Simd max(const Simd& a, const Simd& b) {
     Simd result;
     for (std::size_t p = 0; p < Simd::kParts; ++p) result.parts[p] = max(a.parts[p], b.parts[p]);
     return result;
 }
 
-NLOS_INLINE Simd smaller_of(const Simd& a, const Simd& b) {
+NLOS_INLINE Simd min(const Simd& a, const Simd& b) {
     Simd result;
     for (std::size_t p = 0; p < Simd::kParts; ++p) result.parts[p] = min(a.parts[p], b.parts[p]);
     return result;
@@ -130,7 +130,7 @@ NLOS_INLINE Simd floor(const Simd& a) {
 }
 
 /// Compilers make vectors of it; the library's own makes some warn of what they do themselves.
-NLOS_INLINE Simd square_root(const Simd& a) {
+NLOS_INLINE Simd sqrt(const Simd& a) {
     Simd result;
     for (std::size_t p = 0; p < Simd::kParts; ++p) {
         result.parts[p] = Simd::Part([&](auto i) { return std::sqrt(a.parts[p][i]); });
@@ -139,10 +139,10 @@ NLOS_INLINE Simd square_root(const Simd& a) {
 }
 
 /// The same of single numbers, for templates of both.
-NLOS_INLINE double square_root(double a) {
+NLOS_INLINE double sqrt(double a) {
     return std::sqrt(a);
 }
-NLOS_INLINE double larger_of(double a, double b) {
+NLOS_INLINE double max(double a, double b) {
     return a < b ? b : a;
 }
 
@@ -191,13 +191,13 @@ NLOS_INLINE double sum_of(const Simd& a) {
     return reduce(result);
 }
 
-NLOS_INLINE double least_of(const Simd& a) {
+NLOS_INLINE double reduce_min(const Simd& a) {
     Simd::Part result = a.parts[0];
     for (std::size_t p = 1; p < Simd::kParts; ++p) result = min(result, a.parts[p]);
     return hmin(result);
 }
 
-NLOS_INLINE double most_of(const Simd& a) {
+NLOS_INLINE double reduce_max(const Simd& a) {
     Simd::Part result = a.parts[0];
     for (std::size_t p = 1; p < Simd::kParts; ++p) result = max(result, a.parts[p]);
     return hmax(result);

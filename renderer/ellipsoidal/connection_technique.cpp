@@ -26,20 +26,20 @@ std::vector<int> visible_sides(const Scene& scene, const core::Scan& scan) {
     return sides;
 }
 
-core::Vec3 lit_normal(const PathEnd& end) {
+core::Vec3 lit_normal(const PathEndpoint& end) {
     return end.isotropic ? core::Vec3(core::Vec3::Zero()) : end.normal;
 }
 
 }  // namespace
 
-ConnectionEnds connection_ends(const PathVertex& vertex, const PathEnd& light) {
+ConnectionEnds connection_ends(const PathVertex& vertex, const PathEndpoint& light) {
     const bool flipped = vertex.normal.dot(vertex.to_previous) < 0.0;
     return {{vertex.point.position, light.position},
             flipped ? core::Vec3(-vertex.normal) : vertex.normal,
             lit_normal(light)};
 }
 
-ConnectionEnds connection_ends(const PathEnds& ends) {
+ConnectionEnds connection_ends(const PathEndpoints& ends) {
     return {{ends.sensor.position, ends.light.position},
             lit_normal(ends.sensor),
             lit_normal(ends.light)};

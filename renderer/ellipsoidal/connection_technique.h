@@ -5,7 +5,7 @@
 #include "renderer/core/random.h"
 #include "renderer/ellipsoidal/excluded_facets.h"
 #include "renderer/ellipsoidal/hierarchy_cut.h"
-#include "renderer/path/light_path.h"
+#include "renderer/path/path_vertex.h"
 
 #include <vector>
 
@@ -24,9 +24,9 @@ struct LobeOnFacet {
 };
 
 /// The ends of the connections from a path's vertex to its light.
-ConnectionEnds connection_ends(const PathVertex& vertex, const PathEnd& light);
+ConnectionEnds connection_ends(const PathVertex& vertex, const PathEndpoint& light);
 /// The ends of the third bounces of a measurement.
-ConnectionEnds connection_ends(const PathEnds& ends);
+ConnectionEnds connection_ends(const PathEndpoints& ends);
 
 /// Draws the vertex between two others so that the path has a wanted length (source
 /// [Pediredla2019]): a facet from the hierarchy, a length within what the interval and the facet

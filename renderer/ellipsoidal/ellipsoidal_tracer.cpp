@@ -20,10 +20,10 @@ constexpr double kAreaShare = 0.75;
 // which only the share `asked` has a length that counts (constants by trial on scenes/bars and
 // scenes/letter).
 double ellipsoidal_share(double asked) {
-    constexpr double kMost = 0.85;
-    constexpr double kLeast = 0.05;
+    constexpr double kMax = 0.85;
+    constexpr double kMin = 0.05;
     constexpr double kHalved = 0.3;
-    return std::max(kLeast, kMost / (1.0 + asked / kHalved));
+    return std::max(kMin, kMax / (1.0 + asked / kHalved));
 }
 
 // Connections of a vertex with a lobe this narrow: what it mirrors makes bright, noisy pixels.
@@ -35,7 +35,7 @@ constexpr double kNarrowLobe_rad = 0.2;
 constexpr double kGaussianReach = 4.5;
 
 // Entries of a pair's cut: enough to single out facets, few against the samples they serve.
-constexpr std::size_t kFewestEntries = 32;
+constexpr std::size_t kMinEntries = 32;
 
 OplBand lengths_of_gate(const core::TimeAxis& axis, GateShape gate) {
     OplBand lengths{axis.opl_start_m, axis.opl_end_m()};
@@ -62,7 +62,7 @@ std::vector<bool> hidden_objects(const Scene& scene) {
 class EllipsoidalTracer::Walk {
  public:
     Walk(const EllipsoidalTracer& tracer,
-         const PathEnds& ends,
+         const PathEndpoints& ends,
          core::Rng& rng,
          PassHistogram& histogram)
         : tracer_(tracer),
@@ -77,7 +77,7 @@ class EllipsoidalTracer::Walk {
     double cut_hierarchy(int num_samples);
     void trace_connections(int count);
     void trace_walks(int num_area, int num_directions);
-    void trace_pixel_samples(const Measurement& measurement, std::size_t pixel, int count);
+    void trace_pixel_samples(const SensorPairs& sensor_pairs, std::size_t pixel, int count);
     std::uint64_t num_rays() const { return num_rays_; }
 
  private:
@@ -98,15 +98,15 @@ class EllipsoidalTracer::Walk {
 
     const EllipsoidalTracer& tracer_;
     const Scene& scene_;
-    const PathEnds& ends_;
+    const PathEndpoints& ends_;
     core::Rng& rng_;
     PassHistogram& histogram_;
     HierarchyCut cut_;                ///< for third bounces
     double ellipsoidal_share_ = 0.0;  ///< of third bounces
     double walk_weight_ = 0.0;        ///< of one walk: 1 / their expected number
-    FirstVertices first_;
+    FirstVertexBatch first_;
     std::vector<PathVertex> go_on_;  ///< those of which longer paths are made
-    std::array<double, FirstVertices::kCapacity> ellipsoidal_pdf_;
+    std::array<double, FirstVertexBatch::kCapacity> ellipsoidal_pdf_;
     std::uint64_t num_rays_ = 0;
 };
 
@@ -124,10 +124,10 @@ EllipsoidalTracer::EllipsoidalTracer(const Scene& scene,
       facet_traits_(scene, hidden_objects(scene)),
       excluded_(ExcludedFacets::of(scene, axis, settings)),
       technique_(scene, excluded_, scan) {
-    if (scan.camera) pixel_places_.emplace(Measurement(scene, scan), *scan.camera);
+    if (scan.camera) pixel_places_.emplace(SensorPairs(scene, scan), *scan.camera);
 }
 
-std::uint64_t EllipsoidalTracer::trace(const PathEnds& ends,
+std::uint64_t EllipsoidalTracer::trace(const PathEndpoints& ends,
                                        int num_samples,
                                        core::Rng& rng,
                                        PassHistogram& histogram) const {
@@ -144,14 +144,14 @@ std::uint64_t EllipsoidalTracer::trace(const PathEnds& ends,
     return walk.num_rays();
 }
 
-std::uint64_t EllipsoidalTracer::trace_pixel(const Measurement& measurement,
+std::uint64_t EllipsoidalTracer::trace_pixel(const SensorPairs& sensor_pairs,
                                              std::size_t pixel,
                                              int num_samples,
                                              core::Rng& rng,
                                              PassHistogram& histogram) const {
-    const PathEnds ends = measurement.ends(pixel);
+    const PathEndpoints ends = sensor_pairs.ends(pixel);
     Walk walk(*this, ends, rng, histogram);
-    walk.trace_pixel_samples(measurement, pixel, num_samples);
+    walk.trace_pixel_samples(sensor_pairs, pixel, num_samples);
     return walk.num_rays();
 }
 
@@ -160,7 +160,7 @@ double EllipsoidalTracer::Walk::cut_hierarchy(int num_samples) {
                           tracer_.lengths_.high_m - ends_.device_legs_m};
     cut_.rebuild(connection_ends(ends_),
                  lengths,
-                 std::max(kFewestEntries, static_cast<std::size_t>(num_samples)));
+                 std::max(kMinEntries, static_cast<std::size_t>(num_samples)));
     if (!cut_.empty()) ellipsoidal_share_ = ellipsoidal_share(cut_.share_asked());
     walk_weight_ = 1.0 / (num_samples * (1.0 - ellipsoidal_share_));
     return ellipsoidal_share_;
@@ -192,23 +192,23 @@ void EllipsoidalTracer::Walk::finish_connections() {
 }
 
 void EllipsoidalTracer::Walk::trace_walks(int num_area, int num_directions) {
-    EndDirections directions(scene_, ends_.sensor, num_directions, rng_);
-    FirstVertices::AreaDraws by_area{num_area};
+    EndpointDirectionSampler directions(scene_, ends_.sensor, num_directions, rng_);
+    FirstVertexBatch::AreaDraws by_area{num_area};
     while (!by_area.done() || !directions.done()) {
         num_rays_ += first_.draw(directions, tracer_.surface_walk_.area_sampler(), by_area, rng_);
         finish_first_vertices();
     }
 }
 
-void EllipsoidalTracer::Walk::trace_pixel_samples(const Measurement& measurement,
+void EllipsoidalTracer::Walk::trace_pixel_samples(const SensorPairs& sensor_pairs,
                                                   std::size_t pixel,
                                                   int count) {
     const SurfaceWalk& walk = tracer_.surface_walk_;
-    const PixelPlaces::Band places = tracer_.pixel_places_->band(pixel, tracer_.lengths_);
+    const PixelPositionSampler::Band places = tracer_.pixel_places_->band(pixel, tracer_.lengths_);
     const Vec2 shift(rng_.uniform(), rng_.uniform());
     for (int i = 0; i < count; ++i) {
         const Vec2 place = places.sample(core::lattice_point(i, count, shift));
-        auto vertex = measurement.first_vertex(pixel, place);
+        auto vertex = sensor_pairs.first_vertex(pixel, place);
         ++num_rays_;
         if (!vertex || vertex->order > tracer_.max_order_) continue;
         vertex->throughput /= count * places.pdf(place);

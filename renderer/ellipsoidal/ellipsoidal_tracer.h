@@ -2,10 +2,10 @@
 #pragma once
 
 #include "renderer/ellipsoidal/connection_technique.h"
-#include "renderer/ellipsoidal/pixel_places.h"
+#include "renderer/ellipsoidal/pixel_position_sampler.h"
 #include "renderer/film/pass_histogram.h"
-#include "renderer/path/first_vertices.h"
-#include "renderer/path/measurement.h"
+#include "renderer/path/first_vertex_batch.h"
+#include "renderer/path/sensor_pairs.h"
 #include "renderer/path/surface_walk.h"
 
 namespace renderer {
@@ -19,7 +19,7 @@ enum class ConnectionScope { All, Kept, Excluded };
 /// walk itself, from the hidden area or the BSDF, and on an ellipsoid, so that the whole path's
 /// length falls within the time axis. The balance heuristic weighs the two (source [Veach1997],
 /// [Pediredla2019]). Third bounces share one cut of the hierarchy per pair and packets of rays. An
-/// image's first vertex is chosen by length, too: see PixelPlaces.
+/// image's first vertex is chosen by length, too: see PixelPositionSampler.
 class EllipsoidalTracer {
  public:
     /// scene   must outlive the tracer
@@ -35,13 +35,13 @@ class EllipsoidalTracer {
     ///
     /// rng       owned by this pair and pass
     /// returns   the number of rays traced
-    std::uint64_t trace(const PathEnds& ends,
+    std::uint64_t trace(const PathEndpoints& ends,
                         int num_samples,
                         core::Rng& rng,
                         PassHistogram& histogram) const;
 
     /// The same for a pixel, whose paths begin with the surface point seen through it.
-    std::uint64_t trace_pixel(const Measurement& measurement,
+    std::uint64_t trace_pixel(const SensorPairs& sensor_pairs,
                               std::size_t pixel,
                               int num_samples,
                               core::Rng& rng,
@@ -64,7 +64,7 @@ class EllipsoidalTracer {
     FacetTraits facet_traits_;
     ExcludedFacets excluded_;
     ConnectionTechnique technique_;
-    std::optional<PixelPlaces> pixel_places_;  ///< of images
+    std::optional<PixelPositionSampler> pixel_places_;  ///< of images
 };
 
 }  // namespace renderer

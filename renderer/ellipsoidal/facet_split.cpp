@@ -123,11 +123,11 @@ std::pair<Part, Part> cut_in_two(std::span<std::uint32_t> set,
 
 std::vector<std::span<std::uint32_t>> split_facets(std::span<std::uint32_t> set,
                                                    std::span<const Facet> facets,
-                                                   std::size_t most_parts,
+                                                   std::size_t max_parts,
                                                    bool halve) {
     std::vector<Part> parts{{set, 0.0}};
     const auto order = [](const Part& part) { return std::pair(part.set.size() > 1, part.cost); };
-    while (parts.size() < most_parts) {
+    while (parts.size() < max_parts) {
         const auto costliest =
             std::max_element(parts.begin(), parts.end(), [&](const Part& p, const Part& q) {
                 return order(p) < order(q);

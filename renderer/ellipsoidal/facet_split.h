@@ -17,12 +17,12 @@ namespace renderer {
 ///
 /// set         facets, reordered so that parts follow each other
 /// facets      of the scene
-/// most_parts  at most this many, at least 2 where the set has 2 facets
+/// max_parts  at most this many, at least 2 where the set has 2 facets
 /// halve       cut in the middle of the set instead, so that the parts' sizes are sure to fall
 /// returns     the parts, none empty, in the order of the set
 std::vector<std::span<std::uint32_t>> split_facets(std::span<std::uint32_t> set,
                                                    std::span<const Facet> facets,
-                                                   std::size_t most_parts,
+                                                   std::size_t max_parts,
                                                    bool halve);
 
 }  // namespace renderer

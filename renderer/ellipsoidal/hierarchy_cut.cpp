@@ -13,7 +13,7 @@ using core::Vec3;
 
 void HierarchyCut::rebuild(const ConnectionEnds& ends,
                            const OplBand& lengths,
-                           std::size_t most_entries) {
+                           std::size_t max_entries) {
     ends_ = ends;
     lengths_ = lengths;
     entries_.clear();
@@ -26,7 +26,7 @@ void HierarchyCut::rebuild(const ConnectionEnds& ends,
     const float all = hierarchy_->importance(root, everything).sum();
     share_asked_ = all > 0.0F ? double{hierarchy_->importance(root, query_).sum() / all} : 0.0;
     entries_.push_back({0, 0, 1.0, 0.0, {}});
-    while (expand(most_entries)) {
+    while (expand(max_entries)) {
     }
     double sum = 0.0;
     for (const Entry& entry : entries_) sum += entry.weight;
@@ -44,10 +44,10 @@ void HierarchyCut::rebuild(const ConnectionEnds& ends,
 
 // Replaces every node by its children, in the order of their facets; false when there was none or
 // enough is enough.
-bool HierarchyCut::expand(std::size_t most_entries) {
+bool HierarchyCut::expand(std::size_t max_entries) {
     const bool has_node =
         std::any_of(entries_.begin(), entries_.end(), [](const Entry& e) { return e.child >= 0; });
-    if (!has_node || entries_.size() >= most_entries) return false;
+    if (!has_node || entries_.size() >= max_entries) return false;
     next_.clear();
     for (const Entry& entry : entries_) {
         if (entry.child >= 0) {

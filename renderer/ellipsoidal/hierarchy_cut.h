@@ -13,8 +13,8 @@ class HierarchyCut {
  public:
     explicit HierarchyCut(const TriangleHierarchy& hierarchy) : hierarchy_(&hierarchy) {}
 
-    /// Finds at most about `most_entries` entries.
-    void rebuild(const ConnectionEnds& ends, const OplBand& lengths, std::size_t most_entries);
+    /// Finds at most about `max_entries` entries.
+    void rebuild(const ConnectionEnds& ends, const OplBand& lengths, std::size_t max_entries);
 
     bool empty() const { return entries_.empty(); }
     /// Of what all lengths carry, about, the share within the interval.
@@ -35,7 +35,7 @@ class HierarchyCut {
         OplBand lengths;   ///< of a single facet
     };
 
-    bool expand(std::size_t most_entries);
+    bool expand(std::size_t max_entries);
     void append_children(std::int32_t node);
     double facet_weight(std::uint32_t facet, OplBand& lengths) const;
     double share(std::size_t entry) const;

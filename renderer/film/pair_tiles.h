@@ -24,7 +24,7 @@ class PairTiles {
     /// same ones always are.
     static constexpr std::size_t kPointsTogether = 16;
     /// Fewest points that must fit at once.
-    static constexpr std::size_t kFewestPoints = 2 * kPointsTogether;
+    static constexpr std::size_t kMinPoints = 2 * kPointsTogether;
 
     struct Tile {
         PointRange lights;
@@ -36,7 +36,7 @@ class PairTiles {
         std::vector<Tile> tiles;
     };
 
-    /// points_at_once   lights and sensors together that a batch may have, at least kFewestPoints
+    /// points_at_once   lights and sensors together that a batch may have, at least kMinPoints
     PairTiles(std::size_t num_lights, std::size_t num_sensors, std::size_t points_at_once);
 
     /// The tiles of a part, which do not depend on points_at_once; parts follow one another through

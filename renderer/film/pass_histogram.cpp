@@ -45,11 +45,11 @@ void PassHistogram::add(int channel,
                         std::span<const double> velocities,
                         std::span<const double> values) {
     // Short loops without branches, so that the compiler fills vector units.
-    constexpr double kMost = std::numeric_limits<double>::max();
+    constexpr double kMax = std::numeric_limits<double>::max();
     const std::size_t size = values.size();
     int num_non_finite = 0;
     for (std::size_t i = 0; i < size; ++i) {
-        num_non_finite += std::abs(values[i]) + std::abs(opl_m[i]) <= kMost ? 0 : 1;
+        num_non_finite += std::abs(values[i]) + std::abs(opl_m[i]) <= kMax ? 0 : 1;
     }
     if (gate_ != GateShape::Box || velocity_ || num_non_finite > 0) {
         for (std::size_t i = 0; i < size; ++i) {
@@ -58,7 +58,7 @@ void PassHistogram::add(int channel,
         return;
     }
     // As TimeAxis::bin_of(), all at once; what lies outside the axis goes to one place.
-    std::array<int, kMostAtOnce> places;
+    std::array<int, kMaxAtOnce> places;
     const double start = axis_.opl_start_m;
     const double width = axis_.bin_width_m;
     const int num_bins = axis_.num_bins;

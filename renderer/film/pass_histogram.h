@@ -32,13 +32,13 @@ class PassHistogram {
     }
     /// Adds many contributions, those of 0 left out.
     ///
-    /// opl_m, values   one entry per path, at most kMostAtOnce
+    /// opl_m, values   one entry per path, at most kMaxAtOnce
     /// velocities      [m/s] likewise; not looked at unless resolves_velocity()
     void add(int channel,
              std::span<const double> opl_m,
              std::span<const double> velocities,
              std::span<const double> values);
-    static constexpr std::size_t kMostAtOnce = 128;
+    static constexpr std::size_t kMaxAtOnce = 128;
     bool resolves_velocity() const { return velocity_.has_value(); }
     /// What was collected by velocity; only if resolves_velocity().
     PassVelocityHistogram& velocity() { return *velocity_; }

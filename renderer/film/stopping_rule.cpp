@@ -8,28 +8,29 @@
 namespace renderer {
 namespace {
 
-constexpr int kFewestPasses = 8;   // their spread is known to a quarter
-constexpr double kMostGrowth = 2;  // of the passes between two looks at the sums
+constexpr int kMinPasses = 8;     // their spread is known to a quarter
+constexpr double kMaxGrowth = 2;  // of the passes between two looks at the sums
 
 }  // namespace
 
-double relative_error(const TransientAccumulator::SquaredNorms& norms, const KnownPart& known) {
-    const double squared = norms.noise + known.squared_error;
+double relative_error(const TransientAccumulator::SquaredNorms& norms,
+                      const PrecomputedPart& precomputed) {
+    const double squared = norms.noise + precomputed.squared_error;
     const double sampled = norms.signal > 0.0
                                ? std::sqrt(squared / norms.signal)
                                : (squared > 0.0 ? std::numeric_limits<double>::infinity() : 0.0);
-    return std::hypot(sampled, known.left_out);
+    return std::hypot(sampled, precomputed.left_out);
 }
 
 StoppingRule::StoppingRule(const RenderSettings& settings,
                            int passes_for_samples,
-                           const KnownPart& known)
+                           const PrecomputedPart& precomputed)
     : seconds_(settings.seconds),
       target_(settings.target_error),
       passes_for_samples_(passes_for_samples),
-      known_(known),
-      next_look_(kFewestPasses),
-      predicted_passes_(kFewestPasses) {}
+      precomputed_(precomputed),
+      next_look_(kMinPasses),
+      predicted_passes_(kMinPasses) {}
 
 double StoppingRule::share_done(int passes, double elapsed_s, const TransientAccumulator& sums) {
     if (seconds_) return std::min(1.0, elapsed_s / *seconds_);
@@ -39,10 +40,10 @@ double StoppingRule::share_done(int passes, double elapsed_s, const TransientAcc
 
 double StoppingRule::share_of_target(int passes, const TransientAccumulator& sums) {
     if (passes >= next_look_) {
-        const auto norms = sums.squared_norms(passes, known_.transient);
+        const auto norms = sums.squared_norms(passes, precomputed_.transient);
         // Noise falls with the number of passes, the rest of the error stays. Where that alone is
         // above the target, more passes than the target itself asks for would be in vain.
-        const double rest = relative_error({0.0, norms.signal}, known_);
+        const double rest = relative_error({0.0, norms.signal}, precomputed_);
         const double share =
             rest < *target_ ? *target_ * *target_ - rest * rest : *target_ * *target_;
         const double allowed = share * norms.signal;
@@ -51,7 +52,7 @@ double StoppingRule::share_of_target(int passes, const TransientAccumulator& sum
             allowed > 0.0 ? passes * norms.noise / allowed : std::numeric_limits<double>::max();
         predicted_passes_ =
             std::clamp(needed, passes + 1.0, static_cast<double>(std::numeric_limits<int>::max()));
-        next_look_ = static_cast<int>(std::min(std::ceil(predicted_passes_), kMostGrowth * passes));
+        next_look_ = static_cast<int>(std::min(std::ceil(predicted_passes_), kMaxGrowth * passes));
     }
     return std::min(0.99, passes / predicted_passes_);
 }

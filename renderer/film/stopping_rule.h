@@ -9,7 +9,7 @@
 namespace renderer {
 
 /// What is known of H before sampling starts.
-struct KnownPart {
+struct PrecomputedPart {
     const core::Transient* transient = nullptr;  ///< to be added to what is sampled; null: nothing
     double squared_error = 0.0;  ///< of it, and of what is left out [squared L2 norm]
     double left_out = 0.0;       ///< relative L2 over all of H of orders that are left out
@@ -18,7 +18,8 @@ struct KnownPart {
 /// Relative L2 error over all of H, from norms over all pairs and bins.
 ///
 /// returns   0 when nothing is uncertain, even where there is no signal
-double relative_error(const TransientAccumulator::SquaredNorms& norms, const KnownPart& known);
+double relative_error(const TransientAccumulator::SquaredNorms& norms,
+                      const PrecomputedPart& precomputed);
 
 /// When passes over all pairs have done enough: after a number of them, after some time, or when
 /// the error that their spread tells is below the target. A target needs a few passes at least, so
@@ -26,7 +27,9 @@ double relative_error(const TransientAccumulator::SquaredNorms& norms, const Kno
 class StoppingRule {
  public:
     /// passes_for_samples   that `samples` asks for; counts when neither time nor target is set
-    StoppingRule(const RenderSettings& settings, int passes_for_samples, const KnownPart& known);
+    StoppingRule(const RenderSettings& settings,
+                 int passes_for_samples,
+                 const PrecomputedPart& precomputed);
 
     /// Looks at the sums after a pass.
     ///
@@ -40,7 +43,7 @@ class StoppingRule {
     std::optional<double> seconds_;
     std::optional<double> target_;
     int passes_for_samples_;
-    KnownPart known_;
+    PrecomputedPart precomputed_;
     int next_look_;
     double predicted_passes_ = 0.0;
 };

@@ -91,7 +91,7 @@ void TransientAccumulator::write_variance(int num_passes, std::span<float> to) c
 // With x_p the estimate of pass p and m their mean, sum_p |x_p - m|^2 = sum_p |x_p|^2 - n |m|^2,
 // and |known + m|^2 expects |known + H|^2 and the noise of m.
 TransientAccumulator::SquaredNorms TransientAccumulator::squared_norms(
-    int num_passes, const core::Transient* known) const {
+    int num_passes, const core::Transient* precomputed) const {
     struct Sums {
         double mean = 0.0;
         double all = 0.0;
@@ -108,8 +108,8 @@ TransientAccumulator::SquaredNorms TransientAccumulator::squared_norms(
         std::vector<double> buffer;
         const std::span<const double> values = totals(pair, buffer);
         const double mean = squared_norm(values) / (n * n);
-        if (known == nullptr) return Sums{mean, mean, squared_norms_[pair]};
-        const std::span<const float> others = known->histogram(pair);
+        if (precomputed == nullptr) return Sums{mean, mean, squared_norms_[pair]};
+        const std::span<const float> others = precomputed->histogram(pair);
         std::vector<double> all(num_bins_);
         for (std::size_t bin = 0; bin < num_bins_; ++bin) {
             all[bin] = double{others[bin]} + values[bin] / n;

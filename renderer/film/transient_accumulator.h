@@ -63,7 +63,7 @@ class TransientAccumulator {
     /// Estimates both from the spread of at least two passes, without the arrays of squares.
     ///
     /// known   what is to be added to H from elsewhere, of its shape; null: nothing
-    SquaredNorms squared_norms(int num_passes, const core::Transient* known) const;
+    SquaredNorms squared_norms(int num_passes, const core::Transient* precomputed) const;
 
  private:
     template <class Double>

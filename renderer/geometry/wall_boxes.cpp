@@ -13,16 +13,16 @@ namespace {
 
 using core::Vec3;
 
-constexpr std::size_t kMostBoxes = 64;
+constexpr std::size_t kMaxBoxes = 64;
 
 // Walls with more distinct tangent planes are not searched for what lies behind all of them.
-constexpr std::size_t kMostPlanes = 256;
+constexpr std::size_t kMaxPlanes = 256;
 
 using Runs = std::vector<std::span<Vec3>>;
 
 // Median splits along the longest side, until runs hold few points.
-void split(std::span<Vec3> points, std::size_t most_per_run, Runs& runs) {
-    if (points.size() <= most_per_run) {
+void split(std::span<Vec3> points, std::size_t max_per_run, Runs& runs) {
+    if (points.size() <= max_per_run) {
         runs.push_back(points);
         return;
     }
@@ -30,12 +30,12 @@ void split(std::span<Vec3> points, std::size_t most_per_run, Runs& runs) {
     for (const Vec3& point : points) box.extend(point);
     const std::size_t half = points.size() / 2;
     split_along_longest_side(points, half, box, [](const Vec3& p) -> const Vec3& { return p; });
-    split(points.first(half), most_per_run, runs);
-    split(points.subspan(half), most_per_run, runs);
+    split(points.first(half), max_per_run, runs);
+    split(points.subspan(half), max_per_run, runs);
 }
 
 // Values per box, in vector units and without memory of the heap.
-using PerBox = Eigen::Array<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostBoxes, 1>;
+using PerBox = Eigen::Array<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxBoxes, 1>;
 
 // Squared distances from a point to the nearest of each box, given by two corners.
 PerBox squared_distances(const Eigen::ArrayX3d& lower,
@@ -68,7 +68,7 @@ WallBoxes::WallBoxes(const core::Scan& scan, const Vec3& origin)
 }
 
 void WallBoxes::find_planes(const core::WallPoints& points, const Vec3& origin) {
-    for (std::size_t i = 0; i < points.size() && planes_.size() <= kMostPlanes; ++i) {
+    for (std::size_t i = 0; i < points.size() && planes_.size() <= kMaxPlanes; ++i) {
         const Vec3& normal = points.normals[i];
         const double height = normal.dot(points.positions[i] - origin);
         const bool is_known = std::any_of(planes_.begin(), planes_.end(), [&](const auto& plane) {
@@ -84,7 +84,7 @@ WallBoxes::Boxes WallBoxes::make_boxes(const core::WallPoints& points, const Vec
     for (const Vec3& position : points.positions) positions.push_back(position - origin);
     Runs runs;
     // Halved six times, runs are as short as that.
-    split(positions, (points.size() + kMostBoxes - 1) / kMostBoxes, runs);
+    split(positions, (points.size() + kMaxBoxes - 1) / kMaxBoxes, runs);
     Boxes boxes;
     boxes.points.resize(static_cast<Eigen::Index>(positions.size()), 3);
     boxes.lower.resize(static_cast<Eigen::Index>(runs.size()), 3);
@@ -146,7 +146,7 @@ std::pair<double, double> WallBoxes::nearest_light_and_sensor_m(const Vec3& cent
 }
 
 bool WallBoxes::is_behind(const Vec3& center, double radius) const {
-    if (planes_.size() > kMostPlanes) return false;
+    if (planes_.size() > kMaxPlanes) return false;
     return std::all_of(planes_.begin(), planes_.end(), [&](const auto& plane) {
         return plane.first.dot(center) - plane.second < -radius;
     });

@@ -11,8 +11,8 @@ namespace renderer {
 
 /// Smallest and largest of a set of lengths [m].
 struct LengthBounds {
-    double least_m = 0.0;
-    double most_m = 0.0;
+    double min_m = 0.0;
+    double max_m = 0.0;
 };
 
 /// Distances of a sphere's points from all illumination and from all sensing points.

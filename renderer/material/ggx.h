@@ -29,7 +29,7 @@ template <class T>
 template <class T>
 [[gnu::always_inline]] inline T ggx_masking(const T& alpha, const T& cosine) {
     const T a2 = alpha * alpha;
-    return core::square_root(a2 + (1.0 - a2) * (cosine * cosine));
+    return core::sqrt(a2 + (1.0 - a2) * (cosine * cosine));
 }
 
 /// Value of renderer::Ggx [1/sr], without cosine.
@@ -49,7 +49,7 @@ template <class T>
                                           const T& cos_half) {
     const T visible =
         2.0 * (cos_out * ggx_masking(alpha, cos_in) + cos_in * ggx_masking(alpha, cos_out));
-    const T rest = core::larger_of(1.0 - cos_half, 0.0);
+    const T rest = core::max(1.0 - cos_half, 0.0);
     const T rest2 = rest * rest;
     const T fresnel = albedo + (1.0 - albedo) * (rest2 * rest2 * rest);
     return density * fresnel / visible;

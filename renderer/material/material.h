@@ -20,7 +20,7 @@ struct Material {
 };
 
 /// True for surfaces whose third bounce the deterministic integrator takes: Lambertian and
-/// retroreflective ones, and GGX lobes wide enough to be smooth over a piece.
+/// retroreflective ones, and GGX lobes wide enough to be smooth over an element.
 bool is_integrable(const Material& material);
 
 }  // namespace renderer

@@ -30,7 +30,7 @@ std::vector<bool> objects_that_add(const Scene& scene, ThirdBounceScope scope) {
 class PathTracer::Walk {
  public:
     Walk(const PathTracer& tracer,
-         const PathEnds& ends,
+         const PathEndpoints& ends,
          int num_samples,
          core::Rng& rng,
          PassHistogram& histogram)
@@ -43,7 +43,7 @@ class PathTracer::Walk {
           first_(*tracer.scene_, tracer.facet_traits_) {}
 
     void trace_samples(int num_area, int num_directions);
-    void trace_pixel_samples(const Measurement& measurement, std::size_t pixel, int count);
+    void trace_pixel_samples(const SensorPairs& sensor_pairs, std::size_t pixel, int count);
     std::uint64_t num_rays() const { return num_rays_; }
 
  private:
@@ -54,12 +54,12 @@ class PathTracer::Walk {
 
     const PathTracer& tracer_;
     const Scene& scene_;
-    const PathEnds& ends_;
+    const PathEndpoints& ends_;
     core::Rng& rng_;
     PassHistogram& histogram_;
     double weight_;  ///< of one path: 1 / number of samples
 
-    FirstVertices first_;
+    FirstVertexBatch first_;
     std::vector<PathVertex> go_on_;  ///< those of which longer paths are made
     std::uint64_t num_rays_ = 0;
 };
@@ -71,7 +71,7 @@ PathTracer::PathTracer(const Scene& scene, const RenderSettings& settings, Third
       surface_walk_(scene, settings.laser_spot_m2),
       facet_traits_(scene, objects_that_add(scene, scope)) {}
 
-std::uint64_t PathTracer::trace(const PathEnds& ends,
+std::uint64_t PathTracer::trace(const PathEndpoints& ends,
                                 int num_samples,
                                 core::Rng& rng,
                                 PassHistogram& histogram) const {
@@ -84,32 +84,32 @@ std::uint64_t PathTracer::trace(const PathEnds& ends,
     return walk.num_rays();
 }
 
-std::uint64_t PathTracer::trace_pixel(const Measurement& measurement,
+std::uint64_t PathTracer::trace_pixel(const SensorPairs& sensor_pairs,
                                       std::size_t pixel,
                                       int num_samples,
                                       core::Rng& rng,
                                       PassHistogram& histogram) const {
-    const PathEnds ends = measurement.ends(pixel);
+    const PathEndpoints ends = sensor_pairs.ends(pixel);
     Walk walk(*this, ends, num_samples, rng, histogram);
-    walk.trace_pixel_samples(measurement, pixel, num_samples);
+    walk.trace_pixel_samples(sensor_pairs, pixel, num_samples);
     return walk.num_rays();
 }
 
 void PathTracer::Walk::trace_samples(int num_area, int num_directions) {
-    EndDirections directions(scene_, ends_.sensor, num_directions, rng_);
-    FirstVertices::AreaDraws by_area{num_area};
+    EndpointDirectionSampler directions(scene_, ends_.sensor, num_directions, rng_);
+    FirstVertexBatch::AreaDraws by_area{num_area};
     while (!by_area.done() || !directions.done()) {
         num_rays_ += first_.draw(directions, tracer_.surface_walk_.area_sampler(), by_area, rng_);
         finish_first_vertices();
     }
 }
 
-void PathTracer::Walk::trace_pixel_samples(const Measurement& measurement,
+void PathTracer::Walk::trace_pixel_samples(const SensorPairs& sensor_pairs,
                                            std::size_t pixel,
                                            int count) {
     const core::Vec2 shift(rng_.uniform(), rng_.uniform());
     for (int i = 0; i < count; ++i) {
-        auto vertex = measurement.first_vertex(pixel, core::lattice_point(i, count, shift));
+        auto vertex = sensor_pairs.first_vertex(pixel, core::lattice_point(i, count, shift));
         ++num_rays_;
         if (!vertex) continue;
         vertex->throughput *= weight_;

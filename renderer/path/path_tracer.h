@@ -3,9 +3,9 @@
 
 #include "renderer/core/random.h"
 #include "renderer/film/pass_histogram.h"
-#include "renderer/path/first_vertices.h"
-#include "renderer/path/light_path.h"
-#include "renderer/path/measurement.h"
+#include "renderer/path/first_vertex_batch.h"
+#include "renderer/path/path_vertex.h"
+#include "renderer/path/sensor_pairs.h"
 #include "renderer/path/surface_walk.h"
 
 namespace renderer {
@@ -30,13 +30,13 @@ class PathTracer {
     ///
     /// rng       owned by this pair and pass
     /// returns   the number of rays traced
-    std::uint64_t trace(const PathEnds& ends,
+    std::uint64_t trace(const PathEndpoints& ends,
                         int num_samples,
                         core::Rng& rng,
                         PassHistogram& histogram) const;
 
     /// The same for a pixel, whose paths begin with the surface point seen through it.
-    std::uint64_t trace_pixel(const Measurement& measurement,
+    std::uint64_t trace_pixel(const SensorPairs& sensor_pairs,
                               std::size_t pixel,
                               int num_samples,
                               core::Rng& rng,

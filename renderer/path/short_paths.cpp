@@ -4,7 +4,7 @@
 namespace renderer {
 
 void add_short_paths(const Scene& scene,
-                     const PathEnds& ends,
+                     const PathEndpoints& ends,
                      const RenderSettings& settings,
                      PassHistogram& histogram) {
     const auto channel = [&](int order) { return settings.by_order ? order - 1 : 0; };
@@ -30,7 +30,7 @@ void add_short_paths(const Scene& scene,
 }
 
 void add_direct_light(const PathVertex& seen,
-                      const PathEnds& ends,
+                      const PathEndpoints& ends,
                       const SurfaceWalk& walk,
                       const RenderSettings& settings,
                       PassHistogram& histogram) {

@@ -17,11 +17,11 @@ constexpr double kAreaShareBetweenSurfaces = 0.25;
 
 // Paths are always continued up to this order; above it Russian roulette may end them.
 constexpr int kFirstRouletteOrder = 5;
-constexpr double kLeastSurvival = 0.1;
+constexpr double kMinSurvival = 0.1;
 
 // Steps within the plane of a surface, up to rounding. On which side of it they lie would be
 // chance, and differ between a lobe and its density.
-constexpr double kLeastCosine = 1e-12;
+constexpr double kMinCosine = 1e-12;
 
 }  // namespace
 
@@ -37,7 +37,7 @@ double SurfaceWalk::evaluate(const PathVertex& vertex, const Vec3& outgoing) con
         vertex.bsdf, facet_from_world * vertex.to_previous, facet_from_world * outgoing);
 }
 
-double SurfaceWalk::connection_value(const PathVertex& vertex, const PathEnds& ends) const {
+double SurfaceWalk::connection_value(const PathVertex& vertex, const PathEndpoints& ends) const {
     if (const auto* retro = std::get_if<Retroreflective>(&vertex.bsdf)) {
         if (!ends.coincide || vertex.order != 3) return 0.0;
         return vertex.throughput * retro->albedo / laser_spot_m2_ * ends.light.strength;
@@ -49,7 +49,7 @@ double SurfaceWalk::connection_value(const PathVertex& vertex, const PathEnds& e
            std::abs(vertex.normal.dot(direction)) * ends.light.factor(-direction) / distance2;
 }
 
-PathExtent SurfaceWalk::extent_to_light(const PathVertex& vertex, const PathEnds& ends) const {
+PathExtent SurfaceWalk::extent_to_light(const PathVertex& vertex, const PathEndpoints& ends) const {
     PathExtent extent = vertex.extent;
     extent.add_segment(ends.light.position - vertex.point.position,
                        scene_->velocity_m_per_s(vertex.point.facet),
@@ -60,7 +60,7 @@ PathExtent SurfaceWalk::extent_to_light(const PathVertex& vertex, const PathEnds
 
 bool SurfaceWalk::survives(PathVertex& vertex, core::Rng& rng) const {
     if (vertex.order < kFirstRouletteOrder) return true;
-    const double survival = std::clamp(albedo_of(vertex.bsdf), kLeastSurvival, 1.0);
+    const double survival = std::clamp(albedo_of(vertex.bsdf), kMinSurvival, 1.0);
     if (rng.uniform() >= survival) return false;
     vertex.throughput /= survival;
     return true;
@@ -76,7 +76,7 @@ std::optional<SurfaceWalk::Step> SurfaceWalk::step_to(const PathVertex& vertex,
     step.direction = offset / step.distance_m;
     const double cosine = std::abs(vertex.normal.dot(step.direction));
     const double next_cosine = std::abs(scene_->facet(next.facet).normal.dot(step.direction));
-    if (cosine < kLeastCosine || next_cosine < kLeastCosine) return std::nullopt;
+    if (cosine < kMinCosine || next_cosine < kMinCosine) return std::nullopt;
     const double per_area = next_cosine / distance2;
     step.transport = evaluate(vertex, step.direction) * cosine * per_area;
     if (!(step.transport > 0.0)) return std::nullopt;

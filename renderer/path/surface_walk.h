@@ -2,7 +2,7 @@
 #pragma once
 
 #include "renderer/core/random.h"
-#include "renderer/path/light_path.h"
+#include "renderer/path/path_vertex.h"
 #include "renderer/scene/area_sampler.h"
 
 #include <optional>
@@ -36,10 +36,10 @@ class SurfaceWalk {
     double evaluate(const PathVertex& vertex, const core::Vec3& outgoing) const;
 
     /// What the path carries when it goes from `vertex` straight to the light, unless blocked.
-    double connection_value(const PathVertex& vertex, const PathEnds& ends) const;
+    double connection_value(const PathVertex& vertex, const PathEndpoints& ends) const;
     /// Length and velocity of that path, legs to the devices included.
-    PathExtent extent_to_light(const PathVertex& vertex, const PathEnds& ends) const;
-    bool light_is_hidden(const PathVertex& vertex, const PathEnds& ends) const {
+    PathExtent extent_to_light(const PathVertex& vertex, const PathEndpoints& ends) const;
+    bool light_is_hidden(const PathVertex& vertex, const PathEndpoints& ends) const {
         return scene_->rays().is_blocked(
             vertex.point.position, vertex.normal, ends.light.position, ends.light.normal);
     }

@@ -47,12 +47,12 @@ struct PathCandidates::Job {
     std::uint64_t num_rays = 0;
 
     const PathDomain& domain() const { return request.domain; }
-    const PathEnds& ends() const { return request.domain.ends; }
+    const PathEndpoints& ends() const { return request.domain.ends; }
 };
 
 PathCandidates::PathCandidates(const Scene& scene,
                                const core::Scan& scan,
-                               const Measurement& measurement,
+                               const SensorPairs& sensor_pairs,
                                const SurfaceWalk& walk,
                                const core::TimeAxis& axis,
                                const RenderSettings& settings)
@@ -63,11 +63,11 @@ PathCandidates::PathCandidates(const Scene& scene,
                  walk,
                  settings.laser_spot_m2,
                  settings.exclude == Exclusion::Drop ? excluded_.facets : std::vector<bool>()),
-      light_vertices_(scene, walk, measurement),
+      light_vertices_(scene, walk, sensor_pairs),
       shared_walks_(has_shared_walks(settings.restir.candidates) ? settings.restir.shared_walks
                                                                  : 0),
-      max_vertices_(settings.max_bounces - measurement.first_order() +
-                    (measurement.is_image() ? 0 : 1)) {
+      max_vertices_(settings.max_bounces - sensor_pairs.first_order() +
+                    (sensor_pairs.is_image() ? 0 : 1)) {
     if (has_connections(settings.restir.candidates)) {
         connections_.emplace(scene, excluded_, scan);
     }
@@ -92,7 +92,7 @@ std::uint64_t PathCandidates::generate(const Request& request,
 std::optional<SurfaceWalk::Step> PathCandidates::first_step(const PathDomain& domain,
                                                             const SurfacePoint& next) const {
     if (domain.seen) return walk_->step_to(*domain.seen, next);
-    const PathEnd& sensor = domain.ends.sensor;
+    const PathEndpoint& sensor = domain.ends.sensor;
     const Vec3 offset = next.position - sensor.position;
     const double distance2 = offset.squaredNorm();
     SurfaceWalk::Step step;
@@ -114,7 +114,7 @@ bool PathCandidates::draw_first(Job& job, PathVertex& vertex) const {
         vertex = *job.domain().seen;
         return walk_->draw_next(vertex, job.rng, job.num_rays).has_value();
     }
-    const PathEnd& sensor = job.ends().sensor;
+    const PathEndpoint& sensor = job.ends().sensor;
     SurfacePoint point;
     const bool from_area = job.rng.uniform() < kAreaShareFromWall;
     const double u1 = job.rng.uniform();

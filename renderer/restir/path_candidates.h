@@ -2,7 +2,7 @@
 #pragma once
 
 #include "renderer/ellipsoidal/connection_technique.h"
-#include "renderer/restir/light_vertices.h"
+#include "renderer/restir/light_vertex_cache.h"
 #include "renderer/restir/reusable_path.h"
 
 #include <functional>
@@ -42,7 +42,7 @@ class PathCandidates {
     /// axis: lengths asked for, by whose span surfaces are excluded; see ExcludedFacets.
     PathCandidates(const Scene& scene,
                    const core::Scan& scan,
-                   const Measurement& measurement,
+                   const SensorPairs& sensor_pairs,
                    const SurfaceWalk& walk,
                    const core::TimeAxis& axis,
                    const RenderSettings& settings);
@@ -75,7 +75,7 @@ class PathCandidates {
     const SurfaceWalk* walk_;
     ExcludedFacets excluded_;
     PathIntegrand integrand_;
-    LightVertices light_vertices_;
+    LightVertexCache light_vertices_;
     std::optional<ConnectionTechnique> connections_;
     int shared_walks_;  ///< per pair; several times as many are traced
     int max_vertices_;

@@ -34,12 +34,12 @@ inline double balance_weight(double own, double foreign, double jacobian) {
 /// there         image of `canonical`'s sample in the other domain; likewise
 /// u1, u2        uniform in [0, 1)
 template <class Sample>
-Reservoir<Sample> merge_balanced(const Reservoir<Sample>& canonical,
-                                 const Reservoir<Sample>& other,
-                                 const std::optional<Carried<Sample>>& here,
-                                 const std::optional<Carried<Sample>>& there,
-                                 double u1,
-                                 double u2) {
+Reservoir<Sample> resample_balance_heuristic(const Reservoir<Sample>& canonical,
+                                             const Reservoir<Sample>& other,
+                                             const std::optional<Carried<Sample>>& here,
+                                             const std::optional<Carried<Sample>>& there,
+                                             double u1,
+                                             double u2) {
     ReservoirBuilder<Sample> builder;
     if (!canonical.empty()) {
         const double own = canonical.confidence * canonical.target_value;
@@ -66,11 +66,11 @@ Reservoir<Sample> merge_balanced(const Reservoir<Sample>& canonical,
 /// A neighbour whose sample cannot be carried over, or that has none, still counts: its share goes
 /// to the canonical sample. Counting only the successful ones would be biased.
 template <class Sample>
-class PairwiseMerge {
+class PairwiseMisMerge {
  public:
     using Carry = std::optional<Carried<Sample>>;
 
-    PairwiseMerge(const Reservoir<Sample>& canonical, int num_neighbours)
+    PairwiseMisMerge(const Reservoir<Sample>& canonical, int num_neighbours)
         : canonical_(canonical),
           num_neighbours_(num_neighbours),
           canonical_share_(num_neighbours > 0 ? canonical.confidence / num_neighbours : 0.0),

@@ -28,7 +28,7 @@ Vec3 motion(const RestirScene& from, const RestirScene& to, std::uint32_t facet)
 }
 
 // A path behind its first vertex's two legs, and before them.
-PathExtent rest_of(const RestirSide& side, const ReusablePath& path) {
+PathExtent rest_of(const ReservoirDomain& side, const ReusablePath& path) {
     const Scene& scene = *side.scene->scene;
     PathExtent rest = side.domain->extra();
     if (path.num_vertices == 1) return rest;
@@ -37,7 +37,7 @@ PathExtent rest_of(const RestirSide& side, const ReusablePath& path) {
                          scene.velocity_m_per_s(path.at(i - 1).facet),
                          scene.velocity_m_per_s(path.at(i).facet));
     }
-    const PathEnd& light = side.domain->ends.light;
+    const PathEndpoint& light = side.domain->ends.light;
     rest.add_segment(light.position - path.last().position,
                      scene.velocity_m_per_s(path.last().facet),
                      light.velocity_m_per_s);
@@ -46,13 +46,13 @@ PathExtent rest_of(const RestirSide& side, const ReusablePath& path) {
 
 // How the two legs of the first vertex must change for a path to fit its new place. Velocity bins
 // are all of one width.
-LengthChange change_between(const RestirSide& from,
-                            const ReusablePath& path_from,
-                            const RestirSide& to,
-                            const ReusablePath& path_to) {
+ConstraintChange change_between(const ReservoirDomain& from,
+                                const ReusablePath& path_from,
+                                const ReservoirDomain& to,
+                                const ReusablePath& path_to) {
     const PathExtent rest_from = rest_of(from, path_from);
     const PathExtent rest_to = rest_of(to, path_to);
-    LengthChange change;
+    ConstraintChange change;
     if (from.gate.velocity) {
         change.offset_m = to.gate.velocity->start_m_per_s() - rest_to.velocity_m_per_s -
                           (from.gate.velocity->start_m_per_s() - rest_from.velocity_m_per_s);
@@ -65,7 +65,7 @@ LengthChange change_between(const RestirSide& from,
 }
 
 // Neighbours of the first vertex, moved along with it.
-ShiftEnd shift_end(const RestirSide& side, const ReusablePath& path, const Vec3& moved) {
+ShiftEnd shift_end(const ReservoirDomain& side, const ReusablePath& path, const Vec3& moved) {
     ShiftEnd end;
     const Scene& scene = *side.scene->scene;
     end.a = side.domain->start() + moved;
@@ -94,8 +94,8 @@ bool is_at_rest(const ShiftEnd& end, const Vec3& surface_velocity) {
 // Moves the first vertex of `path`, whose other vertices are in place already.
 // returns   the Jacobian; nothing when the shift is not defined
 std::optional<double> shift_first(const PathReservoir& reservoir,
-                                  const RestirSide& from,
-                                  const RestirSide& to,
+                                  const ReservoirDomain& from,
+                                  const ReservoirDomain& to,
                                   const RestirScene& current,
                                   ReusablePath& path,
                                   ShiftCounts& counts) {
@@ -104,7 +104,7 @@ std::optional<double> shift_first(const PathReservoir& reservoir,
     const Vec3 to_moved = motion(*to.scene, current, facet);
     const ShiftEnd source = shift_end(from, reservoir.sample, from_moved);
     const ShiftEnd target = shift_end(to, path, to_moved);
-    const LengthChange change = change_between(from, reservoir.sample, to, path);
+    const ConstraintChange change = change_between(from, reservoir.sample, to, path);
     SurfacePoint& x = path.at(0);
     const Vec3& velocity = current.scene->velocity_m_per_s(facet);
     // Where nothing moves there is no velocity to change: the vertex stays, from either side.
@@ -125,8 +125,8 @@ std::optional<double> shift_first(const PathReservoir& reservoir,
 }
 
 // Whether the legs that a move has changed are open.
-bool is_open(const RestirSide& from,
-             const RestirSide& to,
+bool is_open(const ReservoirDomain& from,
+             const ReservoirDomain& to,
              const ReusablePath& path,
              std::uint64_t& num_rays) {
     const PathIntegrand& integrand = to.scene->candidates.integrand();
@@ -151,29 +151,29 @@ RestirScene::RestirScene(std::shared_ptr<const Scene> scene_of_frames,
                          const core::HistogramAxes& axes,
                          const RenderSettings& settings)
     : scene(std::move(scene_of_frames)),
-      measurement(*scene, scan),
+      sensor_pairs(*scene, scan),
       walk(*scene, settings.laser_spot_m2),
-      candidates(*scene, scan, measurement, walk, axes.time, settings),
+      candidates(*scene, scan, sensor_pairs, walk, axes.time, settings),
       shift(make_shift(*scene, settings.restir, kept_quantity(axes))) {
-    if (measurement.is_image()) pixel_places.emplace(measurement, *scan.camera);
+    if (sensor_pairs.is_image()) pixel_places.emplace(sensor_pairs, *scan.camera);
 }
 
-PathDomain pixel_domain(const Measurement& measurement,
+PathDomain pixel_domain(const SensorPairs& sensor_pairs,
                         std::size_t pixel,
                         const core::Vec2& pixel_u) {
     PathDomain domain;
-    domain.ends = measurement.ends(pixel);
+    domain.ends = sensor_pairs.ends(pixel);
     domain.pixel_u = pixel_u;
-    domain.seen = measurement.first_vertex(pixel, pixel_u);
+    domain.seen = sensor_pairs.first_vertex(pixel, pixel_u);
     domain.is_dark = !domain.seen;
     return domain;
 }
 
-CarriedPath carry_path(const PathReservoir& reservoir,
-                       RestirSide from,
-                       RestirSide to,
-                       const RestirScene& current,
-                       RestirCounts& counts) {
+ShiftedSample shift_sample(const PathReservoir& reservoir,
+                           ReservoirDomain from,
+                           ReservoirDomain to,
+                           const RestirScene& current,
+                           RestirCounts& counts) {
     if (reservoir.empty()) return std::nullopt;
     Carried<ReusablePath> carried{reservoir.sample, 0.0, 1.0};
     if (from.scene == to.scene && from.pair == to.pair && from.gate == to.gate) {
@@ -182,10 +182,10 @@ CarriedPath carry_path(const PathReservoir& reservoir,
     }
     PathDomain seen_from;
     PathDomain seen_to;
-    if (current.measurement.is_image()) {
+    if (current.sensor_pairs.is_image()) {
         const core::Vec2& pixel_u = reservoir.sample.pixel_u;
-        seen_from = pixel_domain(from.scene->measurement, from.pair, pixel_u);
-        seen_to = pixel_domain(to.scene->measurement, to.pair, pixel_u);
+        seen_from = pixel_domain(from.scene->sensor_pairs, from.pair, pixel_u);
+        seen_to = pixel_domain(to.scene->sensor_pairs, to.pair, pixel_u);
         counts.num_rays += 2;
         from.domain = &seen_from;
         to.domain = &seen_to;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/ellipsoidal/pixel_places.h"
+#include "renderer/ellipsoidal/pixel_position_sampler.h"
 #include "renderer/restir/packed_reservoirs.h"
 #include "renderer/restir/path_candidates.h"
 #include "renderer/restir/resampling.h"
@@ -27,11 +27,11 @@ struct RestirScene {
     RestirScene& operator=(const RestirScene&) = delete;
 
     std::shared_ptr<const Scene> scene;
-    Measurement measurement;
+    SensorPairs sensor_pairs;
     SurfaceWalk walk;
     PathCandidates candidates;
-    std::optional<ShiftMapping> shift;        ///< nothing: paths are reused as they are
-    std::optional<PixelPlaces> pixel_places;  ///< of an image
+    std::optional<ShiftMapping> shift;                 ///< nothing: paths are reused as they are
+    std::optional<PixelPositionSampler> pixel_places;  ///< of an image
 };
 
 /// One frame's reservoirs, some per pair, and what they belong to.
@@ -43,14 +43,14 @@ struct RestirFrame {
 };
 
 /// One reservoir's place: a pair and a gate, in a scene.
-struct RestirSide {
+struct ReservoirDomain {
     const RestirScene* scene = nullptr;
     const PathDomain* domain = nullptr;  ///< of a pixel, the one of the frame's own candidates
     PathGate gate;
     std::size_t pair = 0;
 
-    RestirSide() = default;
-    RestirSide(const RestirFrame& frame, std::size_t pair_index, std::size_t bin)
+    ReservoirDomain() = default;
+    ReservoirDomain(const RestirFrame& frame, std::size_t pair_index, std::size_t bin)
         : scene(frame.scene.get()),
           domain(&frame.domains[pair_index]),
           gate(frame.bins.gate(bin)),
@@ -58,10 +58,10 @@ struct RestirSide {
 };
 
 using PathReservoir = Reservoir<ReusablePath>;
-using CarriedPath = std::optional<Carried<ReusablePath>>;
+using ShiftedSample = std::optional<Carried<ReusablePath>>;
 
 /// Where the paths through one place of a pixel start and end.
-PathDomain pixel_domain(const Measurement& measurement,
+PathDomain pixel_domain(const SensorPairs& sensor_pairs,
                         std::size_t pixel,
                         const core::Vec2& pixel_u);
 
@@ -74,10 +74,10 @@ PathDomain pixel_domain(const Measurement& measurement,
 ///
 /// counts    receives shifts and rays
 /// returns   the path there, or nothing: what is not carried has no image
-CarriedPath carry_path(const PathReservoir& reservoir,
-                       RestirSide from,
-                       RestirSide to,
-                       const RestirScene& current,
-                       RestirCounts& counts);
+ShiftedSample shift_sample(const PathReservoir& reservoir,
+                           ReservoirDomain from,
+                           ReservoirDomain to,
+                           const RestirScene& current,
+                           RestirCounts& counts);
 
 }  // namespace renderer

@@ -22,7 +22,7 @@ constexpr std::uint64_t kPixelStream = kStreamsPerFrame - 1;
 constexpr double kShrink = 0.2;
 
 // Pixels that see surfaces turned this far from each other have little to give each other.
-constexpr double kLeastNormalCosine = 0.5;
+constexpr double kMinNormalCosine = 0.5;
 
 // One frame's candidates count as one, whatever their number.
 constexpr double kConfidenceOfFrame = 1.0;
@@ -85,27 +85,27 @@ RestirFrame RestirRenderer::render(const FrameInput& input) {
     frame.reservoirs = PackedReservoirs(scan_->num_pairs() * frame.bins.count(), max_vertices_);
     find_domains(input, frame);
     counts_.num_rays += input.scene->candidates.prepare(settings_.seed, input.number);
-    fill(input, frame);
+    generate_candidates(input, frame);
     if (settings_.restir.reuse == Reuse::None) return frame;
     for (int round = 0; round < settings_.restir.rounds; ++round) {
-        reuse_neighbours(input, round, frame);
+        reuse_spatially(input, round, frame);
     }
     return frame;
 }
 
 void RestirRenderer::find_domains(const FrameInput& input, RestirFrame& frame) const {
-    const Measurement& measurement = input.scene->measurement;
+    const SensorPairs& sensor_pairs = input.scene->sensor_pairs;
     core::parallel_for(frame.domains.size(), [&](std::size_t pair) {
         PathDomain& domain = frame.domains[pair];
-        domain.ends = measurement.ends(pair);
-        if (!measurement.is_image()) return;
+        domain.ends = sensor_pairs.ends(pair);
+        if (!sensor_pairs.is_image()) return;
         core::Rng rng(settings_.seed, pair, input.number * kStreamsPerFrame + kPixelStream);
         const double u1 = rng.uniform();
-        domain = pixel_domain(measurement, pair, {u1, rng.uniform()});
+        domain = pixel_domain(sensor_pairs, pair, {u1, rng.uniform()});
     });
 }
 
-void RestirRenderer::fill(const FrameInput& input, RestirFrame& frame) {
+void RestirRenderer::generate_candidates(const FrameInput& input, RestirFrame& frame) {
     const std::size_t num_bins = frame.bins.count();
     const bool reuses = settings_.restir.reuse != Reuse::None && input.previous != nullptr;
     for_each_pair(input, kCandidateStage, [&](Worker& worker, std::size_t pair) {
@@ -113,12 +113,12 @@ void RestirRenderer::fill(const FrameInput& input, RestirFrame& frame) {
         for (std::size_t bin = 0; bin < num_bins; ++bin) {
             const double share = 1.0 - settings_.restir.shrink_fraction;
             PathReservoir fresh = worker.builders[bin].finish(share * kConfidenceOfFrame);
-            if (share < 1.0) fresh = draw_wide(worker, frame, fresh);
+            if (share < 1.0) fresh = sample_wide_gate(worker, frame, fresh);
             const std::size_t index = pair * num_bins + bin;
             const bool is_reused = reuses && !frame.bins.is_left_out(bin);
             frame.reservoirs.store(
                 index,
-                is_reused ? with_history(worker, frame, *input.previous, index, fresh) : fresh);
+                is_reused ? reuse_temporally(worker, frame, *input.previous, index, fresh) : fresh);
         }
     });
 }
@@ -143,7 +143,8 @@ PathCandidates::Effort effort_of(const RestirSettings& settings, double share) {
 
 // Candidates of all bins of a pair.
 void RestirRenderer::draw(Worker& worker, const RestirFrame& frame, std::size_t pair) const {
-    std::fill(worker.builders.begin(), worker.builders.end(), ReservoirBuilder<ReusablePath>());
+    std::fill(
+        worker.builders.begin(), worker.builders.end(), ReservoirBuilder<ReusablePath>());
     const TimeGate lengths = frame.bins.lengths();
     const PathCandidates::Request request{
         frame.domains[pair],
@@ -161,12 +162,12 @@ void RestirRenderer::draw(Worker& worker, const RestirFrame& frame, std::size_t 
 }
 
 // Candidates against a wider gate, shifted into the narrow one (source [Kim2026]).
-PathReservoir RestirRenderer::draw_wide(Worker& worker,
-                                        const RestirFrame& frame,
-                                        const PathReservoir& narrow) const {
+PathReservoir RestirRenderer::sample_wide_gate(Worker& worker,
+                                               const RestirFrame& frame,
+                                               const PathReservoir& narrow) const {
     const double share = settings_.restir.shrink_fraction;
-    const RestirSide here(frame, worker.pair, 0);
-    RestirSide wide = here;
+    const ReservoirDomain here(frame, worker.pair, 0);
+    ReservoirDomain wide = here;
     TimeGate& gate = wide.gate.time;
     gate.width_m /= kShrink;
     gate.start_m -= 0.5 * (gate.width_m - here.gate.time.width_m);
@@ -180,29 +181,31 @@ PathReservoir RestirRenderer::draw_wide(Worker& worker,
                 placed(path, request.domain), target, target / density, worker.rng.uniform());
         });
     const PathReservoir other = builder.finish(share * kConfidenceOfFrame);
-    const CarriedPath in = carry_path(other, wide, here, *frame.scene, worker.counts);
-    const CarriedPath out = carry_path(narrow, here, wide, *frame.scene, worker.counts);
+    const ShiftedSample in = shift_sample(other, wide, here, *frame.scene, worker.counts);
+    const ShiftedSample out = shift_sample(narrow, here, wide, *frame.scene, worker.counts);
     ++worker.counts.num_merges;
-    return merge_balanced(narrow, other, in, out, worker.rng.uniform(), worker.rng.uniform());
+    return resample_balance_heuristic(
+        narrow, other, in, out, worker.rng.uniform(), worker.rng.uniform());
 }
 
-PathReservoir RestirRenderer::with_history(Worker& worker,
-                                           const RestirFrame& frame,
-                                           const RestirFrame& previous,
-                                           std::size_t index,
-                                           const PathReservoir& fresh) const {
+PathReservoir RestirRenderer::reuse_temporally(Worker& worker,
+                                               const RestirFrame& frame,
+                                               const RestirFrame& previous,
+                                               std::size_t index,
+                                               const PathReservoir& fresh) const {
     const std::size_t bin = index % frame.bins.count();
-    const RestirSide here(frame, worker.pair, bin);
-    const RestirSide before(previous, worker.pair, bin);
+    const ReservoirDomain here(frame, worker.pair, bin);
+    const ReservoirDomain before(previous, worker.pair, bin);
     const PathReservoir history =
         limited(previous.reservoirs.load(index), settings_.restir.confidence_cap);
-    const CarriedPath in = carry_path(history, before, here, *frame.scene, worker.counts);
-    const CarriedPath out = carry_path(fresh, here, before, *frame.scene, worker.counts);
+    const ShiftedSample in = shift_sample(history, before, here, *frame.scene, worker.counts);
+    const ShiftedSample out = shift_sample(fresh, here, before, *frame.scene, worker.counts);
     ++worker.counts.num_merges;
-    return merge_balanced(fresh, history, in, out, worker.rng.uniform(), worker.rng.uniform());
+    return resample_balance_heuristic(
+        fresh, history, in, out, worker.rng.uniform(), worker.rng.uniform());
 }
 
-void RestirRenderer::reuse_neighbours(const FrameInput& input, int round, RestirFrame& frame) {
+void RestirRenderer::reuse_spatially(const FrameInput& input, int round, RestirFrame& frame) {
     const std::size_t num_bins = frame.bins.count();
     PackedReservoirs merged(frame.reservoirs.size(), max_vertices_);
     for_each_pair(input, kCandidateStage + 1 + round, [&](Worker& worker, std::size_t pair) {
@@ -212,7 +215,7 @@ void RestirRenderer::reuse_neighbours(const FrameInput& input, int round, Restir
         if (frame.scene->pixel_places) {
             const std::vector<core::Vec3>& normals = frame.scene->pixel_places->normals();
             std::erase_if(worker.neighbours, [&](std::size_t other) {
-                return std::abs(normals[other].dot(normals[pair])) < kLeastNormalCosine;
+                return std::abs(normals[other].dot(normals[pair])) < kMinNormalCosine;
             });
         }
         for (std::size_t bin = 0; bin < num_bins; ++bin) {
@@ -238,13 +241,13 @@ PathReservoir RestirRenderer::with_neighbours(Worker& worker,
     }
     const int num_neighbours =
         static_cast<int>(worker.neighbours.size()) + (before ? 1 : 0) + (after ? 1 : 0);
-    const RestirSide here(frame, worker.pair, bin);
-    PairwiseMerge<ReusablePath> merge(canonical, num_neighbours);
+    const ReservoirDomain here(frame, worker.pair, bin);
+    PairwiseMisMerge<ReusablePath> merge(canonical, num_neighbours);
     const auto add = [&](std::size_t pair, std::size_t other_bin) {
-        const RestirSide there(frame, pair, other_bin);
+        const ReservoirDomain there(frame, pair, other_bin);
         const PathReservoir other = frame.reservoirs.load(pair * num_bins + other_bin);
-        const CarriedPath in = carry_path(other, there, here, *frame.scene, worker.counts);
-        const CarriedPath out = carry_path(canonical, here, there, *frame.scene, worker.counts);
+        const ShiftedSample in = shift_sample(other, there, here, *frame.scene, worker.counts);
+        const ShiftedSample out = shift_sample(canonical, here, there, *frame.scene, worker.counts);
         merge.add_neighbour(other, in, out, worker.rng.uniform());
         ++worker.counts.num_merges;
     };

@@ -33,17 +33,17 @@ class RestirRenderer {
     struct Worker;
 
     void find_domains(const FrameInput& input, RestirFrame& frame) const;
-    void fill(const FrameInput& input, RestirFrame& frame);
+    void generate_candidates(const FrameInput& input, RestirFrame& frame);
     void draw(Worker& worker, const RestirFrame& frame, std::size_t pair) const;
-    PathReservoir draw_wide(Worker& worker,
-                            const RestirFrame& frame,
-                            const PathReservoir& narrow) const;
-    PathReservoir with_history(Worker& worker,
-                               const RestirFrame& frame,
-                               const RestirFrame& previous,
-                               std::size_t index,
-                               const PathReservoir& fresh) const;
-    void reuse_neighbours(const FrameInput& input, int round, RestirFrame& frame);
+    PathReservoir sample_wide_gate(Worker& worker,
+                                   const RestirFrame& frame,
+                                   const PathReservoir& narrow) const;
+    PathReservoir reuse_temporally(Worker& worker,
+                                   const RestirFrame& frame,
+                                   const RestirFrame& previous,
+                                   std::size_t index,
+                                   const PathReservoir& fresh) const;
+    void reuse_spatially(const FrameInput& input, int round, RestirFrame& frame);
     PathReservoir with_neighbours(Worker& worker,
                                   const RestirFrame& frame,
                                   std::size_t index) const;

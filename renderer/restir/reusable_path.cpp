@@ -21,7 +21,7 @@ PathValue PathIntegrand::evaluate(const PathDomain& domain, const ReusablePath& 
     if (!domain.seen && path.num_vertices == 1 && !scene_->is_hidden(path.first().facet)) {
         return value;
     }
-    const PathEnd& light = domain.ends.light;
+    const PathEndpoint& light = domain.ends.light;
     double carried = 1.0;
     PathVertex before;  // meaningless until the first vertex is passed
     Vec3 velocity = domain.start_velocity(*scene_);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/path/light_path.h"
+#include "renderer/path/path_vertex.h"
 #include "renderer/path/surface_walk.h"
 
 #include <array>
@@ -15,10 +15,10 @@ namespace renderer {
 ///
 /// The first one is the reconnection vertex: it moves when the path is reused; the others stay.
 struct ReusablePath {
-    static constexpr int kMostVertices = kMostRestirBounces - 1;  // a camera's first is seen
+    static constexpr int kMaxVertices = kMaxRestirBounces - 1;  // a camera's first is seen
 
     int num_vertices = 0;
-    std::array<SurfacePoint, kMostVertices> vertices;
+    std::array<SurfacePoint, kMaxVertices> vertices;
     core::Vec2 pixel_u =
         core::Vec2::Zero();  ///< place within the pixel where an image's path starts
 
@@ -31,7 +31,7 @@ struct ReusablePath {
 
 /// Where paths of one pair start and end; of a pixel, those through one place of it.
 struct PathDomain {
-    PathEnds ends;
+    PathEndpoints ends;
     core::Vec2 pixel_u = core::Vec2::Zero();
     std::optional<PathVertex> seen;  ///< of a pixel: what it sees, in place of the sensor
     bool is_dark = false;            ///< of a pixel that sees nothing: there are no paths

@@ -32,10 +32,10 @@ void validate_restir(const RenderSettings& settings, const std::string& where) {
             fmt::format("{}", restir.shrink_fraction),
             "at least 0 and below 1");
     if (settings.method != Estimator::Restir) return;
-    require(settings.max_bounces <= kMostRestirBounces,
+    require(settings.max_bounces <= kMaxRestirBounces,
             where + ".max_bounces",
             fmt::format("{} for method restir", settings.max_bounces),
-            fmt::format("at most {}", kMostRestirBounces));
+            fmt::format("at most {}", kMaxRestirBounces));
     require(!settings.by_order,
             where + ".by_order",
             "true for method restir, whose reservoirs hold paths of all orders",

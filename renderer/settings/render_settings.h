@@ -14,7 +14,7 @@ namespace renderer {
 enum class Estimator { Auto, Path, ThirdBounce, Ellipsoidal, Restir };
 
 /// Reservoirs store paths of up to this many bounces.
-inline constexpr int kMostRestirBounces = 9;
+inline constexpr int kMaxRestirBounces = 9;
 
 /// Shape of the time gate of a one-bin axis; peak 1.
 enum class GateShape { Box, Tent, Gaussian };
@@ -44,7 +44,7 @@ template <class Visitor>
 void for_each_field(RenderSettings& s, Visitor&& visit) {
     visit("method", s.method, "estimator");
     visit("max_bounces", s.max_bounces, "bounces counted, both on the relay wall included");
-    visit("samples", s.samples, "candidate paths per measurement pair");
+    visit("samples", s.samples, "candidate paths per sensor_pairs pair");
     visit("seconds",
           s.seconds,
           "render for this long instead of a number of samples or an error [s]");

@@ -39,7 +39,7 @@ struct PlaneEnd {
 std::optional<PlaneShift> shift_on_plane(const Facet& plane,
                                          const FocusPair& source,
                                          const FocusPair& target,
-                                         const LengthChange& change,
+                                         const ConstraintChange& change,
                                          double rounding_m,
                                          ShiftTrace& trace) {
     Facet local = plane;

@@ -10,11 +10,11 @@
 namespace renderer {
 
 /// How the path length of a vertex changes: l' = ratio * l + offset_m.
-struct LengthChange {
+struct ConstraintChange {
     double ratio = 1.0;     ///< S, width of the target's gate over that of the source's
     double offset_m = 0.0;  ///< (t_t - rest_t) - S (t_s - rest_s)
 
-    LengthChange inverse() const { return {1.0 / ratio, -offset_m / ratio}; }
+    ConstraintChange inverse() const { return {1.0 / ratio, -offset_m / ratio}; }
 };
 
 /// Where a plane's point goes, and by how much areas grow.
@@ -37,7 +37,7 @@ struct PlaneShift {
 std::optional<PlaneShift> shift_on_plane(const Facet& plane,
                                          const FocusPair& source,
                                          const FocusPair& target,
-                                         const LengthChange& change,
+                                         const ConstraintChange& change,
                                          double rounding_m,
                                          ShiftTrace& trace);
 

@@ -8,8 +8,8 @@
 
 namespace renderer {
 
-inline constexpr int kFewestFlowSteps = 4;
-inline constexpr int kMostFlowSteps = 512;
+inline constexpr int kMinFlowSteps = 4;
+inline constexpr int kMaxFlowSteps = 512;
 /// Doubling the steps divides the error by 16: what is left is a sixteenth of these.
 inline constexpr double kFlowChange = 1e-10;  ///< share of the legs
 inline constexpr double kFlowJacobianChange = 1e-8;
@@ -68,20 +68,21 @@ std::optional<ShiftSolution> follow_flow(const Problem& problem,
                                          const ChartExpansion& at_source,
                                          ShiftTrace& trace) {
     // The flow crosses the level curves at right angles.
-    if (!is_resolved(at_source, turned(at_source.slope))) {
+    if (!is_resolved(at_source, turned(at_source.gradient))) {
         return trace.reject(ShiftRejection::Degenerate);
     }
     const double legs = at_source.legs_m;
-    auto coarse = follow_flow(problem, xi, at_source, kFewestFlowSteps, trace);
-    for (int steps = 2 * kFewestFlowSteps; coarse && steps <= kMostFlowSteps; steps *= 2) {
+    auto coarse = follow_flow(problem, xi, at_source, kMinFlowSteps, trace);
+    for (int steps = 2 * kMinFlowSteps; coarse && steps <= kMaxFlowSteps; steps *= 2) {
         auto fine = follow_flow(problem, xi, at_source, steps, trace);
         if (!fine) return std::nullopt;
         const double moved = (fine->at_target.position - coarse->at_target.position).norm();
         const double residual = fine->at_target.value - at_source.value - problem.change;
-        const double allowed = kShiftTolerance * std::min(1.0, legs) * fine->at_target.slope_size;
+        const double allowed =
+            kShiftTolerance * std::min(1.0, legs) * fine->at_target.gradient_size;
         if (moved <= kFlowChange * legs && std::abs(residual) <= allowed &&
             std::abs(fine->jacobian - coarse->jacobian) <= kFlowJacobianChange * fine->jacobian) {
-            if (is_resolved(fine->at_target, turned(fine->at_target.slope))) {
+            if (is_resolved(fine->at_target, turned(fine->at_target.gradient))) {
                 return fine;
             }
             return trace.reject(ShiftRejection::Degenerate);

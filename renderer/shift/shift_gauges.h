@@ -49,7 +49,7 @@ struct AverageGauge {
     template <class Problem>
     std::optional<GaugeTerms> operator()(const Problem&, const ShiftState& s) const {
         const core::Vec2 d = s.step();
-        GaugeTerms terms = gauge_across(0.5 * (s.at_source.slope + s.at_target.slope), d);
+        GaugeTerms terms = gauge_across(0.5 * (s.at_source.gradient + s.at_target.gradient), d);
         terms.by_target -= 0.5 * s.at_target.hessian_times(turned(d));
         terms.by_source -= 0.5 * s.at_source.hessian_times(turned(d));
         return terms;
@@ -76,7 +76,7 @@ struct MetricAverageGauge {
 
  private:
     static core::Vec2 across_of(const ChartExpansion& e) {
-        return e.metric.m * turned(e.slope) / e.metric.area_density;
+        return e.metric.m * turned(e.gradient) / e.metric.area_density;
     }
     // Gradient of (N g).d at fixed d.
     static core::Vec2 bend_of(const ChartExpansion& e, const core::Vec2& d) {
@@ -86,7 +86,7 @@ struct MetricAverageGauge {
         for (int k = 0; k < 2; ++k) {
             const Eigen::Matrix2d& m_k = e.metric.by[static_cast<std::size_t>(k)];
             const Eigen::Matrix2d n_k = m_k - 0.5 * (m_inverse * m_k).trace() * e.metric.m;
-            bend[k] += inverse * (n_k * turned(e.slope)).dot(d);
+            bend[k] += inverse * (n_k * turned(e.gradient)).dot(d);
         }
         return bend;
     }
@@ -98,7 +98,7 @@ struct StartGauge {
 
     template <class Problem>
     std::optional<GaugeTerms> operator()(const Problem&, const ShiftState& s) const {
-        GaugeTerms terms = gauge_across(s.at_source.slope, s.step());
+        GaugeTerms terms = gauge_across(s.at_source.gradient, s.step());
         terms.by_source -= s.at_source.hessian_times(turned(s.step()));
         return terms;
     }
@@ -113,7 +113,7 @@ struct FixedGauge {
     template <class Problem>
     std::optional<GaugeTerms> operator()(const Problem&, const ShiftState& s) const {
         // The factor gives F2 the size of the other gauges'.
-        return gauge_across(s.at_source.slope.norm() * axis, s.step());
+        return gauge_across(s.at_source.gradient.norm() * axis, s.step());
     }
 };
 
@@ -128,7 +128,7 @@ struct MidpointGauge {
         const auto target = problem.target.at(middle);
         if (!source || !target) return std::nullopt;
         const core::Vec2 d = s.step();
-        GaugeTerms terms = gauge_across(0.5 * (source->slope + target->slope), d);
+        GaugeTerms terms = gauge_across(0.5 * (source->gradient + target->gradient), d);
         // The middle moves by half of either end's movement.
         const core::Vec2 bend =
             0.25 * (source->hessian_times(turned(d)) + target->hessian_times(turned(d)));
@@ -151,12 +151,12 @@ struct FlowVelocity {
                  const ChartExpansion& target,
                  double q,
                  double change) {
-        const core::Vec2 g = (1.0 - q) * source.slope + q * target.slope;
+        const core::Vec2 g = (1.0 - q) * source.gradient + q * target.gradient;
         const double h11 = (1.0 - q) * source.h11 + q * target.h11;
         const double h12 = (1.0 - q) * source.h12 + q * target.h12;
         const double h22 = (1.0 - q) * source.h22 + q * target.h22;
         const double k = change - (target.value - source.value);
-        const core::Vec2 dk = source.slope - target.slope;
+        const core::Vec2 dk = source.gradient - target.gradient;
         const double inverse = 1.0 / g.squaredNorm();
         v = (k * inverse) * g;
         // d(k g/|g|^2) = g dk/|g|^2 + k (H/|g|^2 - 2 g (H g)/|g|^4)
@@ -210,7 +210,7 @@ struct SymmetricGauge {
         if (!(w_norm > 0.0)) return std::nullopt;
         // A factor in front of F2 changes neither its solutions nor the ratio of determinants
         // there; this one gives F2 the size of the other gauges'.
-        const double weight = s.at_target.slope.norm() / w_norm;
+        const double weight = s.at_target.gradient.norm() / w_norm;
         const core::Vec2 back = turned(d);
         const core::Vec2 through_middle = 4.0 * vm.pulled_back(back);
         GaugeTerms terms = gauge_across(w, d);

@@ -63,7 +63,7 @@ struct ShiftMapping::Task {
     const SurfacePoint& x;
     const ShiftEnd& source;
     const ShiftEnd& target;
-    const LengthChange& change;
+    const ConstraintChange& change;
 
     FocusPair foci_of(const ShiftEnd& end) const {
         return {end.a - x.position, end.y - x.position};
@@ -95,7 +95,7 @@ bool ShiftMapping::is_bounded(double jacobian, double ratio) const {
 std::optional<ShiftedPath> ShiftMapping::shift_path(const SurfacePoint& x,
                                                     const ShiftEnd& source,
                                                     const ShiftEnd& target,
-                                                    const LengthChange& change,
+                                                    const ConstraintChange& change,
                                                     ShiftCounts& counts) const {
     ShiftTrace trace;
     bool by_ray = false;

@@ -89,7 +89,7 @@ class ShiftMapping {
     std::optional<ShiftedPath> shift_path(const SurfacePoint& x,
                                           const ShiftEnd& source,
                                           const ShiftEnd& target,
-                                          const LengthChange& change,
+                                          const ConstraintChange& change,
                                           ShiftCounts& counts) const;
 
     const PlanarPatches& patches() const { return patches_; }

@@ -49,12 +49,12 @@ struct ChartMetric {
 /// A path functional in a chart, to second order: f(xi) = factor * functional(X(xi)).
 struct ChartExpansion {
     double value = 0.0;
-    core::Vec2 slope;  ///< df/dxi
-    double h11 = 0.0;  ///< second derivatives of f
+    core::Vec2 gradient;  ///< df/dxi
+    double h11 = 0.0;     ///< second derivatives of f
     double h12 = 0.0;
     double h22 = 0.0;
-    double slope_size = 0.0;  ///< what the slope per metre of movement cannot exceed by much
-    double legs_m = 0.0;      ///< length of the two legs
+    double gradient_size = 0.0;  ///< what the gradient per metre of movement cannot exceed by much
+    double legs_m = 0.0;         ///< length of the two legs
     double shorter_leg_m = 0.0;
     double rounding_m = 0.0;  ///< of the position
     core::Vec3 position;      ///< relative to the chart's origin
@@ -72,12 +72,12 @@ struct ChartExpansion {
         return std::sqrt(across.dot(metric.m * across)) / metric.area_density;
     }
 
-    /// How far the conditions f = const and the gauge's, with slope `gauge`, stay well apart: the
-    /// shorter leg, less where the slope is small (next to nothing near a tangent point) or where
-    /// the two run alongside [m].
+    /// How far the conditions f = const and the gauge's, with gradient `gauge`, stay well apart:
+    /// the shorter leg, less where the gradient is small (next to nothing near a tangent point) or
+    /// where the two run alongside [m].
     double reach_m(const core::Vec2& gauge) const {
-        return shorter_leg_m * std::abs(cross(slope, gauge)) /
-               (metric.area_density * slope_size * norm_of(gauge));
+        return shorter_leg_m * std::abs(cross(gradient, gauge)) /
+               (metric.area_density * gradient_size * norm_of(gauge));
     }
 };
 
@@ -102,7 +102,7 @@ struct ShiftSide {
         const core::Vec3 h1 = f.hessian_times(point.tangent1);
         ChartExpansion e;
         e.value = factor * f.value;
-        e.slope =
+        e.gradient =
             factor * core::Vec2(f.gradient.dot(point.tangent1), f.gradient.dot(point.tangent2));
         e.h11 = h1.dot(point.tangent1);
         e.h12 = h1.dot(point.tangent2);
@@ -118,7 +118,7 @@ struct ShiftSide {
         e.h12 *= factor;
         e.h22 *= factor;
         e.metric = ChartMetric::of<Chart::kAffine>(point);
-        e.slope_size = factor * f.gradient_size;
+        e.gradient_size = factor * f.gradient_size;
         e.legs_m = 1.0 / f.inverse_a + 1.0 / f.inverse_y;
         e.shorter_leg_m = 1.0 / std::max(f.inverse_a, f.inverse_y);
         e.rounding_m = point.rounding_m;

@@ -70,7 +70,8 @@ std::optional<ShiftSolution> newton_shift(const Gauge& gauge,
     double last_step = std::numeric_limits<double>::infinity();
     for (int iteration = 0;; ++iteration) {
         const double f1 = state.at_target.value - goal;
-        const double tolerance = kShiftTolerance * std::min(1.0, legs) * state.at_target.slope_size;
+        const double tolerance =
+            kShiftTolerance * std::min(1.0, legs) * state.at_target.gradient_size;
         const bool is_small = std::abs(f1) <= tolerance && std::abs(terms.residual) <= tolerance;
         if (is_small && last_step <= Gauge::kLastStep * state.at_target.reach_m(terms.by_target))
             break;
@@ -78,11 +79,11 @@ std::optional<ShiftSolution> newton_shift(const Gauge& gauge,
         if (iteration == kMaxIterations) return trace.reject(ShiftRejection::NotConverged);
         ++trace.iterations;
 
-        const core::Vec2& slope = state.at_target.slope;
-        const double inverse = 1.0 / cross(slope, terms.by_target);
+        const core::Vec2& gradient = state.at_target.gradient;
+        const double inverse = 1.0 / cross(gradient, terms.by_target);
         const core::Vec2 step =
-            -inverse * core::Vec2(terms.by_target.y() * f1 - slope.y() * terms.residual,
-                                  slope.x() * terms.residual - terms.by_target.x() * f1);
+            -inverse * core::Vec2(terms.by_target.y() * f1 - gradient.y() * terms.residual,
+                                  gradient.x() * terms.residual - terms.by_target.x() * f1);
         if (!std::isfinite(step.x() + step.y())) return trace.reject(ShiftRejection::Degenerate);
 
         const double merit = f1 * f1 + terms.residual * terms.residual;
@@ -111,10 +112,10 @@ std::optional<ShiftSolution> newton_shift(const Gauge& gauge,
         if (!is_better) return trace.reject(ShiftRejection::NotConverged);
     }
 
-    const double by_target = cross(state.at_target.slope, terms.by_target);
-    const double by_source = cross(at_source.slope, -terms.by_source);
+    const double by_target = cross(state.at_target.gradient, terms.by_target);
+    const double by_source = cross(at_source.gradient, -terms.by_source);
     const auto is_tiny = [](double determinant, const ChartExpansion& e) {
-        return !(std::abs(determinant) > kTinyDeterminant * e.slope_size * e.slope_size *
+        return !(std::abs(determinant) > kTinyDeterminant * e.gradient_size * e.gradient_size *
                                              e.metric.area_density * e.legs_m / e.shorter_leg_m);
     };
     if (is_tiny(by_target, state.at_target) || is_tiny(by_source, at_source) ||
@@ -131,17 +132,18 @@ std::optional<ShiftSolution> newton_shift(const Gauge& gauge,
 }
 
 /// The equations can have a second root, on another branch of the curve. On the right one the
-/// movement goes up (or down) both functionals at both ends; all four slopes along D share a sign.
+/// movement goes up (or down) both functionals at both ends; all four gradients along D share a
+/// sign.
 inline bool is_on_first_branch(const core::Vec2& step,
                                const ChartExpansion& source_at_start,
                                const ChartExpansion& target_at_start,
                                const ChartExpansion& source_at_end,
                                const ChartExpansion& target_at_end) {
-    const std::array slopes{step.dot(source_at_start.slope),
-                            step.dot(target_at_start.slope),
-                            step.dot(source_at_end.slope),
-                            step.dot(target_at_end.slope)};
-    const auto [least, most] = std::minmax_element(slopes.begin(), slopes.end());
+    const std::array gradients{step.dot(source_at_start.gradient),
+                               step.dot(target_at_start.gradient),
+                               step.dot(source_at_end.gradient),
+                               step.dot(target_at_end.gradient)};
+    const auto [least, most] = std::minmax_element(gradients.begin(), gradients.end());
     return *least >= 0.0 || *most <= 0.0;
 }
 

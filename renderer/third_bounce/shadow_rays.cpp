@@ -3,7 +3,7 @@
 
 #include "renderer/core/random.h"
 #include "renderer/core/stopwatch.h"
-#include "renderer/third_bounce/piece_units.h"
+#include "renderer/third_bounce/simd_groups.h"
 
 #include <bit>
 
@@ -14,8 +14,8 @@ using core::Simd;
 using core::store;
 using core::Vec3;
 
-ShadowRayTracer::ShadowRayTracer(const Scene& scene, const PieceSet& pieces)
-    : scene_(scene), set_(pieces) {}
+ShadowRayTracer::ShadowRayTracer(const Scene& scene, const ElementSet& elements)
+    : scene_(scene), set_(elements) {}
 
 void ShadowRayTracer::look_from(const WallPointLanes& points) {
     for (std::size_t p = 0; p < WallPointLanes::kSize; ++p) {
@@ -27,9 +27,9 @@ void ShadowRayTracer::look_from(const WallPointLanes& points) {
     }
 }
 
-DrawnParts ShadowRayTracer::drawn_parts(std::uint32_t piece) const {
-    const PieceBlock& block = set_.blocks[piece / PieceBlock::kSize];
-    return {block.random_bits[piece % PieceBlock::kSize], point_bits_};
+DrawnParts ShadowRayTracer::drawn_parts(std::uint32_t element) const {
+    const ElementBlock& block = set_.blocks[element / ElementBlock::kSize];
+    return {block.random_bits[element % ElementBlock::kSize], point_bits_};
 }
 
 std::uint32_t ShadowRayTracer::bit_of(const ShadowRays& rays,
@@ -56,9 +56,9 @@ void ShadowRayTracer::trace(std::span<ShadowRays> all) {
 }
 
 void ShadowRayTracer::trace_from_all(ShadowRays& rays) {
-    const PieceBlock& block = set_.blocks[rays.piece / PieceBlock::kSize];
-    const std::size_t i = rays.piece % PieceBlock::kSize;
-    const DrawnParts parts = drawn_parts(rays.piece);
+    const ElementBlock& block = set_.blocks[rays.element / ElementBlock::kSize];
+    const std::size_t i = rays.element % ElementBlock::kSize;
+    const DrawnParts parts = drawn_parts(rays.element);
     std::array<std::uint32_t, WallPointLanes::kSize> bits;
     for (std::size_t p = 0; p < bits.size(); ++p) bits[p] = bit_of(rays, parts, p);
     alignas(64) std::array<SegmentEnds::Lanes, 3> weights;
@@ -69,7 +69,7 @@ void ShadowRayTracer::trace_from_all(ShadowRays& rays) {
     }
     SegmentEnds& to = from_all_.to;
     for (std::size_t begin = 0; begin < WallPointLanes::kSize; begin += Simd::size()) {
-        const auto interpolate = [&](const std::array<PieceBlock::Lanes, 3>& corners) {
+        const auto interpolate = [&](const std::array<ElementBlock::Lanes, 3>& corners) {
             return load(weights[0], begin) * corners[0][i] +
                    load(weights[1], begin) * corners[1][i] +
                    load(weights[2], begin) * corners[2][i];
@@ -86,14 +86,14 @@ void ShadowRayTracer::trace_from_all(ShadowRays& rays) {
 }
 
 void ShadowRayTracer::append(ShadowRays& rays) {
-    const PieceBlock& block = set_.blocks[rays.piece / PieceBlock::kSize];
-    const std::size_t i = rays.piece % PieceBlock::kSize;
-    const DrawnParts parts = drawn_parts(rays.piece);
+    const ElementBlock& block = set_.blocks[rays.element / ElementBlock::kSize];
+    const std::size_t i = rays.element % ElementBlock::kSize;
+    const DrawnParts parts = drawn_parts(rays.element);
     const SegmentEnds& points = from_all_.from;
     const auto& centers = centers_of_bits();
     for_each_bit(rays.points, [&](std::size_t p) {
         const auto& b = centers[bit_of(rays, parts, p)];
-        const auto interpolate = [&](const std::array<PieceBlock::Lanes, 3>& corners) {
+        const auto interpolate = [&](const std::array<ElementBlock::Lanes, 3>& corners) {
             return b[0] * corners[0][i] + b[1] * corners[1][i] + b[2] * corners[2][i];
         };
         const std::size_t lane = num_pending_++;
@@ -124,10 +124,10 @@ void ShadowRayTracer::trace_appended() {
 std::uint32_t ShadowRayTracer::blocked(Segments& segments, int count) {
     auto& [from, to, rise_m] = segments;
     for (std::size_t begin = 0; begin < rise_m.size(); begin += Simd::size()) {
-        const UnitPoints end = load_points(to.x, to.y, to.z, begin, -set_.origin);
-        const UnitPoints normal =
+        const SimdGroupPoints end = load_points(to.x, to.y, to.z, begin, -set_.origin);
+        const SimdGroupPoints normal =
             load_points(to.normal_x, to.normal_y, to.normal_z, begin, Vec3::Zero());
-        const UnitPoints along{
+        const SimdGroupPoints along{
             end.x - load(from.x, begin), end.y - load(from.y, begin), end.z - load(from.z, begin)};
         const Simd rise = load(rise_m, begin);
         const Simd moved = core::select(0.0 < along.dot(normal), -rise, rise);

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "renderer/geometry/visibility_mask.h"
-#include "renderer/third_bounce/third_bounce_pieces.h"
+#include "renderer/third_bounce/surface_subdivider.h"
 #include "renderer/third_bounce/wall_point_lanes.h"
 
 #include <array>
@@ -11,15 +11,15 @@
 
 namespace renderer {
 
-/// The parts of a piece that its first rays go to, one in each quarter, drawn anew for each wall
-/// point: of shadows that cover less than half of many pieces, as bumps cast, fixed parts would see
-/// nothing. Every part is as likely as any other, so that shadows count by what they cover.
+/// The parts of an element that its first rays go to, one in each quarter, drawn anew for each wall
+/// point: of shadows that cover less than half of many elements, as bumps cast, fixed parts would
+/// see nothing. Every part is as likely as any other, so that shadows count by what they cover.
 class DrawnParts {
  public:
-    /// Random bits of a piece and of wall points.
+    /// Random bits of an element and of wall points.
     using PointBits = std::array<std::uint32_t, WallPointLanes::kSize>;
-    DrawnParts(std::uint32_t piece_bits, const PointBits& point_bits)
-        : piece_bits_(piece_bits), point_bits_(&point_bits) {}
+    DrawnParts(std::uint32_t element_bits, const PointBits& point_bits)
+        : element_bits_(element_bits), point_bits_(&point_bits) {}
 
     /// The quarter that comes k-th, 0 to 3.
     std::uint32_t quarter(std::size_t point, std::uint32_t k) const {
@@ -33,19 +33,19 @@ class DrawnParts {
  private:
     // The last step of MurmurHash3 (source [Appleby2011]): any change turns about half of all bits.
     std::uint32_t draw(std::size_t point) const {
-        std::uint32_t bits = piece_bits_ ^ (*point_bits_)[point];
+        std::uint32_t bits = element_bits_ ^ (*point_bits_)[point];
         bits = (bits ^ (bits >> 16)) * 0x85ebca6bU;
         bits = (bits ^ (bits >> 13)) * 0xc2b2ae35U;
         return bits ^ (bits >> 16);
     }
 
-    std::uint32_t piece_bits_;
+    std::uint32_t element_bits_;
     const PointBits* point_bits_;
 };
 
-/// Rays from some wall points to one part of a piece each.
+/// Rays from some wall points to one part of an element each.
 struct ShadowRays {
-    std::uint32_t piece = 0;
+    std::uint32_t element = 0;
     PointMask points = 0;
     std::uint8_t part = 0;  ///< drawn() or fixed()
     PointMask seen = 0;     ///< of `points`: where nothing is in the way; set by tracing
@@ -60,16 +60,16 @@ struct ShadowRays {
 };
 
 /// Traces shadow rays from up to WallPointLanes::kSize wall points in packets. Rays from
-/// neighbouring wall points to one piece run side by side and need its corners only once.
+/// neighbouring wall points to one element run side by side and need its corners only once.
 class ShadowRayTracer {
  public:
-    /// scene, pieces   must outlive the tracer
-    ShadowRayTracer(const Scene& scene, const PieceSet& pieces);
+    /// scene, elements   must outlive the tracer
+    ShadowRayTracer(const Scene& scene, const ElementSet& elements);
 
     /// From now on, rays begin at these points.
     void look_from(const WallPointLanes& points);
 
-    DrawnParts drawn_parts(std::uint32_t piece) const;
+    DrawnParts drawn_parts(std::uint32_t element) const;
 
     /// Sets `seen` of all.
     void trace(std::span<ShadowRays> rays);
@@ -86,7 +86,7 @@ class ShadowRayTracer {
     /// Segments before they are aimed.
     struct Segments {
         SegmentEnds from;                         ///< world
-        SegmentEnds to;                           ///< relative to PieceSet::origin
+        SegmentEnds to;                           ///< relative to ElementSet::origin
         alignas(64) SegmentEnds::Lanes rise_m{};  ///< what `to` is moved by to the side of `from`
     };
     static std::uint32_t bit_of(const ShadowRays& rays, const DrawnParts& parts, std::size_t point);
@@ -96,9 +96,9 @@ class ShadowRayTracer {
     std::uint32_t blocked(Segments& segments, int count);
 
     const Scene& scene_;
-    const PieceSet& set_;
+    const ElementSet& set_;
     DrawnParts::PointBits point_bits_{};
-    Segments from_all_;                                  ///< from all points to one piece
+    Segments from_all_;                                  ///< from all points to one element
     Segments appended_;                                  ///< any others
     std::array<Pending, SegmentPacket::kSize> pending_;  ///< the rays of appended_
     std::size_t num_pending_ = 0;

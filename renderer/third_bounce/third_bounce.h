@@ -15,7 +15,7 @@ struct ThirdBounce {
     core::Transient transient;
     double estimated_error = 0.0;  ///< relative L2 over all of H
     double squared_error = 0.0;    ///< the same, absolute, squared
-    std::size_t num_pieces = 0;    ///< that the surfaces were cut into
+    std::size_t num_elements = 0;  ///< that the surfaces were cut into
     std::uint64_t num_rays = 0;
     double tracing_seconds = 0.0;  ///< aiming and tracing them, of all threads together
     double seconds = 0.0;
@@ -27,7 +27,7 @@ struct ThirdBounce {
 ///
 /// Surfaces are cut into triangles small enough for the closed-form kernel of core/
 /// triangle_histogram.h; facets that bins do not tell apart are merged. Every wall point finds once
-/// what it sees of each piece; every pair then only combines two tables. A few pairs, computed at
+/// what it sees of each element; every pair then only combines two tables. A few pairs, computed at
 /// several finenesses, tell how fine is fine enough for the target.
 ///
 /// settings   target_error; or seconds, then as fine as that time allows; laser_spot_m2; the gate
@@ -36,7 +36,7 @@ struct ThirdBounce {
 ///            coarsest way, so that every pair has a result
 /// returns    the radiance of order 3 that comes from surfaces with is_integrable() materials
 /// throws     core::Failure when memory does not suffice
-/// source     design by the authors; kernel and size rule in third_bounce_pieces.cpp
+/// source     design by the authors; kernel and size rule in third_bounce_elements.cpp
 ThirdBounce integrate_third_bounce(const Scene& scene,
                                    const core::Scan& scan,
                                    const core::TimeAxis& axis,

@@ -16,12 +16,12 @@ using core::load;
 using core::Simd;
 using core::store;
 
-using NodeWeights = std::array<Simd, PieceBlock::kNodes>;
+using NodeWeights = std::array<Simd, ElementBlock::kNodes>;
 
-using Nodes = std::array<UnitPoints, PieceBlock::kNodes>;
+using Nodes = std::array<SimdGroupPoints, ElementBlock::kNodes>;
 
-// Nodes of the pieces of the unit that starts at lane `begin`, relative to a wall point.
-[[gnu::always_inline]] inline Nodes load_nodes(const PieceBlock& block,
+// Nodes of the elements of the SIMD group that starts at lane `begin`, relative to a wall point.
+[[gnu::always_inline]] inline Nodes load_nodes(const ElementBlock& block,
                                                std::size_t begin,
                                                const WallPoint& point) {
     const Vec3& origin = point.position;
@@ -30,23 +30,23 @@ using Nodes = std::array<UnitPoints, PieceBlock::kNodes>;
         nodes[j] = load_points(block.x[j], block.y[j], block.z[j], begin, origin);
     }
     for (std::size_t j = 0; j < 3; ++j) {
-        const UnitPoints& p = nodes[j];
-        const UnitPoints& q = nodes[(j + 1) % 3];
+        const SimdGroupPoints& p = nodes[j];
+        const SimdGroupPoints& q = nodes[(j + 1) % 3];
         nodes[3 + j] = {0.5 * (p.x + q.x), 0.5 * (p.y + q.y), 0.5 * (p.z + q.z)};
     }
     nodes[6] = load_points(block.center_x, block.center_y, block.center_z, begin, origin);
     return nodes;
 }
 
-// Keeps products of a piece's squared distances from becoming 0 [m^2].
-constexpr double kLeastSquaredDistance = 1e-40;
+// Keeps products of an element's squared distances from becoming 0 [m^2].
+constexpr double kMinSquaredDistance = 1e-40;
 
-[[gnu::always_inline]] inline Simd squared_length(const UnitPoints& d) {
-    return core::larger_of(d.dot(d), kLeastSquaredDistance);
+[[gnu::always_inline]] inline Simd squared_length(const SimdGroupPoints& d) {
+    return core::max(d.dot(d), kMinSquaredDistance);
 }
 
-// BSDF of glossy pieces at their nodes [1/sr].
-NodeWeights glossy_values(const PieceBlock& block,
+// BSDF of glossy elements at their nodes [1/sr].
+NodeWeights glossy_values(const ElementBlock& block,
                           std::size_t begin,
                           const PairEnd& light,
                           const PairEnd& sensor) {
@@ -55,39 +55,39 @@ NodeWeights glossy_values(const PieceBlock& block,
     const Simd alpha = load(block.glossy_alpha, begin);
     const auto distance_to_plane = [&](const PairEnd& end) {
         const Simd side = load(end.table->side, begin);
-        return core::larger_of(side, -side);
+        return core::max(side, -side);
     };
     const Simd light_height = distance_to_plane(light);
     const Simd sensor_height = distance_to_plane(sensor);
     NodeWeights values;
     for (std::size_t node = 0; node < values.size(); ++node) {
-        const UnitPoints& in = from_light[node];
-        const UnitPoints& out = from_sensor[node];
-        const Simd per_in = 1.0 / core::square_root(squared_length(in));
-        const Simd per_out = 1.0 / core::square_root(squared_length(out));
+        const SimdGroupPoints& in = from_light[node];
+        const SimdGroupPoints& out = from_sensor[node];
+        const Simd per_in = 1.0 / core::sqrt(squared_length(in));
+        const Simd per_out = 1.0 / core::sqrt(squared_length(out));
         const Simd cos_in = light_height * per_in;
         const Simd cos_out = sensor_height * per_out;
         // Of the sum of both directions: its squared length, and what of that is along the normal.
         const Simd up2 = (cos_in + cos_out) * (cos_in + cos_out);
-        const Simd sum2 = core::larger_of(2.0 + 2.0 * in.dot(out) * (per_in * per_out), up2);
+        const Simd sum2 = core::max(2.0 + 2.0 * in.dot(out) * (per_in * per_out), up2);
         const Simd cos2 = up2 / sum2;
         values[node] = ggx_value<Simd>(core::kPi * load(block.reflectance[node], begin),
                                        alpha,
                                        ggx_normal_density<Simd>(alpha, cos2, 1.0 - cos2),
                                        cos_in,
                                        cos_out,
-                                       0.5 * core::square_root(sum2));
+                                       0.5 * core::sqrt(sum2));
     }
     return values;
 }
 
-// Weights of the pieces of the unit that starts at lane `begin`.
-[[gnu::always_inline]] inline NodeWeights weigh_nodes(const PieceBlock& block,
+// Weights of the elements of the SIMD group that starts at lane `begin`.
+[[gnu::always_inline]] inline NodeWeights weigh_nodes(const ElementBlock& block,
                                                       std::size_t begin,
                                                       const PairEnd& light,
                                                       const PairEnd& sensor) {
     NodeWeights weights;
-    if (block.kind == PieceKind::Glossy) {
+    if (block.kind == ElementKind::Glossy) {
         weights = glossy_values(block, begin, light, sensor);
     } else {
         for (std::size_t node = 0; node < weights.size(); ++node) {
@@ -96,22 +96,23 @@ NodeWeights glossy_values(const PieceBlock& block,
     }
     for (std::size_t node = 0; node < weights.size(); ++node) {
         weights[node] *= load(light.table->factor[node], begin);
-        if (block.kind != PieceKind::Retroreflective) {
+        if (block.kind != ElementKind::Retroreflective) {
             weights[node] *= load(sensor.table->factor[node], begin);
         }
     }
     return weights;
 }
 
-// Linear weights with the mean over the piece, as the nodes tell it, and the corners' differences;
-// where a corner would fall below 0, all of them shrink until it does not. Into lanes from `begin`.
+// Linear weights with the mean over the element, as the nodes tell it, and the corners'
+// differences; where a corner would fall below 0, all of them shrink until it does not. Into lanes
+// from `begin`.
 [[gnu::always_inline]] inline void fit_weights(const NodeWeights& k,
                                                std::size_t begin,
                                                TriangleLanes& fitted) {
     const Simd corner_mean = (k[0] + k[1] + k[2]) * (1.0 / 3.0);
     const Simd mean = 3.0 * kShareOfCorner * corner_mean + kShareOfMiddle * (k[3] + k[4] + k[5]) +
                       kShareOfCenter * k[6];
-    const Simd lowest = core::smaller_of(core::smaller_of(k[0], k[1]), k[2]) - corner_mean;
+    const Simd lowest = core::min(core::min(k[0], k[1]), k[2]) - corner_mean;
     Simd spread = 1.0;
     const core::SimdMask falls_below = lowest < -mean;
     if (falls_below.any()) spread = core::select(falls_below, mean / -lowest, 1.0);
@@ -152,11 +153,11 @@ std::array<double, 3> visible_weights(const std::array<double, 3>& weight, Visib
     return product;
 }
 
-// What both ends see of the pieces of a unit.
-using UnitMasks = std::array<VisibilityMask, PieceBlock::kUnitSize>;
+// What both ends see of the elements of a SIMD group.
+using SimdGroupMasks = std::array<VisibilityMask, ElementBlock::kSimdWidth>;
 
-UnitMasks common_masks(const PairEnd& light, const PairEnd& sensor, std::size_t begin) {
-    UnitMasks masks;
+SimdGroupMasks common_masks(const PairEnd& light, const PairEnd& sensor, std::size_t begin) {
+    SimdGroupMasks masks;
     for (std::size_t j = 0; j < masks.size(); ++j) {
         const std::size_t i = begin + j;
         const bool same_side = light.table->side[i] * sensor.table->side[i] > 0.0;
@@ -165,7 +166,7 @@ UnitMasks common_masks(const PairEnd& light, const PairEnd& sensor, std::size_t 
     return masks;
 }
 
-void keep_visible_weights(const UnitMasks& masks, std::size_t begin, TriangleLanes& lanes) {
+void keep_visible_weights(const SimdGroupMasks& masks, std::size_t begin, TriangleLanes& lanes) {
     auto& weight = lanes.weight;
     for (std::size_t j = 0; j < masks.size(); ++j) {
         if (masks[j] == kAllVisible) continue;
@@ -179,33 +180,33 @@ void keep_visible_weights(const UnitMasks& masks, std::size_t begin, TriangleLan
 
 }  // namespace
 
-void compute_table(const PieceBlock& block,
+void compute_table(const ElementBlock& block,
                    const WallPoint& point,
-                   UnitMask units,
+                   SimdGroupMask simd_groups,
                    BlockTable& table) {
     const Vec3 n = point.normal;
-    table.units = units;
-    for_each_unit(units, [&](std::size_t begin) {
+    table.simd_groups = simd_groups;
+    for_each_simd_group(simd_groups, [&](std::size_t begin) {
         const Nodes nodes = load_nodes(block, begin, point);
-        const UnitPoints normal =
+        const SimdGroupPoints normal =
             load_points(block.normal_x, block.normal_y, block.normal_z, begin, Vec3::Zero());
-        // All points of the piece have the same distance from the wall point along its normal.
+        // All points of the element have the same distance from the wall point along its normal.
         const Simd side = -nodes[0].dot(normal);
-        const Simd facing = core::larger_of(side, -side);
+        const Simd facing = core::max(side, -side);
         store(side, table.side, begin);
-        std::array<Simd, PieceBlock::kNodes> d2;
+        std::array<Simd, ElementBlock::kNodes> d2;
         for (std::size_t node = 0; node < nodes.size(); ++node) {
             d2[node] = squared_length(nodes[node]);
         }
         const auto per_d2 = reciprocals(d2);
         for (std::size_t node = 0; node < nodes.size(); ++node) {
-            const Simd front = core::larger_of(nodes[node].dot(n), 0.0);
+            const Simd front = core::max(nodes[node].dot(n), 0.0);
             store(front * facing * (per_d2[node] * per_d2[node]), table.factor[node], begin);
         }
         std::array<Simd, 3> leg;
         Simd per_leg = 0.0;  // mean
         for (std::size_t j = 0; j < 3; ++j) {
-            leg[j] = core::square_root(d2[j]);
+            leg[j] = core::sqrt(d2[j]);
             store(leg[j], table.leg_m[j], begin);
             per_leg += leg[j] * per_d2[j] * (1.0 / 3.0);
         }
@@ -213,36 +214,37 @@ void compute_table(const PieceBlock& block,
         for (std::size_t j = 0; j < 3; ++j) {
             const Simd rise = leg[(j + 2) % 3] - leg[(j + 1) % 3];
             const Simd squared = load(block.squared_edge[j], begin) - rise * rise;
-            store(core::larger_of(squared, 0.0) * per_leg, table.bend_m[j], begin);
+            store(core::max(squared, 0.0) * per_leg, table.bend_m[j], begin);
         }
     });
 }
 
-void add_pair(const PieceBlock& block,
+void add_pair(const ElementBlock& block,
               const PairEnd& light,
               const PairEnd& sensor,
               const core::TimeAxis& axis,
               std::span<double> histogram) {
     TriangleLanes fitted;
     std::size_t count = 0;
-    for_each_unit(light.table->units & sensor.table->units, [&](std::size_t begin) {
-        const UnitMasks masks = common_masks(light, sensor, begin);
-        VisibilityMask any = 0;
-        for (const VisibilityMask mask : masks) any = static_cast<VisibilityMask>(any | mask);
-        if (any == 0) return;
-        for (std::size_t c = 0; c < 3; ++c) {
-            store(load(light.table->leg_m[c], begin) + load(sensor.table->leg_m[c], begin),
-                  fitted.opl_m[c],
-                  count);
-            store(load(light.table->bend_m[c], begin) + load(sensor.table->bend_m[c], begin),
-                  fitted.bend_m[c],
-                  count);
-        }
-        fit_weights(weigh_nodes(block, begin, light, sensor), count, fitted);
-        keep_visible_weights(masks, count, fitted);
-        store(load(block.area_m2, begin), fitted.area_m2, count);
-        count += PieceBlock::kUnitSize;
-    });
+    for_each_simd_group(
+        light.table->simd_groups & sensor.table->simd_groups, [&](std::size_t begin) {
+            const SimdGroupMasks masks = common_masks(light, sensor, begin);
+            VisibilityMask any = 0;
+            for (const VisibilityMask mask : masks) any = static_cast<VisibilityMask>(any | mask);
+            if (any == 0) return;
+            for (std::size_t c = 0; c < 3; ++c) {
+                store(load(light.table->leg_m[c], begin) + load(sensor.table->leg_m[c], begin),
+                      fitted.opl_m[c],
+                      count);
+                store(load(light.table->bend_m[c], begin) + load(sensor.table->bend_m[c], begin),
+                      fitted.bend_m[c],
+                      count);
+            }
+            fit_weights(weigh_nodes(block, begin, light, sensor), count, fitted);
+            keep_visible_weights(masks, count, fitted);
+            store(load(block.area_m2, begin), fitted.area_m2, count);
+            count += ElementBlock::kSimdWidth;
+        });
     add_triangles(fitted, count, axis, histogram);
 }
 

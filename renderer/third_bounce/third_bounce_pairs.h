@@ -2,38 +2,38 @@
 #pragma once
 
 #include "renderer/core/time_axis.h"
-#include "renderer/third_bounce/piece_units.h"
+#include "renderer/third_bounce/simd_groups.h"
 #include "renderer/third_bounce/third_bounce_visibility.h"
 
 #include <span>
 
 namespace renderer {
 
-/// What one wall point contributes to every path through the pieces of a block that it sees.
+/// What one wall point contributes to every path through the elements of a block that it sees.
 struct alignas(64) BlockTable {
     /// Length of the leg at the corners, and how it bends along the edges opposite to them, see
     /// TriangleLanes [m].
-    std::array<PieceBlock::Lanes, 3> leg_m, bend_m;
+    std::array<ElementBlock::Lanes, 3> leg_m, bend_m;
     /// (n_w.d) |n_x.d| / |d|^4 at the nodes [1/m^2], 0 behind the wall point.
-    std::array<PieceBlock::Lanes, PieceBlock::kNodes> factor;
-    /// Distance of the wall point from the piece's plane, above 0 on the normal's side [m].
-    PieceBlock::Lanes side;
-    UnitMask units = 0;  ///< the others are not filled
+    std::array<ElementBlock::Lanes, ElementBlock::kNodes> factor;
+    /// Distance of the wall point from the element's plane, above 0 on the normal's side [m].
+    ElementBlock::Lanes side;
+    SimdGroupMask simd_groups = 0;  ///< the others are not filled
 };
 
 /// Fills `table` for one wall point.
 ///
-/// units   with pieces that the point sees
-void compute_table(const PieceBlock& block,
+/// SIMD groups   with elements that the point sees
+void compute_table(const ElementBlock& block,
                    const WallPoint& point,
-                   UnitMask units,
+                   SimdGroupMask simd_groups,
                    BlockTable& table);
 
 /// One end of the paths of a pair: the wall point, its table and its masks for one block.
 struct PairEnd {
     const WallPoint* point;
     const BlockTable* table;
-    const VisibilityMask* masks;  ///< of the block, see VisiblePieces
+    const VisibilityMask* masks;  ///< of the block, see VisibleElements
 };
 
 /// Adds the third bounce of one measurement pair by way of one block to its histogram, wall albedos
@@ -42,7 +42,7 @@ struct PairEnd {
 /// light, sensor   the two ends; the same one twice for a confocal pair
 /// axis            of the histogram, its start reduced by the pair's device legs
 /// histogram       axis.num_bins values
-void add_pair(const PieceBlock& block,
+void add_pair(const ElementBlock& block,
               const PairEnd& light,
               const PairEnd& sensor,
               const core::TimeAxis& axis,

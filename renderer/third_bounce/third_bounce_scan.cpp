@@ -21,25 +21,26 @@ static_assert(kPointsPerBlock == WallPointLanes::kSize);
 // Where part `part` of a confocal scan's points begins: parts hold whole blocks, a few at least for
 // threads to share, so that the last parts of small scans are empty.
 std::size_t begin_of_part(int part, std::size_t num_points) {
-    constexpr std::size_t kFewestBlocks = 4;
+    constexpr std::size_t kMinBlocks = 4;
     const std::size_t num_blocks = (num_points + kPointsPerBlock - 1) / kPointsPerBlock;
     const std::size_t per_part =
         (num_blocks + ThirdBounceScan::kParts - 1) / ThirdBounceScan::kParts;
-    const std::size_t block = static_cast<std::size_t>(part) * std::max(kFewestBlocks, per_part);
+    const std::size_t block = static_cast<std::size_t>(part) * std::max(kMinBlocks, per_part);
     return std::min(block * kPointsPerBlock, num_points);
 }
 
 // Tables of some wall points for one block, where they see anything of it.
 class TileTables {
  public:
-    TileTables(std::vector<WallPoint> points, std::span<const VisiblePieces> seen)
+    TileTables(std::vector<WallPoint> points, std::span<const VisibleElements> seen)
         : points_(std::move(points)), seen_(seen), tables_(points_.size()), ends_(points_.size()) {}
 
-    void compute(const PieceBlock& block, std::size_t block_index) {
+    void compute(const ElementBlock& block, std::size_t block_index) {
         for (std::size_t i = 0; i < points_.size(); ++i) {
-            compute_table(block, points_[i], seen_[i].units[block_index], tables_[i]);
-            ends_[i] = {
-                &points_[i], &tables_[i], seen_[i].masks.data() + block_index * PieceBlock::kSize};
+            compute_table(block, points_[i], seen_[i].simd_groups[block_index], tables_[i]);
+            ends_[i] = {&points_[i],
+                        &tables_[i],
+                        seen_[i].masks.data() + block_index * ElementBlock::kSize};
         }
     }
 
@@ -47,7 +48,7 @@ class TileTables {
 
  private:
     std::vector<WallPoint> points_;
-    std::span<const VisiblePieces> seen_;
+    std::span<const VisibleElements> seen_;
     std::vector<BlockTable> tables_;
     std::vector<PairEnd> ends_;
 };
@@ -72,13 +73,13 @@ bool misses_axis(const BlockSphere& sphere,
 ThirdBounceScan::ThirdBounceScan(const Scene& scene,
                                  const core::Scan& scan,
                                  const core::TimeAxis& axis,
-                                 const PieceSet& pieces,
+                                 const ElementSet& elements,
                                  double negligible_error,
                                  double memory_bytes)
     : scene_(scene),
       scan_(scan),
       axis_(axis),
-      pieces_(pieces),
+      elements_(elements),
       coinciding_(scan),
       negligible_error_(negligible_error),
       memory_bytes_(memory_bytes),
@@ -113,7 +114,7 @@ int ThirdBounceScan::integrate(int first_part,
 WallPoint ThirdBounceScan::wall_point(const core::WallPoints& points, std::size_t index) const {
     const std::vector<bool>& confocal =
         &points == &scan_.sensing ? coinciding_.sensing : coinciding_.illumination;
-    return {points.positions[index] - pieces_.origin,
+    return {points.positions[index] - elements_.origin,
             points.normals[index],
             static_cast<std::uint32_t>(index),
             confocal[index]};
@@ -156,8 +157,8 @@ void ThirdBounceScan::integrate_confocal(std::size_t begin, std::size_t end) {
         axes.push_back(axis_of_pair(pair));
         rules.opl.push_back({axes.back().opl_start_m, axes.back().opl_end_m()});
     }
-    std::vector<VisiblePieces> seen(points.size());
-    VisibilityTracer tracer(scene_, pieces_);
+    std::vector<VisibleElements> seen(points.size());
+    VisibilityTracer tracer(scene_, elements_);
     tracer.trace(points, rules, seen);
     add_costs(tracer);
     BlockTable table;
@@ -166,14 +167,14 @@ void ThirdBounceScan::integrate_confocal(std::size_t begin, std::size_t end) {
     const auto histogram_of = [&](std::size_t i) {
         return std::span(histograms).subspan(i * num_bins, num_bins);
     };
-    for (std::size_t b = 0; b < pieces_.blocks.size(); ++b) {
+    for (std::size_t b = 0; b < elements_.blocks.size(); ++b) {
         for (std::size_t i = 0; i < points.size(); ++i) {
-            const UnitMask units = seen[i].units[b];
-            if (units == 0) continue;
-            compute_table(pieces_.blocks[b], points[i], units, table);
+            const SimdGroupMask simd_groups = seen[i].simd_groups[b];
+            if (simd_groups == 0) continue;
+            compute_table(elements_.blocks[b], points[i], simd_groups, table);
             const PairEnd end_of_pair{
-                &points[i], &table, seen[i].masks.data() + b * PieceBlock::kSize};
-            add_pair(pieces_.blocks[b], end_of_pair, end_of_pair, axes[i], histogram_of(i));
+                &points[i], &table, seen[i].masks.data() + b * ElementBlock::kSize};
+            add_pair(elements_.blocks[b], end_of_pair, end_of_pair, axes[i], histogram_of(i));
         }
     }
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -190,8 +191,8 @@ VisibilityRules ThirdBounceScan::rules_towards(const core::WallPoints& others,
     rules.negligible_error = negligible_error_;
     rules.pairs_per_point =
         static_cast<double>(scan_.num_pairs()) / static_cast<double>(num_points);
-    const auto [least_legs, most_legs] = core::device_leg_range_m(scan_);
-    rules.opl.push_back({axis_.opl_start_m - most_legs, axis_.opl_end_m() - least_legs});
+    const auto [min_legs, max_legs] = core::device_leg_range_m(scan_);
+    rules.opl.push_back({axis_.opl_start_m - max_legs, axis_.opl_end_m() - min_legs});
     WallPoint& middle = rules.other_end.emplace(WallPoint{Vec3::Zero(), Vec3::Zero()});
     Eigen::AlignedBox3d box;
     for (std::size_t i = 0; i < others.size(); ++i) {
@@ -201,7 +202,7 @@ VisibilityRules ThirdBounceScan::rules_towards(const core::WallPoints& others,
         middle.normal += other.normal / static_cast<double>(others.size());
     }
     if (others.size() > 1) {
-        for (const auto& [c, radius_m] : pieces_.spheres) {
+        for (const auto& [c, radius_m] : elements_.spheres) {
             const Vec3 farthest = (c - box.min()).cwiseAbs().cwiseMax((c - box.max()).cwiseAbs());
             rules.other_legs.push_back(
                 {box.exteriorDistance(c) - radius_m, farthest.norm() + radius_m});
@@ -219,7 +220,7 @@ void ThirdBounceScan::look_from(const core::WallPoints& points,
     views.range = range;
     views.seen.resize(range.size());
     core::parallel_blocks(range.size(), kPointsPerBlock, [&](std::size_t begin, std::size_t end) {
-        VisibilityTracer tracer(scene_, pieces_);
+        VisibilityTracer tracer(scene_, elements_);
         tracer.trace(wall_points(points, {range.begin + begin, range.begin + end}),
                      rules,
                      std::span(views.seen).subspan(begin, end - begin));
@@ -233,21 +234,21 @@ void ThirdBounceScan::look_from(const core::WallPoints& points,
 int ThirdBounceScan::integrate_pairs(int first_part,
                                      const std::function<bool(double share)>& go_on) {
     const auto bytes_per_point =
-        static_cast<double>(pieces_.blocks.size() * PieceBlock::kSize * sizeof(VisibilityMask));
+        static_cast<double>(elements_.blocks.size() * ElementBlock::kSize * sizeof(VisibilityMask));
     const double fitting = memory_bytes_ / bytes_per_point;
-    if (fitting < PairTiles::kFewestPoints) {
+    if (fitting < PairTiles::kMinPoints) {
         throw core::Failure(
             "third_bounce",
-            fmt::format("visibility of {} pieces needs {:.2f} GB, {:.2f} GB are free for it",
-                        pieces_.num_pieces,
-                        PairTiles::kFewestPoints * bytes_per_point * 1e-9,
+            fmt::format("visibility of {} elements needs {:.2f} GB, {:.2f} GB are free for it",
+                        elements_.num_elements,
+                        PairTiles::kMinPoints * bytes_per_point * 1e-9,
                         memory_bytes_ * 1e-9));
     }
     const std::size_t num_lights =
         scan_.pattern == core::ScanPattern::Single ? 1 : scan_.illumination.size();
     // Tiles at the edges count as whole ones.
     const auto enough =
-        static_cast<double>(num_lights + scan_.sensing.size() + PairTiles::kFewestPoints);
+        static_cast<double>(num_lights + scan_.sensing.size() + PairTiles::kMinPoints);
     const PairTiles tiles(
         num_lights, scan_.sensing.size(), static_cast<std::size_t>(std::min(fitting, enough)));
     const VisibilityRules from_lights = rules_towards(scan_.sensing, scan_.illumination.size());
@@ -287,21 +288,21 @@ void ThirdBounceScan::integrate_tile(const PairTiles::Tile& tile,
     const auto pair_of = [&](std::size_t l, std::size_t s) {
         return (tile.lights.begin + l) * scan_.sensing.size() + tile.sensors.begin + s;
     };
-    for (std::size_t b = 0; b < pieces_.blocks.size(); ++b) {
-        const PieceBlock& block = pieces_.blocks[b];
+    for (std::size_t b = 0; b < elements_.blocks.size(); ++b) {
+        const ElementBlock& block = elements_.blocks[b];
         lights.compute(block, b);
         sensors.compute(block, b);
         for (std::size_t l = 0; l < tile.lights.size(); ++l) {
             const PairEnd& light = lights.ends()[l];
             for (std::size_t s = 0; s < num_sensors; ++s) {
                 const PairEnd& sensor = sensors.ends()[s];
-                if ((light.table->units & sensor.table->units) == 0) continue;
-                if (block.kind == PieceKind::Retroreflective &&
+                if ((light.table->simd_groups & sensor.table->simd_groups) == 0) continue;
+                if (block.kind == ElementKind::Retroreflective &&
                     !coincide(*light.point, *sensor.point)) {
                     continue;
                 }
                 const core::TimeAxis axis = axis_of_pair(pair_of(l, s));
-                if (misses_axis(pieces_.spheres[b], *light.point, *sensor.point, axis)) continue;
+                if (misses_axis(elements_.spheres[b], *light.point, *sensor.point, axis)) continue;
                 add_pair(block,
                          light,
                          sensor,

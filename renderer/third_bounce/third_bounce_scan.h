@@ -22,11 +22,11 @@ class ThirdBounceScan {
     /// negligible_error   as in VisibilityRules
     /// memory_bytes       that masks of a single or exhaustive scan may take; where it does not
     ///                    hold those of all points, some points are looked at more than once
-    /// throws             core::Failure when it does not even hold PairTiles::kFewestPoints
+    /// throws             core::Failure when it does not even hold PairTiles::kMinPoints
     ThirdBounceScan(const Scene& scene,
                     const core::Scan& scan,
                     const core::TimeAxis& axis,
-                    const PieceSet& pieces,
+                    const ElementSet& elements,
                     double negligible_error,
                     double memory_bytes);
 
@@ -44,15 +44,15 @@ class ThirdBounceScan {
     std::uint64_t num_rays() const { return num_rays_; }
     /// Of all threads together.
     double tracing_seconds() const { return tracing_seconds_; }
-    /// Expected squared error of all of H at shadow edges, as far as pieces are too coarse for
+    /// Expected squared error of all of H at shadow edges, as far as elements are too coarse for
     /// them.
     double squared_shadow_error() const;
 
  private:
-    /// What some points of one side of the scan see of all pieces.
+    /// What some points of one side of the scan see of all elements.
     struct Views {
         PointRange range;
-        std::vector<VisiblePieces> seen;  ///< one per point of the range
+        std::vector<VisibleElements> seen;  ///< one per point of the range
     };
 
     WallPoint wall_point(const core::WallPoints& points, std::size_t index) const;
@@ -74,7 +74,7 @@ class ThirdBounceScan {
     const Scene& scene_;
     const core::Scan& scan_;
     const core::TimeAxis& axis_;
-    const PieceSet& pieces_;
+    const ElementSet& elements_;
     CoincidingPoints coinciding_;
     double negligible_error_;
     double memory_bytes_;

@@ -10,20 +10,20 @@ namespace {
 
 constexpr std::size_t kPoints = WallPointLanes::kSize;
 
-// Standard deviation of the visible share of a piece that a shadow's straight edge crosses, known
+// Standard deviation of the visible share of an element that a shadow's straight edge crosses, known
 // from one part drawn of 16, from one drawn in each quarter, and from all 16 [found by simulation].
 constexpr double kErrorFromOne = 0.34;
 constexpr double kErrorFromQuarters = 0.12;
 constexpr double kErrorFromSixteenths = 0.03;
 
-// Pieces [begin, end).
-struct PieceRange {
+// Elements [begin, end).
+struct BlockLanes {
     std::uint32_t begin;
     std::uint32_t end;
 };
 
-PieceRange pieces_of(const PieceGroup& group) {
-    const auto begin = static_cast<std::uint32_t>(group.block * PieceBlock::kSize) +
+BlockLanes elements_of(const VisibilityGroup& group) {
+    const auto begin = static_cast<std::uint32_t>(group.block * ElementBlock::kSize) +
                        static_cast<std::uint32_t>(std::countr_zero(group.lanes));
     return {begin, begin + static_cast<std::uint32_t>(std::popcount(group.lanes))};
 }
@@ -34,17 +34,17 @@ VisibilityMask quarter_mask(std::uint32_t quarter) {
 
 }  // namespace
 
-VisibilityTracer::VisibilityTracer(const Scene& scene, const PieceSet& pieces)
-    : set_(pieces),
-      relevant_(pieces),
-      rays_(scene, pieces),
-      groups_(pieces.groups.size()),
-      pieces_(pieces.blocks.size() * PieceBlock::kSize),
-      represented_(pieces_.size()) {}
+VisibilityTracer::VisibilityTracer(const Scene& scene, const ElementSet& elements)
+    : set_(elements),
+      relevant_(elements),
+      rays_(scene, elements),
+      groups_(elements.groups.size()),
+      elements_(elements.blocks.size() * ElementBlock::kSize),
+      represented_(elements_.size()) {}
 
 void VisibilityTracer::trace(std::span<const WallPoint> points,
                              const VisibilityRules& rules,
-                             std::span<VisiblePieces> seen) {
+                             std::span<VisibleElements> seen) {
     const WallPointLanes lanes(points);
     relevant_.look_from(lanes, rules);
     rays_.look_from(lanes);
@@ -54,27 +54,27 @@ void VisibilityTracer::trace(std::span<const WallPoint> points,
     classify();
     trace_groups();
     open_mixed_groups();
-    refine_mixed_pieces();
+    refine_mixed_elements();
     write(seen);
 }
 
 void VisibilityTracer::classify() {
     for (const std::uint32_t group : active_groups_) groups_[group] = {};
     for (const std::uint32_t block : active_blocks_) {
-        const auto begin = static_cast<std::ptrdiff_t>(block * PieceBlock::kSize);
-        std::fill_n(pieces_.begin() + begin, PieceBlock::kSize, State{});
-        std::fill_n(represented_.begin() + begin, PieceBlock::kSize, PointMask{0});
+        const auto begin = static_cast<std::ptrdiff_t>(block * ElementBlock::kSize);
+        std::fill_n(elements_.begin() + begin, ElementBlock::kSize, State{});
+        std::fill_n(represented_.begin() + begin, ElementBlock::kSize, PointMask{0});
     }
     active_groups_.clear();
     active_blocks_.clear();
     shadow_rays_.clear();
     for (std::uint32_t b = 0; b < set_.blocks.size(); ++b) {
-        const RelevantPieces::BlockPoints relevant = relevant_.of_block(b);
+        const RelevantElements::BlockPoints relevant = relevant_.of_block(b);
         PointMask any = 0;
         for (const PointMask points : relevant) any = combine(any, points);
         if (any == 0) continue;
         for (std::size_t lane = 0; lane < relevant.size(); ++lane) {
-            pieces_[b * PieceBlock::kSize + lane].relevant = relevant[lane];
+            elements_[b * ElementBlock::kSize + lane].relevant = relevant[lane];
         }
         active_blocks_.push_back(b);
         choose_representatives(b);
@@ -82,7 +82,7 @@ void VisibilityTracer::classify() {
 }
 
 // Points to which a wrong share of what they may see is not negligible.
-PointMask VisibilityTracer::points_that_matter(const RelevantPieces::Masses& masses,
+PointMask VisibilityTracer::points_that_matter(const RelevantElements::Masses& masses,
                                                double share) const {
     PointMask points = 0;
     for (std::size_t p = 0; p < kPoints; ++p) {
@@ -92,28 +92,29 @@ PointMask VisibilityTracer::points_that_matter(const RelevantPieces::Masses& mas
     return points;
 }
 
-// In each group, the relevant piece next to the middle gets the ray: drawn ones disagree with those
-// of neighbouring groups more often, and cost a fifth more rays.
+// In each group, the relevant element next to the middle gets the ray: drawn ones disagree with
+// those of neighbouring groups more often, and cost a fifth more rays.
 void VisibilityTracer::choose_representatives(std::uint32_t b) {
     for (std::uint32_t g = set_.first_group[b]; g < set_.first_group[b + 1]; ++g) {
-        const auto [begin, end] = pieces_of(set_.groups[g]);
+        const auto [begin, end] = elements_of(set_.groups[g]);
         PointMask left = 0;
-        for (std::uint32_t piece = begin; piece < end; ++piece) {
-            left = combine(left, pieces_[piece].relevant);
+        for (std::uint32_t element = begin; element < end; ++element) {
+            left = combine(left, elements_[element].relevant);
         }
         if (left == 0) continue;
         groups_[g].relevant = left;
         active_groups_.push_back(g);
-        const auto offer = [&](std::uint32_t piece) {
-            const PointMask points = common(left, pieces_[piece].relevant);
+        const auto offer = [&](std::uint32_t element) {
+            const PointMask points = common(left, elements_[element].relevant);
             if (points == 0) return;
-            shadow_rays_.push_back({piece, points, ShadowRays::drawn(0)});
-            represented_[piece] = points;
+            shadow_rays_.push_back({element, points, ShadowRays::drawn(0)});
+            represented_[element] = points;
             left = without(left, points);
         };
         const std::uint32_t middle = begin + (end - begin) / 2;
-        for (std::uint32_t piece = middle; piece < end && left != 0; ++piece) offer(piece);
-        for (std::uint32_t piece = middle; piece > begin && left != 0; --piece) offer(piece - 1);
+        for (std::uint32_t element = middle; element < end && left != 0; ++element) offer(element);
+        for (std::uint32_t element = middle; element > begin && left != 0; --element)
+            offer(element - 1);
     }
 }
 
@@ -122,21 +123,22 @@ void VisibilityTracer::trace_groups() {
     // Those of a group follow one another.
     auto rays = shadow_rays_.begin();
     for (const std::uint32_t g : active_groups_) {
-        const auto [begin, end] = pieces_of(set_.groups[g]);
+        const auto [begin, end] = elements_of(set_.groups[g]);
         PointMask seen = 0;
-        for (; rays != shadow_rays_.end() && rays->piece >= begin && rays->piece < end; ++rays) {
+        for (; rays != shadow_rays_.end() && rays->element >= begin && rays->element < end;
+             ++rays) {
             seen = combine(seen, rays->seen);
         }
         groups_[g].visible = seen;
-        for (std::uint32_t piece = begin; piece < end; ++piece) {
-            pieces_[piece].visible = common(pieces_[piece].relevant, seen);
+        for (std::uint32_t element = begin; element < end; ++element) {
+            elements_[element].visible = common(elements_[element].relevant, seen);
         }
     }
 }
 
 // Points for which an item's neighbours are not of its state; without neighbours to ask, it has to
 // be looked at closely.
-PointMask VisibilityTracer::mixed_points(const NeighbourLists& lists,
+PointMask VisibilityTracer::mixed_points(const AdjacencyLists& lists,
                                          std::uint32_t item,
                                          const std::vector<State>& states) {
     const PointMask visible = states[item].visible;
@@ -158,51 +160,52 @@ void VisibilityTracer::open_mixed_groups() {
     for (const std::uint32_t g : active_groups_) {
         PointMask mixed = mixed_points(set_.group_neighbours, g, groups_);
         if (mixed == 0) continue;
-        const auto [begin, end] = pieces_of(set_.groups[g]);
-        RelevantPieces::Masses mass;
-        for (std::uint32_t piece = begin; piece < end; ++piece) {
-            const PointMask relevant = pieces_[piece].relevant;
+        const auto [begin, end] = elements_of(set_.groups[g]);
+        RelevantElements::Masses mass;
+        for (std::uint32_t element = begin; element < end; ++element) {
+            const PointMask relevant = elements_[element].relevant;
             if (relevant == 0) continue;
-            const RelevantPieces::Masses of_piece = relevant_.masses_of(piece);
+            const RelevantElements::Masses of_element = relevant_.masses_of(element);
             for (std::size_t p = 0; p < kPoints; ++p) {
-                mass.of_point[p] += (relevant >> p & 1U) != 0 ? of_piece.of_point[p] : 0.0;
+                mass.of_point[p] += (relevant >> p & 1U) != 0 ? of_element.of_point[p] : 0.0;
             }
         }
         mixed = common(mixed, points_that_matter(mass, kErrorFromOne));
         if (mixed == 0) continue;
-        for (std::uint32_t piece = begin; piece < end; ++piece) {
-            const PointMask points = common(mixed, pieces_[piece].relevant);
+        for (std::uint32_t element = begin; element < end; ++element) {
+            const PointMask points = common(mixed, elements_[element].relevant);
             if (points == 0) continue;
-            opened_.push_back({piece, points});
-            const PointMask unknown = without(points, represented_[piece]);
-            if (unknown != 0) shadow_rays_.push_back({piece, unknown, ShadowRays::drawn(0)});
+            opened_.push_back({element, points});
+            const PointMask unknown = without(points, represented_[element]);
+            if (unknown != 0) shadow_rays_.push_back({element, unknown, ShadowRays::drawn(0)});
         }
     }
     rays_.trace(shadow_rays_);
     for (const ShadowRays& rays : shadow_rays_) {
-        PointMask& visible = pieces_[rays.piece].visible;
+        PointMask& visible = elements_[rays.element].visible;
         visible = combine(without(visible, rays.points), rays.seen);
     }
 }
 
-void VisibilityTracer::refine_mixed_pieces() {
+void VisibilityTracer::refine_mixed_elements() {
     shadow_rays_.clear();
     refined_.clear();
-    for (const auto& [piece, opened] : opened_) {
-        PointMask points = common(opened, mixed_points(set_.piece_neighbours, piece, pieces_));
+    for (const auto& [element, opened] : opened_) {
+        PointMask points =
+            common(opened, mixed_points(set_.element_neighbours, element, elements_));
         if (points == 0) continue;
-        points = common(points, points_that_matter(relevant_.masses_of(piece), kErrorFromOne));
+        points = common(points, points_that_matter(relevant_.masses_of(element), kErrorFromOne));
         if (points == 0) continue;
-        refined_.push_back({piece, points, {}});
+        refined_.push_back({element, points, {}});
         for (std::uint32_t k = 1; k < 4; ++k) {
-            shadow_rays_.push_back({piece, points, ShadowRays::drawn(k)});
+            shadow_rays_.push_back({element, points, ShadowRays::drawn(k)});
         }
     }
     rays_.trace(shadow_rays_);
     for (std::size_t i = 0; i < refined_.size(); ++i) {
-        auto& [piece, points, masks] = refined_[i];
-        const DrawnParts parts = rays_.drawn_parts(piece);
-        const std::array<PointMask, 4> seen{pieces_[piece].visible,
+        auto& [element, points, masks] = refined_[i];
+        const DrawnParts parts = rays_.drawn_parts(element);
+        const std::array<PointMask, 4> seen{elements_[element].visible,
                                             shadow_rays_[3 * i].seen,
                                             shadow_rays_[3 * i + 1].seen,
                                             shadow_rays_[3 * i + 2].seen};
@@ -215,32 +218,32 @@ void VisibilityTracer::refine_mixed_pieces() {
             }
             visible = static_cast<PointMask>(visible | std::uint32_t{masks[p] != 0} << p);
         });
-        pieces_[piece].visible = combine(without(pieces_[piece].visible, points), visible);
+        elements_[element].visible = combine(without(elements_[element].visible, points), visible);
     }
     refine_quarters();
 }
 
-// Pieces of which only some quarters are seen get rays to all their parts.
+// Elements of which only some quarters are seen get rays to all their parts.
 void VisibilityTracer::refine_quarters() {
     shadow_rays_.clear();
     std::vector<std::size_t> refined_of_rays;
     for (std::size_t i = 0; i < refined_.size(); ++i) {
-        const auto& [piece, refined, masks] = refined_[i];
+        const auto& [element, refined, masks] = refined_[i];
         PointMask points = 0;
         for_each_bit(refined, [&, &masks = masks](std::size_t p) {
             const bool is_partial = masks[p] != 0 && masks[p] != kAllVisible;
             points = static_cast<PointMask>(points | std::uint32_t{is_partial} << p);
         });
         if (points == 0) continue;
-        const RelevantPieces::Masses mass = relevant_.masses_of(piece);
+        const RelevantElements::Masses mass = relevant_.masses_of(element);
         points = common(points, points_that_matter(mass, kErrorFromQuarters));
         if (points == 0) continue;
-        const PieceKind kind = set_.blocks[piece / PieceBlock::kSize].kind;
-        const double num_pairs = kind == PieceKind::Retroreflective ? 1.0 : pairs_per_point_;
+        const ElementKind kind = set_.blocks[element / ElementBlock::kSize].kind;
+        const double num_pairs = kind == ElementKind::Retroreflective ? 1.0 : pairs_per_point_;
         for_each_bit(points, [&](std::size_t p) {
             squared_errors_[p] += num_pairs * std::pow(kErrorFromSixteenths * mass.of_point[p], 2);
         });
-        const DrawnParts parts = rays_.drawn_parts(piece);
+        const DrawnParts parts = rays_.drawn_parts(element);
         for (std::uint32_t bit = 0; bit < 16; ++bit) {
             PointMask unknown = 0;
             for_each_bit(points, [&](std::size_t p) {
@@ -248,7 +251,7 @@ void VisibilityTracer::refine_quarters() {
                 unknown = static_cast<PointMask>(unknown | std::uint32_t{!is_known} << p);
             });
             if (unknown == 0) continue;
-            shadow_rays_.push_back({piece, unknown, ShadowRays::fixed(bit)});
+            shadow_rays_.push_back({element, unknown, ShadowRays::fixed(bit)});
             refined_of_rays.push_back(i);
         }
     }
@@ -264,35 +267,35 @@ void VisibilityTracer::refine_quarters() {
     }
 }
 
-void VisibilityTracer::write(std::span<VisiblePieces> seen) const {
+void VisibilityTracer::write(std::span<VisibleElements> seen) const {
     for (std::size_t p = 0; p < seen.size(); ++p) {
-        seen[p].units.assign(set_.blocks.size(), 0);
-        seen[p].masks.resize(pieces_.size());
+        seen[p].simd_groups.assign(set_.blocks.size(), 0);
+        seen[p].masks.resize(elements_.size());
         seen[p].squared_error = squared_errors_[p];
     }
     for (const std::uint32_t block : active_blocks_) {
-        const State* const pieces = pieces_.data() + block * PieceBlock::kSize;
-        RelevantPieces::BlockPoints visible;
-        for (std::size_t i = 0; i < visible.size(); ++i) visible[i] = pieces[i].visible;
+        const State* const elements = elements_.data() + block * ElementBlock::kSize;
+        RelevantElements::BlockPoints visible;
+        for (std::size_t i = 0; i < visible.size(); ++i) visible[i] = elements[i].visible;
         for (std::size_t p = 0; p < seen.size(); ++p) {
-            VisibilityMask* const masks = seen[p].masks.data() + block * PieceBlock::kSize;
+            VisibilityMask* const masks = seen[p].masks.data() + block * ElementBlock::kSize;
             for (std::size_t i = 0; i < visible.size(); ++i) {
                 masks[i] = static_cast<VisibilityMask>(-(visible[i] >> p & 1));
             }
         }
-        for (std::size_t u = 0; u < PieceBlock::kUnits; ++u) {
+        for (std::size_t u = 0; u < ElementBlock::kNumSimdGroups; ++u) {
             PointMask any = 0;
-            for (std::size_t i = 0; i < PieceBlock::kUnitSize; ++i) {
-                any = combine(any, visible[u * PieceBlock::kUnitSize + i]);
+            for (std::size_t i = 0; i < ElementBlock::kSimdWidth; ++i) {
+                any = combine(any, visible[u * ElementBlock::kSimdWidth + i]);
             }
             for (std::size_t p = 0; p < seen.size(); ++p) {
-                seen[p].units[block] |= static_cast<UnitMask>(any >> p & 1U) << u;
+                seen[p].simd_groups[block] |= static_cast<SimdGroupMask>(any >> p & 1U) << u;
             }
         }
     }
-    for (const auto& [piece, points, masks] : refined_) {
-        for_each_bit(points, [&, piece = piece, &masks = masks](std::size_t p) {
-            seen[p].masks[piece] = masks[p];
+    for (const auto& [element, points, masks] : refined_) {
+        for_each_bit(points, [&, element = element, &masks = masks](std::size_t p) {
+            seen[p].masks[element] = masks[p];
         });
     }
 }

@@ -8,7 +8,7 @@
 
 namespace renderer {
 
-/// A wall point as the integrator sees it; position relative to PieceSet::origin.
+/// A wall point as the integrator sees it; position relative to ElementSet::origin.
 struct WallPoint {
     core::Vec3 position;
     core::Vec3 normal;

@@ -31,7 +31,7 @@ struct Plane {
 Plane make_plane(const std::array<Vec3, 3>& corners, const Vec3& point, const Vec3& wall_normal) {
     const Vec3 edge = corners[1] - corners[0];
     const Vec3 normal = edge.cross(corners[2] - corners[0]).normalized();
-    const Mat3 frame = frame_from_normal(normal, edge);
+    const Mat3 frame = core::frame_from_normal(normal, edge);
     const double height = normal.dot(corners[0] - point);
     Plane plane;
     plane.distance = std::abs(height);
@@ -119,7 +119,7 @@ std::vector<std::pair<double, double>> gauss_legendre(int count) {
     std::vector<std::pair<double, double>> nodes;
     for (int i = 0; i < count; ++i) {
         double x = std::cos(kPi * (i + 0.75) / (count + 0.5));
-        double slope = 1.0;
+        double gradient = 1.0;
         for (int iteration = 0; iteration < 100; ++iteration) {
             double p = 1.0;
             double previous = 0.0;
@@ -127,12 +127,12 @@ std::vector<std::pair<double, double>> gauss_legendre(int count) {
                 const double next = ((2.0 * n + 1.0) * x * p - n * previous) / (n + 1.0);
                 previous = std::exchange(p, next);
             }
-            slope = count * (x * p - previous) / (x * x - 1.0);
-            const double step = p / slope;
+            gradient = count * (x * p - previous) / (x * x - 1.0);
+            const double step = p / gradient;
             x -= step;
             if (std::abs(step) < 1e-15) break;
         }
-        nodes.emplace_back(0.5 * (1.0 - x), 1.0 / ((1.0 - x * x) * slope * slope));
+        nodes.emplace_back(0.5 * (1.0 - x), 1.0 / ((1.0 - x * x) * gradient * gradient));
     }
     return nodes;
 }

@@ -17,8 +17,8 @@ using core::Simd;
 using core::SimdMask;
 using core::TimeAxis;
 
-constexpr std::size_t kUnit = Simd::size();
-static_assert(TriangleLanes::kSize % kUnit == 0);
+constexpr std::size_t kSimdWidth = Simd::size();
+static_assert(TriangleLanes::kSize % kSimdWidth == 0);
 
 constexpr double kThird = 1.0 / 3.0;
 constexpr double kSixth = 1.0 / 6.0;
@@ -51,7 +51,7 @@ constexpr double kSag = 1.0 / 24.0;
 // like r: nothing cancels, however small the triangle is.
 class SortedTriangles {
     // Keeps reciprocals finite; in bins.
-    static constexpr double kLeastRise = 1e-100;
+    static constexpr double kMinRise = 1e-100;
 
  public:
     // The unit of lanes that starts at `begin`, after sort_corners().
@@ -67,9 +67,9 @@ class SortedTriangles {
         const Simd c1 = load(lanes.bend_m[1], begin);
         const Simd c2 = load(lanes.bend_m[2], begin);
         whole_ = (k0 + k1 + k2) * kThird;
-        const Simd rise = larger_of(p2_ - p0_, kLeastRise);
+        const Simd rise = max(p2_ - p0_, kMinRise);
         const Simd per_02 = 1.0 / rise;
-        const Simd held = kSixth / larger_of(larger_of(rise, c0), larger_of(c1, c2));
+        const Simd held = kSixth / max(max(rise, c0), max(c1, c2));
         const OfCorners bends{c0 * held, c1 * held, c2 * held};
         low_ = Side(p1_ - p0_, per_02, {k0, k1, k2}, bends, 1.0);
         high_ = Side(p2_ - p1_, per_02, {k2, k1, k0}, {bends[2], bends[1], bends[0]}, -1.0);
@@ -78,14 +78,14 @@ class SortedTriangles {
     // Where the first of the triangles that weigh anything begins and the last one ends, if not
     // beyond the given limits.
     [[gnu::always_inline]] double lowest(double limit) const {
-        return least_of(select(whole_ != 0.0, p0_, limit));
+        return reduce_min(select(whole_ != 0.0, p0_, limit));
     }
     [[gnu::always_inline]] double highest(double limit) const {
-        return most_of(select(whole_ != 0.0, p2_, limit));
+        return reduce_max(select(whole_ != 0.0, p2_, limit));
     }
     /// What the longest one spans.
     [[gnu::always_inline]] double longest() const {
-        return most_of(select(whole_ != 0.0, p2_ - p0_, 0.0));
+        return reduce_max(select(whole_ != 0.0, p2_ - p0_, 0.0));
     }
 
     /// C(e) times the area once all of a triangle lies below e.
@@ -94,7 +94,7 @@ class SortedTriangles {
     /// The same, with lane i alone.
     SortedTriangles only(std::size_t i) const {
         SortedTriangles one = *this;
-        alignas(64) std::array<double, kUnit> whole{};
+        alignas(64) std::array<double, kSimdWidth> whole{};
         whole[i] = whole_[i];
         one.whole_ = load(whole, 0);
         return one;
@@ -103,13 +103,13 @@ class SortedTriangles {
     // C(e) times the area.
     [[gnu::always_inline]] Simd below(double e) const {
         const SimdMask low = e < p1_;
-        const Simd reach = larger_of(select(low, e - p0_, p2_ - e), 0.0);
+        const Simd reach = max(select(low, e - p0_, p2_ - e), 0.0);
         const Simd a = reach * select(low, low_.per, high_.per);
         Simd part = select(low, low_.factor[3], high_.factor[3]);
         for (std::size_t k = 3; k-- > 0;) {
             part = part * a + select(low, low_.factor[k], high_.factor[k]);
         }
-        const Simd within = smaller_of(larger_of(part * a, 0.0), whole_);
+        const Simd within = min(max(part * a, 0.0), whole_);
         return select(low, within, whole_ - within);
     }
 
@@ -130,9 +130,9 @@ class SortedTriangles {
                                     const OfCorners& k,
                                     const OfCorners& c,
                                     double sign)
-            : per(1.0 / larger_of(rise, kLeastRise)) {
+            : per(1.0 / max(rise, kMinRise)) {
             const Simd ratio = rise * per_02;
-            const Simd slope = (k[1] - k[0]) + ratio * (k[2] - k[0]);  // x / a
+            const Simd gradient = (k[1] - k[0]) + ratio * (k[2] - k[0]);  // x / a
             // -2 q / (p2-p0), by powers of a
             const Simd sum = c[0] + c[1] + c[2];
             const Simd q0 = -0.5 * sign * sum;
@@ -140,9 +140,9 @@ class SortedTriangles {
             const Simd q2 =
                 sign * (ratio * (sum - 2.0 * (c[2] + c[1]) - 2.0 * ratio * c[1]) - 2.0 * c[2]);
             factor[0] = q0 * k[0];
-            factor[1] = ratio * k[0] + q1 * k[0] + 0.5 * q0 * slope;
-            factor[2] = kThird * ratio * slope + q2 * k[0] + 0.5 * q1 * slope;
-            factor[3] = 0.5 * q2 * slope;
+            factor[1] = ratio * k[0] + q1 * k[0] + 0.5 * q0 * gradient;
+            factor[2] = kThird * ratio * gradient + q2 * k[0] + 0.5 * q1 * gradient;
+            factor[3] = 0.5 * q2 * gradient;
         }
     };
 
@@ -164,7 +164,7 @@ struct Corner {
 // Turns lengths into positions in bins, shifts them to the mean of the bent ones, and sorts corners
 // by them.
 void sort_corners(TriangleLanes& lanes, std::size_t count, double start_m, double bins_per_m) {
-    for (std::size_t begin = 0; begin < count; begin += kUnit) {
+    for (std::size_t begin = 0; begin < count; begin += kSimdWidth) {
         std::array<Corner, 3> corners;
         for (std::size_t j = 0; j < 3; ++j) {
             corners[j] = {load(lanes.opl_m[j], begin),
@@ -206,7 +206,7 @@ TriangleLanes single_lane(const TriangleKnots& knots, double area_m2) {
     const double last = std::floor(std::min(high, num_bins - 1.0));
     Simd below = low < first ? triangles.below(first) : Simd(0.0);
     const auto add = [&](double bin, const Simd& next) {
-        const Simd rising = larger_of(below, next);
+        const Simd rising = max(below, next);
         histogram[static_cast<std::size_t>(bin)] += sum_of(rising - below);
         below = rising;
     };
@@ -217,13 +217,13 @@ TriangleLanes single_lane(const TriangleKnots& knots, double area_m2) {
 // Triangles that together reach over more bins than this and more than this many times the longest
 // one are added one by one.
 constexpr double kFewBins = 16.0;
-constexpr double kMostScatter = 4.0;
+constexpr double kMaxScatter = 4.0;
 
 void add_sorted(const SortedTriangles& triangles, std::span<double> histogram) {
     const auto num_bins = static_cast<double>(histogram.size());
     const double reached = triangles.highest(-1.0) - triangles.lowest(num_bins);
-    if (reached > kFewBins && reached > kMostScatter * triangles.longest()) {
-        for (std::size_t i = 0; i < kUnit; ++i) add_together(triangles.only(i), histogram);
+    if (reached > kFewBins && reached > kMaxScatter * triangles.longest()) {
+        for (std::size_t i = 0; i < kSimdWidth; ++i) add_together(triangles.only(i), histogram);
         return;
     }
     add_together(triangles, histogram);
@@ -231,30 +231,29 @@ void add_sorted(const SortedTriangles& triangles, std::span<double> histogram) {
 
 // Triangles that bend more than this times what they rise are split where a bin's edge falls into
 // them, ...
-constexpr double kMostBend = 0.5;
+constexpr double kMaxBend = 0.5;
 // ... unless they bend by a negligible part of a bin ...
 constexpr double kNegligibleBend = 1e-3;
 // ... or have been split this often.
-constexpr int kMostSplits = 4;
+constexpr int kMaxSplits = 4;
 
 // Which of the sorted triangles are to be split.
 std::uint64_t bent_lanes(const TriangleLanes& lanes, std::size_t count, double num_bins) {
     std::uint64_t bits = 0;
-    for (std::size_t begin = 0; begin < count; begin += kUnit) {
+    for (std::size_t begin = 0; begin < count; begin += kSimdWidth) {
         const Simd low = load(lanes.opl_m[0], begin);
         const Simd high = load(lanes.opl_m[2], begin);
-        const Simd most =
-            larger_of(larger_of(load(lanes.bend_m[0], begin), load(lanes.bend_m[1], begin)),
-                      load(lanes.bend_m[2], begin));
+        const Simd most = max(max(load(lanes.bend_m[0], begin), load(lanes.bend_m[1], begin)),
+                              load(lanes.bend_m[2], begin));
         // Bent positions lie at most a sixth of this below the linear ones through the corners,
         // from which those here are shifted down by at most an eighth of it.
         const auto bin_of = [num_bins](const Simd& p) {
-            return floor(smaller_of(larger_of(p, -1.0), num_bins));
+            return floor(min(max(p, -1.0), num_bins));
         };
         const Simd weight = load(lanes.weight[0], begin) + load(lanes.weight[1], begin) +
                             load(lanes.weight[2], begin);
         const SimdMask is_split = (0.0 < weight) &
-                                  (larger_of(kNegligibleBend, kMostBend * (high - low)) < most) &
+                                  (max(kNegligibleBend, kMaxBend * (high - low)) < most) &
                                   (bin_of(low - most * kSixth) < bin_of(high + most * 0.125));
         bits |= is_split.bits() << begin;
     }
@@ -263,15 +262,16 @@ std::uint64_t bent_lanes(const TriangleLanes& lanes, std::size_t count, double n
 
 // Numbers for the corners of the four quarters of a triangle, twice: lane 4t + part.
 struct QuarterCorner {
-    alignas(64) std::array<std::array<double, kUnit>, 3> of_corner;  ///< barycentric coordinates
-    alignas(64) std::array<std::array<double, kUnit>, 3> of_bend;
+    alignas(
+        64) std::array<std::array<double, kSimdWidth>, 3> of_corner;  ///< barycentric coordinates
+    alignas(64) std::array<std::array<double, kSimdWidth>, 3> of_bend;
 };
 
 // Corner j of the part that keeps corner `part` lies there or in the middle of the edge opposite to
 // the third corner; the fourth part joins the middles.
 constexpr std::array<QuarterCorner, 3> quarter_corners() {
     std::array<QuarterCorner, 3> corners{};
-    for (std::size_t lane = 0; lane < kUnit; ++lane) {
+    for (std::size_t lane = 0; lane < kSimdWidth; ++lane) {
         const std::size_t part = lane % 4;
         for (std::size_t j = 0; j < 3; ++j) {
             if (part == j) {
@@ -290,7 +290,7 @@ constexpr std::array<QuarterCorner, 3> quarter_corners() {
 constexpr std::array<QuarterCorner, 3> kQuarterCorners = quarter_corners();
 
 // 1 in the lanes of the second triangle.
-alignas(64) constexpr std::array<double, kUnit> kSecond{0, 0, 0, 0, 1, 1, 1, 1};
+alignas(64) constexpr std::array<double, kSimdWidth> kSecond{0, 0, 0, 0, 1, 1, 1, 1};
 
 // Sets the unit of `parts` from `begin` to the quarters of two sorted triangles.
 void quarter(const TriangleLanes& lanes,
@@ -339,12 +339,12 @@ void add_lanes(TriangleLanes& lanes,
                double bins_per_m,
                int num_splits,
                std::span<double> histogram) {
-    for (; count % kUnit != 0; ++count) {
+    for (; count % kSimdWidth != 0; ++count) {
         lanes.area_m2[count] = 0.0;
         for (TriangleLanes::Lanes& weight : lanes.weight) weight[count] = 0.0;
     }
     sort_corners(lanes, count, start_m, bins_per_m);
-    std::uint64_t bent = num_splits == kMostSplits
+    std::uint64_t bent = num_splits == kMaxSplits
                              ? 0
                              : bent_lanes(lanes, count, static_cast<double>(histogram.size()));
     while (bent != 0) {
@@ -354,7 +354,7 @@ void add_lanes(TriangleLanes& lanes,
             const std::size_t first = take_lowest(bent);
             const std::size_t second = bent != 0 ? take_lowest(bent) : first;
             quarter(lanes, first, second, parts, num_parts);
-            num_parts += first == second ? 4 : kUnit;
+            num_parts += first == second ? 4 : kSimdWidth;
             for (TriangleLanes::Lanes& weight : lanes.weight) {
                 weight[first] = 0.0;
                 weight[second] = 0.0;
@@ -362,7 +362,7 @@ void add_lanes(TriangleLanes& lanes,
         }
         add_lanes(parts, num_parts, 0.0, 1.0, num_splits + 1, histogram);
     }
-    for (std::size_t begin = 0; begin < count; begin += kUnit) {
+    for (std::size_t begin = 0; begin < count; begin += kSimdWidth) {
         add_sorted(SortedTriangles(lanes, begin), histogram);
     }
 }
@@ -376,19 +376,19 @@ constexpr double kReach = 6.8;
 
 using Slots = std::array<double, TriangleBins::kSlots>;
 
-// The cumulative histogram and its slopes from the splines, edge_m from the first knot; the mean
+// The cumulative histogram and its gradients from the splines, edge_m from the first knot; the mean
 // over a triangle is twice the integral over the barycentric coordinates.
 Slots cumulative_of(const TriangleSplines<double>::Values& values,
                     const TriangleKnots& knots,
                     double edge_m,
                     double per_m,
-                    Slopes slopes) {
+                    Gradients gradients) {
     Slots cumulative{};
     for (std::size_t j = 0; j < 3; ++j) {
         cumulative[0] += 2.0 * values.share[j] * knots.weight[j];
     }
-    if (slopes == Slopes::Without) return cumulative;
-    const auto& s = values.slope;
+    if (gradients == Gradients::Without) return cumulative;
+    const auto& s = values.gradient;
     const auto& k = knots.weight;
     cumulative[1] = 2.0 * per_m * (2.0 * s[0] * k[0] + s[1] * k[1] + s[2] * k[2]);
     cumulative[2] = 2.0 * per_m * (s[1] * k[0] + 2.0 * s[3] * k[1] + s[4] * k[2]);
@@ -445,7 +445,7 @@ void add_triangle(const TriangleKnots& knots,
 void evaluate_triangle(const TriangleKnots& knots,
                        double sigma_m,
                        const TimeAxis& axis,
-                       Slopes slopes,
+                       Gradients gradients,
                        TriangleBins& bins) {
     const auto [least, most] = std::minmax_element(knots.opl_m.begin(), knots.opl_m.end());
     const double reach = kReach * sigma_m;
@@ -465,12 +465,12 @@ void evaluate_triangle(const TriangleKnots& knots,
     const auto cumulative_at = [&](int edge) {
         if (edge <= begin) return Slots{};
         if (edge >= end) return whole_triangle(knots);
-        if (sigma_m == 0.0 && slopes == Slopes::Without) {
+        if (sigma_m == 0.0 && gradients == Gradients::Without) {
             return Slots{triangle_cumulative(knots, axis.bin_begin_m(edge))};
         }
         const double edge_m = axis.bin_begin_m(edge) - knots.opl_m[0];
-        splines.evaluate(edge_m * per_m, slopes == Slopes::With, values);
-        return cumulative_of(values, knots, edge_m, per_m, slopes);
+        splines.evaluate(edge_m * per_m, gradients == Gradients::With, values);
+        return cumulative_of(values, knots, edge_m, per_m, gradients);
     };
     Slots below = cumulative_at(bins.first_bin);
     for (int bin = bins.first_bin; bin <= last_bin; ++bin) {

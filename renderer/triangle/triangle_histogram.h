@@ -87,18 +87,18 @@ struct TriangleBins {
 };
 
 /// Whether derivatives are wanted.
-enum class Slopes { Without, With };
+enum class Gradients { Without, With };
 
 /// The histogram of add_triangle() seen through a Gaussian response, in closed form.
 ///
 /// sigma_m   standard deviation of the response in path length [m]; 0: none
-/// slopes    without them only slot 0 of each bin is set
+/// gradients    without them only slot 0 of each bin is set
 /// bins      overwritten; memory is kept from call to call
 /// source    [deBoor1978]; derived in triangle_splines.h
 void evaluate_triangle(const TriangleKnots& knots,
                        double sigma_m,
                        const core::TimeAxis& axis,
-                       Slopes slopes,
+                       Gradients gradients,
                        TriangleBins& bins);
 
 }  // namespace renderer

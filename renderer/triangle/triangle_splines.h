@@ -36,7 +36,7 @@ class TriangleSplines {
     struct Values {
         std::array<T, 3> share;
         /// Of d share_j / d x_k without the factor: symmetric, pairs 00 01 02 11 12 22.
-        std::array<T, 6> slope;
+        std::array<T, 6> gradient;
     };
 
     /// knots   in units of the response's standard deviation; in bins for Smear::None
@@ -46,25 +46,25 @@ class TriangleSplines {
         }
         for (std::size_t i = 0; i < 3; ++i) x_[i] = knots[order_[i]];
         if (smear_ == Smear::Gaussian) return;
-        if (x_[1] - x_[0] < kLeastGap) x_[0] = x_[1] - kLeastGap;
-        if (x_[2] - x_[1] < kLeastGap) x_[2] = x_[1] + kLeastGap;
+        if (x_[1] - x_[0] < kMinGap) x_[0] = x_[1] - kMinGap;
+        if (x_[2] - x_[1] < kMinGap) x_[2] = x_[1] + kMinGap;
     }
 
-    /// Shares below `edge` and, if wanted, their slopes, in the order of the given knots.
-    void evaluate(double edge, bool with_slopes, Values& values) const {
+    /// Shares below `edge` and, if wanted, their gradients, in the order of the given knots.
+    void evaluate(double edge, bool with_gradients, Values& values) const {
         const double sign = edge + edge > x_[0] + x_[2] ? -1.0 : 1.0;
         const double base = sign < 0.0 ? 1.0 / 6.0 : 0.0;
         Differences d;
         if (is_close(x_[0], x_[2], edge)) {
-            expand_all(edge, sign, with_slopes, d);
+            expand_all(edge, sign, with_gradients, d);
         } else {
-            divide_all(edge, sign, with_slopes, d);
+            divide_all(edge, sign, with_gradients, d);
         }
         for (std::size_t j = 0; j < 3; ++j) values.share[order_[j]] = base - d.third[j];
-        if (!with_slopes) return;
+        if (!with_gradients) return;
         for (std::size_t j = 0; j < 3; ++j) {
             for (std::size_t k = j; k < 3; ++k) {
-                values.slope[pair_index(order_[j], order_[k])] = -d.fourth[pair_index(j, k)];
+                values.gradient[pair_index(order_[j], order_[k])] = -d.fourth[pair_index(j, k)];
             }
         }
     }
@@ -80,7 +80,7 @@ class TriangleSplines {
     // exact to 1e-11, and division by a larger distance loses at most 1e-12. Without smear the
     // series ends after the cubic term, and is used wherever no knot lies beyond the edge.
     static constexpr double kClose = 0.25;
-    static constexpr double kLeastGap = 1e-6;
+    static constexpr double kMinGap = 1e-6;
     static constexpr std::size_t kTerms = 9;
     static constexpr std::size_t kDerivatives = kTerms + 4;
     using Derivatives = std::array<T, kDerivatives>;
@@ -173,13 +173,13 @@ class TriangleSplines {
         return sum;
     }
 
-    void expand_all(double edge, double sign, bool with_slopes, Differences& d) const {
+    void expand_all(double edge, double sign, bool with_gradients, Differences& d) const {
         const T mean = (x_[0] + x_[1] + x_[2]) * (1.0 / 3.0);
         const Derivatives f = taylor(mean, edge, sign);
         const std::array<T, 3> o{x_[0] - mean, x_[1] - mean, x_[2] - mean};
         for (std::size_t j = 0; j < 3; ++j) {
             d.third[j] = expand<4>(f, {o[0], o[1], o[2], o[j]});
-            if (!with_slopes) continue;
+            if (!with_gradients) continue;
             for (std::size_t k = j; k < 3; ++k) {
                 d.fourth[pair_index(j, k)] = expand<5>(f, {o[0], o[1], o[2], o[j], o[k]});
             }
@@ -187,14 +187,14 @@ class TriangleSplines {
     }
 
     PairDifferences expand_pair(
-        const T& a, const T& b, double edge, double sign, bool with_slopes) const {
+        const T& a, const T& b, double edge, double sign, bool with_gradients) const {
         const T o = 0.5 * (b - a);
         const Derivatives f = taylor(0.5 * (a + b), edge, sign);
         PairDifferences d;
         d.ab = expand<2>(f, {-o, o});
         d.aab = expand<3>(f, {-o, -o, o});
         d.abb = expand<3>(f, {-o, o, o});
-        if (!with_slopes) return d;
+        if (!with_gradients) return d;
         d.aaab = expand<4>(f, {-o, -o, -o, o});
         d.aabb = expand<4>(f, {-o, -o, o, o});
         d.abbb = expand<4>(f, {-o, o, o, o});
@@ -204,26 +204,26 @@ class TriangleSplines {
     static PairDifferences divide_pair(const Knot& a,
                                        const Knot& b,
                                        const T& distance,
-                                       bool with_slopes) {
+                                       bool with_gradients) {
         const T per = 1.0 / distance;
         PairDifferences d;
         d.ab = (b.f - a.f) * per;
         d.aab = (d.ab - a.f1) * per;
         d.abb = (b.f1 - d.ab) * per;
-        if (!with_slopes) return d;
+        if (!with_gradients) return d;
         d.aaab = (d.aab - a.f2) * per;
         d.aabb = (d.abb - d.aab) * per;
         d.abbb = (b.f2 - d.abb) * per;
         return d;
     }
 
-    void divide_all(double edge, double sign, bool with_slopes, Differences& d) const {
+    void divide_all(double edge, double sign, bool with_gradients, Differences& d) const {
         const std::array<Knot, 3> knots{
             at_knot(x_[0], edge, sign), at_knot(x_[1], edge, sign), at_knot(x_[2], edge, sign)};
         const auto pair = [&](std::size_t i) {
             if (is_close(x_[i], x_[i + 1], edge))
-                return expand_pair(x_[i], x_[i + 1], edge, sign, with_slopes);
-            return divide_pair(knots[i], knots[i + 1], x_[i + 1] - x_[i], with_slopes);
+                return expand_pair(x_[i], x_[i + 1], edge, sign, with_gradients);
+            return divide_pair(knots[i], knots[i + 1], x_[i + 1] - x_[i], with_gradients);
         };
         const PairDifferences low = pair(0);   // of knots 0 and 1
         const PairDifferences high = pair(1);  // of knots 1 and 2
@@ -233,7 +233,7 @@ class TriangleSplines {
         const T d0112 = (high.aab - low.abb) * per;
         const T d0122 = (high.abb - d012) * per;
         d.third = {d0012, d0112, d0122};
-        if (!with_slopes) return;
+        if (!with_gradients) return;
         d.fourth = {(d0012 - low.aaab) * per,
                     (d0112 - low.aabb) * per,
                     (d0122 - d0012) * per,

@@ -405,7 +405,7 @@ core::Capture counts_through(const Device& device,
     forward.offset_m = ranges_of(device, commands);
     calib::ForwardModel light(model, scan, calib::WallMotion(scan), forward);
     light.refresh(model.start());
-    light.update(model.start(), renderer::Slopes::Without);
+    light.update(model.start(), renderer::Gradients::Without);
     core::Capture capture;
     capture.scan = test_support::confocal_grid(static_cast<int>(std::sqrt(commands.size())));
     capture.time_axis = forward.axis;

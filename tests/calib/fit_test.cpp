@@ -53,7 +53,7 @@ TEST(Fit, FindsThePoseOfNoiseFreeData) {
     const auto capture = expected_capture(truth(), confocal_grid(8), 1e6, 0.5);
     calib::FitInput input = fit_input(capture, displaced());
     input.settings.residual = calib::ResidualKind::LeastSquares;
-    input.settings.piece_tolerance = 5e-3;
+    input.settings.element_tolerance = 5e-3;
     const calib::FitResult fit = calib::fit_scene(input, {});
     ASSERT_TRUE(fit.converged);
     const auto errors = calib::compare_fit(fit, fit.geometry, truth());

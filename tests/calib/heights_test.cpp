@@ -113,11 +113,11 @@ TEST(Heights, RankDeficientRowsKeepCostAndGradient) {
     calib::FitData data;
     data.axis = counts.time_axis;
     data.values.assign(counts.transient.values().begin(), counts.transient.values().end());
-    data.least_mean = 1e-6;
+    data.min_mean = 1e-6;
     calib::FitObjective objective(light, data, true, {}, model.num_columns());
-    objective.evaluate(state, renderer::Slopes::Without);
+    objective.evaluate(state, renderer::Gradients::Without);
     const double cost = objective.sum_of_squares();
-    objective.evaluate(state, renderer::Slopes::With);
+    objective.evaluate(state, renderer::Gradients::With);
     EXPECT_NEAR(objective.sum_of_squares() / cost, 1.0, 1e-9);
 
     Eigen::VectorXd gradient = Eigen::VectorXd::Zero(model.num_columns());
@@ -133,7 +133,7 @@ TEST(Heights, RankDeficientRowsKeepCostAndGradient) {
         double ends[2];
         for (const int end : {0, 1}) {
             height += end == 0 ? -kStep_m : 2.0 * kStep_m;
-            objective.evaluate(state, renderer::Slopes::Without);
+            objective.evaluate(state, renderer::Gradients::Without);
             ends[end] = objective.sum_of_squares();
         }
         height -= kStep_m;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Ill-posed fits. Grazing tilts, nearly symmetric objects, few photons, hidden and missing objects:
 // tests/calib/hard_fits_test.cpp; set-ups that the data cannot determine: calibrate_test.cpp.
+#include "calib/forward/autodiff_reference.h"
 #include "calib/forward/forward_model.h"
-#include "calib/forward/jet_model.h"
 #include "calib/setup/direct_returns.h"
 #include "calib/statistics/uncertainty.h"
 #include "renderer/core/instrument_response.h"
@@ -74,7 +74,7 @@ double direct_returns_of_few_and_of_many_counts() {
     return worst.value();
 }
 
-double slopes_of_the_light_of_tiny_and_large_objects() {
+double gradients_of_the_light_of_tiny_and_large_objects() {
     // Written by hand, against automatic derivatives of another program text; relative L2 over all
     // bins, for each of the pose's six parameters.
     const core::Scan scan = test_support::confocal_grid(2);
@@ -97,19 +97,19 @@ double slopes_of_the_light_of_tiny_and_large_objects() {
         calib::ForwardModel light(model, scan, calib::WallMotion(scan), forward);
         const calib::SceneState state = model.start();
         light.refresh(state);
-        light.update(state, renderer::Slopes::With);
+        light.update(state, renderer::Gradients::With);
         const auto columns = static_cast<std::size_t>(model.num_columns());
         for (std::size_t pair = 0; pair < scan.num_pairs(); ++pair) {
             calib::PairModel found;
             light.evaluate(pair, found);
-            const std::vector<double> jets = calib::jet_slopes(model, state, light, pair);
+            const std::vector<double> jets = calib::autodiff_jacobian(model, state, light, pair);
             for (std::size_t c = 0; c < 6; ++c) {
                 double square = 0.0;
                 double error = 0.0;
                 for (std::size_t bin = 0; bin < 400; ++bin) {
-                    const double slope = jets[bin * 6 + c];
-                    square += slope * slope;
-                    error += std::pow(found.slopes[bin * columns + c] - slope, 2);
+                    const double gradient = jets[bin * 6 + c];
+                    square += gradient * gradient;
+                    error += std::pow(found.gradients[bin * columns + c] - gradient, 2);
                 }
                 worst.add(std::sqrt(error / square));
             }

@@ -90,7 +90,7 @@ double transport_at_grazing_angles() {
         vertex.to_previous = vertex.normal;
         vertex.bsdf = renderer::Lambertian{0.6};
         vertex.throughput = 1.0;
-        renderer::PathEnds ends;
+        renderer::PathEndpoints ends;
         ends.light.position = centre + Vec3(0.8, 0.3, test_support::power_of_ten(rng, -9.0, 0.0));
         const Vec3 beside = Vec3(0.3, -0.8, 0.0).normalized();
         ends.light.normal =

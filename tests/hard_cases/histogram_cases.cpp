@@ -197,7 +197,7 @@ double smeared_kernel_at_all_widths() {
     for (int i = 0; i < 150; ++i) {
         const SmearedTriangle triangle = random_smeared_triangle(rng);
         const auto& [knots, sigma, axis] = triangle;
-        renderer::evaluate_triangle(knots, sigma, axis, renderer::Slopes::Without, bins);
+        renderer::evaluate_triangle(knots, sigma, axis, renderer::Gradients::Without, bins);
         for (int k = 0; k < static_cast<int>(bins.bins.size()); k += 4) {
             worst.add(truth::relative_error(bins.bins[static_cast<std::size_t>(k)].slots[0],
                                             triangle.bin(lengths_of(knots), bins.first_bin + k),
@@ -214,7 +214,7 @@ double slopes_of_the_smeared_kernel() {
     for (int i = 0; i < 100; ++i) {
         const SmearedTriangle triangle = random_smeared_triangle(rng);
         const auto& [knots, sigma, axis] = triangle;
-        renderer::evaluate_triangle(knots, sigma, axis, renderer::Slopes::With, bins);
+        renderer::evaluate_triangle(knots, sigma, axis, renderer::Gradients::With, bins);
         if (bins.bins.empty()) continue;  // behind the axis
         const auto k = static_cast<std::size_t>(rng.uniform() * double(bins.bins.size()));
         const int bin = bins.first_bin + static_cast<int>(k);

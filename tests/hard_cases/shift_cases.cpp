@@ -28,7 +28,7 @@ struct PlaneTruth {
 PlaneTruth shift_on_plane(const renderer::Facet& plane,
                           const FocusPair& source,
                           const FocusPair& target,
-                          const renderer::LengthChange& change) {
+                          const renderer::ConstraintChange& change) {
     const QuadVec x;
     const Quad opl = truth::opl_of(source, x);
     const auto from = truth::Section::cut(source, opl, plane);
@@ -56,8 +56,8 @@ double plane_shift_error(std::string_view seed, double distance_m, double apart_
         const FocusPair source{near(place, apart_m), near(place, apart_m)};
         const FocusPair target{near(source.a, moved_m), near(source.b, moved_m)};
         const double ratio = std::array{0.2, 1.0, 5.0}[static_cast<std::size_t>(i % 3)];
-        const renderer::LengthChange change{ratio,
-                                            (1.05 - ratio) * source.opl_m(Vec3::Zero()) + moved_m};
+        const renderer::ConstraintChange change{
+            ratio, (1.05 - ratio) * source.opl_m(Vec3::Zero()) + moved_m};
         renderer::ShiftTrace trace;
         const auto found = renderer::shift_on_plane(plane, source, target, change, 1e-16, trace);
         if (!found) continue;

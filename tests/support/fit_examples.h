@@ -55,7 +55,7 @@ inline core::Capture expected_capture(const renderer::SceneGeometry& geometry,
     forward.tolerance = 2e-3;
     calib::ForwardModel light(model, scan, calib::WallMotion(scan), forward);
     light.refresh(model.start());
-    light.update(model.start(), renderer::Slopes::Without);
+    light.update(model.start(), renderer::Gradients::Without);
     core::Capture capture;
     capture.scan = scan;
     capture.time_axis = kFitAxis;

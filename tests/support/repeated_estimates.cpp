@@ -54,7 +54,7 @@ Estimate repeat(const std::function<Numbers(std::uint64_t seed)>& render, const 
     return estimate;
 }
 
-void expect_same_means(const Estimate& a, const Estimate& b, double most_relative_error) {
+void expect_same_means(const Estimate& a, const Estimate& b, double max_relative_error) {
     ASSERT_EQ(a.mean.size(), b.mean.size());
     std::vector<std::pair<double, std::size_t>> compared;
     for (std::size_t k = 0; k < a.mean.size(); ++k) {
@@ -74,7 +74,7 @@ void expect_same_means(const Estimate& a, const Estimate& b, double most_relativ
     }
     // The total, tightly.
     const double sigma = std::sqrt(a.squared_error.back() + b.squared_error.back());
-    EXPECT_LT(sigma, most_relative_error * b.mean.back());
+    EXPECT_LT(sigma, max_relative_error * b.mean.back());
 }
 
 }  // namespace test_support

@@ -30,7 +30,7 @@ Estimate repeat(const std::function<Numbers(std::uint64_t seed)>& render, const 
 
 /// Expects two estimates to agree, number by number, at a family-wise level of 1e-3.
 ///
-/// most_relative_error   that their difference in the total may have: the test's sharpness
-void expect_same_means(const Estimate& a, const Estimate& b, double most_relative_error);
+/// max_relative_error   that their difference in the total may have: the test's sharpness
+void expect_same_means(const Estimate& a, const Estimate& b, double max_relative_error);
 
 }  // namespace test_support

@@ -100,9 +100,9 @@ class SdfChart {
         double height = top_m_;
         for (int step = 0; step < kMaxSteps; ++step) {
             const auto value = surface_->at(frame_ * core::Vec3(xi.x(), xi.y(), height));
-            const double slope = value.gradient.dot(frame_.col(2));
-            if (std::abs(value.phi) < 1e-3 && slope > kSteepest) {
-                const double change = value.phi / slope;
+            const double gradient = value.gradient.dot(frame_.col(2));
+            if (std::abs(value.phi) < 1e-3 && gradient > kSteepest) {
+                const double change = value.phi / gradient;
                 height -= change;
                 if (std::abs(change) < 1e-14) return height;
                 continue;

@@ -15,7 +15,7 @@ struct ShiftCase {
     renderer::SurfacePoint x;
     renderer::ShiftEnd source;
     renderer::ShiftEnd target;
-    renderer::LengthChange change;
+    renderer::ConstraintChange change;
 
     ShiftCase inverse(const renderer::SurfacePoint& shifted) const {
         return {shifted, target, source, change.inverse()};

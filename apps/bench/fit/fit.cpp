@@ -224,8 +224,8 @@ void bench_speed(int trials, FitBench& bench) {
     const int fits = std::max(2, trials / 5);
     for (const double tolerance : {0.2, 0.05, 0.02, 0.005}) {
         TrialSetup setup;
-        setup.piece_tolerance = tolerance;
-        add_point(fmt::format("pieces to {}", tolerance), setup, fits, bench);
+        setup.element_tolerance = tolerance;
+        add_point(fmt::format("elements to {}", tolerance), setup, fits, bench);
     }
     for (const auto& schedule : {std::vector<double>{0.0},
                                  std::vector<double>{0.04, 0.0},
@@ -249,7 +249,7 @@ struct BenchPart {
 const std::vector<BenchPart>& bench_parts() {
     static const std::vector<BenchPart> kParts{
         {"forward", [](int, FitBench& bench) { bench_forward(bench); }},
-        {"slopes", [](int, FitBench& bench) { bench_slopes(bench); }},
+        {"gradients", [](int, FitBench& bench) { bench_gradients(bench); }},
         {"pose", bench_pose},
         {"basin", bench_basin},
         {"search", bench_search},

@@ -2,7 +2,7 @@
 #include "apps/bench/fit/fit_parts.h"
 #include "apps/bench/fit/fit_trials.h"
 #include "calib/fit/fit_objective.h"
-#include "calib/forward/jet_model.h"
+#include "calib/forward/autodiff_reference.h"
 #include "calib/model/state_vector.h"
 #include "renderer/core/process.h"
 #include "renderer/triangle/exact_arcs.h"
@@ -53,13 +53,13 @@ struct Bare {
         return state;
     }
 
-    double milliseconds(renderer::Slopes slopes) const {
+    double milliseconds(renderer::Gradients gradients) const {
         constexpr int kRepeats = 7;
         std::vector<double> times;
         calib::PairModel pair;
         for (int i = 0; i < kRepeats; ++i) {
             const double begin = core::cpu_seconds();
-            light->update(start(), slopes);
+            light->update(start(), gradients);
             for (std::size_t p = 0; p < scan.num_pairs(); ++p) light->evaluate(p, pair);
             times.push_back(1e3 * (core::cpu_seconds() - begin));
         }
@@ -100,11 +100,11 @@ struct ForwardError {
     double energy = 0.0;
 };
 
-// Meshes of cells whose diagonals are `pieces` long, against arcs, for a few wall points.
+// Meshes of cells whose diagonals are `elements` long, against arcs, for a few wall points.
 ForwardError forward_error(int cells_x, int cells_y) {
     constexpr double kNoFurtherCut = 1e9;
     const Bare bare(standard_pose(), cells_x, cells_y, kNoFurtherCut, false);
-    bare.light->update(bare.start(), renderer::Slopes::Without);
+    bare.light->update(bare.start(), renderer::Gradients::Without);
     const renderer::Object whole = trial_rectangle(standard_pose(), 1, 1);
     ForwardError worst;
     const double sigma_m = bare.light->settings().sigma_m;
@@ -131,7 +131,7 @@ double change_under_shifts() {
     for (int i = 0; i <= kShifts; ++i) {
         const double shift_m = trial_axis().bin_width_m * i / (kShifts + 1);
         const Bare bare(standard_pose(), 11, 9, 1e9, false, shift_m);
-        bare.light->update(bare.start(), renderer::Slopes::Without);
+        bare.light->update(bare.start(), renderer::Gradients::Without);
         calib::PairModel model;
         for (std::size_t pair = 0; pair < bare.scan.num_pairs(); ++pair) {
             bare.light->evaluate(pair, model);
@@ -148,37 +148,37 @@ double change_under_shifts() {
 void bench_forward(FitBench& bench) {
     const ForwardError coarse = forward_error(5, 4);  // diagonals of 0.11 m, edges up to 0.08 m
     const ForwardError fine = forward_error(11, 9);
-    bench.rows.push_back({"forward against arcs, pieces <= 10 cm / <= 5 cm [relative L2]",
+    bench.rows.push_back({"forward against arcs, elements <= 10 cm / <= 5 cm [relative L2]",
                           "1.5e-2 / 1.5e-3",
                           fmt::format("{:.1e} / {:.1e}", coarse.shape, fine.shape),
                           coarse.shape < 1.5e-2 && fine.shape < 1.5e-3});
     const double change = change_under_shifts();
-    bench.rows.push_back({"energy error / change of energy under sub-bin shifts, pieces <= 5 cm",
+    bench.rows.push_back({"energy error / change of energy under sub-bin shifts, elements <= 5 cm",
                           "1e-5 / 1e-5",
                           fmt::format("{:.1e} / {:.1e}", fine.energy, change),
                           fine.energy < 1e-5 && change < 1e-5});
     const Bare bare(standard_pose(), 4, 3, 1e9, false);
     const Bare filtered(standard_pose(), 4, 3, 1e9, true);
-    const double plain = bare.milliseconds(renderer::Slopes::Without);
-    const double slopes = bare.milliseconds(renderer::Slopes::With);
-    const double fir = filtered.milliseconds(renderer::Slopes::Without);
+    const double plain = bare.milliseconds(renderer::Gradients::Without);
+    const double gradients = bare.milliseconds(renderer::Gradients::With);
+    const double fir = filtered.milliseconds(renderer::Gradients::Without);
     bench.rows.push_back(
         {"forward / with Jacobian / filtered, 24 triangles x 256 points x 288 bins [ms]",
          "12 / 20 / 3",
-         fmt::format("{:.1f} / {:.1f} / {:.1f}", plain, slopes, fir),
-         plain < 12.0 && slopes < 20.0 && fir < 3.0});
+         fmt::format("{:.1f} / {:.1f} / {:.1f}", plain, gradients, fir),
+         plain < 12.0 && gradients < 20.0 && fir < 3.0});
 }
 
-void bench_slopes(FitBench& bench) {
+void bench_gradients(FitBench& bench) {
     constexpr double kStep = 1e-6;
     constexpr std::size_t kPair = 77;
     const Bare bare(standard_pose(), 4, 3, 1e9, false);
     const auto columns = static_cast<std::size_t>(bare.model->num_columns());
     const calib::SceneState state = bare.start();
-    bare.light->update(state, renderer::Slopes::With);
-    calib::PairModel slopes;
-    bare.light->evaluate(kPair, slopes);
-    const auto jets = calib::jet_slopes(*bare.model, state, *bare.light, kPair);
+    bare.light->update(state, renderer::Gradients::With);
+    calib::PairModel gradients;
+    bare.light->evaluate(kPair, gradients);
+    const auto jets = calib::autodiff_jacobian(*bare.model, state, *bare.light, kPair);
     double from_jets = 0.0;
     double from_differences = 0.0;
     for (std::size_t c = 0; c < 6; ++c) {
@@ -189,12 +189,13 @@ void bench_slopes(FitBench& bench) {
         step[static_cast<Eigen::Index>(c)] = kStep;
         calib::PairModel above;
         calib::PairModel below;
-        bare.light->update(calib::moved_by(*bare.model, state, step), renderer::Slopes::Without);
+        bare.light->update(calib::moved_by(*bare.model, state, step), renderer::Gradients::Without);
         bare.light->evaluate(kPair, above);
-        bare.light->update(calib::moved_by(*bare.model, state, -step), renderer::Slopes::Without);
+        bare.light->update(calib::moved_by(*bare.model, state, -step),
+                           renderer::Gradients::Without);
         bare.light->evaluate(kPair, below);
         for (std::size_t b = 0; b < above.mean.size(); ++b) {
-            analytic.push_back(slopes.slopes[b * columns + c]);
+            analytic.push_back(gradients.gradients[b * columns + c]);
             jet_error.push_back(0.5 * jets[b * 6 + c] - analytic.back());  // albedo
             difference_error.push_back((above.mean[b] - below.mean[b]) / (2.0 * kStep) -
                                        analytic.back());

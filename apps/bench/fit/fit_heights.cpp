@@ -13,7 +13,7 @@ namespace {
 
 using core::Vec3;
 
-constexpr int kMostFits = 10;
+constexpr int kMaxFits = 10;
 
 // A bump of 2 cm with a twist, in the rectangle's coordinates from -1 to 1.
 double true_height(double x, double y) {
@@ -86,7 +86,7 @@ void bench_heights(int trials, FitBench& bench) {
     // The median of the size of a normally distributed error, over its standard deviation.
     constexpr double kMedianOverSigma = 0.6745;
     for (const int vertices : {5, 9}) {
-        const HeightErrors found = fit_heights(vertices, std::clamp(trials / 3, 1, kMostFits));
+        const HeightErrors found = fit_heights(vertices, std::clamp(trials / 3, 1, kMaxFits));
         const double over_bound = std::sqrt(found.square_over_bound);
         bench.rows.push_back(
             {fmt::format("heights of {0} x {0} vertices, 1e6 photons: median, corners, RMS over "

@@ -11,7 +11,7 @@ inline constexpr double kMillimetre = 1e-3;  // in metres
 void bench_forward(FitBench& bench);
 
 /// The Jacobian against automatic derivatives and against differences.
-void bench_slopes(FitBench& bench);
+void bench_gradients(FitBench& bench);
 
 /// Heights of a curved surface's vertices, 5 x 5 and 9 x 9 of them, from 1e6 photons.
 void bench_heights(int trials, FitBench& bench);

@@ -118,7 +118,7 @@ core::Capture expected_light(const TrialSetup& setup, const renderer::Object& tr
     calib::SceneState state = model.start();
     state.has_ambient = false;
     light.refresh(state);
-    light.update(state, renderer::Slopes::Without);
+    light.update(state, renderer::Gradients::Without);
 
     const auto bins = static_cast<std::size_t>(capture.time_axis.num_bins);
     std::vector<double> expected(capture.scan.num_pairs() * bins);
@@ -162,7 +162,7 @@ calib::FitInput trial_input(const TrialSetup& setup,
     settings.response.jitter_fwhm_ps = setup.fwhm_ps;
     settings.blur_schedule_m = setup.blur_schedule_m;
     settings.start = setup.start;
-    settings.piece_tolerance = setup.piece_tolerance;
+    settings.element_tolerance = setup.element_tolerance;
     settings.residual = setup.residual;
     return input;
 }

@@ -29,7 +29,7 @@ struct TrialSetup {
     bool time_zero_free = false;
     std::vector<double> blur_schedule_m{0.12, 0.04, 0.0};
     std::string start = "given";
-    std::optional<double> piece_tolerance;
+    std::optional<double> element_tolerance;
     calib::ResidualKind residual = calib::ResidualKind::Poisson;
 };
 

@@ -73,18 +73,19 @@ std::string accuracies_text(const ReconstructBench& bench) {
     return text;
 }
 
-std::string growth_text(const ReconstructBench& bench) {
+std::string scaling_text(const ReconstructBench& bench) {
     std::string text;
     std::string of;
-    for (const ReconstructGrowth& curve : bench.growth) {
+    for (const ReconstructScaling& curve : bench.scaling) {
         if (curve.of != of) {
             of = curve.of;
-            text += fmt::format("\n{:<50}", "growth with " + of + ": CPU s, of the limit, GB");
-            for (const GrowthPoint& point : curve.points) text += fmt::format("{:>23}", point.size);
+            text += fmt::format("\n{:<50}", "scaling with " + of + ": CPU s, of the limit, GB");
+            for (const ScalingPoint& point : curve.points)
+                text += fmt::format("{:>23}", point.size);
             text += fmt::format("{:>16}\n", "exponents");
         }
         text += fmt::format("{:<50}", curve.method);
-        for (const GrowthPoint& point : curve.points) {
+        for (const ScalingPoint& point : curve.points) {
             text += fmt::format("{:>10.3f} {:>4.1f} {:>7.3f}",
                                 point.cpu_seconds,
                                 point.cpu_seconds / point.limit_seconds,
@@ -95,29 +96,29 @@ std::string growth_text(const ReconstructBench& bench) {
     return text;
 }
 
-PlotLine growth_line(const ReconstructGrowth& curve, double GrowthPoint::*value) {
+PlotLine scaling_line(const ReconstructScaling& curve, double ScalingPoint::*value) {
     PlotLine line{curve.of == "voxels" ? curve.method + ", voxels" : curve.method, {}, {}};
-    for (const GrowthPoint& point : curve.points) {
+    for (const ScalingPoint& point : curve.points) {
         line.x.push_back(point.values);
         line.y.push_back(point.*value);
     }
     return line;
 }
 
-LogPlot growth_plot(const ReconstructBench& bench,
-                    const std::string& title,
-                    double GrowthPoint::*value) {
+LogPlot scaling_plot(const ReconstructBench& bench,
+                     const std::string& title,
+                     double ScalingPoint::*value) {
     LogPlot plot{title + " against size", "values of the capture, or voxels", title, {}};
-    for (const ReconstructGrowth& curve : bench.growth) {
-        plot.lines.push_back(growth_line(curve, value));
+    for (const ReconstructScaling& curve : bench.scaling) {
+        plot.lines.push_back(scaling_line(curve, value));
     }
     return plot;
 }
 
 void add_limits(const ReconstructBench& bench, LogPlot& plot) {
-    for (std::size_t i = 0; i < bench.growth.size(); ++i) {
+    for (std::size_t i = 0; i < bench.scaling.size(); ++i) {
         PlotLine& line =
-            plot.lines.emplace_back(growth_line(bench.growth[i], &GrowthPoint::limit_seconds));
+            plot.lines.emplace_back(scaling_line(bench.scaling[i], &ScalingPoint::limit_seconds));
         line.title += ", FFTs or sums alone";
         line.style = LineStyle::Limit;
         line.limit_of = static_cast<int>(i);
@@ -137,20 +138,20 @@ ReconstructBench bench_reconstruct(const ReconstructBenchSettings& settings,
     };
     if (wants("time")) bench.costs = measure_costs(settings, progress.part(0.0, 0.3));
     if (wants("accuracy")) bench.accuracies = measure_accuracies(settings, progress.part(0.3, 0.6));
-    if (wants("growth")) bench.growth = measure_growth(settings, progress.part(0.6, 1.0));
+    if (wants("scaling")) bench.scaling = measure_scaling(settings, progress.part(0.6, 1.0));
     return bench;
 }
 
 BenchResult reconstruct_result(const ReconstructBench& bench) {
     BenchResult result{core::write_value(bench),
-                       costs_text(bench) + "\n" + accuracies_text(bench) + growth_text(bench),
+                       costs_text(bench) + "\n" + accuracies_text(bench) + scaling_text(bench),
                        {},
                        {}};
-    if (!bench.growth.empty()) {
+    if (!bench.scaling.empty()) {
         LogPlot& time = result.plots["_time"];
-        time = growth_plot(bench, "CPU time [s]", &GrowthPoint::cpu_seconds);
+        time = scaling_plot(bench, "CPU time [s]", &ScalingPoint::cpu_seconds);
         add_limits(bench, time);
-        result.plots["_memory"] = growth_plot(bench, "memory [bytes]", &GrowthPoint::bytes);
+        result.plots["_memory"] = scaling_plot(bench, "memory [bytes]", &ScalingPoint::bytes);
     }
     return result;
 }

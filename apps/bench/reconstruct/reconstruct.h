@@ -66,8 +66,8 @@ void for_each_field(ReconstructAccuracy& row, Visitor&& visit) {
     visit("met", row.met, "whether it holds");
 }
 
-/// One size of a growth curve.
-struct GrowthPoint {
+/// One size of a scaling curve.
+struct ScalingPoint {
     std::string size;
     double values = 0.0;  ///< of what grows
     double cpu_seconds = 0.0;
@@ -76,7 +76,7 @@ struct GrowthPoint {
 };
 
 template <class Visitor>
-void for_each_field(GrowthPoint& point, Visitor&& visit) {
+void for_each_field(ScalingPoint& point, Visitor&& visit) {
     visit("size", point.size, "wall points x bins, or voxels");
     visit("values", point.values, "their number");
     visit("cpu_seconds", point.cpu_seconds, "CPU time [s]");
@@ -85,21 +85,21 @@ void for_each_field(GrowthPoint& point, Visitor&& visit) {
 }
 
 /// Time and memory against a size, both proportional to values^exponent.
-struct ReconstructGrowth {
+struct ReconstructScaling {
     std::string method;
     std::string of;  ///< what grows: values of the capture, or voxels
-    std::vector<GrowthPoint> points;
+    std::vector<ScalingPoint> points;
     double time_exponent = 0.0;
     double memory_exponent = 0.0;
 };
 
 template <class Visitor>
-void for_each_field(ReconstructGrowth& growth, Visitor&& visit) {
-    visit("method", growth.method, "method");
-    visit("of", growth.of, "what grows");
-    visit("points", growth.points, "by rising size");
-    visit("time_exponent", growth.time_exponent, "of their number");
-    visit("memory_exponent", growth.memory_exponent, "of their number");
+void for_each_field(ReconstructScaling& scaling, Visitor&& visit) {
+    visit("method", scaling.method, "method");
+    visit("of", scaling.of, "what grows");
+    visit("points", scaling.points, "by rising size");
+    visit("time_exponent", scaling.time_exponent, "of their number");
+    visit("memory_exponent", scaling.memory_exponent, "of their number");
 }
 
 struct ReconstructBench {
@@ -107,7 +107,7 @@ struct ReconstructBench {
     int repeats = 1;
     std::vector<ReconstructCost> costs;
     std::vector<ReconstructAccuracy> accuracies;
-    std::vector<ReconstructGrowth> growth;
+    std::vector<ReconstructScaling> scaling;
 };
 
 template <class Visitor>
@@ -116,17 +116,17 @@ void for_each_field(ReconstructBench& bench, Visitor&& visit) {
     visit("repeats", bench.repeats, "runs per median");
     visit("costs", bench.costs, "time against limits, memory");
     visit("accuracies", bench.accuracies, "against the truth");
-    visit("growth", bench.growth, "with size");
+    visit("scaling", bench.scaling, "with size");
 }
 
 /// What `nlos bench reconstruct` is to do.
 struct ReconstructBenchSettings {
     std::string scenes_folder = "scenes";
-    std::string part = "all";  ///< or time, accuracy, growth
+    std::string part = "all";  ///< or time, accuracy, scaling
     std::string capture;       ///< of the letter T from elsewhere, see letter.h; empty: none
     int repeats = 3;
     int threads = 1;
-    int largest = 256;  ///< wall points along a side in the growth curves
+    int largest = 256;  ///< wall points along a side in the scaling curves
 };
 
 /// Every method's time against the FFTs or multiply-adds it cannot do without, and its memory.
@@ -138,8 +138,8 @@ std::vector<ReconstructAccuracy> measure_accuracies(const ReconstructBenchSettin
                                                     const core::Progress& progress);
 
 /// Time and memory for rising sizes of a confocal capture, and of the volume made from one.
-std::vector<ReconstructGrowth> measure_growth(const ReconstructBenchSettings& settings,
-                                              const core::Progress& progress);
+std::vector<ReconstructScaling> measure_scaling(const ReconstructBenchSettings& settings,
+                                                const core::Progress& progress);
 
 /// All three.
 ///

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "apps/bench/reconstruct/letter.h"
+#include "apps/bench/reconstruct/letter_scene.h"
 #include "apps/bench/reconstruct/reconstruct.h"
 #include "apps/bench/reconstruct/reconstruct_run.h"
 #include "apps/bench/scene.h"

@@ -32,12 +32,12 @@ void add_bench_reconstruct_command(CLI::App& bench) {
     command->add_option("--capture", settings.capture, "Also score this capture of the letter T");
     command->add_option("--part", settings.part, "What to measure")
         ->capture_default_str()
-        ->check(CLI::IsMember({"all", "time", "accuracy", "growth"}));
+        ->check(CLI::IsMember({"all", "time", "accuracy", "scaling"}));
     command->add_option("--repeats", settings.repeats, "Runs per median")
         ->capture_default_str()
         ->check(CLI::Range(1, 1000));
     add_threads_option(*command, settings.threads);
-    command->add_option("--largest", settings.largest, "Largest side of the growth curves")
+    command->add_option("--largest", settings.largest, "Largest side of the scaling curves")
         ->capture_default_str()
         ->check(CLI::Range(32, 256));
     command->footer(settings_footer({}, "nlos bench reconstruct -o out/bench"));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "apps/bench/limits.h"
+#include "apps/bench/lower_bounds.h"
 #include "apps/bench/reconstruct/reconstruct.h"
 #include "apps/bench/reconstruct/reconstruct_run.h"
 #include "apps/bench/scene.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/bench/render/gates.h"
 
-#include "apps/bench/error.h"
+#include "apps/bench/error_metrics.h"
 #include "apps/bench/scene.h"
 #include "renderer/core/parallel.h"
 #include "renderer/core/process.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/bench/render/render.h"
 
-#include "apps/bench/limits.h"
+#include "apps/bench/lower_bounds.h"
 #include "apps/bench/power_law.h"
 #include "apps/bench/scene.h"
 #include "renderer/core/parallel.h"
@@ -20,7 +20,7 @@ constexpr double kReferenceTarget = 0.002;
 constexpr int kCheckSamples = 32768;  ///< of each of two halves
 constexpr int kQuickCheckSamples = 4096;
 constexpr std::uint64_t kCheckSeed = 1'000'000;
-constexpr int kFewestGateRuns = 3;  ///< for a standard deviation
+constexpr int kMinGateRuns = 3;     ///< for a standard deviation
 constexpr double kLongRun_s = 5.0;  ///< runs longer than this are not repeated
 
 // One setting of an estimator's effort.
@@ -228,7 +228,7 @@ RenderBench bench_render(const RenderBenchSettings& settings, const core::Progre
     RenderBench result;
     result.scene = settings.scene;
     result.repeats = settings.repeats;
-    const int gate_runs = std::max(kFewestGateRuns, settings.repeats);
+    const int gate_runs = std::max(kMinGateRuns, settings.repeats);
     if (settings.has("curves")) measure_curves(settings, progress, result);
     if (settings.has("third_bounce")) {
         result.third_bounce = bench_third_bounce_costs(settings.scene, settings.repeats);
@@ -248,7 +248,7 @@ RenderBench bench_render(const RenderBenchSettings& settings, const core::Progre
             result.exclusion.insert(result.exclusion.end(), part.begin(), part.end());
         }
     }
-    if (settings.has("growth")) result.growth = bench_render_growth(progress);
+    if (settings.has("scaling")) result.scaling = bench_render_scaling(progress);
     return result;
 }
 

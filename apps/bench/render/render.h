@@ -3,7 +3,7 @@
 
 #include "apps/bench/output.h"
 #include "apps/bench/render/gates.h"
-#include "apps/bench/render/growth.h"
+#include "apps/bench/render/scaling.h"
 #include "apps/bench/render/third_bounce_accuracy.h"
 #include "apps/bench/render/third_bounce_costs.h"
 
@@ -87,7 +87,7 @@ struct RenderBench {
     std::vector<Agreement> agreement;
     std::vector<GateTable> gates;
     std::vector<ExclusionBench> exclusion;
-    std::vector<RenderGrowth> growth;
+    std::vector<RenderScaling> scaling;
 };
 
 template <class Visitor>
@@ -107,7 +107,7 @@ void for_each_field(RenderBench& bench, Visitor&& visit) {
     visit("agreement", bench.agreement, "of third_bounce and path bin by bin");
     visit("gates", bench.gates, "every estimator in equal time");
     visit("exclusion", bench.exclusion, "ellipsoidal with and without excluded surfaces");
-    visit("growth", bench.growth, "time against sizes");
+    visit("scaling", bench.scaling, "time against sizes");
 }
 
 /// What `nlos bench render` is to measure.
@@ -125,7 +125,7 @@ struct RenderBenchSettings {
                                                  "scenes/glossy/scene.json",
                                                  "scenes/animal/scene.json",
                                                  "scenes/curved/scene.json"};
-    std::string part = "all";  ///< or curves, third_bounce, accuracy, gates, exclusion, growth
+    std::string part = "all";  ///< or curves, third_bounce, accuracy, gates, exclusion, scaling
     int repeats = 3;           ///< runs per point; those that take long are not repeated
     bool quick = false;        ///< leaves out what takes longest
 

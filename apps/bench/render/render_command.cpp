@@ -42,7 +42,7 @@ void add_bench_render_command(CLI::App& bench) {
     render->add_option("--part", settings.part, "What to measure")
         ->capture_default_str()
         ->check(CLI::IsMember(
-            {"all", "curves", "third_bounce", "accuracy", "gates", "exclusion", "growth"}));
+            {"all", "curves", "third_bounce", "accuracy", "gates", "exclusion", "scaling"}));
     render->add_option("--repeats", settings.repeats, "Runs per point")
         ->capture_default_str()
         ->check(CLI::Range(1, 1000));

@@ -38,21 +38,21 @@ std::string gates_text(const GateTable& table) {
     return text;
 }
 
-std::string growth_text(const std::vector<RenderGrowth>& growths) {
+std::string scaling_text(const std::vector<RenderScaling>& growths) {
     if (growths.empty()) return "";
     std::string text =
         "\ngrowth: size: CPU seconds (with threads elapsed), as many rays alone (with threads the "
         "first shared), memory; fitted exponent, exponent at the end\n";
-    for (const RenderGrowth& growth : growths) {
-        text += fmt::format("{:<13} {:<12}", growth.method, growth.of);
-        for (std::size_t i = 0; i < growth.sizes.size(); ++i) {
+    for (const RenderScaling& scaling : growths) {
+        text += fmt::format("{:<13} {:<12}", scaling.method, scaling.of);
+        for (std::size_t i = 0; i < scaling.sizes.size(); ++i) {
             text += fmt::format(" {:>6}: {:<7.3g} {:<8.2g} {:>4.0f} MB",
-                                growth.sizes[i],
-                                growth.cpu_seconds[i],
-                                growth.limit_seconds[i],
-                                1e-6 * growth.peak_bytes[i]);
+                                scaling.sizes[i],
+                                scaling.cpu_seconds[i],
+                                scaling.limit_seconds[i],
+                                1e-6 * scaling.peak_bytes[i]);
         }
-        text += fmt::format(" {:>5.2f} {:>5.2f}\n", growth.exponent, growth.last);
+        text += fmt::format(" {:>5.2f} {:>5.2f}\n", scaling.exponent, scaling.last);
     }
     return text;
 }
@@ -129,7 +129,7 @@ std::string target_errors_text(const std::vector<TargetError>& errors) {
                         "target",
                         "rel. L2",
                         "stated",
-                        "pieces");
+                        "elements");
     for (const TargetError& error : errors) {
         if (error.met && !error.is_far_below) continue;
         text += fmt::format("{:<6} {:<11} {:>7} {:>10.2e} {:>10.2e} {:>8}\n",
@@ -138,7 +138,7 @@ std::string target_errors_text(const std::vector<TargetError>& errors) {
                             error.target,
                             error.rel_l2,
                             error.stated,
-                            error.pieces);
+                            error.elements);
     }
     return text;
 }
@@ -221,7 +221,7 @@ std::string table_of(const RenderBench& bench) {
     std::string text = curves_text(bench) + third_bounce_text(bench) +
                        target_errors_text(bench.target_errors) + agreement_text(bench.agreement);
     for (const GateTable& table : bench.gates) text += gates_text(table);
-    return text + exclusion_text(bench.exclusion) + growth_text(bench.growth);
+    return text + exclusion_text(bench.exclusion) + scaling_text(bench.scaling);
 }
 
 LogPlot gate_plot(const GateTable& table) {
@@ -244,15 +244,15 @@ LogPlot gate_plot(const GateTable& table) {
     return plot;
 }
 
-LogPlot growth_plot(const RenderBench& bench) {
-    LogPlot plot{"Growth", "triangles, wall points, bins, bounces, threads", "time [s]", {}};
-    for (const RenderGrowth& growth : bench.growth) {
-        const std::string title = fmt::format("{}, {}", growth.method, growth.of);
-        plot.lines.push_back({title, growth.sizes, growth.cpu_seconds});
-        if (growth.of != "wall points" && growth.of != "threads") continue;
-        plot.lines.push_back({growth.of == "threads" ? title + ", shared" : title + ", rays alone",
-                              growth.sizes,
-                              growth.limit_seconds,
+LogPlot scaling_plot(const RenderBench& bench) {
+    LogPlot plot{"Scaling", "triangles, wall points, bins, bounces, threads", "time [s]", {}};
+    for (const RenderScaling& scaling : bench.scaling) {
+        const std::string title = fmt::format("{}, {}", scaling.method, scaling.of);
+        plot.lines.push_back({title, scaling.sizes, scaling.cpu_seconds});
+        if (scaling.of != "wall points" && scaling.of != "threads") continue;
+        plot.lines.push_back({scaling.of == "threads" ? title + ", shared" : title + ", rays alone",
+                              scaling.sizes,
+                              scaling.limit_seconds,
                               LineStyle::Limit,
                               static_cast<int>(plot.lines.size()) - 1});
     }
@@ -285,7 +285,7 @@ LogPlot curves_plot(const RenderBench& bench) {
 BenchResult render_result(const RenderBench& bench) {
     BenchResult result{core::write_value(bench), table_of(bench), {}, {}};
     if (!bench.curves.empty()) result.plots[""] = curves_plot(bench);
-    if (!bench.growth.empty()) result.plots["_growth"] = growth_plot(bench);
+    if (!bench.scaling.empty()) result.plots["_scaling"] = scaling_plot(bench);
     for (const GateTable& table : bench.gates) {
         const auto scene = std::filesystem::path(table.scene).parent_path().filename();
         result.plots[fmt::format("_gates_{}_{}", scene.string(), table.max_bounces)] =

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "apps/bench/render/sequences.h"
 
-#include "apps/bench/error.h"
+#include "apps/bench/error_metrics.h"
 #include "renderer/core/parallel.h"
 #include "renderer/core/process.h"
+#include "renderer/render.h"
 
 #include <fmt/core.h>
 

@@ -34,7 +34,7 @@ struct Shift {
     renderer::SurfacePoint x;
     renderer::ShiftEnd source;
     renderer::ShiftEnd target;
-    renderer::LengthChange change;
+    renderer::ConstraintChange change;
 };
 
 // A scene with shifts to try on it.

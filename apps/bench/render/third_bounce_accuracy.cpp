@@ -32,10 +32,10 @@ renderer::SceneGeometry random_geometry(core::Rng& rng) {
         return low + (high - low) * rng.uniform();
     };
     // One by one: the order in which arguments are evaluated is not fixed.
-    const auto vector = [&](double most_xy, double least_z, double most_z) {
+    const auto vector = [&](double most_xy, double min_z, double max_z) {
         const double x = between(-most_xy, most_xy);
         const double y = between(-most_xy, most_xy);
-        return Vec3(x, y, between(least_z, most_z));
+        return Vec3(x, y, between(min_z, max_z));
     };
     renderer::SceneGeometry geometry;
     const int num_spheres = 1 + static_cast<int>(2.0 * rng.uniform());
@@ -98,7 +98,7 @@ std::vector<TargetError> try_targets(int number) {
         return renderer::integrate_third_bounce(scene, scan, axis, settings, {});
     };
     const core::Capture reference = capture_of(scan, axis, integrate(kReferenceTarget).transient);
-    const std::size_t fewest_pieces = integrate(kNoTarget).num_pieces;
+    const std::size_t min_elements = integrate(kNoTarget).num_elements;
     std::vector<TargetError> errors;
     for (const double target : {0.05, 0.02, 0.01}) {
         const ThirdBounce result = integrate(target);
@@ -108,8 +108,8 @@ std::vector<TargetError> try_targets(int number) {
         error.target = target;
         error.rel_l2 = relative_l2(capture_of(scan, axis, result.transient), reference);
         error.stated = result.estimated_error;
-        error.pieces = result.num_pieces;
-        error.is_coarsest = result.num_pieces == fewest_pieces;
+        error.elements = result.num_elements;
+        error.is_coarsest = result.num_elements == min_elements;
         error.met = error.rel_l2 <= target;
         error.is_far_below = error.rel_l2 < target / kFarBelow && !error.is_coarsest;
     }

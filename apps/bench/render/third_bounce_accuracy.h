@@ -15,12 +15,12 @@ struct TargetError {
     int scene = 0;  ///< number of the random scene
     std::string pattern;
     double target = 0.0;
-    double rel_l2 = 0.0;        ///< against the same to 0.1 %
-    double stated = 0.0;        ///< what the integrator says of itself
-    std::uint64_t pieces = 0;   ///< that the surfaces were cut into
-    bool is_coarsest = false;   ///< no coarser cut exists
-    bool met = false;           ///< rel_l2 is at most the target
-    bool is_far_below = false;  ///< more than five times, with a coarser cut left
+    double rel_l2 = 0.0;         ///< against the same to 0.1 %
+    double stated = 0.0;         ///< what the integrator says of itself
+    std::uint64_t elements = 0;  ///< that the surfaces were cut into
+    bool is_coarsest = false;    ///< no coarser cut exists
+    bool met = false;            ///< rel_l2 is at most the target
+    bool is_far_below = false;   ///< more than five times, with a coarser cut left
 };
 
 template <class Visitor>
@@ -30,7 +30,7 @@ void for_each_field(TargetError& error, Visitor&& visit) {
     visit("target_error", error.target, "relative L2 error asked for");
     visit("rel_l2", error.rel_l2, "relative L2 distance from the same to 0.1 %");
     visit("stated", error.stated, "relative L2 error as stated");
-    visit("pieces", error.pieces, "that the surfaces were cut into");
+    visit("elements", error.elements, "that the surfaces were cut into");
     visit("is_coarsest", error.is_coarsest, "no coarser cut exists");
     visit("met", error.met, "the error is at most the target");
     visit("is_far_below", error.is_far_below, "over five times below it, a coarser cut is left");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/bench/render/third_bounce_costs.h"
 
-#include "apps/bench/limits.h"
+#include "apps/bench/lower_bounds.h"
 #include "apps/bench/scene.h"
 #include "nlos/compare/compare_scores.h"
 #include "renderer/core/parallel.h"

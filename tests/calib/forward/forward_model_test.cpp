@@ -19,7 +19,7 @@ using calib::PairModel;
 using calib::SceneModel;
 using calib::SceneState;
 using core::Vec3;
-using renderer::Slopes;
+using renderer::Gradients;
 
 constexpr double kSigma_m = 0.012;
 
@@ -73,7 +73,7 @@ double norm(const std::vector<double>& values) {
     return std::sqrt(sum);
 }
 
-void expect_slopes_match_differences(const core::Scan& scan, ForwardSettings settings) {
+void expect_gradients_match_differences(const core::Scan& scan, ForwardSettings settings) {
     const SceneModel model(two_objects(), all_free(), true);
     const SceneState state = general_state(model);
     ForwardModel light(model, scan, calib::WallMotion(scan), std::move(settings));
@@ -81,47 +81,47 @@ void expect_slopes_match_differences(const core::Scan& scan, ForwardSettings set
     const auto columns = static_cast<std::size_t>(model.num_columns());
     constexpr double kStep = 1e-6;
     for (const std::size_t pair : {std::size_t{0}, scan.num_pairs() / 2}) {
-        PairModel slopes;
-        light.update(state, Slopes::With);
-        light.evaluate(pair, slopes);
+        PairModel gradients;
+        light.update(state, Gradients::With);
+        light.evaluate(pair, gradients);
         for (std::size_t c = 0; c < columns; ++c) {
             Eigen::VectorXd step = Eigen::VectorXd::Zero(model.num_columns());
             step[static_cast<Eigen::Index>(c)] = kStep;
             PairModel above;
             PairModel below;
-            light.update(calib::moved_by(model, state, step), Slopes::Without);
+            light.update(calib::moved_by(model, state, step), Gradients::Without);
             light.evaluate(pair, above);
-            light.update(calib::moved_by(model, state, -step), Slopes::Without);
+            light.update(calib::moved_by(model, state, -step), Gradients::Without);
             light.evaluate(pair, below);
             std::vector<double> error;
             std::vector<double> size;
             for (std::size_t b = 0; b < above.mean.size(); ++b) {
-                const double slope = (above.mean[b] - below.mean[b]) / (2.0 * kStep);
-                error.push_back(slope - slopes.slopes[b * columns + c]);
-                size.push_back(slope);
+                const double gradient = (above.mean[b] - below.mean[b]) / (2.0 * kStep);
+                error.push_back(gradient - gradients.gradients[b * columns + c]);
+                size.push_back(gradient);
             }
             EXPECT_LT(norm(error), 1e-5 * norm(size) + 1e-9) << model.column_names()[c];
         }
     }
 }
 
-TEST(ForwardModel, SlopesMatchFiniteDifferencesOnConfocalScans) {
+TEST(ForwardModel, GradientsMatchFiniteDifferencesOnConfocalScans) {
     const core::Scan scan = test_support::confocal_grid(4);
-    expect_slopes_match_differences(scan, forward_settings(scan.num_pairs()));
+    expect_gradients_match_differences(scan, forward_settings(scan.num_pairs()));
 }
 
-TEST(ForwardModel, SlopesMatchFiniteDifferencesOnExhaustiveScans) {
+TEST(ForwardModel, GradientsMatchFiniteDifferencesOnExhaustiveScans) {
     const core::Scan scan = test_support::exhaustive_scan(
         {Vec3(0.1, 0.0, 0.0), Vec3(-0.3, 0.2, 0.0)}, {Vec3(-0.2, -0.1, 0.0), Vec3(0.3, 0.3, 0.0)});
-    expect_slopes_match_differences(scan, forward_settings(scan.num_pairs()));
+    expect_gradients_match_differences(scan, forward_settings(scan.num_pairs()));
 }
 
-TEST(ForwardModel, SlopesMatchFiniteDifferencesThroughAMeasuredResponse) {
+TEST(ForwardModel, GradientsMatchFiniteDifferencesThroughAMeasuredResponse) {
     const core::Scan scan = test_support::single_scan(Vec3(0.1, 0.0, 0.0),
                                                       {Vec3(-0.2, -0.1, 0.0), Vec3(0.3, 0.3, 0.0)});
     ForwardSettings settings = forward_settings(scan.num_pairs());
     settings.measured = core::ExponentialGaussianResponse{0.01, 0.015};
-    expect_slopes_match_differences(scan, settings);
+    expect_gradients_match_differences(scan, settings);
 }
 
 TEST(ForwardModel, AgreesWithExactArcs) {
@@ -139,7 +139,7 @@ TEST(ForwardModel, AgreesWithExactArcs) {
     settings.tolerance = 5e-3;
     ForwardModel light(model, scan, calib::WallMotion(scan), settings);
     light.refresh(model.start());
-    light.update(model.start(), Slopes::Without);
+    light.update(model.start(), Gradients::Without);
 
     constexpr int kFine = 32;
     core::TimeAxis fine = settings.axis;
@@ -185,7 +185,7 @@ TEST(ForwardModel, AgreesWithTheRendererBehindAnOccluder) {
     settings.radiance_factor = std::pow(core::kPi, -3.0);
     ForwardModel light(model, scan, calib::WallMotion(scan), settings);
     light.refresh(model.start());
-    light.update(model.start(), Slopes::Without);
+    light.update(model.start(), Gradients::Without);
 
     renderer::RelayWall wall;
     const renderer::Scene scene(geometry, scan, wall);
@@ -204,7 +204,8 @@ TEST(ForwardModel, AgreesWithTheRendererBehindAnOccluder) {
             size += reference * reference;
         }
     }
-    EXPECT_LT(std::sqrt(difference / size), 0.03);  // shadow edges are known to quarters of pieces
+    EXPECT_LT(std::sqrt(difference / size),
+              0.03);  // shadow edges are known to quarters of elements
 }
 
 }  // namespace

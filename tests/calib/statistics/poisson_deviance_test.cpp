@@ -26,17 +26,18 @@ TEST(PoissonDeviance, IsSmoothWhereTheSeriesTakesOver) {
         const auto inside = signed_deviance(kMean, kMean * (1.0 + t * (1.0 - 1e-9)));
         const auto outside = signed_deviance(kMean, kMean * (1.0 + t * (1.0 + 1e-9)));
         EXPECT_NEAR(inside.value, outside.value, 1e-9);
-        EXPECT_NEAR(inside.slope, outside.slope, 1e-7);
+        EXPECT_NEAR(inside.gradient, outside.gradient, 1e-7);
     }
 }
 
-TEST(PoissonDeviance, SlopeMatchesFiniteDifferences) {
+TEST(PoissonDeviance, GradientMatchesFiniteDifferences) {
     for (const double mu : {0.02, 1.0, 39.99, 40.0, 700.0}) {
         for (const double n : {0.0, 1.0, 40.0}) {
             const double h = 1e-5 * mu;
-            const double slope =
+            const double gradient =
                 (signed_deviance(mu + h, n).value - signed_deviance(mu - h, n).value) / (2.0 * h);
-            EXPECT_NEAR(signed_deviance(mu, n).slope, slope, 1e-5 * (1.0 + std::abs(slope)));
+            EXPECT_NEAR(
+                signed_deviance(mu, n).gradient, gradient, 1e-5 * (1.0 + std::abs(gradient)));
         }
     }
 }

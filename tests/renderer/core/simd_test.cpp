@@ -41,7 +41,7 @@ TEST(Simd, DoesToEachLaneWhatIsDoneToNumbers) {
         const core::SimdMask both = (a <= b) & !(b != 1.0);
         const Simd chosen = core::select(less, 2.0 * a, a / 4.0 - b);
         Lanes stored{};
-        core::store(core::square_root(a * a), stored.values, kBegin);
+        core::store(core::sqrt(a * a), stored.values, kBegin);
         bool any = false;
         for (std::size_t i = 0; i < Simd::size(); ++i) {
             const double p = x.values[kBegin + i];
@@ -49,8 +49,8 @@ TEST(Simd, DoesToEachLaneWhatIsDoneToNumbers) {
             EXPECT_EQ(sum[i], p + q);
             EXPECT_EQ(product[i], p * q);
             EXPECT_EQ((-a)[i], -p);
-            EXPECT_EQ(core::larger_of(a, b)[i], std::max(p, q));
-            EXPECT_EQ(core::smaller_of(a, b)[i], std::min(p, q));
+            EXPECT_EQ(core::max(a, b)[i], std::max(p, q));
+            EXPECT_EQ(core::min(a, b)[i], std::min(p, q));
             EXPECT_EQ(floor(a)[i], std::floor(p));
             EXPECT_EQ(stored.values[kBegin + i], std::abs(p));
             EXPECT_EQ(stored.values[i], 0.0);
@@ -63,8 +63,8 @@ TEST(Simd, DoesToEachLaneWhatIsDoneToNumbers) {
         EXPECT_EQ(less.bits() >> Simd::size(), 0U);
         const auto begin = x.values.begin() + kBegin;
         EXPECT_EQ(core::sum_of(a), std::accumulate(begin, x.values.end(), 0.0));
-        EXPECT_EQ(core::least_of(a), *std::min_element(begin, x.values.end()));
-        EXPECT_EQ(core::most_of(a), *std::max_element(begin, x.values.end()));
+        EXPECT_EQ(core::reduce_min(a), *std::min_element(begin, x.values.end()));
+        EXPECT_EQ(core::reduce_max(a), *std::max_element(begin, x.values.end()));
     }
 }
 

@@ -4,7 +4,7 @@
 #include "renderer/film/pair_tiles.h"
 
 #include "renderer/core/error.h"
-#include "renderer/third_bounce/third_bounce_pieces.h"
+#include "renderer/third_bounce/surface_subdivider.h"
 #include "renderer/third_bounce/third_bounce_scan.h"
 #include "tests/support/test_scenes.h"
 
@@ -66,7 +66,7 @@ TEST_P(PairTilesOf, KeepTheTilesOfPartsWhateverMemoryHolds) {
         return first;
     };
     const PairTiles bounded(lights, sensors, at_once);
-    const PairTiles unbounded(lights, sensors, lights + sensors + PairTiles::kFewestPoints);
+    const PairTiles unbounded(lights, sensors, lights + sensors + PairTiles::kMinPoints);
     for (std::size_t part = 0; part < kParts; ++part) {
         EXPECT_EQ(first_pairs(bounded, part), first_pairs(unbounded, part));
         EXPECT_LE(unbounded.batches(part, kParts).size(), 1U);
@@ -100,7 +100,7 @@ INSTANTIATE_TEST_SUITE_P(ScansAndMemory,
                                          Sizes{130, 70, 100},
                                          Sizes{70, 130, 150}));
 
-// Pieces, lights and sensors of a scan larger than a few tiles.
+// Elements, lights and sensors of a scan larger than a few tiles.
 struct TwoSheets {
     core::Scan scan = [] {
         std::vector<Vec3> points;
@@ -121,10 +121,10 @@ struct TwoSheets {
         return renderer::Scene(std::move(geometry), scan, {});
     }();
     core::TimeAxis axis{1.2, 0.02, 40};
-    renderer::PieceSet pieces = renderer::PieceCutter(scene, scan, axis, 0.0).cut(0.02);
+    renderer::ElementSet elements = renderer::SurfaceSubdivider(scene, scan, axis, 0.0).cut(0.02);
 
     double bytes_per_point() const {
-        return static_cast<double>(pieces.blocks.size() * renderer::PieceBlock::kSize *
+        return static_cast<double>(elements.blocks.size() * renderer::ElementBlock::kSize *
                                    sizeof(renderer::VisibilityMask));
     }
 };
@@ -138,7 +138,7 @@ TEST(ThirdBounceMemory, ChangesNothingButTheNumberOfRays) {
         renderer::ThirdBounceScan integrator(setup.scene,
                                              setup.scan,
                                              setup.axis,
-                                             setup.pieces,
+                                             setup.elements,
                                              /*negligible_error=*/0.0,
                                              static_cast<double>(points) * setup.bytes_per_point());
         core::Transient result(setup.scan.num_pairs(), setup.axis.num_bins);
@@ -161,7 +161,7 @@ TEST(ThirdBounceMemory, ChangesNothingButTheNumberOfRays) {
 TEST(ThirdBounceMemory, IsRefusedBelowTheFewestPoints) {
     const TwoSheets setup;
     renderer::ThirdBounceScan integrator(
-        setup.scene, setup.scan, setup.axis, setup.pieces, 0.0, 31 * setup.bytes_per_point());
+        setup.scene, setup.scan, setup.axis, setup.elements, 0.0, 31 * setup.bytes_per_point());
     core::Transient result(setup.scan.num_pairs(), setup.axis.num_bins);
     EXPECT_THROW(integrator.integrate(
                      0, [](double) { return true; }, result),

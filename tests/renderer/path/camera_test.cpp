@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Images of a pinhole camera against closed forms and against scans of the same paths.
 #include "renderer/core/parallel.h"
-#include "renderer/path/measurement.h"
+#include "renderer/path/sensor_pairs.h"
 #include "tests/support/error_message.h"
 #include "tests/support/statistics.h"
 #include "tests/support/test_scenes.h"
@@ -160,7 +160,7 @@ TEST(Camera, SpotBesideEverySurfaceIsRefused) {
     camera.light_spot_m = Vec3(0.5, 0.5, 0.01);
     const core::Scan scan = image_of(camera);
     const renderer::Scene scene = scene_of({test_support::parallelogram_object(kFloor)}, scan);
-    EXPECT_ERROR_WITH(renderer::Measurement(scene, scan), "camera.light_spot_m");
+    EXPECT_ERROR_WITH(renderer::SensorPairs(scene, scan), "camera.light_spot_m");
 }
 
 // A perfect mirror shows the lit floor as if seen from behind it.

@@ -132,7 +132,7 @@ TEST(PathTracer, TilesGiveTheSameBitsAsTheWholeScan) {
         renderer::path_estimator(scene, scan, settings, renderer::ThirdBounceScope::All);
     const auto whole = renderer::render_passes(scene, scan, kAxis, settings, work, {});
     // Room for two pairs of five orders and squares.
-    work.most_sums_bytes = 2.5 * 6 * 60 * sizeof(double);
+    work.max_sums_bytes = 2.5 * 6 * 60 * sizeof(double);
     const auto tiled = renderer::render_passes(scene, scan, kAxis, settings, work, {});
     EXPECT_TRUE(
         std::ranges::equal(tiled.capture.transient.values(), whole.capture.transient.values()));

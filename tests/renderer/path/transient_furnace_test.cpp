@@ -34,7 +34,7 @@ struct Moments {
 // Totals over independent passes give mean and standard error without trusting any bin's variance.
 class Furnace {
  public:
-    Furnace(const renderer::Scene& scene, const renderer::PathEnds& ends, int max_bounces)
+    Furnace(const renderer::Scene& scene, const renderer::PathEndpoints& ends, int max_bounces)
         : ends_(ends), axis_{0.0, 0.02, 600}, max_bounces_(max_bounces) {
         renderer::RenderSettings settings;
         settings.max_bounces = max_bounces;
@@ -83,7 +83,7 @@ class Furnace {
 
  private:
     static constexpr std::uint64_t kPasses = 400;
-    renderer::PathEnds ends_;
+    renderer::PathEndpoints ends_;
     core::TimeAxis axis_;
     int max_bounces_;
     std::vector<double> sums_;
@@ -103,8 +103,8 @@ core::Scan far_scan() {
 }
 
 // A source of 1 W and a detector of fluence, both at the centre.
-renderer::PathEnds isotropic_ends() {
-    renderer::PathEnds ends;
+renderer::PathEndpoints isotropic_ends() {
+    renderer::PathEndpoints ends;
     ends.sensor.isotropic = ends.light.isotropic = true;
     ends.sensor.strength = 1.0;
     ends.light.strength = 1.0 / (4.0 * kPi);
@@ -124,7 +124,7 @@ core::WallPoints point_on_sphere(const Vec3& direction) {
     return points;
 }
 
-renderer::PathEnd wall_end(const core::WallPoints& points) {
+renderer::PathEndpoint wall_end(const core::WallPoints& points) {
     return {points.positions[0], points.normals[0], kAlbedo / kPi, /*isotropic=*/false};
 }
 
@@ -136,7 +136,7 @@ void expect_close(double measured, double expected, double sigma, const std::str
 // length 2R + (k-1) 4R/3; bounce 1 has length 2R, bounce 2 the density rho^2 Phi (tau-2R)/(2 pi
 // R^4).
 TEST(TransientFurnace, IsotropicEndsAtTheCentre) {
-    const renderer::PathEnds ends = isotropic_ends();
+    const renderer::PathEndpoints ends = isotropic_ends();
     const renderer::Scene scene = sphere_scene(far_scan());
     const Furnace furnace(scene, ends, 6);
 
@@ -154,7 +154,7 @@ TEST(TransientFurnace, IsotropicEndsAtTheCentre) {
 }
 
 TEST(TransientFurnace, SecondBounceIsALinearRamp) {
-    const renderer::PathEnds ends = isotropic_ends();
+    const renderer::PathEndpoints ends = isotropic_ends();
     const renderer::Scene scene = sphere_scene(far_scan());
     const Furnace furnace(scene, ends, 4);
     const auto values = furnace.histogram(4);
@@ -182,7 +182,8 @@ TEST(TransientFurnace, PointsOnTheSphere) {
         scan.illumination = confocal ? a : b;
         const renderer::Scene scene = sphere_scene(scan);
         ASSERT_FALSE(scene.has_relay_wall());
-        renderer::PathEnds ends{wall_end(scan.sensing), wall_end(scan.illumination), 0.0, confocal};
+        renderer::PathEndpoints ends{
+            wall_end(scan.sensing), wall_end(scan.illumination), 0.0, confocal};
         const Furnace furnace(scene, ends, 5);
         for (int order = 3; order <= 5; ++order) {
             const Moments m = furnace.moments(order);
@@ -201,7 +202,7 @@ TEST(TransientFurnace, ThirdBounceOfAConfocalPointIsALinearRamp) {
     core::Scan scan;
     scan.sensing = scan.illumination = point;
     const renderer::Scene scene = sphere_scene(scan);
-    const renderer::PathEnds ends{wall_end(point), wall_end(point), 0.0, /*coincide=*/true};
+    const renderer::PathEndpoints ends{wall_end(point), wall_end(point), 0.0, /*coincide=*/true};
     const Furnace furnace(scene, ends, 3);
     const auto values = furnace.histogram(3);
     const core::TimeAxis& axis = furnace.axis();

@@ -100,7 +100,7 @@ Carry there_of(const Domain& domain, const Reservoir& canonical) {
 
 Reservoir merge_pairwise(core::Rng& rng) {
     const Reservoir canonical = candidates(kDomains[0], 2, 2.0, rng);
-    renderer::PairwiseMerge<double> merge(canonical, 3);
+    renderer::PairwiseMisMerge<double> merge(canonical, 3);
     for (int i = 1; i <= 3; ++i) {
         const Domain& domain = kDomains[static_cast<std::size_t>(i)];
         const Reservoir neighbour = candidates(domain, i, 1.5 * i, rng);
@@ -121,12 +121,12 @@ TEST(Resampling, BalancedMergeIsUnbiasedWithEachNeighbour) {
             [i](core::Rng& rng) {
                 const Reservoir canonical = candidates(kDomains[0], 2, 2.0, rng);
                 const Reservoir other = candidates(kDomains[i], 3, 7.0, rng);
-                return renderer::merge_balanced(canonical,
-                                                other,
-                                                here_of(kDomains[i], other),
-                                                there_of(kDomains[i], canonical),
-                                                rng.uniform(),
-                                                rng.uniform());
+                return renderer::resample_balance_heuristic(canonical,
+                                                            other,
+                                                            here_of(kDomains[i], other),
+                                                            there_of(kDomains[i], canonical),
+                                                            rng.uniform(),
+                                                            rng.uniform());
             },
             "Resampling.Balanced");
     }
@@ -141,12 +141,12 @@ TEST(Resampling, MergesOfMergesAreUnbiased) {
         [](core::Rng& rng) {
             const Reservoir canonical = merge_pairwise(rng);
             const Reservoir other = candidates(kDomains[1], 3, 5.0, rng);
-            return renderer::merge_balanced(canonical,
-                                            other,
-                                            here_of(kDomains[1], other),
-                                            there_of(kDomains[1], canonical),
-                                            rng.uniform(),
-                                            rng.uniform());
+            return renderer::resample_balance_heuristic(canonical,
+                                                        other,
+                                                        here_of(kDomains[1], other),
+                                                        there_of(kDomains[1], canonical),
+                                                        rng.uniform(),
+                                                        rng.uniform());
         },
         "Resampling.MergesOfMerges");
 }
@@ -164,7 +164,7 @@ TEST(Resampling, LeavingOutTheJacobianOrFailedNeighboursIsSeenAsBias) {
             Carry there = there_of(kDomains[1], canonical);
             if (forget_jacobian && there) there->jacobian = 1.0;
             const bool skip = skip_failures && !here;
-            renderer::PairwiseMerge<double> merge(canonical, skip ? 0 : 1);
+            renderer::PairwiseMisMerge<double> merge(canonical, skip ? 0 : 1);
             if (!skip) merge.add_neighbour(neighbour, here, there, rng.uniform());
             sum += merge.finish(rng.uniform()).estimate();
         }
@@ -206,8 +206,8 @@ TEST(Reservoir, MergingPartsOfAStreamChoosesLikeTheWholeStream) {
             return r.empty() ? Carry{}
                              : Carry{renderer::Carried<double>{r.sample, r.target_value, 1.0}};
         };
-        const Reservoir merged =
-            renderer::merge_balanced(a, b, identity(b), identity(a), rng.uniform(), rng.uniform());
+        const Reservoir merged = renderer::resample_balance_heuristic(
+            a, b, identity(b), identity(a), rng.uniform(), rng.uniform());
         EXPECT_NEAR(merged.estimate(), (3.0 * a.estimate() + 5.0 * b.estimate()) / 8.0, 1e-12);
         EXPECT_DOUBLE_EQ(merged.confidence, 8.0);
     }

@@ -18,8 +18,8 @@ namespace {
 
 using core::Vec2;
 using core::Vec3;
+using renderer::ConstraintChange;
 using renderer::FocusPair;
-using renderer::LengthChange;
 using renderer::ShiftTrace;
 
 renderer::Facet plane_z0() {
@@ -74,8 +74,8 @@ TYPED_TEST(PlaneShiftOracle, EveryGaugeMovesLikeTheClosedFormAroundOneFocus) {
         const Vec3 focus(0.5 + rng.uniform(), rng.uniform(), 0.3 + rng.uniform());
         for (const double ratio : {0.2, 1.0, 5.0}) {
             const double length = 2.0 * focus.norm();
-            const LengthChange change{ratio,
-                                      (1.0 - ratio) * length + 0.1 * (2.0 * rng.uniform() - 1.0)};
+            const ConstraintChange change{
+                ratio, (1.0 - ratio) * length + 0.1 * (2.0 * rng.uniform() - 1.0)};
             ShiftTrace trace;
             const auto expected =
                 shift_on_plane(plane_z0(), {focus, focus}, {focus, focus}, change, 0.0, trace);

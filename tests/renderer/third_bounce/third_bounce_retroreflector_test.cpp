@@ -2,7 +2,7 @@
 // Retroreflectors return light to where it came from: to confocal pairs of any scan, no others.
 #include "renderer/render.h"
 #include "renderer/scene/coinciding_points.h"
-#include "renderer/third_bounce/trial_scan.h"
+#include "renderer/third_bounce/pilot_scan.h"
 #include "tests/support/statistics.h"
 #include "tests/support/test_scenes.h"
 
@@ -83,7 +83,7 @@ TEST(Retroreflectors, AreTriedInAPairThatSeesThem) {
     std::vector<Vec3> points;
     for (int i = 0; i < 200; ++i) points.emplace_back(0.005 * i - 0.5, 0.0, 0.0);
     const auto is_tried = [](const core::Scan& scan) {
-        return CoincidingPoints(renderer::trial_scan(scene_of(scan), scan, kAxis.num_bins)).any();
+        return CoincidingPoints(renderer::pilot_scan(scene_of(scan), scan, kAxis.num_bins)).any();
     };
     for (const std::size_t light : {0U, 17U, 199U}) {
         EXPECT_TRUE(is_tried(test_support::single_scan(points[light], points)));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What wall points see of pieces: rays in packets against single ones, draws of parts, and many
+// What wall points see of elements: rays in packets against single ones, draws of parts, and many
 // points at once against one after the other.
 #include "renderer/third_bounce/third_bounce_visibility.h"
 
@@ -18,7 +18,7 @@
 namespace {
 
 using core::Vec3;
-using renderer::PieceBlock;
+using renderer::ElementBlock;
 using renderer::PointMask;
 using renderer::ShadowRays;
 using renderer::VisibilityMask;
@@ -44,30 +44,30 @@ struct HalfHiddenSheet {
         return renderer::Scene(std::move(geometry), scan, {});
     }();
     core::TimeAxis axis{0.8, 0.02, 60};
-    renderer::PieceSet pieces = renderer::PieceCutter(scene, scan, axis, 0.0).cut(0.01);
+    renderer::ElementSet elements = renderer::SurfaceSubdivider(scene, scan, axis, 0.0).cut(0.01);
 
     std::vector<WallPoint> points(std::size_t begin, std::size_t count) const {
         std::vector<WallPoint> result;
         for (std::size_t i = begin; i < begin + count; ++i) {
-            result.push_back({scan.sensing.positions[i] - pieces.origin,
+            result.push_back({scan.sensing.positions[i] - elements.origin,
                               scan.sensing.normals[i],
                               static_cast<std::uint32_t>(i)});
         }
         return result;
     }
-    std::uint32_t any_piece(core::Rng& rng) const {
+    std::uint32_t any_element(core::Rng& rng) const {
         const auto block =
-            static_cast<std::size_t>(rng.uniform() * static_cast<double>(pieces.blocks.size()));
-        const auto lane = static_cast<std::size_t>(rng.uniform() *
-                                                   static_cast<double>(pieces.blocks[block].count));
-        return static_cast<std::uint32_t>(block * PieceBlock::kSize + lane);
+            static_cast<std::size_t>(rng.uniform() * static_cast<double>(elements.blocks.size()));
+        const auto lane = static_cast<std::size_t>(
+            rng.uniform() * static_cast<double>(elements.blocks[block].count));
+        return static_cast<std::uint32_t>(block * ElementBlock::kSize + lane);
     }
 };
 
 TEST(ShadowRayTracer, AnswersAsSingleRays) {
     const HalfHiddenSheet setup;
     core::Rng rng(test_support::seed_of("ShadowRayTracer.single"), 0, 0);
-    renderer::ShadowRayTracer tracer(setup.scene, setup.pieces);
+    renderer::ShadowRayTracer tracer(setup.scene, setup.elements);
     std::uint64_t num_rays = 0;
     int num_seen = 0;
     for (const std::size_t count : {std::size_t{1}, std::size_t{7}, WallPointLanes::kSize}) {
@@ -76,7 +76,7 @@ TEST(ShadowRayTracer, AnswersAsSingleRays) {
         tracer.look_from(lanes);
         std::vector<ShadowRays> all(300);
         for (ShadowRays& rays : all) {
-            rays.piece = setup.any_piece(rng);
+            rays.element = setup.any_element(rng);
             rays.points = static_cast<PointMask>(rng.next_bits() & lanes.all());
             if (rng.uniform() < 0.3) rays.points = lanes.all();
             rays.part = static_cast<std::uint8_t>(rng.uniform() * 20.0);
@@ -85,21 +85,21 @@ TEST(ShadowRayTracer, AnswersAsSingleRays) {
         for (const ShadowRays& rays : all) {
             num_rays += static_cast<std::uint64_t>(std::popcount(rays.points));
             EXPECT_EQ(rays.seen & ~rays.points, 0);
-            const PieceBlock& block = setup.pieces.blocks[rays.piece / PieceBlock::kSize];
-            const std::size_t i = rays.piece % PieceBlock::kSize;
+            const ElementBlock& block = setup.elements.blocks[rays.element / ElementBlock::kSize];
+            const std::size_t i = rays.element % ElementBlock::kSize;
             const Vec3 normal(block.normal_x[i], block.normal_y[i], block.normal_z[i]);
-            const renderer::DrawnParts parts = tracer.drawn_parts(rays.piece);
+            const renderer::DrawnParts parts = tracer.drawn_parts(rays.element);
             for (std::size_t p = 0; p < count; ++p) {
                 if ((rays.points >> p & 1U) == 0) continue;
                 const std::uint32_t bit = rays.part < ShadowRays::kFirstFixed
                                               ? parts.bit(p, parts.quarter(p, rays.part))
                                               : rays.part - ShadowRays::kFirstFixed;
                 const auto& share = renderer::centers_of_bits()[bit];
-                Vec3 end = setup.pieces.origin;
+                Vec3 end = setup.elements.origin;
                 for (std::size_t c = 0; c < 3; ++c) {
                     end += share[c] * Vec3(block.x[c][i], block.y[c][i], block.z[c][i]);
                 }
-                const Vec3 from = points[p].position + setup.pieces.origin;
+                const Vec3 from = points[p].position + setup.elements.origin;
                 end += std::copysign(block.rise_m[i], normal.dot(from - end)) * normal;
                 const bool blocked =
                     setup.scene.rays().is_blocked(from, points[p].normal, end, normal);
@@ -113,17 +113,17 @@ TEST(ShadowRayTracer, AnswersAsSingleRays) {
     EXPECT_LT(num_seen, static_cast<int>(num_rays * 3 / 4));
 }
 
-// Together with those of another point and of another piece: 256 pairs of equal frequency.
+// Together with those of another point and of another element: 256 pairs of equal frequency.
 TEST(DrawnParts, AreUniformAndIndependent) {
     const HalfHiddenSheet setup;
-    renderer::ShadowRayTracer tracer(setup.scene, setup.pieces);
+    renderer::ShadowRayTracer tracer(setup.scene, setup.elements);
     const WallPointLanes lanes(setup.points(0, WallPointLanes::kSize));
     tracer.look_from(lanes);
-    std::vector<std::uint32_t> firsts;  // by piece and point
-    for (std::uint32_t b = 0; b < setup.pieces.blocks.size(); ++b) {
-        for (std::uint32_t lane = 0; lane < setup.pieces.blocks[b].count; ++lane) {
+    std::vector<std::uint32_t> firsts;  // by element and point
+    for (std::uint32_t b = 0; b < setup.elements.blocks.size(); ++b) {
+        for (std::uint32_t lane = 0; lane < setup.elements.blocks[b].count; ++lane) {
             const auto parts =
-                tracer.drawn_parts(b * static_cast<std::uint32_t>(PieceBlock::kSize) + lane);
+                tracer.drawn_parts(b * static_cast<std::uint32_t>(ElementBlock::kSize) + lane);
             for (std::size_t p = 0; p < WallPointLanes::kSize; ++p) {
                 std::uint32_t quarters = 0;
                 for (std::uint32_t k = 0; k < 4; ++k) {
@@ -153,7 +153,7 @@ class VisibilityTracerTowards : public testing::TestWithParam<std::optional<Wall
 // With the same number of rays, too.
 TEST_P(VisibilityTracerTowards, PointsSeeTogetherWhatTheySeeAlone) {
     const HalfHiddenSheet setup;
-    renderer::VisibilityTracer tracer(setup.scene, setup.pieces);
+    renderer::VisibilityTracer tracer(setup.scene, setup.elements);
     renderer::VisibilityRules rules;
     rules.other_end = GetParam();
     const std::vector<WallPoint> points = setup.points(5, WallPointLanes::kSize);
@@ -163,22 +163,22 @@ TEST_P(VisibilityTracerTowards, PointsSeeTogetherWhatTheySeeAlone) {
         rules.opl.push_back(p % 3 == 0 ? renderer::LengthBounds{0.0, 9.0}
                                        : renderer::LengthBounds{begin, begin + 0.1});
     }
-    std::vector<renderer::VisiblePieces> together(points.size());
+    std::vector<renderer::VisibleElements> together(points.size());
     tracer.trace(points, rules, together);
     const std::uint64_t num_rays = tracer.num_rays();
     std::size_t num_partial = 0;
     for (std::size_t p = 0; p < points.size(); ++p) {
         renderer::VisibilityRules own = rules;
         own.opl = {rules.opl[p]};
-        std::vector<renderer::VisiblePieces> alone(1);
+        std::vector<renderer::VisibleElements> alone(1);
         tracer.trace({&points[p], 1}, own, alone);
         EXPECT_EQ(alone[0].units, together[p].units);
         EXPECT_EQ(alone[0].squared_error, together[p].squared_error);
-        for (std::size_t b = 0; b < setup.pieces.blocks.size(); ++b) {
-            renderer::for_each_unit(alone[0].units[b], [&](std::size_t begin) {
-                for (std::size_t i = begin; i < begin + PieceBlock::kUnitSize; ++i) {
-                    const VisibilityMask mask = alone[0].masks[b * PieceBlock::kSize + i];
-                    EXPECT_EQ(mask, together[p].masks[b * PieceBlock::kSize + i]);
+        for (std::size_t b = 0; b < setup.elements.blocks.size(); ++b) {
+            renderer::for_each_simd_group(alone[0].units[b], [&](std::size_t begin) {
+                for (std::size_t i = begin; i < begin + ElementBlock::kSimdWidth; ++i) {
+                    const VisibilityMask mask = alone[0].masks[b * ElementBlock::kSize + i];
+                    EXPECT_EQ(mask, together[p].masks[b * ElementBlock::kSize + i]);
                     num_partial += mask != 0 && mask != renderer::kAllVisible;
                 }
             });
@@ -203,8 +203,9 @@ TEST(ThirdBounceScan, OtherEndsInOtherPlanesTakeNothingAway) {
             {Vec3(-0.2, -0.2, 0.5), Vec3(0.4, 0.0, 0.0), Vec3(0.0, 0.4, 0.05), 0.5}));
         const renderer::Scene scene(std::move(geometry), scan, {});
         const core::TimeAxis axis{0.8, 0.02, 60};
-        const renderer::PieceSet pieces = renderer::PieceCutter(scene, scan, axis, 0.0).cut(0.01);
-        renderer::ThirdBounceScan integrator(scene, scan, axis, pieces, 0.0, 1e9);
+        const renderer::ElementSet elements =
+            renderer::SurfaceSubdivider(scene, scan, axis, 0.0).cut(0.01);
+        renderer::ThirdBounceScan integrator(scene, scan, axis, elements, 0.0, 1e9);
         core::Transient result(scan.num_pairs(), axis.num_bins);
         integrator.integrate(
             0, [](double) { return true; }, result);

@@ -13,7 +13,7 @@
 namespace {
 
 using core::TimeAxis;
-using renderer::Slopes;
+using renderer::Gradients;
 using renderer::TriangleBins;
 using renderer::TriangleKnots;
 
@@ -31,7 +31,7 @@ TriangleKnots knots_of_any_spread(core::Rng& rng) {
 
 std::vector<double> slot(const TriangleKnots& knots, double sigma_m, std::size_t index) {
     TriangleBins bins;
-    renderer::evaluate_triangle(knots, sigma_m, kAxis, Slopes::With, bins);
+    renderer::evaluate_triangle(knots, sigma_m, kAxis, Gradients::With, bins);
     std::vector<double> values(static_cast<std::size_t>(kAxis.num_bins));
     for (std::size_t i = 0; i < bins.bins.size(); ++i) {
         values[static_cast<std::size_t>(bins.first_bin) + i] = bins.bins[i].slots[index];
@@ -52,10 +52,11 @@ double norm(const std::vector<double>& a) {
 // Derivative of the histogram along a change of the knots or the width, by central differences.
 template <class Change>
 std::vector<double> difference(const Change& change, double step) {
-    std::vector<double> slope = change(step);
+    std::vector<double> gradient = change(step);
     const std::vector<double> below = change(-step);
-    for (std::size_t i = 0; i < slope.size(); ++i) slope[i] = (slope[i] - below[i]) / (2.0 * step);
-    return slope;
+    for (std::size_t i = 0; i < gradient.size(); ++i)
+        gradient[i] = (gradient[i] - below[i]) / (2.0 * step);
+    return gradient;
 }
 
 TEST(SmearedTriangle, WithoutResponseItIsTheBoxKernel) {
@@ -103,8 +104,8 @@ TEST(SmearedTriangle, KeepsTheWholeWeightForAnyStart) {
     }
 }
 
-TEST(SmearedTriangle, SlopesMatchFiniteDifferences) {
-    core::Rng rng(test_support::seed_of("SlopesMatchFiniteDifferences"), 0, 0);
+TEST(SmearedTriangle, GradientsMatchFiniteDifferences) {
+    core::Rng rng(test_support::seed_of("GradientsMatchFiniteDifferences"), 0, 0);
     for (int trial = 0; trial < kTrials; ++trial) {
         const TriangleKnots knots = knots_of_any_spread(rng);
         const double sigma_m = 0.003 + 0.01 * rng.uniform();
@@ -116,8 +117,8 @@ TEST(SmearedTriangle, SlopesMatchFiniteDifferences) {
                     return slot(moved, sigma_m, 0);
                 },
                 1e-4 * sigma_m);
-            const auto slope = slot(knots, sigma_m, 1 + j);
-            EXPECT_LT(distance(by_opl, slope), 1e-6 * norm(slope));
+            const auto gradient = slot(knots, sigma_m, 1 + j);
+            EXPECT_LT(distance(by_opl, gradient), 1e-6 * norm(gradient));
             const auto by_weight = difference(
                 [&](double step) {
                     TriangleKnots moved = knots;
@@ -129,12 +130,12 @@ TEST(SmearedTriangle, SlopesMatchFiniteDifferences) {
         }
         const auto by_width =
             difference([&](double step) { return slot(knots, sigma_m * std::exp(step), 0); }, 1e-4);
-        const auto slope = slot(knots, sigma_m, 7);
-        EXPECT_LT(distance(by_width, slope), 1e-6 * norm(slope));
+        const auto gradient = slot(knots, sigma_m, 7);
+        EXPECT_LT(distance(by_width, gradient), 1e-6 * norm(gradient));
     }
 }
 
-TEST(SmearedTriangle, SlopesWithoutResponseMatchFiniteDifferencesBetweenKinks) {
+TEST(SmearedTriangle, GradientsWithoutResponseMatchFiniteDifferencesBetweenKinks) {
     const TriangleKnots knots{{1.103, 1.1467, 1.2011}, {0.3, 0.9, 0.5}};
     for (std::size_t j = 0; j < 3; ++j) {
         const auto by_opl = difference(
@@ -144,8 +145,8 @@ TEST(SmearedTriangle, SlopesWithoutResponseMatchFiniteDifferencesBetweenKinks) {
                 return slot(moved, 0.0, 0);
             },
             1e-6);
-        const auto slope = slot(knots, 0.0, 1 + j);
-        EXPECT_LT(distance(by_opl, slope), 1e-6 * norm(slope));
+        const auto gradient = slot(knots, 0.0, 1 + j);
+        EXPECT_LT(distance(by_opl, gradient), 1e-6 * norm(gradient));
     }
 }
 

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "calib/model/scene_model.h"
+#include "renderer/core/capture.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace calib {
+
+/// A part of a facet small enough for the closed-form kernel, by its corners' weights of the
+/// facet's corners; it moves with the facet.
+struct ModelElement {
+    std::uint32_t facet = 0;
+    std::array<core::Vec3, 3> barycentric;
+    double area_share = 1.0;  ///< of the facet
+};
+
+/// Cuts the model's facets by bisection of their longest edges.
+///
+/// The Gaussian kernel's relative L2 error is at most 0.05 h^2 / (8 r s), h the longest edge, r the
+/// distance and s the response's width in range; without a response half a bin stands for s.
+///
+/// state       where the facets are while being cut
+/// sigma_m     standard deviation of the response in path length [m], or the bin's width
+/// tolerance   relative L2 error aimed at
+/// source      rule measured, see README.md
+std::vector<ModelElement> cut_elements(const SceneModel& model,
+                                       const SceneState& state,
+                                       const core::Scan& scan,
+                                       double sigma_m,
+                                       double tolerance);
+
+}  // namespace calib

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: MIT
+#include "nlos/containers/sandboxed_process.h"
+
+#include "renderer/core/error.h"
+#include "renderer/core/process.h"
+
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <csignal>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <new>
+#include <optional>
+
+namespace nlos {
+namespace {
+
+// The address sanitizer reserves more addresses than any limit would allow.
+#if defined(__SANITIZE_ADDRESS__)
+constexpr bool kReservesAddresses = true;
+#elif defined(__has_feature)
+constexpr bool kReservesAddresses = __has_feature(address_sanitizer);
+#else
+constexpr bool kReservesAddresses = false;
+#endif
+
+// A message is a kind, the number of its bytes, and these.
+enum class Kind : char { Bytes = 'b', Error = 'e', Failure = 'f', OutOfMemory = 'm' };
+constexpr std::size_t kHeaderBytes = 1 + sizeof(std::uint64_t);
+constexpr std::uint64_t kLongestMessage = std::uint64_t{1} << 40;
+
+bool send_all(int socket, const char* bytes, std::size_t count) {
+    while (count > 0) {
+        const ssize_t sent = ::send(socket, bytes, count, MSG_NOSIGNAL);
+        if (sent < 0 && errno == EINTR) continue;
+        if (sent <= 0) return false;
+        bytes += sent;
+        count -= static_cast<std::size_t>(sent);
+    }
+    return true;
+}
+
+bool receive_all(int socket, char* bytes, std::size_t count) {
+    while (count > 0) {
+        const ssize_t received = ::recv(socket, bytes, count, 0);
+        if (received < 0 && errno == EINTR) continue;
+        if (received <= 0) return false;
+        bytes += received;
+        count -= static_cast<std::size_t>(received);
+    }
+    return true;
+}
+
+bool send_message(int socket, Kind kind, const std::string& bytes) {
+    std::array<char, kHeaderBytes> header{};
+    const std::uint64_t count = bytes.size();
+    header[0] = static_cast<char>(kind);
+    std::memcpy(header.data() + 1, &count, sizeof(count));
+    return send_all(socket, header.data(), header.size()) &&
+           send_all(socket, bytes.data(), bytes.size());
+}
+
+struct Message {
+    Kind kind = Kind::Bytes;
+    std::string bytes;
+};
+
+std::optional<Message> receive_message(int socket) {
+    std::array<char, kHeaderBytes> header{};
+    if (!receive_all(socket, header.data(), header.size())) return std::nullopt;
+    Message message;
+    std::uint64_t count = 0;
+    message.kind = static_cast<Kind>(header[0]);
+    std::memcpy(&count, header.data() + 1, sizeof(count));
+    if (count > kLongestMessage) return std::nullopt;
+    message.bytes.resize(count);
+    if (!receive_all(socket, message.bytes.data(), count)) return std::nullopt;
+    return message;
+}
+
+void limit(__rlimit_resource resource, std::uint64_t most) {
+    rlimit limits{};
+    ::getrlimit(resource, &limits);
+    limits.rlim_cur = std::min<rlim_t>(most, limits.rlim_max);
+    ::setrlimit(resource, &limits);
+}
+
+/// Address space in use now [bytes].
+std::uint64_t used_address_space() {
+    std::uint64_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    return pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+}
+
+void bound_resources(std::uint64_t file_bytes) {
+    constexpr std::uint64_t kSeconds = 5;
+    constexpr std::uint64_t kBytesPerSecond = 250'000;  // slower than to inflate a file of zeros
+    limit(RLIMIT_CORE, 0);
+    limit(RLIMIT_CPU, kSeconds + file_bytes / kBytesPerSecond);
+    if (!kReservesAddresses) {
+        limit(RLIMIT_AS, used_address_space() + core::available_memory_bytes());
+    }
+}
+
+/// A crash is silent and ends the child; Ctrl-C is left to the parent.
+void isolate() {
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGXCPU, SIGTERM}) {
+        std::signal(signal, SIG_DFL);
+    }
+    std::signal(SIGINT, SIG_IGN);
+    const int nowhere = ::open("/dev/null", O_RDWR);
+    if (nowhere < 0) return;
+    for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+        ::dup2(nowhere, standard);
+    }
+}
+
+[[noreturn]] void run_child(int socket,
+                            std::uint64_t file_bytes,
+                            const SandboxedProcess::Serve& serve) {
+    isolate();
+    bound_resources(file_bytes);
+    while (const std::optional<Message> request = receive_message(socket)) {
+        bool is_sent = false;
+        try {
+            is_sent = send_message(socket, Kind::Bytes, serve(request->bytes));
+        } catch (const core::Error& error) {
+            is_sent = send_message(socket, Kind::Error, error.what());
+        } catch (const core::Failure& failure) {
+            is_sent = send_message(socket, Kind::Failure, failure.what());
+        } catch (const std::bad_alloc&) {
+            is_sent = send_message(socket, Kind::OutOfMemory, "");
+        } catch (...) {
+            break;  // as a crash
+        }
+        if (!is_sent) break;
+    }
+    ::_exit(0);  // nothing of the parent's is cleaned up here
+}
+
+/// Throws an error again that the child wrote as `where: found; allowed`.
+[[noreturn]] void throw_error(const std::string& line) {
+    const std::size_t where_end = line.find(": ");
+    const std::size_t found_end = line.rfind("; ");
+    if (where_end == std::string::npos || found_end == std::string::npos || found_end < where_end) {
+        throw core::Error(line, "was found", "must be mended");
+    }
+    throw core::Error(line.substr(0, where_end),
+                      line.substr(where_end + 2, found_end - where_end - 2),
+                      line.substr(found_end + 2));
+}
+
+[[noreturn]] void throw_failure(const std::string& line) {
+    const std::size_t where_end = std::min(line.find(": "), line.size());
+    throw core::Failure(line.substr(0, where_end),
+                        line.substr(std::min(where_end + 2, line.size())));
+}
+
+std::uint64_t file_bytes_of(const std::string& path) {
+    std::error_code error;
+    const std::uint64_t bytes = std::filesystem::file_size(path, error);
+    return error ? 0 : bytes;
+}
+
+}  // namespace
+
+SandboxedProcess::SandboxedProcess(std::string path, const Serve& serve) : path_(std::move(path)) {
+    const std::uint64_t file_bytes = file_bytes_of(path_);
+    std::array<int, 2> sockets{};
+    if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, sockets.data()) != 0) {
+        throw core::Failure(path_, "cannot be read: no socket for a child process");
+    }
+    // No child may inherit the other end of a sibling's socket, or its end would go unnoticed.
+    static std::mutex starting;
+    const std::lock_guard lock(starting);
+    process_ = ::fork();
+    if (process_ == 0) {
+        ::close(sockets[0]);
+        run_child(sockets[1], file_bytes, serve);
+    }
+    ::close(sockets[1]);
+    socket_ = sockets[0];
+    if (process_ < 0) {
+        ::close(socket_);
+        throw core::Failure(path_, "cannot be read: no child process can be started");
+    }
+}
+
+SandboxedProcess::~SandboxedProcess() {
+    ::close(socket_);
+    if (process_ < 0) return;
+    ::kill(process_, SIGKILL);
+    ::waitpid(process_, nullptr, 0);
+}
+
+void SandboxedProcess::throw_ended() {
+    int status = 0;
+    if (process_ >= 0) ::waitpid(process_, &status, 0);
+    process_ = -1;
+    const bool took_too_long = WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU;
+    throw core::Error(path_,
+                      took_too_long ? "is damaged: reading it does not end"
+                                    : "is damaged: reading it crashes the library for its format",
+                      "must be an undamaged, complete file");
+}
+
+std::string SandboxedProcess::ask(const std::string& request) {
+    const std::lock_guard lock(one_at_a_time_);
+    if (!send_message(socket_, Kind::Bytes, request)) throw_ended();
+    std::optional<Message> answer = receive_message(socket_);
+    if (!answer) throw_ended();
+    switch (answer->kind) {
+        case Kind::Bytes:
+            return std::move(answer->bytes);
+        case Kind::Failure:
+            throw_failure(answer->bytes);
+        case Kind::OutOfMemory:
+            throw core::Failure(path_, "needs more memory than is free");
+        case Kind::Error:
+            break;
+    }
+    throw_error(answer->bytes);
+}
+
+std::string run_sandboxed(const std::string& path, const std::function<std::string()>& work) {
+    return SandboxedProcess(path, [&](const std::string&) { return work(); }).ask("");
+}
+
+}  // namespace nlos

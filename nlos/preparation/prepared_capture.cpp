@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+#include "nlos/preparation/prepared_capture.h"
+
+#include "nlos/preparation/memory_limit.h"
+#include "nlos/preparation/midpoint_conversion.h"
+#include "renderer/core/error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace nlos {
+namespace {
+
+using Limits = std::optional<std::array<double, 2>>;
+
+bool holds(const Limits& limits, double value) {
+    return !limits || (value >= (*limits)[0] && value <= (*limits)[1]);
+}
+
+/// Numbers of the points inside the crop, in order, and the grid they form if any.
+struct Selection {
+    std::vector<std::size_t> numbers;
+    core::WallPoints points;
+};
+
+Selection select_points(const core::WallPoints& points,
+                        const core::Transform& wall_from_world,
+                        const CropSettings& crop) {
+    Selection selection;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const core::Vec3 position = wall_from_world * points.positions[i];
+        if (!holds(crop.x_range_m, position.x()) || !holds(crop.y_range_m, position.y())) continue;
+        selection.numbers.push_back(i);
+        selection.points.positions.push_back(points.positions[i]);
+        selection.points.normals.push_back(points.normals[i]);
+    }
+    if (!points.grid || selection.numbers.empty()) return selection;
+    // A rectangle cut out of a grid: whole runs of columns in whole runs of rows.
+    const std::size_t ny = (*points.grid)[1];
+    const std::size_t first_row = selection.numbers.front() / ny;
+    const std::size_t rows = selection.numbers.back() / ny - first_row + 1;
+    const std::size_t columns = selection.numbers.size() / rows;
+    const std::size_t first_column = selection.numbers.front() % ny;
+    bool is_rectangle = columns * rows == selection.numbers.size();
+    for (std::size_t i = 0; i < selection.numbers.size() && is_rectangle; ++i) {
+        is_rectangle =
+            selection.numbers[i] == (first_row + i / columns) * ny + first_column + i % columns;
+    }
+    if (is_rectangle) selection.points.grid = {rows, columns};
+    return selection;
+}
+
+/// Bins [begin, end) whose centres lie within the limits.
+std::array<int, 2> select_bins(const core::TimeAxis& axis, const Limits& limits) {
+    if (!limits) return {0, axis.num_bins};
+    const auto bin_at = [&](double opl) {
+        const double bin = std::ceil((opl - axis.opl_start_m) / axis.bin_width_m - 0.5);
+        return static_cast<int>(std::clamp(bin, 0.0, static_cast<double>(axis.num_bins)));
+    };
+    return {bin_at((*limits)[0]), bin_at((*limits)[1])};
+}
+
+void crop_measurement(const core::Capture& capture,
+                      const CropSettings& crop,
+                      PreparedCapture& prepared) {
+    const core::Scan& scan = capture.scan;
+    const core::Transform wall_from_world = prepared.wall.world_from_wall.inverse(Eigen::Isometry);
+    const Selection sensing = select_points(scan.sensing, wall_from_world, crop);
+    const bool is_exhaustive = scan.pattern == core::ScanPattern::Exhaustive;
+    const Selection lit =
+        is_exhaustive ? select_points(scan.illumination, wall_from_world, crop) : Selection{};
+    const auto [first_bin, end_bin] = select_bins(capture.time_axis, crop.opl_range_m);
+    if (sensing.numbers.empty() || (is_exhaustive && lit.numbers.empty()) || first_bin >= end_bin) {
+        throw core::Error("crop",
+                          fmt::format("leaves {} sensing points and {} bins",
+                                      sensing.numbers.size(),
+                                      std::max(0, end_bin - first_bin)),
+                          "must leave some of each; ranges are in the wall's frame, around the "
+                          "centre of its points");
+    }
+    prepared.scan.sensing = sensing.points;
+    if (scan.pattern == core::ScanPattern::Confocal) prepared.scan.illumination = sensing.points;
+    if (is_exhaustive) prepared.scan.illumination = lit.points;
+    prepared.time_axis.opl_start_m = capture.time_axis.bin_begin_m(first_bin);
+    prepared.time_axis.num_bins = end_bin - first_bin;
+
+    require_memory(4.0 * static_cast<double>(prepared.scan.num_pairs()) *
+                   prepared.time_axis.num_bins);
+    prepared.own = core::Transient(prepared.scan.num_pairs(), prepared.time_axis.num_bins);
+    for (std::size_t pair = 0; pair < prepared.own.num_pairs(); ++pair) {
+        const std::size_t s = sensing.numbers[pair % sensing.numbers.size()];
+        const std::size_t l = is_exhaustive ? lit.numbers[pair / sensing.numbers.size()] : 0;
+        const auto from = capture.transient.histogram(l * scan.sensing.size() + s);
+        std::copy_n(from.begin() + first_bin,
+                    prepared.time_axis.num_bins,
+                    prepared.own.histogram(pair).begin());
+    }
+    prepared.wall = derive_wall_frame(prepared.scan);
+}
+
+}  // namespace
+
+PreparedCapture crop_capture(const core::Capture& capture, const CropSettings& crop) {
+    PreparedCapture prepared;
+    prepared.scan = capture.scan;
+    prepared.time_axis = capture.time_axis;
+    prepared.unit = capture.unit;
+    prepared.capture_transient = &capture.transient;
+    prepared.wall = derive_wall_frame(capture.scan);
+    if (crop.x_range_m || crop.y_range_m || crop.opl_range_m) {
+        crop_measurement(capture, crop, prepared);
+    }
+    core::Scan& scan = prepared.scan;
+    if (scan.pattern == core::ScanPattern::Exhaustive && scan.sensing.size() == 1) {
+        // Light takes the same way back: swap the roles; the histograms keep their order.
+        std::swap(scan.illumination, scan.sensing);
+        std::swap(scan.laser_position, scan.detector_position);
+        scan.pattern = core::ScanPattern::Single;
+    }
+    return prepared;
+}
+
+bool convert_to_confocal(PreparedCapture& prepared) {
+    auto confocal = convert_to_confocal(prepared.scan, prepared.time_axis, prepared.transient());
+    if (!confocal) return false;
+    prepared.conversion = fmt::format(
+        "{} scan converted to {} x {} confocal midpoints",
+        prepared.scan.pattern == core::ScanPattern::Single ? "single-laser" : "exhaustive",
+        (*confocal->points.grid)[0],
+        (*confocal->points.grid)[1]);
+    prepared.scan = core::Scan{};
+    prepared.scan.sensing = confocal->points;
+    prepared.scan.illumination = std::move(confocal->points);
+    prepared.time_axis = confocal->time_axis;
+    prepared.own = std::move(confocal->transient);
+    prepared.wall = derive_wall_frame(prepared.scan);
+    return true;
+}
+
+}  // namespace nlos

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/bounce_truncation.h"
+
+#include "renderer/core/parallel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <vector>
+
+namespace renderer {
+namespace {
+
+constexpr std::size_t kMaxPairs = 128;
+constexpr std::size_t kRuns = 16;                     ///< independent ones, in twos
+constexpr int kSamples = 256;                         ///< of a pair in a run
+constexpr std::uint64_t kMeasuringItem = 1ULL << 41;  ///< keeps its random numbers apart
+
+// What a pair receives in each order and all later ones: [order - 1][bin].
+std::vector<double> tails_of(PassHistogram& histogram, std::size_t num_orders, std::size_t bins) {
+    std::vector<double> tails(num_orders * bins);
+    histogram.drain(
+        [&](std::size_t begin, std::span<const double> values) {
+            std::copy(values.begin(), values.end(), tails.data() + begin);
+        },
+        [](std::size_t, std::span<const double>) {});
+    for (std::size_t i = (num_orders - 1) * bins; i-- > 0;) tails[i] += tails[i + bins];
+    return tails;
+}
+
+// Squared norms of the tails over some pairs, one entry per order and couple of runs. The product
+// of two independent estimates has no bias from their noise.
+struct SquaredNorms {
+    std::vector<double> values;  ///< [order - 1][couple]
+
+    SquaredNorms& operator+=(const SquaredNorms& other) {
+        for (std::size_t i = 0; i < values.size(); ++i) values[i] += other.values[i];
+        return *this;
+    }
+};
+
+}  // namespace
+
+BounceTruncation find_bounce_truncation(const Scene& scene,
+                                        const core::Scan& scan,
+                                        const core::HistogramAxes& axes,
+                                        const RenderSettings& settings,
+                                        double allowed) {
+    RenderSettings measuring = settings;
+    measuring.by_order = true;
+    const PairEstimator estimate = path_estimator(scene, scan, measuring, ThirdBounceScope::All);
+    constexpr std::size_t kCouples = kRuns / 2;
+    const auto num_orders = static_cast<std::size_t>(settings.max_bounces);
+    const auto bins = static_cast<std::size_t>(axes.time.num_bins);
+    const std::size_t num_pairs = std::min(kMaxPairs, scan.num_pairs());
+    const SquaredNorms zero{std::vector<double>(num_orders * kCouples)};
+    const SquaredNorms norms =
+        core::parallel_sum<SquaredNorms>(num_pairs, zero, [&](std::size_t i) {
+            const std::size_t pair = (2 * i + 1) * scan.num_pairs() / (2 * num_pairs);
+            SquaredNorms result = zero;
+            PassHistogram histogram({axes.time, {}}, settings.gate, settings.max_bounces);
+            std::vector<double> first;
+            for (std::size_t run = 0; run < kRuns; ++run) {
+                core::Rng rng(settings.seed, kMeasuringItem + pair, run);
+                estimate(pair, kSamples, rng, histogram);
+                std::vector<double> tails = tails_of(histogram, num_orders, bins);
+                if (run % 2 == 0) {
+                    first = std::move(tails);
+                    continue;
+                }
+                for (std::size_t j = 0; j < tails.size(); ++j) {
+                    result.values[j / bins * kCouples + run / 2] += first[j] * tails[j];
+                }
+            }
+            return result;
+        });
+    const auto norm_from = [&](std::size_t order, double deviations) {
+        const double* const begin = norms.values.data() + (order - 1) * kCouples;
+        double sum = 0.0;
+        double squares = 0.0;
+        for (std::size_t c = 0; c < kCouples; ++c) {
+            sum += begin[c];
+            squares += begin[c] * begin[c];
+        }
+        const double mean = sum / kCouples;
+        const double variance = std::max(0.0, squares / kCouples - mean * mean) / (kCouples - 1);
+        return std::sqrt(std::max(0.0, mean + deviations * std::sqrt(variance)));
+    };
+    BounceTruncation result{settings.max_bounces, 0.0};
+    const double all = norm_from(1, 0.0);
+    if (!(all > 0.0)) return result;
+    for (; result.last > 3; --result.last) {
+        const double tail = norm_from(static_cast<std::size_t>(result.last), 2.0) / all;
+        if (tail > allowed) break;
+        result.left_out = tail;
+    }
+    return result;
+}
+
+}  // namespace renderer

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/core/types.h"
+#include "renderer/film/path_extent.h"
+#include "renderer/scene/scene.h"
+
+#include <cstdint>
+
+namespace renderer {
+
+/// One end of all light paths: a point of the relay wall, a lit spot, or an isotropic point in
+/// space.
+///
+/// The factor towards a unit direction w is `strength` * max(0, normal . w) for a Lambertian wall
+/// (strength albedo/pi) and `strength` for an isotropic end (1/(4 pi) for a source of 1 W, 1 for a
+/// detector of fluence).
+struct PathEndpoint {
+    core::Vec3 position = core::Vec3::Zero();
+    core::Vec3 normal = core::Vec3::UnitZ();
+    double strength = 1.0 / core::kPi;
+    bool isotropic = false;
+    core::Vec3 velocity_m_per_s = core::Vec3::Zero();
+
+    double factor(const core::Vec3& direction) const {
+        if (isotropic) return strength;
+        const double cosine = normal.dot(direction);
+        return cosine > 0.0 ? strength * cosine : 0.0;
+    }
+};
+
+/// The two ends of a measurement and the length of the legs to the devices.
+struct PathEndpoints {
+    PathEndpoint sensor;
+    PathEndpoint light;
+    double device_legs_m = 0.0;
+    bool coincide = false;  ///< confocal: what one end sees, the other sees too
+};
+
+/// A vertex inside a path while it grows from the sensor towards the light.
+struct PathVertex {
+    SurfacePoint point;
+    core::Vec3 normal = core::Vec3::UnitZ();
+    core::Vec3 to_previous = core::Vec3::UnitZ();  ///< unit, towards the sensor side
+    Bsdf bsdf;
+    /// Everything before this vertex over the density of the draws, cosine at this vertex included.
+    double throughput = 0.0;
+    PathExtent extent;  ///< from the sensor point to here
+    int order = 3;      ///< bounces of the path that goes from here straight to the light
+};
+
+}  // namespace renderer

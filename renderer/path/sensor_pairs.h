@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/core/capture.h"
+#include "renderer/path/path_vertex.h"
+#include "renderer/scene/scene.h"
+
+#include <cstddef>
+#include <optional>
+
+namespace renderer {
+
+/// Bounces of the shortest paths that a scan samples.
+int first_order(const core::Scan& scan);
+
+/// The pairs of a scan as light paths know them: where they start and where they end.
+///
+/// Paths of a wall pair run between two wall points. Paths of a pixel start with the surface point
+/// that is seen through it and end at the camera's light. A lit spot counts as a bounce, like the
+/// laser spot of a scan; camera and point light do not.
+class SensorPairs {
+ public:
+    /// Both must outlive this.
+    /// throws   core::Error when the spot of a camera's light lies on no surface
+    SensorPairs(const Scene& scene, const core::Scan& scan);
+
+    std::size_t num_pairs() const { return scan_->num_pairs(); }
+    bool is_image() const { return scan_->camera.has_value(); }
+
+    int first_order() const { return renderer::first_order(*scan_); }
+
+    /// The fixed ends of a pair's paths; the sensor of a pixel is the pinhole.
+    PathEndpoints ends(std::size_t pair) const;
+
+    /// Draws the first vertex of a pixel's paths: what is seen through a point of the pixel.
+    ///
+    /// u         uniform in [0, 1)^2: the point's place within the pixel
+    /// returns   a vertex of throughput 1, so that the mean over u of what arrives there towards
+    ///           the camera is the pixel's radiance; nothing when the ray leaves the scene
+    std::optional<PathVertex> first_vertex(std::size_t pixel, const core::Vec2& u) const;
+
+ private:
+    PathEndpoint spot_light(const core::Vec3& spot) const;
+
+    const Scene* scene_;
+    const core::Scan* scan_;
+    PathEndpoint light_;  ///< of images
+    core::Mat3 world_from_image_ = core::Mat3::Identity();
+};
+
+}  // namespace renderer

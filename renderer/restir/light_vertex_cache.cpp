@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/restir/light_vertex_cache.h"
+
+#include "renderer/core/parallel.h"
+#include "renderer/core/sampling.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace renderer {
+namespace {
+
+using core::kPi;
+using core::Vec3;
+
+constexpr std::size_t kWalksPerBlock = 64;
+constexpr std::uint32_t kVerticesAtOnce = 64;
+
+// Sum of a few rounded coordinates and roots: lengths err by less than this share of the scene.
+constexpr float kRoundingShare = 16.0F * 0x1.0p-24F;
+
+// Multiples of the golden ratio fill an interval evenly, and so does any stretch of them.
+double stratified(double shift, int index) {
+    constexpr double kGolden = 0.6180339887498949;
+    const double u = shift + index * kGolden;
+    return u - std::floor(u);
+}
+
+}  // namespace
+
+LightVertexCache::LightVertexCache(const Scene& scene,
+                                   const SurfaceWalk& walk,
+                                   const SensorPairs& sensor_pairs)
+    : scene_(&scene), walk_(&walk), by_area_(!sensor_pairs.is_image()) {
+    light_ = sensor_pairs.ends(0).light;
+    if (!by_area_) return;
+    light_.position = Vec3::Zero();
+    for (std::size_t pair = 0; pair < sensor_pairs.num_pairs(); ++pair) {
+        light_.position +=
+            sensor_pairs.ends(pair).light.position / static_cast<double>(sensor_pairs.num_pairs());
+    }
+}
+
+PathVertex LightVertexCache::first_vertex(const SurfacePoint& point) const {
+    PathVertex vertex;
+    vertex.point = point;
+    vertex.normal = scene_->facet(point.facet).normal;
+    vertex.to_previous = (light_.position - point.position).normalized();
+    vertex.bsdf = scene_->bsdf_at(point);
+    vertex.throughput = 1.0;
+    return vertex;
+}
+
+double LightVertexCache::pdf_area_of_first(const SurfacePoint& point) const {
+    if (by_area_) return scene_->is_hidden(point.facet) ? walk_->area_sampler().pdf_area() : 0.0;
+    const Vec3 offset = point.position - light_.position;
+    const double distance2 = offset.squaredNorm();
+    const Vec3 direction = offset / std::sqrt(distance2);
+    const double pdf_direction =
+        light_.isotropic ? core::pdf_sphere() : std::max(0.0, light_.normal.dot(direction)) / kPi;
+    return pdf_direction * std::abs(scene_->facet(point.facet).normal.dot(direction)) / distance2;
+}
+
+LightVertexCache::Walked LightVertexCache::trace_walk(int index,
+                                                      int max_vertices,
+                                                      double shift,
+                                                      core::Rng& rng) const {
+    Walked walked;
+    const double u1 = stratified(shift, index);
+    const double u2 = rng.uniform();
+    SurfacePoint point;
+    if (by_area_) {
+        point = walk_->area_sampler().sample(u1, u2);
+    } else {
+        const Vec3 direction =
+            light_.isotropic
+                ? core::sample_sphere({u1, u2})
+                : Vec3(core::frame_from_normal(light_.normal, scene_->tangent_hint(light_.normal)) *
+                       core::sample_cosine_hemisphere({u1, u2}));
+        ++walked.num_rays;
+        const auto hit = scene_->first_hit(light_.position, light_.normal, direction);
+        if (!hit) return walked;
+        point = *hit;
+    }
+    walked.points.push_back(point);
+    PathVertex vertex = first_vertex(point);
+    while (static_cast<int>(walked.points.size()) < max_vertices) {
+        if (!walk_->draw_next(vertex, rng, walked.num_rays)) break;
+        walked.points.push_back(vertex.point);
+    }
+    return walked;
+}
+
+std::uint64_t LightVertexCache::trace(int num_walks,
+                                      int max_vertices,
+                                      std::uint64_t seed,
+                                      std::uint64_t frame) {
+    std::vector<Walked> walks(static_cast<std::size_t>(num_walks));
+    const double shift = core::Rng(seed, walks.size(), frame).uniform();
+    core::parallel_blocks(walks.size(), kWalksPerBlock, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            core::Rng rng(seed, i, frame);
+            walks[i] = trace_walk(static_cast<int>(i), max_vertices, shift, rng);
+        }
+    });
+    store(walks);
+    std::uint64_t num_rays = 0;
+    for (const Walked& walked : walks) num_rays += walked.num_rays;
+    return num_rays;
+}
+
+void LightVertexCache::store(const std::vector<Walked>& walks) {
+    points_.clear();
+    walk_of_.clear();
+    walk_begin_.assign(1, 0);
+    for (auto* column : {&x_, &y_, &z_, &first_x_, &first_y_, &first_z_, &to_light_m_}) {
+        column->clear();
+    }
+    const Vec3& origin = scene_->rays().origin();
+    for (std::size_t w = 0; w < walks.size(); ++w) {
+        double to_light = 0.0;
+        for (std::size_t i = 0; i < walks[w].points.size(); ++i) {
+            const SurfacePoint& point = walks[w].points[i];
+            const Vec3 first = (walks[w].points[0].position - origin);
+            const Vec3 local = point.position - origin;
+            if (i > 0) {
+                to_light += (point.position - walks[w].points[i - 1].position).norm();
+            } else if (!by_area_) {
+                to_light = (point.position - light_.position).norm();
+            }
+            points_.push_back(point);
+            walk_of_.push_back(static_cast<std::uint32_t>(w));
+            x_.push_back(static_cast<float>(local.x()));
+            y_.push_back(static_cast<float>(local.y()));
+            z_.push_back(static_cast<float>(local.z()));
+            first_x_.push_back(static_cast<float>(first.x()));
+            first_y_.push_back(static_cast<float>(first.y()));
+            first_z_.push_back(static_cast<float>(first.z()));
+            to_light_m_.push_back(static_cast<float>(to_light));
+        }
+        walk_begin_.push_back(static_cast<std::uint32_t>(points_.size()));
+    }
+}
+
+void LightVertexCache::find(const PathDomain& domain,
+                            const OplBand& opl_m,
+                            const Stretch& walks,
+                            std::vector<std::uint32_t>& found) const {
+    found.clear();
+    const Vec3& origin = scene_->rays().origin();
+    const Eigen::Vector3f start = (domain.start() - origin).cast<float>();
+    const Eigen::Vector3f light = (domain.ends.light.position - origin).cast<float>();
+    const auto end_f = static_cast<float>(opl_m.high_m - domain.extra_opl_m());
+    const auto begin_f = static_cast<float>(opl_m.low_m - domain.extra_opl_m());
+    const float margin = kRoundingShare * (std::abs(end_f) + std::abs(begin_f) + start.norm());
+    const float low = begin_f - margin;
+    const float high = end_f + margin;
+    // There and back: the first vertex of a walk is its only one.
+    const bool same_legs =
+        by_area_ && domain.ends.coincide && points_.size() + 1 == walk_begin_.size();
+    const std::uint32_t last = walk_begin_[static_cast<std::size_t>(walks.first + walks.count)];
+    for (std::uint32_t v = walk_begin_[static_cast<std::size_t>(walks.first)]; v < last;) {
+        std::array<float, kVerticesAtOnce> length;
+        const std::uint32_t count = std::min(kVerticesAtOnce, last - v);
+        // Pointers: sums of 32-bit indices might wrap, for all a compiler knows, and would be
+        // loaded one by one.
+        const float* x = x_.data() + v;
+        const float* y = y_.data() + v;
+        const float* z = z_.data() + v;
+        const float* to_light_m = to_light_m_.data() + v;
+        const float* first_x = first_x_.data() + v;
+        const float* first_y = first_y_.data() + v;
+        const float* first_z = first_z_.data() + v;
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const float dx = x[i] - start.x();
+            const float dy = y[i] - start.y();
+            const float dz = z[i] - start.z();
+            length[i] = std::sqrt(dx * dx + dy * dy + dz * dz) + to_light_m[i];
+        }
+        for (std::uint32_t i = 0; same_legs && i < count; ++i) length[i] *= 2.0F;
+        for (std::uint32_t i = 0; by_area_ && !same_legs && i < count; ++i) {
+            const float lx = first_x[i] - light.x();
+            const float ly = first_y[i] - light.y();
+            const float lz = first_z[i] - light.z();
+            length[i] += std::sqrt(lx * lx + ly * ly + lz * lz);
+        }
+        const auto is_hit = [&](std::uint32_t i) {
+            return static_cast<std::uint32_t>((length[i] >= low) & (length[i] < high));
+        };
+        // In a narrow gate most blocks have no hit, and where some have, few: no branches.
+        std::uint32_t num_hits = 0;
+        for (std::uint32_t i = 0; i < count; ++i) num_hits += is_hit(i);
+        if (num_hits > 0) {
+            std::array<std::uint32_t, kVerticesAtOnce> hits;
+            std::uint32_t n = 0;
+            for (std::uint32_t i = 0; i < count; ++i) {
+                hits[n] = v + i;
+                n += is_hit(i);
+            }
+            found.insert(found.end(), hits.begin(), hits.begin() + num_hits);
+        }
+        v += count;
+    }
+}
+
+ReusablePath LightVertexCache::path_from(std::uint32_t vertex) const {
+    ReusablePath path;
+    const std::uint32_t first = walk_begin_[walk_of_[vertex]];
+    for (std::uint32_t v = vertex + 1; v-- > first;) path.append(points_[v]);
+    return path;
+}
+
+double LightVertexCache::pdf_area(const ReusablePath& path) const {
+    double pdf = pdf_area_of_first(path.last());
+    PathVertex vertex = first_vertex(path.last());
+    for (int i = path.num_vertices - 2; i >= 0 && pdf > 0.0; --i) {
+        const auto step = walk_->step_to(vertex, path.at(i));
+        if (!step) return 0.0;
+        pdf *= step->pdf_area;
+        vertex = walk_->advance(vertex, path.at(i), *step, step->pdf_area);
+    }
+    return pdf;
+}
+
+}  // namespace renderer

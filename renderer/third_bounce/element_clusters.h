@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/scene/scene.h"
+#include "renderer/third_bounce/surface_elements.h"
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace renderer {
+
+/// An element as it is integrated: itself, or a triangle that stands for several elements with the
+/// same area, centroid and second moments in its plane.
+struct ElementCluster {
+    SurfaceElement triangle;  ///< with one of the facets
+    core::Vec3 normal;
+    double area_m2 = 0.0;
+    double rise_m = 0.0;  ///< the surface lies at most this far above or below the triangle's plane
+};
+
+/// Merged elements, and where each of the elements went.
+struct ElementClusters {
+    std::vector<ElementCluster> elements;
+    std::vector<std::uint32_t> merged_of;  ///< per element, index into `elements`
+};
+
+/// What may be a cluster.
+struct ClusterLimits {
+    double diameter_m = 0.0;
+    double squared_tilt = 0.0;  ///< mean of |normal - mean normal|^2
+};
+
+/// Splits the elements of each object at medians until each part may be merged; elements of glossy
+/// and textured objects stay single.
+///
+/// elements              those of an object in a row
+/// may_be_merged       asked for a part's bounding sphere when it keeps the limits
+/// returns             a cluster number per element, counted from 0
+std::vector<std::uint32_t> cluster_elements(
+    const Scene& scene,
+    std::span<const SurfaceElement> elements,
+    const ClusterLimits& limits,
+    const std::function<bool(const core::Vec3& center, double diameter_m)>& may_be_merged);
+
+/// Merges elements of the same cluster that hang together.
+///
+/// clusters   per element
+/// touching   pairs of elements, see adjacent_elements()
+ElementClusters merge_elements(const Scene& scene,
+                               std::span<const SurfaceElement> elements,
+                               std::span<const std::uint32_t> clusters,
+                               std::span<const std::pair<std::uint32_t, std::uint32_t>> touching);
+
+}  // namespace renderer

@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/third_bounce/element_packer.h"
+
+#include "renderer/core/random.h"
+#include "renderer/geometry/median_split.h"
+#include "renderer/third_bounce/element_adjacency.h"
+#include "renderer/third_bounce/simd_groups.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <utility>
+#include <variant>
+
+namespace renderer {
+namespace {
+
+using core::Vec3;
+
+// A group spans at most this times sqrt(tolerance) times its distance, ...
+constexpr double kGroupSizePerDistance = 0.8;
+// ... and its normals differ by about 30 degrees at most.
+constexpr double kMinGroupCosine = 0.85;
+
+double reflectance(const Bsdf& bsdf, ElementKind kind, double laser_spot_m2) {
+    const double albedo = albedo_of(bsdf);
+    return kind == ElementKind::Retroreflective ? albedo / laser_spot_m2 : albedo / core::kPi;
+}
+
+struct ElementCenter {
+    Vec3 position;
+    std::size_t element;
+};
+
+// Median splits along the longest side of the centres' box, at whole blocks where there are
+// several.
+void sort_into_blocks(std::span<ElementCenter> centers) {
+    const std::size_t count = centers.size();
+    if (count < 2) return;
+    Eigen::AlignedBox3d box;
+    for (const ElementCenter& center : centers) box.extend(center.position);
+    std::size_t half = (count + 1) / 2;
+    if (count > ElementBlock::kSize)
+        half = (half + ElementBlock::kSize - 1) / ElementBlock::kSize * ElementBlock::kSize;
+    split_along_longest_side(
+        centers, half, box, [](const ElementCenter& c) -> const Vec3& { return c.position; });
+    sort_into_blocks(centers.first(half));
+    sort_into_blocks(centers.subspan(half));
+}
+
+void find_simd_group_spheres(ElementBlock& block) {
+    for_each_simd_group(kAllSimdGroups, [&](std::size_t begin) {
+        Eigen::AlignedBox3d box;
+        for (std::size_t c = 0; c < 3; ++c) {
+            for (std::size_t i = begin; i < begin + ElementBlock::kSimdWidth; ++i) {
+                box.extend(Vec3(block.x[c][i], block.y[c][i], block.z[c][i]));
+            }
+        }
+        const std::size_t simd_group = begin / ElementBlock::kSimdWidth;
+        block.simd_group_x[simd_group] = box.center().x();
+        block.simd_group_y[simd_group] = box.center().y();
+        block.simd_group_z[simd_group] = box.center().z();
+        block.simd_group_radius_m[simd_group] = 0.5 * box.diagonal().norm();
+    });
+}
+
+}  // namespace
+
+ElementPacker::ElementPacker(const Scene& scene,
+                             const core::Scan& scan,
+                             const PackingRules& rules,
+                             std::vector<int> visible_side)
+    : scene_(scene), rules_(rules), visible_side_(std::move(visible_side)) {
+    set_.origin = scene.rays().origin();
+    Vec3 sum = Vec3::Zero();
+    for (const Vec3& point : scan.sensing.positions) sum += point - set_.origin;
+    scan_center_ = sum / static_cast<double>(scan.sensing.size());
+}
+
+void ElementPacker::fill_lane(ElementBlock& block,
+                              std::size_t lane,
+                              const ElementCluster& merged) const {
+    const SurfaceElement& element = merged.triangle;
+    for (std::size_t i = 0; i < 3; ++i) {
+        block.x[i][lane] = element.corners[i].x();
+        block.y[i][lane] = element.corners[i].y();
+        block.z[i][lane] = element.corners[i].z();
+        block.squared_edge[i][lane] =
+            (element.corners[(i + 2) % 3] - element.corners[(i + 1) % 3]).squaredNorm();
+    }
+    block.normal_x[lane] = merged.normal.x();
+    block.normal_y[lane] = merged.normal.y();
+    block.normal_z[lane] = merged.normal.z();
+    const Vec3 center = element.center();
+    block.center_x[lane] = center.x();
+    block.center_y[lane] = center.y();
+    block.center_z[lane] = center.z();
+    block.area_m2[lane] = merged.area_m2;
+    block.rise_m[lane] = merged.rise_m;
+    block.one_sided[lane] = visible_side_[scene_.facet(element.facet).object];
+    block.facet[lane] = element.facet;
+    block.random_bits[lane] =
+        static_cast<std::uint32_t>(core::Rng(0, element.number, /*sample=*/1).next_bits());
+    block.mean_reflectance[lane] = 0.0;
+    for (std::size_t node = 0; node < ElementBlock::kNodes; ++node) {
+        const Vec3 position = node < 3   ? element.corners[node]
+                              : node < 6 ? element.midpoint(node - 3)
+                                         : center;
+        const double share = node < 3 ? kShareOfCorner : node < 6 ? kShareOfMiddle : kShareOfCenter;
+        const Bsdf bsdf = scene_.bsdf_at({position + set_.origin, element.facet});
+        block.reflectance[node][lane] = reflectance(bsdf, block.kind, rules_.laser_spot_m2);
+        block.mean_reflectance[lane] += share * block.reflectance[node][lane];
+        if (const auto* ggx = std::get_if<Ggx>(&bsdf)) block.glossy_alpha[lane] = ggx->alpha;
+    }
+}
+
+void ElementPacker::append_blocks(const std::vector<ElementCluster>& elements, ElementKind kind) {
+    std::vector<ElementCenter> sorted;
+    for (std::size_t i = 0; i < elements.size(); ++i) {
+        const SurfaceElement& triangle = elements[i].triangle;
+        if (kind_of(scene_.object_of(triangle.facet).material) == kind) {
+            sorted.push_back({triangle.center(), i});
+        }
+    }
+    sort_into_blocks(sorted);
+    for (std::size_t begin = 0; begin < sorted.size(); begin += ElementBlock::kSize) {
+        ElementBlock& block = set_.blocks.emplace_back();
+        block.kind = kind;
+        block.count = std::min(ElementBlock::kSize, sorted.size() - begin);
+        Eigen::AlignedBox3d box;
+        for (std::size_t lane = 0; lane < ElementBlock::kSize; ++lane) {
+            const std::size_t index = sorted[begin + (lane < block.count ? lane : 0)].element;
+            fill_lane(block, lane, elements[index]);
+            if (lane >= block.count) {
+                block.area_m2[lane] = 0.0;
+                continue;
+            }
+            element_ids_[index] =
+                static_cast<std::uint32_t>((set_.blocks.size() - 1) * ElementBlock::kSize + lane);
+            const auto& corners = elements[index].triangle.corners;
+            for (std::size_t i = 0; i < 3; ++i) {
+                box.extend(corners[i]);
+                const double edge = (corners[(i + 1) % 3] - corners[i]).norm();
+                block.longest_edge_m = std::max(block.longest_edge_m, edge);
+            }
+        }
+        set_.spheres.push_back({box.center(), 0.5 * box.diagonal().norm()});
+        find_simd_group_spheres(block);
+    }
+}
+
+bool ElementPacker::may_be_one_group(const ElementBlock& block, Range lanes) const {
+    const auto normal = [&](std::size_t i) {
+        return Vec3(block.normal_x[i], block.normal_y[i], block.normal_z[i]);
+    };
+    Eigen::AlignedBox3d box;
+    for (std::size_t i = lanes.begin; i < lanes.end; ++i) {
+        if (std::abs(normal(i).dot(normal(lanes.begin))) < kMinGroupCosine) return false;
+        if (scene_.facet(block.facet[i]).object != scene_.facet(block.facet[lanes.begin]).object) {
+            return false;
+        }
+        for (std::size_t c = 0; c < 3; ++c) {
+            box.extend(Vec3(block.x[c][i], block.y[c][i], block.z[c][i]));
+        }
+    }
+    const double distance = (box.center() - scan_center_).norm();
+    return box.diagonal().norm() <= kGroupSizePerDistance * std::sqrt(rules_.tolerance) * distance;
+}
+
+// Splits lanes in halves, as sort_into_blocks() did, until each part may be one group. The parts'
+// elements must also hang together: of two sheets, one may hide the other.
+void ElementPacker::form_groups(std::size_t block, Range lanes) {
+    const std::size_t count = lanes.end - lanes.begin;
+    bool is_group = count == 1 || may_be_one_group(set_.blocks[block], lanes);
+    if (is_group && count > 1) {
+        const auto base = static_cast<std::uint32_t>(block * ElementBlock::kSize);
+        std::vector<std::uint32_t> reached{base + static_cast<std::uint32_t>(lanes.begin)};
+        std::array<bool, ElementBlock::kSize> seen{};
+        seen[lanes.begin] = true;
+        for (std::size_t next = 0; next < reached.size(); ++next) {
+            const auto& lists = set_.element_neighbours;
+            for (std::uint32_t i = lists.begin[reached[next]]; i < lists.begin[reached[next] + 1];
+                 ++i) {
+                const std::uint32_t lane = lists.items[i] - base;  // wraps for earlier blocks
+                if (lane < lanes.begin || lane >= lanes.end || seen[lane]) continue;
+                seen[lane] = true;
+                reached.push_back(lists.items[i]);
+            }
+        }
+        is_group = reached.size() == count;
+    }
+    if (is_group) {
+        set_.groups.push_back(
+            {static_cast<std::uint32_t>(block),
+             (~std::uint64_t{0} >> (ElementBlock::kSize - count)) << lanes.begin});
+        return;
+    }
+    const std::size_t middle = lanes.begin + (count + 1) / 2;
+    form_groups(block, {lanes.begin, middle});
+    form_groups(block, {middle, lanes.end});
+}
+
+void ElementPacker::find_group_neighbours() {
+    std::vector<std::uint32_t> group_of(set_.blocks.size() * ElementBlock::kSize);
+    for (std::uint32_t g = 0; g < set_.groups.size(); ++g) {
+        const VisibilityGroup& group = set_.groups[g];
+        for_each_bit(group.lanes, [&](std::size_t lane) {
+            group_of[group.block * ElementBlock::kSize + lane] = g;
+        });
+    }
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+    const AdjacencyLists& lists = set_.element_neighbours;
+    for (const std::uint32_t element : element_ids_) {
+        for (std::uint32_t i = lists.begin[element]; i < lists.begin[element + 1]; ++i) {
+            const std::uint32_t other = group_of[lists.items[i]];
+            if (group_of[element] < other) pairs.emplace_back(group_of[element], other);
+        }
+    }
+    set_.group_neighbours = adjacency_lists(set_.groups.size(), pairs);
+}
+
+ElementSet ElementPacker::arrange(std::span<const SurfaceElement> elements,
+                                  std::span<const std::uint32_t> clusters) {
+    auto pairs = adjacent_elements(elements);
+    const ElementClusters merged = merge_elements(scene_, elements, clusters, pairs);
+    set_.num_elements = merged.elements.size();
+    element_ids_.resize(set_.num_elements);
+    for (const ElementKind kind :
+         {ElementKind::Lambertian, ElementKind::Glossy, ElementKind::Retroreflective}) {
+        append_blocks(merged.elements, kind);
+    }
+    for (auto& [a, b] : pairs) {
+        a = element_ids_[merged.merged_of[a]];
+        b = element_ids_[merged.merged_of[b]];
+    }
+    std::erase_if(pairs, [](const auto& pair) { return pair.first == pair.second; });
+    set_.element_neighbours = adjacency_lists(set_.blocks.size() * ElementBlock::kSize, pairs);
+    for (std::size_t block = 0; block < set_.blocks.size(); ++block) {
+        set_.first_group.push_back(static_cast<std::uint32_t>(set_.groups.size()));
+        form_groups(block, {0, set_.blocks[block].count});
+    }
+    set_.first_group.push_back(static_cast<std::uint32_t>(set_.groups.size()));
+    find_group_neighbours();
+    return std::move(set_);
+}
+
+}  // namespace renderer

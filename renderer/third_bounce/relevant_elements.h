@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/geometry/wall_boxes.h"
+#include "renderer/third_bounce/simd_groups.h"
+#include "renderer/third_bounce/wall_point_lanes.h"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace renderer {
+
+/// What limits the work of some wall points.
+struct VisibilityRules {
+    /// Lengths of the axis, device legs left out, per point or one for all.
+    std::vector<LengthBounds> opl;
+    /// The other end of the paths, or one that stands for all of them; empty: confocal.
+    std::optional<WallPoint> other_end;
+    /// Per block, bounds of the other end's leg; empty: there is only one other end.
+    std::vector<LengthBounds> other_legs;
+    double negligible_error = 0.0;  ///< errors of a value of H that need no more rays
+    /// Pairs that a point is an end of; retroreflectors return light in one of them.
+    double pairs_per_point = 1.0;
+
+    const LengthBounds& opl_of(std::size_t point) const { return opl[opl.size() > 1 ? point : 0]; }
+};
+
+/// Which elements can matter to which of some wall points, shadows left aside, and how much.
+class RelevantElements {
+ public:
+    /// What an element adds to H if all of it is seen, per point.
+    struct alignas(64) Masses {
+        WallPointLanes::Lanes of_point{};
+    };
+    /// Points per lane of a block.
+    using BlockPoints = std::array<PointMask, ElementBlock::kSize>;
+
+    /// elements   must outlive this
+    explicit RelevantElements(const ElementSet& elements);
+
+    /// rules   must outlive all questions about these points
+    void look_from(const WallPointLanes& points, const VisibilityRules& rules);
+
+    /// The points to which each element shows a side that reflects, on paths within the axis.
+    BlockPoints of_block(std::uint32_t block) const;
+    Masses masses_of(std::uint32_t element) const;
+
+ private:
+    PointMask points_reaching(std::uint32_t block, PointMask& crossing) const;
+    SimdGroupMask simd_groups_within_axis(std::uint32_t block, std::size_t point) const;
+    std::uint64_t lanes_within_axis(std::uint32_t block, std::size_t point) const;
+    BlockPoints points_within_axis(std::uint32_t block,
+                                   PointMask reaching,
+                                   PointMask crossing) const;
+    PointMask points_facing(const ElementBlock& block, std::size_t lane) const;
+
+    const ElementSet& set_;
+    WallPointLanes points_;
+    const VisibilityRules* rules_ = nullptr;
+    alignas(64) WallPointLanes::Lanes opl_begin_m_;  ///< per point
+    alignas(64) WallPointLanes::Lanes opl_end_m_;
+};
+
+}  // namespace renderer

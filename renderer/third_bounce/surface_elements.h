@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/core/simd.h"
+#include "renderer/core/types.h"
+#include "renderer/material/material.h"
+#include "renderer/triangle/triangle_histogram.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace renderer {
+
+/// How an element's weight follows from the geometry terms of its two legs.
+enum class ElementKind { Lambertian, Retroreflective, Glossy };
+
+ElementKind kind_of(const Material& material);
+
+/// A flat triangle small enough for the closed-form kernel; positions relative to
+/// ElementSet::origin.
+struct SurfaceElement {
+    std::array<core::Vec3, 3> corners;
+    std::uint32_t facet = 0;
+    std::uint32_t number = 0;  ///< in the order of facets, whatever rounding does to sorting
+
+    core::Vec3 center() const { return (corners[0] + corners[1] + corners[2]) / 3.0; }
+    /// Midpoint of the edge from corner i to the next one.
+    core::Vec3 midpoint(std::size_t i) const { return 0.5 * (corners[i] + corners[(i + 1) % 3]); }
+};
+
+/// Elements of one kind in the layout of vectorised loops. Nodes 0-2 are corners, 3-5 the middles
+/// of the edges that start there, node 6 is the centre.
+struct alignas(64) ElementBlock {
+    static constexpr std::size_t kSize = TriangleLanes::kSize;
+    static constexpr std::size_t kSimdWidth = core::Simd::size();  ///< see simd_groups.h
+    static constexpr std::size_t kNumSimdGroups = kSize / kSimdWidth;
+    static constexpr std::size_t kNodes = 7;
+    using Lanes = TriangleLanes::Lanes;
+
+    std::array<Lanes, 3> x, y, z;  ///< corners, relative to ElementSet::origin [m]
+    Lanes normal_x, normal_y, normal_z;
+    Lanes center_x, center_y, center_z;
+    Lanes area_m2;
+    Lanes rise_m;  ///< the surface lies at most this far above or below the triangle
+    std::array<Lanes, 3> squared_edge;  ///< opposite to the corners [m^2]
+    Lanes one_sided;                    ///< +-1: only this side of the normal is ever seen; 0: both
+    std::array<Lanes, kNodes> reflectance;  ///< at the nodes; albedo/pi or albedo/spot area
+    Lanes mean_reflectance;
+    Lanes glossy_alpha;  ///< GGX width, set for glossy elements only
+    std::array<std::uint32_t, kSize> facet;
+    std::array<std::uint32_t, kSize> random_bits;  ///< from SurfaceElement::number
+    ElementKind kind = ElementKind::Lambertian;
+    std::size_t count = 0;  ///< lanes beyond it repeat lane 0 with area 0
+    double longest_edge_m = 0.0;
+    /// Spheres that hold the corners of each SIMD group.
+    alignas(64) std::array<double, kNumSimdGroups> simd_group_x, simd_group_y, simd_group_z,
+        simd_group_radius_m;
+};
+
+/// A function's mean over a triangle from its values at a corner, a middle and the centre: exact
+/// for cubic ones.
+inline constexpr double kShareOfCorner = 1.0 / 20.0;
+inline constexpr double kShareOfMiddle = 2.0 / 15.0;
+inline constexpr double kShareOfCenter = 9.0 / 20.0;
+
+/// Holds the corners of all elements of a block; relative to ElementSet::origin.
+struct BlockSphere {
+    core::Vec3 center;
+    double radius_m = 0.0;
+};
+
+/// Neighbouring elements of one object that one shadow ray may stand for: a run of a block's lanes.
+struct VisibilityGroup {
+    std::uint32_t block = 0;
+    std::uint64_t lanes = 0;  ///< lane i as bit i
+};
+
+/// Lists of neighbours: those of item i are items[begin[i] .. begin[i + 1]).
+struct AdjacencyLists {
+    std::vector<std::uint32_t> begin;
+    std::vector<std::uint32_t> items;
+};
+
+/// The hidden surfaces cut into elements, element i in lane i % kSize of block i / kSize.
+struct ElementSet {
+    core::Vec3 origin = core::Vec3::Zero();  ///< world; keeps precision far from the world's origin
+    std::vector<ElementBlock> blocks;
+    std::vector<BlockSphere> spheres;  ///< per block, close together in memory
+    std::vector<VisibilityGroup> groups;
+    std::vector<std::uint32_t> first_group;  ///< per block, and one past the last
+    AdjacencyLists element_neighbours;       ///< elements that share an edge
+    AdjacencyLists group_neighbours;
+    std::size_t num_elements = 0;
+};
+
+}  // namespace renderer
