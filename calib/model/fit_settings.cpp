@@ -156,7 +156,7 @@ void validate(const FitSettings& s, const std::string& where) {
                 "must be positive");
     };
     positive(s.loss_scale, "loss_scale");
-    if (s.element_tolerance) positive(*s.element_tolerance, "element_tolerance");
+    if (s.element_tolerance) positive(*s.element_tolerance, "piece_tolerance");
     if (s.max_pairs) positive(*s.max_pairs, "max_pairs");
     positive(s.max_iterations, "max_iterations");
     positive(s.search_rotations, "search_rotations");
