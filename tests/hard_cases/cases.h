@@ -16,9 +16,9 @@ double density_beside_a_focus_on_the_surface();
 double drawn_length_of_kilometre_legs();
 double inverse_of_drawn_vertices();
 double random_connections_that_are_wrong();
-double slopes_of_the_length_beside_a_focus();
-double slope_of_the_length_between_the_foci();
-double slopes_of_the_velocity_beside_a_focus();
+double gradients_of_the_length_beside_a_focus();
+double gradient_of_the_length_between_the_foci();
+double gradients_of_the_velocity_beside_a_focus();
 
 // shift_cases.cpp
 double plane_shift_of_coincident_foci();
@@ -53,7 +53,7 @@ double third_bounce_in_all_units();
 double box_kernel_of_small_and_large_triangles();
 double box_kernel_a_million_bins_out();
 double smeared_kernel_at_all_widths();
-double slopes_of_the_smeared_kernel();
+double gradients_of_the_smeared_kernel();
 
 // arcs_cases.cpp
 double exact_arcs_of_tiny_triangles();
@@ -90,7 +90,7 @@ double neighbours_of_duplicate_points();
 
 // fit_cases.cpp
 double errors_of_nearly_collinear_parameters();
-double slopes_of_the_light_of_tiny_and_large_objects();
+double gradients_of_the_light_of_tiny_and_large_objects();
 double direct_returns_of_few_and_of_many_counts();
 
 }  // namespace hard_cases

@@ -207,8 +207,8 @@ double smeared_kernel_at_all_widths() {
     return worst.value(100);
 }
 
-double slopes_of_the_smeared_kernel() {
-    core::Rng rng(test_support::seed_of("slopes_of_the_smeared_kernel"), 0, 0);
+double gradients_of_the_smeared_kernel() {
+    core::Rng rng(test_support::seed_of("gradients_of_the_smeared_kernel"), 0, 0);
     Worst worst;
     renderer::TriangleBins bins;
     for (int i = 0; i < 100; ++i) {
@@ -219,15 +219,16 @@ double slopes_of_the_smeared_kernel() {
         const auto k = static_cast<std::size_t>(rng.uniform() * double(bins.bins.size()));
         const int bin = bins.first_bin + static_cast<int>(k);
         for (std::size_t j = 0; j < 3; ++j) {
-            // Central differences: 1e-6 widths cost 1e-12 of the slope.
+            // Central differences: 1e-6 widths cost 1e-12 of the gradient.
             const Quad step = Quad(1e-6) * Quad(sigma);
             std::array<Quad, 3> before = lengths_of(knots);
             std::array<Quad, 3> after = before;
             before[j] -= step;
             after[j] += step;
-            const Quad slope = (triangle.bin(after, bin) - triangle.bin(before, bin)) / (2 * step);
+            const Quad gradient =
+                (triangle.bin(after, bin) - triangle.bin(before, bin)) / (2 * step);
             worst.add(truth::relative_error(
-                bins.bins[k].slots[1 + j], slope, mean_weight(knots) / sigma));
+                bins.bins[k].slots[1 + j], gradient, mean_weight(knots) / sigma));
         }
     }
     return worst.value(100);

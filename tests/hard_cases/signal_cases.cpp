@@ -33,7 +33,7 @@ double deviance_error(double mu, double n) {
     const calib::Residual found = calib::signed_deviance(mu, n);
     const Quad expected = signed_deviance(mu, n);
     return std::max(truth::relative_error(found.value, expected),
-                    truth::relative_error(found.slope, (1 - Quad(n) / Quad(mu)) / expected));
+                    truth::relative_error(found.gradient, (1 - Quad(n) / Quad(mu)) / expected));
 }
 
 // First photons of a pulse, per pulse: exp(-sum of earlier rates) (1 - exp(-rate)).

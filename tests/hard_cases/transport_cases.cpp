@@ -183,8 +183,8 @@ double random_connections_that_are_wrong() {
             .bad);
 }
 
-double slopes_of_the_length_beside_a_focus() {
-    core::Rng rng(test_support::seed_of("slopes_of_the_length_beside_a_focus"), 0, 0);
+double gradients_of_the_length_beside_a_focus() {
+    core::Rng rng(test_support::seed_of("gradients_of_the_length_beside_a_focus"), 0, 0);
     Worst worst;
     for (int i = 0; i < 20'000; ++i) {
         const Vec3 a =
@@ -200,8 +200,8 @@ double slopes_of_the_length_beside_a_focus() {
     return worst.value();
 }
 
-double slope_of_the_length_between_the_foci() {
-    core::Rng rng(test_support::seed_of("slope_of_the_length_between_the_foci"), 0, 0);
+double gradient_of_the_length_between_the_foci() {
+    core::Rng rng(test_support::seed_of("gradient_of_the_length_between_the_foci"), 0, 0);
     Worst worst;
     for (int i = 0; i < 5000; ++i) {
         const Vec3 u = test_support::random_point(rng).normalized();
@@ -215,8 +215,8 @@ double slope_of_the_length_between_the_foci() {
     return worst.value();
 }
 
-double slopes_of_the_velocity_beside_a_focus() {
-    core::Rng rng(test_support::seed_of("slopes_of_the_velocity_beside_a_focus"), 0, 0);
+double gradients_of_the_velocity_beside_a_focus() {
+    core::Rng rng(test_support::seed_of("gradients_of_the_velocity_beside_a_focus"), 0, 0);
     Worst worst;
     for (int i = 0; i < 20'000; ++i) {
         const std::array<Vec3, 2> r{

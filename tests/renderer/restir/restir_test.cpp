@@ -3,6 +3,7 @@
 // noise, so the spread is taken from independent renders, not from variances of single values.
 #include "renderer/core/parallel.h"
 #include "renderer/core/random.h"
+#include "renderer/frame_sequence.h"
 #include "renderer/restir_render.h"
 #include "tests/support/error_message.h"
 #include "tests/support/repeated_estimates.h"

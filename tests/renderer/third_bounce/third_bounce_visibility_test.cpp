@@ -172,10 +172,10 @@ TEST_P(VisibilityTracerTowards, PointsSeeTogetherWhatTheySeeAlone) {
         own.opl = {rules.opl[p]};
         std::vector<renderer::VisibleElements> alone(1);
         tracer.trace({&points[p], 1}, own, alone);
-        EXPECT_EQ(alone[0].units, together[p].units);
+        EXPECT_EQ(alone[0].simd_groups, together[p].simd_groups);
         EXPECT_EQ(alone[0].squared_error, together[p].squared_error);
         for (std::size_t b = 0; b < setup.elements.blocks.size(); ++b) {
-            renderer::for_each_simd_group(alone[0].units[b], [&](std::size_t begin) {
+            renderer::for_each_simd_group(alone[0].simd_groups[b], [&](std::size_t begin) {
                 for (std::size_t i = begin; i < begin + ElementBlock::kSimdWidth; ++i) {
                     const VisibilityMask mask = alone[0].masks[b * ElementBlock::kSize + i];
                     EXPECT_EQ(mask, together[p].masks[b * ElementBlock::kSize + i]);
