@@ -43,13 +43,13 @@ renderer::Scene moving_scene(const core::Scan& scan, double speed = 1.0) {
     return renderer::Scene({objects, {}}, scan, {});
 }
 
-core::Scan wall_scan(core::ScanPattern pattern) {
+core::Scan four_points(core::ScanPattern pattern) {
     const std::vector<Vec3> points{{-0.3, -0.2, 0}, {0.1, 0.0, 0}, {-0.1, 0.3, 0}, {0.2, 0.25, 0}};
     if (pattern == core::ScanPattern::Confocal) return test_support::confocal_scan(points);
     return test_support::single_scan({0.1, 0.05, 0.0}, points);
 }
 
-core::Scan small_image() {
+core::Scan nine_pixels() {
     core::PinholeCamera camera;
     camera.position_m = Vec3(0.1, 0.1, -0.5);
     camera.look_at_m = Vec3(0.05, 0, 0.8);
@@ -58,7 +58,7 @@ core::Scan small_image() {
     return image_of(camera);
 }
 
-renderer::RenderSettings settings_for(Estimator method, int samples, int max_bounces) {
+renderer::RenderSettings doppler_settings(Estimator method, int samples, int max_bounces) {
     renderer::RenderSettings settings;
     settings.method = method;
     settings.samples = samples;
@@ -71,10 +71,6 @@ renderer::RenderSettings settings_for(Estimator method, int samples, int max_bou
     return settings;
 }
 
-double sum_of(std::span<const float> values) {
-    return std::accumulate(values.begin(), values.end(), 0.0);
-}
-
 // Centre of the bins that hold a pair's light, weighted by it.
 double mean_velocity(const core::VelocityHistogram& velocity, std::size_t pair) {
     const auto histogram = velocity.values.histogram(pair);
@@ -82,7 +78,7 @@ double mean_velocity(const core::VelocityHistogram& velocity, std::size_t pair) 
     for (std::size_t i = 0; i < histogram.size(); ++i) {
         sum += double{histogram[i]} * velocity.axis.bin_center_m_per_s(static_cast<double>(i));
     }
-    return sum / sum_of(histogram);
+    return sum / test_support::sum_of(histogram);
 }
 
 TEST(PathExtent, VelocityIsTheRateAtWhichTheLengthChanges) {
@@ -124,14 +120,14 @@ class DopplerOf : public testing::TestWithParam<Estimator> {};
 TEST_P(DopplerOf, MovingPatchHasTheClosedForm) {
     const Vec3 p(0.15, -0.1, 0.6);
     for (const auto pattern : {core::ScanPattern::Confocal, core::ScanPattern::Single}) {
-        const core::Scan scan = wall_scan(pattern);
+        const core::Scan scan = four_points(pattern);
         const renderer::Scene scene({{small_patch(p, kVelocity)}, {}}, scan, {});
         core::VelocityAxis axis;
         axis.bin_width_m_per_s = 0.002;
         axis.num_bins = 10000;
         const auto capture =
             renderer::render(
-                scene, scan, {kAllLengths, axis}, settings_for(GetParam(), 4096, 3), {})
+                scene, scan, {kAllLengths, axis}, doppler_settings(GetParam(), 4096, 3), {})
                 .capture;
         for (std::size_t pair = 0; pair < scan.num_pairs(); ++pair) {
             const auto length_after = [&](double seconds) {
@@ -155,17 +151,20 @@ TEST_P(DopplerOf, MovingPatchHasTheClosedForm) {
                     EXPECT_EQ(histogram[i], 0.0F);
                 }
             }
-            EXPECT_NEAR(sum_of(histogram) / sum_of(capture.transient.histogram(pair)), 1.0, 1e-6);
+            EXPECT_NEAR(test_support::sum_of(histogram) /
+                            test_support::sum_of(capture.transient.histogram(pair)),
+                        1.0,
+                        1e-6);
         }
     }
 }
 
 TEST_P(DopplerOf, StaticSceneIsALineAtZero) {
-    for (const core::Scan& scan : {wall_scan(core::ScanPattern::Single), small_image()}) {
+    for (const core::Scan& scan : {four_points(core::ScanPattern::Single), nine_pixels()}) {
         const auto capture = renderer::render(moving_scene(scan, 0.0),
                                               scan,
                                               {kAllLengths, core::VelocityAxis{}},
-                                              settings_for(GetParam(), 640, 5),
+                                              doppler_settings(GetParam(), 640, 5),
                                               {})
                                  .capture;
         const core::VelocityAxis& axis = capture.velocity->axis;
@@ -173,18 +172,18 @@ TEST_P(DopplerOf, StaticSceneIsALineAtZero) {
         for (std::size_t pair = 0; pair < scan.num_pairs(); ++pair) {
             const auto histogram = capture.velocity->values.histogram(pair);
             EXPECT_FLOAT_EQ(histogram[line], capture.transient.histogram(pair)[0]);
-            EXPECT_FLOAT_EQ(static_cast<float>(sum_of(histogram)), histogram[line]);
+            EXPECT_FLOAT_EQ(static_cast<float>(test_support::sum_of(histogram)), histogram[line]);
         }
-        EXPECT_GT(sum_of(capture.transient.values()), 0.0);
+        EXPECT_GT(test_support::sum_of(capture.transient.values()), 0.0);
     }
 }
 
 TEST_P(DopplerOf, PowerEqualsThatOfTheTimeHistogram) {
     const core::TimeAxis time{1.2, 0.15, 12};
     core::VelocityAxis axis{-20.0, 2.5, 16, true};
-    for (const core::Scan& scan : {wall_scan(core::ScanPattern::Confocal), small_image()}) {
+    for (const core::Scan& scan : {four_points(core::ScanPattern::Confocal), nine_pixels()}) {
         const renderer::Scene scene = moving_scene(scan);
-        const auto settings = settings_for(GetParam(), 640, 5);
+        const auto settings = doppler_settings(GetParam(), 640, 5);
         axis.with_time = true;
         const auto joint = renderer::render(scene, scan, {time, axis}, settings, {}).capture;
         axis.with_time = false;
@@ -198,38 +197,39 @@ TEST_P(DopplerOf, PowerEqualsThatOfTheTimeHistogram) {
                 const double power = double{joint.transient.histogram(pair)[t]};
                 EXPECT_NEAR(sum, power, 1e-5 * power + 1e-20);
             }
-            EXPECT_NEAR(sum_of(alone.velocity->values.histogram(pair)),
-                        sum_of(alone.transient.histogram(pair)),
-                        1e-5 * sum_of(alone.transient.histogram(pair)));
+            EXPECT_NEAR(test_support::sum_of(alone.velocity->values.histogram(pair)),
+                        test_support::sum_of(alone.transient.histogram(pair)),
+                        1e-5 * test_support::sum_of(alone.transient.histogram(pair)));
         }
     }
 }
 
 // What lies outside the velocity axis still belongs to H.
 TEST_P(DopplerOf, TimeHistogramKeepsWhatTheVelocityAxisLeavesOut) {
-    const core::Scan scan = wall_scan(core::ScanPattern::Single);
+    const core::Scan scan = four_points(core::ScanPattern::Single);
     const renderer::Scene scene = moving_scene(scan);
-    const auto settings = settings_for(GetParam(), 6400, 3);
+    const auto settings = doppler_settings(GetParam(), 6400, 3);
     const auto wide =
         renderer::render(scene, scan, {kAllLengths, core::VelocityAxis{}}, settings, {});
     const core::VelocityAxis narrow{0.0, 0.5, 2};
     const auto cut = renderer::render(scene, scan, {kAllLengths, narrow}, settings, {});
-    const double all = sum_of(wide.capture.transient.values());
-    EXPECT_NEAR(sum_of(cut.capture.transient.values()) / all, 1.0, 0.1);
-    EXPECT_LT(sum_of(cut.capture.velocity->values.values()), 0.8 * all);
-    EXPECT_GT(sum_of(cut.capture.velocity->values.values()), 0.05 * all);
+    const double all = test_support::sum_of(wide.capture.transient.values());
+    EXPECT_NEAR(test_support::sum_of(cut.capture.transient.values()) / all, 1.0, 0.1);
+    EXPECT_LT(test_support::sum_of(cut.capture.velocity->values.values()), 0.8 * all);
+    EXPECT_GT(test_support::sum_of(cut.capture.velocity->values.values()), 0.05 * all);
 }
 
 // The spectrum of a moving surface, its third bounces summed over midpoints.
 TEST_P(DopplerOf, SpectrumOfAPlateIsTheQuadrature) {
     const Parallelogram plate{Vec3(-0.3, -0.2, 0.55), Vec3(0.6, 0, 0.2), Vec3(0, 0.5, 0.1), 0.7};
-    const core::Scan scan = wall_scan(core::ScanPattern::Single);
+    const core::Scan scan = four_points(core::ScanPattern::Single);
     renderer::Object object = test_support::parallelogram_object(plate);
     object.velocity_m_per_s = kVelocity;
     const renderer::Scene scene({{object}, {}}, scan, {});
     const core::VelocityAxis axis{0.0, 0.25, 40};
     const auto capture =
-        renderer::render(scene, scan, {kAllLengths, axis}, settings_for(GetParam(), 1 << 15, 3), {})
+        renderer::render(
+            scene, scan, {kAllLengths, axis}, doppler_settings(GetParam(), 1 << 15, 3), {})
             .capture;
     constexpr int kSteps = 600;
     const Vec3 area = plate.u.cross(plate.v);
@@ -271,7 +271,7 @@ TEST_P(DopplerOf, SpectrumOfAPlateIsTheQuadrature) {
 }
 
 TEST_P(DopplerOf, SameBitsForAnyNumberOfThreads) {
-    const core::Scan scan = wall_scan(core::ScanPattern::Confocal);
+    const core::Scan scan = four_points(core::ScanPattern::Confocal);
     const renderer::Scene scene = moving_scene(scan);
     core::VelocityAxis axis;
     axis.with_time = true;
@@ -280,7 +280,7 @@ TEST_P(DopplerOf, SameBitsForAnyNumberOfThreads) {
         return renderer::render(scene,
                                 scan,
                                 {core::TimeAxis{1.2, 0.15, 12}, axis},
-                                settings_for(GetParam(), 128, 4),
+                                doppler_settings(GetParam(), 128, 4),
                                 {})
             .capture;
     };
@@ -308,10 +308,10 @@ struct Measured {
 std::vector<Measured> measured() {
     const core::VelocityAxis alone{-12.0, 1.5, 16};
     const core::VelocityAxis joint{-12.0, 3.0, 8, true};
-    return {{"scan", wall_scan(core::ScanPattern::Confocal), {{1.2, 0.9, 2}, alone}, 5},
-            {"scan_with_time", wall_scan(core::ScanPattern::Single), {{1.2, 0.3, 6}, joint}, 4},
-            {"image", small_image(), {{1.8, 1.0, 2}, alone}, 4},
-            {"image_with_time", small_image(), {{1.8, 0.5, 4}, joint}, 3}};
+    return {{"scan", four_points(core::ScanPattern::Confocal), {{1.2, 0.9, 2}, alone}, 5},
+            {"scan_with_time", four_points(core::ScanPattern::Single), {{1.2, 0.3, 6}, joint}, 4},
+            {"image", nine_pixels(), {{1.8, 1.0, 2}, alone}, 4},
+            {"image_with_time", nine_pixels(), {{1.8, 0.5, 4}, joint}, 3}};
 }
 
 class DopplerIn : public testing::TestWithParam<std::size_t> {};
@@ -334,14 +334,14 @@ TEST_P(DopplerIn, EstimatorsAgreeBinByBin) {
             },
             std::string("Doppler.") + setting.name + name);
     };
-    const auto paths = estimate("paths", settings_for(Estimator::Path, 16384, 3));
+    const auto paths = estimate("paths", doppler_settings(Estimator::Path, 16384, 3));
     const auto expect_the_same = [&](const std::string& name,
                                      const renderer::RenderSettings& settings) {
         SCOPED_TRACE(name);
         test_support::expect_same_means(estimate(name, settings), paths, 0.04);
     };
-    expect_the_same("ellipsoidal", settings_for(Estimator::Ellipsoidal, 4096, 3));
-    renderer::RenderSettings restir = settings_for(Estimator::Restir, 2080, 3);
+    expect_the_same("ellipsoidal", doppler_settings(Estimator::Ellipsoidal, 4096, 3));
+    renderer::RenderSettings restir = doppler_settings(Estimator::Restir, 2080, 3);
     expect_the_same("restir", restir);
     restir.restir.rounds = 4;
     expect_the_same("rounds", restir);
@@ -363,13 +363,13 @@ INSTANTIATE_TEST_SUITE_P(Measurements,
 
 // Objects move on between the frames, and paths with them.
 TEST(Doppler, FramesOfResampledPathsAgreeWithPathTracing) {
-    const core::Scan scan = wall_scan(core::ScanPattern::Confocal);
+    const core::Scan scan = four_points(core::ScanPattern::Confocal);
     renderer::SceneDescription description;
     description.time_axis = {1.2, 1.2, 1};
     description.velocity_axis = core::VelocityAxis{-12.0, 2.0, 12};
     description.frames = {5, 0.01, 0.005};
     const auto sequence = [&](Estimator method, int samples) {
-        description.render = settings_for(method, samples, 4);
+        description.render = doppler_settings(method, samples, 4);
         return test_support::repeat(
             [&](std::uint64_t seed) {
                 description.render.seed = seed;
@@ -406,7 +406,7 @@ TEST(Doppler, DirectLightOfAMovingSurfaceHasTheClosedForm) {
                                            (*camera.light_m - camera.look_at_m).normalized());
     for (const auto method : {Estimator::Path, Estimator::Ellipsoidal, Estimator::Restir}) {
         const auto capture =
-            renderer::render(scene, scan, {kAllLengths, axis}, settings_for(method, 64, 1), {})
+            renderer::render(scene, scan, {kAllLengths, axis}, doppler_settings(method, 64, 1), {})
                 .capture;
         EXPECT_NEAR(mean_velocity(*capture.velocity, 0), expected, 1e-3);
     }
@@ -431,20 +431,21 @@ TEST(Doppler, LitSpotMovesWithItsSurface) {
     const renderer::Scene scene({{floor, lit}, {}}, scan, {});
     const core::VelocityAxis axis{-10.0, 1e-3, 20000};
     const auto capture =
-        renderer::render(scene, scan, {kAllLengths, axis}, settings_for(Estimator::Path, 64, 2), {})
+        renderer::render(
+            scene, scan, {kAllLengths, axis}, doppler_settings(Estimator::Path, 64, 2), {})
             .capture;
     const double expected = kVelocity.dot((*camera.light_spot_m - camera.look_at_m).normalized());
     EXPECT_NEAR(mean_velocity(*capture.velocity, 0), expected, 1e-3);
 }
 
 TEST(Doppler, RefusesWhatKnowsNoVelocities) {
-    const core::Scan scan = wall_scan(core::ScanPattern::Confocal);
+    const core::Scan scan = four_points(core::ScanPattern::Confocal);
     const core::HistogramAxes axes{kAllLengths, core::VelocityAxis{}};
     EXPECT_ERROR_WITH(
         renderer::render(
-            moving_scene(scan), scan, axes, settings_for(Estimator::ThirdBounce, 1, 3), {}),
+            moving_scene(scan), scan, axes, doppler_settings(Estimator::ThirdBounce, 1, 3), {}),
         "must be auto, path, ellipsoidal or restir");
-    renderer::RenderSettings shrinking = settings_for(Estimator::Restir, 1, 3);
+    renderer::RenderSettings shrinking = doppler_settings(Estimator::Restir, 1, 3);
     shrinking.restir.shrink_fraction = 0.5;
     EXPECT_ERROR_WITH(renderer::render(moving_scene(scan), scan, axes, shrinking, {}),
                       "shrink_fraction: found 0.5 for 1 bins and a velocity axis");
@@ -455,7 +456,7 @@ TEST(Doppler, RefusesWhatKnowsNoVelocities) {
     const renderer::Scene moving_wall(
         {{wall, small_patch(Vec3(0, 0, 1), kVelocity)}, {}}, scan, {});
     EXPECT_ERROR_WITH(
-        renderer::render(moving_wall, scan, axes, settings_for(Estimator::Path, 1, 3), {}),
+        renderer::render(moving_wall, scan, axes, doppler_settings(Estimator::Path, 1, 3), {}),
         "a relay wall that moves");
 }
 

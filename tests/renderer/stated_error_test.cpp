@@ -16,7 +16,7 @@ namespace {
 using core::Vec3;
 using renderer::Estimator;
 
-const core::TimeAxis kAxis{1.0, 0.02, 96};
+const core::TimeAxis kStatedAxis{1.0, 0.02, 96};
 
 core::Scan scan_of(int points) {
     std::vector<Vec3> positions;
@@ -51,7 +51,7 @@ core::Transient reference_of(const renderer::Scene& scene, const core::Scan& sca
     renderer::RenderSettings settings;
     settings.method = Estimator::ThirdBounce;
     settings.target_error = 2e-3;
-    return renderer::render(scene, scan, {kAxis, {}}, settings, {}).capture.transient;
+    return renderer::render(scene, scan, {kStatedAxis, {}}, settings, {}).capture.transient;
 }
 
 TEST(StatedError, NoiseFromSumsIsThatFromEveryVariance) {
@@ -96,7 +96,7 @@ TEST_P(SampledEstimator, ReachesItsTargetAndKnowsItsError) {
     renderer::RenderSettings settings;
     settings.method = GetParam();
     settings.target_error = kTarget;
-    const auto result = renderer::render(scene, scan, {kAxis, {}}, settings, {});
+    const auto result = renderer::render(scene, scan, {kStatedAxis, {}}, settings, {});
     const double error = relative_distance(result.capture.transient, reference_of(scene, scan));
     EXPECT_LT(error, 1.25 * kTarget);
     ASSERT_TRUE(result.estimated_error.has_value());
@@ -119,11 +119,11 @@ TEST(StatedError, AutoReachesItWithHigherOrders) {
     settings.max_bounces = 5;
     settings.target_error = 0.01;
     settings.method = Estimator::Path;
-    const auto reference = renderer::render(scene, scan, {kAxis, {}}, settings, {});
+    const auto reference = renderer::render(scene, scan, {kStatedAxis, {}}, settings, {});
     settings.method = Estimator::Auto;
     settings.target_error = kTarget;
     settings.seed = 1;
-    const auto result = renderer::render(scene, scan, {kAxis, {}}, settings, {});
+    const auto result = renderer::render(scene, scan, {kStatedAxis, {}}, settings, {});
     EXPECT_LE(*result.estimated_error, kTarget);
     EXPECT_LT(relative_distance(result.capture.transient, reference.capture.transient),
               std::hypot(1.25 * kTarget, 0.0125));
@@ -140,7 +140,7 @@ TEST(StatedError, OrdersAreLeftOutWhenTheyAreBelowWhatIsAllowed) {
     // The product of two independent truths has no bias from their noise.
     std::array<core::Capture, 2> truths;
     for (core::Capture& truth : truths) {
-        truth = renderer::render(scene, scan, {kAxis, {}}, settings, {}).capture;
+        truth = renderer::render(scene, scan, {kStatedAxis, {}}, settings, {}).capture;
         ++settings.seed;
     }
     const auto tail_from = [&](std::size_t order) {
@@ -159,12 +159,13 @@ TEST(StatedError, OrdersAreLeftOutWhenTheyAreBelowWhatIsAllowed) {
     for (int order = 6; order > 3; --order) {
         const double share = tail_from(static_cast<std::size_t>(order)) / tail_from(1);
         const auto [last, left_out] =
-            renderer::find_bounce_truncation(scene, scan, {kAxis, {}}, settings, 2.5 * share);
+            renderer::find_bounce_truncation(scene, scan, {kStatedAxis, {}}, settings, 2.5 * share);
         EXPECT_LT(last, order) << "share " << share;
         EXPECT_GE(left_out, 0.95 * share);
         EXPECT_LE(left_out, 2.5 * share);
     }
-    EXPECT_EQ(renderer::find_bounce_truncation(scene, scan, {kAxis, {}}, settings, 0.0).last, 6);
+    EXPECT_EQ(renderer::find_bounce_truncation(scene, scan, {kStatedAxis, {}}, settings, 0.0).last,
+              6);
 }
 
 TEST(StatedError, AutoSaysWhichOrdersItLeavesOut) {
@@ -178,12 +179,12 @@ TEST(StatedError, AutoSaysWhichOrdersItLeavesOut) {
     renderer::RenderSettings settings;
     settings.max_bounces = 6;
     settings.target_error = 0.05;
-    const auto result = renderer::render(scene, scan, {kAxis, {}}, settings, {});
+    const auto result = renderer::render(scene, scan, {kStatedAxis, {}}, settings, {});
     ASSERT_EQ(result.warnings.size(), 1U);
     EXPECT_NE(result.warnings[0].find("to 6 are left out"), std::string::npos)
         << result.warnings[0];
     settings.target_error.reset();
-    EXPECT_TRUE(renderer::render(scene, scan, {kAxis, {}}, settings, {}).warnings.empty());
+    EXPECT_TRUE(renderer::render(scene, scan, {kStatedAxis, {}}, settings, {}).warnings.empty());
 }
 
 // More passes would not help.

@@ -2,6 +2,7 @@
 #include "tests/support/statistics.h"
 
 #include <cmath>
+#include <numeric>
 
 namespace test_support {
 namespace {
@@ -77,6 +78,14 @@ double chi_square_p_value(std::span<const double> observed, std::span<const doub
         return 0.0;  // samples where the density is 0
     }
     return cells < 2 ? 1.0 : chi_square_tail(statistic, cells - 1);
+}
+
+double sum_of(std::span<const float> values) {
+    return std::accumulate(values.begin(), values.end(), 0.0);
+}
+
+double sum_of(std::span<const double> values) {
+    return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
 double relative_l2(std::span<const float> a, std::span<const float> b) {

@@ -23,6 +23,9 @@ double sidak_level(double level, std::size_t num_tests);
 /// p-value of observed counts against expected ones; cells with fewer than 5 expected are pooled.
 double chi_square_p_value(std::span<const double> observed, std::span<const double> expected);
 
+double sum_of(std::span<const float> values);
+double sum_of(std::span<const double> values);
+
 /// sqrt(sum (a-b)^2 / sum b^2).
 double relative_l2(std::span<const float> a, std::span<const float> b);
 double relative_l2(std::span<const double> a, std::span<const double> b);

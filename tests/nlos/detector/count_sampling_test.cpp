@@ -12,7 +12,7 @@ namespace nlos {
 namespace {
 
 constexpr int kDraws = 200'000;
-constexpr double kLevel = 0.001;
+constexpr double kFamilyLevel = 0.001;
 
 /// p-value of draws against probabilities of 0, 1, 2, ...; what is beyond goes into the last cell.
 template <class Draw, class LogProbability>
@@ -41,7 +41,7 @@ TEST(CountSampling, PoissonNumbersHaveTheirProbabilities) {
             cells,
             [&] { return sample_poisson(rng, mean); },
             [&](double k) { return k * std::log(mean) - mean - std::lgamma(k + 1.0); });
-        EXPECT_GT(p, test_support::sidak_level(kLevel, means.size())) << mean;
+        EXPECT_GT(p, test_support::sidak_level(kFamilyLevel, means.size())) << mean;
     }
     EXPECT_EQ(sample_poisson(rng, 0.0), 0);
 }
@@ -68,7 +68,7 @@ TEST(CountSampling, BinomialNumbersHaveTheirProbabilities) {
                 return std::lgamma(n + 1.0) - std::lgamma(k + 1.0) - std::lgamma(n - k + 1.0) +
                        k * log_p + (n - k) * log_q;
             });
-        EXPECT_GT(value, test_support::sidak_level(kLevel, cases.size())) << n << " x " << p;
+        EXPECT_GT(value, test_support::sidak_level(kFamilyLevel, cases.size())) << n << " x " << p;
     }
     EXPECT_EQ(sample_binomial(rng, 5, 0.0), 0);
     EXPECT_EQ(sample_binomial(rng, 5, 1.0), 5);
@@ -86,8 +86,9 @@ TEST(CountSampling, LargeNumbersHaveTheirMomentsToo) {
         sum += z;
         squares += z * z;
     }
-    EXPECT_GT(test_support::normal_tail(sum / std::sqrt(double{kFew})), kLevel / 2.0);
-    EXPECT_GT(test_support::normal_tail((squares - kFew) / std::sqrt(2.0 * kFew)), kLevel / 2.0);
+    EXPECT_GT(test_support::normal_tail(sum / std::sqrt(double{kFew})), kFamilyLevel / 2.0);
+    EXPECT_GT(test_support::normal_tail((squares - kFew) / std::sqrt(2.0 * kFew)),
+              kFamilyLevel / 2.0);
 }
 
 }  // namespace

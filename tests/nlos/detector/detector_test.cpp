@@ -45,10 +45,6 @@ DetectorSettings with_photons_per_point(double photons) {
     return settings;
 }
 
-double sum_of(std::span<const float> values) {
-    return std::accumulate(values.begin(), values.end(), 0.0);
-}
-
 /// Mean over the pairs of each bin.
 std::vector<double> mean_histogram(const core::Capture& capture) {
     std::vector<double> mean(capture.transient.num_bins(), 0.0);
@@ -78,16 +74,17 @@ TEST(Detector, PhotonBudgetIsTheExpectedSignal) {
     settings.expected = true;
     settings.photons = 12345.0;
     const core::Capture total = detect(capture, settings);
-    EXPECT_NEAR(sum_of(total.transient.values()), 12345.0, 0.01);
+    EXPECT_NEAR(test_support::sum_of(total.transient.values()), 12345.0, 0.01);
     EXPECT_EQ(total.unit, core::TransientUnit::Counts);
     const double scale = total.counts_per_radiance.value();
-    EXPECT_NEAR(scale, 12345.0 / sum_of(capture.transient.values()), 1e-9);
+    EXPECT_NEAR(scale, 12345.0 / test_support::sum_of(capture.transient.values()), 1e-9);
     EXPECT_NEAR(total.transient.histogram(3)[2], scale * capture.transient.histogram(3)[2], 1e-3);
 
     settings.photons.reset();
     settings.photons_per_point = 100.0;
     const double pairs = static_cast<double>(capture.scan.num_pairs());
-    EXPECT_NEAR(sum_of(detect(capture, settings).transient.values()), 100.0 * pairs, 0.01);
+    EXPECT_NEAR(
+        test_support::sum_of(detect(capture, settings).transient.values()), 100.0 * pairs, 0.01);
 }
 
 TEST(Detector, ExposureCountsPhotonsOfTheRadiance) {
@@ -101,8 +98,8 @@ TEST(Detector, ExposureCountsPhotonsOfTheRadiance) {
         2.0 * 0.25 * 1e-9 * 0.4 / (6.62607015e-34 * 299792458.0 / 670e-9);
     const core::Capture counts = detect(capture, settings);
     EXPECT_NEAR(counts.counts_per_radiance.value() / photons_per_radiance, 1.0, 1e-12);
-    EXPECT_NEAR(sum_of(counts.transient.values()) /
-                    (photons_per_radiance * sum_of(capture.transient.values())),
+    EXPECT_NEAR(test_support::sum_of(counts.transient.values()) /
+                    (photons_per_radiance * test_support::sum_of(capture.transient.values())),
                 1.0,
                 1e-6);
 }

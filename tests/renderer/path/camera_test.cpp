@@ -9,7 +9,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <numeric>
 
 namespace {
 
@@ -56,10 +55,6 @@ core::Capture render_image(const std::vector<renderer::Object>& objects,
                            const renderer::RenderSettings& settings) {
     const core::Scan scan = image_of(camera);
     return renderer::render(scene_of(objects, scan), scan, axis, settings, {}).capture;
-}
-
-double sum_of(std::span<const float> values) {
-    return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
 TEST(PinholeCamera, ImageIsRightHandedFromTheTopLeft) {
@@ -125,7 +120,8 @@ TEST(Camera, WholeLengthFromLightToCameraCounts) {
             kFloor.albedo / kPi * to_light.normalized().z() / (4.0 * kPi * to_light.squaredNorm());
         const auto histogram = capture.transient.histogram(0);
         EXPECT_NEAR(histogram[static_cast<std::size_t>(bin)] / expected, 1.0, 1e-4);
-        EXPECT_NEAR(sum_of(histogram) / expected, 1.0, 1e-4) << "all of it in one bin";
+        EXPECT_NEAR(test_support::sum_of(histogram) / expected, 1.0, 1e-4)
+            << "all of it in one bin";
     }
 }
 
@@ -148,10 +144,10 @@ TEST(Camera, LitSpotCountsAsABounceAndSendsItsAlbedoOn) {
             camera,
             axis,
             settings_with(16, 2));
-        EXPECT_EQ(sum_of(capture.by_order[0].values()), 0.0);
+        EXPECT_EQ(test_support::sum_of(capture.by_order[0].values()), 0.0);
         const auto histogram = capture.by_order[1].histogram(0);
         EXPECT_NEAR(histogram[static_cast<std::size_t>(bin)] / expected, 1.0, 1e-4);
-        EXPECT_NEAR(sum_of(histogram) / expected, 1.0, 1e-4);
+        EXPECT_NEAR(test_support::sum_of(histogram) / expected, 1.0, 1e-4);
     }
 }
 
@@ -182,7 +178,7 @@ TEST(Camera, MirrorShowsTheFloorAtItsMirroredLength) {
     const double expected =
         kFloor.albedo / kPi * to_light.normalized().z() / (4.0 * kPi * to_light.squaredNorm());
     const auto histogram = capture.by_order[1].histogram(0);
-    EXPECT_NEAR(sum_of(histogram) / expected, 1.0, 0.01);
+    EXPECT_NEAR(test_support::sum_of(histogram) / expected, 1.0, 0.01);
     const auto peak = std::max_element(histogram.begin(), histogram.end()) - histogram.begin();
     EXPECT_NEAR(
         (static_cast<double>(peak) + 0.5) * 0.01, (mirrored - eye).norm() + to_light.norm(), 0.011);
@@ -251,8 +247,8 @@ TEST(Camera, AgreesWithAScanOfTheSamePoints) {
     }
     EXPECT_GT(tested, 20);
     for (const std::size_t order : {3U, 4U, 5U}) {
-        EXPECT_NEAR(sum_of(image.by_order[order - 1].values()) /
-                        sum_of(scanned.by_order[order - 1].values()),
+        EXPECT_NEAR(test_support::sum_of(image.by_order[order - 1].values()) /
+                        test_support::sum_of(scanned.by_order[order - 1].values()),
                     1.0,
                     0.03)
             << order;
@@ -268,9 +264,10 @@ TEST(Camera, BinsAndOrdersSumToTheSteadyState) {
     const auto bins = render_image(objects, camera, {0.0, 0.05, 400}, settings);
     const auto steady = render_image(objects, camera, {0.0, 20.0, 1}, settings);
     for (std::size_t pixel = 0; pixel < camera.num_pixels(); ++pixel) {
-        const double total = sum_of(bins.transient.histogram(pixel));
+        const double total = test_support::sum_of(bins.transient.histogram(pixel));
         double orders = 0.0;
-        for (const auto& order : bins.by_order) orders += sum_of(order.histogram(pixel));
+        for (const auto& order : bins.by_order)
+            orders += test_support::sum_of(order.histogram(pixel));
         EXPECT_GT(total, 0.0);
         EXPECT_NEAR(steady.transient.histogram(pixel)[0] / total, 1.0, 1e-5);
         EXPECT_NEAR(orders / total, 1.0, 1e-5);

@@ -19,7 +19,7 @@ const Parallelogram kHidden{
     Vec3(-0.25, -0.2, 0.75), Vec3(0.45, 0.05, 0.15), Vec3(-0.05, 0.4, -0.1), 0.6};
 const Parallelogram kOther{Vec3(0.2, -0.3, 0.5), Vec3(0.2, 0, 0.3), Vec3(0, 0.5, 0), 0.9};
 const std::vector<Vec3> kPoints{{-0.3, 0.1, 0.0}, {0.0, 0.0, 0.0}, {0.35, -0.25, 0.0}};
-const core::TimeAxis kAxis{1.0, 0.02, 60};
+const core::TimeAxis kInvarianceAxis{1.0, 0.02, 60};
 
 renderer::RenderSettings settings_with(int samples) {
     renderer::RenderSettings settings;
@@ -78,11 +78,11 @@ TEST(PathTracer, RotatedAndTranslatedSetUpGivesTheSameTransient) {
 
 TEST(PathTracer, DeviceOriginShiftsHistogramsByTheLegs) {
     core::Scan scan = test_support::single_scan(Vec3(0.1, 0.2, 0.0), {kPoints[0]});
-    const auto wall_origin = render_plain(scan, kAxis, settings_with(2000));
+    const auto wall_origin = render_plain(scan, kInvarianceAxis, settings_with(2000));
     scan.opl_origin = core::OplOrigin::Device;
     scan.laser_position = Vec3(-0.5, 0.1, 0.25);
     scan.detector_position = Vec3(0.4, 0.0, 0.3);
-    core::TimeAxis shifted = kAxis;
+    core::TimeAxis shifted = kInvarianceAxis;
     shifted.opl_start_m += scan.device_legs_m(0);
     const auto device_origin = render_plain(scan, shifted, settings_with(2000));
     EXPECT_LT(
@@ -94,10 +94,11 @@ TEST(PathTracer, DeviceOriginShiftsHistogramsByTheLegs) {
 TEST(PathTracer, PatternsAgreeWherePairsCoincide) {
     const renderer::RenderSettings settings = settings_with(200'000);
     const auto exhaustive =
-        render_plain(test_support::exhaustive_scan(kPoints, kPoints), kAxis, settings);
-    const auto confocal = render_plain(test_support::confocal_scan(kPoints), kAxis, settings);
+        render_plain(test_support::exhaustive_scan(kPoints, kPoints), kInvarianceAxis, settings);
+    const auto confocal =
+        render_plain(test_support::confocal_scan(kPoints), kInvarianceAxis, settings);
     const auto single =
-        render_plain(test_support::single_scan(kPoints[1], kPoints), kAxis, settings);
+        render_plain(test_support::single_scan(kPoints[1], kPoints), kInvarianceAxis, settings);
     const auto expect_same = [&](const core::Capture& a,
                                  std::size_t pair,
                                  std::size_t of_exhaustive) {
@@ -130,10 +131,10 @@ TEST(PathTracer, TilesGiveTheSameBitsAsTheWholeScan) {
     renderer::PassWork work;
     work.estimate =
         renderer::path_estimator(scene, scan, settings, renderer::ThirdBounceScope::All);
-    const auto whole = renderer::render_passes(scene, scan, kAxis, settings, work, {});
+    const auto whole = renderer::render_passes(scene, scan, kInvarianceAxis, settings, work, {});
     // Room for two pairs of five orders and squares.
     work.max_sums_bytes = 2.5 * 6 * 60 * sizeof(double);
-    const auto tiled = renderer::render_passes(scene, scan, kAxis, settings, work, {});
+    const auto tiled = renderer::render_passes(scene, scan, kInvarianceAxis, settings, work, {});
     EXPECT_TRUE(
         std::ranges::equal(tiled.capture.transient.values(), whole.capture.transient.values()));
     EXPECT_TRUE(
@@ -143,7 +144,8 @@ TEST(PathTracer, TilesGiveTheSameBitsAsTheWholeScan) {
     EXPECT_EQ(tiled.num_rays, whole.num_rays);
     core::Progress stop;
     stop.stop_requested = [] { return true; };
-    EXPECT_THROW(renderer::render_passes(scene, scan, kAxis, settings, work, stop), core::Failure);
+    EXPECT_THROW(renderer::render_passes(scene, scan, kInvarianceAxis, settings, work, stop),
+                 core::Failure);
 }
 
 // The direct return: radiance of the lit spot itself, after the device legs, confocal pairs only.

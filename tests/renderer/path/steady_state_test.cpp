@@ -21,7 +21,7 @@ struct Patch {
 
 // A back wall and a floor before a relay wall of 0.6 m; none hides another from the third.
 const Parallelogram kBack{Vec3(-0.3, -0.3, 0.8), Vec3(0, 0.6, 0), Vec3(0.6, 0, 0), 0.9};
-const Parallelogram kFloor{Vec3(-0.3, -0.4, 0.2), Vec3(0, 0, 0.4), Vec3(0.6, 0, 0), 0.8};
+const Parallelogram kUpright{Vec3(-0.3, -0.4, 0.2), Vec3(0, 0, 0.4), Vec3(0.6, 0, 0), 0.8};
 const Parallelogram kWall{Vec3(-0.3, -0.3, 0.0), Vec3(0.6, 0, 0), Vec3(0, 0.6, 0), 0.7};
 const Vec3 kLight(0.1, 0.05, 0.0);
 const Vec3 kSensor(-0.15, -0.2, 0.0);
@@ -51,7 +51,7 @@ double exchange(const Vec3& a, const Vec3& normal_a, const Vec3& b, const Vec3& 
 // What leaves the sensing point after 3, 4, ... bounces, all path lengths together.
 std::vector<double> radiosity_by_order(int max_order, int steps) {
     std::vector<Patch> patches;
-    for (const Parallelogram& shape : {kBack, kFloor, kWall}) add_patches(shape, steps, patches);
+    for (const Parallelogram& shape : {kBack, kUpright, kWall}) add_patches(shape, steps, patches);
     std::vector<double> irradiance;
     for (const Patch& p : patches) {
         irradiance.push_back(kWall.albedo / kPi *
@@ -87,7 +87,7 @@ TEST(PathTracer, EnergyOfEveryOrderMatchesARadiositySolution) {
     const std::vector<double> fine = radiosity_by_order(kMaxOrder, 24);
 
     renderer::SceneGeometry geometry;
-    for (const Parallelogram& shape : {kBack, kFloor}) {
+    for (const Parallelogram& shape : {kBack, kUpright}) {
         geometry.objects.push_back(test_support::parallelogram_object(shape));
     }
     renderer::RelayWall wall;

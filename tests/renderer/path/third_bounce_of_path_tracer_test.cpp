@@ -17,7 +17,7 @@ namespace {
 using core::Vec3;
 using test_support::Parallelogram;
 
-renderer::RenderSettings settings_for(const std::string& test, int samples) {
+renderer::RenderSettings path_settings(const std::string& test, int samples) {
     renderer::RenderSettings settings;
     settings.method = renderer::Estimator::Path;
     settings.samples = samples;
@@ -50,7 +50,7 @@ TEST(PathTracer, LargeParallelPlaneMatchesTheClosedForm) {
     const renderer::Scene scene = scene_of(
         {{Vec3(-1, -1, kDepth), Vec3(2, 0, 0), Vec3(0, 2, 0), kAlbedo}}, scan, kWallAlbedo);
     const auto result = renderer::render(
-        scene, scan, axis, settings_for("LargeParallelPlane", 4'000'000), core::Progress{});
+        scene, scan, axis, path_settings("LargeParallelPlane", 4'000'000), core::Progress{});
 
     std::vector<float> expected;
     for (int bin = 0; bin < axis.num_bins; ++bin) {
@@ -68,19 +68,21 @@ TEST(PathTracer, LargeParallelPlaneMatchesTheClosedForm) {
 }
 
 // A tilted rectangle, partly hidden by another one, that no symmetry simplifies.
-const Parallelogram kHidden{
+const Parallelogram kTilted{
     Vec3(-0.25, -0.2, 0.75), Vec3(0.45, 0.05, 0.15), Vec3(-0.05, 0.4, -0.1), 0.6};
-const Parallelogram kOccluder{Vec3(-0.05, -0.1, 0.4), Vec3(0.15, 0, 0.02), Vec3(0.02, 0.2, 0), 0.0};
-const std::vector<Vec3> kPoints{{-0.3, 0.1, 0.0}, {0.0, 0.0, 0.0}, {0.35, -0.25, 0.0}};
+const Parallelogram kScreen{Vec3(-0.05, -0.1, 0.4), Vec3(0.15, 0, 0.02), Vec3(0.02, 0.2, 0), 0.0};
+const std::vector<Vec3> kWallPoints{{-0.3, 0.1, 0.0}, {0.0, 0.0, 0.0}, {0.35, -0.25, 0.0}};
 
 class ThirdBouncePatterns : public testing::TestWithParam<core::ScanPattern> {
  protected:
     core::Scan scan() const {
-        if (GetParam() == core::ScanPattern::Confocal) return test_support::confocal_scan(kPoints);
+        if (GetParam() == core::ScanPattern::Confocal)
+            return test_support::confocal_scan(kWallPoints);
         if (GetParam() == core::ScanPattern::Single) {
-            return test_support::single_scan(Vec3(0.1, 0.2, 0.0), kPoints);
+            return test_support::single_scan(Vec3(0.1, 0.2, 0.0), kWallPoints);
         }
-        return test_support::exhaustive_scan({Vec3(0.1, 0.2, 0.0), Vec3(-0.4, -0.4, 0.0)}, kPoints);
+        return test_support::exhaustive_scan({Vec3(0.1, 0.2, 0.0), Vec3(-0.4, -0.4, 0.0)},
+                                             kWallPoints);
     }
 };
 
@@ -88,12 +90,12 @@ TEST_P(ThirdBouncePatterns, OccludedTiltedRectangleMatchesBruteForce) {
     const core::TimeAxis axis{1.2, 0.02, 40};
     const core::Scan pairs = scan();
     const auto expected = test_support::third_bounce_by_quadrature(
-        kHidden, kOccluder, pairs, axis, 0.8, /*steps=*/1500);
+        kTilted, kScreen, pairs, axis, 0.8, /*steps=*/1500);
     // The occluder is black: it hides and adds nothing.
-    const auto result = renderer::render(scene_of({kHidden, kOccluder}, pairs, 0.8),
+    const auto result = renderer::render(scene_of({kTilted, kScreen}, pairs, 0.8),
                                          pairs,
                                          axis,
-                                         settings_for("OccludedTiltedRectangle", 1'000'000),
+                                         path_settings("OccludedTiltedRectangle", 1'000'000),
                                          core::Progress{});
     EXPECT_LT(test_support::relative_l2(result.capture.transient.values(), expected), 0.01);
 
@@ -117,8 +119,8 @@ TEST_P(ThirdBouncePatterns, OccludedTiltedRectangleMatchesBruteForce) {
 TEST_P(ThirdBouncePatterns, SameBitsForAnyNumberOfThreads) {
     const core::TimeAxis axis{1.2, 0.02, 40};
     const core::Scan pairs = scan();
-    const renderer::Scene scene = scene_of({kHidden, kOccluder}, pairs, 0.8);
-    renderer::RenderSettings settings = settings_for("SameBits", 300);
+    const renderer::Scene scene = scene_of({kTilted, kScreen}, pairs, 0.8);
+    renderer::RenderSettings settings = path_settings("SameBits", 300);
     settings.max_bounces = 5;
     std::vector<std::vector<float>> results;
     for (const int threads : {1, 7}) {
@@ -139,10 +141,10 @@ INSTANTIATE_TEST_SUITE_P(AllPatterns,
 
 // Of eight passes. Who listens slowly is asked after each; the others after rounds of several.
 TEST(PathTracer, InterruptedRenderKeepsWholePasses) {
-    const core::Scan scan = test_support::confocal_scan(kPoints);
-    const renderer::Scene scene = scene_of({kHidden}, scan, 1.0);
+    const core::Scan scan = test_support::confocal_scan(kWallPoints);
+    const renderer::Scene scene = scene_of({kTilted}, scan, 1.0);
     const core::TimeAxis axis{1.2, 0.02, 40};
-    const renderer::RenderSettings settings = settings_for("Interrupted", 800);
+    const renderer::RenderSettings settings = path_settings("Interrupted", 800);
     core::Progress progress;
     progress.report = [](double, const std::string&) {
         std::this_thread::sleep_for(std::chrono::milliseconds(110));
@@ -174,7 +176,7 @@ TEST(PathTracer, GateWeightsPathsByLength) {
          {std::pair{renderer::GateShape::Box, 1.0},
           std::pair{renderer::GateShape::Tent, 0.75},
           std::pair{renderer::GateShape::Gaussian, std::exp(-1.0 / 32)}}) {
-        renderer::RenderSettings settings = settings_for("GateWeights", 1000);
+        renderer::RenderSettings settings = path_settings("GateWeights", 1000);
         settings.gate = gate;
         // Centre at 1.005 m, width 0.02 m: a quarter of the width off.
         const auto result =
@@ -194,7 +196,7 @@ TEST(PathTracer, RetroreflectorReturnsTheSpotOfConfocalPairsOnly) {
             {Vec3(-1e-4, -1e-4, 0.5), Vec3(2e-4, 0, 0), Vec3(0, 2e-4, 0), 0.9}));
         geometry.objects.back().material.model = renderer::SurfaceModel::Retroreflective;
         const renderer::Scene scene(std::move(geometry), scan, renderer::RelayWall{});
-        renderer::RenderSettings settings = settings_for("Retro", 1000);
+        renderer::RenderSettings settings = path_settings("Retro", 1000);
         settings.laser_spot_m2 = kSpot;
         const auto result =
             renderer::render(scene, scan, core::TimeAxis{0.9, 0.2, 1}, settings, {});

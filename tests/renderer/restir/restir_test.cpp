@@ -27,12 +27,12 @@ using test_support::repeat;
 using test_support::sums_of;
 
 // Two surfaces that light each other, an occluder before them, and a relay wall.
-constexpr double kVelocity = 0.2;
+constexpr double kSpeed = 0.2;
 
 std::vector<renderer::Object> make_objects() {
     std::vector<renderer::Object> objects = test_support::facing_surfaces();
     objects[1].role = renderer::Role::BackWall;
-    objects[0].velocity_m_per_s = Vec3(0.0, 0.1, -kVelocity);
+    objects[0].velocity_m_per_s = Vec3(0.0, 0.1, -kSpeed);
     return objects;
 }
 
@@ -78,7 +78,7 @@ core::Scan close_up() {
     return scan;
 }
 
-renderer::RenderSettings settings_for(Estimator method, int samples, int max_bounces) {
+renderer::RenderSettings restir_settings(Estimator method, int samples, int max_bounces) {
     renderer::RenderSettings settings;
     settings.method = method;
     settings.samples = samples;
@@ -164,15 +164,16 @@ class RestirOf : public testing::TestWithParam<std::size_t> {};
 TEST_P(RestirOf, EveryKindOfReuseAgreesWithPathTracing) {
     const Setting setting = settings()[GetParam()];
     const renderer::Scene scene(geometry(setting.glossy), setting.scan, {});
-    const Estimate paths = render_often(scene,
-                                        setting.scan,
-                                        setting.axis,
-                                        settings_for(Estimator::Path, 16384, setting.max_bounces),
-                                        std::string("Restir.Paths.") + setting.name);
+    const Estimate paths =
+        render_often(scene,
+                     setting.scan,
+                     setting.axis,
+                     restir_settings(Estimator::Path, 16384, setting.max_bounces),
+                     std::string("Restir.Paths.") + setting.name);
     for (const Case& kind : kCases) {
         SCOPED_TRACE(kind.name);
         renderer::RenderSettings restir =
-            settings_for(Estimator::Restir, 2080, setting.max_bounces);
+            restir_settings(Estimator::Restir, 2080, setting.max_bounces);
         kind.change(restir);
         expect_same_means(render_often(scene,
                                        setting.scan,
@@ -217,7 +218,7 @@ TEST_P(RestirOfScenes, AgreesWithPathTracing) {
     const Estimate paths = render_often(scene,
                                         scan,
                                         description.time_axis,
-                                        settings_for(Estimator::Path, 8192, max_bounces),
+                                        restir_settings(Estimator::Path, 8192, max_bounces),
                                         std::string("Restir.Scenes.Paths.") + GetParam());
     const std::vector<Case> kinds{
         {"one_round", [](auto&) {}},
@@ -232,7 +233,7 @@ TEST_P(RestirOfScenes, AgreesWithPathTracing) {
          }}};
     for (const Case& kind : kinds) {
         SCOPED_TRACE(kind.name);
-        renderer::RenderSettings restir = settings_for(Estimator::Restir, 2080, max_bounces);
+        renderer::RenderSettings restir = restir_settings(Estimator::Restir, 2080, max_bounces);
         kind.change(restir);
         expect_same_means(render_often(scene,
                                        scan,
@@ -287,7 +288,7 @@ TEST_P(RestirFrames, EveryFrameAgreesWithPathTracing) {
         description.time_axis = is_image ? core::TimeAxis{2.45, 0.5, 1} : kGate;
         description.frames = {6, step, frame_s};
         const auto sequence = [&](Estimator method, int samples) {
-            description.render = settings_for(method, samples, is_image ? 3 : 4);
+            description.render = restir_settings(method, samples, is_image ? 3 : 4);
             return repeat(
                 [&](std::uint64_t seed) {
                     description.render.seed = seed;
@@ -307,9 +308,9 @@ TEST(Restir, WiderGatesShiftedIntoNarrowOnesChangeNoMean) {
     const core::Scan scan = wall_scan(core::ScanPattern::Confocal);
     const renderer::Scene scene(geometry(false), scan, {});
     const Estimate paths = render_often(
-        scene, scan, kGate, settings_for(Estimator::Path, 8192, 4), "Restir.Shrink.Paths");
+        scene, scan, kGate, restir_settings(Estimator::Path, 8192, 4), "Restir.Shrink.Paths");
     for (const double fraction : {0.2, 0.5, 0.9}) {
-        renderer::RenderSettings restir = settings_for(Estimator::Restir, 4096, 4);
+        renderer::RenderSettings restir = restir_settings(Estimator::Restir, 4096, 4);
         restir.restir.walks = 8;
         restir.restir.shrink_fraction = fraction;
         expect_same_means(render_often(scene, scan, kGate, restir, "Restir.Shrink"), paths, 0.04);
@@ -323,7 +324,7 @@ TEST(Restir, SameBitsForAnyNumberOfThreads) {
         for (const int threads : {1, 7}) {
             const core::ThreadLimit limit(threads);
             const auto result = renderer::render(
-                scene, scan, kHistogram, settings_for(Estimator::Restir, 512, 4), {});
+                scene, scan, kHistogram, restir_settings(Estimator::Restir, 512, 4), {});
             const auto values = result.capture.transient.values();
             results.emplace_back(values.begin(), values.end());
         }
@@ -337,7 +338,7 @@ TEST(Restir, StaticFramesSettle) {
     renderer::SceneDescription description;
     description.time_axis = kGate;
     description.frames = {20, 0.0, 0.0};
-    description.render = settings_for(Estimator::Restir, 65, 3);
+    description.render = restir_settings(Estimator::Restir, 65, 3);
     description.render.restir.confidence_cap = 50;
     description.render.restir.rounds = 0;
     const Estimate estimate = repeat(
@@ -350,15 +351,15 @@ TEST(Restir, StaticFramesSettle) {
 }
 
 TEST(Restir, SettingsSayWhatIsWrong) {
-    renderer::RenderSettings settings = settings_for(Estimator::Restir, 64, 10);
+    renderer::RenderSettings settings = restir_settings(Estimator::Restir, 64, 10);
     EXPECT_ERROR_WITH(renderer::validate(settings, "render"), "found 10 for method restir");
-    settings = settings_for(Estimator::Restir, 64, 3);
+    settings = restir_settings(Estimator::Restir, 64, 3);
     settings.by_order = true;
     EXPECT_ERROR_WITH(renderer::validate(settings, "render"), "render.by_order");
-    settings = settings_for(Estimator::Restir, 64, 3);
+    settings = restir_settings(Estimator::Restir, 64, 3);
     settings.restir.walks = 0;
     EXPECT_ERROR_WITH(renderer::validate(settings, "render"), "render.restir.walks: found 0");
-    settings = settings_for(Estimator::Restir, 64, 3);
+    settings = restir_settings(Estimator::Restir, 64, 3);
     settings.restir.shrink_fraction = 1.0;
     EXPECT_ERROR_WITH(renderer::validate(settings, "render"),
                       "render.restir.shrink_fraction: found 1");

@@ -9,7 +9,6 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <numeric>
 #include <span>
 
 namespace {
@@ -20,7 +19,7 @@ using renderer::CoincidingPoints;
 const Vec3 kA(-0.3, 0.1, 0.0);
 const Vec3 kB(0.0, 0.0, 0.0);
 const Vec3 kC(0.35, -0.25, 0.0);
-const core::TimeAxis kAxis{0.8, 0.02, 60};
+const core::TimeAxis kRetroAxis{0.8, 0.02, 60};
 
 renderer::Scene scene_of(const core::Scan& scan) {
     renderer::SceneGeometry geometry;
@@ -34,11 +33,7 @@ core::Transient render(const core::Scan& scan, double target_error) {
     renderer::RenderSettings settings;
     settings.method = renderer::Estimator::ThirdBounce;
     settings.target_error = target_error;
-    return renderer::render(scene_of(scan), scan, kAxis, settings, {}).capture.transient;
-}
-
-double sum_of(std::span<const float> values) {
-    return std::accumulate(values.begin(), values.end(), 0.0);
+    return renderer::render(scene_of(scan), scan, kRetroAxis, settings, {}).capture.transient;
 }
 
 TEST(Retroreflectors, ReturnLightToConfocalPairsOfExhaustiveScans) {
@@ -47,12 +42,12 @@ TEST(Retroreflectors, ReturnLightToConfocalPairsOfExhaustiveScans) {
     const core::Transient confocal = render(test_support::confocal_scan({kA, kB}), 1e-3);
     constexpr std::array<std::size_t, 2> kPairs{2, 4};  // (A, A) and (B, B)
     for (std::size_t i = 0; i < kPairs.size(); ++i) {
-        EXPECT_GT(sum_of(confocal.histogram(i)), 0.0);
+        EXPECT_GT(test_support::sum_of(confocal.histogram(i)), 0.0);
         EXPECT_LT(test_support::relative_l2(exhaustive.histogram(kPairs[i]), confocal.histogram(i)),
                   2e-3);
     }
     for (const std::size_t pair : {0U, 1U, 3U, 5U}) {
-        EXPECT_EQ(sum_of(exhaustive.histogram(pair)), 0.0) << "pair " << pair;
+        EXPECT_EQ(test_support::sum_of(exhaustive.histogram(pair)), 0.0) << "pair " << pair;
     }
 }
 
@@ -60,8 +55,8 @@ TEST(Retroreflectors, ReturnLightToTheLaserPointOfSingleScans) {
     const core::Transient single = render(test_support::single_scan(kB, {kA, kB, kC}), 1e-3);
     const core::Transient confocal = render(test_support::confocal_scan({kB}), 1e-3);
     EXPECT_LT(test_support::relative_l2(single.histogram(1), confocal.histogram(0)), 2e-3);
-    EXPECT_EQ(sum_of(single.histogram(0)), 0.0);
-    EXPECT_EQ(sum_of(single.histogram(2)), 0.0);
+    EXPECT_EQ(test_support::sum_of(single.histogram(0)), 0.0);
+    EXPECT_EQ(test_support::sum_of(single.histogram(2)), 0.0);
 }
 
 TEST(Retroreflectors, AddAsMuchAsPathsDo) {
@@ -71,10 +66,11 @@ TEST(Retroreflectors, AddAsMuchAsPathsDo) {
     settings.method = renderer::Estimator::Path;
     settings.samples = 40'000;
     settings.seed = test_support::seed_of("AddAsMuchAsPathsDo");
-    const auto paths = renderer::render(scene_of(scan), scan, kAxis, settings, {});
+    const auto paths = renderer::render(scene_of(scan), scan, kRetroAxis, settings, {});
     for (std::size_t pair = 0; pair < scan.num_pairs(); ++pair) {
-        const double sum = sum_of(paths.capture.transient.histogram(pair));
-        EXPECT_NEAR(sum_of(integrated.histogram(pair)), sum, 0.01 * sum) << "pair " << pair;
+        const double sum = test_support::sum_of(paths.capture.transient.histogram(pair));
+        EXPECT_NEAR(test_support::sum_of(integrated.histogram(pair)), sum, 0.01 * sum)
+            << "pair " << pair;
     }
 }
 
@@ -83,7 +79,8 @@ TEST(Retroreflectors, AreTriedInAPairThatSeesThem) {
     std::vector<Vec3> points;
     for (int i = 0; i < 200; ++i) points.emplace_back(0.005 * i - 0.5, 0.0, 0.0);
     const auto is_tried = [](const core::Scan& scan) {
-        return CoincidingPoints(renderer::pilot_scan(scene_of(scan), scan, kAxis.num_bins)).any();
+        return CoincidingPoints(renderer::pilot_scan(scene_of(scan), scan, kRetroAxis.num_bins))
+            .any();
     };
     for (const std::size_t light : {0U, 17U, 199U}) {
         EXPECT_TRUE(is_tried(test_support::single_scan(points[light], points)));

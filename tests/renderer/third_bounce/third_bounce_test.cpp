@@ -12,7 +12,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numeric>
 
 namespace {
 
@@ -59,10 +58,6 @@ std::vector<float> render_shapes(const std::vector<Parallelogram>& shapes,
     return {values.begin(), values.end()};
 }
 
-double sum_of(const std::vector<float>& values) {
-    return std::accumulate(values.begin(), values.end(), 0.0);
-}
-
 class ThirdBounce : public testing::TestWithParam<core::ScanPattern> {
  protected:
     core::Scan scan() const {
@@ -79,7 +74,7 @@ TEST_P(ThirdBounce, MatchesBruteForceWithoutOccluder) {
         kHidden, kNoOccluder, scan(), kAxis, kWallAlbedo, /*steps=*/2000);
     const auto result = render_shapes({kHidden}, scan(), kAxis, 1e-3);
     EXPECT_LT(test_support::relative_l2(result, expected), 1.5e-3);
-    EXPECT_NEAR(sum_of(result) / sum_of(expected), 1.0, 1e-5);
+    EXPECT_NEAR(test_support::sum_of(result) / test_support::sum_of(expected), 1.0, 1e-5);
 }
 
 TEST_P(ThirdBounce, MatchesBruteForceBehindAnOccluder) {
@@ -99,7 +94,8 @@ TEST_P(ThirdBounce, MatchesBruteForceOfGlossySurfaces) {
             glossy, kNoOccluder, scan(), kAxis, kWallAlbedo, /*steps=*/1000);
         const auto result = render_shapes({glossy}, scan(), kAxis, 1e-3);
         EXPECT_LT(test_support::relative_l2(result, expected), 3e-3) << roughness;
-        EXPECT_NEAR(sum_of(result) / sum_of(expected), 1.0, 1e-4) << roughness;
+        EXPECT_NEAR(test_support::sum_of(result) / test_support::sum_of(expected), 1.0, 1e-4)
+            << roughness;
     }
 }
 
@@ -136,7 +132,7 @@ TEST_P(ThirdBounce, MovingEverythingByAKilometreChangesNothing) {
 TEST_P(ThirdBounce, SubBinShiftsOfTheAxisKeepTheEnergy) {
     const auto shifted = [&](double share) {
         const core::TimeAxis axis{1.1 - share * 0.02, 0.02, 60};
-        return sum_of(render_shapes({kHidden}, scan(), axis, 0.01));
+        return test_support::sum_of(render_shapes({kHidden}, scan(), axis, 0.01));
     };
     const double expected = shifted(0.0);
     for (const double share : {0.13, 0.5, 0.77}) {
@@ -160,7 +156,7 @@ TEST_P(ThirdBounce, DeviceLegsShiftTheAxis) {
     scan_with_legs.detector_position = Vec3(-0.2, 0.1, 2.0);
     const auto with_legs = render_shapes({kHidden}, scan_with_legs, {4.5, 0.02, 100}, 1e-3);
     const auto without = render_shapes({kHidden}, scan(), {0.0, 0.02, 200}, 1e-3);
-    EXPECT_NEAR(sum_of(with_legs) / sum_of(without), 1.0, 1e-5);
+    EXPECT_NEAR(test_support::sum_of(with_legs) / test_support::sum_of(without), 1.0, 1e-5);
     for (std::size_t pair = 0; pair < scan().num_pairs(); ++pair) {
         double mean_with = 0.0;
         double mean_without = 0.0;
@@ -310,7 +306,7 @@ TEST(ThirdBounceScenes, ShadowsWithinFacetsOfARoughBallCount) {
     const auto sum = [&](const renderer::RenderSettings& settings) {
         const auto result = renderer::render(scene, scan, axis, settings, {});
         const auto values = result.capture.transient.values();
-        return sum_of({values.begin(), values.end()});
+        return test_support::sum_of(values);
     };
     renderer::RenderSettings paths;
     paths.method = Estimator::Path;
@@ -375,9 +371,9 @@ TEST(ThirdBounceScenes, RenderInterruptedBeforeItBeginsSaysSo) {
     progress.stop_requested = [] { return true; };
     const auto early = renderer::render(scene, scan, kAxis, settings_for(1e-4), progress);
     EXPECT_TRUE(early.interrupted);
-    EXPECT_GT(
-        sum_of({early.capture.transient.values().begin(), early.capture.transient.values().end()}),
-        0.0);
+    EXPECT_GT(test_support::sum_of({early.capture.transient.values().begin(),
+                                    early.capture.transient.values().end()}),
+              0.0);
 }
 
 TEST(ThirdBounceScenes, MethodNamesWhatItCannotDo) {

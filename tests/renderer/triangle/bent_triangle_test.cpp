@@ -9,7 +9,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numeric>
 
 namespace {
 
@@ -44,10 +43,6 @@ std::vector<double> histogram_of(const BentTriangle& triangle, const TimeAxis& a
     std::vector<double> histogram(static_cast<std::size_t>(axis.num_bins));
     renderer::add_triangles(lanes, 1, axis, histogram);
     return histogram;
-}
-
-double sum_of(const std::vector<double>& values) {
-    return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
 // Lengths of corners within `spread` of 1 m, bends up to `bend` along edges of a plane triangle:
@@ -123,7 +118,7 @@ TEST(BentTriangle, AllWeightArrivesAndNoBinIsNegative) {
         const double width = std::exp(-6.0 * rng.uniform());
         const TimeAxis axis{0.7 - width * rng.uniform(), width, static_cast<int>(2.0 / width) + 3};
         const auto histogram = histogram_of(triangle, axis);
-        EXPECT_NEAR(sum_of(histogram) / triangle.mean_weight(), 1.0, 1e-12) << trial;
+        EXPECT_NEAR(test_support::sum_of(histogram) / triangle.mean_weight(), 1.0, 1e-12) << trial;
         for (const double value : histogram) EXPECT_GE(value, 0.0) << trial;
     }
 }
@@ -228,7 +223,7 @@ TEST(BentTriangle, ErrorAgainstExactArcsFollowsTheSizeRule) {
             }
         }
         // Linear weights overestimate; the shape is what is asked.
-        const double scale = sum_of(arcs) / sum_of(histogram);
+        const double scale = test_support::sum_of(arcs) / test_support::sum_of(histogram);
         for (double& value : histogram) value *= scale;
         const double kappa = e1.squaredNorm() / (8.0 * 0.75 * axis.bin_width_m / 2.0);
         EXPECT_LT(relative_l2(histogram, arcs), 0.02 * kappa) << steps;

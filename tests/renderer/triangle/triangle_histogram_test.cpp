@@ -10,7 +10,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numeric>
 
 namespace {
 
@@ -24,10 +23,6 @@ std::vector<double> histogram_of(const TriangleKnots& knots, double area, const 
     std::vector<double> histogram(static_cast<std::size_t>(axis.num_bins));
     renderer::add_triangle(knots, area, axis, histogram);
     return histogram;
-}
-
-double sum_of(const std::vector<double>& values) {
-    return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
 TriangleKnots random_knots(core::Rng& rng) {
@@ -156,7 +151,8 @@ TEST(TriangleHistogram, EnergyDoesNotDependOnTheAxis) {
         const double expected = (knots.weight[0] + knots.weight[1] + knots.weight[2]) / 3.0;
         const double width = std::exp(-9.0 * rng.uniform());
         const TimeAxis axis{0.9 - width * rng.uniform(), width, static_cast<int>(0.4 / width) + 3};
-        EXPECT_NEAR(sum_of(histogram_of(knots, 1.0, axis)) / expected, 1.0, 1e-12) << trial;
+        EXPECT_NEAR(test_support::sum_of(histogram_of(knots, 1.0, axis)) / expected, 1.0, 1e-12)
+            << trial;
     }
 }
 
@@ -185,7 +181,7 @@ TEST(TriangleHistogram, DegenerateTrianglesKeepTheirEnergy) {
                                              std::array{1.0, 1.0 + 1e-16, 1.0 + 1e-12},
                                              std::array{1.05, 1.0 - 1e-13, 1.0 + 1e-13}}) {
         const auto histogram = histogram_of({opl, {1.0, 2.0, 3.0}}, 1.0, axis);
-        EXPECT_NEAR(sum_of(histogram), 2.0, 1e-12);
+        EXPECT_NEAR(test_support::sum_of(histogram), 2.0, 1e-12);
         for (const double value : histogram) EXPECT_GE(value, -1e-15);
     }
 }
@@ -194,8 +190,8 @@ TEST(TriangleHistogram, MatchedKnotsHaveTheMidpointsMean) {
     const TriangleKnots corners{{1.0, 1.1, 1.3}, {0.0, 0.01, 1.0}};
     const TriangleKnots midpoints{{1.04, 1.19, 1.14}, {0.001, 0.3, 0.2}};
     const TriangleKnots knots = renderer::match_midpoints(corners, midpoints);
-    EXPECT_NEAR(sum_of({knots.opl_m.begin(), knots.opl_m.end()}), 3.37, 1e-14);
-    EXPECT_NEAR(sum_of({knots.weight.begin(), knots.weight.end()}), 0.501, 1e-14);
+    EXPECT_NEAR(test_support::sum_of({knots.opl_m.begin(), knots.opl_m.end()}), 3.37, 1e-14);
+    EXPECT_NEAR(test_support::sum_of({knots.weight.begin(), knots.weight.end()}), 0.501, 1e-14);
     for (const double weight : knots.weight) EXPECT_GE(weight, 0.0);
 }
 
@@ -231,7 +227,7 @@ TEST(ExactArcs, MatchesQuadrature) {
         const double expected = area_vector.norm() * (4.0 * fine - coarse) / 3.0;
         const auto arcs =
             renderer::confocal_arcs(corners, Vec3::Zero(), Vec3::UnitZ(), {0.5, 0.02, 100});
-        EXPECT_NEAR(sum_of(arcs) / expected, 1.0, 1e-9);
+        EXPECT_NEAR(test_support::sum_of(arcs) / expected, 1.0, 1e-9);
     }
 }
 
@@ -281,8 +277,8 @@ TEST(TriangleHistogram, SubBinShiftsChangeTheEnergyByLessThanOneIn1e5) {
     for (const double shift : {0.0, 0.1, 0.37, 0.5, 0.93}) {
         const TimeAxis axis{1.2 - 0.0096 * shift, 0.0096, 82};
         const auto arcs = renderer::confocal_arcs(kTriangle, Vec3::Zero(), Vec3::UnitZ(), axis);
-        const double energy = sum_of(pieces_of(kTriangle, Vec3::UnitZ(), axis, 8));
-        EXPECT_NEAR(energy / sum_of(arcs), 1.0, 1e-5) << shift;
+        const double energy = test_support::sum_of(pieces_of(kTriangle, Vec3::UnitZ(), axis, 8));
+        EXPECT_NEAR(energy / test_support::sum_of(arcs), 1.0, 1e-5) << shift;
     }
 }
 
@@ -302,7 +298,7 @@ TEST_P(HardFacets, MatchTheExactArcs) {
     const auto arcs = renderer::confocal_arcs(corners, Vec3::Zero(), Vec3::UnitZ(), axis);
     const auto pieces = pieces_of(corners, Vec3::UnitZ(), axis, steps);
     EXPECT_LT(relative_l2(pieces, arcs), allowed);
-    EXPECT_GT(sum_of(arcs), 0.0);
+    EXPECT_GT(test_support::sum_of(arcs), 0.0);
 }
 
 Corners grazing() {
