@@ -1,16 +1,21 @@
 // SPDX-License-Identifier: MIT
 #include "apps/bench/output.h"
 
+#include "apps/arguments.h"
 #include "apps/bench/machine.h"
 #include "apps/bench/regression.h"
+#include "apps/bench/tables.h"
 #include "apps/terminal.h"
 #include "apps/version.h"
 #include "renderer/core/output_file.h"
 
-#include <CLI/CLI.hpp>
+#include <fmt/chrono.h>
 #include <fmt/core.h>
 
+#include <ctime>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 
 namespace apps {
 namespace {
@@ -38,14 +43,41 @@ bool draw_plots(const BenchResult& result, const std::string& stem) {
     return drawn;
 }
 
+std::string text_of_file(const std::string& path) {
+    std::ifstream file(path);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+void write_results(const BenchOutput& output, const std::string& name, core::Json figures) {
+    constexpr std::size_t kMaxRows = 80;
+    for (const char* key : {"program", "machine", "libraries", "against"}) figures.erase(key);
+    const std::string section =
+        fmt::format("## nlos bench {}\n\n{:%Y-%m-%d}, {}, {}; {}\n\n    {}\n\n{}",
+                    name,
+                    fmt::gmtime(std::time(nullptr)),
+                    version_text(),
+                    machine_text(),
+                    libraries_text(),
+                    command_line(),
+                    markdown(tables_of(figures), kMaxRows));
+    core::write_text_file(output.results,
+                          with_section(text_of_file(output.results), name, section));
+}
+
 }  // namespace
 
-void add_output_options(CLI::App& command, BenchOutput& output) {
-    command.add_option("-o,--output", output.folder, "Folder for JSON, table and plots")
-        ->required();
-    command.add_option("--against",
-                       output.against,
-                       "JSON of an earlier run: says what got slower or less accurate");
+std::string with_section(const std::string& text,
+                         const std::string& name,
+                         const std::string& section) {
+    const std::string begin = fmt::format("<!-- nlos bench {} -->\n", name);
+    const std::string end = fmt::format("<!-- end of nlos bench {} -->\n", name);
+    const std::string marked = begin + section + end;
+    const std::size_t first = text.find(begin);
+    const std::size_t last = text.find(end, first);
+    if (first == std::string::npos || last == std::string::npos) {
+        return text + (text.empty() ? "" : "\n") + marked;
+    }
+    return text.substr(0, first) + marked + text.substr(last + end.size());
 }
 
 core::Json run_benchmark(const BenchOutput& output,
@@ -55,23 +87,25 @@ core::Json run_benchmark(const BenchOutput& output,
     const core::Json earlier = read_earlier(output.against, name);
     ProgressBar bar("bench " + name);
     BenchResult result = benchmark(bar.progress());
+    std::string table = plain_text(tables_of(result.figures));
     result.figures["program"] = version_text();
     result.figures["machine"] = machine_text();
     result.figures["libraries"] = libraries_text();
     if (!earlier.is_null()) {
         const BenchRegression against = compare_benches(earlier, result.figures);
         result.figures["against"] = core::write_value(against);
-        result.table += against_table(against);
+        table += plain_text(tables_of(result.figures["against"]));
     }
     core::write_text_file(stem + ".json", result.figures.dump(2) + "\n");
-    core::write_text_file(stem + ".txt", result.table);
+    core::write_text_file(stem + ".txt", table);
+    if (!output.results.empty()) write_results(output, name, result.figures);
     for (const auto& [suffix, bytes] : result.pictures) {
         core::write_text_file(stem + suffix + ".png", bytes);
     }
     if (!draw_plots(result, stem)) {
         fmt::print(stderr, "bench: gnuplot is not there, so no plot was drawn\n");
     }
-    fmt::print("{}wrote {}\n", result.table, stem + ".json");
+    fmt::print("{}wrote {}\n", table, stem + ".json");
     return result.figures;
 }
 

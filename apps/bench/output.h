@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "apps/bench/figures.h"
 #include "apps/bench/gnuplot.h"
 #include "renderer/core/progress.h"
-#include "renderer/core/settings.h"
 
 #include <functional>
 #include <map>
 #include <string>
-
-namespace CLI {
-class App;
-}
+#include <vector>
 
 namespace apps {
 
@@ -19,23 +16,30 @@ namespace apps {
 struct BenchOutput {
     std::string folder;
     std::string against;  ///< JSON file of an earlier run; empty: none
+    std::string results;  ///< Markdown file to write the figures into; empty: none
 };
 
-/// Declares -o and --against.
-void add_output_options(CLI::App& command, BenchOutput& output);
+/// What was asked of a figure, and what came out.
+struct Target {
+    std::string name;    ///< what was measured
+    std::string target;  ///< what was asked
+    std::string ours;    ///< what came out
+    bool holds = false;  ///< whether the target is met
+};
+NLOS_FIGURES(Target, name, target, ours, holds);
 
 /// What a benchmark found.
 struct BenchResult {
-    core::Json figures;
-    std::string table;                            ///< for people
-    std::map<std::string, LogPlot> plots;         ///< by the end of their file's name
-    std::map<std::string, std::string> pictures;  ///< bytes of PNG files, likewise
+    core::Json figures;                             ///< an object; tables.h makes tables of it
+    std::map<std::string, LogPlot> plots{};         ///< by the end of their file's name
+    std::map<std::string, std::string> pictures{};  ///< bytes of PNG files, likewise
 };
 
 using Benchmark = std::function<BenchResult(const core::Progress&)>;
 
 /// Runs a benchmark and writes bench_NAME.json (with version and machine), bench_NAME.txt, and
-/// plots as .svg and .png beside them; prints the table.
+/// plots as .svg and .png beside them; prints the tables. With `results`, the tables also replace
+/// the benchmark's section of that Markdown file, or are appended to it; the rest stays.
 ///
 /// name      of the benchmark; an earlier run is found under this name in files of `bench all`
 /// returns   the JSON that was written
@@ -44,5 +48,11 @@ using Benchmark = std::function<BenchResult(const core::Progress&)>;
 core::Json run_benchmark(const BenchOutput& output,
                          const std::string& name,
                          const Benchmark& benchmark);
+
+/// A Markdown text with the section of one benchmark replaced, or appended when it has none. The
+/// section stands between `<!-- nlos bench NAME -->` and `<!-- end of nlos bench NAME -->`.
+std::string with_section(const std::string& text,
+                         const std::string& name,
+                         const std::string& section);
 
 }  // namespace apps

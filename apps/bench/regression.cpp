@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "apps/bench/regression.h"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -186,25 +184,6 @@ BenchRegression compare_benches(const Json& before, const Json& now) {
                   return a.is_worse != b.is_worse ? a.is_worse : size_of(a) > size_of(b);
               });
     return result;
-}
-
-std::string against_table(const BenchRegression& against) {
-    std::string text = fmt::format("\nagainst {} on {}\n{} figures alike, {} rows are new\n",
-                                   against.program,
-                                   against.machine,
-                                   against.num_alike,
-                                   against.num_missing);
-    if (against.changes.empty()) return text;
-    text += fmt::format("{:<7} {:<22} {:>11} {:>11}  {}\n", "", "figure", "before", "now", "row");
-    for (const BenchChange& change : against.changes) {
-        text += fmt::format("{:<7} {:<22} {:>11.3g} {:>11.3g}  {}\n",
-                            change.is_worse ? "worse" : "better",
-                            change.quantity,
-                            change.before,
-                            change.now,
-                            change.where);
-    }
-    return text;
 }
 
 }  // namespace apps

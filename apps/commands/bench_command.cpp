@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "apps/arguments.h"
+#include "apps/bench/command.h"
 #include "apps/bench/fit/fit.h"
 #include "apps/bench/reconstruct/reconstruct.h"
 #include "apps/bench/render/render.h"
@@ -14,7 +14,6 @@
 namespace apps {
 namespace {
 
-constexpr int kFitTrials = 30;
 constexpr int kQuickFitTrials = 3;
 constexpr int kQuickLargest = 64;
 
@@ -34,20 +33,16 @@ void run_all(const AllArguments& arguments) {
         reconstruct.repeats = 1;
         reconstruct.largest = kQuickLargest;
     }
-    const int trials = arguments.quick ? kQuickFitTrials : kFitTrials;
+    FitBenchSettings fit;
+    if (arguments.quick) fit.trials = kQuickFitTrials;
     core::Json all;
     const auto add = [&](const std::string& name, const Benchmark& benchmark) {
         all[name] = run_benchmark(arguments.output, name, benchmark);
     };
-    add("render", [&](const core::Progress& progress) {
-        return render_result(bench_render(render, progress));
-    });
-    add("reconstruct", [&](const core::Progress& progress) {
-        return reconstruct_result(bench_reconstruct(reconstruct, progress));
-    });
-    add("fit", [&](const core::Progress& progress) {
-        return fit_result(bench_fit(trials, {}, progress));
-    });
+    add("render", [&](const core::Progress& progress) { return measure_render(render, progress); });
+    add("reconstruct",
+        [&](const core::Progress& progress) { return measure_reconstruct(reconstruct, progress); });
+    add("fit", [&](const core::Progress& progress) { return measure_fit(fit, progress); });
     const auto path = std::filesystem::path(arguments.output.folder) / "bench_all.json";
     core::write_text_file(path.string(), all.dump(2) + "\n");
     fmt::print("wrote {}\n", path.string());

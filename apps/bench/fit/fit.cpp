@@ -262,18 +262,13 @@ const std::vector<BenchPart>& bench_parts() {
 
 }  // namespace
 
-const std::vector<std::string>& fit_bench_parts() {
-    static const std::vector<std::string> kNames = [] {
-        std::vector<std::string> names;
-        for (const BenchPart& part : bench_parts()) names.push_back(part.name);
-        return names;
-    }();
-    return kNames;
+std::vector<std::string> fit_bench_parts() {
+    std::vector<std::string> names;
+    for (const BenchPart& part : bench_parts()) names.push_back(part.name);
+    return names;
 }
 
-FitBench bench_fit(int trials,
-                   const std::vector<std::string>& parts,
-                   const core::Progress& progress) {
+BenchResult measure_fit(const FitBenchSettings& settings, const core::Progress& progress) {
     const core::ThreadLimit one(1);
     FitBench bench;
     double done = 0.0;
@@ -281,10 +276,18 @@ FitBench bench_fit(int trials,
         progress.update(done++ / static_cast<double>(bench_parts().size()), part.name);
         if (progress.should_stop()) throw core::Failure("bench fit", "interrupted");
         const bool is_wanted =
-            parts.empty() || std::find(parts.begin(), parts.end(), part.name) != parts.end();
-        if (is_wanted) part.run(trials, bench);
+            settings.parts.empty() || std::ranges::count(settings.parts, part.name) > 0;
+        if (is_wanted) part.run(settings.trials, bench);
     }
-    return bench;
+    BenchResult result{core::write_value(bench)};
+    if (bench.points.empty()) return result;
+    LogPlot plot{"Error against time of fits", "CPU time [s]", "position error [m]", {}};
+    for (const FitBenchPoint& point : bench.points) {
+        plot.lines.push_back({point.choice, {point.cpu_seconds}, {point.position_rms_m}});
+    }
+    plot.lines.push_back(pareto_front(plot.lines));
+    result.plots[""] = plot;
+    return result;
 }
 
 }  // namespace apps

@@ -1,9 +1,29 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "apps/bench/fit/fit.h"
+#include "apps/bench/output.h"
+
+#include <string>
+#include <vector>
 
 namespace apps {
+
+/// Time against error of one way to fit.
+struct FitBenchPoint {
+    std::string choice;             ///< setting that was varied
+    double cpu_seconds = 0.0;       ///< CPU time per fit [s]
+    double iterations = 0.0;        ///< mean over fits
+    double position_rms_m = 0.0;    ///< root mean square error [m]
+    double rotation_rms_deg = 0.0;  ///< root mean square error [deg]
+};
+NLOS_FIGURES(FitBenchPoint, choice, cpu_seconds, iterations, position_rms_m, rotation_rms_deg);
+
+/// What `nlos bench fit` measured.
+struct FitBench {
+    std::vector<Target> rows;           ///< targets
+    std::vector<FitBenchPoint> points;  ///< speed against error
+};
+NLOS_FIGURES(FitBench, rows, points);
 
 inline constexpr double kMillimetre = 1e-3;  // in metres
 

@@ -127,56 +127,12 @@ LogPlot plot_of(const NoiseBench& bench, const std::string& title, double NoiseS
     return plot;
 }
 
-std::string noise_table(const NoiseBench& bench) {
-    std::string text = fmt::format(
-        "{}: depth error [mm] / mask IoU at 20 % / at the best threshold, {} seeds\n{:<14}",
-        bench.scene,
-        bench.repeats,
-        "peak counts");
-    for (const double peak : kPeaks) text += fmt::format("{:>20g}", peak);
-    for (const NoiseCurve& curve : bench.curves) {
-        text += fmt::format("\n{:<14}", curve.method);
-        for (const NoiseScore& score : curve.scores) {
-            text += fmt::format("{:>10.2f} {:.2f} {:.2f}",
-                                1e3 * score.depth_mae_m,
-                                score.mask_iou,
-                                score.mask_iou_best);
-        }
-    }
-    text += fmt::format("\n\nlct: snr from the data against the best of a search from {} to {}\n",
-                        kSnrs.front(),
-                        kSnrs.back());
-    text += fmt::format("{:>11} {:>8} {:>9} {:>7} {:>11} {:>9} {:>11} {:>8}\n",
-                        "peak counts",
-                        "snr",
-                        "depth mm",
-                        "IoU",
-                        "least depth",
-                        "at snr",
-                        "largest IoU",
-                        "at snr");
-    for (const SnrSearch& search : bench.searches) {
-        text +=
-            fmt::format("{:>11g} {:>8.3f} {:>9.3f} {:>7.3f} {:>11.3f} {:>9g} {:>11.3f} {:>8g}\n",
-                        search.peak_counts,
-                        search.snr,
-                        1e3 * search.depth_mae_m,
-                        search.mask_iou_best,
-                        1e3 * search.best_depth_mae_m,
-                        search.best_mae_snr,
-                        search.best_mask_iou_best,
-                        search.best_iou_snr);
-    }
-    return text;
-}
-
 }  // namespace
 
-NoiseBench bench_noise(const std::string& scene_path, int repeats, const core::Progress& progress) {
-    const Range range(scene_path);
-    NoiseBench bench;
-    bench.scene = scene_path;
-    bench.repeats = repeats;
+BenchResult measure_noise(const NoiseBenchSettings& settings, const core::Progress& progress) {
+    const Range range(settings.scene);
+    const int repeats = settings.repeats;
+    NoiseBench bench{settings.scene, repeats, {}, {}};
     const std::vector<Contender> all = contenders();
     const auto stages = static_cast<double>(all.size() + 1);
     for (const Contender& contender : all) {
@@ -192,13 +148,8 @@ NoiseBench bench_noise(const std::string& scene_path, int repeats, const core::P
         if (progress.should_stop()) throw core::Failure("bench", "interrupted");
         bench.searches.push_back(search_snr(range, peak, repeats));
     }
-    return bench;
-}
-
-BenchResult noise_result(const NoiseBench& bench) {
     return {
         core::write_value(bench),
-        noise_table(bench),
         {{"_depth", plot_of(bench, "mean absolute depth error [m]", &NoiseScore::depth_mae_m)},
          {"_mask", plot_of(bench, "mask IoU at the best threshold", &NoiseScore::mask_iou_best)}},
         {}};

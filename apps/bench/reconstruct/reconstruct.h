@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "apps/bench/figures.h"
 #include "apps/bench/output.h"
 
 #include <string>
@@ -10,114 +11,84 @@ namespace apps {
 
 /// What one method costs on one capture: medians over the repeats.
 struct ReconstructCost {
-    std::string name;  ///< method and capture
-    double cpu_seconds = 0.0;
-    double seconds = 0.0;
+    std::string name;            ///< method and capture
+    double cpu_seconds = 0.0;    ///< CPU time [s]
+    double seconds = 0.0;        ///< wall-clock time [s]
     double limit_seconds = 0.0;  ///< CPU time of its FFTs or multiply-adds alone; 0: not measured
     double ratio = 0.0;          ///< of cpu_seconds to limit_seconds
     double gpairs_per_s = 0.0;   ///< backprojection: pairs times voxels; 0: not counted
     double peak_bytes = 0.0;     ///< resident, of the whole process
     double stated_bytes = 0.0;   ///< what reconstruct() announced
-    std::string target;
-    std::string met;  ///< yes, no, or empty without a target
+    std::string target;          ///< what was asked
+    std::string met;             ///< yes, no, or empty without a target
 };
-
-template <class Visitor>
-void for_each_field(ReconstructCost& cost, Visitor&& visit) {
-    visit("name", cost.name, "method and capture");
-    visit("cpu_seconds", cost.cpu_seconds, "CPU time [s]");
-    visit("seconds", cost.seconds, "wall-clock time [s]");
-    visit("limit_seconds", cost.limit_seconds, "CPU time of its FFTs or multiply-adds alone [s]");
-    visit("ratio", cost.ratio, "of the two CPU times");
-    visit("gpairs_per_s", cost.gpairs_per_s, "1e9 pairs of histogram and voxel per CPU second");
-    visit("peak_bytes", cost.peak_bytes, "largest resident memory of the process [bytes]");
-    visit("stated_bytes", cost.stated_bytes, "memory announced before the run [bytes]");
-    visit("target", cost.target, "what was asked");
-    visit("met", cost.met, "whether it holds");
-}
+NLOS_FIGURES(ReconstructCost,
+             name,
+             cpu_seconds,
+             seconds,
+             limit_seconds,
+             ratio,
+             gpairs_per_s,
+             peak_bytes,
+             stated_bytes,
+             target,
+             met);
 
 /// How well one method does on one capture.
 struct ReconstructAccuracy {
-    std::string scene;
-    std::string method;
-    double depth_mae_m = 0.0;
-    double depth_median_m = 0.0;
-    double depth_rmse_m = 0.0;
-    double mask_iou = 0.0;
-    double mask_iou_best = 0.0;
-    double normal_median_deg = 0.0;
-    double cpu_seconds = 0.0;
-    std::string target;
-    std::string met;
+    std::string scene;               ///< scene and noise
+    std::string method;              ///< method and prior
+    double depth_mae_m = 0.0;        ///< mean absolute depth error [m]
+    double depth_median_m = 0.0;     ///< median absolute depth error [m]
+    double depth_rmse_m = 0.0;       ///< root mean square depth error [m]
+    double mask_iou = 0.0;           ///< overlap of the masks at 20 % of the maximum
+    double mask_iou_best = 0.0;      ///< the same at the best threshold
+    double normal_median_deg = 0.0;  ///< median angle between normals [deg]
+    double cpu_seconds = 0.0;        ///< CPU time [s]
+    std::string target;              ///< what was asked
+    std::string met;                 ///< whether it holds
 };
-
-template <class Visitor>
-void for_each_field(ReconstructAccuracy& row, Visitor&& visit) {
-    visit("scene", row.scene, "scene and noise");
-    visit("method", row.method, "method and prior");
-    visit("depth_mae_m", row.depth_mae_m, "mean absolute depth error [m]");
-    visit("depth_median_m", row.depth_median_m, "median absolute depth error [m]");
-    visit("depth_rmse_m", row.depth_rmse_m, "root mean square depth error [m]");
-    visit("mask_iou", row.mask_iou, "overlap of the masks at 20 % of the maximum");
-    visit("mask_iou_best", row.mask_iou_best, "the same at the best threshold");
-    visit("normal_median_deg", row.normal_median_deg, "median angle between normals [deg]");
-    visit("cpu_seconds", row.cpu_seconds, "CPU time [s]");
-    visit("target", row.target, "what was asked");
-    visit("met", row.met, "whether it holds");
-}
+NLOS_FIGURES(ReconstructAccuracy,
+             scene,
+             method,
+             depth_mae_m,
+             depth_median_m,
+             depth_rmse_m,
+             mask_iou,
+             mask_iou_best,
+             normal_median_deg,
+             cpu_seconds,
+             target,
+             met);
 
 /// One size of a scaling curve.
 struct ScalingPoint {
-    std::string size;
-    double values = 0.0;  ///< of what grows
-    double cpu_seconds = 0.0;
+    std::string size;            ///< wall points x bins, or voxels
+    double values = 0.0;         ///< of what grows
+    double cpu_seconds = 0.0;    ///< CPU time [s]
     double limit_seconds = 0.0;  ///< CPU time of its FFTs or multiply-adds alone
-    double bytes = 0.0;
+    double bytes = 0.0;          ///< memory on top of the capture [bytes]
 };
-
-template <class Visitor>
-void for_each_field(ScalingPoint& point, Visitor&& visit) {
-    visit("size", point.size, "wall points x bins, or voxels");
-    visit("values", point.values, "their number");
-    visit("cpu_seconds", point.cpu_seconds, "CPU time [s]");
-    visit("limit_seconds", point.limit_seconds, "CPU time of its FFTs or multiply-adds alone [s]");
-    visit("bytes", point.bytes, "memory on top of the capture [bytes]");
-}
+NLOS_FIGURES(ScalingPoint, size, values, cpu_seconds, limit_seconds, bytes);
 
 /// Time and memory against a size, both proportional to values^exponent.
 struct ReconstructScaling {
-    std::string method;
-    std::string of;  ///< what grows: values of the capture, or voxels
-    std::vector<ScalingPoint> points;
-    double time_exponent = 0.0;
-    double memory_exponent = 0.0;
+    std::string method;                ///< method
+    std::string of;                    ///< what grows: values of the capture, or voxels
+    std::vector<ScalingPoint> points;  ///< by rising size
+    double time_exponent = 0.0;        ///< of their number
+    double memory_exponent = 0.0;      ///< of their number
 };
-
-template <class Visitor>
-void for_each_field(ReconstructScaling& scaling, Visitor&& visit) {
-    visit("method", scaling.method, "method");
-    visit("of", scaling.of, "what grows");
-    visit("points", scaling.points, "by rising size");
-    visit("time_exponent", scaling.time_exponent, "of their number");
-    visit("memory_exponent", scaling.memory_exponent, "of their number");
-}
+NLOS_FIGURES(ReconstructScaling, method, of, points, time_exponent, memory_exponent);
 
 struct ReconstructBench {
-    int threads = 1;
-    int repeats = 1;
-    std::vector<ReconstructCost> costs;
-    std::vector<ReconstructAccuracy> accuracies;
-    std::vector<ReconstructScaling> scaling;
+    int threads = 1;                              ///< threads of everything that was timed
+    int repeats = 1;                              ///< runs per median
+    std::vector<ReconstructCost> costs;           ///< time against limits, memory
+    std::vector<ReconstructAccuracy> accuracies;  ///< against the truth
+    std::vector<ReconstructScaling> scaling;      ///< with size
 };
-
-template <class Visitor>
-void for_each_field(ReconstructBench& bench, Visitor&& visit) {
-    visit("threads", bench.threads, "threads of everything that was timed");
-    visit("repeats", bench.repeats, "runs per median");
-    visit("costs", bench.costs, "time against limits, memory");
-    visit("accuracies", bench.accuracies, "against the truth");
-    visit("scaling", bench.scaling, "with size");
-}
+NLOS_FIGURES(ReconstructBench, threads, repeats, costs, accuracies, scaling);
 
 /// What `nlos bench reconstruct` is to do.
 struct ReconstructBenchSettings {
@@ -141,13 +112,10 @@ std::vector<ReconstructAccuracy> measure_accuracies(const ReconstructBenchSettin
 std::vector<ReconstructScaling> measure_scaling(const ReconstructBenchSettings& settings,
                                                 const core::Progress& progress);
 
-/// All three.
+/// All three, as tables and plots.
 ///
 /// throws   core::Error when a scene or the capture cannot be read
-ReconstructBench bench_reconstruct(const ReconstructBenchSettings& settings,
-                                   const core::Progress& progress);
-
-/// Tables and plots of it.
-BenchResult reconstruct_result(const ReconstructBench& bench);
+BenchResult measure_reconstruct(const ReconstructBenchSettings& settings,
+                                const core::Progress& progress);
 
 }  // namespace apps

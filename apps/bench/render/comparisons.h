@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "apps/bench/figures.h"
 #include "apps/bench/render/sequences.h"
 
 #include <array>
@@ -19,62 +20,46 @@ struct ComparedMethod {
 
 /// How a method did.
 struct MethodComparison {
-    std::string method;
-    int effort = 0;
-    double seconds_per_frame = 0.0;
-    double rel_mse = 0.0;
-    double trimmed_rel_mse = 0.0;
-    double planes_rel_mse = 0.0;
-    double meshes_rel_mse = 0.0;
-    double accepted_share = 0.0;
-    std::vector<double> rel_mse_of_frames;
+    std::string method;              ///< estimator and how it reuses paths
+    int effort = 0;                  ///< paths drawn per pair and frame, as its time allows
+    double seconds_per_frame = 0.0;  ///< CPU time of a frame [s], the first aside
+    double rel_mse = 0.0;            ///< mean over the settled frames
+    double trimmed_rel_mse = 0.0;    ///< the same without the worst 0.2 % of values
+    double planes_rel_mse = 0.0;     ///< in pixels whose light bounces off large facets first
+    double meshes_rel_mse = 0.0;     ///< in pixels whose light bounces off small facets first
+    double accepted_share = 0.0;     ///< of shifts; 0: none was tried
+    std::vector<double> rel_mse_of_frames;  ///< frame by frame
 
     // Not written: per pixel, the absolute error's mean over the settled frames as a share of the
     // reference's mean, which outliers spoil less than squares; and the frames of the first seed.
     std::vector<float> error_map;
     SequenceFrames frames;
 };
-
-template <class Visitor>
-void for_each_field(MethodComparison& method, Visitor&& visit) {
-    visit("method", method.method, "estimator and how it reuses paths");
-    visit("effort", method.effort, "paths drawn per pair and frame, as its time allows");
-    visit(
-        "seconds_per_frame", method.seconds_per_frame, "CPU time of a frame [s], the first aside");
-    visit("rel_mse", method.rel_mse, "mean over the settled frames");
-    visit("trimmed_rel_mse", method.trimmed_rel_mse, "the same without the worst 0.2 % of values");
-    visit("planes_rel_mse",
-          method.planes_rel_mse,
-          "in pixels whose light bounces off large facets first");
-    visit("meshes_rel_mse",
-          method.meshes_rel_mse,
-          "in pixels whose light bounces off small facets first");
-    visit("accepted_share", method.accepted_share, "of shifts; 0: none was tried");
-    visit("rel_mse_of_frames", method.rel_mse_of_frames, "frame by frame");
-}
+NLOS_FIGURES(MethodComparison,
+             method,
+             effort,
+             seconds_per_frame,
+             rel_mse,
+             trimmed_rel_mse,
+             planes_rel_mse,
+             meshes_rel_mse,
+             accepted_share,
+             rel_mse_of_frames);
 
 /// What is compared, and how the methods did.
 struct Comparison {
-    std::string name;
-    std::string scene;
-    double seconds_per_frame = 0.0;
-    int first_settled_frame = 0;
-    std::vector<MethodComparison> methods;
+    std::string name;                       ///< which figure
+    std::string scene;                      ///< scene description
+    double seconds_per_frame = 0.0;         ///< CPU time each method was given [s]
+    int first_settled_frame = 0;            ///< means are taken from here on
+    std::vector<MethodComparison> methods;  ///< one after the other, on one thread
 
     // Not written.
     SequenceCase sequence;
     core::PinholeCamera camera;
     std::array<SequenceFrames, 2> references;
 };
-
-template <class Visitor>
-void for_each_field(Comparison& comparison, Visitor&& visit) {
-    visit("name", comparison.name, "which figure");
-    visit("scene", comparison.scene, "scene description");
-    visit("seconds_per_frame", comparison.seconds_per_frame, "CPU time each method was given [s]");
-    visit("first_settled_frame", comparison.first_settled_frame, "means are taken from here on");
-    visit("methods", comparison.methods, "one after the other, on one thread");
-}
+NLOS_FIGURES(Comparison, name, scene, seconds_per_frame, first_settled_frame, methods);
 
 /// Renders a sequence of an image by several methods at equal CPU time on one thread, and measures
 /// them against two independent references.

@@ -1,20 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "apps/arguments.h"
-#include "apps/bench/output.h"
+#include "apps/bench/command.h"
 #include "apps/bench/render/comparison_pictures.h"
 #include "apps/bench/render/comparisons.h"
 #include "apps/commands.h"
 #include "nlos/pictures/picture.h"
 
-#include <fmt/core.h>
-
-#include <memory>
-
 namespace apps {
 namespace {
 
 struct ComparisonArguments {
-    BenchOutput output;
     std::string chart_scene = "scenes/relief/scene.json";
     std::string progress_scene = "scenes/room/scene.json";
     std::string only;
@@ -87,40 +81,6 @@ std::vector<ComparedMethod> progress_methods() {
             restir_with("restir", memory)};
 }
 
-std::string table_of(const Comparison& comparison) {
-    std::string text = fmt::format("{}, {}: {:.3g} CPU s per frame\n",
-                                   comparison.name,
-                                   comparison.scene,
-                                   comparison.seconds_per_frame);
-    text += fmt::format("{:<14} {:>7} {:>9} {:>10} {:>10} {:>10} {:>10} {:>9}  {}\n",
-                        "method",
-                        "effort",
-                        "CPU ms",
-                        "relMSE",
-                        "trimmed",
-                        "planes",
-                        "meshes",
-                        "accepted",
-                        "frame by frame");
-    for (const MethodComparison& m : comparison.methods) {
-        text +=
-            fmt::format("{:<14} {:>7} {:>9.1f} {:>10.3e} {:>10.3e} {:>10.3e} {:>10.3e} {:>9.2f} ",
-                        m.method,
-                        m.effort,
-                        1e3 * m.seconds_per_frame,
-                        m.rel_mse,
-                        m.trimmed_rel_mse,
-                        m.planes_rel_mse,
-                        m.meshes_rel_mse,
-                        m.accepted_share);
-        for (std::size_t f = 1; f <= m.rel_mse_of_frames.size(); f *= 2) {
-            text += fmt::format(" {:.2g}", m.rel_mse_of_frames[f - 1]);
-        }
-        text += "\n";
-    }
-    return text + "\n";
-}
-
 // One of the figures: what is rendered, by which methods, in how much time per frame.
 struct FigurePlan {
     SequenceCase sequence;
@@ -154,46 +114,36 @@ BenchResult measure(const ComparisonArguments& arguments, const core::Progress& 
                                           : nlos::encode_panels_png(error_panels(comparison), 3);
         if (shows_progress) result.plots["_progress_error"] = progress_plot(comparison);
         result.figures["comparisons"].push_back(core::write_value(comparison));
-        result.table += table_of(comparison);
     }
     return result;
+}
+
+void declare(CLI::App& command, ComparisonArguments& arguments) {
+    command.add_option("--only", arguments.only, "One of them")
+        ->check(CLI::IsMember({"charts", "gauges", "progress"}));
+    add_setting(command, "--chart-scene", arguments.chart_scene, "Image for charts and gauges");
+    add_setting(command, "--progress-scene", arguments.progress_scene, "Image for progress");
+    add_setting(command, "--seconds", arguments.seconds, "CPU time of a method for all frames [s]")
+        ->check(CLI::PositiveNumber);
+    add_setting(command, "--frames", arguments.frames, "Frames of the moving gate", {4, 10'000});
+    add_setting(command, "--repeats", arguments.repeats, "Runs per method", {1, 1000});
+    add_setting(command,
+                "--reference-samples",
+                arguments.reference_samples,
+                "Paths per pair of each of the two references",
+                {1, 100'000'000});
 }
 
 }  // namespace
 
 void add_bench_comparisons_command(CLI::App& bench) {
-    const auto arguments = std::make_shared<ComparisonArguments>();
-    CLI::App* comparisons = bench.add_subcommand(
-        "comparisons", "Equal-time pictures: charts, gauges, progress from frame to frame");
-    add_output_options(*comparisons, arguments->output);
-    comparisons->add_option("--only", arguments->only, "One of them")
-        ->check(CLI::IsMember({"charts", "gauges", "progress"}));
-    comparisons->add_option("--chart-scene", arguments->chart_scene, "Image for charts and gauges")
-        ->capture_default_str();
-    comparisons->add_option("--progress-scene", arguments->progress_scene, "Image for progress")
-        ->capture_default_str();
-    comparisons
-        ->add_option("--seconds", arguments->seconds, "CPU time of a method for all frames [s]")
-        ->capture_default_str()
-        ->check(CLI::PositiveNumber);
-    comparisons->add_option("--frames", arguments->frames, "Frames of the moving gate")
-        ->capture_default_str()
-        ->check(CLI::Range(4, 10'000));
-    comparisons->add_option("--repeats", arguments->repeats, "Runs per method")
-        ->capture_default_str()
-        ->check(CLI::Range(1, 1000));
-    comparisons
-        ->add_option("--reference-samples",
-                     arguments->reference_samples,
-                     "Paths per pair of each of the two references")
-        ->capture_default_str()
-        ->check(CLI::Range(1, 100'000'000));
-    comparisons->footer(settings_footer({}, "nlos bench comparisons -o out/bench --only charts"));
-    comparisons->callback([arguments] {
-        run_benchmark(arguments->output, "comparisons", [&](const core::Progress& progress) {
-            return measure(*arguments, progress);
-        });
-    });
+    add_benchmark<ComparisonArguments>(
+        bench,
+        {"comparisons",
+         "Equal-time pictures: charts, gauges, progress from frame to frame",
+         "nlos bench comparisons -o out/bench --only charts"},
+        declare,
+        measure);
 }
 
 }  // namespace apps

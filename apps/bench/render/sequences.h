@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "apps/bench/figures.h"
 #include "renderer/core/progress.h"
-#include "renderer/core/settings.h"
 #include "renderer/frame_sequence.h"
 
 #include <array>
@@ -45,35 +45,32 @@ SequenceFrames reference_frames(const SequenceCase& sequence, std::uint64_t seed
 
 /// How one method does on a sequence, on one thread.
 struct SequenceBench {
-    std::string sequence;
-    std::string method;
+    std::string sequence;            ///< gate and measurement
+    std::string method;              ///< estimator and candidates
     double seconds_per_frame = 0.0;  ///< CPU time
-    double rel_mse = 0.0;
-    double trimmed_rel_mse = 0.0;
-    double sum_ratio = 0.0;
-    double gain = 0.0;
-    double trimmed_gain = 0.0;
-    double accepted_share = 0.0;
-    double shifts_per_frame = 0.0;
-    double merges_per_frame = 0.0;
-    std::vector<double> rel_mse_of_frames;
+    double rel_mse = 0.0;            ///< mean over the later frames and all seeds
+    double trimmed_rel_mse = 0.0;    ///< the same without the worst 0.2 % of values
+    double sum_ratio = 0.0;          ///< sum of all values over that of the reference
+    double gain = 0.0;          ///< relative MSE times seconds of the first method over this one's
+    double trimmed_gain = 0.0;  ///< the same for the trimmed error
+    double accepted_share = 0.0;            ///< of shifts; 0: none was tried
+    double shifts_per_frame = 0.0;          ///< shifts tried in a frame
+    double merges_per_frame = 0.0;          ///< merges of two reservoirs in a frame
+    std::vector<double> rel_mse_of_frames;  ///< frame by frame
 };
-
-template <class Visitor>
-void for_each_field(SequenceBench& bench, Visitor&& visit) {
-    visit("sequence", bench.sequence, "gate and measurement");
-    visit("method", bench.method, "estimator and candidates");
-    visit("seconds_per_frame", bench.seconds_per_frame, "CPU time of a frame [s]");
-    visit("rel_mse", bench.rel_mse, "mean over the later frames and all seeds");
-    visit("trimmed_rel_mse", bench.trimmed_rel_mse, "the same without the worst 0.2 % of values");
-    visit("sum_ratio", bench.sum_ratio, "sum of all values over that of the reference");
-    visit("gain", bench.gain, "relative MSE times seconds of the first method over this one's");
-    visit("trimmed_gain", bench.trimmed_gain, "the same for the trimmed error");
-    visit("accepted_share", bench.accepted_share, "of shifts; 0: none was tried");
-    visit("shifts_per_frame", bench.shifts_per_frame, "shifts tried in a frame");
-    visit("merges_per_frame", bench.merges_per_frame, "merges of two reservoirs in a frame");
-    visit("rel_mse_of_frames", bench.rel_mse_of_frames, "frame by frame");
-}
+NLOS_FIGURES(SequenceBench,
+             sequence,
+             method,
+             seconds_per_frame,
+             rel_mse,
+             trimmed_rel_mse,
+             sum_ratio,
+             gain,
+             trimmed_gain,
+             accepted_share,
+             shifts_per_frame,
+             merges_per_frame,
+             rel_mse_of_frames);
 
 /// A method and the settings that make it.
 struct SequenceMethod {

@@ -1,55 +1,19 @@
 // SPDX-License-Identifier: MIT
-#include "apps/arguments.h"
-#include "apps/bench/output.h"
+#include "apps/bench/command.h"
 #include "apps/bench/render/sequences.h"
 #include "apps/commands.h"
 
-#include <fmt/core.h>
-
 #include <algorithm>
-#include <memory>
 
 namespace apps {
 namespace {
 
 struct SequenceArguments {
-    BenchOutput output;
     SequenceScenes scenes;
     std::string only;
     int frames = 60;
     int repeats = 4;
 };
-
-std::string sequences_text(const std::vector<SequenceBench>& benches) {
-    std::string text =
-        fmt::format("{:<36} {:<20} {:>9} {:>10} {:>10} {:>7} {:>8} {:>8} {:>8} {:>9}\n",
-                    "sequence",
-                    "method",
-                    "ms/frame",
-                    "relMSE",
-                    "trimmed",
-                    "sum",
-                    "gain",
-                    "trimmed",
-                    "accepted",
-                    "merges");
-    for (const SequenceBench& bench : benches) {
-        text += fmt::format(
-            "{:<36} {:<20} {:>9.1f} {:>10.3e} {:>10.3e} {:>7.4f} {:>8.2f} {:>8.2f} {:>8.2f} "
-            "{:>9.0f}\n",
-            bench.sequence,
-            bench.method,
-            1e3 * bench.seconds_per_frame,
-            bench.rel_mse,
-            bench.trimmed_rel_mse,
-            bench.sum_ratio,
-            bench.gain,
-            bench.trimmed_gain,
-            bench.accepted_share,
-            bench.merges_per_frame);
-    }
-    return text;
-}
 
 // Error over frames, a plot per sequence.
 void add_plot(const SequenceBench& bench, std::map<std::string, LogPlot>& plots) {
@@ -76,42 +40,33 @@ BenchResult measure(const SequenceArguments& arguments, const core::Progress& pr
             bench_sequence(sequence, standard_methods(sequence), arguments.repeats, progress);
         benches.insert(benches.end(), found.begin(), found.end());
     }
-    BenchResult result{core::Json::object(), sequences_text(benches), {}, {}};
-    result.figures["sequences"] = core::write_value(benches);
+    BenchResult result{{{"sequences", core::write_value(benches)}}};
     for (const SequenceBench& bench : benches) add_plot(bench, result.plots);
     return result;
+}
+
+void declare(CLI::App& command, SequenceArguments& arguments) {
+    SequenceScenes& scenes = arguments.scenes;
+    add_setting(command, "--scene", scenes.scan, "Scan");
+    add_setting(command, "--image-scene", scenes.image, "Camera");
+    add_setting(command, "--image-resolution", scenes.image_resolution, "Pixels, width and height")
+        ->check(CLI::Range(1, 10'000));
+    add_setting(command, "--moving-scene", scenes.moving_scan, "Scan of objects that move");
+    add_setting(command, "--moving-image-scene", scenes.moving_image, "Camera on such objects");
+    command.add_option("--only", arguments.only, "Sequences whose names contain this");
+    add_setting(command, "--frames", arguments.frames, "Frames of a sequence", {2, 10'000});
+    add_setting(command, "--repeats", arguments.repeats, "Runs per method", {1, 1000});
 }
 
 }  // namespace
 
 void add_bench_sequences_command(CLI::App& bench) {
-    const auto sequence = std::make_shared<SequenceArguments>();
-    CLI::App* sequences =
-        bench.add_subcommand("sequences", "Frame sequences: reuse of paths against none");
-    add_output_options(*sequences, sequence->output);
-    SequenceScenes& scenes = sequence->scenes;
-    sequences->add_option("--scene", scenes.scan, "Scan")->capture_default_str();
-    sequences->add_option("--image-scene", scenes.image, "Camera")->capture_default_str();
-    sequences->add_option("--image-resolution", scenes.image_resolution, "Pixels, width and height")
-        ->capture_default_str()
-        ->check(CLI::Range(1, 10'000));
-    sequences->add_option("--moving-scene", scenes.moving_scan, "Scan of objects that move")
-        ->capture_default_str();
-    sequences->add_option("--moving-image-scene", scenes.moving_image, "Camera on such objects")
-        ->capture_default_str();
-    sequences->add_option("--only", sequence->only, "Sequences whose names contain this");
-    sequences->add_option("--frames", sequence->frames, "Frames of a sequence")
-        ->capture_default_str()
-        ->check(CLI::Range(2, 10'000));
-    sequences->add_option("--repeats", sequence->repeats, "Runs per method")
-        ->capture_default_str()
-        ->check(CLI::Range(1, 1000));
-    sequences->footer(settings_footer({}, "nlos bench sequences -o out/bench --only 'scan'"));
-    sequences->callback([sequence] {
-        run_benchmark(sequence->output, "sequences", [&](const core::Progress& progress) {
-            return measure(*sequence, progress);
-        });
-    });
+    add_benchmark<SequenceArguments>(bench,
+                                     {"sequences",
+                                      "Frame sequences: reuse of paths against none",
+                                      "nlos bench sequences -o out/bench --only 'scan'"},
+                                     declare,
+                                     measure);
 }
 
 }  // namespace apps

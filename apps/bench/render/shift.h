@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "apps/bench/figures.h"
 #include "renderer/core/progress.h"
-#include "renderer/core/settings.h"
 #include "renderer/settings/restir_settings.h"
 
 #include <string>
@@ -12,89 +12,60 @@ namespace apps {
 
 /// Share of the shifts tried that one reason, or none, decided.
 struct ShiftShare {
-    std::string name;
-    double share = 0.0;
+    std::string name;    ///< reason of rejection
+    double share = 0.0;  ///< of the shifts tried
 };
-
-template <class Visitor>
-void for_each_field(ShiftShare& share, Visitor&& visit) {
-    visit("name", share.name, "reason of rejection");
-    visit("share", share.share, "of the shifts tried");
-}
+NLOS_FIGURES(ShiftShare, name, share);
 
 /// One gauge in one chart.
 struct GaugeRow {
-    std::string chart;
-    std::string gauge;
+    std::string chart;        ///< coordinates
+    std::string gauge;        ///< what fixes the second coordinate
     double success = 0.0;     ///< share accepted, reverse check on
     double no_return = 0.0;   ///< share of shifts accepted without the check that do not come back
     double iterations = 0.0;  ///< Newton or Runge-Kutta steps per shift tried, without the check
     double ns = 0.0;          ///< CPU time per shift tried, without the check
     double ns_checked = 0.0;  ///< the same with it
     double error_median = 0.0;  ///< of the determinant, relative, against central differences
-    double error_p95 = 0.0;
+    double error_p95 = 0.0;     ///< relative error of the determinant, 95th percentile
 };
-
-template <class Visitor>
-void for_each_field(GaugeRow& row, Visitor&& visit) {
-    visit("chart", row.chart, "coordinates");
-    visit("gauge", row.gauge, "what fixes the second coordinate");
-    visit("success", row.success, "share accepted, reverse check on");
-    visit("no_return", row.no_return, "share accepted without the check that does not come back");
-    visit("iterations", row.iterations, "steps per shift, without the check");
-    visit("ns", row.ns, "CPU time per shift without the check [ns]");
-    visit("ns_checked", row.ns_checked, "CPU time per shift with the check [ns]");
-    visit("error_median", row.error_median, "relative error of the determinant, median");
-    visit("error_p95", row.error_p95, "relative error of the determinant, 95th percentile");
-}
+NLOS_FIGURES(GaugeRow,
+             chart,
+             gauge,
+             success,
+             no_return,
+             iterations,
+             ns,
+             ns_checked,
+             error_median,
+             error_p95);
 
 /// One chart on one scene.
 struct ChartRow {
-    std::string scene;
-    std::string chart;
-    double accepted = 0.0;  ///< share of the shifts tried
-    double by_ray = 0.0;    ///< of the shifts tried
-    double ns = 0.0;        ///< CPU time per shift tried
-    std::vector<ShiftShare> rejected;
+    std::string scene;                 ///< scene file
+    std::string chart;                 ///< coordinates
+    double accepted = 0.0;             ///< share of the shifts tried
+    double by_ray = 0.0;               ///< of the shifts tried
+    double ns = 0.0;                   ///< CPU time per shift tried
+    std::vector<ShiftShare> rejected;  ///< reasons
 };
-
-template <class Visitor>
-void for_each_field(ChartRow& row, Visitor&& visit) {
-    visit("scene", row.scene, "scene file");
-    visit("chart", row.chart, "coordinates");
-    visit("accepted", row.accepted, "share of the shifts tried");
-    visit("by_ray", row.by_ray, "share accepted on the hemisphere");
-    visit("ns", row.ns, "CPU time per shift tried [ns]");
-    visit("rejected", row.rejected, "reasons");
-}
+NLOS_FIGURES(ChartRow, scene, chart, accepted, by_ray, ns, rejected);
 
 /// Where the time of a shift goes.
 struct ShiftCost {
-    std::string operation;
-    double ns = 0.0;
+    std::string operation;  ///< what was timed
+    double ns = 0.0;        ///< CPU time [ns]
 };
-
-template <class Visitor>
-void for_each_field(ShiftCost& cost, Visitor&& visit) {
-    visit("operation", cost.operation, "what was timed");
-    visit("ns", cost.ns, "CPU time [ns]");
-}
+NLOS_FIGURES(ShiftCost, operation, ns);
 
 /// What `nlos bench shift` measured.
 struct ShiftBench {
-    std::string gauge_scene;
-    std::vector<GaugeRow> gauges;
-    std::vector<ChartRow> charts;
-    std::vector<ShiftCost> costs;
+    std::string gauge_scene;       ///< scene of the gauge comparison and of the costs
+    std::vector<GaugeRow> gauges;  ///< gauge comparison
+    std::vector<ChartRow> charts;  ///< chart comparison
+    std::vector<ShiftCost> costs;  ///< parts of a shift
 };
-
-template <class Visitor>
-void for_each_field(ShiftBench& bench, Visitor&& visit) {
-    visit("gauge_scene", bench.gauge_scene, "scene of the gauge comparison and of the costs");
-    visit("gauges", bench.gauges, "gauge comparison");
-    visit("charts", bench.charts, "chart comparison");
-    visit("costs", bench.costs, "parts of a shift");
-}
+NLOS_FIGURES(ShiftBench, gauge_scene, gauges, charts, costs);
 
 /// Compares gauges and charts of the shift mapping, on one thread.
 ///

@@ -105,7 +105,7 @@ std::vector<TargetError> try_targets(int number) {
         TargetError& error = errors.emplace_back();
         error.scene = number;
         error.pattern = core::enum_name(pattern);
-        error.target = target;
+        error.target_error = target;
         error.rel_l2 = relative_l2(capture_of(scan, axis, result.transient), reference);
         error.stated = result.estimated_error;
         error.elements = result.num_elements;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "apps/bench/figures.h"
 #include "renderer/core/progress.h"
-#include "renderer/core/settings.h"
 
 #include <cstdint>
 #include <string>
@@ -12,9 +12,9 @@ namespace apps {
 
 /// What became of one target error on one random scene.
 struct TargetError {
-    int scene = 0;  ///< number of the random scene
-    std::string pattern;
-    double target = 0.0;
+    int scene = 0;               ///< number of the random scene
+    std::string pattern;         ///< of the scan
+    double target_error = 0.0;   ///< relative L2 error asked for
     double rel_l2 = 0.0;         ///< against the same to 0.1 %
     double stated = 0.0;         ///< what the integrator says of itself
     std::uint64_t elements = 0;  ///< that the surfaces were cut into
@@ -22,24 +22,21 @@ struct TargetError {
     bool met = false;            ///< rel_l2 is at most the target
     bool is_far_below = false;   ///< more than five times, with a coarser cut left
 };
-
-template <class Visitor>
-void for_each_field(TargetError& error, Visitor&& visit) {
-    visit("scene", error.scene, "number of the random scene");
-    visit("pattern", error.pattern, "of the scan");
-    visit("target_error", error.target, "relative L2 error asked for");
-    visit("rel_l2", error.rel_l2, "relative L2 distance from the same to 0.1 %");
-    visit("stated", error.stated, "relative L2 error as stated");
-    visit("elements", error.elements, "that the surfaces were cut into");
-    visit("is_coarsest", error.is_coarsest, "no coarser cut exists");
-    visit("met", error.met, "the error is at most the target");
-    visit("is_far_below", error.is_far_below, "over five times below it, a coarser cut is left");
-}
+NLOS_FIGURES(TargetError,
+             scene,
+             pattern,
+             target_error,
+             rel_l2,
+             stated,
+             elements,
+             is_coarsest,
+             met,
+             is_far_below);
 
 /// How `third_bounce` and `path` agree on a scene.
 struct Agreement {
-    std::string scene;
-    std::string pattern;
+    std::string scene;           ///< scene file
+    std::string pattern;         ///< of the scan
     std::uint64_t num_bins = 0;  ///< that path knows to 10 %, and their neighbours, too
     double within_95 = 0.0;      ///< share of them within their 95 % interval
     double largest_z = 0.0;      ///< largest distance in standard deviations
@@ -47,19 +44,8 @@ struct Agreement {
     double energy_ratio = 0.0;   ///< third_bounce over path
     double energy_sigma = 0.0;   ///< its standard deviation
 };
-
-template <class Visitor>
-void for_each_field(Agreement& agreement, Visitor&& visit) {
-    visit("scene", agreement.scene, "scene file");
-    visit("pattern", agreement.pattern, "of the scan");
-    visit(
-        "num_bins", agreement.num_bins, "bins that path knows to 10 %, and their neighbours, too");
-    visit("within_95", agreement.within_95, "share of them within their 95 % interval");
-    visit("largest_z", agreement.largest_z, "largest distance in standard deviations");
-    visit("p_value", agreement.p_value, "chance of one so large among so many bins");
-    visit("energy_ratio", agreement.energy_ratio, "of third_bounce over that of path");
-    visit("energy_sigma", agreement.energy_sigma, "standard deviation of the ratio");
-}
+NLOS_FIGURES(
+    Agreement, scene, pattern, num_bins, within_95, largest_z, p_value, energy_ratio, energy_sigma);
 
 /// `third_bounce` to 5, 2 and 1 % on random scenes of spheres and parallelograms that hide and
 /// touch one another, in confocal, single and exhaustive scans by turns.

@@ -20,7 +20,7 @@ TEST(TargetError, IsHonouredOnRandomScenesAndNotFarUndercut) {
     EXPECT_LE(std::ranges::count(errors, true, &TargetError::is_far_below), 1);
     for (const TargetError& error : errors) {
         EXPECT_GT(error.rel_l2, 0.0);
-        EXPECT_LT(error.rel_l2, 2.0 * error.target) << "scene " << error.scene;
+        EXPECT_LT(error.rel_l2, 2.0 * error.target_error) << "scene " << error.scene;
     }
 }
 

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "apps/arguments.h"
+#include "apps/bench/output.h"
+
+#include <memory>
+#include <string>
+#include <utility>
+
+namespace apps {
+
+/// Declares -o, --against and --results.
+void add_output_options(CLI::App& command, BenchOutput& output);
+
+/// Declares an option that shows its default; with a range, a whole number within it.
+template <class Value>
+CLI::Option* add_setting(CLI::App& command,
+                         const std::string& name,
+                         Value& value,
+                         const std::string& meaning) {
+    return command.add_option(name, value, meaning)->capture_default_str();
+}
+inline void add_setting(CLI::App& command,
+                        const std::string& name,
+                        int& value,
+                        const std::string& meaning,
+                        std::pair<int, int> range) {
+    add_setting(command, name, value, meaning)->check(CLI::Range(range.first, range.second));
+}
+
+/// What the help says of a benchmark.
+struct BenchText {
+    std::string name;
+    std::string description;
+    std::string example;  ///< a command that works in the checkout
+};
+
+/// Declares the subcommand of one benchmark.
+///
+/// declare   adds the options that the benchmark has beside those of all
+/// measure   runs it
+template <class Settings>
+void add_benchmark(CLI::App& bench,
+                   const BenchText& text,
+                   void (*declare)(CLI::App&, Settings&),
+                   BenchResult (*measure)(const Settings&, const core::Progress&)) {
+    const auto state = std::make_shared<std::pair<BenchOutput, Settings>>();
+    CLI::App* command = bench.add_subcommand(text.name, text.description);
+    add_output_options(*command, state->first);
+    declare(*command, state->second);
+    command->footer(settings_footer({}, text.example));
+    command->callback([state, measure, name = text.name] {
+        run_benchmark(state->first, name, [&](const core::Progress& progress) {
+            return measure(state->second, progress);
+        });
+    });
+}
+
+}  // namespace apps
