@@ -13,7 +13,7 @@ Json with_sigma(double value, double sigma) {
     return {{"value", value}, {"sigma", sigma}};
 }
 
-Json list(const Vec3& v) {
+Json coordinates(const Vec3& v) {
     return {v.x(), v.y(), v.z()};
 }
 
@@ -28,7 +28,7 @@ double ps(double opl_m) {
 
 Json camera_json(const CameraCalibration& camera) {
     Json homography = Json::array();
-    for (int r = 0; r < 3; ++r) homography.push_back(list(camera.wall_from_pixel.row(r)));
+    for (int r = 0; r < 3; ++r) homography.push_back(coordinates(camera.wall_from_pixel.row(r)));
     return {{"focal_px",
              {with_sigma(camera.focal_x_px, camera.sigma_px[0]),
               with_sigma(camera.focal_y_px, camera.sigma_px[1])}},
@@ -51,7 +51,7 @@ Json calibration_json(const Calibration& calibration) {
                     {"distance_m", value(0)},
                     {"tilt_x_rad", value(1)},
                     {"tilt_y_rad", value(2)}};
-    json["device_m"] = list(setup.device_m);
+    json["device_m"] = coordinates(setup.device_m);
     json["time_zero_m"] = value(6);
     json["galvo"] = {{"gain_x", value(7)},
                      {"gain_y", value(8)},
@@ -60,7 +60,7 @@ Json calibration_json(const Calibration& calibration) {
     json["points_m"] = Json::array();
     json["normals"] = Json::array();
     for (const Vec3& point : setup.points_m) {
-        json["points_m"].push_back(list(point));
+        json["points_m"].push_back(coordinates(point));
         json["normals"].push_back({0.0, 0.0, 1.0});
     }
     json["opl_offset_m"] = setup.opl_offset_m;

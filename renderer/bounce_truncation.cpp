@@ -12,9 +12,9 @@ namespace renderer {
 namespace {
 
 constexpr std::size_t kMaxPairs = 128;
-constexpr std::size_t kRuns = 16;                     ///< independent ones, in twos
-constexpr int kSamples = 256;                         ///< of a pair in a run
-constexpr std::uint64_t kMeasuringItem = 1ULL << 41;  ///< keeps its random numbers apart
+constexpr std::size_t kRuns = 16;                      ///< independent ones, in twos
+constexpr int kSamples = 256;                          ///< of a pair in a run
+constexpr std::uint64_t kTruncationItem = 1ULL << 41;  ///< keeps its random numbers apart
 
 // What a pair receives in each order and all later ones: [order - 1][bin].
 std::vector<double> tails_of(PassHistogram& histogram, std::size_t num_orders, std::size_t bins) {
@@ -61,7 +61,7 @@ BounceTruncation find_bounce_truncation(const Scene& scene,
             PassHistogram histogram({axes.time, {}}, settings.gate, settings.max_bounces);
             std::vector<double> first;
             for (std::size_t run = 0; run < kRuns; ++run) {
-                core::Rng rng(settings.seed, kMeasuringItem + pair, run);
+                core::Rng rng(settings.seed, kTruncationItem + pair, run);
                 estimate(pair, kSamples, rng, histogram);
                 std::vector<double> tails = tails_of(histogram, num_orders, bins);
                 if (run % 2 == 0) {

@@ -19,7 +19,7 @@ namespace {
 // An object: index (2 bytes), reference count (2), zeros (4), size (8), data padded to 8 bytes.
 // Index 0 is the free space at the end, whose size counts its own header.
 constexpr std::string_view kSignature{"GCOL\1\0\0\0", 8};
-constexpr std::uint64_t kHeaderBytes = 16;
+constexpr std::uint64_t kHeapHeaderBytes = 16;
 constexpr std::uint64_t kLargestCollection = std::uint64_t{1} << 28;
 
 template <class T>
@@ -30,30 +30,30 @@ T value_at(const std::vector<char>& bytes, std::uint64_t position) {
 }
 
 bool is_sound(const std::vector<char>& collection) {
-    std::uint64_t position = kHeaderBytes;
+    std::uint64_t position = kHeapHeaderBytes;
     while (position < collection.size()) {
         const std::uint64_t left = collection.size() - position;
-        if (left < kHeaderBytes) return true;  // too little for an object: unused
+        if (left < kHeapHeaderBytes) return true;  // too little for an object: unused
         const auto index = value_at<std::uint16_t>(collection, position);
         const auto zeros = value_at<std::uint32_t>(collection, position + 4);
         const auto bytes = value_at<std::uint64_t>(collection, position + 8);
         if (index == 0) return bytes == left;
-        if (zeros != 0 || bytes > left - kHeaderBytes) return false;
-        position += kHeaderBytes + (bytes + 7) / 8 * 8;
+        if (zeros != 0 || bytes > left - kHeapHeaderBytes) return false;
+        position += kHeapHeaderBytes + (bytes + 7) / 8 * 8;
     }
     return position == collection.size();
 }
 
 /// Reads the collection that begins at `begin`; empty when it does not lie within the file.
 std::vector<char> read_collection(std::ifstream& file, std::uint64_t begin) {
-    std::array<char, kHeaderBytes> header{};
+    std::array<char, kHeapHeaderBytes> header{};
     if (begin > static_cast<std::uint64_t>(std::numeric_limits<std::streamoff>::max())) return {};
     file.clear();
     file.seekg(static_cast<std::streamoff>(begin));
     if (!file.read(header.data(), header.size())) return {};
     std::uint64_t bytes = 0;
     std::memcpy(&bytes, header.data() + 8, sizeof(bytes));
-    if (bytes < kHeaderBytes || bytes > kLargestCollection) return {};
+    if (bytes < kHeapHeaderBytes || bytes > kLargestCollection) return {};
     std::vector<char> collection(bytes);
     file.seekg(static_cast<std::streamoff>(begin));
     if (!file.read(collection.data(), static_cast<std::streamsize>(bytes))) return {};
@@ -62,13 +62,13 @@ std::vector<char> read_collection(std::ifstream& file, std::uint64_t begin) {
 
 /// True when a sound collection holds an object `index` of at least `bytes` bytes.
 bool has_object(const std::vector<char>& collection, std::uint32_t index, std::uint64_t bytes) {
-    std::uint64_t position = kHeaderBytes;
-    while (position + kHeaderBytes <= collection.size()) {
+    std::uint64_t position = kHeapHeaderBytes;
+    while (position + kHeapHeaderBytes <= collection.size()) {
         const auto found = value_at<std::uint16_t>(collection, position);
         const auto size = value_at<std::uint64_t>(collection, position + 8);
         if (found == 0) return false;
         if (found == index) return size >= bytes;
-        position += kHeaderBytes + (size + 7) / 8 * 8;
+        position += kHeapHeaderBytes + (size + 7) / 8 * 8;
     }
     return false;
 }

@@ -24,7 +24,7 @@ using MatFile = std::unique_ptr<mat_t, int (*)(mat_t*)>;
 using MatPointer = std::unique_ptr<matvar_t, void (*)(matvar_t*)>;
 
 // Layout of a v5 file: a text header, then elements of an 8-byte tag (type, size) and a body.
-constexpr std::uint64_t kHeaderBytes = 128;
+constexpr std::uint64_t kMatHeaderBytes = 128;
 constexpr std::uint64_t kTagBytes = 8;
 
 [[noreturn]] void throw_damaged_mat(const std::string& path) {
@@ -40,10 +40,10 @@ void check_elements(const std::string& path) {
     std::error_code error;
     const std::uint64_t file_bytes = std::filesystem::file_size(path, error);
     std::ifstream file(path, std::ios::binary);
-    std::array<char, kHeaderBytes> header{};
+    std::array<char, kMatHeaderBytes> header{};
     if (error || !file.read(header.data(), header.size())) throw_damaged_mat(path);
-    const bool swapped = header[kHeaderBytes - 2] == 'M';
-    for (std::uint64_t begin = kHeaderBytes; begin < file_bytes;) {
+    const bool swapped = header[kMatHeaderBytes - 2] == 'M';
+    for (std::uint64_t begin = kMatHeaderBytes; begin < file_bytes;) {
         std::array<std::uint32_t, 2> tag{};
         file.seekg(static_cast<std::streamoff>(begin));
         if (!file.read(reinterpret_cast<char*>(tag.data()), kTagBytes)) throw_damaged_mat(path);
@@ -162,9 +162,9 @@ MatArray<T> read_with_library(const std::string& path, const std::string& variab
 
 bool is_mat5_file(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
-    std::array<char, kHeaderBytes> header{};
+    std::array<char, kMatHeaderBytes> header{};
     if (!file.read(header.data(), header.size())) return false;
-    const std::string_view mark(header.data() + kHeaderBytes - 4, 4);
+    const std::string_view mark(header.data() + kMatHeaderBytes - 4, 4);
     using namespace std::string_view_literals;
     return mark == "\x00\x01IM"sv || mark == "\x01\x00MI"sv;
 }

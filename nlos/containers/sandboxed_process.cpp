@@ -34,7 +34,7 @@ constexpr bool kReservesAddresses = false;
 
 // A message is a kind, the number of its bytes, and these.
 enum class Kind : char { Bytes = 'b', Error = 'e', Failure = 'f', OutOfMemory = 'm' };
-constexpr std::size_t kHeaderBytes = 1 + sizeof(std::uint64_t);
+constexpr std::size_t kMessageHeaderBytes = 1 + sizeof(std::uint64_t);
 constexpr std::uint64_t kLongestMessage = std::uint64_t{1} << 40;
 
 bool send_all(int socket, const char* bytes, std::size_t count) {
@@ -60,7 +60,7 @@ bool receive_all(int socket, char* bytes, std::size_t count) {
 }
 
 bool send_message(int socket, Kind kind, const std::string& bytes) {
-    std::array<char, kHeaderBytes> header{};
+    std::array<char, kMessageHeaderBytes> header{};
     const std::uint64_t count = bytes.size();
     header[0] = static_cast<char>(kind);
     std::memcpy(header.data() + 1, &count, sizeof(count));
@@ -74,7 +74,7 @@ struct Message {
 };
 
 std::optional<Message> receive_message(int socket) {
-    std::array<char, kHeaderBytes> header{};
+    std::array<char, kMessageHeaderBytes> header{};
     if (!receive_all(socket, header.data(), header.size())) return std::nullopt;
     Message message;
     std::uint64_t count = 0;

@@ -15,8 +15,6 @@
 namespace nlos {
 namespace {
 
-constexpr std::size_t kSlabsPerBlock = 8;
-constexpr std::size_t kSquaredRangeBinsPerBin = 2;
 constexpr int kNormalReach = 2;  // voxels on either side of the brightest that give the normal
 
 /// Mean range of the data, each bin weighted by its light times range^power [m].

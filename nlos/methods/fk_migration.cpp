@@ -17,7 +17,7 @@
 namespace nlos {
 namespace {
 
-constexpr std::size_t kColumnsPerBlock = 16;
+constexpr std::size_t kColumnsPerBatch = 16;
 constexpr std::size_t kPlanesPerBlock = 8;
 
 double squared_sinc(double x) {
@@ -81,12 +81,12 @@ class RangeTransform {
         : input_(input),
           grids_(grids),
           falloff_(falloff),
-          forward_(Fft::real_to_complex(grids.length, kColumnsPerBlock)) {}
+          forward_(Fft::real_to_complex(grids.length, kColumnsPerBatch)) {}
 
     void fill(std::size_t begin, std::size_t end, ComplexF* out) const {
         const std::size_t row_floats = grids_.length + 2;
         const std::size_t num_columns = grids_.num_columns();
-        FftBuffer rows(kColumnsPerBlock * row_floats);
+        FftBuffer rows(kColumnsPerBatch * row_floats);
         for (std::size_t column = begin; column < end; ++column) {
             fill_amplitudes(column, rows.data() + (column - begin) * row_floats);
         }
@@ -409,7 +409,7 @@ Volume fk_migration(const MethodInput& input, Falloff falloff, std::size_t num_s
     FftBuffer spectrum(2 * grids.num_frequencies() * num_columns);
     const RangeTransform transform(input, grids, falloff);
     parallel_blocks_with_progress(num_columns,
-                                  kColumnsPerBlock,
+                                  kColumnsPerBatch,
                                   {input.progress, 0.0, 0.1, "range to frequency"},
                                   [&](std::size_t begin, std::size_t end) {
                                       transform.fill(begin, end, spectrum.complex());

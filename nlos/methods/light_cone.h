@@ -10,6 +10,13 @@
 
 namespace nlos {
 
+/// Lateral planes that a task transforms together.
+inline constexpr std::size_t kSlabsPerBlock = 8;
+
+/// Even bins of v = r^2 are 1 / (2 r) wide in r: as many as there are range bins would be coarser
+/// than those in the near half of the volume and pull depths there towards the wall.
+inline constexpr std::size_t kSquaredRangeBinsPerBin = 2;
+
 /// The light cone: with v = (path length / 2)^2 and u = z^2, light from (x, y, u) reaches a wall
 /// point (dx, dy) away at v = u + dx^2 + dy^2. Even bins of v, and the padded sizes of transforms.
 struct Cone {

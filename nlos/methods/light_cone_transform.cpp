@@ -7,12 +7,6 @@
 namespace nlos {
 namespace {
 
-constexpr std::size_t kSlabsPerBlock = 8;
-
-// Even bins of v = r^2 are 1 / (2 r) wide in r: as many as there are range bins would be coarser
-// than those in the near half of the volume and pull depths there towards the wall.
-constexpr std::size_t kSquaredRangeBinsPerBin = 2;
-
 /// Wiener deconvolution of one frequency along v: a lateral 2-D problem that fits in cache.
 class SlabFilter {
  public:

@@ -21,7 +21,7 @@ namespace {
 
 // v bins per range bin; twice as many, as the plain transform has them, would double the work of
 // every iteration.
-constexpr std::size_t kSquaredRangeBinsPerBin = 1;
+constexpr std::size_t kIteratedBinsPerBin = 1;
 
 constexpr double kSparsityShare = 0.1;  // of the weight, unless set
 
@@ -259,7 +259,7 @@ class Solver {
 Volume total_variation_light_cone_transform(const MethodInput& input,
                                             Falloff falloff,
                                             const TvSettings& settings) {
-    const Cone cone = make_cone(input, kSquaredRangeBinsPerBin);
+    const Cone cone = make_cone(input, kIteratedBinsPerBin);
     Solver solver(input, cone, falloff_power(falloff), settings);
     solver.run();
     const ConservativeResampling to_depth = squared_range_to_depth(input, cone);
@@ -277,7 +277,7 @@ Volume total_variation_light_cone_transform(const MethodInput& input,
 }
 
 double total_variation_bytes(const MethodInput& input) {
-    const Cone cone = make_cone(input, kSquaredRangeBinsPerBin);
+    const Cone cone = make_cone(input, kIteratedBinsPerBin);
     const double period = static_cast<double>(cone.px * cone.py * (cone.length + 2));
     // f, K f, the kernel, three u, three d - u, q and w - q; data and multiplier are an eighth
     // each.

@@ -15,12 +15,12 @@ namespace {
 
 constexpr double kEarlyShare = 0.01;    // of all light; less may be noise
 constexpr double kFastestOnset = 1.25;  // of what is possible, for half of all neighbours
-constexpr std::size_t kMinPoints = 16;
+constexpr std::size_t kMinCheckedPoints = 16;
 constexpr std::size_t kSteps = 8;  // neighbours are so many to a side: noise moves onsets little
-constexpr double kStrongestBend = 1.15;  // of first light: 1 is what a path allows
-constexpr double kWeakestBend = 0.7;     // edges and tips reach 1
-constexpr double kBendOfAPlane = 0.1;    // says nothing
-constexpr double kSignificance = 3.0;    // standard deviations
+constexpr double kStrongestBend = 1.15;     // of first light: 1 is what a path allows
+constexpr double kWeakestBend = 0.7;        // edges and tips reach 1
+constexpr double kBendOfAPlane = 0.1;       // says nothing
+constexpr double kCheckSignificance = 3.0;  // standard deviations
 
 const core::Vec3& illumination_point(const core::Scan& scan, std::size_t pair) {
     return scan.illumination.positions[scan.illumination_index(pair)];
@@ -75,7 +75,7 @@ std::optional<std::string> fast_onset(const core::Capture& capture,
     const core::Scan& scan = capture.scan;
     if (!scan.sensing.grid) return std::nullopt;
     const auto [nx, ny] = *scan.sensing.grid;
-    if (nx < kMinPoints || ny < kMinPoints) return std::nullopt;
+    if (nx < kMinCheckedPoints || ny < kMinCheckedPoints) return std::nullopt;
     std::vector<std::optional<double>> onsets(nx * ny);
     for (std::size_t i = 0; i < onsets.size(); ++i) {
         onsets[i] = first_light_m(capture, i, ambient[i]);
@@ -111,7 +111,7 @@ std::optional<std::string> bent_onset(const core::Capture& capture,
     const auto bend = bend_of_first_light(capture, ambient);
     if (!bend || bend->k < kBendOfAPlane) return std::nullopt;
     const double fitting_m = capture.time_axis.bin_width_m / std::sqrt(bend->k);
-    if (bend->k - kSignificance * bend->uncertainty > kStrongestBend) {
+    if (bend->k - kCheckSignificance * bend->uncertainty > kStrongestBend) {
         return fmt::format(
             "first light bends over the wall {:.2f} times as much as a path length can; bins look "
             "narrower than {:.4g} m: {:.4g} m would fit (capture.bin_width_m sets them), or a wall "
@@ -121,7 +121,7 @@ std::optional<std::string> bent_onset(const core::Capture& capture,
             fitting_m,
             std::sqrt(bend->k));
     }
-    if (bend->k + kSignificance * bend->uncertainty < kWeakestBend) {
+    if (bend->k + kCheckSignificance * bend->uncertainty < kWeakestBend) {
         return fmt::format(
             "first light bends over the wall {:.2f} times as much as that of points, edges and "
             "tips; bins look wider than {:.4g} m: {:.4g} m would fit (capture.bin_width_m sets "

@@ -17,7 +17,7 @@ constexpr double kMargin = 4e-6;
 // Added to the spread of normals: above the rounding of cosines.
 constexpr float kSpreadMargin = 1e-3F;
 // Of a leg, relative to the radius of a box that may hold its end.
-constexpr float kShortestLeg = 0.1F;
+constexpr float kNearestLeg = 0.1F;
 // Levels that may be lopsided. Facets that cannot be told apart need no more.
 constexpr int kDeepestCut = 40;
 
@@ -180,7 +180,7 @@ TriangleHierarchy::Lanes TriangleHierarchy::importance(const Node& node, const Q
     const Lanes shortest_a = a.nearest.max(length - b.farthest).max(0.5F * (length - q.apart));
     const Lanes longest_a =
         a.farthest.min(length - b.nearest).min(0.5F * (length + q.apart)).max(shortest_a);
-    const Lanes least2 = (kShortestLeg * node.radius).square();
+    const Lanes least2 = (kNearestLeg * node.radius).square();
     const Lanes inverse_a = (shortest_a * longest_a).max(least2).rsqrt();
     const Lanes inverse_b = ((length - shortest_a) * (length - longest_a)).max(least2).rsqrt();
 

@@ -43,12 +43,6 @@ const renderer::SceneGeometry& displaced() {
     return kStart;
 }
 
-bool mentions(const std::vector<std::string>& lines, const std::string& part) {
-    return std::any_of(lines.begin(), lines.end(), [&](const std::string& line) {
-        return line.find(part) != std::string::npos;
-    });
-}
-
 TEST(Fit, FindsThePoseOfNoiseFreeData) {
     const auto capture = expected_capture(truth(), confocal_grid(8), 1e6, 0.5);
     calib::FitInput input = fit_input(capture, displaced());
@@ -135,7 +129,7 @@ TEST(Fit, TimeZeroWithoutPriorIsReportedAsTiedToDepth) {
     calib::FitInput input = fit_input(capture, truth());
     input.settings.free.time_zero = true;
     const calib::FitResult free = calib::fit_scene(input, {});
-    EXPECT_TRUE(mentions(free.unidentifiable, "time_zero"));
+    EXPECT_TRUE(test_support::mentions(free.unidentifiable, "time_zero"));
     input.settings.free.time_zero_sigma_m = 0.0006;
     const calib::FitResult held = calib::fit_scene(input, {});
     EXPECT_LT(held.objects[0].position_sigma_m.z(), 0.5 * free.objects[0].position_sigma_m.z());
@@ -145,7 +139,7 @@ TEST(Fit, CountsOfUnknownScaleKeepOneAlbedoAndSayIt) {
     const auto capture = expected_capture(truth(), confocal_grid(6), 1e5, 0.1);
     const calib::FitResult fit = calib::fit_scene(fit_input(capture, displaced()), {});
     EXPECT_EQ(fit.objects[0].albedo, 0.5);
-    EXPECT_TRUE(mentions(fit.unidentifiable, "scale with target.albedo"));
+    EXPECT_TRUE(test_support::mentions(fit.unidentifiable, "scale with target.albedo"));
 }
 
 TEST(Fit, RobustLossRejectsWildWallPoints) {

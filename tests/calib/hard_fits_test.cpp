@@ -109,12 +109,6 @@ double normalised_square(const calib::FitResult& fit, const renderer::Object& tr
     return error.dot(covariance.ldlt().solve(error));
 }
 
-bool mentions(const std::vector<std::string>& lines, const std::string& part) {
-    return std::any_of(lines.begin(), lines.end(), [&](const std::string& line) {
-        return line.find(part) != std::string::npos;
-    });
-}
-
 struct Case {
     std::string name;
     renderer::SceneGeometry truth;
@@ -180,7 +174,7 @@ TEST(HardFit, ANearlySquareObjectWithFewPhotonsIsCalledAmbiguous) {
             test_support::fit_input(counted(light, "Ambiguous" + std::to_string(seed)),
                                     only(nearby_start(25.0, 0.31))),
             {});
-        if (mentions(fit.warnings, "another pose")) ++ambiguous;
+        if (test_support::mentions(fit.warnings, "another pose")) ++ambiguous;
     }
     EXPECT_GE(ambiguous, 4);
 }
@@ -195,7 +189,7 @@ TEST(HardFit, OneHundredPhotonsGiveWideErrorsAndSayWhy) {
             test_support::fit_input(counted(light, "Hundred" + std::to_string(seed)),
                                     only(nearby_start(25.0))),
             {});
-        EXPECT_TRUE(mentions(fit.warnings, "photons: the stated errors"));
+        EXPECT_TRUE(test_support::mentions(fit.warnings, "photons: the stated errors"));
         const calib::FittedObject& object = fit.objects[0];
         EXPECT_GT(object.position_sigma_m.norm(), 0.01);
         const Vec3 error = object.position_m - truth.world_from_node.translation();
@@ -216,7 +210,7 @@ TEST(HardFit, AWrongResponseWidthIsNamed) {
             input.settings.response.jitter_fwhm_ps = fwhm_ps;
         };
         mean_square(wrong, [&](const calib::FitResult& fit) {
-            EXPECT_TRUE(mentions(
+            EXPECT_TRUE(test_support::mentions(
                 fit.warnings, "the response's width: " + std::string(fwhm_ps < 94.0 ? "+" : "-")));
         });
         wrong.adapt = [&](calib::FitInput& input) {
@@ -242,11 +236,11 @@ TEST(HardFit, WildWallPointsAreNamedAndALossDisarmsThem) {
             for (std::size_t b = 0; b < histogram.size() / 2; ++b) histogram[b] += 20.0F;
         }
         calib::FitInput input = test_support::fit_input(capture, only(nearby_start(25.0)));
-        EXPECT_TRUE(mentions(calib::fit_scene(input, {}).warnings, "(3, 17, 40)"));
+        EXPECT_TRUE(test_support::mentions(calib::fit_scene(input, {}).warnings, "(3, 17, 40)"));
         input.settings.loss = calib::LossKind::Huber;
         const calib::FitResult held = calib::fit_scene(input, {});
         EXPECT_EQ(held.warnings.size(), 1U);
-        EXPECT_TRUE(mentions(held.warnings, "the loss gives them little weight"));
+        EXPECT_TRUE(test_support::mentions(held.warnings, "the loss gives them little weight"));
         squares += normalised_square(held, tilted(25.0));
     }
     EXPECT_GT(chi_square_p(squares / (6.0 * kFits), 6.0 * kFits), 1e-3) << squares;
@@ -263,7 +257,8 @@ TEST(HardFit, LightBeyondEitherEndOfTheAxisIsHonestAndSaid) {
                 test_support::fit_input(counted(light, "Cut" + std::to_string(begin + seed)),
                                         only(nearby_start(25.0))),
                 {});
-            EXPECT_TRUE(mentions(fit.warnings, begin == 0 ? "beyond the end" : "beyond the begin"));
+            EXPECT_TRUE(test_support::mentions(fit.warnings,
+                                               begin == 0 ? "beyond the end" : "beyond the begin"));
             squares += normalised_square(fit, tilted(25.0));
         }
         EXPECT_GT(chi_square_p(squares / (6.0 * kFits), 6.0 * kFits), 1e-3) << squares;

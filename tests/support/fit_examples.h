@@ -6,10 +6,12 @@
 #include "tests/support/statistics.h"
 #include "tests/support/test_scenes.h"
 
+#include <algorithm>
 #include <numeric>
 #include <random>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace test_support {
 
@@ -95,6 +97,13 @@ inline calib::FitInput fit_input(const core::Capture& capture,
     input.settings.free.objects = {{geometry.objects.front().name, true, true, false, true, false}};
     input.settings.response.jitter_fwhm_ps = kFitFwhm_ps;
     return input;
+}
+
+/// Whether one of the lines contains a text.
+inline bool mentions(const std::vector<std::string>& lines, const std::string& part) {
+    return std::any_of(lines.begin(), lines.end(), [&](const std::string& line) {
+        return line.find(part) != std::string::npos;
+    });
 }
 
 }  // namespace test_support
