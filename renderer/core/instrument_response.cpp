@@ -159,10 +159,8 @@ void trim(ResponseFilter& filter) {
 InstrumentResponse make_response(const ResponseSettings& settings, const std::string& where) {
     const auto check = [&](const char* key, double value) {
         constexpr double kLargest = 1e9;  // [ps], 300 km
-        if (!(value >= 0.0 && value <= kLargest)) {
-            throw Error(
-                join_key(where, key), fmt::format("found {}", value), "must be from 0 to 1e9 [ps]");
-        }
+        require(
+            value >= 0.0 && value <= kLargest, join_key(where, key), value, "from 0 to 1e9 [ps]");
     };
     check("jitter_fwhm_ps", settings.jitter_fwhm_ps);
     check("tail_ps", settings.tail_ps);
