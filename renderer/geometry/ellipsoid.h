@@ -142,10 +142,4 @@ double pdf_ellipsoid(const FocusPair& foci,
                      const core::Vec3& x,
                      const ConnectionLobe* lobe = nullptr);
 
-/// The u for which sample_ellipsoid() at the length of `x` gives `x`, without a lobe; nothing where
-/// it cannot.
-std::optional<double> invert_ellipsoid(const FocusPair& foci,
-                                       const Facet& facet,
-                                       const core::Vec3& x);
-
 }  // namespace renderer

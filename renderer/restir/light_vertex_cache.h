@@ -5,6 +5,7 @@
 #include "renderer/path/sensor_pairs.h"
 #include "renderer/restir/reusable_path.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -72,10 +73,10 @@ class LightVertexCache {
     std::vector<std::uint32_t> walk_begin_{0};
     std::vector<std::uint32_t> walk_of_;
     // For the search, in single precision and relative to the ray caster's origin.
-    std::vector<float> x_, y_, z_;                    ///< the vertex
-    std::vector<float> first_x_, first_y_, first_z_;  ///< its walk's first vertex
-    /// Length of the walk from the vertex to its first one, for cameras on to their light.
-    std::vector<float> to_light_m_;
+    enum Column { kX, kY, kZ, kFirstX, kFirstY, kFirstZ, kToLight, kNumColumns };
+    /// Per vertex: its position, that of its walk's first vertex, and the length of the walk from
+    /// one to the other, for cameras on to their light.
+    std::array<std::vector<float>, kNumColumns> columns_;
 };
 
 }  // namespace renderer
