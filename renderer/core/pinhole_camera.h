@@ -14,7 +14,7 @@ namespace core {
 /// A pinhole camera and the light of its scene.
 ///
 /// Pixels are numbered x * height + y, y from the top, as captures store them. The light is an
-/// isotropic point of 1 W, at the camera unless told otherwise, or a lit spot on a surface.
+/// isotropic point light of 1 W, by default at the camera, or a lit spot on a surface.
 struct PinholeCamera {
     Vec3 position_m = Vec3::Zero();
     Vec3 look_at_m = Vec3::Zero();

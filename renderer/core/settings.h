@@ -50,8 +50,8 @@ struct Range {
     bool with_high = false;
 };
 
-/// What a field means and which numbers it may hold; stands for its meaning alone where that is
-/// asked for.
+/// What a field means and which numbers it may hold; converts to the meaning for visitors that
+/// want nothing else.
 struct Ranged {
     const char* meaning;
     Range range;

@@ -105,7 +105,7 @@ class EllipsoidArcs {
     double total_rad_ = 0.0;
 };
 
-/// A vertex with legs of a wanted length.
+/// A vertex whose two legs have the requested length.
 struct EllipsoidalConnection {
     core::Vec3 position;
     /// Its density by area for a density of the length of 1 [1/m]: times pdf_opl it is pdf_area.

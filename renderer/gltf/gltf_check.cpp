@@ -27,17 +27,14 @@ Allowed a_flag() {
     return {"true or false", [](const Json& value) { return value.is_boolean(); }};
 }
 
-Allowed whole_number(std::uint64_t smallest, std::uint64_t largest) {
-    return {"a whole number from " + std::to_string(smallest) + " to " + std::to_string(largest),
-            [=](const Json& value) {
-                return value.is_number_unsigned() && value.get<std::uint64_t>() >= smallest &&
-                       value.get<std::uint64_t>() <= largest;
-            }};
-}
-
 /// Counts are below 2^31, so that sums of two cannot overflow 64 bits.
 Allowed count_from(std::uint64_t smallest) {
-    return whole_number(smallest, std::numeric_limits<std::int32_t>::max());
+    constexpr auto kLargest = std::uint64_t{std::numeric_limits<std::int32_t>::max()};
+    return {"a whole number from " + std::to_string(smallest) + " to " + std::to_string(kLargest),
+            [=](const Json& value) {
+                return value.is_number_unsigned() && value.get<std::uint64_t>() >= smallest &&
+                       value.get<std::uint64_t>() <= kLargest;
+            }};
 }
 
 Allowed numbers(std::size_t count) {
@@ -220,7 +217,7 @@ class GltfChecker {
         }
     }
 
-    /// Our extras anywhere but on nodes and materials would be ignored without a word.
+    /// nlos_ extras anywhere but on nodes and materials would be silently ignored.
     void check_extras(const Json& value, const std::string& where) const {
         if (value.is_array()) {
             for (std::size_t i = 0; i < value.size(); ++i) {

@@ -24,7 +24,7 @@ class LightVertexCache {
 
     /// Replaces all vertices by those of new walks; the same for any number of threads.
     ///
-    /// num_walks      walks in all; their first vertices are stratified, any stretch of them too
+    /// num_walks      total; first vertices are stratified, also within any consecutive walks
     /// max_vertices   per walk
     /// returns        the number of rays traced
     std::uint64_t trace(int num_walks, int max_vertices, std::uint64_t seed, std::uint64_t frame);
@@ -47,7 +47,7 @@ class LightVertexCache {
               const Stretch& walks,
               std::vector<std::uint32_t>& found) const;
 
-    /// The path from the start of a pair's paths by way of a vertex to the light.
+    /// The path from the start of a pair's paths through a vertex to the light.
     ReusablePath path_from(std::uint32_t vertex) const;
 
     /// Density with which one walk has a path's vertices, by area at each.

@@ -70,8 +70,8 @@ Reservoir<Sample> resample_balance_heuristic(const Reservoir<Sample>& canonical,
     return builder.finish(canonical.confidence + other.confidence);
 }
 
-/// Merges a canonical reservoir with a number of neighbours that was fixed before any sample was
-/// looked at, by defensive pairwise MIS (source [Bitterli2022], weights as in [Lin2022]).
+/// Merges a canonical reservoir with neighbours whose number was fixed before any sample was
+/// known, by defensive pairwise MIS (source [Bitterli2022], weights as in [Lin2022]).
 ///
 /// A neighbour whose sample cannot be carried over, or that has none, still counts: its share goes
 /// to the canonical sample. Counting only the successful ones would be biased.

@@ -198,7 +198,7 @@ bool RayCaster::is_blocked(const Vec3& a,
     return ray.tfar < 0.0F;
 }
 
-// Plain numbers in one loop over all lanes, so that the compiler fills vector units.
+// Plain numbers in one loop over all lanes, which the compiler vectorizes.
 template <class From>
 [[gnu::always_inline]] inline void RayCaster::aim_from(SegmentPacket& packet,
                                                        const From& from_of,

@@ -153,7 +153,7 @@ inline bool is_on_first_branch(const core::Vec2& step,
     return *least >= 0.0 || *most <= 0.0;
 }
 
-/// Solves a shift, selects the root and, unless told otherwise, solves it backwards too: only what
+/// Solves a shift, selects the root and, with `reverse_check`, solves it backwards too: only what
 /// comes back to where it started belongs to a one-to-one map.
 ///
 /// at_source   source's functional at xi
