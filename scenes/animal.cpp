@@ -33,16 +33,26 @@ double animal_radius_m(const core::Vec3& direction) {
     return radius;
 }
 
-}  // namespace
-
-core::TriangleMesh make_animal_mesh() {
-    return make_radial_surface(4, animal_radius_m);
+GeneratedScene with_animal(const std::string& name) {
+    GeneratedScene scene{name, {}, {}};
+    scene.add("animal", make_radial_surface(4, animal_radius_m), {0.0, -0.03, 0.7}, diffuse(0.8));
+    return scene;
 }
 
+}  // namespace
+
 GeneratedScene make_animal() {
-    GeneratedScene scene{"animal", {}, {}};
-    scene.geometry.objects.push_back(
-        place("animal", make_animal_mesh(), {0.0, -0.03, 0.7}, diffuse(0.8)));
+    return with_animal("animal");
+}
+
+GeneratedScene make_bars() {
+    GeneratedScene scene = with_animal("bars");
+    for (int i = 0; i < 5; ++i) {
+        scene.add("bar" + std::to_string(i + 1),
+                  make_box({0.03, 0.7, 0.02}),
+                  {0.15 * (i - 2), 0.0, 0.45},
+                  diffuse(0.5));
+    }
     return scene;
 }
 

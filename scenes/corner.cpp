@@ -16,39 +16,40 @@ GeneratedScene make_corner() {
     const renderer::Material paint = diffuse(0.9);
 
     GeneratedScene scene{"corner", {}, {}};
-    auto& objects = scene.geometry.objects;
-    objects.push_back(place(
-        "back_wall",
-        make_quad({side, floor, back}, {left, floor, back}, {left, top, back}, {side, top, back}),
-        origin,
-        paint));
-    objects.back().role = renderer::Role::BackWall;
-    objects.push_back(place(
-        "side_wall",
-        make_quad({side, floor, front}, {side, floor, back}, {side, top, back}, {side, top, front}),
-        origin,
-        paint));
-    objects.back().ellipsoidal_exclude = true;
-    objects.push_back(place(
-        "floor",
-        make_quad(
-            {left, floor, front}, {left, floor, back}, {side, floor, back}, {side, floor, front}),
-        origin,
-        paint));
-    objects.back().ellipsoidal_exclude = true;
+    scene
+        .add("back_wall",
+             make_quad(
+                 {side, floor, back}, {left, floor, back}, {left, top, back}, {side, top, back}),
+             origin,
+             paint)
+        .role = renderer::Role::BackWall;
+    scene
+        .add("side_wall",
+             make_quad(
+                 {side, floor, front}, {side, floor, back}, {side, top, back}, {side, top, front}),
+             origin,
+             paint)
+        .ellipsoidal_exclude = true;
+    scene
+        .add("floor",
+             make_quad({left, floor, front},
+                       {left, floor, back},
+                       {side, floor, back},
+                       {side, floor, front}),
+             origin,
+             paint)
+        .ellipsoidal_exclude = true;
 
     const double box_height = 0.3;
     const double gap = 0.005;  // the box hovers: faces that coincide with the floor are ambiguous
-    objects.push_back(place("box",
-                            rotated(make_box({0.22, box_height, 0.22}), core::Vec3::UnitY(), 30.0),
-                            {-0.25, floor + gap + box_height / 2.0, 0.75},
-                            diffuse(0.8)));
-    objects.back().velocity_m_per_s = {0.0, 0.0, -0.8};
-    objects.push_back(place("ball",
-                            make_radial_surface(3, [](const core::Vec3&) { return 0.13; }),
-                            {0.2, -0.1, 0.65},
-                            diffuse(0.85)));
-    objects.back().velocity_m_per_s = {0.6, 0.0, 0.0};
+    scene
+        .add("box",
+             rotated(make_box({0.22, box_height, 0.22}), core::Vec3::UnitY(), 30.0),
+             {-0.25, floor + gap + box_height / 2.0, 0.75},
+             diffuse(0.8))
+        .velocity_m_per_s = {0.0, 0.0, -0.8};
+    scene.add("ball", make_ball(3, 0.13), {0.2, -0.1, 0.65}, diffuse(0.85)).velocity_m_per_s = {
+        0.6, 0.0, 0.0};
     return scene;
 }
 

@@ -87,14 +87,13 @@ std::string describe(const std::vector<WallPoint>& points) {
 
 GeneratedScene make_curved() {
     GeneratedScene scene{"curved", {}, {}};
-    auto& objects = scene.geometry.objects;
-    objects.push_back(place("wall", make_wall(), {0.0, 0.0, 0.0}, diffuse(1.0)));
-    objects.back().role = renderer::Role::RelayWall;
-    scene.description = describe(sensing_points(objects.back().mesh));
-    objects.push_back(place("ring",
-                            rotated(make_torus(0.16, 0.06, 64, 28), Vec3::UnitX(), 25.0),
-                            {0.05, 0.03, 0.75},
-                            diffuse(0.8)));
+    renderer::Object& wall = scene.add("wall", make_wall(), {0.0, 0.0, 0.0}, diffuse(1.0));
+    wall.role = renderer::Role::RelayWall;
+    scene.description = describe(sensing_points(wall.mesh));
+    scene.add("ring",
+              rotated(make_torus(0.16, 0.06, 64, 28), Vec3::UnitX(), 25.0),
+              {0.05, 0.03, 0.75},
+              diffuse(0.8));
     return scene;
 }
 

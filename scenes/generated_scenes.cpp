@@ -4,7 +4,17 @@
 #include "renderer/core/output_file.h"
 #include "renderer/gltf/gltf.h"
 
+#include "scenes/shapes.h"
+
 namespace scenes {
+
+renderer::Object& GeneratedScene::add(const std::string& object_name,
+                                      core::TriangleMesh mesh,
+                                      const core::Vec3& origin,
+                                      const renderer::Material& material) {
+    geometry.objects.push_back(place(object_name, std::move(mesh), origin, material));
+    return geometry.objects.back();
+}
 
 std::vector<GeneratedScene> generated_scenes() {
     return {make_letter(),

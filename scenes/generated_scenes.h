@@ -13,6 +13,12 @@ struct GeneratedScene {
     std::string name;  ///< of its folder
     renderer::SceneGeometry geometry;
     std::string description;  ///< text of scene.json; empty when that is written by hand
+
+    /// Adds what place() makes of these (shapes.h).
+    renderer::Object& add(const std::string& object_name,
+                          core::TriangleMesh mesh,
+                          const core::Vec3& origin,
+                          const renderer::Material& material);
 };
 
 GeneratedScene make_letter();        ///< a flat F

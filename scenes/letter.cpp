@@ -44,7 +44,7 @@ core::TriangleMesh make_f() {
 
 GeneratedScene make_letter() {
     GeneratedScene scene{"letter", {}, {}};
-    scene.geometry.objects.push_back(place("letter", make_f(), {0.0, 0.0, 0.7}, diffuse(0.9)));
+    scene.add("letter", make_f(), {0.0, 0.0, 0.7}, diffuse(0.9));
     return scene;
 }
 

@@ -38,39 +38,31 @@ core::TriangleMesh make_relief(const core::Vec3& corner, const core::Vec3& u, co
     return mesh;
 }
 
+core::TriangleMesh make_plane(const core::Vec3& corner, const core::Vec3& u, const core::Vec3& v) {
+    const core::Vec3 far = corner + u + v;
+    return make_quad(corner, corner + u, far, corner + v);
+}
+
 }  // namespace
 
 GeneratedScene make_relief_room() {
     GeneratedScene scene{"relief", {}, {}};
-    auto& objects = scene.geometry.objects;
-    const core::Vec3 origin(0.0, 0.0, 0.0);
     const core::Vec3 deep(0.0, 0.0, -kDepth);
     const core::Vec3 up(0.0, 2.0 * kHalf, 0.0);
     const core::Vec3 right(kHalf, 0.0, 0.0);
-    const auto add_plane = [&](const std::string& name,
-                               const core::Vec3& corner,
-                               const core::Vec3& u,
-                               const core::Vec3& v) {
-        const core::Vec3 far = corner + u + v;
-        objects.push_back(
-            place(name, make_quad(corner, corner + u, far, corner + v), origin, diffuse(0.7)));
-    };
-    const auto add_relief = [&](const std::string& name,
-                                const core::Vec3& corner,
-                                const core::Vec3& u,
-                                const core::Vec3& v) {
-        objects.push_back(place(name, make_relief(corner, u, v), origin, diffuse(0.7)));
+    const auto add = [&](const std::string& name, core::TriangleMesh mesh) {
+        scene.add(name, std::move(mesh), {0.0, 0.0, 0.0}, diffuse(0.7));
     };
     const core::Vec3 left_bottom(-kHalf, -kHalf, 0.0);
     const core::Vec3 middle_bottom(0.0, -kHalf, 0.0);
     const core::Vec3 right_bottom(kHalf, -kHalf, 0.0);
-    add_relief("left_wall", left_bottom, deep, up);
-    add_relief("left_floor", left_bottom, right, deep);
-    add_plane("right_floor", middle_bottom, right, deep);
-    add_plane("right_wall", right_bottom, up, deep);
-    add_plane("ceiling", left_bottom + up, 2.0 * right, deep);
-    add_relief("left_back", left_bottom + deep, right, up);
-    add_plane("right_back", middle_bottom + deep, right, up);
+    add("left_wall", make_relief(left_bottom, deep, up));
+    add("left_floor", make_relief(left_bottom, right, deep));
+    add("right_floor", make_plane(middle_bottom, right, deep));
+    add("right_wall", make_plane(right_bottom, up, deep));
+    add("ceiling", make_plane(left_bottom + up, 2.0 * right, deep));
+    add("left_back", make_relief(left_bottom + deep, right, up));
+    add("right_back", make_plane(middle_bottom + deep, right, up));
     return scene;
 }
 

@@ -97,6 +97,10 @@ TriangleMesh make_radial_surface(int subdivisions,
     return mesh;
 }
 
+TriangleMesh make_ball(int subdivisions, double radius_m) {
+    return make_radial_surface(subdivisions, [=](const Vec3&) { return radius_m; });
+}
+
 TriangleMesh make_torus(double ring_radius_m, double tube_radius_m, int around, int across) {
     TriangleMesh mesh;
     const auto index = [&](int i, int j) {
@@ -140,6 +144,14 @@ renderer::Material diffuse(double albedo) {
     renderer::Material material;
     material.name = "diffuse";
     material.albedo = albedo;
+    return material;
+}
+
+renderer::Material conductor(const std::string& name, double albedo, double roughness) {
+    renderer::Material material = diffuse(albedo);
+    material.name = name;
+    material.model = renderer::SurfaceModel::Ggx;
+    material.roughness = roughness;
     return material;
 }
 

@@ -24,8 +24,8 @@ core::TriangleMesh make_quad(const core::Vec3& a,
 core::TriangleMesh make_radial_surface(int subdivisions,
                                        const std::function<double(const core::Vec3&)>& radius_m);
 
-/// An animal-like smooth surface around the origin, 0.33 m high: 5,120 triangles.
-core::TriangleMesh make_animal_mesh();
+/// The same with one radius.
+core::TriangleMesh make_ball(int subdivisions, double radius_m);
 
 /// Torus around the z axis.
 core::TriangleMesh make_torus(double ring_radius_m, double tube_radius_m, int around, int across);
@@ -44,5 +44,8 @@ renderer::Object place(const std::string& name,
 
 /// A diffuse material.
 renderer::Material diffuse(double albedo);
+
+/// A rough conductor (GGX).
+renderer::Material conductor(const std::string& name, double albedo, double roughness);
 
 }  // namespace scenes

@@ -6,31 +6,23 @@ namespace scenes {
 
 GeneratedScene make_traffic() {
     GeneratedScene scene{"traffic", {}, {}};
-    auto& objects = scene.geometry.objects;
     const core::Vec3 origin(0.0, 0.0, 0.0);
-    objects.push_back(
-        place("road",
+    scene.add("road",
               make_quad({-1.0, -0.5, 0.05}, {1.0, -0.5, 0.05}, {1.0, -0.5, 2.2}, {-1.0, -0.5, 2.2}),
               origin,
-              diffuse(0.3)));
-    objects.push_back(
-        place("back_wall",
-              make_quad({-1.0, -0.5, 2.2}, {1.0, -0.5, 2.2}, {1.0, 0.8, 2.2}, {-1.0, 0.8, 2.2}),
-              origin,
-              diffuse(0.5)));
-    objects.back().role = renderer::Role::BackWall;
-    const auto move = [&](const core::Vec3& velocity_m_per_s) {
-        objects.back().velocity_m_per_s = velocity_m_per_s;
-    };
-    const auto ball = [](double radius_m) {
-        return make_radial_surface(3, [radius_m](const core::Vec3&) { return radius_m; });
-    };
-    objects.push_back(place("approaching", ball(0.2), {-0.42, -0.3, 1.0}, diffuse(0.8)));
-    move({0.0, 0.0, -3.0});
-    objects.push_back(place("receding", ball(0.2), {0.42, -0.3, 1.2}, diffuse(0.8)));
-    move({0.0, 0.0, 2.0});
-    objects.push_back(place("crossing", make_box({0.3, 0.4, 0.2}), {0.0, -0.3, 1.7}, diffuse(0.8)));
-    move({2.5, 0.0, 0.0});
+              diffuse(0.3));
+    scene
+        .add("back_wall",
+             make_quad({-1.0, -0.5, 2.2}, {1.0, -0.5, 2.2}, {1.0, 0.8, 2.2}, {-1.0, 0.8, 2.2}),
+             origin,
+             diffuse(0.5))
+        .role = renderer::Role::BackWall;
+    scene.add("approaching", make_ball(3, 0.2), {-0.42, -0.3, 1.0}, diffuse(0.8))
+        .velocity_m_per_s = {0.0, 0.0, -3.0};
+    scene.add("receding", make_ball(3, 0.2), {0.42, -0.3, 1.2}, diffuse(0.8)).velocity_m_per_s = {
+        0.0, 0.0, 2.0};
+    scene.add("crossing", make_box({0.3, 0.4, 0.2}), {0.0, -0.3, 1.7}, diffuse(0.8))
+        .velocity_m_per_s = {2.5, 0.0, 0.0};
     return scene;
 }
 

@@ -11,11 +11,10 @@ namespace {
 
 void validate_points(const WallPoints& points, const std::string& where) {
     if (points.size() == 0) throw Error(where, "found no point", "must have at least one");
-    if (points.normals.size() != points.size()) {
-        throw Error(where + " normals",
-                    fmt::format("found {} for {} points", points.normals.size(), points.size()),
-                    "must be one per point");
-    }
+    require(points.normals.size() == points.size(),
+            where + " normals",
+            fmt::format("{} for {} points", points.normals.size(), points.size()),
+            "one per point");
     if (points.grid && (*points.grid)[0] * (*points.grid)[1] != points.size()) {
         throw Error(where + " grid",
                     fmt::format("found {} x {}", (*points.grid)[0], (*points.grid)[1]),
@@ -37,13 +36,11 @@ void validate_histograms(const Capture& capture,
                          const Transient& transient,
                          int num_bins,
                          const std::string& where) {
-    if (transient.num_pairs() != capture.scan.num_pairs() ||
-        transient.num_bins() != static_cast<std::size_t>(num_bins)) {
-        throw Error(
+    require(transient.num_pairs() == capture.scan.num_pairs() &&
+                transient.num_bins() == static_cast<std::size_t>(num_bins),
             where,
-            fmt::format("found {} pairs x {} bins", transient.num_pairs(), transient.num_bins()),
-            fmt::format("must be {} x {}", capture.scan.num_pairs(), num_bins));
-    }
+            fmt::format("{} pairs x {} bins", transient.num_pairs(), transient.num_bins()),
+            fmt::format("{} x {}", capture.scan.num_pairs(), num_bins));
     for (const float value : transient.values()) {
         if (!std::isfinite(value)) {
             throw Error(where, fmt::format("found {}", value), "must be finite numbers");
@@ -70,13 +67,12 @@ void validate(const Capture& capture, const std::string& where) {
         validate_points(capture.scan.sensing, where + ": sensing points");
         validate_points(capture.scan.illumination, where + ": illumination points");
     }
-    const bool confocal = capture.scan.pattern == ScanPattern::Confocal;
-    if (confocal && capture.scan.illumination.size() != capture.scan.sensing.size()) {
-        throw Error(where + ": illumination points",
-                    fmt::format("found {}", capture.scan.illumination.size()),
-                    fmt::format("must equal the {} sensing points of a confocal scan",
-                                capture.scan.sensing.size()));
-    }
+    require(capture.scan.pattern != ScanPattern::Confocal ||
+                capture.scan.illumination.size() == capture.scan.sensing.size(),
+            where + ": illumination points",
+            fmt::format("{}", capture.scan.illumination.size()),
+            fmt::format("as many as the {} sensing points of a confocal scan",
+                        capture.scan.sensing.size()));
     const int num_bins = capture.time_axis.num_bins;
     validate_histograms(capture, capture.transient, num_bins, where + ": H");
     if (capture.velocity) {

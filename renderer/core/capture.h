@@ -19,27 +19,22 @@ namespace core {
 enum class ScanPattern { Single, Confocal, Exhaustive };
 
 /// Where path lengths start and end: at the wall points, or at laser and detector.
-enum class OplOrigin { Device, RelayWall };
+enum class OplOrigin { RelayWall, Device };
 
 /// What the numbers of a histogram are.
 enum class TransientUnit { Radiance, Counts };
 
 template <>
 struct EnumNames<ScanPattern> {
-    static constexpr std::array<std::pair<ScanPattern, std::string_view>, 3> value{
-        {{ScanPattern::Single, "single"},
-         {ScanPattern::Confocal, "confocal"},
-         {ScanPattern::Exhaustive, "exhaustive"}}};
+    static constexpr auto value = names_from_zero<ScanPattern>("single", "confocal", "exhaustive");
 };
 template <>
 struct EnumNames<OplOrigin> {
-    static constexpr std::array<std::pair<OplOrigin, std::string_view>, 2> value{
-        {{OplOrigin::RelayWall, "relay_wall"}, {OplOrigin::Device, "device"}}};
+    static constexpr auto value = names_from_zero<OplOrigin>("relay_wall", "device");
 };
 template <>
 struct EnumNames<TransientUnit> {
-    static constexpr std::array<std::pair<TransientUnit, std::string_view>, 2> value{
-        {{TransientUnit::Radiance, "radiance"}, {TransientUnit::Counts, "counts"}}};
+    static constexpr auto value = names_from_zero<TransientUnit>("radiance", "counts");
 };
 
 /// Points on the relay wall, either a grid of shape (X, Y) with x before y, or a plain list.

@@ -18,13 +18,6 @@ namespace {
 constexpr double kGaussianReach = 8.0;      // standard deviations; 1e-15 of the light is beyond
 constexpr double kExponentialReach = 30.0;  // means; 1e-13 of the light is beyond
 
-template <class... Cases>
-struct Overloaded : Cases... {
-    using Cases::operator()...;
-};
-template <class... Cases>
-Overloaded(Cases...) -> Overloaded<Cases...>;
-
 double opl_from_ps(double ps) {
     return opl_from_seconds(ps * 1e-12);
 }
@@ -105,7 +98,7 @@ ResponseFilter sample_core(double sigma_m, double tail_m, double bin_width_m) {
 }
 
 /// Narrows the core until the weights have the variance of the response. Their variance grows with
-/// the core's width, so bisection finds it; when even no core is too wide, that is what remains.
+/// the core's width, so bisection finds it; where the tail alone is too wide, no core is left.
 ResponseFilter sample_narrowed(double sigma_m, double tail_m, double bin_width_m) {
     const double wanted = (sigma_m * sigma_m + tail_m * tail_m) / (bin_width_m * bin_width_m);
     // A core this narrow beside its tail changes nothing that a double could hold.
@@ -121,7 +114,15 @@ ResponseFilter sample_narrowed(double sigma_m, double tail_m, double bin_width_m
     return sample_core(high > smallest ? high : 0.0, tail_m, bin_width_m);
 }
 
-ResponseFilter sample_curve(const MeasuredResponse& curve, double bin_width_m) {
+// One overload of sample_() and moments_() for each kind of response.
+
+ResponseFilter sample_(const GaussianResponse& r, double bin_width_m) {
+    return sample_narrowed(r.sigma_m, 0.0, bin_width_m);
+}
+ResponseFilter sample_(const ExponentialGaussianResponse& r, double bin_width_m) {
+    return sample_narrowed(r.sigma_m, r.tail_m, bin_width_m);
+}
+ResponseFilter sample_(const MeasuredResponse& curve, double bin_width_m) {
     ResponseFilter filter;
     filter.first_delay = static_cast<int>(std::floor(curve.delays_m.front() / bin_width_m));
     const int last = static_cast<int>(std::floor(curve.delays_m.back() / bin_width_m)) + 1;
@@ -134,6 +135,25 @@ ResponseFilter sample_curve(const MeasuredResponse& curve, double bin_width_m) {
         filter.weights[bin + 1] += part * curve.weights[i];
     }
     return filter;
+}
+
+ResponseMoments moments_(const GaussianResponse& r) {
+    return {0.0, r.sigma_m * r.sigma_m, 0.0};
+}
+ResponseMoments moments_(const ExponentialGaussianResponse& r) {
+    return {r.tail_m,
+            r.sigma_m * r.sigma_m + r.tail_m * r.tail_m,
+            2.0 * r.tail_m * r.tail_m * r.tail_m};
+}
+ResponseMoments moments_(const MeasuredResponse& r) {
+    ResponseMoments m;
+    for (std::size_t i = 0; i < r.delays_m.size(); ++i) m.mean_m += r.weights[i] * r.delays_m[i];
+    for (std::size_t i = 0; i < r.delays_m.size(); ++i) {
+        const double d = r.delays_m[i] - m.mean_m;
+        m.variance_m2 += r.weights[i] * d * d;
+        m.third_central_m3 += r.weights[i] * d * d * d;
+    }
+    return m;
 }
 
 /// Drops weights at both ends that hold less than 1e-13 of the light together.
@@ -159,10 +179,8 @@ void trim(ResponseFilter& filter) {
 InstrumentResponse make_response(const ResponseSettings& settings, const std::string& where) {
     const auto check = [&](const char* key, double value) {
         constexpr double kLargest = 1e9;  // [ps], 300 km
-        if (!(value >= 0.0 && value <= kLargest)) {
-            throw Error(
-                join_key(where, key), fmt::format("found {}", value), "must be from 0 to 1e9 [ps]");
-        }
+        require(
+            value >= 0.0 && value <= kLargest, join_key(where, key), value, "from 0 to 1e9 [ps]");
     };
     check("jitter_fwhm_ps", settings.jitter_fwhm_ps);
     check("tail_ps", settings.tail_ps);
@@ -186,40 +204,13 @@ double sigma_m_from_fwhm_ps(double fwhm_ps) {
 }
 
 ResponseMoments moments(const InstrumentResponse& response) {
-    return std::visit(Overloaded{[](const GaussianResponse& r) {
-                                     return ResponseMoments{0.0, r.sigma_m * r.sigma_m, 0.0};
-                                 },
-                                 [](const ExponentialGaussianResponse& r) {
-                                     return ResponseMoments{
-                                         r.tail_m,
-                                         r.sigma_m * r.sigma_m + r.tail_m * r.tail_m,
-                                         2.0 * r.tail_m * r.tail_m * r.tail_m};
-                                 },
-                                 [](const MeasuredResponse& r) {
-                                     ResponseMoments m;
-                                     for (std::size_t i = 0; i < r.delays_m.size(); ++i) {
-                                         m.mean_m += r.weights[i] * r.delays_m[i];
-                                     }
-                                     for (std::size_t i = 0; i < r.delays_m.size(); ++i) {
-                                         const double d = r.delays_m[i] - m.mean_m;
-                                         m.variance_m2 += r.weights[i] * d * d;
-                                         m.third_central_m3 += r.weights[i] * d * d * d;
-                                     }
-                                     return m;
-                                 }},
-                      response);
+    return std::visit([](const auto& r) { return moments_(r); }, response);
 }
 
 ResponseFilter sample_response(const InstrumentResponse& response, double bin_width_m) {
     assert(bin_width_m > 0.0);
-    ResponseFilter filter = std::visit(
-        Overloaded{
-            [&](const GaussianResponse& r) { return sample_narrowed(r.sigma_m, 0.0, bin_width_m); },
-            [&](const ExponentialGaussianResponse& r) {
-                return sample_narrowed(r.sigma_m, r.tail_m, bin_width_m);
-            },
-            [&](const MeasuredResponse& r) { return sample_curve(r, bin_width_m); }},
-        response);
+    ResponseFilter filter =
+        std::visit([&](const auto& r) { return sample_(r, bin_width_m); }, response);
     trim(filter);
     return filter;
 }

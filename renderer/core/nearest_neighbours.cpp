@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kLeafSize = 10;
 
-/// FLANN takes writable rows and does not write to them.
+/// FLANN's interface wants writable rows, but does not write to them.
 flann::Matrix<double> rows_of(const std::vector<Vec3>& points) {
     static_assert(sizeof(Vec3) == 3 * sizeof(double));
     return {const_cast<double*>(points.front().data()), points.size(), 3};

@@ -28,14 +28,14 @@ class OutputFile {
     bool committed_ = false;
 };
 
-/// Looks at targets before the work: a run shall not find out at its end that it cannot write.
+/// Checks targets before the work, so that a run does not fail only when it writes its result.
 ///
 /// targets   files to be written; empty names are skipped
 /// inputs    files that are read
 /// throws    Error when a target cannot be written, or is one of the inputs
 void check_targets(const std::vector<std::string>& targets, const std::vector<std::string>& inputs);
 
-/// Writes a whole text file by way of OutputFile.
+/// Writes a whole text file through OutputFile.
 void write_text_file(const std::string& path, const std::string& text);
 
 }  // namespace core

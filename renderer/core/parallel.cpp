@@ -23,14 +23,10 @@ void parallel_blocks(std::size_t count,
 }
 
 ThreadLimit::ThreadLimit(int count)
-    : control_(new tbb::global_control(
+    : control_(std::make_shared<tbb::global_control>(
           tbb::global_control::max_allowed_parallelism,
           count > 0 ? static_cast<std::size_t>(count)
                     : std::max<std::size_t>(1, std::thread::hardware_concurrency()))) {}
-
-ThreadLimit::~ThreadLimit() {
-    delete static_cast<tbb::global_control*>(control_);
-}
 
 int thread_count() {
     return static_cast<int>(

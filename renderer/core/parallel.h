@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <vector>
 
 namespace core {
@@ -34,16 +35,13 @@ T parallel_sum(std::size_t count, T zero, const std::function<T(std::size_t)>& t
     return total;
 }
 
-/// Limits parallel loops to `count` threads while it lives; 0 means all processors.
+/// Limits parallel loops to `count` threads while it (or a copy) lives; 0 means all processors.
 class ThreadLimit {
  public:
     explicit ThreadLimit(int count);
-    ~ThreadLimit();
-    ThreadLimit(const ThreadLimit&) = delete;
-    ThreadLimit& operator=(const ThreadLimit&) = delete;
 
  private:
-    void* control_;
+    std::shared_ptr<void> control_;
 };
 
 /// Threads that a parallel loop may use now.

@@ -20,34 +20,19 @@ Mat3 PinholeCamera::world_from_image() const {
 }
 
 void validate(const PinholeCamera& camera, const std::string& where) {
+    const auto text = [](const Vec3& v) {
+        return fmt::format("({}, {}, {})", v.x(), v.y(), v.z());
+    };
     const Vec3 view = camera.look_at_m - camera.position_m;
-    if (!(view.norm() > 1e-9)) {
-        throw Error(where + ".look_at_m",
-                    fmt::format("found ({}, {}, {}), the camera's own position",
-                                camera.look_at_m.x(),
-                                camera.look_at_m.y(),
-                                camera.look_at_m.z()),
-                    "must be another point");
-    }
+    require(view.norm() > 1e-9,
+            where + ".look_at_m",
+            text(camera.look_at_m) + ", the camera's own position",
+            "another point");
     if (!(camera.up.cross(view.normalized()).norm() > 1e-9 * (1.0 + camera.up.norm()))) {
         throw Error(
-            where + ".up",
-            fmt::format(
-                "found ({}, {}, {}), along the view", camera.up.x(), camera.up.y(), camera.up.z()),
-            "must point across it");
+            where + ".up", "found " + text(camera.up) + ", along the view", "must point across it");
     }
-    if (!(camera.fov_y_deg > 0.0 && camera.fov_y_deg < 180.0)) {
-        throw Error(where + ".fov_y_deg",
-                    fmt::format("found {}", camera.fov_y_deg),
-                    "must be above 0 and below 180");
-    }
-    for (const int count : camera.resolution) {
-        if (count < 1) {
-            throw Error(where + ".resolution",
-                        fmt::format("found {}", count),
-                        "must be at least 1 in both directions");
-        }
-    }
+    check_ranges(camera, where);
     if (camera.light_m && camera.light_spot_m) {
         throw Error(where + ".light_spot_m",
                     "found together with light_m",

@@ -14,7 +14,7 @@ namespace core {
 /// A pinhole camera and the light of its scene.
 ///
 /// Pixels are numbered x * height + y, y from the top, as captures store them. The light is an
-/// isotropic point of 1 W, at the camera unless told otherwise, or a lit spot on a surface.
+/// isotropic point light of 1 W, by default at the camera, or a lit spot on a surface.
 struct PinholeCamera {
     Vec3 position_m = Vec3::Zero();
     Vec3 look_at_m = Vec3::Zero();
@@ -42,8 +42,10 @@ void for_each_field(PinholeCamera& camera, Visitor&& visit) {
     visit("position_m", camera.position_m, "pinhole, world [m]");
     visit("look_at_m", camera.look_at_m, "what the middle of the image shows, world [m]");
     visit("up", camera.up, "upwards in the image, up to its part along the view");
-    visit("fov_y_deg", camera.fov_y_deg, "full vertical angle of view [degrees]");
-    visit("resolution", camera.resolution, "width and height in pixels");
+    visit("fov_y_deg",
+          camera.fov_y_deg,
+          Ranged{"full vertical angle of view [degrees]", {.low = 0, .high = 180}});
+    visit("resolution", camera.resolution, at_least(1, "width and height in pixels"));
     visit("light_m", camera.light_m, "isotropic 1 W light, world [m]; null: at the camera");
     visit("light_spot_m", camera.light_spot_m, "instead: lit spot on a surface, world [m]");
 }

@@ -7,6 +7,7 @@
 #include <malloc.h>
 #endif
 
+#include <ctime>
 #include <fstream>
 #include <string>
 
@@ -38,12 +39,7 @@ std::uint64_t available_memory_bytes() {
 }
 
 double cpu_seconds() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    const auto seconds = [](const timeval& time) {
-        return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
-    };
-    return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+    return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
 }  // namespace core

@@ -6,16 +6,16 @@
 
 namespace core {
 
-/// How long work talks to its caller. Nothing below the program prints; it reports here.
+/// How long-running work reports to its caller. Nothing below the program itself prints.
 struct Progress {
-    /// Told before long work starts what it will be and need. May be empty.
+    /// Called before long work starts, with what it will do and need. May be empty.
     std::function<void(const std::string& text)> announce;
 
-    /// Called now and then from the calling thread: the share done in [0, 1] and a short text such
+    /// Called regularly from the calling thread: the share done in [0, 1] and a short text such
     /// as the rate. May be empty.
     std::function<void(double share, const std::string& detail)> report;
 
-    /// Asked between passes; true ends the work early with what is there. May be empty.
+    /// Called between passes; true ends the work early with what it has so far. May be empty.
     std::function<bool()> stop_requested;
 
     /// The progress of a part of the work that takes it from share `begin` to `end`. Refers to

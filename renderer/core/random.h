@@ -9,7 +9,7 @@ namespace core {
 
 /// A stream of random numbers that depends on nothing but its three indices.
 ///
-/// Work items own their streams, so results do not depend on which thread runs what.
+/// Each work item has its own stream, so results do not depend on which thread runs it.
 /// The generator is SplitMix64 from a hashed start (source [Steele2014]).
 class Rng {
  public:
@@ -21,7 +21,7 @@ class Rng {
     /// Uniform in [0, 1), all 53 bits random.
     double uniform() { return to_unit(next_bits()); }
 
-    /// The next `numbers.size()` results of uniform(), in vector units.
+    /// The next `numbers.size()` results of uniform(), vectorized.
     void fill_uniform(std::span<double> numbers) {
         const std::uint64_t start = state_;
         for (std::size_t i = 0; i < numbers.size(); ++i) {

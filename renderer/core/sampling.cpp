@@ -7,19 +7,6 @@
 #include <limits>
 
 namespace core {
-namespace {
-
-double azimuth_share(double x, double y) {
-    const double share = std::atan2(y, x) / (2.0 * kPi);
-    return std::min(share < 0.0 ? share + 1.0 : share, kBelowOne);
-}
-
-}  // namespace
-
-Vec2 invert_triangle(const Vec2& barycentric) {
-    const double root = barycentric.sum();
-    return {root * root, root > 0.0 ? barycentric.y() / root : 0.0};
-}
 
 Vec3 sample_cosine_hemisphere(const Vec2& u) {
     const double radius = std::sqrt(u.x());
@@ -31,20 +18,11 @@ double pdf_cosine_hemisphere(const Vec3& direction) {
     return std::max(0.0, direction.z()) / kPi;
 }
 
-Vec2 invert_cosine_hemisphere(const Vec3& direction) {
-    return {direction.x() * direction.x() + direction.y() * direction.y(),
-            azimuth_share(direction.x(), direction.y())};
-}
-
 Vec3 sample_sphere(const Vec2& u) {
     const double z = 1.0 - 2.0 * u.x();
     const double radius = 2.0 * std::sqrt(u.x() * (1.0 - u.x()));
     const double angle = 2.0 * kPi * u.y();
     return {radius * std::cos(angle), radius * std::sin(angle), z};
-}
-
-Vec2 invert_sphere(const Vec3& direction) {
-    return {0.5 * (1.0 - direction.z()), azimuth_share(direction.x(), direction.y())};
 }
 
 DiscreteDistribution::DiscreteDistribution(std::span<const double> weights)
@@ -94,10 +72,6 @@ DiscreteDistribution::Share DiscreteDistribution::share_from(std::size_t hint, d
 
 double DiscreteDistribution::probability(std::size_t index) const {
     return cumulative_[index] - begin_of(index);
-}
-
-double DiscreteDistribution::invert(std::size_t index, double remapped) const {
-    return begin_of(index) + remapped * probability(index);
 }
 
 }  // namespace core

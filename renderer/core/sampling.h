@@ -24,8 +24,8 @@ inline Vec2 lattice_point(int i, int count, const Vec2& shift) {
     return {(i + shift.x()) / count, v - std::floor(v)};
 }
 
-/// Warps of the unit square, each with its density and its inverse (source [Osada2002] for the
-/// triangle; the others follow from their cumulative distributions).
+/// Warps of the unit square, each with its density (source [Osada2002] for the triangle; the others
+/// follow from their cumulative distributions).
 
 /// Barycentric coordinates (b1, b2) of a point uniform by area on a triangle; b0 = 1 - b1 - b2.
 inline Vec2 sample_triangle(const Vec2& u) {
@@ -33,20 +33,16 @@ inline Vec2 sample_triangle(const Vec2& u) {
     const double root = std::sqrt(u.x());
     return {root * (1.0 - u.y()), root * u.y()};
 }
-/// The u that sample_triangle maps to `barycentric`.
-Vec2 invert_triangle(const Vec2& barycentric);
 
 /// Unit vector about +z with density cos(theta)/pi.
 Vec3 sample_cosine_hemisphere(const Vec2& u);
 double pdf_cosine_hemisphere(const Vec3& direction);  ///< pdf_solid_angle [1/sr]
-Vec2 invert_cosine_hemisphere(const Vec3& direction);
 
-/// Unit vector uniform on the sphere, density 1/(4 pi).
+/// Unit vector uniform on the sphere, and its density pdf_solid_angle [1/sr].
 Vec3 sample_sphere(const Vec2& u);
 inline double pdf_sphere() {
     return 1.0 / (4.0 * kPi);
-}  ///< pdf_solid_angle [1/sr]
-Vec2 invert_sphere(const Vec3& direction);
+}
 
 /// Picks indices with probabilities proportional to given weights, in index order along u.
 class DiscreteDistribution {
@@ -76,8 +72,6 @@ class DiscreteDistribution {
     /// The share that holds u, searched upwards from an index not beyond its own.
     Share share_from(std::size_t hint, double u) const;
     double probability(std::size_t index) const;
-    /// The u for which sample() gives `index` and `remapped`.
-    double invert(std::size_t index, double remapped) const;
 
  private:
     double begin_of(std::size_t index) const { return index == 0 ? 0.0 : cumulative_[index - 1]; }

@@ -22,17 +22,27 @@ std::string shortened(const Json& json) {
 
 }  // namespace
 
+void require(bool holds, const std::string& where, double found, const std::string& allowed) {
+    if (!holds) require(false, where, fmt::format("{}", found), allowed);
+}
+
+void require(bool holds,
+             const std::string& where,
+             const std::string& found,
+             const std::string& allowed) {
+    if (!holds) throw Error(where, "found " + found, "must be " + allowed);
+}
+
 void throw_wrong_type(const std::string& where, const Json& found, const std::string& allowed) {
-    // Of a whole file no key is to name.
+    // The root of a file has no key to name.
     throw Error(where.ends_with(": ") ? where.substr(0, where.size() - 2) : where,
                 "found " + shortened(found),
                 "must be " + allowed);
 }
 
 std::string join_key(const std::string& where, const std::string& key) {
-    const bool top = where.empty() || where.ends_with(": ");
-    return top || where == "--set" ? where + (where == "--set" ? " " : "") + key
-                                   : where + "." + key;
+    if (where.empty() || where.ends_with(": ")) return where + key;
+    return where + (where == "--set" ? " " : ".") + key;
 }
 
 void read_value(const Json& json, const std::string& where, bool& value) {
@@ -85,6 +95,23 @@ void check_keys(const Json& json, const std::string& where, const std::vector<st
                         fmt::format("known keys are {}", fmt::join(known, ", ")));
         }
     }
+}
+
+void check_range(double value, const Range& range, const std::string& where) {
+    const bool above = range.with_low ? value >= range.low : value > range.low;
+    const bool below = range.with_high ? value <= range.high : value < range.high;
+    if (above && below && std::isfinite(value)) return;
+    std::string allowed;
+    if (std::isfinite(range.low)) {
+        allowed = fmt::format("{} {}", range.with_low ? "at least" : "above", range.low);
+    }
+    if (std::isfinite(range.high)) {
+        allowed += fmt::format("{}{} {}",
+                               allowed.empty() ? "" : " and ",
+                               range.with_high ? "at most" : "below",
+                               range.high);
+    }
+    require(false, where, value, std::isfinite(value) ? allowed : "finite");
 }
 
 Json parse_override(const std::string& text) {

@@ -9,6 +9,7 @@
 #include <array>
 #include <concepts>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -28,8 +29,10 @@ using Json = nlohmann::ordered_json;
 ///     }
 ///
 /// From that list come JSON reading, `--set key.path=value`, the help text, errors about unknown
-/// keys and the echo stored with every result. A field is a value, an enum that specialises
-/// EnumNames, a struct with fields of its own, or an optional of any of these (null when empty).
+/// keys, the check of ranges and the echo stored with every result. The meaning of a number may
+/// come with its range, as in `core::at_least(1, "number of bins")`. A field is a value, an enum
+/// that specialises EnumNames, a struct with fields of its own, or an optional of any of these
+/// (null when empty).
 struct AnyVisitor {
     template <class T>
     void operator()(const char*, T&, const char*) const {}
@@ -39,9 +42,42 @@ concept SettingsStruct = requires(T& value, AnyVisitor visitor) {
     for_each_field(value, visitor);
 };
 
-/// Specialise with `static constexpr std::array<std::pair<E, std::string_view>, N> value`.
+/// An interval of numbers, each end with or without its bound.
+struct Range {
+    double low = -std::numeric_limits<double>::infinity();
+    bool with_low = false;
+    double high = std::numeric_limits<double>::infinity();
+    bool with_high = false;
+};
+
+/// What a field means and which numbers it may hold; converts to the meaning for visitors that
+/// want nothing else.
+struct Ranged {
+    const char* meaning;
+    Range range;
+
+    constexpr operator const char*() const { return meaning; }
+};
+constexpr Ranged at_least(double low, const char* meaning) {
+    return {meaning, {.low = low, .with_low = true}};
+}
+constexpr Ranged above(double low, const char* meaning) {
+    return {meaning, {.low = low}};
+}
+constexpr Ranged between(double low, double high, const char* meaning) {
+    return {meaning, {low, true, high, true}};
+}
+
+/// Specialise with `static constexpr auto value = names_from_zero<E>("first", "second")`.
 template <class E>
 struct EnumNames;
+
+/// The enumerators of E, which count up from 0, with a name for each.
+template <class E, class... Names>
+constexpr auto names_from_zero(const Names&... names) {
+    int next = 0;
+    return std::array{std::pair<E, std::string_view>{static_cast<E>(next++), names}...};
+}
 
 template <class E>
 std::string enum_choices() {
@@ -60,6 +96,13 @@ std::string_view enum_name(E wanted) {
     }
     return "?";
 }
+
+/// Throws Error `where: found <found>; must be <allowed>` unless `holds`; `where` is the full key.
+void require(bool holds, const std::string& where, double found, const std::string& allowed);
+void require(bool holds,
+             const std::string& where,
+             const std::string& found,
+             const std::string& allowed);
 
 /// Throws the error for a JSON value of the wrong type: `where: found <json>; must be <allowed>`.
 [[noreturn]] void throw_wrong_type(const std::string& where,
@@ -142,19 +185,8 @@ void read_value(const Json& json, const std::string& where, S& settings) {
     check_keys(json, where, known);
 }
 
-inline Json write_value(bool value) {
-    return value;
-}
-inline Json write_value(int value) {
-    return value;
-}
-inline Json write_value(std::uint64_t value) {
-    return value;
-}
-inline Json write_value(double value) {
-    return value;
-}
-inline Json write_value(const std::string& value) {
+template <class T>
+requires std::is_arithmetic_v<T> || std::same_as<T, std::string> Json write_value(const T& value) {
     return value;
 }
 inline Json write_value(const Vec3& value) {
@@ -196,6 +228,30 @@ requires SettingsStruct<S> Json write_value(S settings) {
         json[name] = write_value(field);
     });
     return json;
+}
+
+/// Throws Error unless a number is finite and in a range, each number of a list, and that of an
+/// optional if it has one; `where` is the full key.
+void check_range(double value, const Range& range, const std::string& where);
+
+template <class T, std::size_t N>
+void check_range(const std::array<T, N>& values, const Range& range, const std::string& where) {
+    for (const T& value : values) check_range(value, range, where);
+}
+template <class T>
+void check_range(const std::optional<T>& value, const Range& range, const std::string& where) {
+    if (value) check_range(*value, range, where);
+}
+
+/// Throws Error for a field outside the range in the list of fields. Fields with fields of their
+/// own are left to their validate().
+template <SettingsStruct S>
+void check_ranges(S settings, const std::string& where) {
+    for_each_field(settings, [&](const char* name, auto& field, const auto& meaning) {
+        if constexpr (std::same_as<decltype(meaning), const Ranged&>) {
+            check_range(field, meaning.range, join_key(where, name));
+        }
+    });
 }
 
 /// Parses `key.path=value` into nested JSON; the value is JSON or, failing that, a string.

@@ -8,16 +8,16 @@
 #include <cstddef>
 #include <cstdint>
 
-// Calls would go through memory.
+// A function call would pass these values through memory instead of registers.
 #define NLOS_INLINE [[gnu::always_inline]] inline
 
 namespace core {
 
-/// Eight numbers for arithmetic in vectors of the processor's width: compilers leave loops over
-/// arrays scalar where these might overlap, and break them up for the sake of conditions. (The
-/// standard library's own vectors of a fixed size are slow where they take several registers, and
-/// with GCC 12 conditions on them then go wrong.) Whoever computes with them should be inlined,
-/// too.
+/// Eight doubles in SIMD registers of the processor's native width.
+///
+/// Compilers do not vectorize loops over arrays that may alias, nor loops with conditions. The
+/// standard library's fixed-size vectors are slow where they take several registers, and with GCC
+/// 12 comparisons of them then go wrong. Functions that compute with Simd should be inlined, too.
 struct Simd {
     using Part = std::experimental::native_simd<double>;
     static constexpr std::size_t kParts = 8 / Part::size();
@@ -32,7 +32,7 @@ struct Simd {
     double operator[](std::size_t i) const { return parts[i / Part::size()][i % Part::size()]; }
 };
 
-/// What holds for each of the numbers.
+/// A condition per lane.
 struct SimdMask {
     using Part = Simd::Part::mask_type;
 
@@ -73,69 +73,38 @@ NLOS_INLINE void store(const Simd& values, std::array<double, N>& lanes, std::si
     }
 }
 
-NLOS_INLINE Simd operator+(const Simd& a, const Simd& b) {
-    Simd result;
-    for (std::size_t p = 0; p < Simd::kParts; ++p) result.parts[p] = a.parts[p] + b.parts[p];
-    return result;
-}
-
-NLOS_INLINE Simd operator-(const Simd& a, const Simd& b) {
-    Simd result;
-    for (std::size_t p = 0; p < Simd::kParts; ++p) result.parts[p] = a.parts[p] - b.parts[p];
-    return result;
-}
-
-NLOS_INLINE Simd operator*(const Simd& a, const Simd& b) {
-    Simd result;
-    for (std::size_t p = 0; p < Simd::kParts; ++p) result.parts[p] = a.parts[p] * b.parts[p];
-    return result;
-}
-
-NLOS_INLINE Simd operator/(const Simd& a, const Simd& b) {
-    Simd result;
-    for (std::size_t p = 0; p < Simd::kParts; ++p) result.parts[p] = a.parts[p] / b.parts[p];
-    return result;
-}
-
-NLOS_INLINE Simd operator-(const Simd& a) {
-    Simd result;
-    for (std::size_t p = 0; p < Simd::kParts; ++p) result.parts[p] = -a.parts[p];
-    return result;
-}
+// A function whose result's native vectors follow one by one from those of its arguments.
+#define NLOS_BY_PART(Result, signature, part)                                  \
+    NLOS_INLINE Result signature {                                             \
+        Result result;                                                         \
+        for (std::size_t p = 0; p < Simd::kParts; ++p) result.parts[p] = part; \
+        return result;                                                         \
+    }
+NLOS_BY_PART(Simd, operator+(const Simd& a, const Simd& b), a.parts[p] + b.parts[p])
+NLOS_BY_PART(Simd, operator-(const Simd& a, const Simd& b), a.parts[p] - b.parts[p])
+NLOS_BY_PART(Simd, operator*(const Simd& a, const Simd& b), a.parts[p] * b.parts[p])
+NLOS_BY_PART(Simd, operator/(const Simd& a, const Simd& b), a.parts[p] / b.parts[p])
+NLOS_BY_PART(Simd, operator-(const Simd& a), -a.parts[p])
+NLOS_BY_PART(Simd, max(const Simd& a, const Simd& b), max(a.parts[p], b.parts[p]))
+NLOS_BY_PART(Simd, min(const Simd& a, const Simd& b), min(a.parts[p], b.parts[p]))
+NLOS_BY_PART(Simd, floor(const Simd& a), floor(a.parts[p]))
+NLOS_BY_PART(SimdMask, operator<(const Simd& a, const Simd& b), a.parts[p] < b.parts[p])
+NLOS_BY_PART(SimdMask, operator<=(const Simd& a, const Simd& b), a.parts[p] <= b.parts[p])
+NLOS_BY_PART(SimdMask, operator!=(const Simd& a, const Simd& b), a.parts[p] != b.parts[p])
+NLOS_BY_PART(SimdMask, operator&(const SimdMask& a, const SimdMask& b), a.parts[p] && b.parts[p])
+NLOS_BY_PART(SimdMask, operator!(const SimdMask& a), !a.parts[p])
+// Lane by lane, which compilers vectorize: with the library's own square root some warn of
+// uninitialized memory in it.
+NLOS_BY_PART(Simd, sqrt(const Simd& a), Simd::Part([&](auto i) {
+                 return std::sqrt(a.parts[p][i]);
+             }))
+#undef NLOS_BY_PART
 
 NLOS_INLINE Simd& operator+=(Simd& a, const Simd& b) {
     return a = a + b;
 }
-
 NLOS_INLINE Simd& operator*=(Simd& a, const Simd& b) {
     return a = a * b;
-}
-
-NLOS_INLINE Simd max(const Simd& a, const Simd& b) {
-    Simd result;
-    for (std::size_t p = 0; p < Simd::kParts; ++p) result.parts[p] = max(a.parts[p], b.parts[p]);
-    return result;
-}
-
-NLOS_INLINE Simd min(const Simd& a, const Simd& b) {
-    Simd result;
-    for (std::size_t p = 0; p < Simd::kParts; ++p) result.parts[p] = min(a.parts[p], b.parts[p]);
-    return result;
-}
-
-NLOS_INLINE Simd floor(const Simd& a) {
-    Simd result;
-    for (std::size_t p = 0; p < Simd::kParts; ++p) result.parts[p] = floor(a.parts[p]);
-    return result;
-}
-
-/// Compilers make vectors of it; the library's own makes some warn of what they do themselves.
-NLOS_INLINE Simd sqrt(const Simd& a) {
-    Simd result;
-    for (std::size_t p = 0; p < Simd::kParts; ++p) {
-        result.parts[p] = Simd::Part([&](auto i) { return std::sqrt(a.parts[p][i]); });
-    }
-    return result;
 }
 
 /// The same of single numbers, for templates of both.
@@ -144,36 +113,6 @@ NLOS_INLINE double sqrt(double a) {
 }
 NLOS_INLINE double max(double a, double b) {
     return a < b ? b : a;
-}
-
-NLOS_INLINE SimdMask operator<(const Simd& a, const Simd& b) {
-    SimdMask result;
-    for (std::size_t p = 0; p < Simd::kParts; ++p) result.parts[p] = a.parts[p] < b.parts[p];
-    return result;
-}
-
-NLOS_INLINE SimdMask operator<=(const Simd& a, const Simd& b) {
-    SimdMask result;
-    for (std::size_t p = 0; p < Simd::kParts; ++p) result.parts[p] = a.parts[p] <= b.parts[p];
-    return result;
-}
-
-NLOS_INLINE SimdMask operator!=(const Simd& a, const Simd& b) {
-    SimdMask result;
-    for (std::size_t p = 0; p < Simd::kParts; ++p) result.parts[p] = a.parts[p] != b.parts[p];
-    return result;
-}
-
-NLOS_INLINE SimdMask operator&(const SimdMask& a, const SimdMask& b) {
-    SimdMask result;
-    for (std::size_t p = 0; p < Simd::kParts; ++p) result.parts[p] = a.parts[p] && b.parts[p];
-    return result;
-}
-
-NLOS_INLINE SimdMask operator!(const SimdMask& a) {
-    SimdMask result;
-    for (std::size_t p = 0; p < Simd::kParts; ++p) result.parts[p] = !a.parts[p];
-    return result;
 }
 
 /// By lane: a where the mask holds, else b.

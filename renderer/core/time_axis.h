@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/core/error.h"
+#include "renderer/core/settings.h"
 
 #include <optional>
 
@@ -27,12 +27,16 @@ struct TimeAxis {
 
 template <class Visitor>
 void for_each_field(TimeAxis& axis, Visitor&& visit) {
-    visit("opl_start_m", axis.opl_start_m, "optical path length at the start of bin 0 [m]");
-    visit("bin_width_m", axis.bin_width_m, "width of a bin in optical path length [m]");
-    visit("num_bins", axis.num_bins, "number of bins; one bin is a time gate");
+    visit("opl_start_m",
+          axis.opl_start_m,
+          Ranged{"optical path length at the start of bin 0 [m]", {}});
+    visit("bin_width_m", axis.bin_width_m, above(0, "width of a bin in optical path length [m]"));
+    visit("num_bins", axis.num_bins, at_least(1, "number of bins; one bin is a time gate"));
 }
 
 /// Throws Error unless the axis has at least one bin of positive width.
-void validate(const TimeAxis& axis, const std::string& where);
+inline void validate(const TimeAxis& axis, const std::string& where) {
+    check_ranges(axis, where);
+}
 
 }  // namespace core

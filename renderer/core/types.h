@@ -28,7 +28,7 @@ inline constexpr double opl_from_seconds(double seconds) {
 /// An orthonormal basis whose third column is `normal` (unit) and whose first lies along the part
 /// of `tangent` across it; `tangent` must not be parallel to `normal`.
 ///
-/// With a tangent that belongs to the scene, draws turn with the scene.
+/// Given a tangent that belongs to the scene, samples rotate with the scene.
 inline Mat3 frame_from_normal(const Vec3& normal, const Vec3& tangent) {
     Mat3 frame;
     frame.col(0) = (tangent - normal.dot(tangent) * normal).normalized();

@@ -38,15 +38,23 @@ struct VelocityAxis {
 
 template <class Visitor>
 void for_each_field(VelocityAxis& axis, Visitor&& visit) {
-    visit("start_m_per_s", axis.start_m_per_s, "path velocity at the start of bin 0 [m/s]");
-    visit("bin_width_m_per_s", axis.bin_width_m_per_s, "width of a bin in path velocity [m/s]");
-    visit("num_bins", axis.num_bins, "number of bins");
+    visit("start_m_per_s",
+          axis.start_m_per_s,
+          Ranged{"path velocity at the start of bin 0 [m/s]", {}});
+    visit("bin_width_m_per_s",
+          axis.bin_width_m_per_s,
+          above(0, "width of a bin in path velocity [m/s]"));
+    visit("num_bins", axis.num_bins, at_least(1, "number of bins"));
     visit("with_time", axis.with_time, "resolve velocity and path length together");
-    visit("carrier_hz", axis.carrier_hz, "frequency f0 for which shifts -f0 u/c are stated [Hz]");
+    visit("carrier_hz",
+          axis.carrier_hz,
+          above(0, "frequency f0 for which shifts -f0 u/c are stated [Hz]"));
 }
 
 /// Throws Error unless the axis has at least one bin of positive width and a positive carrier.
-void validate(const VelocityAxis& axis, const std::string& where);
+inline void validate(const VelocityAxis& axis, const std::string& where) {
+    check_ranges(axis, where);
+}
 
 /// Doppler shift of light, or of its modulation, along a path whose length changes at a rate:
 /// -f0 u/c, to first order in u/c.

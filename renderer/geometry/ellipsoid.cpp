@@ -298,12 +298,4 @@ double pdf_ellipsoid(const FocusPair& foci,
     return pdf * ArcDensity(foci, *section, arcs, lobe).pdf(arcs.invert(angle));
 }
 
-std::optional<double> invert_ellipsoid(const FocusPair& foci, const Facet& facet, const Vec3& x) {
-    const auto section = EllipsoidSection::cut(foci, foci.opl_m(x), facet);
-    if (!section) return std::nullopt;
-    const EllipsoidArcs arcs(*section, facet);
-    if (!(arcs.total_rad() > 0.0)) return std::nullopt;
-    return arcs.invert(section->angle_of(x));
-}
-
 }  // namespace renderer

@@ -105,7 +105,7 @@ class EllipsoidArcs {
     double total_rad_ = 0.0;
 };
 
-/// A vertex with legs of a wanted length.
+/// A vertex whose two legs have the requested length.
 struct EllipsoidalConnection {
     core::Vec3 position;
     /// Its density by area for a density of the length of 1 [1/m]: times pdf_opl it is pdf_area.
@@ -141,11 +141,5 @@ double pdf_ellipsoid(const FocusPair& foci,
                      const Facet& facet,
                      const core::Vec3& x,
                      const ConnectionLobe* lobe = nullptr);
-
-/// The u for which sample_ellipsoid() at the length of `x` gives `x`, without a lobe; nothing where
-/// it cannot.
-std::optional<double> invert_ellipsoid(const FocusPair& foci,
-                                       const Facet& facet,
-                                       const core::Vec3& x);
 
 }  // namespace renderer

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <tuple>
 
 namespace renderer {
 namespace {
@@ -14,7 +15,7 @@ using core::Vec2;
 using core::Vec3;
 
 constexpr double kCoplanar = 1e-10;  ///< of the object's size, and of a metre
-constexpr double kFacetsPerCell = 1.0;
+constexpr auto kFree = std::numeric_limits<std::uint32_t>::max();  ///< a facet without a patch
 
 std::array<Vec3, 3> corners_of(const Facet& facet) {
     return {facet.corner, facet.corner + facet.edge1, facet.corner + facet.edge2};
@@ -24,14 +25,8 @@ std::array<Vec3, 3> corners_of(const Facet& facet) {
 // repeat vertices where texture coordinates jump.
 std::vector<std::vector<std::uint32_t>> neighbours_of(const Scene& scene) {
     const std::span<const Facet> facets = scene.facets();
-    struct Edge {
-        std::array<double, 6> ends;  ///< both end points, the smaller first
-        std::uint32_t object;
-        std::uint32_t facet;
-        bool operator<(const Edge& other) const {
-            return std::tie(object, ends, facet) < std::tie(other.object, other.ends, other.facet);
-        }
-    };
+    using Edge =
+        std::tuple<std::uint32_t, std::array<double, 6>, std::uint32_t>;  // object, ends, facet
     std::vector<Edge> edges;
     edges.reserve(3 * facets.size());
     for (std::uint32_t f = 0; f < facets.size(); ++f) {
@@ -44,19 +39,20 @@ std::vector<std::vector<std::uint32_t>> neighbours_of(const Scene& scene) {
             std::array<double, 3> first{p.x(), p.y(), p.z()};
             std::array<double, 3> second{q.x(), q.y(), q.z()};
             if (second < first) std::swap(first, second);
-            edges.push_back({{first[0], first[1], first[2], second[0], second[1], second[2]},
-                             facets[f].object,
-                             f});
+            edges.emplace_back(
+                facets[f].object,
+                std::array{first[0], first[1], first[2], second[0], second[1], second[2]},
+                f);
         }
     }
     std::sort(edges.begin(), edges.end());
     std::vector<std::vector<std::uint32_t>> neighbours(facets.size());
     for (std::size_t i = 1; i < edges.size(); ++i) {
-        const Edge& a = edges[i - 1];
-        const Edge& b = edges[i];
-        if (a.object != b.object || a.ends != b.ends) continue;
-        neighbours[a.facet].push_back(b.facet);
-        neighbours[b.facet].push_back(a.facet);
+        const auto& [object_a, ends_a, a] = edges[i - 1];
+        const auto& [object_b, ends_b, b] = edges[i];
+        if (object_a != object_b || ends_a != ends_b) continue;
+        neighbours[a].push_back(b);
+        neighbours[b].push_back(a);
     }
     return neighbours;
 }
@@ -86,9 +82,7 @@ Vec2 barycentric_of(const Facet& facet, const Vec3& position) {
 }
 
 PlanarPatches::PlanarPatches(const Scene& scene)
-    : facets_(scene.facets()),
-      patch_of_facet_(facets_.size(), std::numeric_limits<std::uint32_t>::max()),
-      cell_begin_{0} {
+    : facets_(scene.facets()), patch_of_facet_(facets_.size(), kFree), cell_begin_{0} {
     const std::span<const Facet> facets = facets_;
     const auto neighbours = neighbours_of(scene);
     const auto distances = coplanar_distances(facets);
@@ -98,7 +92,6 @@ PlanarPatches::PlanarPatches(const Scene& scene)
     std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
         return facets[a].area_m2 > facets[b].area_m2;
     });
-    constexpr auto kFree = std::numeric_limits<std::uint32_t>::max();
     std::vector<std::uint32_t> members;
     for (const std::uint32_t seed : order) {
         if (patch_of_facet_[seed] != kFree) continue;
@@ -149,7 +142,7 @@ void PlanarPatches::add_grid(Patch& patch, const std::vector<std::uint32_t>& mem
     Eigen::AlignedBox2d box;
     for (const std::uint32_t facet : members) box.extend(box_of(facet));
     const Vec2 size = box.sizes();
-    const double cell = std::sqrt(size.prod() * kFacetsPerCell / double(members.size()));
+    const double cell = std::sqrt(size.prod() / double(members.size()));
     const auto cells_along = [&](double length) {
         const double most = 4.0 * double(members.size());
         return static_cast<std::uint32_t>(std::clamp(std::ceil(length / cell), 1.0, most));

@@ -17,7 +17,7 @@ inline constexpr VisibilityMask kAllVisible = 0xffff;
 const std::array<std::array<double, 3>, 16>& centers_of_bits();
 
 /// The linear function with the integral and the first moments of the visible part's indicator,
-/// bent to stay at or above 0: its values at the three corners.
+/// flattened so that it is nowhere negative: its values at the three corners.
 std::array<double, 3> visible_share(VisibilityMask mask);
 
 }  // namespace renderer

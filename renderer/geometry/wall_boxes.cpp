@@ -34,7 +34,7 @@ void split(std::span<Vec3> points, std::size_t max_per_run, Runs& runs) {
     split(points.subspan(half), max_per_run, runs);
 }
 
-// Values per box, in vector units and without memory of the heap.
+// Values per box, vectorized and without heap allocation.
 using PerBox = Eigen::Array<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxBoxes, 1>;
 
 // Squared distances from a point to the nearest of each box, given by two corners.

@@ -14,7 +14,7 @@ namespace renderer {
 /// `nlos_ellipsoidal_exclude`, `nlos_velocity_m_per_s` and `nlos_retroreflective` are taken from
 /// the node, else from its nearest ancestor that has them, else from the material.
 ///
-/// path      the file; external buffers and images are looked for beside it
+/// path      the file; external buffers and images are searched for beside it
 /// returns   at least one object, each with at least one triangle; perspective cameras
 /// throws    core::Error naming the file and the offending part
 /// source    [glTF2]

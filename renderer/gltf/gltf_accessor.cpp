@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
+#include <type_traits>
 
 namespace renderer {
 namespace {
@@ -21,90 +23,68 @@ using Elements = std::vector<Eigen::Matrix<double, N, 1>>;
 struct ElementRange {
     const unsigned char* first = nullptr;
     std::size_t stride = 0;
+    std::size_t component_bytes = 0;
 };
 
-/// Which elements of a view an accessor (or one half of a sparse one) takes.
-struct ElementLayout {
-    std::size_t byte_offset = 0;
-    std::size_t count = 0;
-    std::size_t element_bytes = 0;
-};
-
-/// Finds elements in a buffer view. Throws Error when they do not fit into it.
+/// Finds an accessor's elements in its buffer view. Throws Error when they do not fit into it.
 ElementRange locate(const GltfDocument& document,
-                    int view_index,
-                    const ElementLayout& layout,
+                    const tinygltf::Accessor& accessor,
                     const std::string& where) {
     const tinygltf::BufferView& view =
-        document.model->bufferViews[static_cast<std::size_t>(view_index)];
-    const std::size_t stride = view.byteStride ? view.byteStride : layout.element_bytes;
-    if (stride < layout.element_bytes) {
-        throw core::Error(
-            document.where(where),
-            fmt::format("has elements of {} bytes every {} bytes", layout.element_bytes, stride),
-            "byteStride must be at least the size of an element");
+        document.model->bufferViews[static_cast<std::size_t>(accessor.bufferView)];
+    const auto component_bytes = static_cast<std::size_t>(
+        tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(accessor.componentType)));
+    const std::size_t bytes =
+        component_bytes * static_cast<std::size_t>(tinygltf::GetNumComponentsInType(
+                              static_cast<std::uint32_t>(accessor.type)));
+    const std::size_t stride = view.byteStride ? view.byteStride : bytes;
+    if (stride < bytes) {
+        throw core::Error(document.where(where),
+                          fmt::format("has elements of {} bytes every {} bytes", bytes, stride),
+                          "byteStride must be at least the size of an element");
     }
     // Divides instead of multiplying, which could overflow.
     const bool fits =
-        layout.byte_offset <= view.byteLength &&
-        layout.element_bytes <= view.byteLength - layout.byte_offset &&
-        layout.count - 1 <= (view.byteLength - layout.byte_offset - layout.element_bytes) / stride;
+        accessor.byteOffset <= view.byteLength && bytes <= view.byteLength - accessor.byteOffset &&
+        accessor.count - 1 <= (view.byteLength - accessor.byteOffset - bytes) / stride;
     if (!fits) {
-        throw core::Error(document.where(where),
-                          fmt::format("has {} elements of {} bytes every {} bytes from byte {}",
-                                      layout.count,
-                                      layout.element_bytes,
-                                      stride,
-                                      layout.byte_offset),
-                          fmt::format("bufferViews[{}] has {} bytes", view_index, view.byteLength));
+        throw core::Error(
+            document.where(where),
+            fmt::format("has {} elements of {} bytes every {} bytes from byte {}",
+                        accessor.count,
+                        bytes,
+                        stride,
+                        accessor.byteOffset),
+            fmt::format("bufferViews[{}] has {} bytes", accessor.bufferView, view.byteLength));
     }
     const tinygltf::Buffer& buffer = document.model->buffers[static_cast<std::size_t>(view.buffer)];
-    return {buffer.data.data() + view.byteOffset + layout.byte_offset, stride};
+    return {buffer.data.data() + view.byteOffset + accessor.byteOffset, stride, component_bytes};
 }
 
+/// A component as a number; normalized integers become fractions.
 template <class T>
-T load_as(const unsigned char* bytes) {
-    T value;
-    std::memcpy(&value, bytes, sizeof(T));
-    return value;
+double decode(const unsigned char* bytes, bool normalized) {
+    T stored;
+    std::memcpy(&stored, bytes, sizeof(T));
+    const auto value = static_cast<double>(stored);
+    if (!normalized || !std::is_integral_v<T>) return value;
+    return std::max(value / static_cast<double>(std::numeric_limits<T>::max()), -1.0);
 }
 
-std::size_t component_bytes(int type) {
-    switch (type) {
-        case TINYGLTF_COMPONENT_TYPE_BYTE:
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-            return 1;
-        case TINYGLTF_COMPONENT_TYPE_SHORT:
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-            return 2;
-        default:
-            return 4;
-    }
-}
-
-/// One component as a number; normalised integers become fractions.
 double decode_component(const unsigned char* bytes, int type, bool normalized) {
     switch (type) {
-        case TINYGLTF_COMPONENT_TYPE_BYTE: {
-            const double value = load_as<std::int8_t>(bytes);
-            return normalized ? std::max(value / 127.0, -1.0) : value;
-        }
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: {
-            const double value = load_as<std::uint8_t>(bytes);
-            return normalized ? value / 255.0 : value;
-        }
-        case TINYGLTF_COMPONENT_TYPE_SHORT: {
-            const double value = load_as<std::int16_t>(bytes);
-            return normalized ? std::max(value / 32767.0, -1.0) : value;
-        }
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: {
-            const double value = load_as<std::uint16_t>(bytes);
-            return normalized ? value / 65535.0 : value;
-        }
+        case TINYGLTF_COMPONENT_TYPE_BYTE:
+            return decode<std::int8_t>(bytes, normalized);
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+            return decode<std::uint8_t>(bytes, normalized);
+        case TINYGLTF_COMPONENT_TYPE_SHORT:
+            return decode<std::int16_t>(bytes, normalized);
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+            return decode<std::uint16_t>(bytes, normalized);
         case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-            return load_as<std::uint32_t>(bytes);
+            return decode<std::uint32_t>(bytes, normalized);
         default:
-            return static_cast<double>(load_as<float>(bytes));
+            return decode<float>(bytes, normalized);
     }
 }
 
@@ -120,6 +100,11 @@ bool is_attribute_type(int type) {
            type == TINYGLTF_COMPONENT_TYPE_FLOAT;
 }
 
+template <int N>
+Elements<N> read_elements(const GltfDocument& document,
+                          const tinygltf::Accessor& accessor,
+                          const std::string& where);
+
 /// Overwrites the elements that a sparse accessor lists.
 template <int N>
 void apply_sparse(const GltfDocument& document,
@@ -132,32 +117,28 @@ void apply_sparse(const GltfDocument& document,
                           fmt::format("found componentType {}", sparse.indices.componentType),
                           "must be 5121, 5123 or 5125");
     }
-    const auto count = static_cast<std::size_t>(sparse.count);
-    const std::size_t bytes = component_bytes(accessor.componentType);
-    const ElementRange indices = locate(document,
-                                        sparse.indices.bufferView,
-                                        {static_cast<std::size_t>(sparse.indices.byteOffset),
-                                         count,
-                                         component_bytes(sparse.indices.componentType)},
-                                        where + ".sparse.indices");
-    const ElementRange values =
-        locate(document,
-               sparse.values.bufferView,
-               {static_cast<std::size_t>(sparse.values.byteOffset), count, N * bytes},
-               where + ".sparse.values");
-    for (std::size_t i = 0; i < count; ++i) {
-        const auto index = static_cast<std::size_t>(decode_component(
-            indices.first + i * indices.stride, sparse.indices.componentType, false));
+    // Both halves are dense accessors without a name of their own.
+    tinygltf::Accessor half;
+    half.count = static_cast<std::size_t>(sparse.count);
+    half.bufferView = sparse.indices.bufferView;
+    half.byteOffset = static_cast<std::size_t>(sparse.indices.byteOffset);
+    half.componentType = sparse.indices.componentType;
+    half.type = TINYGLTF_TYPE_SCALAR;
+    const auto indices = read_elements<1>(document, half, where + ".sparse.indices");
+    half.bufferView = sparse.values.bufferView;
+    half.byteOffset = static_cast<std::size_t>(sparse.values.byteOffset);
+    half.componentType = accessor.componentType;
+    half.type = accessor.type;
+    half.normalized = accessor.normalized;
+    const auto values = read_elements<N>(document, half, where + ".sparse.values");
+    for (std::size_t i = 0; i < half.count; ++i) {
+        const auto index = static_cast<std::size_t>(indices[i][0]);
         if (index >= elements.size()) {
             throw core::Error(document.where(where + ".sparse.indices"),
                               fmt::format("found {}", index),
                               fmt::format("must be below {}", elements.size()));
         }
-        for (int c = 0; c < N; ++c) {
-            const unsigned char* at =
-                values.first + i * values.stride + static_cast<std::size_t>(c) * bytes;
-            elements[index][c] = decode_component(at, accessor.componentType, accessor.normalized);
-        }
+        elements[index] = values[i];
     }
 }
 
@@ -166,11 +147,9 @@ template <int N>
 Elements<N> read_elements(const GltfDocument& document,
                           const tinygltf::Accessor& accessor,
                           const std::string& where) {
-    const std::size_t bytes = component_bytes(accessor.componentType);
     ElementRange range;
     if (accessor.bufferView >= 0) {
-        range = locate(
-            document, accessor.bufferView, {accessor.byteOffset, accessor.count, N * bytes}, where);
+        range = locate(document, accessor, where);
     } else if (accessor.count > core::available_memory_bytes() / (4 * sizeof(double) * N)) {
         // Without a buffer view, a few bytes of file can ask for any number of zeros.
         throw core::Error(document.where(where),
@@ -180,8 +159,8 @@ Elements<N> read_elements(const GltfDocument& document,
     Elements<N> elements(accessor.count, Eigen::Matrix<double, N, 1>::Zero());
     for (std::size_t i = 0; range.first && i < accessor.count; ++i) {
         for (int c = 0; c < N; ++c) {
-            const unsigned char* at =
-                range.first + i * range.stride + static_cast<std::size_t>(c) * bytes;
+            const unsigned char* at = range.first + i * range.stride +
+                                      static_cast<std::size_t>(c) * range.component_bytes;
             elements[i][c] = decode_component(at, accessor.componentType, accessor.normalized);
         }
     }

@@ -25,7 +25,7 @@ struct GltfDocument {
     std::string where(const std::string& part) const { return path + ": " + part; }
 };
 
-/// Reads a .gltf or .glb file, told apart by content, and checks it.
+/// Reads a .gltf or .glb file, distinguished by content, and checks it.
 /// Throws core::Error naming the file and the offending part.
 GltfDocument read_gltf_document(const std::string& path);
 

@@ -23,7 +23,7 @@ struct NlosExtras {
 
 template <class Visitor>
 void for_each_field(NlosExtras& extras, Visitor&& visit) {
-    visit("nlos_role", extras.role, "what the surface is to the sensor_pairs");
+    visit("nlos_role", extras.role, "what the surface is to the measurement");
     visit("nlos_ellipsoidal_exclude", extras.ellipsoidal_exclude, "no ellipsoidal connection here");
     visit("nlos_velocity_m_per_s", extras.velocity_m_per_s, "velocity, world [m/s]");
     visit("nlos_retroreflective", extras.retroreflective, "reflects light back where it came from");

@@ -11,14 +11,16 @@
 #include <fstream>
 #include <limits>
 #include <map>
+#include <type_traits>
 
 namespace renderer {
 namespace {
 
-tinygltf::Value number_list(const core::Vec3& v) {
-    tinygltf::Value::Array list;
-    for (const double x : v) list.emplace_back(x);
-    return tinygltf::Value(std::move(list));
+/// Appends an item; returns its index, by which other parts of the file refer to it.
+template <class T>
+int append(std::vector<T>& items, T item) {
+    items.push_back(std::move(item));
+    return static_cast<int>(items.size()) - 1;
 }
 
 /// Collects objects and cameras into a glTF model with one binary buffer.
@@ -49,7 +51,6 @@ class ModelBuilder {
         target.perspective.yfov = camera.fov_y_rad;
         target.perspective.znear = 0.01;  // glTF wants clipping planes; nothing here uses them
         target.perspective.zfar = 1000.0;
-        model_.cameras.push_back(std::move(target));
 
         core::Transform world_from_camera = core::Transform::Identity();
         world_from_camera.translation() = camera.position;
@@ -58,7 +59,7 @@ class ModelBuilder {
         world_from_camera.linear().col(2) = -camera.forward;
         tinygltf::Node node;
         node.name = camera.name;
-        node.camera = static_cast<int>(model_.cameras.size()) - 1;
+        node.camera = append(model_.cameras, std::move(target));
         set_transform(world_from_camera, node);
         add_node(std::move(node));
     }
@@ -80,8 +81,7 @@ class ModelBuilder {
     }
 
     void add_node(tinygltf::Node node) {
-        model_.scenes[0].nodes.push_back(static_cast<int>(model_.nodes.size()));
-        model_.nodes.push_back(std::move(node));
+        model_.scenes[0].nodes.push_back(append(model_.nodes, std::move(node)));
     }
 
     static void set_transform(const core::Transform& world_from_node, tinygltf::Node& node) {
@@ -103,7 +103,9 @@ class ModelBuilder {
             extras.emplace("nlos_ellipsoidal_exclude", tinygltf::Value(true));
         }
         if (!object.velocity_m_per_s.isZero(0.0)) {
-            extras.emplace("nlos_velocity_m_per_s", number_list(object.velocity_m_per_s));
+            const core::Vec3& v = object.velocity_m_per_s;
+            extras.emplace("nlos_velocity_m_per_s",
+                           tinygltf::Value(tinygltf::Value::Array(v.begin(), v.end())));
         }
         if (object.material.model == SurfaceModel::Retroreflective) {
             extras.emplace("nlos_retroreflective", tinygltf::Value(true));
@@ -121,8 +123,7 @@ class ModelBuilder {
         tinygltf::Mesh mesh;
         mesh.name = object.name;
         mesh.primitives.push_back(std::move(primitive));
-        model_.meshes.push_back(std::move(mesh));
-        return static_cast<int>(model_.meshes.size()) - 1;
+        return append(model_.meshes, std::move(mesh));
     }
 
     int add_material(const Object& object) {
@@ -145,8 +146,7 @@ class ModelBuilder {
             }
             pbr.baseColorTexture.index = add_texture(material.albedo_texture.get());
         }
-        model_.materials.push_back(std::move(target));
-        return static_cast<int>(model_.materials.size()) - 1;
+        return append(model_.materials, std::move(target));
     }
 
     int add_texture(const Texture* texture) {
@@ -167,14 +167,9 @@ class ModelBuilder {
         sampler.wrapS = gltf_wrap(texture->wrap_u);
         sampler.wrapT = gltf_wrap(texture->wrap_v);
         tinygltf::Texture target;
-        target.source = static_cast<int>(model_.images.size());
-        target.sampler = static_cast<int>(model_.samplers.size());
-        model_.images.push_back(std::move(image));
-        model_.samplers.push_back(sampler);
-        model_.textures.push_back(target);
-        const int index = static_cast<int>(model_.textures.size()) - 1;
-        textures_.emplace(texture, index);
-        return index;
+        target.source = append(model_.images, std::move(image));
+        target.sampler = append(model_.samplers, std::move(sampler));
+        return textures_.emplace(texture, append(model_.textures, std::move(target))).first->second;
     }
 
     static int gltf_wrap(TextureWrap wrap) {
@@ -205,10 +200,7 @@ class ModelBuilder {
             low = low.cwiseMin(position.cast<double>());
             high = high.cwiseMax(position.cast<double>());
         }
-        const int index = add_accessor(values,
-                                       TINYGLTF_COMPONENT_TYPE_FLOAT,
-                                       TINYGLTF_TYPE_VEC3,
-                                       TINYGLTF_TARGET_ARRAY_BUFFER);
+        const int index = add_accessor(values, TINYGLTF_TYPE_VEC3);
         model_.accessors.back().minValues.assign(low.begin(), low.end());
         model_.accessors.back().maxValues.assign(high.begin(), high.end());
         return index;
@@ -227,60 +219,51 @@ class ModelBuilder {
             values.push_back(static_cast<float>(uv.x()));
             values.push_back(static_cast<float>(uv.y()));
         }
-        return add_accessor(values,
-                            TINYGLTF_COMPONENT_TYPE_FLOAT,
-                            TINYGLTF_TYPE_VEC2,
-                            TINYGLTF_TARGET_ARRAY_BUFFER);
+        return add_accessor(values, TINYGLTF_TYPE_VEC2);
     }
 
     int add_indices(const core::TriangleMesh& mesh) {
         // The largest value of a type is reserved (primitive restart, [glTF2] 3.7.2.1).
-        if (mesh.vertices.size() < std::numeric_limits<std::uint16_t>::max()) {
-            std::vector<std::uint16_t> values;
-            for (const auto& triangle : mesh.triangles) {
-                for (const std::uint32_t v : triangle) {
-                    values.push_back(static_cast<std::uint16_t>(v));
-                }
-            }
-            return add_accessor(values,
-                                TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT,
-                                TINYGLTF_TYPE_SCALAR,
-                                TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
-        }
-        std::vector<std::uint32_t> values;
-        for (const auto& triangle : mesh.triangles) {
-            values.insert(values.end(), triangle.begin(), triangle.end());
-        }
-        return add_accessor(values,
-                            TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT,
-                            TINYGLTF_TYPE_SCALAR,
-                            TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
+        return mesh.vertices.size() < std::numeric_limits<std::uint16_t>::max()
+                   ? add_indices_as<std::uint16_t>(mesh)
+                   : add_indices_as<std::uint32_t>(mesh);
     }
 
-    /// Appends values to the buffer, on a 4-byte boundary, with a view and an accessor of their
-    /// own.
+    template <class Index>
+    int add_indices_as(const core::TriangleMesh& mesh) {
+        std::vector<Index> values;
+        for (const auto& triangle : mesh.triangles) {
+            for (const std::uint32_t v : triangle) values.push_back(static_cast<Index>(v));
+        }
+        return add_accessor(values, TINYGLTF_TYPE_SCALAR);
+    }
+
+    /// Appends vertex data (floats) or indices to the buffer, on a 4-byte boundary, with a view and
+    /// an accessor of their own.
     template <class T>
-    int add_accessor(const std::vector<T>& values, int component_type, int type, int target) {
+    int add_accessor(const std::vector<T>& values, int type) {
+        constexpr bool kIsVertexData = std::is_floating_point_v<T>;
         std::vector<unsigned char>& bytes = model_.buffers[0].data;
         bytes.resize((bytes.size() + 3) / 4 * 4);
         tinygltf::BufferView view;
         view.buffer = 0;
         view.byteOffset = bytes.size();
         view.byteLength = values.size() * sizeof(T);
-        view.target = target;
+        view.target =
+            kIsVertexData ? TINYGLTF_TARGET_ARRAY_BUFFER : TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER;
         bytes.resize(bytes.size() + view.byteLength);
         std::memcpy(bytes.data() + view.byteOffset, values.data(), view.byteLength);
 
         tinygltf::Accessor accessor;
-        accessor.bufferView = static_cast<int>(model_.bufferViews.size());
-        accessor.componentType = component_type;
+        accessor.bufferView = append(model_.bufferViews, std::move(view));
+        accessor.componentType = kIsVertexData    ? TINYGLTF_COMPONENT_TYPE_FLOAT
+                                 : sizeof(T) == 2 ? TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT
+                                                  : TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
         accessor.type = type;
         accessor.count =
             values.size() /
             static_cast<std::size_t>(tinygltf::GetNumComponentsInType(static_cast<uint32_t>(type)));
-        model_.bufferViews.push_back(std::move(view));
-        model_.accessors.push_back(std::move(accessor));
-        return static_cast<int>(model_.accessors.size()) - 1;
+        return append(model_.accessors, std::move(accessor));
     }
 
     const std::string& path_;

@@ -11,8 +11,8 @@ namespace renderer {
 /// How a facet scatters light. Directions are unit, in the facet's frame (z = normal), pointing
 /// away from the surface; both sides scatter, nothing is transmitted, all models are reciprocal.
 ///
-/// Adding a model: a struct here, one overload each of evaluate_, pdf_ and sample_ in bsdf.cpp, a
-/// name in geometry.h for files.
+/// Adding a model: a struct here, one overload each of evaluate_, pdf_ and sample_ in bsdf.cpp, and
+/// an enumerator of SurfaceModel in material.h for files.
 
 struct Lambertian {
     double albedo = 1.0;
@@ -33,7 +33,7 @@ struct Retroreflective {
 
 using Bsdf = std::variant<Lambertian, Ggx, Retroreflective>;
 
-/// Smallest GGX width; narrower lobes are as good as mirrors and lose precision.
+/// Smallest GGX width: narrower lobes are practically mirrors and lose precision.
 inline constexpr double kSmallestGgxAlpha = 1e-3;
 
 /// BSDF value [1/sr], without cosine; 0 when the directions lie on different sides.

@@ -48,8 +48,6 @@ struct SceneGeometry {
 
 template <>
 struct core::EnumNames<renderer::Role> {
-    static constexpr std::array<std::pair<renderer::Role, std::string_view>, 3> value{
-        {{renderer::Role::Hidden, "hidden"},
-         {renderer::Role::RelayWall, "relay_wall"},
-         {renderer::Role::BackWall, "back_wall"}}};
+    static constexpr auto value =
+        names_from_zero<renderer::Role>("hidden", "relay_wall", "back_wall");
 };

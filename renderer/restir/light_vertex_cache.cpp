@@ -114,9 +114,7 @@ void LightVertexCache::store(const std::vector<Walked>& walks) {
     points_.clear();
     walk_of_.clear();
     walk_begin_.assign(1, 0);
-    for (auto* column : {&x_, &y_, &z_, &first_x_, &first_y_, &first_z_, &to_light_m_}) {
-        column->clear();
-    }
+    for (auto& column : columns_) column.clear();
     const Vec3& origin = scene_->rays().origin();
     for (std::size_t w = 0; w < walks.size(); ++w) {
         double to_light = 0.0;
@@ -131,13 +129,11 @@ void LightVertexCache::store(const std::vector<Walked>& walks) {
             }
             points_.push_back(point);
             walk_of_.push_back(static_cast<std::uint32_t>(w));
-            x_.push_back(static_cast<float>(local.x()));
-            y_.push_back(static_cast<float>(local.y()));
-            z_.push_back(static_cast<float>(local.z()));
-            first_x_.push_back(static_cast<float>(first.x()));
-            first_y_.push_back(static_cast<float>(first.y()));
-            first_z_.push_back(static_cast<float>(first.z()));
-            to_light_m_.push_back(static_cast<float>(to_light));
+            const std::array<double, kNumColumns> values{
+                local.x(), local.y(), local.z(), first.x(), first.y(), first.z(), to_light};
+            for (std::size_t c = 0; c < kNumColumns; ++c) {
+                columns_[c].push_back(static_cast<float>(values[c]));
+            }
         }
         walk_begin_.push_back(static_cast<std::uint32_t>(points_.size()));
     }
@@ -163,15 +159,11 @@ void LightVertexCache::find(const PathDomain& domain,
     for (std::uint32_t v = walk_begin_[static_cast<std::size_t>(walks.first)]; v < last;) {
         std::array<float, kVerticesAtOnce> length;
         const std::uint32_t count = std::min(kVerticesAtOnce, last - v);
-        // Pointers: sums of 32-bit indices might wrap, for all a compiler knows, and would be
-        // loaded one by one.
-        const float* x = x_.data() + v;
-        const float* y = y_.data() + v;
-        const float* z = z_.data() + v;
-        const float* to_light_m = to_light_m_.data() + v;
-        const float* first_x = first_x_.data() + v;
-        const float* first_y = first_y_.data() + v;
-        const float* first_z = first_z_.data() + v;
+        // Pointers: the compiler cannot exclude that sums of 32-bit indices wrap around, and would
+        // load one number at a time.
+        std::array<const float*, kNumColumns> at;
+        for (std::size_t c = 0; c < kNumColumns; ++c) at[c] = columns_[c].data() + v;
+        const auto [x, y, z, first_x, first_y, first_z, to_light_m] = at;
         for (std::uint32_t i = 0; i < count; ++i) {
             const float dx = x[i] - start.x();
             const float dy = y[i] - start.y();

@@ -5,6 +5,7 @@
 #include "renderer/path/sensor_pairs.h"
 #include "renderer/restir/reusable_path.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -23,7 +24,7 @@ class LightVertexCache {
 
     /// Replaces all vertices by those of new walks; the same for any number of threads.
     ///
-    /// num_walks      walks in all; their first vertices are stratified, any stretch of them too
+    /// num_walks      total; first vertices are stratified, also within any consecutive walks
     /// max_vertices   per walk
     /// returns        the number of rays traced
     std::uint64_t trace(int num_walks, int max_vertices, std::uint64_t seed, std::uint64_t frame);
@@ -46,7 +47,7 @@ class LightVertexCache {
               const Stretch& walks,
               std::vector<std::uint32_t>& found) const;
 
-    /// The path from the start of a pair's paths by way of a vertex to the light.
+    /// The path from the start of a pair's paths through a vertex to the light.
     ReusablePath path_from(std::uint32_t vertex) const;
 
     /// Density with which one walk has a path's vertices, by area at each.
@@ -72,10 +73,10 @@ class LightVertexCache {
     std::vector<std::uint32_t> walk_begin_{0};
     std::vector<std::uint32_t> walk_of_;
     // For the search, in single precision and relative to the ray caster's origin.
-    std::vector<float> x_, y_, z_;                    ///< the vertex
-    std::vector<float> first_x_, first_y_, first_z_;  ///< its walk's first vertex
-    /// Length of the walk from the vertex to its first one, for cameras on to their light.
-    std::vector<float> to_light_m_;
+    enum Column { kX, kY, kZ, kFirstX, kFirstY, kFirstZ, kToLight, kNumColumns };
+    /// Per vertex: its position, that of its walk's first vertex, and the length of the walk from
+    /// one to the other, for cameras on to their light.
+    std::array<std::vector<float>, kNumColumns> columns_;
 };
 
 }  // namespace renderer

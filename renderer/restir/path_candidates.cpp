@@ -15,8 +15,8 @@ using core::Vec3;
 // As for whole paths: seen from the wall, hidden objects are small and most directions miss.
 constexpr double kAreaShareFromWall = 0.75;
 
-// Shared walks per frame, in multiples of what one pair looks at: neighbours then seldom look at
-// the same ones, and their noise is little correlated.
+// Shared walks per frame, in multiples of what one pair considers: neighbours then rarely consider
+// the same ones, so that their noise is hardly correlated.
 constexpr int kStretchesOfSharedWalks = 8;
 
 // The vertex that a connection leaves: of a walk, else what a pixel sees; null on a wall.
@@ -108,7 +108,7 @@ std::optional<SurfaceWalk::Step> PathCandidates::first_step(const PathDomain& do
     return step;
 }
 
-// The first vertex of a walk; false when there is none or nothing on from it can be wanted.
+// The first vertex of a walk; false when there is none or no path through it can be in the gate.
 bool PathCandidates::draw_first(Job& job, PathVertex& vertex) const {
     if (job.domain().seen) {
         vertex = *job.domain().seen;
@@ -134,7 +134,7 @@ bool PathCandidates::draw_first(Job& job, PathVertex& vertex) const {
     }
     const auto step = first_step(job.domain(), point);
     if (!step) return false;
-    // No path by way of this point is shorter than the one that goes straight on to the light.
+    // No path through this point is shorter than the one that continues straight to the light.
     const double shortest = job.domain().extra_opl_m() + step->distance_m +
                             (job.ends().light.position - point.position).norm();
     if (shortest >= job.request.opl_end_m) return false;
@@ -245,7 +245,7 @@ double PathCandidates::density(Job& job, const ReusablePath& path) const {
             }
             const auto step =
                 i == 0 ? first_step(domain, path.at(0)) : walk_->step_to(vertex, path.at(i));
-            if (!step) break;  // what carries nothing is not offered: does not happen
+            if (!step) break;  // never: paths without radiance are not offered
             walked *= step->pdf_area;
             PathVertex before = vertex;
             if (i == 0 && domain.seen) before = *domain.seen;

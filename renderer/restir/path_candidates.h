@@ -13,11 +13,11 @@ namespace renderer {
 /// Draws paths of a pair for reservoirs to choose from.
 ///
 /// Techniques are weighted by the balance heuristic on the paths' densities: walks from the sensor
-/// and, as asked for, an ellipsoidal connection from each of their vertices to the light, or a
+/// and, depending on the settings, an ellipsoidal connection from each vertex to the light, or a
 /// stretch of shared walks from the light (source [Veach1997], [Pediredla2019]).
 class PathCandidates {
  public:
-    /// A path that is open from end to end and whose length lies within the interval asked for.
+    /// An unoccluded path whose length lies within the requested interval.
     ///
     /// value     what it carries
     /// density   of all techniques together, samples counted: the sum of value / density over all

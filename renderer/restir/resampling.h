@@ -26,6 +26,24 @@ inline double balance_weight(double own, double foreign, double jacobian) {
     return both > 0.0 ? own / both : 0.0;
 }
 
+/// Offers `other`'s sample, whose image in the canonical domain is `here`; that domain counts with
+/// `canonical_confidence`. u: uniform in [0, 1).
+template <class Sample>
+void add_foreign(ReservoirBuilder<Sample>& builder,
+                 const Reservoir<Sample>& other,
+                 const std::optional<Carried<Sample>>& here,
+                 double canonical_confidence,
+                 double u) {
+    if (other.empty() || !here || !(here->target_value > 0.0)) return;
+    const double weight = balance_weight(other.confidence * other.target_value,
+                                         canonical_confidence * here->target_value,
+                                         here->jacobian);
+    builder.add(here->sample,
+                here->target_value,
+                weight * here->target_value * other.contribution_weight * here->jacobian,
+                u);
+}
+
 /// Merges the reservoirs of two domains by the generalised balance heuristic.
 ///
 /// canonical     of the domain that is built for
@@ -48,20 +66,12 @@ Reservoir<Sample> resample_balance_heuristic(const Reservoir<Sample>& canonical,
                   : 1.0;
         builder.add(canonical.sample, canonical.target_value, weight * canonical.estimate(), u1);
     }
-    if (!other.empty() && here && here->target_value > 0.0) {
-        const double weight = balance_weight(other.confidence * other.target_value,
-                                             canonical.confidence * here->target_value,
-                                             here->jacobian);
-        builder.add(here->sample,
-                    here->target_value,
-                    weight * here->target_value * other.contribution_weight * here->jacobian,
-                    u2);
-    }
+    add_foreign(builder, other, here, canonical.confidence, u2);
     return builder.finish(canonical.confidence + other.confidence);
 }
 
-/// Merges a canonical reservoir with a number of neighbours that was fixed before any sample was
-/// looked at, by defensive pairwise MIS (source [Bitterli2022], weights as in [Lin2022]).
+/// Merges a canonical reservoir with neighbours whose number was fixed before any sample was
+/// known, by defensive pairwise MIS (source [Bitterli2022], weights as in [Lin2022]).
 ///
 /// A neighbour whose sample cannot be carried over, or that has none, still counts: its share goes
 /// to the canonical sample. Counting only the successful ones would be biased.
@@ -91,14 +101,7 @@ class PairwiseMisMerge {
                             own, neighbour.confidence * there->target_value, there->jacobian)
                       : 1.0;
         }
-        if (neighbour.empty() || !here || !(here->target_value > 0.0)) return;
-        const double weight = balance_weight(neighbour.confidence * neighbour.target_value,
-                                             canonical_share_ * here->target_value,
-                                             here->jacobian);
-        builder_.add(here->sample,
-                     here->target_value,
-                     weight * here->target_value * neighbour.contribution_weight * here->jacobian,
-                     u);
+        add_foreign(builder_, neighbour, here, canonical_share_, u);
     }
 
     /// u   uniform in [0, 1)

@@ -32,6 +32,20 @@ PathReservoir limited(PathReservoir reservoir, double most) {
     return reservoir;
 }
 
+ReusablePath placed(ReusablePath path, const PathDomain& domain) {
+    path.pixel_u = domain.pixel_u;
+    return path;
+}
+
+PathCandidates::Effort effort_of(const RestirSettings& settings, double share) {
+    PathCandidates::Effort effort;
+    effort.walks = std::max(1, static_cast<int>(std::lround(share * settings.walks)));
+    if (has_shared_walks(settings.candidates)) {
+        effort.shared_walks = static_cast<int>(std::lround(share * settings.shared_walks));
+    }
+    return effort;
+}
+
 }  // namespace
 
 // What a thread needs while it works on some pairs.
@@ -123,28 +137,9 @@ void RestirRenderer::generate_candidates(const FrameInput& input, RestirFrame& f
     });
 }
 
-namespace {
-
-ReusablePath placed(ReusablePath path, const PathDomain& domain) {
-    path.pixel_u = domain.pixel_u;
-    return path;
-}
-
-PathCandidates::Effort effort_of(const RestirSettings& settings, double share) {
-    PathCandidates::Effort effort;
-    effort.walks = std::max(1, static_cast<int>(std::lround(share * settings.walks)));
-    if (has_shared_walks(settings.candidates)) {
-        effort.shared_walks = static_cast<int>(std::lround(share * settings.shared_walks));
-    }
-    return effort;
-}
-
-}  // namespace
-
 // Candidates of all bins of a pair.
 void RestirRenderer::draw(Worker& worker, const RestirFrame& frame, std::size_t pair) const {
-    std::fill(
-        worker.builders.begin(), worker.builders.end(), ReservoirBuilder<ReusablePath>());
+    std::fill(worker.builders.begin(), worker.builders.end(), ReservoirBuilder<ReusablePath>());
     const TimeGate lengths = frame.bins.lengths();
     const PathCandidates::Request request{
         frame.domains[pair],

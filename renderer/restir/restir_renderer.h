@@ -7,8 +7,8 @@
 namespace renderer {
 
 /// Spatio-temporal resampling of paths (source [Kim2026], [Lin2022]): every pair and bin keeps one
-/// path that stands for all that it has seen, and takes over those of its past and of its
-/// neighbours, shifted so that they have the length wanted here.
+/// path that stands for all its candidates, and reuses those of its past and of its neighbours,
+/// shifted to the path length of its own gate.
 class RestirRenderer {
  public:
     /// scan   must outlive the renderer

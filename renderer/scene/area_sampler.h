@@ -12,7 +12,7 @@ namespace renderer {
 /// Draws points uniformly by area on the hidden surfaces of a scene.
 ///
 /// Facets keep the order of the file: it is usually local in space, which keeps the shadow rays of
-/// stratified numbers coherent (a space-filling curve gained nothing), and it turns with the scene.
+/// stratified samples coherent (a space-filling curve gained nothing), and rotates with the scene.
 class AreaSampler {
  public:
     explicit AreaSampler(const Scene& scene);

@@ -32,6 +32,20 @@ struct PlainPoint {
     double x, y, z, normal_x, normal_y, normal_z;
 };
 
+// A single ray; `start` is relative to RayCaster::origin().
+RTCRay make_ray(const Vec3& start, const Vec3& along, float end) {
+    RTCRay ray{};
+    ray.org_x = static_cast<float>(start.x());
+    ray.org_y = static_cast<float>(start.y());
+    ray.org_z = static_cast<float>(start.z());
+    ray.dir_x = static_cast<float>(along.x());
+    ray.dir_y = static_cast<float>(along.y());
+    ray.dir_z = static_cast<float>(along.z());
+    ray.tfar = end;
+    ray.mask = ~0U;
+    return ray;
+}
+
 bool is_ahead(double distance_m) {
     return std::isfinite(distance_m) && distance_m > 0.0;
 }
@@ -106,14 +120,7 @@ std::optional<RayHit> RayCaster::first_hit(const Vec3& from,
                                            const Vec3& direction) const {
     const Vec3 start = moved_off(from, normal, direction, offset_m_) - origin_;
     RTCRayHit query{};
-    query.ray.org_x = static_cast<float>(start.x());
-    query.ray.org_y = static_cast<float>(start.y());
-    query.ray.org_z = static_cast<float>(start.z());
-    query.ray.dir_x = static_cast<float>(direction.x());
-    query.ray.dir_y = static_cast<float>(direction.y());
-    query.ray.dir_z = static_cast<float>(direction.z());
-    query.ray.tfar = std::numeric_limits<float>::infinity();
-    query.ray.mask = ~0U;
+    query.ray = make_ray(start, direction, std::numeric_limits<float>::infinity());
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     RTCIntersectContext context;
@@ -156,7 +163,7 @@ void RayCaster::first_hits(const Vec3& from, const Vec3& normal, DirectionPacket
         query.ray.dir_y[lane] = static_cast<float>(packet.y[i]);
         query.ray.dir_z[lane] = static_cast<float>(packet.z[i]);
         query.ray.tnear[lane] = 0.0F;
-        // As in trace(): where vectors are shorter, Embree asks the interval, not `valid`.
+        // As in trace(): without 16-wide vectors Embree heeds the interval, not `valid`.
         query.ray.tfar[lane] = is_valid ? std::numeric_limits<float>::infinity() : -1.0F;
         query.ray.time[lane] = 0.0F;
         query.ray.mask[lane] = ~0U;
@@ -184,23 +191,14 @@ bool RayCaster::is_blocked(const Vec3& a,
                            const Vec3& normal_b) const {
     const Vec3 from = moved_off(a, normal_a, b - a, offset_m_) - origin_;
     const Vec3 to = moved_off(b, normal_b, a - b, offset_m_) - origin_;
-    const Vec3 along = to - from;
-    RTCRay ray{};
-    ray.org_x = static_cast<float>(from.x());
-    ray.org_y = static_cast<float>(from.y());
-    ray.org_z = static_cast<float>(from.z());
-    ray.dir_x = static_cast<float>(along.x());
-    ray.dir_y = static_cast<float>(along.y());
-    ray.dir_z = static_cast<float>(along.z());
-    ray.tfar = 1.0F;
-    ray.mask = ~0U;
+    RTCRay ray = make_ray(from, to - from, 1.0F);
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     rtcOccluded1(embree_->scene, &context, &ray);
     return ray.tfar < 0.0F;
 }
 
-// Plain numbers in one loop over all lanes, so that the compiler fills vector units.
+// Plain numbers in one loop over all lanes, which the compiler vectorizes.
 template <class From>
 [[gnu::always_inline]] inline void RayCaster::aim_from(SegmentPacket& packet,
                                                        const From& from_of,
@@ -276,7 +274,7 @@ void RayCaster::trace(SegmentPacket& packet) const {
         rays.dir_y[lane] = packet.along_y[i];
         rays.dir_z[lane] = packet.along_z[i];
         rays.tnear[lane] = 0.0F;
-        // Where the processor has no vectors of 16, Embree asks the interval, not `valid`.
+        // On processors without 16-wide vectors Embree heeds the interval, not `valid`.
         rays.tfar[lane] = lane < packet.count ? 1.0F : -1.0F;
         rays.time[lane] = 0.0F;
         rays.mask[lane] = ~0U;
@@ -284,7 +282,7 @@ void RayCaster::trace(SegmentPacket& packet) const {
     }
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    // The way for coherent packets leaks on small scenes and is no faster.
+    // Embree's traversal for coherent packets misses occluders on small scenes and is no faster.
     context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
     rtcOccluded16(valid.data(), embree_->scene, &context, &rays);
     packet.blocked = 0;

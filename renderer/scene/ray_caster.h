@@ -18,7 +18,7 @@ struct RayHit {
     double distance_m = 0.0;
 };
 
-/// Shadow segments that Embree answers together; lanes beyond `count` are ignored.
+/// Shadow segments that Embree tests together; lanes beyond `count` are ignored.
 ///
 /// Single precision, relative to RayCaster::origin(); filled by RayCaster::aim.
 struct alignas(64) SegmentPacket {
@@ -29,7 +29,7 @@ struct alignas(64) SegmentPacket {
     int count = 0;
 };
 
-/// Directions (unit, world) that Embree follows together; lanes beyond `count` are ignored.
+/// Directions (unit, world) that Embree traces together; lanes beyond `count` are ignored.
 struct alignas(64) DirectionPacket {
     static constexpr int kSize = 16;
     static constexpr std::uint32_t kNone = ~0U;
@@ -113,7 +113,7 @@ class RayCaster {
              const SurfacePointLanes& to,
              int count) const;
 
-    /// Answers all segments of a packet: sets blocked, 0 beyond `count`.
+    /// Tests all segments of a packet: sets `blocked`, 0 beyond `count`.
     void trace(SegmentPacket& packet) const;
 
  private:

@@ -35,7 +35,7 @@ struct SurfacePoint {
     std::uint32_t facet = 0;
 };
 
-/// Everything that light meets: facets, their materials, the relay wall, and rays through them.
+/// Everything that scatters light: facets, materials and the relay wall; and rays against them.
 class Scene {
  public:
     /// geometry     objects in world coordinates
@@ -55,7 +55,7 @@ class Scene {
         return object_of(facet).velocity_m_per_s;
     }
     bool is_hidden(std::uint32_t facet) const { return object_of(facet).role != Role::RelayWall; }
-    /// A direction that turns with the scene and is not parallel to `normal` (unit).
+    /// A direction that rotates with the scene and is not parallel to `normal` (unit).
     const core::Vec3& tangent_hint(const core::Vec3& normal) const;
 
     const RayCaster& rays() const { return rays_; }

@@ -14,11 +14,8 @@ namespace renderer {
 namespace {
 
 using core::Error;
+using core::require;
 using core::Vec3;
-
-void require(bool holds, const std::string& where, double found, const std::string& allowed) {
-    if (!holds) throw Error(where, fmt::format("found {}", found), "must be " + allowed);
-}
 
 void validate_wall(const RelayWall& wall, const std::string& where) {
     require(wall.normal.norm() > 1e-9, where + ".normal length", wall.normal.norm(), "above 0");
@@ -26,59 +23,39 @@ void validate_wall(const RelayWall& wall, const std::string& where) {
             where + ".up part across the normal",
             0.0,
             "above 0");
-    for (const double size : wall.size_m) require(size > 0.0, where + ".size_m", size, "above 0");
-    require(wall.albedo >= 0.0 && wall.albedo <= 1.0,
-            where + ".albedo",
-            wall.albedo,
-            "between 0 and 1");
-}
-
-void validate_grid(const std::array<int, 2>& shape, const std::string& where) {
-    for (const int count : shape)
-        require(count >= 1, where, count, "at least 1 in both directions");
+    core::check_ranges(wall, where);
 }
 
 void validate_normals(const std::vector<Vec3>& points,
                       const std::vector<Vec3>& normals,
                       const std::string& where) {
-    if (points.size() != normals.size()) {
-        throw Error(where,
-                    fmt::format("found {} normals for {} points", normals.size(), points.size()),
-                    "must be one normal per point");
-    }
+    require(points.size() == normals.size(),
+            where,
+            fmt::format("{} normals for {} points", normals.size(), points.size()),
+            "one normal per point");
     for (const Vec3& normal : normals) {
         require(normal.norm() > 1e-9, where + " length", normal.norm(), "above 0");
     }
 }
 
 void validate_scan(const ScanSettings& scan, const std::string& where) {
-    validate_grid(scan.sensing_points, where + ".sensing_points");
-    validate_grid(scan.illumination_points, where + ".illumination_points");
+    core::check_ranges(scan, where);
     validate_normals(scan.sensing_points_m, scan.sensing_normals, where + ".sensing_normals");
     validate_normals(
         scan.illumination_points_m, scan.illumination_normals, where + ".illumination_normals");
-    const bool single = scan.pattern == core::ScanPattern::Single;
-    if (single && scan.illumination_points_m.size() > 1) {
-        require(false,
-                where + ".illumination_points_m",
-                static_cast<double>(scan.illumination_points_m.size()),
-                "one point for a single scan");
-    }
-    if (scan.pattern == core::ScanPattern::Confocal && !scan.illumination_points_m.empty()) {
-        throw Error(where + ".illumination_points_m",
-                    "found points for a confocal scan",
-                    "must be left out: the sensing points are lit");
-    }
-    if (scan.opl_origin == core::OplOrigin::Device && (!scan.laser_m || !scan.detector_m)) {
-        throw Error(where + ".opl_origin",
-                    "found device without laser_m and detector_m",
-                    "must be relay_wall, or both positions given");
-    }
-}
-
-void validate_frames(const FrameSettings& frames, const std::string& where) {
-    require(frames.count >= 1, where + ".count", frames.count, "at least 1");
-    require(frames.frame_s >= 0.0, where + ".frame_s", frames.frame_s, "at least 0");
+    const std::size_t num_lit = scan.illumination_points_m.size();
+    require(scan.pattern != core::ScanPattern::Single || num_lit <= 1,
+            where + ".illumination_points_m",
+            static_cast<double>(num_lit),
+            "one point for a single scan");
+    require(scan.pattern != core::ScanPattern::Confocal || num_lit == 0,
+            where + ".illumination_points_m",
+            "points for a confocal scan",
+            "left out: the sensing points are lit");
+    require(scan.opl_origin != core::OplOrigin::Device || (scan.laser_m && scan.detector_m),
+            where + ".opl_origin",
+            "device without laser_m and detector_m",
+            "relay_wall, or both positions given");
 }
 
 // Refuses scans whose histograms alone could not be held, before anything is allocated.
@@ -244,28 +221,25 @@ SceneDescription read_scene_description(const std::string& path,
 void validate(const SceneDescription& scene, const std::string& where) {
     if (scene.camera) {
         core::validate(*scene.camera, where + "camera");
-        if (scene.camera->light_spot_m && scene.render.max_bounces < 2) {
-            throw Error(where + "render.max_bounces",
-                        fmt::format("found {} with camera.light_spot_m", scene.render.max_bounces),
-                        "must be at least 2: the lit spot counts as a bounce");
-        }
+        require(!scene.camera->light_spot_m || scene.render.max_bounces >= 2,
+                where + "render.max_bounces",
+                fmt::format("{} with camera.light_spot_m", scene.render.max_bounces),
+                "at least 2: the lit spot counts as a bounce");
     } else {
         validate_wall(scene.relay_wall, where + "relay_wall");
         validate_scan(scene.scan, where + "scan");
     }
     core::validate(scene.time_axis, where + "time_axis");
     if (scene.velocity_axis) core::validate(*scene.velocity_axis, where + "velocity_axis");
-    if (scene.frames) validate_frames(*scene.frames, where + "frames");
+    if (scene.frames) core::check_ranges(*scene.frames, where + "frames");
     validate(scene.render, where + "render");
-    validate_grid(scene.ground_truth.depth_resolution, where + "ground_truth.depth_resolution");
+    core::check_ranges(scene.ground_truth, where + "ground_truth");
     validate_size(scene, where);
-    if (scene.time_axis.num_bins > 1 && scene.render.gate != GateShape::Box) {
-        throw Error(where + "render.gate",
-                    fmt::format("found {} for {} bins",
-                                core::enum_name(scene.render.gate),
-                                scene.time_axis.num_bins),
-                    "must be box unless time_axis.num_bins is 1");
-    }
+    require(
+        scene.time_axis.num_bins == 1 || scene.render.gate == GateShape::Box,
+        where + "render.gate",
+        fmt::format("{} for {} bins", core::enum_name(scene.render.gate), scene.time_axis.num_bins),
+        "box unless time_axis.num_bins is 1");
 }
 
 core::Scan make_scan(const SceneDescription& scene) {

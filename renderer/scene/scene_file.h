@@ -23,7 +23,7 @@ struct RelayWall {
     core::Transform world_from_wall() const;
 };
 
-/// Which wall points are lit and looked at. Explicit points replace the grids.
+/// Which wall points are illuminated and sensed. Explicit points replace the grids.
 struct ScanSettings {
     core::ScanPattern pattern = core::ScanPattern::Confocal;
     std::array<int, 2> sensing_points{64, 64};
@@ -72,16 +72,20 @@ void for_each_field(RelayWall& wall, Visitor&& visit) {
     visit("center_m", wall.center_m, "centre of the relay wall, world [m]");
     visit("normal", wall.normal, "towards the hidden side");
     visit("up", wall.up, "the wall's y axis, up to its part along the normal");
-    visit("size_m", wall.size_m, "width and height [m]");
-    visit("albedo", wall.albedo, "diffuse albedo of the wall");
+    visit("size_m", wall.size_m, core::above(0, "width and height [m]"));
+    visit("albedo", wall.albedo, core::between(0, 1, "diffuse albedo of the wall"));
 }
 
 template <class Visitor>
 void for_each_field(ScanSettings& scan, Visitor&& visit) {
     visit("pattern", scan.pattern, "how illumination and sensing points pair up");
-    visit("sensing_points", scan.sensing_points, "grid of sensing points at cell centres, x by y");
+    visit("sensing_points",
+          scan.sensing_points,
+          core::at_least(1, "grid of sensing points at cell centres, x by y"));
     visit("illumination_m", scan.illumination_m, "single: the laser spot, world [m]");
-    visit("illumination_points", scan.illumination_points, "exhaustive: grid of laser spots");
+    visit("illumination_points",
+          scan.illumination_points,
+          core::at_least(1, "exhaustive: grid of laser spots"));
     visit("opl_origin", scan.opl_origin, "where path lengths start and end");
     visit("laser_m", scan.laser_m, "laser position, world [m]; needed for opl_origin device");
     visit("detector_m", scan.detector_m, "detector position, world [m]; likewise");
@@ -102,14 +106,16 @@ void read_value(const core::Json& json, const std::string& where, CameraSettings
 
 template <class Visitor>
 void for_each_field(FrameSettings& frames, Visitor&& visit) {
-    visit("count", frames.count, "number of frames");
+    visit("count", frames.count, core::at_least(1, "number of frames"));
     visit("gate_step_m", frames.gate_step_m, "by which the time axis moves per frame [m]");
-    visit("frame_s", frames.frame_s, "in which objects move on per frame [s]");
+    visit("frame_s", frames.frame_s, core::at_least(0, "in which objects move on per frame [s]"));
 }
 
 template <class Visitor>
 void for_each_field(GroundTruthSettings& truth, Visitor&& visit) {
-    visit("depth_resolution", truth.depth_resolution, "columns of the true depth map, x by y");
+    visit("depth_resolution",
+          truth.depth_resolution,
+          core::at_least(1, "columns of the true depth map, x by y"));
 }
 
 template <class Visitor>

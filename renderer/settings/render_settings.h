@@ -43,23 +43,27 @@ struct RenderSettings {
 template <class Visitor>
 void for_each_field(RenderSettings& s, Visitor&& visit) {
     visit("method", s.method, "estimator");
-    visit("max_bounces", s.max_bounces, "bounces counted, both on the relay wall included");
-    visit("samples", s.samples, "candidate paths per sensor_pairs pair");
+    visit("max_bounces",
+          s.max_bounces,
+          core::at_least(1, "bounces counted, both on the relay wall included"));
+    visit("samples", s.samples, core::at_least(1, "candidate paths per pair of points or pixel"));
     visit("seconds",
           s.seconds,
-          "render for this long instead of a number of samples or an error [s]");
+          core::above(0, "render for this long instead of a number of samples or an error [s]"));
     visit("target_error",
           s.target_error,
-          "relative L2 error over all of H to stay below, instead of a number of samples; null: "
-          "0.01 for third_bounce");
+          core::above(0,
+                      "relative L2 error over all of H to stay below, instead of a number of "
+                      "samples; null: 0.01 for third_bounce"));
     visit("seed", s.seed, "seed of the random numbers");
     visit("gate", s.gate, "shape of the gate of a one-bin axis");
     visit("exclude",
           s.exclude,
           "excluded surfaces: mis leaves them to paths, drop ignores them, none excludes nothing");
-    visit("exclude_area_above_m2",
-          s.exclude_area_above_m2,
-          "exclude triangles above this area from ellipsoidal connections [m^2]");
+    visit(
+        "exclude_area_above_m2",
+        s.exclude_area_above_m2,
+        core::at_least(0, "exclude triangles above this area from ellipsoidal connections [m^2]"));
     visit("variance",
           s.variance,
           "also store the variance of every value, in group /nlos, which y-tal refuses");
@@ -67,7 +71,8 @@ void for_each_field(RenderSettings& s, Visitor&& visit) {
     visit("direct_return", s.direct_return, "render the direct return of confocal pairs, order 1");
     visit("laser_spot_m2",
           s.laser_spot_m2,
-          "area of the laser spot on the wall: direct return and retroreflectors [m^2]");
+          core::above(
+              0, "area of the laser spot on the wall: direct return and retroreflectors [m^2]"));
     visit("restir", s.restir, "reservoir reuse");
 }
 
@@ -78,24 +83,14 @@ void validate(const RenderSettings& settings, const std::string& where);
 
 template <>
 struct core::EnumNames<renderer::Estimator> {
-    static constexpr std::array<std::pair<renderer::Estimator, std::string_view>, 5> value{
-        {{renderer::Estimator::Auto, "auto"},
-         {renderer::Estimator::Path, "path"},
-         {renderer::Estimator::ThirdBounce, "third_bounce"},
-         {renderer::Estimator::Ellipsoidal, "ellipsoidal"},
-         {renderer::Estimator::Restir, "restir"}}};
+    static constexpr auto value = names_from_zero<renderer::Estimator>(
+        "auto", "path", "third_bounce", "ellipsoidal", "restir");
 };
 template <>
 struct core::EnumNames<renderer::GateShape> {
-    static constexpr std::array<std::pair<renderer::GateShape, std::string_view>, 3> value{
-        {{renderer::GateShape::Box, "box"},
-         {renderer::GateShape::Tent, "tent"},
-         {renderer::GateShape::Gaussian, "gaussian"}}};
+    static constexpr auto value = names_from_zero<renderer::GateShape>("box", "tent", "gaussian");
 };
 template <>
 struct core::EnumNames<renderer::Exclusion> {
-    static constexpr std::array<std::pair<renderer::Exclusion, std::string_view>, 3> value{
-        {{renderer::Exclusion::None, "none"},
-         {renderer::Exclusion::Mis, "mis"},
-         {renderer::Exclusion::Drop, "drop"}}};
+    static constexpr auto value = names_from_zero<renderer::Exclusion>("none", "mis", "drop");
 };

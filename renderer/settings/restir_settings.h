@@ -21,7 +21,7 @@ enum class Candidates {
     All      ///< both
 };
 
-/// Reservoir reuse: what the estimator `restir` is told; the others leave it alone.
+/// Reservoir reuse; only the estimator `restir` uses these.
 struct RestirSettings {
     Candidates candidates = Candidates::Shared;
     int walks = 1;
@@ -47,17 +47,21 @@ inline bool has_shared_walks(Candidates kind) {
 template <class Visitor>
 void for_each_field(RestirSettings& s, Visitor&& visit) {
     visit("candidates", s.candidates, "what reservoirs choose from");
-    visit("walks", s.walks, "walks from the sensor, per pair and frame");
+    visit("walks", s.walks, core::at_least(1, "walks from the sensor, per pair and frame"));
     visit("shared_walks",
           s.shared_walks,
-          "shared, all: walks from the light tried, per pair and frame");
+          core::at_least(1, "shared, all: walks from the light tried, per pair and frame"));
     visit("reuse", s.reuse, "how paths are reused");
     visit("chart", s.chart, "coordinates in which a vertex moves");
     visit("gauge", s.gauge, "what fixes the second coordinate");
-    visit("rounds", s.rounds, "rounds of spatial reuse");
-    visit("neighbours", s.neighbours, "neighbours per round");
-    visit("confidence_cap", s.confidence_cap, "cap of the confidence, in frames");
-    visit("shrink_fraction", s.shrink_fraction, "share of walks traced against a wider gate");
+    visit("rounds", s.rounds, core::at_least(0, "rounds of spatial reuse"));
+    visit("neighbours", s.neighbours, core::at_least(0, "neighbours per round"));
+    visit(
+        "confidence_cap", s.confidence_cap, core::at_least(1, "cap of the confidence, in frames"));
+    // Shifted walks do not reach all paths of the gate: some must be drawn in it.
+    visit("shrink_fraction",
+          s.shrink_fraction,
+          core::Ranged{"share of walks traced against a wider gate", {0, true, 1, false}});
     visit("reuse_bins", s.reuse_bins, "histograms: also reuse the two neighbouring bins");
     visit("reverse_check", s.reverse_check, "solve every shift backwards too");
 }
@@ -66,35 +70,20 @@ void for_each_field(RestirSettings& s, Visitor&& visit) {
 
 template <>
 struct core::EnumNames<renderer::Candidates> {
-    static constexpr std::array<std::pair<renderer::Candidates, std::string_view>, 4> value{
-        {{renderer::Candidates::Path, "path"},
-         {renderer::Candidates::Ellipsoidal, "ellipsoidal"},
-         {renderer::Candidates::Shared, "shared"},
-         {renderer::Candidates::All, "all"}}};
+    static constexpr auto value =
+        names_from_zero<renderer::Candidates>("path", "ellipsoidal", "shared", "all");
 };
 template <>
 struct core::EnumNames<renderer::Reuse> {
-    static constexpr std::array<std::pair<renderer::Reuse, std::string_view>, 3> value{
-        {{renderer::Reuse::PathLength, "path_length"},
-         {renderer::Reuse::Naive, "naive"},
-         {renderer::Reuse::None, "none"}}};
+    static constexpr auto value = names_from_zero<renderer::Reuse>("path_length", "naive", "none");
 };
 template <>
 struct core::EnumNames<renderer::Chart> {
-    static constexpr std::array<std::pair<renderer::Chart, std::string_view>, 5> value{
-        {{renderer::Chart::Plane, "plane"},
-         {renderer::Chart::Hemisphere, "hemisphere"},
-         {renderer::Chart::Barycentric, "barycentric"},
-         {renderer::Chart::Adaptive, "adaptive"},
-         {renderer::Chart::Custom, "custom"}}};
+    static constexpr auto value = names_from_zero<renderer::Chart>(
+        "plane", "hemisphere", "barycentric", "adaptive", "custom");
 };
 template <>
 struct core::EnumNames<renderer::Gauge> {
-    static constexpr std::array<std::pair<renderer::Gauge, std::string_view>, 6> value{
-        {{renderer::Gauge::Average, "average"},
-         {renderer::Gauge::Start, "start"},
-         {renderer::Gauge::Fixed, "fixed"},
-         {renderer::Gauge::Midpoint, "midpoint"},
-         {renderer::Gauge::Symmetric, "symmetric"},
-         {renderer::Gauge::Flow, "flow"}}};
+    static constexpr auto value = names_from_zero<renderer::Gauge>(
+        "average", "start", "fixed", "midpoint", "symmetric", "flow");
 };

@@ -15,8 +15,8 @@ struct ChartPoint {
     core::Vec3 position;  ///< X [m], relative to the chart's origin
     core::Vec3 tangent1;  ///< dX/dxi_1
     core::Vec3 tangent2;
-    core::Vec3 second11 =
-        core::Vec3::Zero();  ///< d2X/dxi_1 dxi_1; not looked at where the chart is affine
+    core::Vec3 second11 = core::Vec3::Zero();  ///< d2X/dxi_1 dxi_1; second derivatives are ignored
+                                               ///< where the chart is affine
     core::Vec3 second12 = core::Vec3::Zero();
     core::Vec3 second22 = core::Vec3::Zero();
     double area_density = 0.0;  ///< |dX/dxi_1 x dX/dxi_2|
@@ -36,7 +36,7 @@ concept SurfaceChart = requires(const C& chart, const core::Vec2& xi) {
 };
 
 /// Plane and barycentric charts: X = origin + xi_1 tangent1 + xi_2 tangent2. The surface goes on
-/// beyond the facet; whether a point lies on it is asked afterwards.
+/// beyond the facet; whether a point lies on it is checked afterwards.
 class AffineChart {
  public:
     static constexpr bool kAffine = true;

@@ -15,19 +15,34 @@ namespace renderer {
 /// To add one: a struct with `expand`; instantiate the routes of shift_mapping.cpp with it.
 /// With r = focus - p, d = |r|, u = r/d:  du/dp = -(I - u u^T)/d, and everything below follows.
 
+/// The two legs from p to the foci.
+struct FocusLegs {
+    double length_a;
+    double length_y;
+    double inverse_a;  ///< 1/d_a
+    double inverse_y;
+    core::Vec3 to_a;  ///< u_a, unit
+    core::Vec3 to_y;
+
+    FocusLegs(const core::Vec3& r_a, const core::Vec3& r_y)
+        : length_a(r_a.norm()),
+          length_y(r_y.norm()),
+          inverse_a(1.0 / length_a),
+          inverse_y(1.0 / length_y),
+          to_a(inverse_a * r_a),
+          to_y(inverse_y * r_y) {}
+};
+
 /// Optical path length |a - p| + |y - p| [m] (source [Kim2026], equation 3).
 struct OpticalLength {
     core::Vec3 focus_a;
     core::Vec3 focus_y;
 
-    struct Expansion {
-        double value;
-        core::Vec3 gradient;  ///< -(u_a + u_y)
-        core::Vec3 to_a;      ///< u_a, unit
-        core::Vec3 to_y;
-        double inverse_a;  ///< 1/d_a
-        double inverse_y;
-        double gradient_size;
+    struct Expansion : FocusLegs {
+        using FocusLegs::FocusLegs;
+        double value = length_a + length_y;
+        core::Vec3 gradient = -(to_a + to_y);
+        double gradient_size = 1.0;
 
         /// H t = sum (t - u (u.t))/d.
         core::Vec3 hessian_times(const core::Vec3& t) const {
@@ -37,15 +52,7 @@ struct OpticalLength {
     };
 
     Expansion expand(const core::Vec3& p, const core::Vec3& /*surface_velocity*/) const {
-        const core::Vec3 r_a = focus_a - p;
-        const core::Vec3 r_y = focus_y - p;
-        const double d_a = r_a.norm();
-        const double d_y = r_y.norm();
-        const double inverse_a = 1.0 / d_a;
-        const double inverse_y = 1.0 / d_y;
-        const core::Vec3 to_a = inverse_a * r_a;
-        const core::Vec3 to_y = inverse_y * r_y;
-        return {d_a + d_y, -(to_a + to_y), to_a, to_y, inverse_a, inverse_y, 1.0};
+        return {focus_a - p, focus_y - p};
     }
 };
 
@@ -64,16 +71,13 @@ struct PathVelocity {
     core::Vec3 velocity_a;
     core::Vec3 velocity_y;
 
-    struct Expansion {
-        double value;
+    struct Expansion : FocusLegs {
+        using FocusLegs::FocusLegs;
+        double value = 0.0;
         core::Vec3 gradient;
-        core::Vec3 to_a;
-        core::Vec3 to_y;
         core::Vec3 relative_a;  ///< w_a
         core::Vec3 relative_y;
-        double inverse_a;
-        double inverse_y;
-        double gradient_size;
+        double gradient_size = 0.0;
 
         core::Vec3 hessian_times(const core::Vec3& t) const {
             return leg(to_a, relative_a, inverse_a, t) + leg(to_y, relative_y, inverse_y, t);
@@ -91,15 +95,7 @@ struct PathVelocity {
     };
 
     Expansion expand(const core::Vec3& p, const core::Vec3& surface_velocity) const {
-        const core::Vec3 r_a = focus_a - p;
-        const core::Vec3 r_y = focus_y - p;
-        const double d_a = r_a.norm();
-        const double d_y = r_y.norm();
-        Expansion e;
-        e.inverse_a = 1.0 / d_a;
-        e.inverse_y = 1.0 / d_y;
-        e.to_a = e.inverse_a * r_a;
-        e.to_y = e.inverse_y * r_y;
+        Expansion e(focus_a - p, focus_y - p);
         e.relative_a = velocity_a - surface_velocity;
         e.relative_y = velocity_y - surface_velocity;
         const double c_a = e.to_a.dot(e.relative_a);

@@ -23,7 +23,7 @@ struct PlaneShift {
     double jacobian = 0.0;    ///< dA'/dA
 };
 
-/// Moves a point within its plane so that its path length changes as asked, in closed form.
+/// Moves a point within its plane so that its path length changes as required, in closed form.
 ///
 /// The point keeps its angle theta on the closed curve of its length (EllipsoidSection), which
 /// makes the map one-to-one, defined wherever the target's curve exists, and free of any search.

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <optional>
 #include <string_view>
 
@@ -56,9 +57,7 @@ struct ShiftCounts {
     std::uint64_t by_ray = 0;  ///< accepted on the hemisphere
 
     std::uint64_t tried() const {
-        std::uint64_t sum = accepted;
-        for (const std::uint64_t count : rejected) sum += count;
-        return sum;
+        return std::accumulate(rejected.begin(), rejected.end(), accepted);
     }
     /// 0 when none was tried.
     double accepted_share() const {

@@ -13,7 +13,7 @@ inline constexpr int kMaxFlowSteps = 512;
 /// Doubling the steps divides the error by 16: what is left is a sixteenth of these.
 inline constexpr double kFlowChange = 1e-10;  ///< share of the legs
 inline constexpr double kFlowJacobianChange = 1e-8;
-/// The way back must end this close, as a share of the shorter leg.
+/// The inverse flow must return this close to its start, as a share of the shorter leg.
 inline constexpr double kFlowReturnTolerance = 1e-7;
 
 /// Where the gradient flow leads from xi, in `steps` steps of the classical Runge-Kutta rule.
@@ -61,7 +61,7 @@ std::optional<ShiftSolution> follow_flow(const Problem& problem,
 }
 
 /// Doubles the number of steps until neither the end nor the determinant moves any more and the
-/// functional has changed as asked; a flow that passes a stationary point never gets there.
+/// functional has changed as required; a flow through a stationary point never converges.
 template <class Problem>
 std::optional<ShiftSolution> follow_flow(const Problem& problem,
                                          const core::Vec2& xi,

@@ -31,9 +31,12 @@ struct ShiftState {
     core::Vec2 step() const { return xi_new - xi; }
 };
 
-/// The solver's last step may not have been longer than `kLastStep` of the reach: the next one,
-/// quadratically smaller, is below rounding.
-inline constexpr double kUsualLastStep = 1e-6;
+/// The gauges that the solver takes.
+struct EquationGauge {
+    /// The solver's last step may not have been longer than this share of the reach: the next one,
+    /// quadratically smaller, is below rounding.
+    static constexpr double kLastStep = 1e-6;
+};
 
 /// F2 = (R m).D with a fixed m; R^T = -R gives (R v).D = -v.(R D), so that a change H dxi of m
 /// changes F2 by -(H R D).dxi.
@@ -43,9 +46,7 @@ inline GaugeTerms gauge_across(const core::Vec2& m, const core::Vec2& d) {
 }
 
 /// m = mean of the gradients at both ends; trapezoidal rule (default).
-struct AverageGauge {
-    static constexpr double kLastStep = kUsualLastStep;
-
+struct AverageGauge : EquationGauge {
     template <class Problem>
     std::optional<GaugeTerms> operator()(const Problem&, const ShiftState& s) const {
         const core::Vec2 d = s.step();
@@ -62,9 +63,7 @@ struct AverageGauge {
 /// R M^-1 = M R/det M; with the factor sqrt(det M) lengths keep their size: F2 = (N g).D,
 /// N = M R/sqrt(det M), averaged over the ends. Along coordinate k,
 /// N_k = (M_k - tr(M^-1 M_k) M/2) R/sqrt(det M). On a plane's orthonormal chart N = R.
-struct MetricAverageGauge {
-    static constexpr double kLastStep = kUsualLastStep;
-
+struct MetricAverageGauge : EquationGauge {
     template <class Problem>
     std::optional<GaugeTerms> operator()(const Problem&, const ShiftState& s) const {
         const core::Vec2 d = s.step();
@@ -93,9 +92,7 @@ struct MetricAverageGauge {
 };
 
 /// m = gradient at the start: explicit Euler, here to show that it is not reversible.
-struct StartGauge {
-    static constexpr double kLastStep = kUsualLastStep;
-
+struct StartGauge : EquationGauge {
     template <class Problem>
     std::optional<GaugeTerms> operator()(const Problem&, const ShiftState& s) const {
         GaugeTerms terms = gauge_across(s.at_source.gradient, s.step());
@@ -104,23 +101,17 @@ struct StartGauge {
     }
 };
 
-/// The vertex moves along one direction of the chart.
-struct FixedGauge {
-    static constexpr double kLastStep = kUsualLastStep;
-
-    core::Vec2 axis{1.0, 0.0};
-
+/// The vertex moves along the chart's first coordinate.
+struct FixedGauge : EquationGauge {
     template <class Problem>
     std::optional<GaugeTerms> operator()(const Problem&, const ShiftState& s) const {
         // The factor gives F2 the size of the other gauges'.
-        return gauge_across(s.at_source.gradient.norm() * axis, s.step());
+        return gauge_across(s.at_source.gradient.norm() * core::Vec2::UnitX(), s.step());
     }
 };
 
 /// m = mean of both functionals' gradients half way; implicit midpoint rule.
-struct MidpointGauge {
-    static constexpr double kLastStep = kUsualLastStep;
-
+struct MidpointGauge : EquationGauge {
     template <class Problem>
     std::optional<GaugeTerms> operator()(const Problem& problem, const ShiftState& s) const {
         const core::Vec2 middle = 0.5 * (s.xi + s.xi_new);
@@ -169,10 +160,7 @@ struct FlowVelocity {
     }
 
     double divergence() const { return d11 + d22; }
-    core::Vec2 times(const core::Vec2& x) const {
-        return {d11 * x.x() + d12 * x.y(), d21 * x.x() + d22 * x.y()};
-    }
-    /// Transposed.
+    /// The transposed derivative times x.
     core::Vec2 pulled_back(const core::Vec2& x) const {
         return {d11 * x.x() + d21 * x.y(), d12 * x.x() + d22 * x.y()};
     }

@@ -48,6 +48,14 @@ AnyGauge make_gauge(const ShiftSettings& settings) {
     return AverageGauge{};
 }
 
+// Whether a shift changes areas by at most this factor, either way, beside the ratio S of the
+// gates.
+bool is_bounded(double jacobian, double ratio) {
+    constexpr double kJacobianBound = 20.0;
+    const double stretch = jacobian / ratio;
+    return stretch * kJacobianBound >= 1.0 && stretch <= kJacobianBound;
+}
+
 // The kept quantity at one end, foci relative to `origin`.
 OpticalLength length_of(const ShiftEnd& end, const Vec3& origin) {
     return {end.a - origin, end.y - origin};
@@ -85,11 +93,6 @@ ShiftMapping::ShiftMapping(const Scene& scene,
                           "must be plane, hemisphere, barycentric or adaptive for triangle meshes; "
                           "custom charts are written in C++");
     }
-}
-
-bool ShiftMapping::is_bounded(double jacobian, double ratio) const {
-    const double stretch = jacobian / ratio;
-    return stretch * settings_.jacobian_bound >= 1.0 && stretch <= settings_.jacobian_bound;
 }
 
 std::optional<ShiftedPath> ShiftMapping::shift_path(const SurfacePoint& x,
@@ -134,20 +137,13 @@ ShiftMapping::Result ShiftMapping::shift_by_route(const Task& task,
 ShiftMapping::Result ShiftMapping::shift_adaptively(const Task& task,
                                                     ShiftTrace& trace,
                                                     bool& by_ray) const {
-    const auto is_large = [&](const SurfacePoint& point) {
-        return patches_.area_m2(patches_.patch_of(point.facet)) >= settings_.smallest_plane_area_m2;
-    };
-    if (is_large(task.x)) {
-        if (const Result by_plane = shift_by_plane(task, trace)) return by_plane;
-    }
+    if (const Result by_plane = shift_by_plane(task, trace)) return by_plane;
     const Result result = shift_by_ray(task, trace);
     if (!result) return std::nullopt;
-    if (is_large(result->point)) {
-        ShiftTrace back_trace;
-        const Task back{result->point, task.target, task.source, task.change.inverse()};
-        if (shift_by_plane(back, back_trace)) return trace.reject(ShiftRejection::OtherRoute);
-        trace.iterations += back_trace.iterations;
-    }
+    ShiftTrace back_trace;
+    const Task back{result->point, task.target, task.source, task.change.inverse()};
+    if (shift_by_plane(back, back_trace)) return trace.reject(ShiftRejection::OtherRoute);
+    trace.iterations += back_trace.iterations;
     by_ray = true;
     return result;
 }
@@ -176,14 +172,8 @@ ShiftMapping::Result ShiftMapping::shift_by_plane(const Task& task, ShiftTrace& 
         return shift_in_closed_form(task, trace);
     }
     const std::uint32_t patch = patches_.patch_of(task.x.facet);
-    const Facet& plane = patches_.plane(patch);
-    const AffineChart chart{Vec3::Zero(),
-                            plane.edge1,
-                            plane.edge2,
-                            scene_->object_of(task.x.facet).velocity_m_per_s,
-                            rounding_m_};
-    const auto at_x = chart.at(Vec2::Zero());
-    const auto solution = solve<AffineChart>(task, {chart, chart}, Vec2::Zero(), *at_x, trace);
+    const auto solution =
+        solve_on_plane(task, patches_.plane(patch), Vec3::Zero(), Vec2::Zero(), trace);
     if (!solution) return std::nullopt;
     const Vec3 position = task.x.position + solution->at_target.position;
     const auto facet = patches_.locate(patch, position, task.x.facet);
@@ -193,18 +183,25 @@ ShiftMapping::Result ShiftMapping::shift_by_plane(const Task& task, ShiftTrace& 
 
 ShiftMapping::Result ShiftMapping::shift_in_facet(const Task& task, ShiftTrace& trace) const {
     const Facet& facet = scene_->facet(task.x.facet);
-    const Vec2 xi = barycentric_of(facet, task.x.position);
-    const AffineChart chart{facet.corner - task.x.position,
-                            facet.edge1,
-                            facet.edge2,
-                            scene_->object_of(task.x.facet).velocity_m_per_s,
-                            rounding_m_};
-    const auto at_x = chart.at(xi);
-    const auto solution = solve<AffineChart>(task, {chart, chart}, xi, *at_x, trace);
+    const auto solution = solve_on_plane(
+        task, facet, facet.corner - task.x.position, barycentric_of(facet, task.x.position), trace);
     if (!solution) return std::nullopt;
     if (!is_in_triangle(solution->xi)) return trace.reject(ShiftRejection::LeftSurface);
     return ShiftedPath{{task.x.position + solution->at_target.position, task.x.facet},
                        solution->jacobian};
+}
+
+std::optional<ShiftSolution> ShiftMapping::solve_on_plane(const Task& task,
+                                                          const Facet& plane,
+                                                          const Vec3& origin,
+                                                          const Vec2& xi,
+                                                          ShiftTrace& trace) const {
+    const AffineChart chart{origin,
+                            plane.edge1,
+                            plane.edge2,
+                            scene_->object_of(task.x.facet).velocity_m_per_s,
+                            rounding_m_};
+    return solve<AffineChart>(task, {chart, chart}, xi, *chart.at(xi), trace);
 }
 
 ShiftMapping::Result ShiftMapping::shift_by_ray(const Task& task, ShiftTrace& trace) const {

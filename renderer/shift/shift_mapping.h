@@ -28,20 +28,7 @@ struct ShiftSettings {
     /// Average gauge: gradients of the surface instead of the coordinates. The same on planes.
     bool metric_gauge = true;
     bool reverse_check = true;
-    double jacobian_bound = 20.0;         ///< c: J/S must lie in [1/c, c]
-    double smallest_plane_area_m2 = 0.0;  ///< adaptive: smaller flat pieces go by ray at once
 };
-
-template <class Visitor>
-void for_each_field(ShiftSettings& s, Visitor&& visit) {
-    visit("chart", s.chart, "coordinates in which a vertex moves");
-    visit("gauge", s.gauge, "what fixes the second coordinate");
-    visit("closed_form_on_planes", s.closed_form_on_planes, "closed form instead of Newton");
-    visit("metric_gauge", s.metric_gauge, "average gauge by the surface's metric");
-    visit("reverse_check", s.reverse_check, "solve every shift backwards too");
-    visit("jacobian_bound", s.jacobian_bound, "largest change of area, either way");
-    visit("smallest_plane_area_m2", s.smallest_plane_area_m2, "adaptive: below it by ray [m^2]");
-}
 
 /// What stays fixed of a path while its reconnection vertex x moves: a -> x -> y.
 struct ShiftEnd {
@@ -92,8 +79,6 @@ class ShiftMapping {
                                           const ConstraintChange& change,
                                           ShiftCounts& counts) const;
 
-    const PlanarPatches& patches() const { return patches_; }
-
  private:
     struct Task;
     using Result = std::optional<ShiftedPath>;
@@ -104,13 +89,18 @@ class ShiftMapping {
     Result shift_in_closed_form(const Task& task, ShiftTrace& trace) const;
     Result shift_in_facet(const Task& task, ShiftTrace& trace) const;
     Result shift_by_ray(const Task& task, ShiftTrace& trace) const;
+    /// In the coordinates that `plane`'s edges span from `origin`; xi: those of the vertex.
+    std::optional<ShiftSolution> solve_on_plane(const Task& task,
+                                                const Facet& plane,
+                                                const core::Vec3& origin,
+                                                const core::Vec2& xi,
+                                                ShiftTrace& trace) const;
     template <class Chart>
     std::optional<ShiftSolution> solve(const Task& task,
                                        const std::array<Chart, 2>& charts,
                                        const core::Vec2& xi,
                                        const ChartPoint& at_x,
                                        ShiftTrace& trace) const;
-    bool is_bounded(double jacobian, double ratio) const;
 
     const Scene* scene_;
     ShiftSettings settings_;

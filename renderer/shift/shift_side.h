@@ -73,7 +73,7 @@ struct ChartExpansion {
     }
 
     /// How far the conditions f = const and the gauge's, with gradient `gauge`, stay well apart:
-    /// the shorter leg, less where the gradient is small (next to nothing near a tangent point) or
+    /// the shorter leg, less where the gradient is small (close to zero near a tangent point) or
     /// where the two run alongside [m].
     double reach_m(const core::Vec2& gauge) const {
         return shorter_leg_m * std::abs(cross(gradient, gauge)) /

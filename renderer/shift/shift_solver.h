@@ -46,14 +46,37 @@ inline bool is_resolved(const ChartExpansion& e, const core::Vec2& gauge) {
            reach * reach > kFeltRoundings * e.rounding_m * e.shorter_leg_m;
 }
 
+/// The solution that a state has reached, unless it is degenerate or folded.
+///
+/// With F = 0 on both sides of a change, dxi'/dxi = -(dF/dxi')^-1 dF/dxi; its determinant is the
+/// ratio of the determinants, positive at the identity.
+inline std::optional<ShiftSolution> solution_at(const ShiftState& state,
+                                                const GaugeTerms& terms,
+                                                ShiftTrace& trace) {
+    const double by_target = cross(state.at_target.gradient, terms.by_target);
+    const double by_source = cross(state.at_source.gradient, -terms.by_source);
+    const auto is_tiny = [](double determinant, const ChartExpansion& e) {
+        return !(std::abs(determinant) > kTinyDeterminant * e.gradient_size * e.gradient_size *
+                                             e.metric.area_density * e.legs_m / e.shorter_leg_m);
+    };
+    if (is_tiny(by_target, state.at_target) || is_tiny(by_source, state.at_source) ||
+        !is_resolved(state.at_target, terms.by_target) ||
+        !is_resolved(state.at_source, terms.by_source)) {
+        return trace.reject(ShiftRejection::Degenerate);
+    }
+    const double ratio = by_source / by_target;
+    if (!(ratio > 0.0)) return trace.reject(ShiftRejection::Folded);
+    return ShiftSolution{
+        state.xi_new,
+        ratio * state.at_target.metric.area_density / state.at_source.metric.area_density,
+        state.at_target};
+}
+
 /// Newton's method with line search on F1 = f_t(xi') - f_s(xi) - change and the gauge's F2.
 ///
 /// at_source   source's functional at xi
 /// start       target's functional at xi, where the search begins
 /// returns     the solution; nullopt with the reason in `trace`
-///
-/// With F = 0 on both sides of a change, dxi'/dxi = -(dF/dxi')^-1 dF/dxi; its determinant is the
-/// ratio of the determinants, positive at the identity.
 template <class Gauge, class Problem>
 std::optional<ShiftSolution> newton_shift(const Gauge& gauge,
                                           const Problem& problem,
@@ -111,24 +134,7 @@ std::optional<ShiftSolution> newton_shift(const Gauge& gauge,
         }
         if (!is_better) return trace.reject(ShiftRejection::NotConverged);
     }
-
-    const double by_target = cross(state.at_target.gradient, terms.by_target);
-    const double by_source = cross(at_source.gradient, -terms.by_source);
-    const auto is_tiny = [](double determinant, const ChartExpansion& e) {
-        return !(std::abs(determinant) > kTinyDeterminant * e.gradient_size * e.gradient_size *
-                                             e.metric.area_density * e.legs_m / e.shorter_leg_m);
-    };
-    if (is_tiny(by_target, state.at_target) || is_tiny(by_source, at_source) ||
-        !is_resolved(state.at_target, terms.by_target) ||
-        !is_resolved(at_source, terms.by_source)) {
-        return trace.reject(ShiftRejection::Degenerate);
-    }
-    const double ratio = by_source / by_target;
-    if (!(ratio > 0.0)) return trace.reject(ShiftRejection::Folded);
-    return ShiftSolution{
-        state.xi_new,
-        ratio * state.at_target.metric.area_density / at_source.metric.area_density,
-        state.at_target};
+    return solution_at(state, terms, trace);
 }
 
 /// The equations can have a second root, on another branch of the curve. On the right one the
@@ -147,7 +153,7 @@ inline bool is_on_first_branch(const core::Vec2& step,
     return *least >= 0.0 || *most <= 0.0;
 }
 
-/// Solves a shift, selects the root and, unless told otherwise, solves it backwards too: only what
+/// Solves a shift, selects the root and, with `reverse_check`, solves it backwards too: only what
 /// comes back to where it started belongs to a one-to-one map.
 ///
 /// at_source   source's functional at xi

@@ -6,6 +6,7 @@
 #include "tests/hard_cases/ellipsoid_truth.h"
 #include "tests/hard_cases/hard_case.h"
 #include "tests/support/ellipsoid_stress.h"
+#include "tests/support/inverse_sampling.h"
 #include "tests/support/statistics.h"
 
 namespace hard_cases {
@@ -170,7 +171,7 @@ double inverse_of_drawn_vertices() {
         const auto drawn =
             renderer::sample_ellipsoid(foci, foci.opl_m(facet.point(0.3, 0.3)), facet, u);
         const auto again =
-            drawn ? renderer::invert_ellipsoid(foci, facet, drawn->position) : std::nullopt;
+            drawn ? test_support::invert_ellipsoid(foci, facet, drawn->position) : std::nullopt;
         worst.add(again ? std::abs(*again - u) : HUGE_VAL);
     }
     return worst.value();

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace {
 
@@ -29,8 +30,8 @@ struct Outer {
 
 template <class Visitor>
 void for_each_field(Inner& s, Visitor&& visit) {
-    visit("width_m", s.width_m, "width [m]");
-    visit("shape", s.shape, "shape");
+    visit("width_m", s.width_m, core::above(0, "width [m]"));
+    visit("shape", s.shape, core::at_least(1, "shape"));
 }
 
 template <class Visitor>
@@ -39,7 +40,7 @@ void for_each_field(Outer& s, Visitor&& visit) {
     visit("count", s.count, "count");
     visit("on", s.on, "switch");
     visit("colour", s.colour, "colour");
-    visit("limit", s.limit, "limit");
+    visit("limit", s.limit, core::Ranged{"limit", {0, true, 1, false}});
     visit("extra", s.extra, "extra");
 }
 
@@ -107,6 +108,21 @@ TEST(Settings, WrongTypesNameKeyValueAndWhatIsAllowed) {
               "file.json: inner.shape: found [1]; must be a list of 2 numbers");
     EXPECT_EQ(message_of(R"({"inner": {"width_m": null}})"),
               "file.json: inner.width_m: found null; must be a finite number");
+}
+
+TEST(Settings, RangesNameKeyValueAndWhatIsAllowed) {
+    const auto check = [](double width_m, int height, std::optional<double> limit) {
+        core::check_ranges(Inner{width_m, {1, height}}, "file.json: inner");
+        Outer outer;
+        outer.limit = limit;
+        core::check_ranges(outer, "");
+    };
+    check(0.1, 1, std::nullopt);
+    check(0.1, 1, 0.0);
+    EXPECT_ERROR_WITH(check(0.0, 1, 0.5), "file.json: inner.width_m: found 0; must be above 0");
+    EXPECT_ERROR_WITH(check(HUGE_VAL, 1, 0.5), "inner.width_m: found inf; must be finite");
+    EXPECT_ERROR_WITH(check(0.1, 0, 0.5), "inner.shape: found 0; must be at least 1");
+    EXPECT_ERROR_WITH(check(0.1, 1, 1.0), "limit: found 1; must be at least 0 and below 1");
 }
 
 TEST(Settings, FilesThatAreNoTextAreNamedInPrintableLines) {

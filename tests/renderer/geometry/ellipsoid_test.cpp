@@ -4,6 +4,7 @@
 
 #include "renderer/core/random.h"
 #include "renderer/core/sampling.h"
+#include "tests/support/inverse_sampling.h"
 #include "tests/support/random_geometry.h"
 #include "tests/support/statistics.h"
 
@@ -162,7 +163,8 @@ TEST(EllipsoidalConnection, InverseReturnsTheRandomNumber) {
         for (int i = 0; i < 200; ++i) {
             const auto draw = draw_from(c, rng);
             if (!draw) continue;
-            const auto u = invert_ellipsoid(c.foci, c.facet, draw->connection.position);
+            const auto u =
+                test_support::invert_ellipsoid(c.foci, c.facet, draw->connection.position);
             if (!u) continue;  // a length at the end of the band, rounded
             ++inverted;
             // u is a share of the arcs: where these are short, rounding of x is a larger share.
@@ -328,7 +330,7 @@ class Cells {
         const double b1 = std::max(0.0, offset.cross(facet.edge2).dot(facet.normal) / twice);
         const double b2 = std::max(0.0, facet.edge1.cross(offset).dot(facet.normal) / twice);
         const double sum = std::max(1.0, b1 + b2);
-        const Vec2 u = core::invert_triangle({b1 / sum, b2 / sum});
+        const Vec2 u = test_support::invert_triangle({b1 / sum, b2 / sum});
         const auto index = [](double v) {
             return std::min(kSide - 1, static_cast<std::size_t>(v * double(kSide)));
         };

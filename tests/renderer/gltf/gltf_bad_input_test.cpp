@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <functional>
 #include <limits>
 
 namespace {
@@ -59,176 +58,143 @@ TEST(GltfBadInput, DeeplyNestedJsonIsRefused) {
     EXPECT_NE(error_of(path).find("nested deeper"), std::string::npos);
 }
 
-/// One way to spoil the square, and what the message must name.
+/// One value of the square's file that is spoilt, and what the message must name.
 struct Mutation {
     const char* expected;
-    std::function<void(GltfFile&)> spoil;
+    const char* pointer;
+    const char* value;  ///< JSON; empty: the value is removed
 };
 
-TEST(GltfBadInput, MessagesNameTheOffendingPart) {
-    static constexpr auto kHuge = std::numeric_limits<std::uint64_t>::max();
-    const std::vector<Mutation> mutations{
-        {"asset", [](GltfFile& f) { f.json.erase("asset"); }},
-        {"scene: found 4", [](GltfFile& f) { f.json["scene"] = 4; }},
-        {"scenes[0].nodes: found 7", [](GltfFile& f) { f.json["scenes"][0]["nodes"] = {7}; }},
-        {"scenes[0].nodes: found -1", [](GltfFile& f) { f.json["scenes"][0]["nodes"] = {-1}; }},
-        {"nodes[0].mesh: found 1", [](GltfFile& f) { f.json["nodes"][0]["mesh"] = 1; }},
-        {"nodes[0].mesh: found 4294967296",
-         [](GltfFile& f) { f.json["nodes"][0]["mesh"] = 4294967296; }},
-        {"nodes[0].mesh: found \"0\"", [](GltfFile& f) { f.json["nodes"][0]["mesh"] = "0"; }},
-        {"nodes[0].matrix",
-         [](GltfFile& f) {
-             f.json["nodes"][0]["matrix"] = {1, 2};
-         }},
+TEST(GltfBadInput, MessagesNameTheOffendingValue) {
+    const Mutation mutations[]{
+        {"asset", "/asset", ""},
+        {"scene: found 4", "/scene", "4"},
+        {"scenes[0].nodes: found 7", "/scenes/0/nodes", "[7]"},
+        {"scenes[0].nodes: found -1", "/scenes/0/nodes", "[-1]"},
+        {"nodes[0].mesh: found 1", "/nodes/0/mesh", "1"},
+        {"nodes[0].mesh: found 4294967296", "/nodes/0/mesh", "4294967296"},
+        {"nodes[0].mesh: found \"0\"", "/nodes/0/mesh", "\"0\""},
+        {"nodes[0].matrix", "/nodes/0/matrix", "[1, 2]"},
         {"nodes[0].matrix: is not affine",
-         [](GltfFile& f) { f.json["nodes"][0]["matrix"] = Json(16, 1.0); }},
-        {"nodes[0].translation",
-         [](GltfFile& f) {
-             f.json["nodes"][0]["translation"] = {1, "2", 3};
-         }},
-        {"nodes[0].rotation: has length 0",
-         [](GltfFile& f) {
-             f.json["nodes"][0]["rotation"] = {0, 0, 0, 0};
-         }},
+         "/nodes/0/matrix",
+         "[1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1]"},
+        {"nodes[0].translation", "/nodes/0/translation", "[1, \"2\", 3]"},
+        {"nodes[0].rotation: has length 0", "/nodes/0/rotation", "[0, 0, 0, 0]"},
         {"nodes[0]: its vertices overflow",
-         [](GltfFile& f) {
-             f.json["nodes"][0]["matrix"] = Json(16, 0.0);
-             for (const int i : {0, 4, 8, 12}) f.json["nodes"][0]["matrix"][i] = 1.7e308;
-             f.json["nodes"][0]["matrix"][15] = 1;
-         }},
-        {"nodes[0]: its mesh has no triangle with an area",
-         [](GltfFile& f) {
-             f.json["nodes"][0]["scale"] = {0, 1, 1};
-         }},
-        {"nodes[0]: is reached twice", [](GltfFile& f) { f.json["nodes"][0]["children"] = {0}; }},
-        {"nodes[1]: is reached twice",
-         [](GltfFile& f) {
-             f.json["nodes"][0]["children"] = {1, 1};
-             f.json["nodes"].push_back(Json::object());
-         }},
-        {"has no triangles",
-         [](GltfFile& f) {
-             f.json["nodes"].push_back({{"children", {0}}});
-             f.json["nodes"][0]["children"] = {1};  // a cycle that no root reaches
-             f.json.erase("scenes");
-             f.json.erase("scene");
-         }},
-        {"has no triangles", [](GltfFile& f) { f.json["nodes"][0].erase("mesh"); }},
-        {"has no triangles", [](GltfFile& f) { f.primitive()["mode"] = 0; }},
-        {"meshes[0].primitives[0]: found mode 7", [](GltfFile& f) { f.primitive()["mode"] = 7; }},
-        {"meshes[0].primitives: found []",
-         [](GltfFile& f) { f.json["meshes"][0]["primitives"] = Json::array(); }},
-        {"meshes[0].primitives[0]: has no attributes",
-         [](GltfFile& f) { f.primitive().erase("attributes"); }},
+         "/nodes/0/matrix",
+         "[1.7e308, 0, 0, 0, 1.7e308, 0, 0, 0, 1.7e308, 0, 0, 0, 1.7e308, 0, 0, 1]"},
+        {"nodes[0]: its mesh has no triangle with an area", "/nodes/0/scale", "[0, 1, 1]"},
+        {"nodes[0]: is reached twice", "/nodes/0/children", "[0]"},
+        {"nodes[1]: is reached twice", "/nodes", R"([{"mesh": 0, "children": [1, 1]}, {}])"},
+        {"has no triangles", "/nodes/0/mesh", ""},
+        {"has no triangles", "/meshes/0/primitives/0/mode", "0"},
+        {"meshes[0].primitives[0]: found mode 7", "/meshes/0/primitives/0/mode", "7"},
+        {"meshes[0].primitives: found []", "/meshes/0/primitives", "[]"},
+        {"meshes[0].primitives[0]: has no attributes", "/meshes/0/primitives/0/attributes", ""},
         {"meshes[0].primitives[0]: has no POSITION",
-         [](GltfFile& f) {
-             f.primitive()["attributes"] = {{"NORMAL", 0}};
-         }},
+         "/meshes/0/primitives/0/attributes",
+         R"({"NORMAL": 0})"},
         {"meshes[0].primitives[0].attributes.POSITION: found 9",
-         [](GltfFile& f) { f.primitive()["attributes"]["POSITION"] = 9; }},
-        {"meshes[0].primitives[0]: has 4 corners", [](GltfFile& f) { f.primitive()["mode"] = 4; }},
-        {"meshes[0].primitives[0].material: found 0",
-         [](GltfFile& f) { f.primitive()["material"] = 0; }},
-        {"accessors[1]: index 4 is out of range",
-         [](GltfFile& f) {
-             f.primitive()["indices"] =
-                 f.add_accessor(std::vector<std::uint16_t>{0, 1, 4}, kUShort, "SCALAR");
-         }},
-        {"accessors[1]: is used for indices",
-         [](GltfFile& f) {
-             f.primitive()["indices"] =
-                 f.add_accessor(std::vector<float>{0, 1, 2}, kFloat, "SCALAR");
-         }},
-        {"accessors[0]: is used for positions",
-         [](GltfFile& f) { f.json["accessors"][0]["type"] = "VEC4"; }},
-        {"accessors[0]: is used for positions",
-         [](GltfFile& f) { f.json["accessors"][0]["componentType"] = 5125; }},
-        {"Invalid `componentType`",
-         [](GltfFile& f) { f.json["accessors"][0]["componentType"] = 1; }},
+         "/meshes/0/primitives/0/attributes/POSITION",
+         "9"},
+        {"meshes[0].primitives[0]: has 4 corners", "/meshes/0/primitives/0/mode", "4"},
+        {"meshes[0].primitives[0].material: found 0", "/meshes/0/primitives/0/material", "0"},
+        {"accessors[0]: is used for positions", "/accessors/0/type", "\"VEC4\""},
+        {"accessors[0]: is used for positions", "/accessors/0/componentType", "5125"},
+        {"Invalid `componentType`", "/accessors/0/componentType", "1"},
         {"accessors[0]: has 5 elements of 12 bytes every 12 bytes from byte 0",
-         [](GltfFile& f) { f.json["accessors"][0]["count"] = 5; }},
+         "/accessors/0/count",
+         "5"},
         {"accessors[0]: has 4 elements of 12 bytes every 12 bytes from byte 4",
-         [](GltfFile& f) { f.json["accessors"][0]["byteOffset"] = 4; }},
-        {"accessors[0]: has",
-         [](GltfFile& f) { f.json["accessors"][0]["byteOffset"] = 2147483644; }},
-        {"accessors[0]: has 2147483647 elements of 12 bytes",
-         [](GltfFile& f) { f.json["accessors"][0]["count"] = 2147483647; }},
-        {"accessors[0].count", [](GltfFile& f) { f.json["accessors"][0]["count"] = 0; }},
-        {"accessors[0].count", [](GltfFile& f) { f.json["accessors"][0]["count"] = kHuge; }},
-        {"accessors[0].count", [](GltfFile& f) { f.json["accessors"][0]["count"] = 3.5; }},
-        {"accessors[0]: has elements of 12 bytes every 4 bytes",
-         [](GltfFile& f) { f.json["bufferViews"][0]["byteStride"] = 4; }},
-        {"byteStride", [](GltfFile& f) { f.json["bufferViews"][0]["byteStride"] = 254; }},
-        {"bufferViews[0]: ends at byte 49",
-         [](GltfFile& f) { f.json["bufferViews"][0]["byteLength"] = 49; }},
-        {"bufferViews[0]: ends at byte",
-         [](GltfFile& f) { f.json["bufferViews"][0]["byteOffset"] = 2147483647; }},
-        {"bufferViews[0].byteOffset",
-         [](GltfFile& f) { f.json["bufferViews"][0]["byteOffset"] = kHuge; }},
-        {"bufferViews[0].buffer: found 1",
-         [](GltfFile& f) { f.json["bufferViews"][0]["buffer"] = 1; }},
-        {"accessors[0].sparse.indices: found 4",
-         [](GltfFile& f) {
-             const int indices = f.add_view(std::vector<std::uint8_t>{4});
-             const int values = f.add_view(std::vector<float>{0, 0, 0});
-             f.json["accessors"][0]["sparse"] = {
-                 {"count", 1},
-                 {"indices", {{"bufferView", indices}, {"componentType", 5121}}},
-                 {"values", {{"bufferView", values}}}};
-         }},
-        {"accessors[0].sparse.values: has 2 elements",
-         [](GltfFile& f) {
-             const int indices = f.add_view(std::vector<std::uint8_t>{0, 1});
-             const int values = f.add_view(std::vector<float>{0, 0, 0});
-             f.json["accessors"][0]["sparse"] = {
-                 {"count", 2},
-                 {"indices", {{"bufferView", indices}, {"componentType", 5121}}},
-                 {"values", {{"bufferView", values}}}};
-         }},
-        {"accessors[0].sparse", [](GltfFile& f) { f.json["accessors"][0]["sparse"] = 3; }},
+         "/accessors/0/byteOffset",
+         "4"},
+        {"accessors[0]: has", "/accessors/0/byteOffset", "2147483644"},
+        {"accessors[0]: has 2147483647 elements of 12 bytes", "/accessors/0/count", "2147483647"},
+        {"accessors[0].count", "/accessors/0/count", "0"},
+        {"accessors[0].count", "/accessors/0/count", "18446744073709551615"},
+        {"accessors[0].count", "/accessors/0/count", "3.5"},
+        {"accessors[0]: has elements of 12 bytes every 4 bytes", "/bufferViews/0/byteStride", "4"},
+        {"byteStride", "/bufferViews/0/byteStride", "254"},
+        {"bufferViews[0]: ends at byte 49", "/bufferViews/0/byteLength", "49"},
+        {"bufferViews[0]: ends at byte", "/bufferViews/0/byteOffset", "2147483647"},
+        {"bufferViews[0].byteOffset", "/bufferViews/0/byteOffset", "18446744073709551615"},
+        {"bufferViews[0].buffer: found 1", "/bufferViews/0/buffer", "1"},
+        {"accessors[0].sparse", "/accessors/0/sparse", "3"},
         {"accessors[0].sparse.indices.bufferView: found 5",
-         [](GltfFile& f) {
-             f.json["accessors"][0]["sparse"] = {
-                 {"count", 1},
-                 {"indices", {{"bufferView", 5}, {"componentType", 5121}}},
-                 {"values", {{"bufferView", 0}}}};
-         }},
+         "/accessors/0/sparse",
+         R"({"count": 1, "indices": {"bufferView": 5, "componentType": 5121},
+             "values": {"bufferView": 0}})"},
         {"materials[0].pbrMetallicRoughness.baseColorFactor",
-         [](GltfFile& f) {
-             f.json["materials"] =
-                 Json::array({Json{{"pbrMetallicRoughness", {{"baseColorFactor", {2, 0, 0, 1}}}}}});
-         }},
+         "/materials",
+         R"([{"pbrMetallicRoughness": {"baseColorFactor": [2, 0, 0, 1]}}])"},
         {"nodes[0].extras.nlos_rolle: found an unknown key; known keys are nlos_role",
-         [](GltfFile& f) {
-             f.json["nodes"][0]["extras"] = {{"nlos_rolle", "hidden"}};
-         }},
+         "/nodes/0/extras",
+         R"({"nlos_rolle": "hidden"})"},
         {"nodes[0].extras.nlos_role: found \"wall\"; must be one of hidden|relay_wall|back_wall",
-         [](GltfFile& f) {
-             f.json["nodes"][0]["extras"] = {{"nlos_role", "wall"}};
-         }},
+         "/nodes/0/extras",
+         R"({"nlos_role": "wall"})"},
         {"nodes[0].extras.nlos_velocity_m_per_s",
-         [](GltfFile& f) {
-             f.json["nodes"][0]["extras"] = {{"nlos_velocity_m_per_s", {1, 2}}};
-         }},
+         "/nodes/0/extras",
+         R"({"nlos_velocity_m_per_s": [1, 2]})"},
         {"nodes[0].extras.nlos_ellipsoidal_exclude: found 1",
-         [](GltfFile& f) {
-             f.json["nodes"][0]["extras"] = {{"nlos_ellipsoidal_exclude", 1}};
-         }},
+         "/nodes/0/extras",
+         R"({"nlos_ellipsoidal_exclude": 1})"},
         {"meshes[0].extras.nlos_role: is not on a node or a material",
-         [](GltfFile& f) {
-             f.json["meshes"][0]["extras"] = {{"nlos_role", "hidden"}};
-         }},
+         "/meshes/0/extras",
+         R"({"nlos_role": "hidden"})"},
         {"extensionsRequired: found \"KHR_draco_mesh_compression\"",
-         [](GltfFile& f) { f.json["extensionsRequired"] = {"KHR_draco_mesh_compression"}; }},
-        {"meshes: found", [](GltfFile& f) { f.json["meshes"] = 3; }},
-        {"nodes[0]: found", [](GltfFile& f) { f.json["nodes"][0] = "node"; }},
+         "/extensionsRequired",
+         R"(["KHR_draco_mesh_compression"])"},
+        {"meshes: found", "/meshes", "3"},
+        {"nodes[0]: found", "/nodes/0", "\"node\""},
     };
     for (const Mutation& mutation : mutations) {
         GltfFile file = square_file();
-        mutation.spoil(file);
+        const Json::json_pointer pointer(mutation.pointer);
+        if (*mutation.value) {
+            file.json[pointer] = Json::parse(mutation.value);
+        } else {
+            file.json[pointer.parent_pointer()].erase(pointer.back());
+        }
         EXPECT_NE(error_of(file).find(mutation.expected), std::string::npos)
             << "expected: " << mutation.expected << "\nmessage:  " << error_of(file);
     }
+}
+
+TEST(GltfBadInput, CyclesThatNoRootReachesLeaveNothing) {
+    GltfFile file = square_file();
+    file.json["nodes"].push_back({{"children", {0}}});
+    file.json["nodes"][0]["children"] = {1};
+    file.json.erase("scenes");
+    file.json.erase("scene");
+    EXPECT_NE(error_of(file).find("has no triangles"), std::string::npos);
+}
+
+TEST(GltfBadInput, IndicesMustBeWholeNumbersInRange) {
+    GltfFile file = square_file();
+    file.primitive()["indices"] =
+        file.add_accessor(std::vector<std::uint16_t>{0, 1, 4}, kUShort, "SCALAR");
+    EXPECT_NE(error_of(file).find("accessors[1]: index 4 is out of range"), std::string::npos);
+
+    file = square_file();
+    file.primitive()["indices"] = file.add_accessor(std::vector<float>{0, 1, 2}, kFloat, "SCALAR");
+    EXPECT_NE(error_of(file).find("accessors[1]: is used for indices"), std::string::npos);
+}
+
+TEST(GltfBadInput, SparseElementsMustExist) {
+    const auto message = [](const std::vector<std::uint8_t>& listed) {
+        GltfFile file = square_file();
+        const int indices = file.add_view(listed);
+        const int values = file.add_view(std::vector<float>{0, 0, 0});
+        file.json["accessors"][0]["sparse"] = {
+            {"count", listed.size()},
+            {"indices", {{"bufferView", indices}, {"componentType", 5121}}},
+            {"values", {{"bufferView", values}}}};
+        return error_of(file);
+    };
+    EXPECT_NE(message({4}).find("accessors[0].sparse.indices: found 4"), std::string::npos);
+    EXPECT_NE(message({0, 1}).find("accessors[0].sparse.values: has 2 elements"),
+              std::string::npos);
 }
 
 TEST(GltfBadInput, PositionsMustBeFinite) {
