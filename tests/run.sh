@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds with warnings as errors, and runs every test.
-#   bash tests/run.sh [PRESET] [CTEST ARGUMENTS ...]      PRESET: dev (default) or sanitize
+#   bash tests/run.sh [PRESET] [CTEST ARGUMENTS ...]      PRESET: check (default), dev or sanitize
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-preset=${1:-dev}
+preset=${1:-check}
 [ $# -gt 0 ] && shift
 bash apps/setup.sh
 cmake --preset "$preset" >/dev/null
