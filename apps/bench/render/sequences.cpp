@@ -16,7 +16,7 @@ namespace apps {
 namespace {
 
 // Frames before this share of a sequence are left out of the means: reuse has to settle.
-constexpr double kSettlingShare = 1.0 / 6.0;
+constexpr double kSequenceSettlingShare = 1.0 / 6.0;
 
 bool is_integrable(const SequenceSetup& setup) {
     return !setup.scan.camera && setup.description.render.max_bounces == 3;
@@ -86,7 +86,7 @@ SequenceBench run_method(const SequenceCase& sequence,
         errors.add(result.capture.sequence->frames, references[0], references[1]);
     }
     const auto first_settled =
-        static_cast<std::size_t>(std::ceil(kSettlingShare * sequence.num_frames));
+        static_cast<std::size_t>(std::ceil(kSequenceSettlingShare * sequence.num_frames));
     const ErrorSums settled = errors.settled(first_settled);
     bench.rel_mse_of_frames = errors.rel_mse_of_frames();
     bench.rel_mse = settled.rel_mse();
