@@ -15,6 +15,7 @@
 #include <OpenEXR/ImfInputFile.h>
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfStringAttribute.h>
+#include <OpenEXR/ImfTestFile.h>
 #include <fmt/core.h>
 
 #include <array>
@@ -33,85 +34,30 @@ constexpr std::uint64_t kMaxChannels = 1 << 16;
     throw core::Error(path, "is damaged or cut short", "must be a complete OpenEXR file");
 }
 
-/// Reads the header's parts, each checked against the file's end, which the library does not do
-/// before it allocates.
-class HeaderReader {
- public:
-    explicit HeaderReader(const std::string& path)
-        : path_(path), file_(path, std::ios::binary), left_(std::filesystem::file_size(path)) {}
-
-    std::uint64_t left() const { return left_; }
-
-    std::uint32_t number() {
-        std::array<unsigned char, 4> bytes{};
-        take(reinterpret_cast<char*>(bytes.data()), bytes.size());
-        std::uint32_t value = 0;
-        for (std::size_t i = bytes.size(); i-- > 0;) value = value << 8 | bytes[i];
-        return value;
-    }
-    /// A name, which ends with a zero.
-    std::string name() {
-        constexpr std::size_t kLongestName = 255;
-        std::string text;
-        while (text.size() <= kLongestName) {
-            char c = 0;
-            take(&c, 1);
-            if (c == '\0') return text;
-            text += c;
-        }
-        throw_damaged_table(path_);
-    }
-    void skip(std::uint64_t count) {
-        if (count > left_) throw_damaged_table(path_);
-        file_.seekg(static_cast<std::streamoff>(count), std::ios::cur);
-        left_ -= count;
-    }
-
- private:
-    void take(char* bytes, std::size_t count) {
-        if (count > left_ || !file_.read(bytes, static_cast<std::streamsize>(count))) {
-            throw_damaged_table(path_);
-        }
-        left_ -= count;
-    }
-
-    const std::string& path_;
-    std::ifstream file_;
-    std::uint64_t left_;
-};
-
-/// Checks that all attributes lie within the file and that its image may be as large as it claims.
-void check_header(const std::string& path) {
-    constexpr std::uint32_t kVersion = 2;
-    constexpr std::uint32_t kLongNames = 0x400;
+/// Throws unless the file is a single image of scan lines, no larger than its bytes can hold.
+void check_kind_and_size(const std::string& path) {
     // The strongest compression, deflate, shrinks by less than 1032 to 1.
     constexpr std::uint64_t kLargestRatio = 1100;
-    HeaderReader header(path);
-    header.number();  // the signature
-    const std::uint32_t version = header.number();
-    if ((version & ~kLongNames) != kVersion) {
+    bool tiled = false;
+    bool deep = false;
+    bool multi_part = false;
+    if (!Imf::isOpenExrFile(path.c_str(), tiled, deep, multi_part)) throw_damaged_table(path);
+    if (tiled || deep || multi_part) {
         throw core::Error(path,
-                          fmt::format("has version flags {:#x}", version),
+                          fmt::format("is {}",
+                                      tiled  ? "tiled"
+                                      : deep ? "deep"
+                                             : "of several parts"),
                           "must be a single image of scan lines");
     }
-    std::uint64_t pixels = 0;
-    while (true) {
-        const std::string name = header.name();
-        if (name.empty()) break;
-        const std::string type = header.name();
-        const std::uint32_t bytes = header.number();
-        if (name != "dataWindow" || type != "box2i" || bytes != 16) {
-            header.skip(bytes);
-            continue;
-        }
-        std::array<std::int64_t, 4> window{};  // x and y of the first, x and y of the last pixel
-        for (std::int64_t& edge : window) edge = static_cast<std::int32_t>(header.number());
-        const std::int64_t width = window[2] - window[0] + 1;
-        const std::int64_t height = window[3] - window[1] + 1;
-        if (width < 1 || height < 1) throw_damaged_table(path);
-        pixels = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
-    }
-    if (pixels == 0 || pixels > header.left() * kLargestRatio) throw_damaged_table(path);
+    // The library allocates by what the header claims, within these bounds.
+    const std::uint64_t most_pixels = std::filesystem::file_size(path) * kLargestRatio;
+    const int most = static_cast<int>(std::min<std::uint64_t>(most_pixels, INT32_MAX));
+    Imf::Header::setMaxImageSize(most, most);
+    const Imath::Box2i window = Imf::InputFile(path.c_str(), 0).header().dataWindow();
+    const std::uint64_t width = static_cast<std::uint64_t>(window.max.x - window.min.x) + 1;
+    const std::uint64_t height = static_cast<std::uint64_t>(window.max.y - window.min.y) + 1;
+    if (width > most_pixels / height) throw_damaged_table(path);
 }
 
 core::Json to_json(const ExrTable& table) {
@@ -160,7 +106,7 @@ Imf::Slice slice_of(float* values, const ExrTable& table, int first_x, int first
 }
 
 ExrTable read_with_library(const std::string& path) {
-    check_header(path);
+    check_kind_and_size(path);
     Imf::InputFile file(path.c_str());
     const Imf::Header& header = file.header();
     const Imath::Box2i window = header.dataWindow();

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -18,8 +19,8 @@ class SandboxedProcess;
 /// An HDF5 file open for reading.
 ///
 /// The library (1.10) crashes on some files with damaged headers of the older kind, which have no
-/// checksums, whatever is asked of it. It therefore runs in a process of its own, which answers
-/// these questions by an Hdf5Session. Every failure is a core::Error that names file and dataset;
+/// checksums, whatever is asked of it. It therefore runs in a process of its own, which describes
+/// objects and reads rows of values. Every failure is a core::Error that names file and dataset;
 /// what would not fit in memory is a core::Failure.
 class Hdf5Reader {
  public:
@@ -55,7 +56,7 @@ class Hdf5Reader {
         const std::size_t step = rows_per_read(name);
         for (std::size_t first = 0; first < rows; first += step) {
             const std::size_t count = std::min(step, rows - first);
-            const std::vector<float> values = read_row_range(name, first, count);
+            const std::vector<float> values = read_values<float>(name, first, count);
             take(first, count, values);
         }
     }
@@ -67,14 +68,18 @@ class Hdf5Reader {
                                                       const std::string& name) const;
 
  private:
-    std::string ask(const core::Json& question) const;
+    const core::Json& describe(const std::string& name) const;
+    const core::Json& describe_dataset(const std::string& name) const;
+    void require_numeric(const std::string& name) const;
     std::size_t rows_per_read(const std::string& name) const;
-    std::vector<float> read_row_range(const std::string& name,
-                                      std::size_t first,
-                                      std::size_t count) const;
+    template <class T>
+    std::vector<T> read_all(const std::string& name, const Shape& wanted) const;
+    template <class T>
+    std::vector<T> read_values(const std::string& name, std::size_t first, std::size_t count) const;
 
     std::string path_;
     std::unique_ptr<SandboxedProcess> process_;
+    mutable std::map<std::string, core::Json> described_;  ///< objects asked for so far
 };
 
 }  // namespace nlos

@@ -56,15 +56,22 @@ void Hdf5Writer::create_group(const std::string& name) {
     check(group.is_valid());
 }
 
-void Hdf5Writer::write_dataset(const std::string& name,
-                               std::int64_t type,
-                               const Hdf5Handle& space,
-                               const void* values) {
+Hdf5Handle Hdf5Writer::create_dataset(const std::string& name,
+                                      std::int64_t type,
+                                      const Hdf5Handle& space) {
     Hdf5Handle dataset(
         H5Dcreate2(
             file_.id(), name.c_str(), type, space.id(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
         H5Dclose);
     check(dataset.is_valid());
+    return dataset;
+}
+
+void Hdf5Writer::write_dataset(const std::string& name,
+                               std::int64_t type,
+                               const Hdf5Handle& space,
+                               const void* values) {
+    Hdf5Handle dataset = create_dataset(name, type, space);
     check(H5Dwrite(dataset.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0);
     check(dataset.close());
 }
@@ -114,30 +121,11 @@ void Hdf5Writer::write_text(const std::string& name, const std::string& text) {
 }
 
 void Hdf5Writer::write_null(const std::string& name) {
-    const Hdf5Handle space(H5Screate(H5S_NULL), H5Sclose);
-    const Hdf5Handle dataset(H5Dcreate2(file_.id(),
-                                        name.c_str(),
-                                        H5T_NATIVE_FLOAT,
-                                        space.id(),
-                                        H5P_DEFAULT,
-                                        H5P_DEFAULT,
-                                        H5P_DEFAULT),
-                             H5Dclose);
-    check(dataset.id() >= 0);
+    create_dataset(name, H5T_NATIVE_FLOAT, {H5Screate(H5S_NULL), H5Sclose});
 }
 
 Hdf5Handle Hdf5Writer::create_float_dataset(const std::string& name, const Shape& shape) {
-    const Hdf5Handle space = create_space(shape);
-    Hdf5Handle dataset(H5Dcreate2(file_.id(),
-                                  name.c_str(),
-                                  H5T_NATIVE_FLOAT,
-                                  space.id(),
-                                  H5P_DEFAULT,
-                                  H5P_DEFAULT,
-                                  H5P_DEFAULT),
-                       H5Dclose);
-    check(dataset.is_valid());
-    return dataset;
+    return create_dataset(name, H5T_NATIVE_FLOAT, create_space(shape));
 }
 
 void Hdf5Writer::write_row_range(const Hdf5Handle& dataset,
@@ -160,20 +148,9 @@ void Hdf5Writer::write_row_range(const Hdf5Handle& dataset,
 void Hdf5Writer::write_attribute(const std::string& object,
                                  const std::string& name,
                                  const std::string& text) {
-    const Hdf5Handle type = utf8_type();
-    const Hdf5Handle space = create_space({});
-    const Hdf5Handle attribute(H5Acreate_by_name(file_.id(),
-                                                 object.c_str(),
-                                                 name.c_str(),
-                                                 type.id(),
-                                                 space.id(),
-                                                 H5P_DEFAULT,
-                                                 H5P_DEFAULT,
-                                                 H5P_DEFAULT),
-                               H5Aclose);
-    check(attribute.is_valid());
     const char* characters = text.c_str();
-    check(H5Awrite(attribute.id(), type.id(), &characters) >= 0);
+    const Hdf5Handle type = utf8_type();
+    write_attribute_values({object, name}, type.id(), {}, &characters);
 }
 
 void Hdf5Writer::write_attribute(const std::string& object,
@@ -181,18 +158,25 @@ void Hdf5Writer::write_attribute(const std::string& object,
                                  const Shape& shape,
                                  std::span<const double> values) {
     assert(values.size() == count_values(shape));
+    write_attribute_values({object, name}, H5T_NATIVE_DOUBLE, shape, values.data());
+}
+
+void Hdf5Writer::write_attribute_values(const AttributeName& name,
+                                        std::int64_t type,
+                                        const Shape& shape,
+                                        const void* values) {
     const Hdf5Handle space = create_space(shape);
     const Hdf5Handle attribute(H5Acreate_by_name(file_.id(),
-                                                 object.c_str(),
-                                                 name.c_str(),
-                                                 H5T_NATIVE_DOUBLE,
+                                                 name.object.c_str(),
+                                                 name.attribute.c_str(),
+                                                 type,
                                                  space.id(),
                                                  H5P_DEFAULT,
                                                  H5P_DEFAULT,
                                                  H5P_DEFAULT),
                                H5Aclose);
     check(attribute.is_valid());
-    check(H5Awrite(attribute.id(), H5T_NATIVE_DOUBLE, values.data()) >= 0);
+    check(H5Awrite(attribute.id(), type, values) >= 0);
 }
 
 void Hdf5Writer::finish() {

@@ -71,6 +71,11 @@ class Hdf5Writer {
         std::size_t first;
         std::size_t count;
     };
+    struct AttributeName {
+        const std::string& object;
+        const std::string& attribute;
+    };
+    Hdf5Handle create_dataset(const std::string& name, std::int64_t type, const Hdf5Handle& space);
     Hdf5Handle create_float_dataset(const std::string& name, const Shape& shape);
     void write_row_range(const Hdf5Handle& dataset,
                          const Shape& shape,
@@ -80,6 +85,10 @@ class Hdf5Writer {
                        std::int64_t type,
                        const Hdf5Handle& space,
                        const void* values);
+    void write_attribute_values(const AttributeName& name,
+                                std::int64_t type,
+                                const Shape& shape,
+                                const void* values);
     void check(bool ok) const;
 
     std::string target_;
