@@ -169,29 +169,38 @@ void take_normals(const Volume& volume, core::DepthMap& depth) {
     }
 }
 
-/// num_slabs   parts worked on one after another; the prior needs everything at once
-double method_bytes(const MethodInput& input,
-                    const ReconstructSettings& settings,
-                    std::size_t num_slabs) {
+/// A reconstruction method: what it computes, and the memory that takes on top of its input
+/// [bytes], both with as many slabs of work one after another.
+struct MethodFunctions {
+    using Run = Volume(const MethodInput&, const ReconstructSettings&, std::size_t num_slabs);
+    using Bytes = double(const MethodInput&, const ReconstructSettings&, std::size_t num_slabs);
+    Run* run;
+    Bytes* bytes;
+};
+
+MethodFunctions functions_of(const ReconstructSettings& settings) {
     switch (settings.method) {
         case Method::Lct:
-            return settings.prior == Prior::Tv ? total_variation_bytes(input)
-                                               : light_cone_transform_bytes(input, num_slabs);
+            if (settings.prior == Prior::Tv) {
+                return {total_variation_light_cone_transform, total_variation_bytes};
+            }
+            return {light_cone_transform, light_cone_transform_bytes};
         case Method::Dlct:
-            return directional_light_cone_transform_bytes(input, num_slabs);
+            return {directional_light_cone_transform, directional_light_cone_transform_bytes};
         case Method::Fk:
-            return fk_migration_bytes(input, num_slabs);
+            return {fk_migration, fk_migration_bytes};
         case Method::Phasor:
-            return phasor_field_bytes(input, settings.phasor, num_slabs);
+            return {phasor_field, phasor_field_bytes};
         case Method::Fbp:
-            return settings.filter == FbpFilter::Phasor
-                       ? phasor_backprojection_bytes(input, settings.phasor, num_slabs)
-                       : laplacian_backprojection_bytes(input, num_slabs);
+            if (settings.filter == FbpFilter::Phasor) {
+                return {phasor_backprojection, phasor_backprojection_bytes};
+            }
+            return {laplacian_backprojection, laplacian_backprojection_bytes};
         case Method::Auto:
         case Method::Bp:
             break;
     }
-    return backproject_bytes(input, num_slabs);
+    return {backproject, backproject_bytes};
 }
 
 /// As few slabs as fit into memory; 1 when none do.
@@ -200,7 +209,8 @@ std::size_t choose_slabs(const MethodInput& input,
                          double other_bytes) {
     const double available = memory_budget(settings.memory_gb);
     for (std::size_t num_slabs = 1; num_slabs <= kMaxSlabs; ++num_slabs) {
-        if (other_bytes + method_bytes(input, settings, num_slabs) <= available) return num_slabs;
+        if (other_bytes + functions_of(settings).bytes(input, settings, num_slabs) <= available)
+            return num_slabs;
     }
     return 1;
 }
@@ -213,32 +223,6 @@ void announce(const Reconstruction& result, std::size_t num_slabs, const core::P
                                   result.reason,
                                   1e-9 * result.stated_bytes,
                                   num_slabs > 1 ? fmt::format(" in {} slabs", num_slabs) : ""));
-}
-
-Volume run_method(const MethodInput& input,
-                  const ReconstructSettings& settings,
-                  std::size_t num_slabs) {
-    switch (settings.method) {
-        case Method::Lct:
-            return settings.prior == Prior::Tv
-                       ? total_variation_light_cone_transform(input, settings.falloff, settings.tv)
-                       : light_cone_transform(input, settings.falloff, *settings.snr, num_slabs);
-        case Method::Dlct:
-            return directional_light_cone_transform(
-                input, settings.falloff, *settings.snr, num_slabs);
-        case Method::Fk:
-            return fk_migration(input, settings.falloff, num_slabs);
-        case Method::Phasor:
-            return phasor_field(input, settings.phasor, num_slabs);
-        case Method::Fbp:
-            return settings.filter == FbpFilter::Phasor
-                       ? phasor_backprojection(input, settings.phasor, num_slabs)
-                       : laplacian_backprojection(input, settings.compensation, num_slabs);
-        case Method::Auto:
-        case Method::Bp:
-            break;
-    }
-    return backproject(input, settings.compensation, num_slabs);
 }
 
 }  // namespace
@@ -288,9 +272,10 @@ Reconstruction reconstruct(const core::Capture& capture,
     };
     const double prepared_bytes =
         is_ready ? 0.0 : 4.0 * static_cast<double>(prepared.scan.num_pairs()) * axis.num_bins;
+    const MethodFunctions method = functions_of(result.settings);
     const MethodInput unprepared = input_with(prepared.transient());
     const std::size_t num_slabs = choose_slabs(unprepared, result.settings, prepared_bytes);
-    const double work_bytes = prepared_bytes + method_bytes(unprepared, result.settings, num_slabs);
+    const double work_bytes = prepared_bytes + method.bytes(unprepared, result.settings, num_slabs);
     require_memory(work_bytes, settings.memory_gb);
     result.stated_bytes = work_bytes + prepared.own_bytes();
     announce(result, num_slabs, progress);
@@ -300,7 +285,7 @@ Reconstruction reconstruct(const core::Capture& capture,
     if (makes_up_for_falloff(prepared.scan, result.settings)) {
         multiply_by_range(prepared.scan, axis, falloff_power(settings.falloff), histograms);
     }
-    result.volume = run_method(
+    result.volume = method.run(
         input_with(is_ready ? prepared.transient() : histograms), result.settings, num_slabs);
 
     result.depth = extract_depth_map(result.volume, settings.mask_threshold);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/methods/backprojection.h"
 
+#include "nlos/methods/backprojection_rows.h"
 #include "nlos/methods/slabs.h"
 
 namespace nlos {
@@ -8,7 +9,7 @@ namespace {
 
 bool takes_fast_way(const MethodInput& input) {
     return input.scan.pattern == core::ScanPattern::Confocal && input.wall.grid &&
-           shares_lattice(*input.wall.grid, input.axes);
+           common_lattice(*input.wall.grid, input.axes.y_m).has_value();
 }
 
 std::vector<core::Vec3> in_frame(const core::Transform& wall_from_world,
@@ -61,17 +62,21 @@ void run_general(const MethodInput& input, Compensation compensation, std::span<
 
 }  // namespace
 
-Volume backproject(const MethodInput& input, Compensation compensation, std::size_t num_slabs) {
+Volume backproject(const MethodInput& input,
+                   const ReconstructSettings& settings,
+                   std::size_t num_slabs) {
     Volume volume{input.axes, std::vector<float>(input.axes.num_voxels(), 0.0F), {}};
     if (takes_fast_way(input)) {
-        run_fast(input, compensation, num_slabs, volume.values);
+        run_fast(input, settings.compensation, num_slabs, volume.values);
     } else {
-        run_general(input, compensation, volume.values);
+        run_general(input, settings.compensation, volume.values);
     }
     return volume;
 }
 
-double backproject_bytes(const MethodInput& input, std::size_t num_slabs) {
+double backproject_bytes(const MethodInput& input,
+                         const ReconstructSettings& /*settings*/,
+                         std::size_t num_slabs) {
     const double volume = 4.0 * static_cast<double>(input.axes.num_voxels());
     if (takes_fast_way(input)) {
         const auto bins = static_cast<double>(input.time_axis.num_bins);

@@ -15,15 +15,17 @@ namespace nlos {
 ///
 /// input          any scan; confocal grids whose y positions share a lattice with the voxels' take
 ///                the fast way (shifted additions of whole rows), all others the general one
-/// compensation   factor of each term: none, r_l^2 r_s^2 (diffuse) or r_l r_s (retro)
-/// num_slabs      the fast way copies this part of the wall's rows at a time
-/// returns        sums in the histograms' unit
-/// throws         core::Failure when asked to stop
-/// source         [Velten2012]
-Volume backproject(const MethodInput& input, Compensation compensation, std::size_t num_slabs = 1);
+/// settings       compensation, the factor of each term: none, r_l^2 r_s^2 (diffuse), r_l r_s
+/// (retro) num_slabs      the fast way copies this part of the wall's rows at a time returns sums
+/// in the histograms' unit throws         core::Failure when asked to stop source [Velten2012]
+Volume backproject(const MethodInput& input,
+                   const ReconstructSettings& settings,
+                   std::size_t num_slabs = 1);
 
 /// Memory that backproject() takes on top of its input, its volume included [bytes].
-double backproject_bytes(const MethodInput& input, std::size_t num_slabs = 1);
+double backproject_bytes(const MethodInput& input,
+                         const ReconstructSettings& settings,
+                         std::size_t num_slabs = 1);
 
 /// Confocal measurements on a wall grid.
 template <class Real>
@@ -35,7 +37,7 @@ struct ConfocalGrid {
     Compensation compensation = Compensation::None;
 };
 
-/// PreparedCapture pairs in the wall's frame, in any arrangement.
+/// Pairs of wall points in the wall's frame, in any arrangement.
 template <class Real>
 struct PairList {
     core::ScanPattern pattern;
@@ -48,11 +50,8 @@ struct PairList {
     Compensation compensation = Compensation::None;
 };
 
-/// True when backproject_confocal_grid() serves: the voxels' y positions and the grid's are every
-/// n-th point of one lattice, n up to 4.
-bool shares_lattice(const WallGrid& grid, const VolumeAxes& axes);
-
-/// Adds the backprojection to `volume` [x][y][z]; Real is float or double.
+/// Adds the backprojection to `volume` [x][y][z]; Real is float or double. The y positions of
+/// voxels and grid must have a common_lattice().
 ///
 /// num_slabs   as backproject()
 /// source      the lateral shift in reconstruction of confocal scans: the path length depends only

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/methods/backprojection.h"
+#include "nlos/methods/backprojection_rows.h"
 #include "nlos/methods/slabs.h"
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <optional>
 
 // Confocal grids. The path length 2 sqrt(dx^2 + dy^2 + z^2) depends only on depth and offset, so
 // for one depth, one wall row (fixed x) and one |dx|, the sum over that row's points is a sum of
@@ -16,34 +15,9 @@ namespace nlos {
 namespace {
 
 constexpr std::size_t kLanes = 16;
-constexpr std::size_t kMaxStep = 4;
 
 template <class Real>
 using Lanes = Eigen::Array<Real, static_cast<int>(kLanes), 1>;
-
-/// Voxels and wall points along y seen as every n-th point of one lattice.
-struct CommonLattice {
-    std::size_t voxel_step = 1;
-    std::size_t wall_step = 1;
-};
-
-double spacing(const std::vector<double>& positions) {
-    return (positions.back() - positions.front()) / static_cast<double>(positions.size() - 1);
-}
-
-std::optional<CommonLattice> common_lattice(const WallGrid& grid, const std::vector<double>& y_m) {
-    if (y_m.empty()) return std::nullopt;
-    if (y_m.size() == 1) return CommonLattice{};
-    for (std::size_t voxel_step = 1; voxel_step <= kMaxStep; ++voxel_step) {
-        for (std::size_t wall_step = 1; wall_step <= kMaxStep; ++wall_step) {
-            const double mismatch = static_cast<double>(voxel_step) * spacing(y_m) -
-                                    static_cast<double>(wall_step) * grid.pitch_m[1];
-            const double drift = std::abs(mismatch) * static_cast<double>(y_m.size());
-            if (drift < 1e-6 * grid.pitch_m[1]) return CommonLattice{voxel_step, wall_step};
-        }
-    }
-    return std::nullopt;
-}
 
 /// Every `step`-th element of [0, count) from `first` on: how many there are.
 std::size_t class_size(std::size_t count, std::size_t first, std::size_t step) {
@@ -199,39 +173,6 @@ Lanes<Real> sum_shifted_rows(const Real* row,
     return (sum0 + sum1) + (sum2 + sum3);
 }
 
-/// Voxel rows that one wall row serves at one |dx|: usually the two at +dx and -dx.
-struct Offset {
-    std::size_t distance = 0;  ///< index into the list of distinct |dx|
-    std::vector<std::size_t> voxel_rows;
-};
-
-/// Pairs of wall rows and voxel rows, grouped by |dx|.
-struct RowPairs {
-    std::vector<double> distances_m;
-    std::vector<std::vector<Offset>> of_wall_row;
-};
-
-RowPairs pair_rows(const WallGrid& grid, const std::vector<double>& x_m) {
-    RowPairs pairs;
-    std::map<long long, std::size_t> known;
-    const double quantum = 1e-6 * grid.pitch_m[0];
-    pairs.of_wall_row.resize(grid.size[0]);
-    for (std::size_t wall = 0; wall < grid.size[0]; ++wall) {
-        std::map<std::size_t, Offset> offsets;
-        for (std::size_t voxel = 0; voxel < x_m.size(); ++voxel) {
-            const double dx = std::abs(x_m[voxel] - grid.x_m(wall));
-            const auto [entry, is_new] =
-                known.try_emplace(std::llround(dx / quantum), pairs.distances_m.size());
-            if (is_new) pairs.distances_m.push_back(dx);
-            Offset& offset = offsets[entry->second];
-            offset.distance = entry->second;
-            offset.voxel_rows.push_back(voxel);
-        }
-        for (auto& [distance, offset] : offsets) pairs.of_wall_row[wall].push_back(offset);
-    }
-    return pairs;
-}
-
 /// One class of voxels along y at one depth: sums kept as [x][y], y padded to whole lanes.
 template <class Real>
 struct VoxelSlab {
@@ -320,10 +261,6 @@ void backproject_rows(const ConfocalGrid<Real>& data,
 }
 
 }  // namespace
-
-bool shares_lattice(const WallGrid& grid, const VolumeAxes& axes) {
-    return common_lattice(grid, axes.y_m).has_value();
-}
 
 template <class Real>
 void backproject_confocal_grid(const ConfocalGrid<Real>& data,

@@ -166,13 +166,12 @@ Eigen::Vector3f normal_at_peak(const float* albedo,
 }  // namespace
 
 Volume directional_light_cone_transform(const MethodInput& input,
-                                        Falloff falloff,
-                                        double snr,
+                                        const ReconstructSettings& settings,
                                         std::size_t num_slabs) {
     const Cone cone = make_cone(input, kSquaredRangeBinsPerBin);
-    const double power = falloff_power(falloff);
+    const double power = falloff_power(settings.falloff);
     const double depth_m = typical_depth_m(input, cone, power);
-    const VectorFilter filter(cone, *input.wall.grid, depth_m, snr);
+    const VectorFilter filter(cone, *input.wall.grid, depth_m, *settings.snr);
     // 2 z f_x z_0 / z_0 and 2 z f_z / z: both rho n, up to a common factor.
     std::vector<float> x(input.axes.num_voxels()), y(x.size()), z(x.size());
     Components components{make_slab_spectrum(cone, num_slabs),
@@ -220,7 +219,9 @@ Volume directional_light_cone_transform(const MethodInput& input,
     return volume;
 }
 
-double directional_light_cone_transform_bytes(const MethodInput& input, std::size_t num_slabs) {
+double directional_light_cone_transform_bytes(const MethodInput& input,
+                                              const ReconstructSettings& /*settings*/,
+                                              std::size_t num_slabs) {
     const Cone cone = make_cone(input, kSquaredRangeBinsPerBin);
     const auto columns = static_cast<double>(cone.num_columns());
     const auto padded = static_cast<double>(cone.px * (cone.py + 8));

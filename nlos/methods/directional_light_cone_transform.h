@@ -12,19 +12,19 @@ namespace nlos {
 /// Wiener filter. Surfaces whose light carries further cosines come out tilted.
 ///
 /// input     as light_cone_transform()
-/// falloff   diffuse: gamma = 4; retro: gamma = 2
-/// snr       power of signal over noise, positive
+/// settings  snr, which must be set, and falloff: diffuse, gamma = 4, or retro, gamma = 2
 /// num_slabs as light_cone_transform()
 /// returns   |rho n| per metre of depth, up to a common factor, 0 where it faces away from the
 ///           wall; a normal towards the wall for each column, at its brightest voxel
 /// throws    core::Failure when asked to stop
 /// source    [Young2020]
 Volume directional_light_cone_transform(const MethodInput& input,
-                                        Falloff falloff,
-                                        double snr,
+                                        const ReconstructSettings& settings,
                                         std::size_t num_slabs = 1);
 
 /// Memory that directional_light_cone_transform() takes on top of its input [bytes].
-double directional_light_cone_transform_bytes(const MethodInput& input, std::size_t num_slabs = 1);
+double directional_light_cone_transform_bytes(const MethodInput& input,
+                                              const ReconstructSettings& settings,
+                                              std::size_t num_slabs = 1);
 
 }  // namespace nlos

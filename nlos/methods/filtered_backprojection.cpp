@@ -83,9 +83,9 @@ MethodInput with_histograms(const MethodInput& input,
 }  // namespace
 
 Volume laplacian_backprojection(const MethodInput& input,
-                                Compensation compensation,
+                                const ReconstructSettings& settings,
                                 std::size_t num_slabs) {
-    const Volume sums = backproject(input, compensation, num_slabs);
+    const Volume sums = backproject(input, settings, num_slabs);
     const Filter filter = negative_laplacian_of_gaussian();
     const std::size_t nz = sums.axes.z_m.size();
     Volume volume{input.axes, std::vector<float>(sums.values.size()), {}};
@@ -97,13 +97,15 @@ Volume laplacian_backprojection(const MethodInput& input,
 }
 
 Volume phasor_backprojection(const MethodInput& input,
-                             const PhasorSettings& settings,
+                             const ReconstructSettings& settings,
                              std::size_t num_slabs) {
+    ReconstructSettings uncompensated = settings;
+    uncompensated.compensation = Compensation::None;
     const auto run = [&](WavePart part, double begin, double end) {
-        const FilteredHistograms filtered = filter_histograms(input, settings, part);
+        const FilteredHistograms filtered = filter_histograms(input, settings.phasor, part);
         const core::Progress progress = input.progress.part(begin, end);
         return backproject(with_histograms(input, filtered.time_axis, filtered.transient, progress),
-                           Compensation::None,
+                           uncompensated,
                            num_slabs);
     };
     Volume volume = run(WavePart::Real, 0.0, 0.5);
@@ -114,17 +116,20 @@ Volume phasor_backprojection(const MethodInput& input,
     return volume;
 }
 
-double laplacian_backprojection_bytes(const MethodInput& input, std::size_t num_slabs) {
-    return backproject_bytes(input, num_slabs) + 4.0 * static_cast<double>(input.axes.num_voxels());
+double laplacian_backprojection_bytes(const MethodInput& input,
+                                      const ReconstructSettings& settings,
+                                      std::size_t num_slabs) {
+    return backproject_bytes(input, settings, num_slabs) +
+           4.0 * static_cast<double>(input.axes.num_voxels());
 }
 
 double phasor_backprojection_bytes(const MethodInput& input,
-                                   const PhasorSettings& settings,
+                                   const ReconstructSettings& settings,
                                    std::size_t num_slabs) {
-    const core::TimeAxis axis = filtered_axis(input.time_axis, settings);
+    const core::TimeAxis axis = filtered_axis(input.time_axis, settings.phasor);
     return 4.0 * static_cast<double>(input.transient.num_pairs()) * axis.num_bins +
            laplacian_backprojection_bytes(
-               with_histograms(input, axis, input.transient, input.progress), num_slabs);
+               with_histograms(input, axis, input.transient, input.progress), settings, num_slabs);
 }
 
 }  // namespace nlos

@@ -5,6 +5,7 @@
 #include "nlos/fourier/padded_plane.h"
 #include "nlos/fourier/unit_phasor.h"
 #include "nlos/methods/slabs.h"
+#include "nlos/methods/stolt_map.h"
 
 #include <cmath>
 #include <vector>
@@ -25,32 +26,12 @@ double squared_sinc(double x) {
     return std::abs(angle) < 1e-9 ? 1.0 : std::pow(std::sin(angle) / angle, 2);
 }
 
-/// Sizes and positions of data, spectrum and volume.
-struct Grids {
-    std::size_t nx = 0, ny = 0;    ///< wall points
-    std::size_t px = 0, py = 0;    ///< padded to at least twice
-    std::size_t length = 0;        ///< padded number of range bins
-    double bin_m = 0.0;            ///< of range
-    double center_m = 0.0;         ///< middle of the range covered
-    std::size_t num_z = 0;         ///< voxels along z
-    std::size_t samples = 1;       ///< of depth per voxel: no bin falls between them
-    double step_m = 0.0;           ///< of depth samples
-    double first_z_m = 0.0;        ///< of depth samples
-    std::size_t depth_length = 0;  ///< period in depth samples
-
-    std::size_t num_frequencies() const { return length / 2 + 1; }
-    std::size_t num_depths() const { return num_z * samples; }
-    std::size_t num_planes() const { return std::max(num_frequencies(), num_depths()); }
-    std::size_t num_columns() const { return nx * ny; }
-    double period_m() const { return static_cast<double>(length) * bin_m; }
-};
-
-Grids make_grids(const MethodInput& input) {
+FkGrids make_grids(const MethodInput& input) {
     const core::TimeAxis& axis = input.time_axis;
     const auto [shortest, longest] = core::device_leg_range_m(input.scan);
     const double begin = std::max(0.0, 0.5 * (axis.opl_start_m - longest));
     const double end = std::max(begin + axis.bin_width_m, 0.5 * (axis.opl_end_m() - shortest));
-    Grids grids;
+    FkGrids grids;
     grids.nx = input.wall.grid->size[0];
     grids.ny = input.wall.grid->size[1];
     grids.px = 2 * good_fft_size(grids.nx);
@@ -77,7 +58,7 @@ Grids make_grids(const MethodInput& input) {
 /// relative to the centre; `out` is stored [frequency][x][y].
 class RangeTransform {
  public:
-    RangeTransform(const MethodInput& input, const Grids& grids, Falloff falloff)
+    RangeTransform(const MethodInput& input, const FkGrids& grids, Falloff falloff)
         : input_(input),
           grids_(grids),
           falloff_(falloff),
@@ -132,32 +113,18 @@ class RangeTransform {
     }
 
     const MethodInput& input_;
-    const Grids& grids_;
+    const FkGrids& grids_;
     Falloff falloff_;
     Fft forward_;
 };
 
-/// Rows of the lateral spectrum that are held at a time: those of some |kx|, each kx followed by
-/// its mirror image.
-struct RowSlab {
-    std::vector<std::size_t> kx;     ///< index of each row held
-    std::vector<std::size_t> begin;  ///< first row of each |kx|, and one past the last row
-    std::size_t py = 0;
-
-    std::size_t num_pairs() const { return begin.size() - 1; }
-    /// Where row `row` of a plane begins.
-    std::size_t offset(std::size_t plane, std::size_t row) const {
-        return (plane * kx.size() + row) * py;
-    }
-};
-
 /// How many |kx| a grid has.
-std::size_t num_pairs(const Grids& grids) {
+std::size_t num_pairs(const FkGrids& grids) {
     return grids.px / 2 + 1;
 }
 
 /// Rows of some of the |kx|.
-RowSlab rows_of(const Grids& grids, const Slab& pairs) {
+RowSlab rows_of(const FkGrids& grids, const Slab& pairs) {
     RowSlab slab;
     slab.py = grids.py;
     for (std::size_t ix = pairs.begin; ix < pairs.end; ++ix) {
@@ -170,128 +137,12 @@ RowSlab rows_of(const Grids& grids, const Slab& pairs) {
     return slab;
 }
 
-/// Reads the spectrum at the f that belongs to each kz and transforms along kz: one row of (kx, ky)
-/// and its mirror image at a time, as they share all weights.
-class StoltMap {
- public:
-    StoltMap(const WallGrid& wall, const Grids& grids)
-        : wall_(wall),
-          grids_(grids),
-          inverse_(Fft::complex_batch({grids.depth_length, 1, 1, grids.depth_length},
-                                      Fft::Direction::Inverse)),
-          num_kz_((grids.depth_length - 1) / 2) {}
-
-    /// Maps the rows of the slab's pair `pair` of `field` [f][row][ky] into [z][row][ky].
-    void apply(const RowSlab& slab, std::size_t pair, ComplexF* field) const {
-        const std::size_t first = slab.begin[pair];
-        const std::size_t num_rows = slab.begin[pair + 1] - first;
-        const std::size_t num_f = grids_.num_frequencies();
-        const std::size_t num_depths = grids_.num_depths();
-        std::vector<ComplexF> spectra(num_rows * grids_.py * (num_f + 1));
-        for (std::size_t r = 0; r < num_rows; ++r) {
-            gather(field, slab, first + r, spectra.data() + r * grids_.py * (num_f + 1));
-        }
-        std::vector<ComplexF> depths(num_rows * grids_.py * num_depths);
-        FftBuffer column(2 * grids_.depth_length);
-        Readings readings(num_kz_);
-        for (std::size_t iy = 0; iy <= grids_.py / 2; ++iy) {
-            fill_readings(slab.kx[first], iy, readings);
-            for (std::size_t r = 0; r < num_rows; ++r) {
-                for (const std::size_t y : {iy, (grids_.py - iy) % grids_.py}) {
-                    const std::size_t i = r * grids_.py + y;
-                    read_column(readings, spectra.data() + i * (num_f + 1), column);
-                    std::copy_n(column.complex(), num_depths, depths.data() + i * num_depths);
-                    if (2 * iy % grids_.py == 0) break;  // its own mirror image
-                }
-            }
-        }
-        for (std::size_t r = 0; r < num_rows; ++r) {
-            scatter(depths.data() + r * grids_.py * num_depths, slab, first + r, field);
-        }
-    }
-
- private:
-    /// Where in the spectrum each kz reads, and the factor of what is read there.
-    struct Readings {
-        explicit Readings(std::size_t n) : below(n), late(n), re(n), im(n) {}
-        std::size_t count = 0;  ///< larger kz lie beyond the highest frequency
-        std::vector<int> below;
-        std::vector<float> late, re, im;
-    };
-
-    void fill_readings(std::size_t ix, std::size_t iy, Readings& r) const {
-        const double kx =
-            static_cast<double>(ix) / (static_cast<double>(grids_.px) * wall_.pitch_m[0]);
-        const double ky =
-            static_cast<double>(iy) / (static_cast<double>(grids_.py) * wall_.pitch_m[1]);
-        const double lateral = kx * kx + ky * ky;
-        const double kz_step = 1.0 / (static_cast<double>(grids_.depth_length) * grids_.step_m);
-        const double period = grids_.period_m();
-        const auto highest = static_cast<double>(grids_.num_frequencies() - 1) / period;
-        const double kz_end = std::sqrt(std::max(0.0, highest * highest - lateral)) / kz_step;
-        r.count = std::min(num_kz_, static_cast<std::size_t>(kz_end));
-        for (std::size_t i = 0; i < r.count; ++i) {
-            const double kz = static_cast<double>(i + 1) * kz_step;
-            const double f = std::sqrt(lateral + kz * kz);
-            const double position = f * period;
-            const int below = static_cast<int>(position);
-            const UnitPhasor phase = unit_phasor(kz * grids_.first_z_m - f * grids_.center_m);
-            const auto jacobian = static_cast<float>(kz / f);
-            r.below[i] = below;
-            r.late[i] = static_cast<float>(position - below);
-            r.re[i] = jacobian * phase.re;
-            r.im[i] = jacobian * phase.im;
-        }
-    }
-
-    void read_column(const Readings& r, const ComplexF* spectrum, FftBuffer& column) const {
-        ComplexF* out = column.complex();
-        out[0] = {};
-        for (std::size_t i = 0; i < r.count; ++i) {
-            const ComplexF* below = spectrum + r.below[i];
-            const ComplexF value = below[0] + r.late[i] * (below[1] - below[0]);
-            out[i + 1] = multiply(value, {r.re[i], r.im[i]});
-        }
-        std::fill(out + r.count + 1, out + grids_.depth_length, ComplexF{});
-        inverse_.run(column);
-    }
-
-    /// [f][ky] of one row -> [ky][f], with one element to spare behind each column.
-    void gather(const ComplexF* field,
-                const RowSlab& slab,
-                std::size_t row,
-                ComplexF* columns) const {
-        const std::size_t num_f = grids_.num_frequencies();
-        for (std::size_t f = 0; f < num_f; ++f) {
-            const ComplexF* in = field + slab.offset(f, row);
-            for (std::size_t y = 0; y < grids_.py; ++y) columns[y * (num_f + 1) + f] = in[y];
-        }
-    }
-
-    /// [ky][z] -> [z][ky] of one row.
-    void scatter(const ComplexF* columns,
-                 const RowSlab& slab,
-                 std::size_t row,
-                 ComplexF* field) const {
-        const std::size_t num_depths = grids_.num_depths();
-        for (std::size_t z = 0; z < num_depths; ++z) {
-            ComplexF* out = field + slab.offset(z, row);
-            for (std::size_t y = 0; y < grids_.py; ++y) out[y] = columns[y * num_depths + z];
-        }
-    }
-
-    const WallGrid& wall_;
-    const Grids& grids_;
-    Fft inverse_;
-    std::size_t num_kz_;
-};
-
 /// Lateral transforms of the planes of a slab's field, those of frequencies and of depth samples.
 class LateralTransform {
  public:
     using Workspace = PaddedPlane::Workspace;
 
-    explicit LateralTransform(const Grids& grids)
+    explicit LateralTransform(const FkGrids& grids)
         : grids_(grids), plane_({grids.nx, grids.ny}, {grids.px, grids.py}) {}
 
     Workspace make_workspace() const { return plane_.make_workspace(); }
@@ -328,7 +179,7 @@ class LateralTransform {
     }
 
  private:
-    const Grids& grids_;
+    const FkGrids& grids_;
     PaddedPlane plane_;
 };
 
@@ -336,7 +187,7 @@ class LateralTransform {
 ///
 /// field    of the last slab
 /// others   amplitudes of the slabs before it [z][x][y]; empty: there are none
-void fill_voxels(const Grids& grids,
+void fill_voxels(const FkGrids& grids,
                  const LateralTransform& lateral,
                  const RowSlab& slab,
                  const ComplexF* field,
@@ -374,7 +225,7 @@ void fill_voxels(const Grids& grids,
 ///
 /// spectrum   [f][x][y]
 FftBuffer migrate(const MethodInput& input,
-                  const Grids& grids,
+                  const FkGrids& grids,
                   const LateralTransform& lateral,
                   const RowSlab& slab,
                   FftBuffer& spectrum,
@@ -402,12 +253,14 @@ FftBuffer migrate(const MethodInput& input,
 
 }  // namespace
 
-Volume fk_migration(const MethodInput& input, Falloff falloff, std::size_t num_slabs) {
-    const Grids grids = make_grids(input);
+Volume fk_migration(const MethodInput& input,
+                    const ReconstructSettings& settings,
+                    std::size_t num_slabs) {
+    const FkGrids grids = make_grids(input);
     const std::size_t num_columns = grids.num_columns();
 
     FftBuffer spectrum(2 * grids.num_frequencies() * num_columns);
-    const RangeTransform transform(input, grids, falloff);
+    const RangeTransform transform(input, grids, settings.falloff);
     parallel_blocks_with_progress(num_columns,
                                   kColumnsPerBatch,
                                   {input.progress, 0.0, 0.1, "range to frequency"},
@@ -449,8 +302,10 @@ Volume fk_migration(const MethodInput& input, Falloff falloff, std::size_t num_s
     return volume;
 }
 
-double fk_migration_bytes(const MethodInput& input, std::size_t num_slabs) {
-    const Grids grids = make_grids(input);
+double fk_migration_bytes(const MethodInput& input,
+                          const ReconstructSettings& /*settings*/,
+                          std::size_t num_slabs) {
+    const FkGrids grids = make_grids(input);
     const auto columns = static_cast<double>(grids.num_columns());
     const auto plane = static_cast<double>(grids.px * (grids.py + 8));
     const std::size_t pairs = largest_slab(num_pairs(grids), num_slabs);

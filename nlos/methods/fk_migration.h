@@ -15,15 +15,19 @@ namespace nlos {
 /// magnitude of the field is proportional to the data again.
 ///
 /// input     confocal scan with input.wall.grid; x and y of input.axes at the grid's points
-/// falloff   of the hidden surface
+/// settings  falloff
 /// num_slabs of |kx|, worked on one after another: the result is the same up to rounding, each
 ///           repeats the lateral transforms
 /// returns   intensity, up to a common factor; not negative
 /// throws    core::Failure when asked to stop
 /// source    [Lindell2019]
-Volume fk_migration(const MethodInput& input, Falloff falloff, std::size_t num_slabs = 1);
+Volume fk_migration(const MethodInput& input,
+                    const ReconstructSettings& settings,
+                    std::size_t num_slabs = 1);
 
 /// Memory that fk_migration() takes on top of its input, its volume included [bytes].
-double fk_migration_bytes(const MethodInput& input, std::size_t num_slabs = 1);
+double fk_migration_bytes(const MethodInput& input,
+                          const ReconstructSettings& settings,
+                          std::size_t num_slabs = 1);
 
 }  // namespace nlos

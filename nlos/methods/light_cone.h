@@ -86,8 +86,8 @@ class ConeKernel {
     std::vector<ComplexF> phases_;
 };
 
-/// Room for the spectrum of the largest of `num_slabs` slabs. One for all of them: buffers that
-/// are given back and asked for again leave gaps behind, by which more than stated would be taken.
+/// Room for the spectrum of the largest of `num_slabs` slabs. One buffer serves all of them:
+/// freeing and allocating again fragments the heap, which would take more memory than stated.
 FftBuffer make_slab_spectrum(const Cone& cone, std::size_t num_slabs);
 
 /// g(v) of all wall points, transformed along v at a slab of its frequencies: stored [frequency of

@@ -64,12 +64,11 @@ class SlabFilter {
 }  // namespace
 
 Volume light_cone_transform(const MethodInput& input,
-                            Falloff falloff,
-                            double snr,
+                            const ReconstructSettings& settings,
                             std::size_t num_slabs) {
     const Cone cone = make_cone(input, kSquaredRangeBinsPerBin);
-    const double power = falloff_power(falloff);
-    const SlabFilter filter(cone, *input.wall.grid, snr);
+    const double power = falloff_power(settings.falloff);
+    const SlabFilter filter(cone, *input.wall.grid, *settings.snr);
     Volume volume{input.axes, std::vector<float>(input.axes.num_voxels()), {}};
     FftBuffer spectrum = make_slab_spectrum(cone, num_slabs);
     for (const Slab& slab : split_into_slabs(cone.num_frequencies(), num_slabs)) {
@@ -93,7 +92,9 @@ Volume light_cone_transform(const MethodInput& input,
     return volume;
 }
 
-double light_cone_transform_bytes(const MethodInput& input, std::size_t num_slabs) {
+double light_cone_transform_bytes(const MethodInput& input,
+                                  const ReconstructSettings& /*settings*/,
+                                  std::size_t num_slabs) {
     const Cone cone = make_cone(input, kSquaredRangeBinsPerBin);
     const auto columns = static_cast<double>(cone.num_columns());
     const auto padded = static_cast<double>(cone.px * (cone.py + 8));

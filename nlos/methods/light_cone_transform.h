@@ -15,18 +15,19 @@ namespace nlos {
 /// negative albedo is set to zero.
 ///
 /// input     confocal scan with input.wall.grid; x and y of input.axes at the grid's points
-/// falloff   of the hidden surface; snr: power of signal over noise, positive
+/// settings  falloff and snr, which must be set
 /// num_slabs of frequencies, worked on one after the other: the result is the same up to rounding,
 ///           memory shrinks, and the transforms along time are repeated for each
 /// returns   albedo per metre of depth, up to a common factor
 /// throws    core::Failure when asked to stop
 /// source    [OToole2018]
 Volume light_cone_transform(const MethodInput& input,
-                            Falloff falloff,
-                            double snr,
+                            const ReconstructSettings& settings,
                             std::size_t num_slabs = 1);
 
 /// Memory that light_cone_transform() takes on top of its input, its volume included [bytes].
-double light_cone_transform_bytes(const MethodInput& input, std::size_t num_slabs = 1);
+double light_cone_transform_bytes(const MethodInput& input,
+                                  const ReconstructSettings& settings,
+                                  std::size_t num_slabs = 1);
 
 }  // namespace nlos

@@ -312,9 +312,9 @@ Volume propagate(const MethodInput& input, const PhasorSettings& settings, std::
 }  // namespace
 
 Volume phasor_field(const MethodInput& input,
-                    const PhasorSettings& settings,
+                    const ReconstructSettings& settings,
                     std::size_t num_slabs) {
-    return is_planar(input) ? propagate(input, settings, num_slabs)
+    return is_planar(input) ? propagate(input, settings.phasor, num_slabs)
                             : phasor_backprojection(input, settings, num_slabs);
 }
 
@@ -323,12 +323,13 @@ std::size_t phasor_frequency_count(const MethodInput& input, const PhasorSetting
 }
 
 double phasor_field_bytes(const MethodInput& input,
-                          const PhasorSettings& settings,
+                          const ReconstructSettings& settings,
                           std::size_t num_slabs) {
     if (!is_planar(input)) return phasor_backprojection_bytes(input, settings, num_slabs);
     const auto [nx, ny] = input.wall.grid->size;
     const std::size_t padded = padded_size(*input.wall.grid);
-    const std::size_t size = largest_slab(phasor_frequency_count(input, settings), num_slabs);
+    const std::size_t size =
+        largest_slab(phasor_frequency_count(input, settings.phasor), num_slabs);
     const auto chunk = static_cast<double>(illumination_per_chunk(input, size, padded, num_slabs));
     const double spectra =
         8.0 * chunk * static_cast<double>(size) * static_cast<double>(padded + nx * ny);

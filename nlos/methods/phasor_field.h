@@ -16,13 +16,13 @@ namespace nlos {
 /// factors of the propagation are left out.
 ///
 /// input      any scan
-/// settings   wavelength_m must be set
+/// settings   phasor; its wavelength_m must be set
 /// num_slabs  parts of the frequencies that are propagated one after another
 /// returns    magnitude of the field
 /// throws     core::Failure when asked to stop
 /// source     [Liu2019], [Liu2020]
 Volume phasor_field(const MethodInput& input,
-                    const PhasorSettings& settings,
+                    const ReconstructSettings& settings,
                     std::size_t num_slabs = 1);
 
 /// Number of frequencies that phasor_field() propagates.
@@ -30,7 +30,7 @@ std::size_t phasor_frequency_count(const MethodInput& input, const PhasorSetting
 
 /// Memory that phasor_field() takes on top of its input, its volume included [bytes].
 double phasor_field_bytes(const MethodInput& input,
-                          const PhasorSettings& settings,
+                          const ReconstructSettings& settings,
                           std::size_t num_slabs = 1);
 
 }  // namespace nlos

@@ -257,10 +257,10 @@ class Solver {
 }  // namespace
 
 Volume total_variation_light_cone_transform(const MethodInput& input,
-                                            Falloff falloff,
-                                            const TvSettings& settings) {
+                                            const ReconstructSettings& settings,
+                                            std::size_t /*num_slabs*/) {
     const Cone cone = make_cone(input, kIteratedBinsPerBin);
-    Solver solver(input, cone, falloff_power(falloff), settings);
+    Solver solver(input, cone, falloff_power(settings.falloff), settings.tv);
     solver.run();
     const ConservativeResampling to_depth = squared_range_to_depth(input, cone);
     const std::size_t num_z = input.axes.z_m.size();
@@ -276,7 +276,9 @@ Volume total_variation_light_cone_transform(const MethodInput& input,
     return volume;
 }
 
-double total_variation_bytes(const MethodInput& input) {
+double total_variation_bytes(const MethodInput& input,
+                             const ReconstructSettings& /*settings*/,
+                             std::size_t /*num_slabs*/) {
     const Cone cone = make_cone(input, kIteratedBinsPerBin);
     const double period = static_cast<double>(cone.px * cone.py * (cone.length + 2));
     // f, K f, the kernel, three u, three d - u, q and w - q; data and multiplier are an eighth

@@ -15,14 +15,18 @@ namespace nlos {
 /// to unit norm.
 ///
 /// input      as light_cone_transform()
+/// settings   falloff and tv
+/// num_slabs  not used: every iteration needs all frequencies
 /// returns    albedo per metre of depth, up to a common factor; not negative
 /// throws     core::Failure when asked to stop
 /// source     [OToole2018], supplement; [Boyd2011]
 Volume total_variation_light_cone_transform(const MethodInput& input,
-                                            Falloff falloff,
-                                            const TvSettings& settings);
+                                            const ReconstructSettings& settings,
+                                            std::size_t num_slabs);
 
 /// Memory that total_variation_light_cone_transform() takes on top of its input [bytes].
-double total_variation_bytes(const MethodInput& input);
+double total_variation_bytes(const MethodInput& input,
+                             const ReconstructSettings& settings,
+                             std::size_t num_slabs);
 
 }  // namespace nlos

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/methods/backprojection.h"
 
+#include "nlos/methods/backprojection_rows.h"
 #include "nlos/reconstruction/surface.h"
 #include "tests/nlos/methods/confocal_scene.h"
 
@@ -196,9 +197,9 @@ TEST(Backprojection, OfAConfocalGridEqualsThatOfPairsOnAnyCommonLattice) {
 TEST(Backprojection, RefusesTheFastWayWithoutACommonLattice) {
     Problem problem = make_problem(ScanPattern::Confocal);
     const WallFrame wall = derive_wall_frame(problem.scan);
-    EXPECT_TRUE(shares_lattice(*wall.grid, problem.voxels));
+    EXPECT_TRUE(common_lattice(*wall.grid, problem.voxels.y_m));
     problem.voxels.y_m = cell_centers(-0.105, 0.105, 11);
-    EXPECT_FALSE(shares_lattice(*wall.grid, problem.voxels));
+    EXPECT_FALSE(common_lattice(*wall.grid, problem.voxels.y_m));
 }
 
 TEST(Backprojection, OfACaptureCountingDownEqualsThatOfPairs) {
@@ -226,7 +227,7 @@ TEST(Backprojection, OfAGridTakesDeviceLegsOffByFractionsOfABin) {
     const core::Progress progress;
     const Volume volume = backproject(
         {capture.scan, capture.time_axis, capture.transient, wall, voxels, {0.4, 0.6}, progress},
-        Compensation::None);
+        {});
     const core::DepthMap depth = extract_depth_map(volume, 0.99);
     const core::PointCloud points_found = surface_points(depth);
     ASSERT_EQ(points_found.positions.size(), 1U);

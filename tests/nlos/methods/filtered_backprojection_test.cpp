@@ -44,8 +44,8 @@ TEST(FilteredBackprojection, FlatVolumesHaveNoLaplacian) {
     Case c = make_case();
     for (float& value : c.capture.transient.values()) value = 1.0F;
     const core::Progress progress;
-    const Volume flat = backproject(c.input(progress), Compensation::None);
-    const Volume filtered = laplacian_backprojection(c.input(progress), Compensation::None);
+    const Volume flat = backproject(c.input(progress), {});
+    const Volume filtered = laplacian_backprojection(c.input(progress), {});
     for (std::size_t i = 0; i < flat.values.size(); ++i) {
         ASSERT_NEAR(filtered.values[i], 0.0F, 1e-5F * flat.values[i]);
     }
@@ -55,8 +55,8 @@ TEST(FilteredBackprojection, IsTheLaplacianOfAGaussianOfTheSums) {
     Case c = make_case();
     nlos_test::add_scatterer(c.capture, Vec3(0.0, 0.025, 0.45), 4.0);
     const core::Progress progress;
-    const Volume sums = backproject(c.input(progress), Compensation::None);
-    const Volume filtered = laplacian_backprojection(c.input(progress), Compensation::None);
+    const Volume sums = backproject(c.input(progress), {});
+    const Volume filtered = laplacian_backprojection(c.input(progress), {});
     double expected = 0.0;
     double mean = 0.0;
     double mean_weight = 0.0;

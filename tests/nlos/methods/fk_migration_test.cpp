@@ -25,9 +25,11 @@ Volume migrate(const core::Capture& capture,
     axes.z_m = cell_centers(z_range_m[0], z_range_m[1], num_z);
     axes.world_from_wall = wall.world_from_wall;
     const core::Progress progress;
+    ReconstructSettings settings;
+    settings.falloff = falloff;
     return fk_migration(
         {capture.scan, capture.time_axis, capture.transient, wall, axes, z_range_m, progress},
-        falloff);
+        settings);
 }
 
 TEST(FkMigration, FindsAPointOnOblongGridsWithUnequalPitch) {

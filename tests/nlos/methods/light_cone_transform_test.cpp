@@ -27,10 +27,12 @@ Volume transform(const core::Capture& capture,
     axes.z_m = cell_centers(z_range_m[0], z_range_m[1], num_z);
     axes.world_from_wall = wall.world_from_wall;
     const core::Progress progress;
+    ReconstructSettings settings;
+    settings.falloff = falloff;
+    settings.snr = 10.0;
     return light_cone_transform(
         {capture.scan, capture.time_axis, capture.transient, wall, axes, z_range_m, progress},
-        falloff,
-        10.0);
+        settings);
 }
 
 Vec3 brightest_voxel(const Volume& volume) {

@@ -21,6 +21,12 @@ using core::Vec3;
 
 const PhasorSettings kWave{0.2, 4.0};
 
+ReconstructSettings with_wave() {
+    ReconstructSettings settings;
+    settings.phasor = kWave;
+    return settings;
+}
+
 core::Capture random_capture(ScanPattern pattern) {
     core::Capture capture =
         nlos_test::confocal_capture(nlos_test::wall_grid({7, 5}, {0.05, 0.04}), {0.3, 0.01, 150});
@@ -109,8 +115,8 @@ TEST(PhasorField, EqualsItsDefiningSumForEveryScan) {
     // The band of 3 standard deviations leaves out 0.3 % of the wave.
     for (const ScanPattern pattern :
          {ScanPattern::Single, ScanPattern::Confocal, ScanPattern::Exhaustive}) {
-        const double error =
-            error_of(pattern, [](const MethodInput& input) { return phasor_field(input, kWave); });
+        const double error = error_of(
+            pattern, [](const MethodInput& input) { return phasor_field(input, with_wave()); });
         EXPECT_LT(error, 0.01) << core::enum_name(pattern);
     }
 }
@@ -118,8 +124,9 @@ TEST(PhasorField, EqualsItsDefiningSumForEveryScan) {
 TEST(PhasorField, OfFilteredHistogramsIsTheSameWithinInterpolation) {
     for (const ScanPattern pattern :
          {ScanPattern::Single, ScanPattern::Confocal, ScanPattern::Exhaustive}) {
-        const double error = error_of(
-            pattern, [](const MethodInput& input) { return phasor_backprojection(input, kWave); });
+        const double error = error_of(pattern, [](const MethodInput& input) {
+            return phasor_backprojection(input, with_wave());
+        });
         EXPECT_LT(error, 0.04) << core::enum_name(pattern);
     }
 }
@@ -132,7 +139,7 @@ TEST(PhasorField, ServesListsOfPoints) {
     const core::Progress progress;
     const Volume volume = phasor_field(
         {capture.scan, capture.time_axis, capture.transient, wall, axes, {0.3, 0.6}, progress},
-        kWave);
+        with_wave());
     EXPECT_LT(largest_error(capture, volume), 0.04);
 }
 

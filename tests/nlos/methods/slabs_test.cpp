@@ -42,6 +42,12 @@ struct Example {
     }
 };
 
+ReconstructSettings with_snr() {
+    ReconstructSettings settings;
+    settings.snr = 10.0;
+    return settings;
+}
+
 TEST(Slabs, CoverEverythingOnceInRunsOfNearlyEqualSize) {
     for (const std::size_t count : {1, 2, 7, 64, 129}) {
         for (const std::size_t num_slabs : {1, 2, 3, 8, 200}) {
@@ -63,15 +69,13 @@ TEST(Slabs, CoverEverythingOnceInRunsOfNearlyEqualSize) {
 TEST(FrequencySlabs, GiveTheSameVolumeInAnyNumber) {
     const Example example(24, 140);
     const MethodInput input = example.input();
-    const Volume lct = light_cone_transform(input, Falloff::Diffuse, 10.0);
-    const Volume dlct = directional_light_cone_transform(input, Falloff::Diffuse, 10.0);
+    const Volume lct = light_cone_transform(input, with_snr());
+    const Volume dlct = directional_light_cone_transform(input, with_snr());
     for (const std::size_t num_slabs : {2, 3, 64}) {
-        EXPECT_LT(
-            test_support::relative_l2(
-                light_cone_transform(input, Falloff::Diffuse, 10.0, num_slabs).values, lct.values),
-            1e-5);
-        const Volume parts =
-            directional_light_cone_transform(input, Falloff::Diffuse, 10.0, num_slabs);
+        EXPECT_LT(test_support::relative_l2(
+                      light_cone_transform(input, with_snr(), num_slabs).values, lct.values),
+                  1e-5);
+        const Volume parts = directional_light_cone_transform(input, with_snr(), num_slabs);
         EXPECT_LT(test_support::relative_l2(parts.values, dlct.values), 1e-5);
         const auto brightest = std::max_element(dlct.values.begin(), dlct.values.end());
         const auto column = static_cast<std::size_t>(brightest - dlct.values.begin()) / 60;
@@ -96,13 +100,12 @@ TEST(FrequencySlabs, TakeTheMemoryThatIsStatedAndLessInMore) {
     // Most slabs first: memory that a run gives back may stay with the process.
     double last = 0.0;
     for (const std::size_t num_slabs : {8, 2, 1}) {
-        const double lct_bytes = light_cone_transform_bytes(input, num_slabs);
-        EXPECT_LT(growth([&] { light_cone_transform(input, Falloff::Diffuse, 10.0, num_slabs); }),
+        const double lct_bytes = light_cone_transform_bytes(input, with_snr(), num_slabs);
+        EXPECT_LT(growth([&] { light_cone_transform(input, with_snr(), num_slabs); }),
                   lct_bytes + kSlack_bytes);
-        const double dlct_bytes = directional_light_cone_transform_bytes(input, num_slabs);
-        EXPECT_LT(growth([&] {
-                      directional_light_cone_transform(input, Falloff::Diffuse, 10.0, num_slabs);
-                  }),
+        const double dlct_bytes =
+            directional_light_cone_transform_bytes(input, with_snr(), num_slabs);
+        EXPECT_LT(growth([&] { directional_light_cone_transform(input, with_snr(), num_slabs); }),
                   dlct_bytes + kSlack_bytes);
         EXPECT_GT(lct_bytes, last);
         last = lct_bytes;
