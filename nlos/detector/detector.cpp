@@ -19,27 +19,15 @@ constexpr double kMaxPulses = 1e15;
 constexpr double kMaxCounts = 1e15;  // expected in all pairs; sums of counts stay exact in double
 constexpr double kLongestBlindPeriods = 16.0;
 
-void require(bool holds, const std::string& key, double found, const std::string& allowed) {
-    if (!holds) throw core::Error(key, fmt::format("found {}", found), allowed);
-}
+using core::require;
 
 bool is_blind_at_times(const DetectorSettings& s) {
     return s.pile_up || s.dead_time_ns > 0.0;
 }
 
 void validate(const DetectorSettings& s) {
-    const auto positive = [](const std::string& key, double value, const char* unit) {
-        require(value > 0.0 && std::isfinite(value),
-                key,
-                value,
-                fmt::format("must be positive and finite{}", unit));
-    };
-    const auto not_negative = [](const std::string& key, double value, const char* unit) {
-        require(value >= 0.0 && std::isfinite(value),
-                key,
-                value,
-                fmt::format("must be finite and not negative{}", unit));
-    };
+    core::check_ranges(s, "");
+    core::check_ranges(s.radiometry, "radiometry");
     if (s.photons && s.photons_per_point) {
         throw core::Error("photons", "found beside photons_per_point", "must be one of the two");
     }
@@ -48,37 +36,24 @@ void validate(const DetectorSettings& s) {
                           "found neither photons, photons_per_point nor exposure_s",
                           "must be one of them");
     }
-    if (s.photons) positive("photons", *s.photons, "");
-    if (s.photons_per_point) positive("photons_per_point", *s.photons_per_point, "");
-    if (s.exposure_s) positive("exposure_s", *s.exposure_s, " [s]");
-    not_negative("dark_counts_hz", s.dark_counts_hz, " [1/s]");
-    not_negative("ambient", s.ambient, " [counts per bin]");
-    not_negative("dead_time_ns", s.dead_time_ns, " [ns]");
-    positive("repetition_hz", s.repetition_hz, " [1/s]");
-    positive("radiometry.laser_w", s.radiometry.laser_w, " [W]");
-    positive("radiometry.wavelength_nm", s.radiometry.wavelength_nm, " [nm]");
-    positive("radiometry.etendue_m2_sr", s.radiometry.etendue_m2_sr, " [m^2 sr]");
-    require(s.radiometry.efficiency > 0.0 && s.radiometry.efficiency <= 1.0,
-            "radiometry.efficiency",
-            s.radiometry.efficiency,
-            "must be above 0 and at most 1");
     const double pulses = s.repetition_hz * s.exposure_s.value_or(1.0);
     require(pulses <= kMaxPulses,
             "exposure_s",
             s.exposure_s.value_or(1.0),
-            fmt::format("must be at most {:g}: 1e15 pulses", kMaxPulses / s.repetition_hz));
+            fmt::format("at most {:g}: 1e15 pulses", kMaxPulses / s.repetition_hz));
     const double blind_periods = 1e-9 * s.dead_time_ns * s.repetition_hz;
     require(blind_periods <= kLongestBlindPeriods,
             "dead_time_ns",
             s.dead_time_ns,
-            fmt::format("must be at most {} periods of repetition_hz", kLongestBlindPeriods));
+            fmt::format("at most {} periods of repetition_hz", kLongestBlindPeriods));
 }
 
 double sum_of(const core::Capture& capture) {
     double sum = 0.0;
     for (const float value : capture.transient.values()) {
-        require(
-            value >= 0.0F, "capture", static_cast<double>(value), "must hold no negative light");
+        if (!(value >= 0.0F)) {
+            throw core::Error("capture", fmt::format("found {}", value), "must not be negative");
+        }
         sum += static_cast<double>(value);
     }
     return sum;
@@ -88,7 +63,7 @@ double sum_of(const core::Capture& capture) {
 double counts_per_value(const core::Capture& capture, const DetectorSettings& s) {
     const double sum = sum_of(capture);
     if (s.photons || s.photons_per_point) {
-        require(sum > 0.0, "capture", sum, "must hold light to scale to a number of photons");
+        require(sum > 0.0, "capture: sum", sum, "above 0 to be scaled to a number of photons");
         const auto pairs = static_cast<double>(capture.scan.num_pairs());
         return s.photons.value_or(s.photons_per_point.value_or(0.0) * pairs) / sum;
     }
@@ -120,7 +95,7 @@ PulseTrain make_train(const core::TimeAxis& axis, const DetectorSettings& s, dou
     require(gap_bins >= 0.0,
             "repetition_hz",
             s.repetition_hz,
-            fmt::format("must be at most {:.6g}: the axis has to fit between two pulses",
+            fmt::format("at most {:.6g}: the axis has to fit between two pulses",
                         1.0 / (axis.num_bins * bin_s)));
     PulseTrain train;
     train.pulses =
@@ -140,16 +115,14 @@ Detector make_detector(const core::Capture& capture, const DetectorSettings& s) 
     Detector detector;
     detector.counts_per_value = counts_per_value(capture, s);
     const double signal = detector.counts_per_value * sum_of(capture);
-    require(signal <= kMaxCounts, "photons", signal, "must give at most 1e15 counts");
+    require(signal <= kMaxCounts, "photons", signal, "at most 1e15 counts");
     const double open_s = axis.bin_width_m / core::kSpeedOfLight * s.repetition_hz *
                           s.exposure_s.value_or(1.0);  // time per bin over all pulses
     detector.background = s.ambient + s.dark_counts_hz * open_s;
     const double background =
         detector.background * static_cast<double>(capture.transient.values().size());
-    require(background <= kMaxCounts,
-            "ambient and dark_counts_hz",
-            background,
-            "must give at most 1e15 counts");
+    require(
+        background <= kMaxCounts, "ambient and dark_counts_hz", background, "at most 1e15 counts");
     detector.filter =
         core::sample_response(core::make_response(s.response, "response"), axis.bin_width_m);
     detector.is_blind_at_times = is_blind_at_times(s);

@@ -35,30 +35,37 @@ struct DetectorSettings {
 
 template <class Visitor>
 void for_each_field(RadiometrySettings& s, Visitor&& visit) {
-    visit("laser_w", s.laser_w, "mean power on the illumination point [W]");
-    visit("wavelength_nm", s.wavelength_nm, "wavelength in vacuum [nm]");
+    visit("laser_w", s.laser_w, core::above(0, "mean power on the illumination point [W]"));
+    visit("wavelength_nm", s.wavelength_nm, core::above(0, "wavelength in vacuum [nm]"));
     visit("etendue_m2_sr",
           s.etendue_m2_sr,
-          "area seen on the wall times solid angle of the lens [m^2 sr]");
-    visit("efficiency", s.efficiency, "detected share of the photons that reach the lens");
+          core::above(0, "area seen on the wall times solid angle of the lens [m^2 sr]"));
+    visit("efficiency",
+          s.efficiency,
+          core::Ranged{"detected share of the photons that reach the lens",
+                       {.low = 0.0, .high = 1.0, .with_high = true}});
 }
 
 template <class Visitor>
 void for_each_field(DetectorSettings& s, Visitor&& visit) {
-    visit("photons", s.photons, "expected signal photons in the whole capture");
+    visit("photons", s.photons, core::above(0, "expected signal photons in the whole capture"));
     visit("photons_per_point",
           s.photons_per_point,
-          "expected signal photons per prepared pair, on average over all pairs");
+          core::above(0, "expected signal photons per prepared pair, on average over all pairs"));
     visit("exposure_s",
           s.exposure_s,
-          "time per pair [s]; alone it gives the number of photons by `radiometry`, beside photons "
-          "it only counts pulses and dark counts; null: 1");
+          core::above(0,
+                      "time per pair [s]; alone it gives the number of photons by `radiometry`, "
+                      "beside photons "
+                      "it only counts pulses and dark counts; null: 1"));
     visit("response", s.response, "instrument response");
-    visit("dark_counts_hz", s.dark_counts_hz, "dark counts of the detector [1/s]");
-    visit("ambient", s.ambient, "expected counts of ambient light in every bin");
+    visit(
+        "dark_counts_hz", s.dark_counts_hz, core::at_least(0, "dark counts of the detector [1/s]"));
+    visit("ambient", s.ambient, core::at_least(0, "expected counts of ambient light in every bin"));
     visit("pile_up", s.pile_up, "record no more than the first photon of a laser pulse");
-    visit("dead_time_ns", s.dead_time_ns, "blind time after every detection [ns]");
-    visit("repetition_hz", s.repetition_hz, "laser pulses per second [1/s]");
+    visit(
+        "dead_time_ns", s.dead_time_ns, core::at_least(0, "blind time after every detection [ns]"));
+    visit("repetition_hz", s.repetition_hz, core::above(0, "laser pulses per second [1/s]"));
     visit("radiometry", s.radiometry, "from radiance to photons, for exposure_s alone");
     visit("expected", s.expected, "write expected counts instead of random ones");
     visit("seed", s.seed, "seed of the random numbers");

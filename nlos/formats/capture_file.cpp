@@ -35,22 +35,6 @@ const CaptureFormat& format_to_write(const std::string& path) {
     throw core::Error(path, "has the suffix '" + suffix + "'", "must be one of " + known);
 }
 
-void check_settings(const CaptureReadSettings& settings) {
-    const auto check = [](const char* key, bool ok, double found, const char* allowed) {
-        if (!ok)
-            throw core::Error(
-                std::string("capture.") + key, fmt::format("found {}", found), allowed);
-    };
-    const double width = settings.bin_width_m.value_or(1.0);
-    check("bin_width_m", width > 0.0 && std::isfinite(width), width, "must be positive [m]");
-    const double pitch = settings.pitch_m.value_or(1.0);
-    check("pitch_m", pitch > 0.0 && std::isfinite(pitch), pitch, "must be positive [m]");
-    const double shift = settings.opl_shift_m.value_or(0.0);
-    check("opl_shift_m", std::isfinite(shift), shift, "must be finite [m]");
-    const int zero = settings.zero_bins.value_or(0);
-    check("zero_bins", zero >= 0, zero, "must not be negative");
-}
-
 void zero_leading_bins(int wanted, core::Capture& capture) {
     const int count = std::min(wanted, capture.time_axis.num_bins);
     if (count <= 0) return;
@@ -135,7 +119,7 @@ std::string describe_velocity(const core::VelocityHistogram& velocity) {
 }  // namespace
 
 core::Capture read_capture(const std::string& path, const CaptureReadSettings& settings) {
-    check_settings(settings);
+    core::check_ranges(settings, "capture");
     if (!std::filesystem::exists(path)) {
         throw core::Error(path, "does not exist", "must be a capture file");
     }

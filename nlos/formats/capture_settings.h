@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "renderer/core/settings.h"
+
 #include <optional>
 
 namespace nlos {
@@ -15,10 +17,18 @@ struct CaptureReadSettings {
 
 template <class Visitor>
 void for_each_field(CaptureReadSettings& s, Visitor&& visit) {
-    visit("zero_bins", s.zero_bins, "leading bins set to 0; null: the format's own (Stanford 600)");
-    visit("bin_width_m", s.bin_width_m, "replaces the file's bin width [m of path length]");
-    visit("pitch_m", s.pitch_m, "distance of grid neighbours where only indices are stored [m]");
-    visit("opl_shift_m", s.opl_shift_m, "added to the start of the axis (time zero) [m]");
+    visit("zero_bins",
+          s.zero_bins,
+          core::at_least(0, "leading bins set to 0; null: the format's own (Stanford 600)"));
+    visit("bin_width_m",
+          s.bin_width_m,
+          core::above(0, "replaces the file's bin width [m of path length]"));
+    visit("pitch_m",
+          s.pitch_m,
+          core::above(0, "distance of grid neighbours where only indices are stored [m]"));
+    visit("opl_shift_m",
+          s.opl_shift_m,
+          core::Ranged{"added to the start of the axis (time zero) [m]", {}});
 }
 
 /// How a capture is written where a format leaves a choice.

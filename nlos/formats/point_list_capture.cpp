@@ -99,11 +99,6 @@ double required(const std::optional<double>& value, const std::string& path, con
                     fmt::format("point lists do not hold their {}", key),
                     fmt::format("must be given as --set capture.{}=... [m]", key));
     }
-    if (!(*value > 0.0) || !std::isfinite(*value)) {
-        throw Error(fmt::format("capture.{}", key),
-                    fmt::format("found {}", *value),
-                    "must be positive and finite [m]");
-    }
     return *value;
 }
 

@@ -9,6 +9,8 @@
 
 namespace nlos {
 
+inline constexpr int kMaxVoxelsPerAxis = 65536;
+
 enum class Method { Auto, Lct, Bp, Fbp, Fk, Phasor, Dlct };
 
 /// How hidden surfaces reflect: diffuse light falls off with r^4, retroreflected light with r^2.
@@ -82,7 +84,11 @@ struct ReconstructSettings {
 
 template <class Visitor>
 void for_each_field(VolumeSettings& s, Visitor&& visit) {
-    visit("voxels", s.voxels, "number of voxels along x, y, z; null: columns at the scan's points");
+    visit("voxels",
+          s.voxels,
+          core::between(1,
+                        kMaxVoxelsPerAxis,
+                        "number of voxels along x, y, z; null: columns at the scan's points"));
     visit("z_range_m", s.z_range_m, "depth range [m]; null: what the time axis covers");
 }
 
@@ -97,16 +103,23 @@ template <class Visitor>
 void for_each_field(PhasorSettings& s, Visitor&& visit) {
     visit("wavelength_m",
           s.wavelength_m,
-          "wavelength in path length [m]; null: 4 distances of wall points, confocal 6");
-    visit("cycles", s.cycles, "wavelengths in the envelope, 6 standard deviations");
+          core::above(
+              0, "wavelength in path length [m]; null: 4 distances of wall points, confocal 6"));
+    visit("cycles",
+          s.cycles,
+          core::between(0.5, 1000, "wavelengths in the envelope, 6 standard deviations"));
 }
 
 template <class Visitor>
 void for_each_field(TvSettings& s, Visitor&& visit) {
-    visit("weight", s.weight, "weight of total variation; null: standard deviation of the data");
-    visit("sparsity", s.sparsity, "weight of the sum of all voxels; null: a tenth of tv.weight");
-    visit("penalty", s.penalty, "of the splitting: changes speed, not the result");
-    visit("iterations", s.iterations, "how many");
+    visit("weight",
+          s.weight,
+          core::at_least(0, "weight of total variation; null: standard deviation of the data"));
+    visit("sparsity",
+          s.sparsity,
+          core::at_least(0, "weight of the sum of all voxels; null: a tenth of tv.weight"));
+    visit("penalty", s.penalty, core::above(0, "of the splitting: changes speed, not the result"));
+    visit("iterations", s.iterations, core::at_least(1, "how many"));
 }
 
 template <class Visitor>
@@ -124,35 +137,47 @@ void for_each_field(ReconstructSettings& s, Visitor&& visit) {
     visit("filter", s.filter, "how fbp sharpens");
     visit("phasor", s.phasor, "virtual wave (phasor, and fbp by phasor)");
     visit("crop", s.crop, "part of the capture to use");
-    visit(
-        "snr",
-        s.snr,
-        "signal to noise ratio of the Wiener filter (lct, dlct); null: from the noise of counts, 1 "
-        "for radiance");
+    visit("snr",
+          s.snr,
+          core::above(0,
+                      "signal to noise ratio of the Wiener filter (lct, dlct); null: from the "
+                      "noise of counts, 1 "
+                      "for radiance"));
     visit("response", s.response, "response of laser and detector to take off the histograms");
     visit("response_floor",
           s.response_floor,
-          "ratio of noise to signal, as amplitudes: frequencies of which the response leaves less "
-          "are not restored");
+          core::strictly_between(0,
+                                 1,
+                                 "ratio of noise to signal, as amplitudes: frequencies of which "
+                                 "the response leaves less "
+                                 "are not restored"));
     visit("ambient",
           s.ambient,
           "constant background light, and bins behind the signal's end; auto: taken off counts");
-    visit("noise_floor",
-          s.noise_floor,
-          "background light and dark counts in every bin, in the histograms' unit, to take off; "
-          "null: each pair's own, from the darkest quarter of the axis");
+    visit(
+        "noise_floor",
+        s.noise_floor,
+        core::at_least(
+            0,
+            "background light and dark counts in every bin, in the histograms' unit, to take off; "
+            "null: each pair's own, from the darkest quarter of the axis"));
     visit("merge_bins",
           s.merge_bins,
-          "neighbouring bins added up first; null: as many as keep a bin's range within a quarter "
-          "of the distance of scan points");
-    visit("mask_threshold", s.mask_threshold, "share of the maximum that counts as foreground");
-    visit("memory_gb",
-          s.memory_gb,
-          "memory to take at most, beside the capture's [GB]; what needs more is done in slabs, "
-          "or refused; null: what is free");
+          core::at_least(1,
+                         "neighbouring bins added up first; null: as many as keep a bin's range "
+                         "within a quarter "
+                         "of the distance of scan points"));
+    visit("mask_threshold",
+          s.mask_threshold,
+          core::strictly_between(0, 1, "share of the maximum that counts as foreground"));
+    visit(
+        "memory_gb",
+        s.memory_gb,
+        core::above(
+            0,
+            "memory to take at most, beside the capture's [GB]; what needs more is done in slabs, "
+            "or refused; null: what is free"));
 }
-
-inline constexpr int kMaxVoxelsPerAxis = 65536;
 
 /// Throws core::Error naming the first setting that is out of range.
 void validate(const ReconstructSettings& settings);
@@ -161,41 +186,26 @@ void validate(const ReconstructSettings& settings);
 
 template <>
 struct core::EnumNames<nlos::Method> {
-    static constexpr std::array<std::pair<nlos::Method, std::string_view>, 7> value{
-        {{nlos::Method::Auto, "auto"},
-         {nlos::Method::Lct, "lct"},
-         {nlos::Method::Bp, "bp"},
-         {nlos::Method::Fbp, "fbp"},
-         {nlos::Method::Fk, "fk"},
-         {nlos::Method::Phasor, "phasor"},
-         {nlos::Method::Dlct, "dlct"}}};
+    static constexpr auto value =
+        names_from_zero<nlos::Method>("auto", "lct", "bp", "fbp", "fk", "phasor", "dlct");
 };
 template <>
 struct core::EnumNames<nlos::Compensation> {
-    static constexpr std::array<std::pair<nlos::Compensation, std::string_view>, 3> value{
-        {{nlos::Compensation::None, "none"},
-         {nlos::Compensation::Diffuse, "diffuse"},
-         {nlos::Compensation::Retro, "retro"}}};
+    static constexpr auto value = names_from_zero<nlos::Compensation>("none", "diffuse", "retro");
 };
 template <>
 struct core::EnumNames<nlos::FbpFilter> {
-    static constexpr std::array<std::pair<nlos::FbpFilter, std::string_view>, 2> value{
-        {{nlos::FbpFilter::Laplacian, "laplacian"}, {nlos::FbpFilter::Phasor, "phasor"}}};
+    static constexpr auto value = names_from_zero<nlos::FbpFilter>("laplacian", "phasor");
 };
 template <>
 struct core::EnumNames<nlos::Falloff> {
-    static constexpr std::array<std::pair<nlos::Falloff, std::string_view>, 2> value{
-        {{nlos::Falloff::Diffuse, "diffuse"}, {nlos::Falloff::Retro, "retro"}}};
+    static constexpr auto value = names_from_zero<nlos::Falloff>("diffuse", "retro");
 };
 template <>
 struct core::EnumNames<nlos::Ambient> {
-    static constexpr std::array<std::pair<nlos::Ambient, std::string_view>, 3> value{
-        {{nlos::Ambient::Auto, "auto"},
-         {nlos::Ambient::Keep, "keep"},
-         {nlos::Ambient::Subtract, "subtract"}}};
+    static constexpr auto value = names_from_zero<nlos::Ambient>("auto", "keep", "subtract");
 };
 template <>
 struct core::EnumNames<nlos::Prior> {
-    static constexpr std::array<std::pair<nlos::Prior, std::string_view>, 2> value{
-        {{nlos::Prior::None, "none"}, {nlos::Prior::Tv, "tv"}}};
+    static constexpr auto value = names_from_zero<nlos::Prior>("none", "tv");
 };

@@ -67,6 +67,9 @@ constexpr Ranged above(double low, const char* meaning) {
 constexpr Ranged between(double low, double high, const char* meaning) {
     return {meaning, {low, true, high, true}};
 }
+constexpr Ranged strictly_between(double low, double high, const char* meaning) {
+    return {meaning, {.low = low, .high = high}};
+}
 
 /// Specialise with `static constexpr auto value = names_from_zero<E>("first", "second")`.
 template <class E>

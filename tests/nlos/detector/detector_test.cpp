@@ -317,7 +317,7 @@ TEST(Detector, BadSettingsAreNamed) {
     DetectorSettings settings;
     expect(settings, "photons_per_point");
     settings = with_photons_per_point(-1.0);
-    expect(settings, "must be positive");
+    expect(settings, "photons_per_point: found -1; must be above 0");
     settings = with_photons_per_point(1e300);
     expect(settings, "at most 1e15 counts");
     settings = with_photons_per_point(10.0);
