@@ -44,7 +44,7 @@ void run(const DemoArguments& arguments) {
     const std::string scene = letter_scene();
     fmt::print("scene        {}\n", scene);
     write_picture(scene, file("ground_truth.png"));
-    const RenderJob render = render_to_file(scene, {}, file("capture.h5"));
+    const renderer::RenderResult render = render_to_file(scene, {}, file("capture.h5"));
     fmt::print("capture      {} ({:.2f} s)\n", file("capture.h5"), render.seconds);
     for (const std::string method : {"lct", "bp"}) {
         stop_if_interrupted();

@@ -3,10 +3,11 @@
 #include "apps/commands.h"
 #include "apps/commands/render_job.h"
 #include "renderer/core/parallel.h"
+#include "renderer/scene/scene_file.h"
 
 #include <fmt/core.h>
 
-#include <filesystem>
+#include <array>
 #include <memory>
 
 namespace apps {
@@ -22,54 +23,72 @@ struct RenderArguments {
     bool verbose = false;
 };
 
-void add_shorthand(CLI::App& command,
-                   RenderArguments& arguments,
-                   const std::string& flag,
-                   const std::string& key,
-                   const std::string& type,
-                   const std::string& help) {
-    command
-        .add_option_function<std::string>(
-            flag,
-            [&arguments, key](const std::string& value) {
-                arguments.shorthands.push_back(key + "=" + value);
-            },
-            help)
-        ->type_name(type);
-}
+/// A flag that stands for one `--set`.
+struct Shorthand {
+    const char* flag;
+    const char* key;
+    const char* type;
+    const char* help;
+};
+
+constexpr std::array<Shorthand, 6> kShorthands{
+    {{"--method",
+      "render.method",
+      "NAME",
+      "Estimator: auto, third_bounce, path, ellipsoidal or restir (default auto)"},
+     {"--samples", "render.samples", "N", "Candidate paths per pair (default 256)"},
+     {"--seconds",
+      "render.seconds",
+      "S",
+      "Render for this long instead [s]; of a sequence, each frame"},
+     {"--target-error",
+      "render.target_error",
+      "E",
+      "Render until the relative L2 error over all of H is below this"},
+     {"--max-bounces",
+      "render.max_bounces",
+      "K",
+      "Bounces, both on the relay wall included (default 3)"},
+     {"--seed", "render.seed", "N", "Seed of the random numbers (default 0)"}}};
 
 void run(const RenderArguments& arguments) {
     const core::ThreadLimit threads(arguments.threads);
     std::vector<std::string> overrides = arguments.overrides;
     overrides.insert(overrides.end(), arguments.shorthands.begin(), arguments.shorthands.end());
-    const RenderJob job =
+    const renderer::RenderResult result =
         render_to_file(arguments.scene, overrides, arguments.output, arguments.calibration);
-    for (const std::string& warning : job.warnings) {
+    for (const std::string& warning : result.warnings) {
         fmt::print(stderr, "warning: {}\n", warning);
     }
     std::string effort;
-    if (job.estimated_error) effort += fmt::format("error about {:.1e}, ", *job.estimated_error);
-    if (job.samples_per_pair > 0)
-        effort += fmt::format("{} samples per pair, ", job.samples_per_pair);
-    if (job.interrupted) {
+    if (result.estimated_error)
+        effort += fmt::format("error about {:.1e}, ", *result.estimated_error);
+    if (result.samples_per_pair > 0)
+        effort += fmt::format("{} samples per pair, ", result.samples_per_pair);
+    if (result.interrupted) {
         throw core::Failure("render",
                             fmt::format("interrupted; {} holds what was computed ({}{:.2f} s)",
                                         arguments.output,
                                         effort,
-                                        job.seconds));
+                                        result.seconds));
     }
-    if (arguments.verbose) fmt::print("{}\n", job.details.dump(2));
+    const core::Capture& capture = result.capture;
+    if (arguments.verbose) {
+        core::Json details = capture.scene_info;
+        details.erase("settings");
+        fmt::print("{}\n", details.dump(2));
+    }
     const std::string frames =
-        job.num_frames > 0 ? fmt::format("{} frames x ", job.num_frames) : "";
+        capture.sequence ? fmt::format("{} frames x ", capture.sequence->frames.size()) : "";
     fmt::print("wrote {} ({}{} pairs x {} bins, {} by {}, {}{:.2f} s)\n",
                arguments.output,
                frames,
-               job.num_pairs,
-               job.num_bins,
-               job.pattern,
-               job.estimator,
+               capture.scan.num_pairs(),
+               capture.time_axis.num_bins,
+               capture.scan.camera ? "camera" : core::enum_name(capture.scan.pattern),
+               estimator_names(result),
                effort,
-               job.seconds);
+               result.seconds);
 }
 
 }  // namespace
@@ -80,42 +99,16 @@ void add_render_command(CLI::App& app) {
     command->add_option("SCENE", arguments->scene, "Scene description (.json)")->required();
     command->add_option("-o,--output", arguments->output, "Capture to write (.h5, .exr, .mat)")
         ->required();
-    add_shorthand(*command,
-                  *arguments,
-                  "--method",
-                  "render.method",
-                  "NAME",
-                  "Estimator: auto, third_bounce, path, ellipsoidal or restir (default auto)");
-    add_shorthand(*command,
-                  *arguments,
-                  "--samples",
-                  "render.samples",
-                  "N",
-                  "Candidate paths per pair (default 256)");
-    add_shorthand(*command,
-                  *arguments,
-                  "--seconds",
-                  "render.seconds",
-                  "S",
-                  "Render for this long instead [s]; of a sequence, each frame");
-    add_shorthand(*command,
-                  *arguments,
-                  "--target-error",
-                  "render.target_error",
-                  "E",
-                  "Render until the relative L2 error over all of H is below this");
-    add_shorthand(*command,
-                  *arguments,
-                  "--max-bounces",
-                  "render.max_bounces",
-                  "K",
-                  "Bounces, both on the relay wall included (default 3)");
-    add_shorthand(*command,
-                  *arguments,
-                  "--seed",
-                  "render.seed",
-                  "N",
-                  "Seed of the random numbers (default 0)");
+    for (const auto& [flag, key, type, help] : kShorthands) {
+        command
+            ->add_option_function<std::string>(
+                flag,
+                [arguments, key = std::string(key)](const std::string& value) {
+                    arguments->shorthands.push_back(key + "=" + value);
+                },
+                help)
+            ->type_name(type);
+    }
     command->add_option("--calibration",
                         arguments->calibration,
                         "Calibration of the set-up to record with (.json)");

@@ -10,21 +10,12 @@
 #include "renderer/core/output_file.h"
 #include "renderer/frame_sequence.h"
 #include "renderer/render.h"
+#include "renderer/scene/scene_file.h"
 
 #include <filesystem>
 
 namespace apps {
 namespace {
-
-// The estimators that ran, as in "third_bounce + path".
-std::string estimator_names(const renderer::RenderResult& result) {
-    std::string names;
-    for (const renderer::OrderSource& source : result.sources) {
-        const std::string name(core::enum_name(source.estimator));
-        if (names.find(name) == std::string::npos) names += (names.empty() ? "" : " + ") + name;
-    }
-    return names.empty() ? "closed form" : names;
-}
 
 // How reuse went: merges, shifts and why shifts were rejected, over all frames.
 core::Json resampling_of(const renderer::RenderResult& result) {
@@ -92,10 +83,19 @@ renderer::RenderResult run(const renderer::SceneDescription& description,
 
 }  // namespace
 
-RenderJob render_to_file(const std::string& scene_path,
-                         const std::vector<std::string>& overrides,
-                         const std::string& capture_path,
-                         const std::string& calibration_path) {
+std::string estimator_names(const renderer::RenderResult& result) {
+    std::string names;
+    for (const renderer::OrderSource& source : result.sources) {
+        const std::string name(core::enum_name(source.estimator));
+        if (names.find(name) == std::string::npos) names += (names.empty() ? "" : " + ") + name;
+    }
+    return names.empty() ? "closed form" : names;
+}
+
+renderer::RenderResult render_to_file(const std::string& scene_path,
+                                      const std::vector<std::string>& overrides,
+                                      const std::string& capture_path,
+                                      const std::string& calibration_path) {
     nlos::check_capture_suffix(capture_path);
     core::check_targets({capture_path}, {scene_path, calibration_path});
     const renderer::SceneDescription description =
@@ -125,21 +125,8 @@ RenderJob render_to_file(const std::string& scene_path,
                               nlos::encode_preview_png(result.capture));
     }
 
-    RenderJob job;
-    job.num_pairs = scan.num_pairs();
-    if (result.capture.sequence) job.num_frames = result.capture.sequence->frames.size();
-    job.num_bins = description.time_axis.num_bins;
-    job.pattern = scan.camera ? "camera" : core::enum_name(scan.pattern);
-    job.estimator = estimator_names(result);
-    job.estimated_error = result.estimated_error;
-    job.samples_per_pair = result.samples_per_pair;
-    job.seconds = result.seconds;
-    job.interrupted = result.interrupted;
-    job.warnings = result.warnings;
-    job.details = result.capture.scene_info;
-    job.details.erase("settings");
-    job.warnings.insert(job.warnings.end(), left_out.begin(), left_out.end());
-    return job;
+    result.warnings.insert(result.warnings.end(), left_out.begin(), left_out.end());
+    return result;
 }
 
 }  // namespace apps

@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <optional>
 
@@ -26,27 +27,17 @@ std::optional<int> png_width(std::string_view bytes) {
 }  // namespace
 
 std::string escape_html(std::string_view text) {
+    constexpr std::array<std::pair<char, const char*>, 5> kEntities{
+        {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\'', "&#39;"}}};
     std::string escaped;
     escaped.reserve(text.size());
     for (const char c : text) {
-        switch (c) {
-            case '&':
-                escaped += "&amp;";
-                break;
-            case '<':
-                escaped += "&lt;";
-                break;
-            case '>':
-                escaped += "&gt;";
-                break;
-            case '"':
-                escaped += "&quot;";
-                break;
-            case '\'':
-                escaped += "&#39;";
-                break;
-            default:
-                escaped += c;
+        const auto special = std::find_if(
+            kEntities.begin(), kEntities.end(), [&](const auto& e) { return e.first == c; });
+        if (special == kEntities.end()) {
+            escaped += c;
+        } else {
+            escaped += special->second;
         }
     }
     return escaped;

@@ -4,7 +4,6 @@
 #include "apps/report/bench_cards.h"
 #include "apps/report/html.h"
 #include "apps/report/metrics_table.h"
-#include "apps/report/report_style.h"
 #include "apps/version.h"
 #include "renderer/core/output_file.h"
 
@@ -13,6 +12,10 @@
 #include <algorithm>
 
 namespace apps {
+
+/// report.css, compiled in.
+extern const char* const kReportStyle;
+
 namespace {
 
 constexpr const char* kPng = "image/png";
