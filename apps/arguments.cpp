@@ -35,6 +35,29 @@ void add_set_option(CLI::App& command, std::vector<std::string>& overrides) {
         ->allow_extra_args(false);
 }
 
+void add_shorthands(CLI::App& command,
+                    std::span<const Shorthand> shorthands,
+                    std::vector<std::string>& overrides) {
+    for (const Shorthand& shorthand : shorthands) {
+        const std::string prefix = std::string(shorthand.key) + "=";
+        if (*shorthand.type == '\0') {
+            command.add_flag_callback(
+                shorthand.flag,
+                [&overrides, prefix] { overrides.push_back(prefix + "true"); },
+                shorthand.help);
+            continue;
+        }
+        command
+            .add_option_function<std::string>(
+                shorthand.flag,
+                [&overrides, prefix](const std::string& value) {
+                    overrides.push_back(prefix + value);
+                },
+                shorthand.help)
+            ->type_name(shorthand.type);
+    }
+}
+
 void add_threads_option(CLI::App& command, int& threads) {
     command.add_option("--threads", threads, "Threads; 0 takes all processors")
         ->capture_default_str()

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,20 @@ std::vector<std::string> expand_set_arguments(const std::vector<std::string>& ar
 
 /// Declares the repeatable `--set key.path=value`; its texts go to `overrides`.
 void add_set_option(CLI::App& command, std::vector<std::string>& overrides);
+
+/// A flag that stands for one `--set`, with a value, or without one for settings that are true or
+/// false.
+struct Shorthand {
+    const char* flag;
+    const char* key;
+    const char* type;  ///< empty: a switch
+    const char* help;
+};
+
+/// Declares the flags; those given go to `overrides` as `key=value`.
+void add_shorthands(CLI::App& command,
+                    std::span<const Shorthand> shorthands,
+                    std::vector<std::string>& overrides);
 
 /// Declares `--threads`; 0 takes all processors.
 void add_threads_option(CLI::App& command, int& threads);

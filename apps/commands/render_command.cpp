@@ -23,15 +23,7 @@ struct RenderArguments {
     bool verbose = false;
 };
 
-/// A flag that stands for one `--set`.
-struct Shorthand {
-    const char* flag;
-    const char* key;
-    const char* type;
-    const char* help;
-};
-
-constexpr std::array<Shorthand, 6> kShorthands{
+constexpr std::array<Shorthand, 6> kRenderShorthands{
     {{"--method",
       "render.method",
       "NAME",
@@ -99,16 +91,7 @@ void add_render_command(CLI::App& app) {
     command->add_option("SCENE", arguments->scene, "Scene description (.json)")->required();
     command->add_option("-o,--output", arguments->output, "Capture to write (.h5, .exr, .mat)")
         ->required();
-    for (const auto& [flag, key, type, help] : kShorthands) {
-        command
-            ->add_option_function<std::string>(
-                flag,
-                [arguments, key = std::string(key)](const std::string& value) {
-                    arguments->shorthands.push_back(key + "=" + value);
-                },
-                help)
-            ->type_name(type);
-    }
+    add_shorthands(*command, kRenderShorthands, arguments->shorthands);
     command->add_option("--calibration",
                         arguments->calibration,
                         "Calibration of the set-up to record with (.json)");

@@ -36,15 +36,7 @@ void for_each_field(NoiseOptions& options, Visitor&& visit) {
     visit("capture", options.capture, "what the capture file leaves open");
 }
 
-/// A flag with a value, or without one for settings that are true or false.
-struct Shorthand {
-    const char* flag;
-    const char* key;
-    const char* type;  ///< empty: a switch
-    const char* help;
-};
-
-constexpr std::array kShorthands{
+constexpr std::array kNoiseShorthands{
     Shorthand{"--photons", "photons", "N", "Expected signal photons in the whole capture"},
     Shorthand{
         "--photons-per-point", "photons_per_point", "N", "... per measurement pair, on average"},
@@ -59,27 +51,6 @@ constexpr std::array kShorthands{
     Shorthand{"--pile-up", "pile_up", "", "Record only the first photon of a pulse"},
     Shorthand{"--expected", "expected", "", "Write expected counts instead of random ones"},
     Shorthand{"--seed", "seed", "N", "Seed of the random numbers"}};
-
-void add_shorthands(CLI::App& command, const std::shared_ptr<NoiseArguments>& arguments) {
-    for (const Shorthand& shorthand : kShorthands) {
-        const std::string key = shorthand.key;
-        if (*shorthand.type == '\0') {
-            command.add_flag_callback(
-                shorthand.flag,
-                [arguments, key] { arguments->shorthands.push_back(key + "=true"); },
-                shorthand.help);
-            continue;
-        }
-        command
-            .add_option_function<std::string>(
-                shorthand.flag,
-                [arguments, key](const std::string& value) {
-                    arguments->shorthands.push_back(key + "=" + value);
-                },
-                shorthand.help)
-            ->type_name(shorthand.type);
-    }
-}
 
 void run(const NoiseArguments& arguments) {
     const core::ThreadLimit threads(arguments.threads);
@@ -118,7 +89,7 @@ void add_simulate_noise_command(CLI::App& app) {
         ->required();
     command->add_option("-o,--output", arguments->output, "Capture to write (.h5, .exr, .mat)")
         ->required();
-    add_shorthands(*command, arguments);
+    add_shorthands(*command, kNoiseShorthands, arguments->shorthands);
     add_threads_option(*command, arguments->threads);
     add_set_option(*command, arguments->overrides);
     command->footer(settings_footer(core::settings_help(NoiseOptions{}),

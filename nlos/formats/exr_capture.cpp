@@ -245,9 +245,9 @@ Capture read_exr(const std::string& path, const CaptureReadSettings& settings) {
     return capture;
 }
 
-std::vector<std::string> write(const std::string& path,
-                               const Capture& capture,
-                               const CaptureWriteSettings&) {
+std::vector<std::string> write_exr(const std::string& path,
+                                   const Capture& capture,
+                                   const CaptureWriteSettings&) {
     if (capture.scan.camera) {
         write_exr_table(path, to_exr_image(capture));
         const bool has_joint = capture.velocity && capture.velocity->axis.with_time;
@@ -301,7 +301,7 @@ CaptureFormat exr_format() {
             recognise_exr,
             read_exr,
             {".exr"},
-            write};
+            write_exr};
 }
 
 }  // namespace nlos

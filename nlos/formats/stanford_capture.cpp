@@ -198,9 +198,9 @@ bool fits_uint16(const core::Transient& transient) {
     });
 }
 
-std::vector<std::string> write(const std::string& path,
-                               const Capture& capture,
-                               const CaptureWriteSettings&) {
+std::vector<std::string> write_stanford(const std::string& path,
+                                        const Capture& capture,
+                                        const CaptureWriteSettings&) {
     const SquareScan square = square_scan(path, capture.scan);
     const bool is_integer = fits_uint16(capture.transient);
     MatVariable data{"rect_data", {square.side, square.side, capture.transient.num_bins()}, {}};
@@ -238,7 +238,7 @@ CaptureFormat stanford_format() {
             recognise_stanford,
             read_stanford,
             {".mat"},
-            write,
+            write_stanford,
             default_zero_bins};
 }
 

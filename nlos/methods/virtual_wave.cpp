@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kPairsPerBlock = 64;
 constexpr double kBinsPerWavelength = 16.0;  // linear interpolation then errs by 2 % at most
-constexpr double kReach = 4.0;               // standard deviations after which the wave is over
+constexpr double kWaveReach = 4.0;           // standard deviations after which the wave is over
 
 // One column per bin or per histogram.
 using Matrix = Eigen::MatrixXf;
@@ -86,7 +86,7 @@ VirtualWave make_virtual_wave(const PhasorSettings& settings, double span_m) {
     wave.sigma_m = settings.cycles * wave.wavelength_m / 6.0;
     const double center = 1.0 / wave.wavelength_m;
     const double deviation = 1.0 / (2.0 * core::kPi * wave.sigma_m);
-    wave.frequency_step = 1.0 / (span_m + kReach * wave.sigma_m);
+    wave.frequency_step = 1.0 / (span_m + kWaveReach * wave.sigma_m);
     const double lowest = std::max(0.0, center - 3.0 * deviation);
     const double first = std::max(1.0, std::ceil(lowest / wave.frequency_step));
     wave.first_frequency = first * wave.frequency_step;
@@ -133,7 +133,7 @@ std::vector<ComplexF> analyse(const MethodInput& input,
 
 core::TimeAxis filtered_axis(const core::TimeAxis& axis, const PhasorSettings& settings) {
     const double sigma = settings.cycles * *settings.wavelength_m / 6.0;
-    const double margin = std::ceil(kReach * sigma / axis.bin_width_m);
+    const double margin = std::ceil(kWaveReach * sigma / axis.bin_width_m);
     const std::size_t factor = std::max<std::size_t>(1, oversampling(axis, settings));
     core::TimeAxis finer = axis;
     finer.opl_start_m -= margin * axis.bin_width_m;

@@ -13,11 +13,11 @@
 namespace apps {
 namespace {
 
-constexpr double kTarget = 0.01;
-constexpr double kReferenceTarget = 0.002;
+constexpr double kCostTarget = 0.01;
+constexpr double kCostReferenceTarget = 0.002;
 constexpr double kGate_m = 0.01;
 
-ThirdBounceCost measure(const std::string& measurement,
+ThirdBounceCost cost_of(const std::string& measurement,
                         const BenchScene& bench,
                         const core::TimeAxis& axis,
                         int repeats) {
@@ -27,7 +27,7 @@ ThirdBounceCost measure(const std::string& measurement,
         return renderer::integrate_third_bounce(bench.scene(), bench.scan(), axis, settings, {});
     };
     const core::Capture reference =
-        capture_of(bench.scan(), axis, integrate(kReferenceTarget).transient);
+        capture_of(bench.scan(), axis, integrate(kCostReferenceTarget).transient);
     ThirdBounceCost cost;
     cost.measurement = measurement;
     std::vector<double> seconds;
@@ -35,7 +35,7 @@ ThirdBounceCost measure(const std::string& measurement,
     std::vector<double> ray_seconds;
     for (int i = 0; i < repeats; ++i) {
         const double start = core::cpu_seconds();
-        const renderer::ThirdBounce result = integrate(kTarget);
+        const renderer::ThirdBounce result = integrate(kCostTarget);
         seconds.push_back(core::cpu_seconds() - start);
         tracing_seconds.push_back(result.tracing_seconds);
         ray_seconds.push_back(shadow_ray_seconds(bench.scene(), bench.scan()));
@@ -57,10 +57,10 @@ std::vector<ThirdBounceCost> bench_third_bounce_costs(const std::string& scene_p
     renderer::RenderSettings settings = bench.settings();
     settings.method = renderer::Estimator::ThirdBounce;
     const core::Capture capture = bench.render(settings);
-    std::vector<ThirdBounceCost> costs{measure("histogram", bench, bench.axis(), repeats)};
+    std::vector<ThirdBounceCost> costs{cost_of("histogram", bench, bench.axis(), repeats)};
     for (const double share : {0.1, 0.5, 0.9}) {
         const double opl = bench.axis().bin_begin_m(bin_of_share(capture, share));
-        costs.push_back(measure(fmt::format("gate of {:g} mm at {:.2f} m", 1e3 * kGate_m, opl),
+        costs.push_back(cost_of(fmt::format("gate of {:g} mm at {:.2f} m", 1e3 * kGate_m, opl),
                                 bench,
                                 {opl, kGate_m, 1},
                                 repeats));
@@ -69,7 +69,7 @@ std::vector<ThirdBounceCost> bench_third_bounce_costs(const std::string& scene_p
                                 {"scan.pattern=exhaustive",
                                  "scan.sensing_points=[16,16]",
                                  "scan.illumination_points=[16,16]"});
-    costs.push_back(measure("16 x 16 by 16 x 16 pairs", exhaustive, exhaustive.axis(), repeats));
+    costs.push_back(cost_of("16 x 16 by 16 x 16 pairs", exhaustive, exhaustive.axis(), repeats));
     for (ThirdBounceCost& cost : costs) cost.share = cost.cpu_seconds / costs.front().cpu_seconds;
     return costs;
 }

@@ -9,7 +9,7 @@ namespace nlos {
 namespace {
 
 /// Two pairs: 20 empty bins, then ambient light of 2 and 5 counts, a signal in bins [40, 80).
-core::Transient example() {
+core::Transient example_histograms() {
     core::Transient transient(2, 340);
     for (std::size_t pair = 0; pair < 2; ++pair) {
         for (std::size_t bin = 20; bin < 340; ++bin) {
@@ -21,7 +21,7 @@ core::Transient example() {
 }
 
 TEST(HistogramPreparation, FindsAmbientLightAndTheSignalsEnd) {
-    const auto signal = find_signal(example());
+    const auto signal = find_signal(example_histograms());
     ASSERT_TRUE(signal);
     EXPECT_DOUBLE_EQ(signal->ambient_per_bin[0], 2.0);
     EXPECT_DOUBLE_EQ(signal->ambient_per_bin[1], 5.0);
@@ -39,7 +39,7 @@ TEST(HistogramPreparation, KeepsTheWholeAxisWithoutASignal) {
 
 TEST(HistogramPreparation, TakesOffAmbientLightAndAddsUpBins) {
     const PreparationPlan plan{4, 20, {2.0, 5.0}};
-    const core::Transient prepared = prepare_histograms(example(), plan);
+    const core::Transient prepared = prepare_histograms(example_histograms(), plan);
     ASSERT_EQ(prepared.num_bins(), 20U);
     for (std::size_t pair = 0; pair < 2; ++pair) {
         for (std::size_t bin = 0; bin < 20; ++bin) {
