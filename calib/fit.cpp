@@ -37,26 +37,26 @@ void sort_by_cost(std::vector<Candidate>& candidates) {
     });
 }
 
-// What the final model says of every bin, and how well that agrees with the data.
-void store_fit(const FitDriver& driver,
-               const FitDriver::Stage& stage,
-               const SceneState& state,
-               FitResult& result) {
+// What the model of a state says of every bin, and how well that agrees with the data.
+FitAgreement compare_with_data(const FitDriver& driver,
+                               const FitDriver::Stage& stage,
+                               const SceneState& state) {
+    FitAgreement result;
     result.axis = stage.data->axis;
     result.data = stage.data->values;
+    result.residual = driver.is_poisson ? "poisson" : "least_squares";
     stage.model->update(state, renderer::Gradients::Without);
-    const auto bins = static_cast<double>(stage.model->settings().bins_per_ambient);
     double variance = 0.0;
     PairModel expected;
     for (std::size_t pair = 0; pair < stage.objective->num_pairs(); ++pair) {
         stage.model->evaluate(pair, expected);
         for (double& value : expected.mean) {
-            if (!driver.is_poisson()) {
+            if (!driver.is_poisson) {
                 value = stage.objective->scale() * value + stage.objective->ambient();
             }
             const double counted = stage.data->values[result.model.size()];
             result.model.push_back(value);
-            if (!driver.is_poisson()) {
+            if (!driver.is_poisson) {
                 result.deviance += (value - counted) * (value - counted);
                 continue;
             }
@@ -69,31 +69,38 @@ void store_fit(const FitDriver& driver,
         }
     }
     result.expected_deviance_sigma = std::sqrt(variance);
-    if (!driver.is_poisson()) {
-        result.scale.value = stage.objective->scale();
-        result.ambient.value = stage.objective->ambient() / bins;
-        result.expected_deviance = result.deviance;
-    }
+    if (!driver.is_poisson) result.expected_deviance = result.deviance;
+    return result;
 }
 
-// A start that was given may also be solved without blur, where that merges what lies apart.
+// Solves one more candidate on the sharp data, and sorts it in.
+void add_solved(const FitDriver& driver,
+                FitDriver::Stage& last,
+                Candidate candidate,
+                std::vector<Candidate>& candidates,
+                FitCourse& course) {
+    candidate.summary = driver.solve(last, candidate.state, driver.settings.max_iterations);
+    course.iterations += candidate.summary.iterations;
+    candidates.push_back(std::move(candidate));
+    sort_by_cost(candidates);
+}
+
+// Blur can merge what lies apart: a start that was given is then also solved without it.
 void retry_without_blur(const FitDriver& driver,
-                        const FitInput& input,
                         FitDriver::Stage& last,
                         std::vector<Candidate>& candidates,
-                        FitResult& result) {
+                        FitCourse& course) {
     constexpr double kNotableExcess = 5.0;
-    const bool has_blur = input.settings.blur_schedule_m.size() > 1;
-    if (input.settings.start != "given" || !has_blur || !driver.is_poisson()) return;
-    FitResult explained;
-    store_fit(driver, last, candidates.front().state, explained);
-    const double excess = explained.deviance - explained.expected_deviance;
-    if (excess <= kNotableExcess * explained.expected_deviance_sigma) return;
-    Candidate direct{"given, without blur", driver.starts().front().second, {}};
-    direct.summary = driver.solve(last, direct.state, input.settings.max_iterations);
-    result.iterations += direct.summary.iterations;
-    candidates.push_back(std::move(direct));
-    sort_by_cost(candidates);
+    const bool has_blur = driver.settings.blur_schedule_m.size() > 1;
+    if (driver.settings.start != "given" || !has_blur || !driver.is_poisson) return;
+    const FitAgreement fit = compare_with_data(driver, last, candidates.front().state);
+    const double excess = fit.deviance - fit.expected_deviance;
+    if (excess <= kNotableExcess * fit.expected_deviance_sigma) return;
+    add_solved(driver,
+               last,
+               {"given, without blur", driver.starts().front().second, {}},
+               candidates,
+               course);
 }
 
 // Of sorted candidates, the best and others in other poses that blurred data tell from it no better
@@ -114,24 +121,24 @@ void keep_best(const SceneModel& model,
     candidates = std::move(kept);
 }
 
-// All starts go through coarse stages with fewer and fewer of them; few reach the last. Sorted.
+// Solves from all starts on blurred data, drops the worse ones stage by stage, and solves from the
+// rest on the sharp data. Returns the solutions, best first.
 std::vector<Candidate> run_stages(const FitDriver& driver,
-                                  const FitInput& input,
                                   const core::Progress& progress,
                                   FitDriver::Stage& last,
-                                  FitResult& result) {
+                                  FitCourse& course) {
     constexpr double kAnyCost = std::numeric_limits<double>::infinity();
     constexpr double kTellableCost = 5.0;
     std::vector<Candidate> candidates;
     for (auto& [name, state] : driver.starts()) candidates.push_back({name, state, {}});
-    if (input.settings.start == "given") driver.check_light(last, candidates.front().state);
+    if (driver.settings.start == "given") driver.check_light(last, candidates.front().state);
     const auto note_starts = [&] {
-        if (!result.starts.empty()) return;
-        for (const Candidate& c : candidates) result.starts.push_back({c.name, c.summary.cost});
+        if (!course.starts.empty()) return;
+        for (const Candidate& c : candidates) course.starts.push_back({c.name, c.summary.cost});
     };
-    const auto& schedule = input.settings.blur_schedule_m;
+    const auto& schedule = driver.settings.blur_schedule_m;
     for (std::size_t s = 0; s + 1 < schedule.size(); ++s) {
-        FitDriver::Stage stage = driver.make_stage(schedule[s]);
+        FitDriver::Stage stage = driver.make_stage(*driver.model, schedule[s]);
         if (!driver.is_usable(stage)) continue;
         const bool is_scouting = candidates.size() > 1;
         for (Candidate& candidate : candidates) {
@@ -140,24 +147,24 @@ std::vector<Candidate> run_stages(const FitDriver& driver,
             candidate.summary =
                 driver.solve(stage,
                              candidate.state,
-                             is_scouting ? kScoutIterations : input.settings.max_iterations);
-            result.iterations += candidate.summary.iterations;
+                             is_scouting ? kScoutIterations : driver.settings.max_iterations);
+            course.iterations += candidate.summary.iterations;
         }
         sort_by_cost(candidates);
         note_starts();
-        keep_best(driver.model(), kKeptStarts, s == 0 ? kAnyCost : kTellableCost, candidates);
+        keep_best(*driver.model, kKeptStarts, s == 0 ? kAnyCost : kTellableCost, candidates);
     }
+    std::vector<Candidate> solved;
     for (Candidate& candidate : candidates) {
-        candidate.summary = driver.solve(last, candidate.state, input.settings.max_iterations);
-        result.iterations += candidate.summary.iterations;
+        add_solved(driver, last, std::move(candidate), solved, course);
     }
-    sort_by_cost(candidates);
+    candidates = std::move(solved);
     note_starts();
-    retry_without_blur(driver, input, last, candidates, result);
+    retry_without_blur(driver, last, candidates, course);
     return candidates;
 }
 
-// Reads one column's standard deviation from where a block stands.
+// Standard deviations by parameter; kFixed for those that were not free.
 class Sigmas {
  public:
     Sigmas(const SceneModel& model, const Uncertainty& uncertainty)
@@ -176,15 +183,15 @@ class Sigmas {
     const Uncertainty& uncertainty_;
 };
 
-void store_objects(const FitInput& input,
-                   const SceneModel& model,
+void store_objects(const FitDriver& driver,
                    const SceneState& state,
                    const Sigmas& sigmas,
-                   FitResult& result) {
+                   FittedValues& result) {
+    const SceneModel& model = *driver.model;
     for (std::size_t b = 0; b < model.bodies().size(); ++b) {
         const ModelBody& body = model.bodies()[b];
         const BodyState& s = state.bodies[b];
-        const auto& node = input.geometry.objects[body.objects.front()].world_from_node;
+        const auto& node = driver.input.geometry.objects[body.objects.front()].world_from_node;
         FittedObject& object = result.objects.emplace_back();
         object.name = body.name;
         object.position_m = s.position_m;
@@ -212,38 +219,49 @@ void store_objects(const FitInput& input,
     }
 }
 
-void store_rest(const FitInput& input,
-                const SceneState& state,
-                const Sigmas& sigmas,
-                FitResult& result) {
-    result.time_zero_m = {state.time_zero_m, sigmas.at(ParameterKind::TimeZero)};
-    const double fwhm = input.settings.response.jitter_fwhm_ps * std::exp(state.log_width);
-    result.response_fwhm_ps = {fwhm, fwhm * sigmas.at(ParameterKind::ResponseWidth)};
-    result.wall_bow_m = {state.bow_m, sigmas.at(ParameterKind::WallBow)};
-    const double wall = std::exp(state.log_wall_scale);
-    result.wall_scale = {wall, wall * sigmas.at(ParameterKind::WallScale)};
-    const double scale = std::exp(state.log_scale);
-    result.scale = {scale, scale * sigmas.at(ParameterKind::Scale)};
-    if (state.has_ambient) {
-        const double ambient = std::exp(state.log_ambient);
-        result.ambient = {ambient, ambient * sigmas.at(ParameterKind::Ambient)};
-    }
+// Ambient light per bin of the capture: a parameter, or eliminated by least squares.
+double ambient_of(const FitDriver::Stage& stage, const SceneState& state) {
+    return state.has_ambient ? std::exp(state.log_ambient)
+                             : stage.objective->ambient() /
+                                   static_cast<double>(stage.model->settings().bins_per_ambient);
 }
 
-// Bodies that are nearly symmetric may have ended in the wrong one of several minima: the others
-// are tried, and named when the data cannot tell.
+FittedValues fitted_values(const FitDriver& driver,
+                           const FitDriver::Stage& last,
+                           const SceneState& state,
+                           const Uncertainty& uncertainty) {
+    const Sigmas sigmas(*driver.model, uncertainty);
+    const auto estimate = [&](double value, ParameterKind kind) {
+        return Estimate{value, sigmas.at(kind)};
+    };
+    // Of a parameter that is a logarithm.
+    const auto positive = [&](double value, ParameterKind kind) {
+        return Estimate{value, value * sigmas.at(kind)};
+    };
+    FittedValues result;
+    store_objects(driver, state, sigmas, result);
+    result.scale = positive(std::exp(state.log_scale), ParameterKind::Scale);
+    result.time_zero_m = estimate(state.time_zero_m, ParameterKind::TimeZero);
+    result.ambient = positive(ambient_of(last, state), ParameterKind::Ambient);
+    result.response_fwhm_ps =
+        positive(driver.settings.response.jitter_fwhm_ps * std::exp(state.log_width),
+                 ParameterKind::ResponseWidth);
+    result.wall_bow_m = estimate(state.bow_m, ParameterKind::WallBow);
+    result.wall_scale = positive(std::exp(state.log_wall_scale), ParameterKind::WallScale);
+    result.geometry = driver.model->posed(state);
+    return result;
+}
+
+// A nearly symmetric body may have ended in the wrong one of several minima: the others are tried,
+// and named when the data cannot tell them apart.
 void try_symmetric_poses(const FitDriver& driver,
                          FitDriver::Stage& last,
-                         int max_iterations,
                          std::vector<Candidate>& candidates,
-                         FitResult& result) {
-    for (auto& [name, state] : driver.turned(candidates.front().state)) {
-        Candidate turned{candidates.front().name + ", " + name, state, {}};
-        turned.summary = driver.solve(last, turned.state, max_iterations);
-        result.iterations += turned.summary.iterations;
-        candidates.push_back(std::move(turned));
+                         FitCourse& course) {
+    const Candidate best = candidates.front();
+    for (auto& [name, state] : driver.turned(best.state)) {
+        add_solved(driver, last, {best.name + ", " + name, state, {}}, candidates, course);
     }
-    sort_by_cost(candidates);
 }
 
 // Twice the difference of costs is the difference of deviances: 9 is three standard deviations.
@@ -251,12 +269,12 @@ void warn_of_ambiguity(const FitDriver& driver,
                        const std::vector<Candidate>& candidates,
                        FitResult& result) {
     constexpr double kTellable = 9.0;
-    if (!driver.is_poisson() || !result.converged) return;
+    if (!driver.is_poisson || !result.converged) return;
     std::vector<SceneState> known{candidates.front().state};
     for (const Candidate& other : candidates) {
         const double excess = 2.0 * (other.summary.cost - candidates.front().summary.cost);
         const bool is_other = std::all_of(known.begin(), known.end(), [&](const SceneState& state) {
-            return are_different_poses(driver.model(), state, other.state);
+            return are_different_poses(*driver.model, state, other.state);
         });
         if (excess > kTellable || !is_other) continue;
         known.push_back(other.state);
@@ -268,7 +286,8 @@ void warn_of_ambiguity(const FitDriver& driver,
     }
 }
 
-// Fisher information holds for many photons: with few, sigma grows to the scatter of refits.
+// The Fisher information holds for many photons: with few, sigma grows to the scatter of a
+// parametric bootstrap.
 void widen_sigma(const FitDriver& driver,
                  const FitDriver::Stage& last,
                  const SceneState& state,
@@ -277,16 +296,16 @@ void widen_sigma(const FitDriver& driver,
     if (!driver.has_few_photons() || !uncertainty.sigma.allFinite()) return;
     const Eigen::VectorXd scatter = bootstrap_scatter(driver, last, state);
     const Eigen::VectorXd grown = scatter.cwiseMax(uncertainty.sigma);
-    for (Eigen::Index i = 0; i < grown.size(); ++i) {
-        const double factor = grown[i] / uncertainty.sigma[i];
-        uncertainty.covariance.row(i) *= factor;
-        uncertainty.covariance.col(i) *= factor;
-        uncertainty.sigma[i] = grown[i];
-    }
+    const Eigen::VectorXd factor = grown.cwiseQuotient(uncertainty.sigma);
+    uncertainty.covariance = factor.asDiagonal() * uncertainty.covariance * factor.asDiagonal();
+    uncertainty.sigma = grown;
+    double photons = 0.0;
+    const double ambient = ambient_of(last, state);
+    for (const double value : result.model) photons += value - ambient;
     result.warnings.push_back(
         fmt::format("only {:.0f} photons: the stated errors are those of refits to simulated data, "
                     "and not normally distributed",
-                    signal_photons(result)));
+                    photons));
 }
 
 }  // namespace
@@ -295,20 +314,17 @@ FitResult fit_scene(const FitInput& input, const core::Progress& progress) {
     const core::Stopwatch watch;
     const FitDriver driver(input, progress);
     FitResult result;
-    FitDriver::Stage last = driver.make_stage(input.settings.blur_schedule_m.back());
-    std::vector<Candidate> candidates = run_stages(driver, input, progress, last, result);
-    try_symmetric_poses(driver, last, input.settings.max_iterations, candidates, result);
+    FitDriver::Stage last = driver.make_stage(*driver.model, input.settings.blur_schedule_m.back());
+    std::vector<Candidate> candidates = run_stages(driver, progress, last, result);
+    try_symmetric_poses(driver, last, candidates, result);
     Candidate& best = candidates.front();
     const RefinedSolution refined = refine(driver, last, best.state);
-    Uncertainty uncertainty = assess(refined.information, driver.model().column_names());
-    result.parameters = driver.model().column_names();
-    result.residual = driver.is_poisson() ? "poisson" : "least_squares";
-    store_fit(driver, last, best.state, result);
-    if (best.state.has_ambient) result.ambient.value = std::exp(best.state.log_ambient);
+    static_cast<FitAgreement&>(result) = compare_with_data(driver, last, best.state);
+
+    result.parameters = driver.model->column_names();
+    Uncertainty uncertainty = assess(refined.information, result.parameters);
     widen_sigma(driver, last, best.state, uncertainty, result);
-    const Sigmas sigmas(driver.model(), uncertainty);
-    store_objects(input, driver.model(), best.state, sigmas, result);
-    store_rest(input, best.state, sigmas, result);
+    static_cast<FittedValues&>(result) = fitted_values(driver, last, best.state, uncertainty);
     result.correlations = uncertainty.correlations;
     result.condition_number = uncertainty.condition_number;
     result.unidentifiable = uncertainty.unidentifiable;
@@ -316,8 +332,8 @@ FitResult fit_scene(const FitInput& input, const core::Progress& progress) {
     result.converged = best.summary.converged;
     result.message = best.summary.message;
     result.num_elements = last.model->num_elements();
-    result.geometry = driver.model().posed(best.state);
-    check_dependence(driver.model(), uncertainty.sigma, result);
+
+    check_dependence(*driver.model, uncertainty.sigma, result);
     add_warnings(driver, last, best.state, result);
     if (!refined.is_settled) {
         result.warnings.push_back(

@@ -10,21 +10,6 @@ namespace {
 using core::Json;
 using core::Vec3;
 
-// What the data do not determine has no number.
-Json number(double value) {
-    return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
-Json list(const Vec3& v) {
-    return {number(v.x()), number(v.y()), number(v.z())};
-}
-
-Json list(const std::vector<double>& values) {
-    Json json = Json::array();
-    for (const double value : values) json.push_back(number(value));
-    return json;
-}
-
 double value_of(const Json& json) {
     return json.is_number() ? json.get<double>() : kUnknown;
 }
@@ -33,72 +18,68 @@ Vec3 vector_of(const Json& json) {
     return {value_of(json.at(0)), value_of(json.at(1)), value_of(json.at(2))};
 }
 
-Json objects_json(const FitResult& result) {
-    Json json = Json::object();
-    for (const FittedObject& object : result.objects) {
-        const auto& q = object.rotation;
-        json[object.name] = {{"position_m", list(object.position_m)},
-                             {"rotation_wxyz", {q.w(), q.x(), q.y(), q.z()}},
-                             {"size", object.size},
-                             {"albedo", object.albedo}};
-        if (!object.heights_m.empty()) json[object.name]["heights_m"] = list(object.heights_m);
-    }
-    return json;
+// [x, y, z, albedo]
+Json point_json(const Vec3& position, double albedo) {
+    return {position.x(), position.y(), position.z(), albedo};
 }
 
-Json points_json(const FitResult& result) {
-    Json json = Json::array();
-    for (const FittedPoint& p : result.points) {
-        Json point = list(p.position_m);
-        point.push_back(number(p.albedo));
-        json.push_back(point);
-    }
-    return json;
-}
-
-Json sigma_json(const FitResult& result) {
+// What a result says of every quantity: its value, or its standard deviation.
+Json estimates_json(const FitResult& result, double Estimate::*part) {
     Json json;
     json["objects"] = Json::object();
+    json["scale"] = result.scale.*part;
+    json["point_scatterers"] = Json::array();
+    json["time_zero_m"] = result.time_zero_m.*part;
+    json["ambient"] = result.ambient.*part;
+    json["response_fwhm_ps"] = result.response_fwhm_ps.*part;
+    json["wall"] = {{"bow_m", result.wall_bow_m.*part}, {"scale", result.wall_scale.*part}};
+    return json;
+}
+
+Json values_json(const FitResult& result) {
+    Json json = estimates_json(result, &Estimate::value);
+    for (const FittedObject& object : result.objects) {
+        const auto& q = object.rotation;
+        Json& target = json["objects"][object.name];
+        target = {{"position_m", core::write_value(object.position_m)},
+                  {"rotation_wxyz", {q.w(), q.x(), q.y(), q.z()}},
+                  {"size", object.size},
+                  {"albedo", object.albedo}};
+        if (!object.heights_m.empty()) target["heights_m"] = object.heights_m;
+    }
+    for (const FittedPoint& p : result.points) {
+        json["point_scatterers"].push_back(point_json(p.position_m, p.albedo));
+    }
+    return json;
+}
+
+Json sigmas_json(const FitResult& result) {
+    Json json = estimates_json(result, &Estimate::sigma);
     for (const FittedObject& object : result.objects) {
         Json& target = json["objects"][object.name];
-        target = {{"position_m", list(object.position_sigma_m)},
-                  {"rotation_deg", list(object.rotation_sigma_deg)},
-                  {"size", number(object.size_sigma)},
-                  {"albedo", number(object.albedo_sigma)}};
-        if (!object.heights_m.empty()) target["heights_m"] = list(object.heights_sigma_m);
+        target = {{"position_m", core::write_value(object.position_sigma_m)},
+                  {"rotation_deg", core::write_value(object.rotation_sigma_deg)},
+                  {"size", object.size_sigma},
+                  {"albedo", object.albedo_sigma}};
+        if (!object.heights_m.empty()) target["heights_m"] = object.heights_sigma_m;
     }
-    json["scale"] = number(result.scale.sigma);
-    json["point_scatterers"] = Json::array();
     for (const FittedPoint& p : result.points) {
-        Json point = list(p.position_sigma_m);
-        point.push_back(number(p.albedo_sigma));
-        json["point_scatterers"].push_back(point);
+        json["point_scatterers"].push_back(point_json(p.position_sigma_m, p.albedo_sigma));
     }
-    json["time_zero_m"] = number(result.time_zero_m.sigma);
-    json["ambient"] = number(result.ambient.sigma);
-    json["response_fwhm_ps"] = number(result.response_fwhm_ps.sigma);
-    json["wall"] = {{"bow_m", number(result.wall_bow_m.sigma)},
-                    {"scale", number(result.wall_scale.sigma)}};
     return json;
 }
 
 }  // namespace
 
+// An infinite standard deviation, of what the data do not determine, is written as null.
 Json fit_json(const FitResult& result) {
-    Json json;
-    json["objects"] = objects_json(result);
-    json["scale"] = result.scale.value;
-    json["point_scatterers"] = points_json(result);
-    json["time_zero_m"] = result.time_zero_m.value;
-    json["ambient"] = result.ambient.value;
-    json["response_fwhm_ps"] = result.response_fwhm_ps.value;
-    json["wall"] = {{"bow_m", result.wall_bow_m.value}, {"scale", result.wall_scale.value}};
-    json["sigma"] = sigma_json(result);
+    Json json = values_json(result);
+    json["sigma"] = sigmas_json(result);
     json["correlations"] = Json::array();
     for (const Correlation& c : result.correlations) {
-        json["correlations"].push_back({{"a", c.a}, {"b", c.b}, {"value", number(c.value)}});
+        json["correlations"].push_back({{"a", c.a}, {"b", c.b}, {"value", c.value}});
     }
-    json["condition_number"] = number(result.condition_number);
+    json["condition_number"] = result.condition_number;
     json["unidentifiable"] = result.unidentifiable;
     json["warnings"] = result.warnings;
     json["residual"] = result.residual;
@@ -112,7 +93,7 @@ Json fit_json(const FitResult& result) {
     json["pieces"] = result.num_elements;
     json["starts"] = Json::array();
     for (const FitStart& s : result.starts) {
-        json["starts"].push_back({{"name", s.name}, {"cost", number(s.cost)}});
+        json["starts"].push_back({{"name", s.name}, {"cost", s.cost}});
     }
     return json;
 }

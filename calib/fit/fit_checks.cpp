@@ -89,7 +89,7 @@ void warn_of_deviance(const FitDriver& driver, double min_mean, FitResult& resul
     }
     const bool are_outliers = wild > 0 && 4 * wild <= excesses.size();
     if (are_outliers) {
-        const bool has_loss = driver.settings().loss != LossKind::None;
+        const bool has_loss = driver.settings.loss != LossKind::None;
         result.warnings.push_back(fmt::format(
             "{} of {} pairs do not fit at all ({}{}): {}",
             wild,
@@ -162,8 +162,8 @@ struct Freedom {
 };
 
 FreeSettings with_all_freedoms(const FitDriver& driver) {
-    FreeSettings free = driver.settings().free;
-    const core::ResponseSettings& response = driver.settings().response;
+    FreeSettings free = driver.settings.free;
+    const core::ResponseSettings& response = driver.settings.response;
     free.time_zero = true;
     free.wall_bow = free.wall_scale = true;
     free.response_fwhm =
@@ -174,11 +174,11 @@ FreeSettings with_all_freedoms(const FitDriver& driver) {
 // Score tests: how far one Newton step would move each fixed quantity, were it free beside all
 // that is, in standard deviations of that step.
 void warn_of_misfits(const FitDriver& driver, const SceneState& state, FitResult& result) {
-    FitSettings settings = driver.settings();
+    FitSettings settings = driver.settings;
     settings.free = with_all_freedoms(driver);
     const SceneModel model(
-        driver.geometry(), settings, driver.model().find(ParameterKind::Scale) != nullptr);
-    const FitDriver::Stage stage = driver.make_stage(model);
+        driver.input.geometry, settings, driver.model->find(ParameterKind::Scale) != nullptr);
+    const FitDriver::Stage stage = driver.make_stage(model, 0.0);
     stage.model->refresh(state);
     stage.objective->evaluate(state, renderer::Gradients::With);
     Eigen::VectorXd score = Eigen::VectorXd::Zero(model.num_columns());
@@ -192,13 +192,13 @@ void warn_of_misfits(const FitDriver& driver, const SceneState& state, FitResult
           Freedom{ParameterKind::ResponseWidth, "the response's width", 100.0, "%"},
           Freedom{ParameterKind::WallBow, "the wall's bow", 1e3, "mm"},
           Freedom{ParameterKind::WallScale, "the wall's scale", 100.0, "%"}}) {
-        if (driver.model().find(freedom.kind) != nullptr) continue;
+        if (driver.model->find(freedom.kind) != nullptr) continue;
         const ParameterBlock* block = model.find(freedom.kind);
         if (block == nullptr) continue;
         // Beside what is free, but not beside the other fixed quantities.
         std::vector<Eigen::Index> columns;
         for (const ParameterBlock& other : model.blocks()) {
-            if (driver.model().find(other.kind, other.item) == nullptr) continue;
+            if (driver.model->find(other.kind, other.item) == nullptr) continue;
             for (int c = 0; c < other.columns; ++c) columns.push_back(other.first_column + c);
         }
         columns.push_back(block->first_column);
@@ -225,9 +225,8 @@ void add_warnings(const FitDriver& driver,
                   const FitDriver::Stage& stage,
                   const SceneState& state,
                   FitResult& result) {
-    warn_of_cut_light(driver.data().axis, result);
-    if (state.has_ambient &&
-        state.log_ambient < driver.solve_settings().lowest_log_ambient + 0.01) {
+    warn_of_cut_light(driver.data.axis, result);
+    if (state.has_ambient && state.log_ambient < driver.solve_settings.lowest_log_ambient + 0.01) {
         result.warnings.push_back("ambient: at its lower bound");
     }
     for (const FittedObject& object : result.objects) {
@@ -237,16 +236,16 @@ void add_warnings(const FitDriver& driver,
             object.name,
             object.albedo));
     }
-    if (driver.is_poisson()) {
+    if (driver.is_poisson) {
         warn_of_deviance(driver, stage.data->min_mean, result);
         check_for_light(stage.data->min_mean, result);
         warn_of_misfits(driver, state, result);
     } else {
         warn_of_patterns(result);
     }
-    if (driver.scale_is_unknown()) {
+    if (driver.scale_is_unknown) {
         const std::string name =
-            driver.has_fixed_albedo() ? driver.fixed_albedo() : result.objects.front().name;
+            driver.fixed_albedo.empty() ? result.objects.front().name : driver.fixed_albedo;
         result.unidentifiable.push_back("scale with " + name +
                                         ".albedo: counts of unknown scale; the albedo stays at "
                                         "its start");
@@ -265,12 +264,6 @@ void check_dependence(const SceneModel& model, const Eigen::VectorXd& sigma, Fit
                          " has left the data; start nearer, or use start: search";
         return;
     }
-}
-
-double signal_photons(const FitResult& result) {
-    double sum = 0.0;
-    for (const double value : result.model) sum += value - result.ambient.value;
-    return sum;
 }
 
 }  // namespace calib

@@ -19,7 +19,4 @@ void add_warnings(const FitDriver& driver,
 /// Sets result.converged to false when the data do not depend on where an object is.
 void check_dependence(const SceneModel& model, const Eigen::VectorXd& sigma, FitResult& result);
 
-/// Expected photons of the model's light.
-double signal_photons(const FitResult& result);
-
 }  // namespace calib

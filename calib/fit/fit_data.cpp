@@ -12,6 +12,26 @@
 
 namespace calib {
 
+namespace {
+
+// Bins [first, first + count) of every histogram.
+template <class Value>
+FitData bins_of(std::span<const Value> values, const core::TimeAxis& axis, int first, int count) {
+    FitData part;
+    part.axis = axis;
+    part.axis.opl_start_m = axis.bin_begin_m(first);
+    part.axis.num_bins = count;
+    const auto bins = static_cast<std::size_t>(axis.num_bins);
+    for (std::size_t at = 0; at < values.size(); at += bins) {
+        const auto histogram =
+            values.subspan(at + static_cast<std::size_t>(first), static_cast<std::size_t>(count));
+        part.values.insert(part.values.end(), histogram.begin(), histogram.end());
+    }
+    return part;
+}
+
+}  // namespace
+
 FitData crop(const core::Capture& capture, const std::optional<std::array<double, 2>>& window_m) {
     const core::TimeAxis& axis = capture.time_axis;
     int first = 0;
@@ -29,15 +49,7 @@ FitData crop(const core::Capture& capture, const std::optional<std::array<double
             fmt::format("found no bin in [{}, {}]", (*window_m)[0], (*window_m)[1]),
             fmt::format("the data cover {} to {} m", axis.opl_start_m, axis.opl_end_m()));
     }
-    FitData data;
-    data.axis = axis;
-    data.axis.opl_start_m = axis.bin_begin_m(first);
-    data.axis.num_bins = last - first;
-    for (std::size_t pair = 0; pair < capture.transient.num_pairs(); ++pair) {
-        const auto histogram = capture.transient.histogram(pair);
-        data.values.insert(data.values.end(), histogram.begin() + first, histogram.begin() + last);
-    }
-    return data;
+    return bins_of<float>(capture.transient.values(), axis, first, last - first);
 }
 
 FitData coarsen(const FitData& data, double blur_m, int merged) {
@@ -65,15 +77,11 @@ FitData coarsen(const FitData& data, double blur_m, int merged) {
 }
 
 FitData trim(const FitData& data, int front, int back) {
-    FitData result = data;
+    const int left = data.axis.num_bins - front - back;
+    FitData result =
+        bins_of<double>(data.values, data.axis, left > 0 ? front : 0, std::max(0, left));
     result.axis.opl_start_m = data.axis.bin_begin_m(front);
-    result.axis.num_bins = std::max(0, data.axis.num_bins - front - back);
-    result.values.clear();
-    const auto bins = static_cast<std::size_t>(data.axis.num_bins);
-    for (std::size_t at = 0; at < data.values.size(); at += bins) {
-        const auto begin = data.values.begin() + static_cast<std::ptrdiff_t>(at) + front;
-        result.values.insert(result.values.end(), begin, begin + result.axis.num_bins);
-    }
+    result.min_mean = data.min_mean;
     return result;
 }
 

@@ -54,8 +54,8 @@ struct FitStart {
     double cost = 0.0;
 };
 
-/// What fit_scene() found.
-struct FitResult {
+/// The fitted quantities.
+struct FittedValues {
     std::vector<FittedObject> objects;
     std::vector<FittedPoint> points;
     Estimate scale{1.0};  ///< data per model radiance; 1 unless free
@@ -64,27 +64,38 @@ struct FitResult {
     Estimate response_fwhm_ps;
     Estimate wall_bow_m;
     Estimate wall_scale{1.0};
-    std::vector<Correlation> correlations;
-    double condition_number = 1.0;
-    std::vector<std::string> parameters;  ///< names of the free ones
-    Eigen::MatrixXd covariance;           ///< of them; logarithms of sizes, albedos and widths
-    std::vector<std::string> unidentifiable;
-    std::vector<std::string> warnings;
+    renderer::SceneGeometry geometry;  ///< the fitted scene
+};
+
+/// The fitted model beside the data.
+struct FitAgreement {
+    core::TimeAxis axis;       ///< of data and model
+    std::vector<double> data;  ///< [pair][bin]
+    std::vector<double> model;
     std::string residual;  ///< poisson or least_squares
     double deviance = 0.0;
     double expected_deviance = 0.0;
     double expected_deviance_sigma = 0.0;
+};
+
+/// How the solver got there.
+struct FitCourse {
     int iterations = 0;
     double seconds = 0.0;
     bool converged = false;
     std::string message;
     std::vector<FitStart> starts;
     std::size_t num_elements = 0;
+};
 
-    renderer::SceneGeometry geometry;  ///< the fitted scene
-    core::TimeAxis axis;               ///< of data and model
-    std::vector<double> data;          ///< [pair][bin]
-    std::vector<double> model;
+/// What fit_scene() found.
+struct FitResult : FittedValues, FitAgreement, FitCourse {
+    std::vector<Correlation> correlations;
+    double condition_number = 1.0;
+    std::vector<std::string> parameters;  ///< names of the free ones
+    Eigen::MatrixXd covariance;           ///< of them; logarithms of sizes, albedos and widths
+    std::vector<std::string> unidentifiable;
+    std::vector<std::string> warnings;
 };
 
 /// What is fitted to what.

@@ -39,9 +39,9 @@ Eigen::VectorXd bootstrap_scatter(const FitDriver& driver,
         stage.model->evaluate(i, pair);
         means.insert(means.end(), pair.mean.begin(), pair.mean.end());
     }
-    Eigen::VectorXd squares = Eigen::VectorXd::Zero(driver.model().num_columns());
+    Eigen::VectorXd squares = Eigen::VectorXd::Zero(driver.model->num_columns());
     const auto others = driver.turned(state);
-    SolveSettings settings = driver.solve_settings();
+    SolveSettings settings = driver.solve_settings;
     settings.max_iterations = kRefitIterations;
     for (std::uint64_t refit = 0; refit < kRefits; ++refit) {
         core::Rng rng(kSeed, refit, 0);
@@ -50,16 +50,16 @@ Eigen::VectorXd bootstrap_scatter(const FitDriver& driver,
             data.values[i] = draw_count(rng, std::max(means[i], data.min_mean));
         }
         FitObjective objective(
-            *stage.model, data, true, Elimination{}, driver.model().num_columns());
+            *stage.model, data, true, Elimination{}, driver.model->num_columns());
         SceneState moved = state;
-        double least = solve_stage(driver.model(), objective, settings, moved).cost;
+        double least = solve_stage(*driver.model, objective, settings, moved).cost;
         for (const auto& [name, turned] : others) {
             SceneState other = turned;
-            const double cost = solve_stage(driver.model(), objective, settings, other).cost;
+            const double cost = solve_stage(*driver.model, objective, settings, other).cost;
             if (cost < least) moved = other;
             least = std::min(least, cost);
         }
-        squares += difference(driver.model(), state, moved).cwiseAbs2();
+        squares += difference(*driver.model, state, moved).cwiseAbs2();
     }
     return (squares / kRefits).cwiseSqrt();
 }

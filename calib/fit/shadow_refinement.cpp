@@ -23,10 +23,10 @@ struct Newton {
 
 // J^T W J and the step, by columns scaled to a like size.
 Newton newton_at(const FitDriver& driver, FitDriver::Stage& stage, const SceneState& state) {
-    const SceneModel& model = driver.model();
+    const SceneModel& model = *driver.model;
     FitObjective& objective = *stage.objective;
     objective.evaluate(state, renderer::Gradients::With);
-    const std::vector<double> weights = loss_weights(objective, driver.solve_settings());
+    const std::vector<double> weights = loss_weights(objective, driver.solve_settings);
     const auto size = model.num_columns();
     Newton newton{MatrixXd::Zero(size, size), VectorXd::Zero(size)};
     VectorXd score = VectorXd::Zero(size);
@@ -36,7 +36,7 @@ Newton newton_at(const FitDriver& driver, FitDriver::Stage& stage, const SceneSt
         score -= weight * (rows.jacobian.transpose() * rows.residual);
         newton.information += weight * (rows.jacobian.transpose() * rows.jacobian);
     }
-    if (driver.is_poisson()) {
+    if (driver.is_poisson) {
         newton.information = objective.fisher(state, weights);
     } else {
         // Squares take their noise from the residual.
@@ -46,7 +46,7 @@ Newton newton_at(const FitDriver& driver, FitDriver::Stage& stage, const SceneSt
         score *= per_variance;
     }
     // Priors pull to 0, where their parameters start.
-    const MatrixXd prior = prior_information(model, driver.solve_settings());
+    const MatrixXd prior = prior_information(model, driver.solve_settings);
     newton.information += prior;
     score -= prior * difference(model, model.start(), state);
 
@@ -82,11 +82,11 @@ RefinedSolution refine(const FitDriver& driver, FitDriver::Stage& stage, SceneSt
     };
     stage.model->refresh(state);
     if (!stage.model->has_shadow_edges()) return {newton_at(driver, stage, state).information};
-    stage = driver.make_fine_stage(refinement(*stage.model));
+    stage = driver.make_stage(*driver.model, 0.0, refinement(*stage.model));
     Newton newton = look_anew();
     for (int i = 0; i < kMaxSteps; ++i) {
         if (!(newton.length() > kSettled && newton.length() < kTooFar)) break;
-        state = moved_by(driver.model(), state, newton.step);
+        state = moved_by(*driver.model, state, newton.step);
         newton = look_anew();
     }
     return {newton.information, newton.length() < 1.0};

@@ -22,7 +22,7 @@ constexpr double kRoughness_m = 1e-3;  // that costs laplacian_weight
 // Renders once for all residual blocks.
 class SharedRender : public ceres::EvaluationCallback {
  public:
-    SharedRender(FitObjective& objective, StateVector& values)
+    SharedRender(FitObjective& objective, const StateVector& values)
         : objective_(objective), values_(values) {}
 
     void PrepareForEvaluation(bool with_jacobians, bool is_new_point) override {
@@ -33,7 +33,7 @@ class SharedRender : public ceres::EvaluationCallback {
 
  private:
     FitObjective& objective_;
-    StateVector& values_;
+    const StateVector& values_;
     bool is_with_gradients_ = false;
 };
 
@@ -155,11 +155,11 @@ std::unique_ptr<ceres::LossFunction> make_loss(LossKind kind, double width) {
 
 void add_priors(const SceneModel& model,
                 const SolveSettings& settings,
-                StateVector& values,
+                const StateVector& values,
                 ceres::Problem& problem) {
     for (std::size_t b = 0; b < model.blocks().size(); ++b) {
         const ParameterBlock& block = model.blocks()[b];
-        double* parameters = values.block(b);
+        double* parameters = values.blocks()[b];
         if (block.kind == ParameterKind::Rotation) {
             problem.SetManifold(parameters, new ceres::QuaternionManifold);
         } else if (block.kind == ParameterKind::Ambient) {
@@ -182,7 +182,7 @@ SolveSummary solve_stage(const SceneModel& model,
                          FitObjective& objective,
                          const SolveSettings& settings,
                          SceneState& state) {
-    StateVector values(model, state);
+    const StateVector values(model, state);
     objective.evaluate(state, Gradients::Without);
     const double start_cost = objective.sum_of_squares();
     const auto loss = make_loss(settings.loss, loss_width(objective, settings));

@@ -7,14 +7,14 @@
 
 namespace calib {
 
-/// The confocal model of one body by automatic derivatives throughout, geometry and histogram: a
-/// reference for forward_model.h, many times slower and with none of its hand-written gradients.
+/// Jacobian of the confocal model of one body by automatic differentiation throughout, geometry and
+/// histogram: a reference for the analytic gradients of forward_model.h, many times slower.
 ///
 /// state     pose of body 0
-/// light     of one confocal scan with a Gaussian response, whose elements, axis and width are
-/// taken pair      of its scan returns   [bin][6] derivatives by translation and by turns about the
-/// world's axes; nothing is
-///           hidden, albedo and constants are 1
+/// light     a confocal scan with a Gaussian response; its elements, axis and width are used
+/// pair      of its scan
+/// returns   [bin][6] derivatives by translation and by rotation about the world's axes, of a model
+///           in which nothing is hidden and albedo and constants are 1
 std::vector<double> autodiff_jacobian(const SceneModel& model,
                                       const SceneState& state,
                                       const ForwardModel& light,

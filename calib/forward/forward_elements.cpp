@@ -96,8 +96,7 @@ void ForwardModel::add_element(const PosedElement& element,
                                renderer::VisibilityMask mask,
                                std::size_t pair,
                                PairModel& result) const {
-    const PathEndpoints ends{&light_points_[scan_.illumination_index(pair)],
-                             &sensor_points_[scan_.sensing_index(pair)]};
+    const PathEndpoints ends{&moved_points_[light_index(pair)], &moved_points_[sensor_index(pair)]};
     const bool is_confocal = scan_.pattern == core::ScanPattern::Confocal;
     if (element.is_retroreflective && !is_confocal) return;
     const LegPair legs = element.is_retroreflective ? LegPair::Retroreflected
@@ -152,8 +151,7 @@ void ForwardModel::add_element(const PosedElement& element,
 }
 
 void ForwardModel::add_point(std::size_t index, std::size_t pair, PairModel& result) const {
-    const PathEndpoints ends{&light_points_[scan_.illumination_index(pair)],
-                             &sensor_points_[scan_.sensing_index(pair)]};
+    const PathEndpoints ends{&moved_points_[light_index(pair)], &moved_points_[sensor_index(pair)]};
     const PointState& point = state_.points[index];
     Leg light = make_point_leg(*ends.light, point.position_m);
     Leg sensor = make_point_leg(*ends.sensor, point.position_m);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace calib {
 namespace {
@@ -22,6 +23,15 @@ ForwardModel::ForwardModel(const SceneModel& model,
                            const WallMotion& wall,
                            ForwardSettings settings)
     : model_(model), scan_(std::move(scan)), settings_(std::move(settings)), wall_(wall) {
+    wall_points_ = scan_.sensing;
+    wall_points_.grid.reset();
+    if (scan_.pattern != core::ScanPattern::Confocal) {
+        const auto append = [](auto& list, const auto& more) {
+            list.insert(list.end(), more.begin(), more.end());
+        };
+        append(wall_points_.positions, scan_.illumination.positions);
+        append(wall_points_.normals, scan_.illumination.normals);
+    }
     if (!settings_.measured) return;
     oversampling_ = kOversampling;
     const core::ResponseFilter filter =
@@ -51,14 +61,11 @@ void ForwardModel::refresh(const SceneState& state) {
     const double smear = settings_.measured || settings_.sigma_m == 0.0
                              ? 0.5 * settings_.axis.bin_width_m
                              : settings_.sigma_m;
-    const auto old_light = std::move(light_masks_);
-    const auto old_sensor = std::move(sensor_masks_);
-    light_masks_.clear();
-    sensor_masks_.clear();
+    const auto old_masks = std::exchange(masks_, {});
     edge_gradients_.clear();
     elements_ = cut_elements(model_, state, scan_, smear, settings_.tolerance);
     if (!is_planar(model_, state)) trace(state);
-    visibility_changed_ = old_light != light_masks_ || old_sensor != sensor_masks_;
+    visibility_changed_ = old_masks != masks_;
 }
 
 void ForwardModel::update(const SceneState& state, Gradients gradients) {
@@ -70,10 +77,7 @@ void ForwardModel::update(const SceneState& state, Gradients gradients) {
     const double blur2 = (1.0 - settings_.response_share) * settings_.sigma_m * settings_.sigma_m;
     sigma_m_ = settings_.measured ? 0.0 : std::sqrt(response2 + blur2);
     width_share_ = sigma_m_ > 0.0 ? response2 / (response2 + blur2) : 0.0;
-    sensor_points_ = wall_.moved(scan_.sensing, state);
-    light_points_ = scan_.pattern == core::ScanPattern::Confocal
-                        ? sensor_points_
-                        : wall_.moved(scan_.illumination, state);
+    moved_points_ = wall_.moved(wall_points_, state);
     posed_.clear();
     posed_.reserve(elements_.size());
     FacetMotion motion;
@@ -124,11 +128,16 @@ ForwardModel::PosedElement ForwardModel::pose(const ModelElement& element,
     return posed;
 }
 
+std::size_t ForwardModel::light_index(std::size_t pair) const {
+    const std::size_t first =
+        scan_.pattern == core::ScanPattern::Confocal ? 0 : scan_.sensing.size();
+    return first + scan_.illumination_index(pair);
+}
+
 renderer::VisibilityMask ForwardModel::visible_part(std::size_t element, std::size_t pair) const {
-    if (light_masks_.empty()) return renderer::kAllVisible;
-    const std::size_t l = scan_.illumination_index(pair) * elements_.size() + element;
-    const std::size_t s = scan_.sensing_index(pair) * elements_.size() + element;
-    return light_masks_[l] & sensor_masks_[s];
+    if (masks_.empty()) return renderer::kAllVisible;
+    return masks_[light_index(pair) * elements_.size() + element] &
+           masks_[sensor_index(pair) * elements_.size() + element];
 }
 
 void ForwardModel::evaluate(std::size_t pair, PairModel& result) const {

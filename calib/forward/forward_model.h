@@ -35,9 +35,9 @@ struct PairModel {
 
 /// Expected transients of a model and their derivatives by its free parameters.
 ///
-/// Surfaces are cut into elements once; update() moves them. Path lengths and weights of a
-/// element's corners and edge midpoints, with their gradients, go through the closed-form kernel of
-/// core.
+/// refresh() cuts the surfaces into elements; update() moves them. Path lengths and weights at the
+/// corners and edge midpoints of an element, with their gradients, go through the closed-form
+/// kernel of renderer/triangle.
 class ForwardModel {
  public:
     /// model   must outlive this
@@ -48,15 +48,15 @@ class ForwardModel {
                  const WallMotion& wall,
                  ForwardSettings settings);
 
-    /// Cuts the surfaces anew and finds what wall points see of them.
+    /// Cuts the surfaces into elements again and traces which parts of them the wall points see.
     void refresh(const SceneState& state);
-    /// Whether the last refresh() saw other things than the one before.
+    /// Whether the last refresh() found another visibility than the one before it.
     bool visibility_changed() const { return visibility_changed_; }
 
     /// Whether the edge of a shadow fell on any element at the last refresh().
     bool has_shadow_edges() const;
-    /// From now on gradients include how the data change because the edges of shadows move, which
-    /// they otherwise leave out; until the next refresh().
+    /// Adds to the gradients, until the next refresh(), how the data change because the edges of
+    /// shadows move; otherwise gradients hold the visibility fixed.
     /// state   of the last refresh()
     void find_shadow_edges(const SceneState& state);
 
@@ -97,6 +97,9 @@ class ForwardModel {
     std::vector<double> vertex_speeds(const SceneState& state) const;
     std::vector<double> evaluate_all() const;
     void add_shadow_edges(std::size_t pair, PairModel& result) const;
+    /// Where the wall points of a pair stand in wall_points_.
+    std::size_t light_index(std::size_t pair) const;
+    std::size_t sensor_index(std::size_t pair) const { return scan_.sensing_index(pair); }
     renderer::VisibilityMask visible_part(std::size_t element, std::size_t pair) const;
 
     const SceneModel& model_;
@@ -109,11 +112,10 @@ class ForwardModel {
     double width_share_ = 1.0;
     std::vector<ModelElement> elements_;
     std::vector<PosedElement> posed_;
-    std::vector<MovedWallPoint> light_points_;
-    std::vector<MovedWallPoint> sensor_points_;
-    std::vector<renderer::VisibilityMask>
-        light_masks_;  ///< [point][element]; empty: all is visible
-    std::vector<renderer::VisibilityMask> sensor_masks_;
+    /// Sensing points, then illumination points unless the scan is confocal.
+    core::WallPoints wall_points_;
+    std::vector<MovedWallPoint> moved_points_;     ///< wall_points_ where the state puts them
+    std::vector<renderer::VisibilityMask> masks_;  ///< [wall point][element]; empty: all is visible
     bool visibility_changed_ = false;
     std::vector<double> edge_gradients_;  ///< [pair][bin][column]; or {}
     /// Weights of the data's bins for each position of a fine bin within its bin.

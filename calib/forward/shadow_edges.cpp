@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// What wall points see of the elements, and how that changes while surfaces move. Why it is wanted:
-// see shadow_refinement.h.
+// Which parts of the elements the wall points see, and the derivatives of the data by the motion of
+// shadow edges; shadow_refinement.h says what they are for.
 //
-// Visibility is known in parts of elements, a quarter of an element's edge long. Central differences
-// over about such a length, with everything but visibility held, smooth the steps away.
+// Visibility is resolved to a quarter of an element's edge, so the data jump as a shadow moves.
+// Central differences over about that length, with everything but visibility held fixed, smooth the
+// jumps.
 #include "calib/forward/forward_model.h"
 #include "calib/forward/model_visibility.h"
 #include "calib/model/state_vector.h"
@@ -23,20 +24,13 @@ constexpr double kStepPerEdge = 0.25;
 }  // namespace
 
 void ForwardModel::trace(const SceneState& state) {
-    const auto masks = [&](const core::WallPoints& points) {
-        return trace_masks(model_, state, elements_, scan_, wall_.moved_points(points, state));
-    };
-    sensor_masks_ = masks(scan_.sensing);
-    light_masks_ =
-        scan_.pattern == core::ScanPattern::Confocal ? sensor_masks_ : masks(scan_.illumination);
+    masks_ = trace_masks(model_, state, elements_, scan_, wall_.moved_points(wall_points_, state));
 }
 
 bool ForwardModel::has_shadow_edges() const {
-    const auto is_edge = [](renderer::VisibilityMask mask) {
+    return std::any_of(masks_.begin(), masks_.end(), [](renderer::VisibilityMask mask) {
         return mask != 0 && mask != renderer::kAllVisible;
-    };
-    return std::any_of(sensor_masks_.begin(), sensor_masks_.end(), is_edge) ||
-           std::any_of(light_masks_.begin(), light_masks_.end(), is_edge);
+    });
 }
 
 // Per column, how far the fastest vertex or wall point moves per unit of the parameter.
@@ -87,8 +81,7 @@ void ForwardModel::find_shadow_edges(const SceneState& state) {
     }
     const double edge_m = std::sqrt(area / static_cast<double>(elements_.size()));
     const std::vector<double> speeds = vertex_speeds(state);
-    const auto light_masks = light_masks_;
-    const auto sensor_masks = sensor_masks_;
+    const auto masks = masks_;
     const auto columns = speeds.size();
     std::vector<double> gradients;
     for (std::size_t column = 0; column < columns; ++column) {
@@ -105,8 +98,7 @@ void ForwardModel::find_shadow_edges(const SceneState& state) {
             gradients[i * columns + column] = (ahead[i] - behind[i]) / (2.0 * size);
         }
     }
-    light_masks_ = light_masks;
-    sensor_masks_ = sensor_masks;
+    masks_ = masks;
     edge_gradients_ = std::move(gradients);
 }
 

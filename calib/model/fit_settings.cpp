@@ -9,32 +9,56 @@
 namespace calib {
 namespace {
 
+template <class Settings>
+struct Flag {
+    const char* name;
+    bool Settings::*member;
+};
+
+// What may be free of an object. `pose` stands for two others and is never written.
+constexpr std::array<Flag<FreeObject>, 7> kObjectFlags{{{"pose", &FreeObject::translation},
+                                                        {"pose", &FreeObject::rotation},
+                                                        {"translation", &FreeObject::translation},
+                                                        {"rotation", &FreeObject::rotation},
+                                                        {"size", &FreeObject::size},
+                                                        {"albedo", &FreeObject::albedo},
+                                                        {"vertices", &FreeObject::vertices}}};
 constexpr const char* kObjectChoices =
     "a list of pose, translation, rotation, size, albedo, vertices";
 
-FreeObject read_object(const core::Json& json, const std::string& where, const std::string& name) {
-    FreeObject object;
-    object.name = name;
-    if (!json.is_array()) core::throw_wrong_type(where, json, kObjectChoices);
+constexpr std::array<Flag<FreeSettings>, 2> kWallFlags{
+    {{"bow", &FreeSettings::wall_bow}, {"scale", &FreeSettings::wall_scale}}};
+
+// Sets the flags that a list names.
+//
+// list_choices, item_choices   what a list and its items must be, for the errors
+template <class Settings, std::size_t N>
+void read_flags(const core::Json& json,
+                const std::string& where,
+                const std::array<Flag<Settings>, N>& flags,
+                const char* list_choices,
+                const char* item_choices,
+                Settings& settings) {
+    if (!json.is_array()) core::throw_wrong_type(where, json, list_choices);
     for (const core::Json& item : json) {
-        const std::string what = item.is_string() ? item.get<std::string>() : "";
-        if (what == "pose") {
-            object.translation = object.rotation = true;
-        } else if (what == "translation") {
-            object.translation = true;
-        } else if (what == "rotation") {
-            object.rotation = true;
-        } else if (what == "size") {
-            object.size = true;
-        } else if (what == "albedo") {
-            object.albedo = true;
-        } else if (what == "vertices") {
-            object.vertices = true;
-        } else {
-            core::throw_wrong_type(where, item, kObjectChoices);
+        bool is_known = false;
+        for (const Flag<Settings>& flag : flags) {
+            if (item != flag.name) continue;
+            settings.*flag.member = is_known = true;
+        }
+        if (!is_known) core::throw_wrong_type(where, item, item_choices);
+    }
+}
+
+template <class Settings, std::size_t N>
+core::Json write_flags(const Settings& settings, const std::array<Flag<Settings>, N>& flags) {
+    core::Json json = core::Json::array();
+    for (const Flag<Settings>& flag : flags) {
+        if (settings.*flag.member && flag.name != std::string_view("pose")) {
+            json.push_back(flag.name);
         }
     }
-    return object;
+    return json;
 }
 
 void read_time_zero(const core::Json& json, const std::string& where, FreeSettings& free) {
@@ -48,26 +72,6 @@ void read_time_zero(const core::Json& json, const std::string& where, FreeSettin
     if (json.contains("prior_sigma_m")) {
         core::read_value(json["prior_sigma_m"], where + ".prior_sigma_m", free.time_zero_sigma_m);
     }
-}
-
-void read_wall(const core::Json& json, const std::string& where, FreeSettings& free) {
-    if (!json.is_array()) core::throw_wrong_type(where, json, "a list of bow, scale");
-    for (const core::Json& item : json) {
-        if (item == "bow") {
-            free.wall_bow = true;
-        } else if (item == "scale") {
-            free.wall_scale = true;
-        } else {
-            core::throw_wrong_type(where, item, "bow or scale");
-        }
-    }
-}
-
-void require(bool holds,
-             const std::string& where,
-             const std::string& found,
-             const std::string& allowed) {
-    if (!holds) throw core::Error(where, "found " + found, allowed);
 }
 
 }  // namespace
@@ -85,9 +89,11 @@ void read_value(const core::Json& json, const std::string& where, FreeSettings& 
         } else if (key == "response_fwhm") {
             core::read_value(value, place, free.response_fwhm);
         } else if (key == "wall") {
-            read_wall(value, place, free);
+            read_flags(value, place, kWallFlags, "a list of bow, scale", "bow or scale", free);
         } else {
-            free.objects.push_back(read_object(value, place, key));
+            FreeObject& object = free.objects.emplace_back();
+            object.name = key;
+            read_flags(value, place, kObjectFlags, kObjectChoices, kObjectChoices, object);
         }
     }
 }
@@ -95,80 +101,58 @@ void read_value(const core::Json& json, const std::string& where, FreeSettings& 
 core::Json write_value(const FreeSettings& free) {
     core::Json json = core::Json::object();
     for (const FreeObject& object : free.objects) {
-        core::Json& list = json[object.name] = core::Json::array();
-        if (object.translation) list.push_back("translation");
-        if (object.rotation) list.push_back("rotation");
-        if (object.size) list.push_back("size");
-        if (object.albedo) list.push_back("albedo");
-        if (object.vertices) list.push_back("vertices");
+        json[object.name] = write_flags(object, kObjectFlags);
     }
     json["point_scatterers"] = free.point_scatterers;
     json["time_zero"] = free.time_zero;
     if (free.time_zero_sigma_m) json["time_zero"] = {{"prior_sigma_m", *free.time_zero_sigma_m}};
     json["ambient"] = free.ambient;
     json["response_fwhm"] = free.response_fwhm;
-    json["wall"] = core::Json::array();
-    if (free.wall_bow) json["wall"].push_back("bow");
-    if (free.wall_scale) json["wall"].push_back("scale");
+    json["wall"] = write_flags(free, kWallFlags);
     return json;
 }
 
 void read_value(const core::Json& json, const std::string& where, LossKind& loss) {
-    if (json.is_null()) {
-        loss = LossKind::None;
+    for (const auto& [kind, name] : core::EnumNames<LossKind>::value) {
+        if (json != name && !(json.is_null() && kind == LossKind::None)) continue;
+        loss = kind;
         return;
-    }
-    for (const LossKind kind : {LossKind::None, LossKind::Huber, LossKind::Cauchy}) {
-        if (json == core::enum_name(kind)) {
-            loss = kind;
-            return;
-        }
     }
     core::throw_wrong_type(where, json, "null, huber or cauchy");
 }
 
 void validate(const FitSettings& s, const std::string& where) {
-    require(!s.scene.empty(), where + "scene", "nothing", "must name a scene.json");
+    const auto require = [&](bool holds, const char* key, const auto& found, const char* allowed) {
+        if (!holds) throw core::Error(where + key, fmt::format("found {}", found), allowed);
+    };
+    const auto positive = [&](double value, const char* key) {
+        require(std::isfinite(value) && value > 0.0, key, value, "must be positive");
+    };
+    require(!s.scene.empty(), "scene", "nothing", "must name a scene.json");
     require(s.free.point_scatterers >= 0 && s.free.point_scatterers <= 1000,
-            where + "free.point_scatterers",
-            std::to_string(s.free.point_scatterers),
+            "free.point_scatterers",
+            s.free.point_scatterers,
             "must be from 0 to 1000");
     if (s.free.time_zero_sigma_m) {
-        require(*s.free.time_zero_sigma_m > 0.0,
-                where + "free.time_zero.prior_sigma_m",
-                fmt::format("{}", *s.free.time_zero_sigma_m),
-                "must be positive");
+        positive(*s.free.time_zero_sigma_m, "free.time_zero.prior_sigma_m");
     }
     require(!s.blur_schedule_m.empty() && s.blur_schedule_m.back() == 0.0,
-            where + "blur_schedule_m",
+            "blur_schedule_m",
             "no 0 at its end",
             "must end in 0, since blurred counts are not Poisson");
     for (const double blur : s.blur_schedule_m) {
-        require(std::isfinite(blur) && blur >= 0.0,
-                where + "blur_schedule_m",
-                fmt::format("{}", blur),
-                "must be at least 0");
+        require(std::isfinite(blur) && blur >= 0.0, "blur_schedule_m", blur, "must be at least 0");
     }
-    const auto positive = [&](double value, const char* key) {
-        require(std::isfinite(value) && value > 0.0,
-                where + key,
-                fmt::format("{}", value),
-                "must be positive");
-    };
     positive(s.loss_scale, "loss_scale");
     if (s.element_tolerance) positive(*s.element_tolerance, "piece_tolerance");
     if (s.max_pairs) positive(*s.max_pairs, "max_pairs");
     positive(s.max_iterations, "max_iterations");
     positive(s.search_rotations, "search_rotations");
-    require(s.laplacian_weight >= 0.0,
-            where + "laplacian_weight",
-            fmt::format("{}", s.laplacian_weight),
-            "must be at least 0");
+    require(
+        s.laplacian_weight >= 0.0, "laplacian_weight", s.laplacian_weight, "must be at least 0");
     if (s.window_m) {
-        require((*s.window_m)[0] < (*s.window_m)[1],
-                where + "window_m",
-                fmt::format("[{}, {}]", (*s.window_m)[0], (*s.window_m)[1]),
-                "must grow");
+        const auto [begin, end] = *s.window_m;
+        require(begin < end, "window_m", fmt::format("[{}, {}]", begin, end), "must grow");
     }
 }
 

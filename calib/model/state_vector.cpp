@@ -3,90 +3,74 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <type_traits>
 
 namespace calib {
 namespace {
 
-// Calls visit(value) for the numbers of a block that are not a rotation.
-template <class State, class Visit>
-void for_each_value(State& state, const ParameterBlock& block, Visit&& visit) {
+// The numbers of a block, which lie side by side in the state; a rotation has none of this kind.
+template <class State>
+auto numbers_of(State& state, const ParameterBlock& block) {
+    using Number = std::conditional_t<std::is_const_v<State>, const double, double>;
+    const auto one = [](Number& number) { return std::span<Number>(&number, 1); };
     switch (block.kind) {
         case ParameterKind::Translation:
-            for (int a = 0; a < 3; ++a) visit(state.bodies[block.item].position_m[a]);
-            break;
+            return std::span<Number>(state.bodies[block.item].position_m.data(), 3);
+        case ParameterKind::Size:
+            return one(state.bodies[block.item].log_size);
+        case ParameterKind::Albedo:
+            return one(state.bodies[block.item].log_albedo);
+        case ParameterKind::Heights:
+            return std::span<Number>(state.bodies[block.item].heights_m);
+        case ParameterKind::PointPosition:
+            return std::span<Number>(state.points[block.item].position_m.data(), 3);
+        case ParameterKind::PointAlbedo:
+            return one(state.points[block.item].log_albedo);
+        case ParameterKind::TimeZero:
+            return one(state.time_zero_m);
+        case ParameterKind::Ambient:
+            return one(state.log_ambient);
+        case ParameterKind::ResponseWidth:
+            return one(state.log_width);
+        case ParameterKind::WallBow:
+            return one(state.bow_m);
+        case ParameterKind::WallScale:
+            return one(state.log_wall_scale);
+        case ParameterKind::Scale:
+            return one(state.log_scale);
         case ParameterKind::Rotation:
             break;
-        case ParameterKind::Size:
-            visit(state.bodies[block.item].log_size);
-            break;
-        case ParameterKind::Albedo:
-            visit(state.bodies[block.item].log_albedo);
-            break;
-        case ParameterKind::Heights:
-            for (auto& height : state.bodies[block.item].heights_m) visit(height);
-            break;
-        case ParameterKind::PointPosition:
-            for (int a = 0; a < 3; ++a) visit(state.points[block.item].position_m[a]);
-            break;
-        case ParameterKind::PointAlbedo:
-            visit(state.points[block.item].log_albedo);
-            break;
-        case ParameterKind::TimeZero:
-            visit(state.time_zero_m);
-            break;
-        case ParameterKind::Ambient:
-            visit(state.log_ambient);
-            break;
-        case ParameterKind::ResponseWidth:
-            visit(state.log_width);
-            break;
-        case ParameterKind::WallBow:
-            visit(state.bow_m);
-            break;
-        case ParameterKind::WallScale:
-            visit(state.log_wall_scale);
-            break;
-        case ParameterKind::Scale:
-            visit(state.log_scale);
-            break;
     }
+    return std::span<Number>();
 }
 
 }  // namespace
 
 StateVector::StateVector(const SceneModel& model, const SceneState& state)
-    : model_(model), base_(state) {
+    : model_(model), state_(state) {
+    quaternions_wxyz_.reserve(model.blocks().size());  // blocks_ points into it
     for (const ParameterBlock& block : model.blocks()) {
-        auto& list = values_.emplace_back();
         if (block.kind == ParameterKind::Rotation) {
             const auto& q = state.bodies[block.item].rotation;
-            list = {q.w(), q.x(), q.y(), q.z()};
+            quaternions_wxyz_.emplace_back(q.w(), q.x(), q.y(), q.z());
+            blocks_.push_back(quaternions_wxyz_.back().data());
         } else {
-            for_each_value(state, block, [&](double value) { list.push_back(value); });
+            blocks_.push_back(numbers_of(state_, block).data());
         }
     }
 }
 
 SceneState StateVector::state() const {
-    SceneState state = base_;
-    for (std::size_t b = 0; b < values_.size(); ++b) {
+    SceneState state = state_;
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
         const ParameterBlock& block = model_.blocks()[b];
-        const auto& list = values_[b];
-        if (block.kind == ParameterKind::Rotation) {
-            state.bodies[block.item].rotation =
-                Eigen::Quaterniond(list[0], list[1], list[2], list[3]).normalized();
-        } else {
-            std::size_t i = 0;
-            for_each_value(state, block, [&](double& value) { value = list[i++]; });
-        }
+        if (block.kind != ParameterKind::Rotation) continue;
+        const double* wxyz = blocks_[b];
+        state.bodies[block.item].rotation =
+            Eigen::Quaterniond(wxyz[0], wxyz[1], wxyz[2], wxyz[3]).normalized();
     }
     return state;
-}
-
-std::vector<double*> StateVector::blocks() {
-    std::vector<double*> result;
-    for (auto& list : values_) result.push_back(list.data());
-    return result;
 }
 
 int StateVector::ambient_size(const ParameterBlock& block) {
@@ -116,7 +100,7 @@ SceneState moved_by(const SceneModel& model, const SceneState& state, const Eige
             rotation = (Eigen::AngleAxisd(angle, turn / angle) * rotation).normalized();
         } else {
             Eigen::Index i = 0;
-            for_each_value(moved, block, [&](double& value) { value += part[i++]; });
+            for (double& number : numbers_of(moved, block)) number += part[i++];
         }
     }
     return moved;
@@ -133,10 +117,11 @@ Eigen::VectorXd difference(const SceneModel& model, const SceneState& from, cons
             const Eigen::AngleAxisd angle_axis(turn);
             part = angle_axis.angle() * angle_axis.axis();
         } else {
-            Eigen::Index i = 0;
-            for_each_value(to, block, [&](double value) { part[i++] = value; });
-            i = 0;
-            for_each_value(from, block, [&](double value) { part[i++] -= value; });
+            const auto before = numbers_of(from, block);
+            const auto after = numbers_of(to, block);
+            for (std::size_t i = 0; i < after.size(); ++i) {
+                part[static_cast<Eigen::Index>(i)] = after[i] - before[i];
+            }
         }
     }
     return step;

@@ -9,16 +9,18 @@
 
 namespace calib {
 
-/// A state's free numbers as blocks that a solver changes; rotations are quaternions w, x, y, z.
+/// A state's free numbers as parameter blocks for a solver; rotations are quaternions w, x, y, z.
 class StateVector {
  public:
     /// model   must outlive this
     StateVector(const SceneModel& model, const SceneState& state);
+    StateVector(const StateVector&) = delete;
+    StateVector& operator=(const StateVector&) = delete;
 
     /// The state with the present values.
     SceneState state() const;
-    double* block(std::size_t index) { return values_[index].data(); }
-    std::vector<double*> blocks();
+    /// One pointer per block of the model, into this object.
+    const std::vector<double*>& blocks() const { return blocks_; }
 
     static int ambient_size(const ParameterBlock& block);
     /// d turn / d quaternion (3, 4): the world-frame turn that a change of the quaternion makes.
@@ -26,8 +28,9 @@ class StateVector {
 
  private:
     const SceneModel& model_;
-    SceneState base_;
-    std::vector<std::vector<double>> values_;
+    SceneState state_;                               ///< its rotations are those of the start
+    std::vector<Eigen::Vector4d> quaternions_wxyz_;  ///< of the blocks that are rotations
+    std::vector<double*> blocks_;
 };
 
 /// Moves a state by a step in the columns of the Jacobian.

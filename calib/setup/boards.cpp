@@ -3,8 +3,10 @@
 
 #include "renderer/core/error.h"
 
+#include <Eigen/Dense>
 #include <fmt/core.h>
 #include <opencv2/calib3d.hpp>
+#include <opencv2/core/eigen.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -62,16 +64,12 @@ std::vector<cv::Point2f> find_corners(const std::string& path,
     return corners;
 }
 
-cv::Mat intrinsics_of(const CameraCalibration& camera) {
-    return (cv::Mat_<double>(3, 3) << camera.focal_x_px,
-            0.0,
-            camera.center_x_px,
-            0.0,
-            camera.focal_y_px,
-            camera.center_y_px,
-            0.0,
-            0.0,
-            1.0);
+core::Mat3 intrinsics_of(const CameraCalibration& camera) {
+    core::Mat3 matrix;
+    matrix << camera.focal_x_px, 0.0, camera.center_x_px,  //
+        0.0, camera.focal_y_px, camera.center_y_px,        //
+        0.0, 0.0, 1.0;
+    return matrix;
 }
 
 cv::Mat distortion_of(const CameraCalibration& camera) {
@@ -83,12 +81,12 @@ core::Transform camera_from_wall(const cv::Mat& rotation_vector, const cv::Mat& 
     cv::Mat rotation;
     cv::Rodrigues(rotation_vector, rotation);
     core::Mat3 camera_from_board;
-    for (int r = 0; r < 3; ++r) {
-        for (int c = 0; c < 3; ++c) camera_from_board(r, c) = rotation.at<double>(r, c);
-    }
+    cv::cv2eigen(rotation, camera_from_board);
+    Vec3 board_origin;
+    cv::cv2eigen(translation, board_origin);
     core::Transform result = core::Transform::Identity();
     result.linear() = camera_from_board * Vec3(1.0, -1.0, -1.0).asDiagonal();
-    for (int r = 0; r < 3; ++r) result.translation()[r] = translation.at<double>(r);
+    result.translation() = board_origin;
     return result;
 }
 
@@ -97,19 +95,12 @@ core::Transform camera_from_wall(const cv::Mat& rotation_vector, const cv::Mat& 
 Vec2 CameraCalibration::wall_point(const Vec2& pixel) const {
     const std::vector<cv::Point2d> distorted{{pixel.x(), pixel.y()}};
     std::vector<cv::Point2d> straight;
-    const cv::Mat intrinsics = intrinsics_of(*this);
+    cv::Mat intrinsics;
+    cv::eigen2cv(intrinsics_of(*this), intrinsics);
     cv::undistortPoints(
         distorted, straight, intrinsics, distortion_of(*this), cv::noArray(), intrinsics);
     const Vec3 p = wall_from_pixel * Vec3(straight[0].x, straight[0].y, 1.0);
     return p.head<2>() / p.z();
-}
-
-Vec2 CameraCalibration::project(const Vec3& wall_point) const {
-    const Vec3 p = camera_from_wall * wall_point;
-    const Vec2 ideal = p.head<2>() / p.z();
-    const double r2 = ideal.squaredNorm();
-    const Vec2 bent = (1.0 + radial[0] * r2 + radial[1] * r2 * r2) * ideal;
-    return {focal_x_px * bent.x() + center_x_px, focal_y_px * bent.y() + center_y_px};
 }
 
 CameraCalibration calibrate_camera(const BoardSettings& settings) {
@@ -171,10 +162,7 @@ CameraCalibration calibrate_camera(const BoardSettings& settings) {
     core::Mat3 pixel_from_wall;
     pixel_from_wall << camera.camera_from_wall.linear().col(0),
         camera.camera_from_wall.linear().col(1), camera.camera_from_wall.translation();
-    core::Mat3 matrix;
-    matrix << camera.focal_x_px, 0.0, camera.center_x_px, 0.0, camera.focal_y_px,
-        camera.center_y_px, 0.0, 0.0, 1.0;
-    camera.wall_from_pixel = (matrix * pixel_from_wall).inverse();
+    camera.wall_from_pixel = (intrinsics_of(camera) * pixel_from_wall).inverse();
     return camera;
 }
 

@@ -39,8 +39,17 @@ struct CameraCalibration {
 
     /// Wall point (x, y) seen at a pixel [m].
     core::Vec2 wall_point(const core::Vec2& pixel) const;
-    /// Pixel at which a wall point is seen.
-    core::Vec2 project(const core::Vec3& wall_point) const;
+    /// Pixel at which a wall point is seen, for numbers or automatic derivatives.
+    template <class T = double>
+    Eigen::Matrix<T, 2, 1> project(const Eigen::Matrix<T, 3, 1>& wall_point) const {
+        const Eigen::Matrix<T, 3, 1> seen = camera_from_wall.linear().cast<T>() * wall_point +
+                                            camera_from_wall.translation().cast<T>();
+        const T x = seen[0] / seen[2];
+        const T y = seen[1] / seen[2];
+        const T r2 = x * x + y * y;
+        const T bend = 1.0 + radial[0] * r2 + radial[1] * r2 * r2;
+        return {T(focal_x_px * bend * x + center_x_px), T(focal_y_px * bend * y + center_y_px)};
+    }
 };
 
 /// Finds the boards, calibrates the camera, and places the wall.

@@ -18,15 +18,11 @@ namespace {
 constexpr double kWindow = 12.0;
 constexpr double kMinMean = 1e-9;
 
-struct Shared {
-    double log_sigma = 0.0;
-    double log_tail = 0.0;
-    double log_ambient = 0.0;
-};
+// What all points share: [log sigma, log tail, log ambient].
+using Shared = std::array<double, 3>;
 
 struct Peak {
-    double log_counts = 0.0;
-    double opl_m = 0.0;
+    std::array<double, 2> parameters{};  ///< log counts, path length [m]
     int first_bin = 0;
     int last_bin = 0;
 };
@@ -101,8 +97,7 @@ Peak first_guess(std::span<const float> histogram,
         sum += counts;
         moment += counts * axis.bin_center_m(b);
     }
-    peak.log_counts = std::log(sum);
-    peak.opl_m = moment / sum;
+    peak.parameters = {std::log(sum), moment / sum};
     return peak;
 }
 
@@ -158,9 +153,8 @@ Eigen::Matrix3d schur_of_shared(const core::Capture& capture,
     using Jet = ceres::Jet<double, 5>;
     Eigen::Matrix3d total = Eigen::Matrix3d::Zero();
     for (const Peak& peak : peaks) {
-        const Jet p[2]{Jet(peak.log_counts, 0), Jet(peak.opl_m, 1)};
-        const Jet s[3]{
-            Jet(shared.log_sigma, 2), Jet(shared.log_tail, 3), Jet(shared.log_ambient, 4)};
+        const Jet p[2]{Jet(peak.parameters[0], 0), Jet(peak.parameters[1], 1)};
+        const Jet s[3]{Jet(shared[0], 2), Jet(shared[1], 3), Jet(shared[2], 4)};
         Eigen::Matrix<double, 5, 5> information = Eigen::Matrix<double, 5, 5>::Zero();
         const auto index = static_cast<std::size_t>(&peak - peaks.data());
         for (int bin = peak.first_bin; bin <= peak.last_bin; ++bin) {
@@ -197,8 +191,8 @@ void store_errors(const core::Capture& capture,
         const Eigen::Matrix2d own = points[p].own.inverse();
         const Eigen::Matrix<double, 2, 3> lever = own * points[p].coupling;
         const Eigen::Matrix2d whole = own + lever * covariance * lever.transpose();
-        result.points.push_back(
-            {peaks[p].opl_m, std::sqrt(whole(1, 1)), std::exp(peaks[p].log_counts)});
+        const auto& [log_counts, opl_m] = peaks[p].parameters;
+        result.points.push_back({opl_m, std::sqrt(whole(1, 1)), std::exp(log_counts)});
     }
 }
 
@@ -212,9 +206,6 @@ DirectReturns fit_direct_returns(const core::Capture& capture, ResponseShape sha
     }
     Shared shared{
         std::log(0.8 * width_m), std::log(width_m), std::log(mean_outside(capture, peaks))};
-    std::vector<std::array<double, 2>> values;
-    for (const Peak& peak : peaks) values.push_back({peak.log_counts, peak.opl_m});
-    std::array<double, 3> common{shared.log_sigma, shared.log_tail, shared.log_ambient};
 
     ceres::Problem problem;
     for (std::size_t p = 0; p < peaks.size(); ++p) {
@@ -225,10 +216,10 @@ DirectReturns fit_direct_returns(const core::Capture& capture, ResponseShape sha
                          peaks[p].last_bin,
                          shape},
             peaks[p].last_bin - peaks[p].first_bin + 1);
-        problem.AddResidualBlock(cost, nullptr, values[p].data(), common.data());
+        problem.AddResidualBlock(cost, nullptr, peaks[p].parameters.data(), shared.data());
     }
     if (shape == ResponseShape::Gaussian) {
-        problem.SetManifold(common.data(), new ceres::SubsetManifold(3, {1}));
+        problem.SetManifold(shared.data(), new ceres::SubsetManifold(3, {1}));
     }
     ceres::Solver::Options options;
     options.linear_solver_type = ceres::DENSE_SCHUR;  // points meet only in the shared three
@@ -242,15 +233,10 @@ DirectReturns fit_direct_returns(const core::Capture& capture, ResponseShape sha
     if (summary.termination_type != ceres::CONVERGENCE) {
         throw core::Failure("direct_returns", "the peaks' fit did not converge");
     }
-    for (std::size_t p = 0; p < peaks.size(); ++p) {
-        peaks[p].log_counts = values[p][0];
-        peaks[p].opl_m = values[p][1];
-    }
-    shared = {common[0], common[1], common[2]};
     DirectReturns result;
-    result.sigma_m = std::exp(shared.log_sigma);
-    result.tail_m = shape == ResponseShape::Gaussian ? 0.0 : std::exp(shared.log_tail);
-    result.ambient = std::exp(shared.log_ambient);
+    result.sigma_m = std::exp(shared[0]);
+    result.tail_m = shape == ResponseShape::Gaussian ? 0.0 : std::exp(shared[1]);
+    result.ambient = std::exp(shared[2]);
     store_errors(capture, peaks, shared, shape, result);
     if (shape != ResponseShape::Gaussian && !(result.tail_error_m < result.tail_m)) {
         // A tail shorter than its own error is none; its delay would only blur the peaks' places.

@@ -3,6 +3,7 @@
 
 #include "renderer/core/error.h"
 
+#include <Eigen/SparseCore>
 #include <ceres/ceres.h>
 #include <fmt/core.h>
 
@@ -59,6 +60,7 @@ Vector3<T> spot_of(const T* p, const std::array<double, 2>& command, T& length) 
 }
 
 struct RangeCost {
+    static constexpr int kResiduals = 1;
     std::array<double, 2> command;
     double opl_m;
     double sigma_m;
@@ -72,6 +74,7 @@ struct RangeCost {
 };
 
 struct SpotCost {
+    static constexpr int kResiduals = 2;
     std::array<double, 2> command;
     core::Vec2 pixel;
     double sigma_px;
@@ -80,19 +83,15 @@ struct SpotCost {
     bool operator()(const T* p, T* residual) const {
         T length;
         const Vector3<T> wall = spot_of(p, command, length);
-        const Vector3<T> seen = camera->camera_from_wall.linear().template cast<T>() * wall +
-                                camera->camera_from_wall.translation().template cast<T>();
-        const T x = seen[0] / seen[2];
-        const T y = seen[1] / seen[2];
-        const T r2 = x * x + y * y;
-        const T bend = 1.0 + camera->radial[0] * r2 + camera->radial[1] * r2 * r2;
-        residual[0] = (camera->focal_x_px * bend * x + camera->center_x_px - pixel.x()) / sigma_px;
-        residual[1] = (camera->focal_y_px * bend * y + camera->center_y_px - pixel.y()) / sigma_px;
+        const Eigen::Matrix<T, 2, 1> seen = camera->project<T>(wall);
+        residual[0] = (seen[0] - pixel.x()) / sigma_px;
+        residual[1] = (seen[1] - pixel.y()) / sigma_px;
         return true;
     }
 };
 
 struct KnownCost {
+    static constexpr int kResiduals = 1;
     int parameter;
     KnownValue known;
     template <class T>
@@ -113,28 +112,21 @@ std::vector<int> held_parameters(const SetupObservations& o) {
 }
 
 void add_costs(const SetupObservations& o, double* p, ceres::Problem& problem) {
-    for (std::size_t i = 0; i < o.returns.size(); ++i) {
-        problem.AddResidualBlock(new ceres::AutoDiffCostFunction<RangeCost, 1, kSize>(new RangeCost{
-                                     o.commands[i], o.returns[i].opl_m, o.returns[i].sigma_m}),
-                                 nullptr,
-                                 p);
-        if (!o.camera) continue;
-        problem.AddResidualBlock(new ceres::AutoDiffCostFunction<SpotCost, 2, kSize>(new SpotCost{
-                                     o.commands[i], o.spots_px[i], o.spot_sigma_px, &*o.camera}),
-                                 nullptr,
-                                 p);
-    }
-    const auto add_known = [&](int parameter, const std::optional<KnownValue>& known) {
-        if (!known) return;
+    const auto add = [&]<class Cost>(const Cost& cost) {
         problem.AddResidualBlock(
-            new ceres::AutoDiffCostFunction<KnownCost, 1, kSize>(new KnownCost{parameter, *known}),
+            new ceres::AutoDiffCostFunction<Cost, Cost::kResiduals, kSize>(new Cost(cost)),
             nullptr,
             p);
     };
-    add_known(kDistance, o.wall_distance_m);
-    add_known(kZero, o.time_zero_m);
-    add_known(kGainX, o.galvo_gain);
-    add_known(kGainY, o.galvo_gain);
+    for (std::size_t i = 0; i < o.returns.size(); ++i) {
+        add(RangeCost{o.commands[i], o.returns[i].opl_m, o.returns[i].sigma_m});
+        if (!o.camera) continue;
+        add(SpotCost{o.commands[i], o.spots_px[i], o.spot_sigma_px, &*o.camera});
+    }
+    if (o.wall_distance_m) add(KnownCost{kDistance, *o.wall_distance_m});
+    if (o.time_zero_m) add(KnownCost{kZero, *o.time_zero_m});
+    if (o.galvo_gain) add(KnownCost{kGainX, *o.galvo_gain});
+    if (o.galvo_gain) add(KnownCost{kGainY, *o.galvo_gain});
 }
 
 // Starting points: a few tilts; with a camera the spots give foot and gain at once.
@@ -180,15 +172,13 @@ std::vector<std::array<double, 9>> starts(const SetupObservations& o) {
 Eigen::MatrixXd jacobian_of(ceres::Problem& problem) {
     ceres::CRSMatrix sparse;
     problem.Evaluate({}, nullptr, nullptr, nullptr, &sparse);
-    Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(sparse.num_rows, sparse.num_cols);
-    for (int r = 0; r < sparse.num_rows; ++r) {
-        const auto row = static_cast<std::size_t>(r);
-        for (int k = sparse.rows[row]; k < sparse.rows[row + 1]; ++k) {
-            const auto item = static_cast<std::size_t>(k);
-            dense(r, sparse.cols[item]) = sparse.values[item];
-        }
-    }
-    return dense;
+    return Eigen::Map<const Eigen::SparseMatrix<double, Eigen::RowMajor>>(
+        sparse.num_rows,
+        sparse.num_cols,
+        static_cast<Eigen::Index>(sparse.values.size()),
+        sparse.rows.data(),
+        sparse.cols.data(),
+        sparse.values.data());
 }
 
 void refuse_if_singular(const SetupObservations& o, const SetupGeometry& setup) {
