@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/pair_estimator.h"
+#include "renderer/core/capture.h"
+#include "renderer/scene/scene.h"
+#include "renderer/settings/render_settings.h"
 
 namespace renderer {
 

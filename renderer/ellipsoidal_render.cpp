@@ -2,6 +2,7 @@
 #include "renderer/ellipsoidal_render.h"
 
 #include "renderer/core/parallel.h"
+#include "renderer/ellipsoidal/ellipsoidal_tracer.h"
 #include "renderer/pass_render.h"
 
 #include <fmt/core.h>
@@ -16,9 +17,9 @@ namespace renderer {
 namespace {
 
 constexpr std::size_t kMeasuredPairs = 128;
-constexpr int kMeasuringPasses = 16;  ///< which give the deviation
+constexpr int kMeasuringPasses = 16;  ///< whose spread gives the standard deviation
 constexpr int kMeasuringSamples = 32;
-constexpr std::uint64_t kMeasuringItem = 1ULL << 40;  ///< keeps its random numbers apart
+constexpr std::uint64_t kMeasuringItem = 1ULL << 40;  ///< for random numbers of its own
 
 double sum_of(PassHistogram& histogram) {
     double sum = 0.0;
@@ -60,32 +61,24 @@ DroppedSignal measure_dropped_signal(const Scene& scene,
     for (std::size_t i = 0; i < count; ++i) {
         dropped.pairs.push_back((2 * i + 1) * scan.num_pairs() / (2 * count));
     }
-    const PairEstimator estimate =
-        ellipsoidal_estimator(scene, scan, axis, settings, ConnectionScope::Excluded);
-    struct Moments {
-        double sum = 0.0;
-        double squares = 0.0;
-        Moments& operator+=(const Moments& other) {
-            sum += other.sum;
-            squares += other.squares;
-            return *this;
-        }
-    };
+    const EllipsoidalTracer tracer(scene, scan, axis, settings, ConnectionScope::Excluded);
+    const SensorPairs sensor_pairs(scene, scan);
+    using Moments = Eigen::Array2d;  // sum and sum of squares
     // One term per pass: its sum over the pairs.
     const Moments moments = core::parallel_sum<Moments>(
-        static_cast<std::size_t>(kMeasuringPasses), {}, [&](std::size_t pass) {
+        static_cast<std::size_t>(kMeasuringPasses), Moments::Zero(), [&](std::size_t pass) {
             PassHistogram histogram(
                 axis, settings.gate, settings.by_order ? settings.max_bounces : 1);
             double sum = 0.0;
             for (const std::size_t pair : dropped.pairs) {
                 core::Rng rng(settings.seed, kMeasuringItem + pair, pass);
-                estimate(pair, kMeasuringSamples, rng, histogram);
+                tracer.trace(sensor_pairs, pair, kMeasuringSamples, rng, histogram);
                 sum += sum_of(histogram);
             }
-            return Moments{sum, sum * sum};
+            return Moments(sum, sum * sum);
         });
-    dropped.lost = moments.sum / kMeasuringPasses;
-    const double variance = moments.squares / kMeasuringPasses - dropped.lost * dropped.lost;
+    dropped.lost = moments[0] / kMeasuringPasses;
+    const double variance = moments[1] / kMeasuringPasses - dropped.lost * dropped.lost;
     dropped.sigma = std::sqrt(std::max(0.0, variance) / (kMeasuringPasses - 1));
     return dropped;
 }
@@ -116,11 +109,11 @@ RenderResult render_ellipsoidal(const Scene& scene,
     const int first = first_order(scan);
     PassWork work;
     if (settings.max_bounces >= first) {
-        work.estimate = ellipsoidal_estimator(
+        work.tracer = std::make_shared<const EllipsoidalTracer>(
             scene, scan, axes.time, settings, drops ? ConnectionScope::Kept : ConnectionScope::All);
     }
     RenderResult result = render_passes(scene, scan, axes, settings, work, progress);
-    if (!work.estimate) return result;
+    if (work.tracer == nullptr) return result;
     result.excluded = ExcludedFacets::of(scene, axes.time, settings).objects;
     const std::string surfaces = surfaces_kept(settings, result.excluded);
     result.sources.push_back({first, settings.max_bounces, Estimator::Ellipsoidal, surfaces});

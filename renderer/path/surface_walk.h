@@ -9,6 +9,10 @@
 
 namespace renderer {
 
+/// Share of the first vertices drawn from the hidden area, the others by direction. Seen from the
+/// wall, hidden objects are small and most directions miss them.
+inline constexpr double kAreaShareFromWall = 0.75;
+
 /// How paths go on from surface vertices, and what they carry to the light: shared by the
 /// estimators.
 ///

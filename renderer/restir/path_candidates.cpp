@@ -12,9 +12,6 @@ namespace {
 using core::kPi;
 using core::Vec3;
 
-// As for whole paths: seen from the wall, hidden objects are small and most directions miss.
-constexpr double kAreaShareFromWall = 0.75;
-
 // Shared walks per frame, in multiples of what one pair considers: neighbours then rarely consider
 // the same ones, so that their noise is hardly correlated.
 constexpr int kStretchesOfSharedWalks = 8;

@@ -71,14 +71,13 @@ TEST(StatedError, NoiseFromSumsIsThatFromEveryVariance) {
         }
     }
     double noise = 0.0;
-    core::Transient variance(3, kBins);
-    sums.write_variance(kPasses, variance.values());
-    for (const float value : variance.values()) noise += double{value};
+    core::Transient mean;
+    std::optional<core::Transient> variance;
+    sums.write(kPasses, 3, 0, mean, variance);
+    for (const float value : variance->values()) noise += double{value};
     core::Transient known(3, kBins);
     for (float& value : known.values()) value = 2.0F;
     double all = 0.0;
-    core::Transient mean(3, kBins);
-    sums.write_mean_of_all(kPasses, mean.values());
     for (const float value : mean.values()) all += std::pow(2.0 + double{value}, 2);
     const auto norms = sums.squared_norms(kPasses, &known);
     EXPECT_NEAR(norms.noise, noise, 1e-6 * noise);  // variances are stored as float

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What must not change when a set-up is described in another way.
 #include "renderer/pass_render.h"
-#include "renderer/path/surface_walk.h"
+#include "renderer/path/path_tracer.h"
 #include "tests/support/statistics.h"
 #include "tests/support/test_scenes.h"
 
@@ -129,8 +129,7 @@ TEST(PathTracer, TilesGiveTheSameBitsAsTheWholeScan) {
     renderer::RenderSettings settings = settings_with(100);
     settings.by_order = true;
     renderer::PassWork work;
-    work.estimate =
-        renderer::path_estimator(scene, scan, settings, renderer::ThirdBounceScope::All);
+    work.tracer = std::make_shared<const renderer::PathTracer>(scene, settings);
     const auto whole = renderer::render_passes(scene, scan, kInvarianceAxis, settings, work, {});
     // Room for two pairs of five orders and squares.
     work.max_sums_bytes = 2.5 * 6 * 60 * sizeof(double);
