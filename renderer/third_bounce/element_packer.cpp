@@ -53,13 +53,11 @@ void find_simd_group_spheres(ElementBlock& block) {
         Eigen::AlignedBox3d box;
         for (std::size_t c = 0; c < 3; ++c) {
             for (std::size_t i = begin; i < begin + ElementBlock::kSimdWidth; ++i) {
-                box.extend(Vec3(block.x[c][i], block.y[c][i], block.z[c][i]));
+                box.extend(block.corners[c][i]);
             }
         }
         const std::size_t simd_group = begin / ElementBlock::kSimdWidth;
-        block.simd_group_x[simd_group] = box.center().x();
-        block.simd_group_y[simd_group] = box.center().y();
-        block.simd_group_z[simd_group] = box.center().z();
+        block.simd_group_center.set(simd_group, box.center());
         block.simd_group_radius_m[simd_group] = 0.5 * box.diagonal().norm();
     });
 }
@@ -82,19 +80,13 @@ void ElementPacker::fill_lane(ElementBlock& block,
                               const ElementCluster& merged) const {
     const SurfaceElement& element = merged.triangle;
     for (std::size_t i = 0; i < 3; ++i) {
-        block.x[i][lane] = element.corners[i].x();
-        block.y[i][lane] = element.corners[i].y();
-        block.z[i][lane] = element.corners[i].z();
+        block.corners[i].set(lane, element.corners[i]);
         block.squared_edge[i][lane] =
             (element.corners[(i + 2) % 3] - element.corners[(i + 1) % 3]).squaredNorm();
     }
-    block.normal_x[lane] = merged.normal.x();
-    block.normal_y[lane] = merged.normal.y();
-    block.normal_z[lane] = merged.normal.z();
+    block.normal.set(lane, merged.normal);
     const Vec3 center = element.center();
-    block.center_x[lane] = center.x();
-    block.center_y[lane] = center.y();
-    block.center_z[lane] = center.z();
+    block.center.set(lane, center);
     block.area_m2[lane] = merged.area_m2;
     block.rise_m[lane] = merged.rise_m;
     block.one_sided[lane] = visible_side_[scene_.facet(element.facet).object];
@@ -150,17 +142,15 @@ void ElementPacker::append_blocks(const std::vector<ElementCluster>& elements, E
 }
 
 bool ElementPacker::may_be_one_group(const ElementBlock& block, Range lanes) const {
-    const auto normal = [&](std::size_t i) {
-        return Vec3(block.normal_x[i], block.normal_y[i], block.normal_z[i]);
-    };
     Eigen::AlignedBox3d box;
     for (std::size_t i = lanes.begin; i < lanes.end; ++i) {
-        if (std::abs(normal(i).dot(normal(lanes.begin))) < kMinGroupCosine) return false;
+        if (std::abs(block.normal[i].dot(block.normal[lanes.begin])) < kMinGroupCosine)
+            return false;
         if (scene_.facet(block.facet[i]).object != scene_.facet(block.facet[lanes.begin]).object) {
             return false;
         }
         for (std::size_t c = 0; c < 3; ++c) {
-            box.extend(Vec3(block.x[c][i], block.y[c][i], block.z[c][i]));
+            box.extend(block.corners[c][i]);
         }
     }
     const double distance = (box.center() - scan_center_).norm();

@@ -83,11 +83,21 @@ class ShadowRayTracer {
         ShadowRays* rays;
         std::size_t point;
     };
+    /// Ends of segments on surfaces.
+    struct Ends {
+        Vec3Lanes<SegmentPacket::kSize> position{}, normal{};
+
+        SurfacePointLanes lanes() const {
+            const auto& [x, y, z] = position;
+            return {
+                x.data(), y.data(), z.data(), normal.x.data(), normal.y.data(), normal.z.data()};
+        }
+    };
     /// Segments before they are aimed.
     struct Segments {
-        SegmentEnds from;                         ///< world
-        SegmentEnds to;                           ///< relative to ElementSet::origin
-        alignas(64) SegmentEnds::Lanes rise_m{};  ///< what `to` is moved by to the side of `from`
+        Ends from;                                   ///< world
+        Ends to;                                     ///< relative to ElementSet::origin
+        alignas(64) WallPointLanes::Lanes rise_m{};  ///< what `to` is moved by towards `from`
     };
     static std::uint32_t bit_of(const ShadowRays& rays, const DrawnParts& parts, std::size_t point);
     void trace_from_all(ShadowRays& rays);

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/core/simd.h"
-#include "renderer/core/types.h"
 #include "renderer/material/material.h"
+#include "renderer/third_bounce/vec3_lanes.h"
 #include "renderer/triangle/triangle_histogram.h"
 
 #include <array>
@@ -15,7 +14,11 @@ namespace renderer {
 /// How an element's weight follows from the geometry terms of its two legs.
 enum class ElementKind { Lambertian, Retroreflective, Glossy };
 
-ElementKind kind_of(const Material& material);
+inline ElementKind kind_of(const Material& material) {
+    if (material.model == SurfaceModel::Ggx) return ElementKind::Glossy;
+    return material.model == SurfaceModel::Retroreflective ? ElementKind::Retroreflective
+                                                           : ElementKind::Lambertian;
+}
 
 /// A flat triangle small enough for the closed-form kernel; positions relative to
 /// ElementSet::origin.
@@ -38,9 +41,8 @@ struct alignas(64) ElementBlock {
     static constexpr std::size_t kNodes = 7;
     using Lanes = TriangleLanes::Lanes;
 
-    std::array<Lanes, 3> x, y, z;  ///< corners, relative to ElementSet::origin [m]
-    Lanes normal_x, normal_y, normal_z;
-    Lanes center_x, center_y, center_z;
+    std::array<Vec3Lanes<kSize>, 3> corners;  ///< relative to ElementSet::origin [m]
+    Vec3Lanes<kSize> normal, center;
     Lanes area_m2;
     Lanes rise_m;  ///< the surface lies at most this far above or below the triangle
     std::array<Lanes, 3> squared_edge;  ///< opposite to the corners [m^2]
@@ -54,8 +56,8 @@ struct alignas(64) ElementBlock {
     std::size_t count = 0;  ///< lanes beyond it repeat lane 0 with area 0
     double longest_edge_m = 0.0;
     /// Spheres that hold the corners of each SIMD group.
-    alignas(64) std::array<double, kNumSimdGroups> simd_group_x, simd_group_y, simd_group_z,
-        simd_group_radius_m;
+    Vec3Lanes<kNumSimdGroups> simd_group_center;
+    alignas(64) std::array<double, kNumSimdGroups> simd_group_radius_m;
 };
 
 /// A function's mean over a triangle from its values at a corner, a middle and the centre: exact

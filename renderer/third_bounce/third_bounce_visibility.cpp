@@ -10,8 +10,9 @@ namespace {
 
 constexpr std::size_t kPoints = WallPointLanes::kSize;
 
-// Standard deviation of the visible share of an element that a shadow's straight edge crosses, known
-// from one part drawn of 16, from one drawn in each quarter, and from all 16 [found by simulation].
+// Standard deviation of the visible share of an element that a shadow's straight edge crosses,
+// known from one part drawn of 16, from one drawn in each quarter, and from all 16 [found by
+// simulation].
 constexpr double kErrorFromOne = 0.34;
 constexpr double kErrorFromQuarters = 0.12;
 constexpr double kErrorFromSixteenths = 0.03;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "renderer/scene/ray_caster.h"
+#include "renderer/third_bounce/vec3_lanes.h"
 
 #include <cstdint>
 #include <span>
@@ -38,8 +39,7 @@ struct alignas(64) WallPointLanes {
     static constexpr std::size_t kSize = SegmentPacket::kSize;
     using Lanes = std::array<double, kSize>;
 
-    Lanes x, y, z;
-    Lanes normal_x, normal_y, normal_z;
+    Vec3Lanes<kSize> position, normal;
     std::array<std::uint32_t, kSize> index;
     PointMask confocal = 0;  ///< those with WallPoint::is_confocal
     std::size_t count = 0;
@@ -49,18 +49,13 @@ struct alignas(64) WallPointLanes {
     explicit WallPointLanes(std::span<const WallPoint> points) : count(points.size()) {
         for (std::size_t p = 0; p < kSize; ++p) {
             const WallPoint& point = points[p < count ? p : 0];
-            x[p] = point.position.x();
-            y[p] = point.position.y();
-            z[p] = point.position.z();
-            normal_x[p] = point.normal.x();
-            normal_y[p] = point.normal.y();
-            normal_z[p] = point.normal.z();
+            position.set(p, point.position);
+            normal.set(p, point.normal);
             index[p] = point.index;
             confocal = static_cast<PointMask>(confocal | std::uint32_t{point.is_confocal} << p);
         }
     }
     PointMask all() const { return static_cast<PointMask>((std::uint32_t{1} << count) - 1U); }
-    core::Vec3 position(std::size_t p) const { return {x[p], y[p], z[p]}; }
 };
 
 }  // namespace renderer

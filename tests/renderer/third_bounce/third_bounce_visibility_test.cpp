@@ -87,7 +87,7 @@ TEST(ShadowRayTracer, AnswersAsSingleRays) {
             EXPECT_EQ(rays.seen & ~rays.points, 0);
             const ElementBlock& block = setup.elements.blocks[rays.element / ElementBlock::kSize];
             const std::size_t i = rays.element % ElementBlock::kSize;
-            const Vec3 normal(block.normal_x[i], block.normal_y[i], block.normal_z[i]);
+            const Vec3 normal = block.normal[i];
             const renderer::DrawnParts parts = tracer.drawn_parts(rays.element);
             for (std::size_t p = 0; p < count; ++p) {
                 if ((rays.points >> p & 1U) == 0) continue;
@@ -97,7 +97,7 @@ TEST(ShadowRayTracer, AnswersAsSingleRays) {
                 const auto& share = renderer::centers_of_bits()[bit];
                 Vec3 end = setup.elements.origin;
                 for (std::size_t c = 0; c < 3; ++c) {
-                    end += share[c] * Vec3(block.x[c][i], block.y[c][i], block.z[c][i]);
+                    end += share[c] * block.corners[c][i];
                 }
                 const Vec3 from = points[p].position + setup.elements.origin;
                 end += std::copysign(block.rise_m[i], normal.dot(from - end)) * normal;
