@@ -78,12 +78,17 @@ void add_direct_light_of_pixel(const RestirFrame& frame,
         places.band(pixel, {lengths.begin_m(), lengths.end_m()});
     const int count = bin_may_end_in(places.around(pixel), frame.bins.axes()) ? kPlaces : 1;
     const PathDomain& domain = frame.domains[pixel];
+    const SurfaceWalk& walk = frame.scene->walk;
     for (int i = 0; i < count; ++i) {
         const core::Vec2 place = band.sample(core::lattice_point(i, count, domain.pixel_u));
         auto seen = frame.scene->sensor_pairs.first_vertex(pixel, place);
         if (!seen) continue;
         seen->throughput = 1.0 / (count * band.pdf(place));
-        add_direct_light(*seen, domain.ends, frame.scene->walk, settings, histogram);
+        const PathExtent path = walk.extent_to_light(*seen, domain.ends);
+        if (seen->order > settings.max_bounces || !histogram.admits(path.opl_m)) continue;
+        const double value = walk.connection_value(*seen, domain.ends);
+        if (!(value > 0.0) || walk.light_is_hidden(*seen, domain.ends)) continue;
+        histogram.add(0, path, value);
     }
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/frame.h"
+#include "renderer/frame_sequence.h"
 
 #include <memory>
 

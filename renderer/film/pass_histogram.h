@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/film/pass_velocity_histogram.h"
+#include "renderer/core/velocity_axis.h"
 #include "renderer/film/path_extent.h"
 #include "renderer/settings/render_settings.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -13,10 +14,48 @@
 
 namespace renderer {
 
+/// Collects the contributions of one pair during one pass by path velocity. Most bins stay empty,
+/// above all where velocities are resolved in time, so those that are not are listed.
+class PassVelocityHistogram {
+ public:
+    PassVelocityHistogram(const core::VelocityAxis& axis, int num_time_bins)
+        : axis_(axis),
+          num_time_bins_(num_time_bins),
+          values_(static_cast<std::size_t>(axis.num_values(num_time_bins))) {}
+
+    /// Adds a contribution; what lies outside the axis is left out.
+    void add(double velocity_m_per_s, int time_bin, double value) {
+        const auto bin = axis_.bin_of(velocity_m_per_s);
+        if (!bin) return;
+        const auto place =
+            static_cast<std::size_t>(axis_.with_time ? *bin * num_time_bins_ + time_bin : *bin);
+        if (values_[place] == 0.0) touched_.push_back(place);
+        values_[place] += value;
+    }
+
+    /// As PassHistogram::drain() for a single channel.
+    template <class VisitValues, class VisitTotals>
+    void drain(VisitValues&& visit_values, VisitTotals&& visit_totals) {
+        for (const std::size_t place : touched_) {
+            const std::span<const double> value{values_.data() + place, 1};
+            visit_values(place, value);
+            visit_totals(place, value);
+            values_[place] = 0.0;
+        }
+        touched_.clear();
+    }
+
+ private:
+    core::VelocityAxis axis_;
+    int num_time_bins_;
+    std::vector<double> values_;
+    std::vector<std::size_t> touched_;
+};
+
 /// Collects the contributions of one pair during one pass, and remembers which bins it touched.
 ///
-/// A channel is a bounce order, or channel 0 holds all of them. With a velocity axis what counts is
-/// collected by path velocity, too.
+/// A channel is a bounce order, or channel 0 holds all of them. With a velocity axis, contributions
+/// are also collected by path velocity.
 class PassHistogram {
  public:
     PassHistogram(const core::HistogramAxes& axes, GateShape gate, int num_channels);

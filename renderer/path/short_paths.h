@@ -2,7 +2,7 @@
 #pragma once
 
 #include "renderer/film/pass_histogram.h"
-#include "renderer/path/surface_walk.h"
+#include "renderer/path/path_vertex.h"
 
 namespace renderer {
 
@@ -11,12 +11,5 @@ void add_short_paths(const Scene& scene,
                      const PathEndpoints& ends,
                      const RenderSettings& settings,
                      PassHistogram& histogram);
-
-/// Adds what goes from the surface that a pixel sees straight to the light.
-void add_direct_light(const PathVertex& seen,
-                      const PathEndpoints& ends,
-                      const SurfaceWalk& walk,
-                      const RenderSettings& settings,
-                      PassHistogram& histogram);
 
 }  // namespace renderer

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/restir/reservoir.h"
+#include "renderer/restir/resampling.h"
 #include "renderer/restir/reusable_path.h"
 
 #include <cstdint>

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/core/velocity_axis.h"
-#include "renderer/film/path_extent.h"
-#include "renderer/film/path_gate.h"
+#include "renderer/film/time_gate.h"
 
 #include <cstddef>
 #include <optional>

@@ -42,7 +42,7 @@ void ShadowRayTracer::trace(std::span<ShadowRays> all) {
     const core::Stopwatch watch;
     constexpr PointMask kFull = 0xffff;
     for (ShadowRays& rays : all) {
-        num_rays_ += static_cast<std::uint64_t>(std::popcount(rays.points));
+        cost_.num_rays += static_cast<std::uint64_t>(std::popcount(rays.points));
         rays.seen = 0;
         if (rays.points == kFull) {
             trace_from_all(rays);
@@ -51,7 +51,7 @@ void ShadowRayTracer::trace(std::span<ShadowRays> all) {
         }
     }
     trace_appended();
-    seconds_ += watch.seconds();
+    cost_.seconds += watch.seconds();
 }
 
 void ShadowRayTracer::trace_from_all(ShadowRays& rays) {

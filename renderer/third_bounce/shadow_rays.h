@@ -59,6 +59,18 @@ struct ShadowRays {
     static constexpr std::uint8_t kFirstFixed = 4;
 };
 
+/// What tracing shadow rays takes.
+struct TracingCost {
+    std::uint64_t num_rays = 0;
+    double seconds = 0.0;  ///< aiming rays, tracing them and reading the answers, of all threads
+
+    TracingCost& operator+=(const TracingCost& other) {
+        num_rays += other.num_rays;
+        seconds += other.seconds;
+        return *this;
+    }
+};
+
 /// Traces shadow rays from up to WallPointLanes::kSize wall points in packets. Rays from
 /// neighbouring wall points to one element run side by side and need its corners only once.
 class ShadowRayTracer {
@@ -74,9 +86,7 @@ class ShadowRayTracer {
     /// Sets `seen` of all.
     void trace(std::span<ShadowRays> rays);
 
-    std::uint64_t num_rays() const { return num_rays_; }
-    /// What aiming rays, tracing them and reading the answers took.
-    double seconds() const { return seconds_; }
+    const TracingCost& cost() const { return cost_; }
 
  private:
     struct Pending {
@@ -112,8 +122,7 @@ class ShadowRayTracer {
     Segments appended_;                                  ///< any others
     std::array<Pending, SegmentPacket::kSize> pending_;  ///< the rays of appended_
     std::size_t num_pending_ = 0;
-    std::uint64_t num_rays_ = 0;
-    double seconds_ = 0.0;
+    TracingCost cost_;
 };
 
 }  // namespace renderer

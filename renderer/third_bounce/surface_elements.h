@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace renderer {
@@ -82,6 +83,10 @@ struct VisibilityGroup {
 struct AdjacencyLists {
     std::vector<std::uint32_t> begin;
     std::vector<std::uint32_t> items;
+
+    std::span<const std::uint32_t> of(std::size_t item) const {
+        return std::span(items).subspan(begin[item], begin[item + 1] - begin[item]);
+    }
 };
 
 /// The hidden surfaces cut into elements, element i in lane i % kSize of block i / kSize.

@@ -208,8 +208,8 @@ std::vector<std::uint32_t> SurfaceSubdivider::cluster(std::span<const SurfaceEle
 ElementSet SurfaceSubdivider::cut(double tolerance) const {
     std::vector<SurfaceElement> elements = cut_all(tolerance);
     std::vector<std::uint32_t> clusters = cluster(elements, tolerance);
-    return ElementPacker(scene_, scan_, {tolerance, laser_spot_m2_}, visible_sides_)
-        .arrange(elements, clusters);
+    return pack_elements(
+        scene_, scan_, {tolerance, laser_spot_m2_, visible_sides_}, elements, clusters);
 }
 
 std::size_t SurfaceSubdivider::min_elements(double tolerance) const {

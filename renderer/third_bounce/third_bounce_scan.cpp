@@ -136,8 +136,8 @@ core::TimeAxis ThirdBounceScan::axis_of_pair(std::size_t pair) const {
 }
 
 void ThirdBounceScan::add_costs(const VisibilityTracer& tracer) {
-    num_rays_ += tracer.num_rays();
-    tracing_seconds_ += tracer.tracing_seconds();
+    num_rays_ += tracer.cost().num_rays;
+    tracing_seconds_ += tracer.cost().seconds;
 }
 
 void ThirdBounceScan::store(std::size_t pair, std::span<const double> histogram) {

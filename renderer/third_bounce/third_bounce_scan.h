@@ -41,9 +41,7 @@ class ThirdBounceScan {
                   const std::function<bool(double share)>& go_on,
                   core::Transient& result);
 
-    std::uint64_t num_rays() const { return num_rays_; }
-    /// Of all threads together.
-    double tracing_seconds() const { return tracing_seconds_; }
+    TracingCost cost() const { return {num_rays_, tracing_seconds_}; }
     /// Expected squared error of all of H at shadow edges, as far as elements are too coarse for
     /// them.
     double squared_shadow_error() const;

@@ -146,8 +146,8 @@ PointMask VisibilityTracer::mixed_points(const AdjacencyLists& lists,
     PointMask differ = 0;
     PointMask asked = 0;
     PointMask asked_twice = 0;
-    for (std::uint32_t i = lists.begin[item]; i < lists.begin[item + 1]; ++i) {
-        const State& other = states[lists.items[i]];
+    for (const std::uint32_t neighbour : lists.of(item)) {
+        const State& other = states[neighbour];
         differ = combine(differ, common(other.relevant, other.visible ^ visible));
         asked_twice = combine(asked_twice, common(asked, other.relevant));
         asked = combine(asked, other.relevant);

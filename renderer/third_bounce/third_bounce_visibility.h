@@ -43,9 +43,7 @@ class VisibilityTracer {
                const VisibilityRules& rules,
                std::span<VisibleElements> seen);
 
-    std::uint64_t num_rays() const { return rays_.num_rays(); }
-    /// What aiming rays, tracing them and reading the answers took.
-    double tracing_seconds() const { return rays_.seconds(); }
+    const TracingCost& cost() const { return rays_.cost(); }
 
  private:
     /// What is known of a group or an element; `visible` is part of `relevant`.

@@ -108,7 +108,7 @@ TEST(ShadowRayTracer, AnswersAsSingleRays) {
             }
         }
     }
-    EXPECT_EQ(tracer.num_rays(), num_rays);
+    EXPECT_EQ(tracer.cost().num_rays, num_rays);
     EXPECT_GT(num_seen, static_cast<int>(num_rays / 4));
     EXPECT_LT(num_seen, static_cast<int>(num_rays * 3 / 4));
 }
@@ -165,7 +165,7 @@ TEST_P(VisibilityTracerTowards, PointsSeeTogetherWhatTheySeeAlone) {
     }
     std::vector<renderer::VisibleElements> together(points.size());
     tracer.trace(points, rules, together);
-    const std::uint64_t num_rays = tracer.num_rays();
+    const std::uint64_t num_rays = tracer.cost().num_rays;
     std::size_t num_partial = 0;
     for (std::size_t p = 0; p < points.size(); ++p) {
         renderer::VisibilityRules own = rules;
@@ -184,7 +184,7 @@ TEST_P(VisibilityTracerTowards, PointsSeeTogetherWhatTheySeeAlone) {
             });
         }
     }
-    EXPECT_EQ(tracer.num_rays(), 2 * num_rays);
+    EXPECT_EQ(tracer.cost().num_rays, 2 * num_rays);
     EXPECT_GT(num_partial, 20U);
 }
 
