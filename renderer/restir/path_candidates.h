@@ -58,18 +58,7 @@ class PathCandidates {
     std::uint64_t generate(const Request& request, core::Rng& rng, const Offer& offer) const;
 
  private:
-    struct Job;
-
-    void walk_from_sensor(Job& job) const;
-    void connect_by_ellipsoid(Job& job, const PathVertex* from, ReusablePath path) const;
-    void try_shared(Job& job) const;
-    bool draw_first(Job& job, PathVertex& vertex) const;
-    std::optional<SurfaceWalk::Step> first_step(const PathDomain& domain,
-                                                const SurfacePoint& next) const;
-    std::optional<PathValue> value_within(const Job& job, const ReusablePath& path) const;
-    double density(Job& job, const ReusablePath& path) const;
-    double ellipsoidal_pdf(Job& job, const PathVertex* from, const SurfacePoint& point) const;
-    std::optional<LobeOnFacet> lobe_of(Job& job, const PathVertex* vertex) const;
+    class Job;
 
     const Scene* scene_;
     const SurfaceWalk* walk_;

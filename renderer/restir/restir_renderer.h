@@ -34,7 +34,18 @@ class RestirRenderer {
 
     void find_domains(const FrameInput& input, RestirFrame& frame) const;
     void generate_candidates(const FrameInput& input, RestirFrame& frame);
-    void draw(Worker& worker, const RestirFrame& frame, std::size_t pair) const;
+    template <class BuilderOf>
+    void draw(Worker& worker,
+              const RestirFrame& frame,
+              const TimeGate& gate,
+              double share,
+              const BuilderOf& builder_of) const;
+    PathReservoir merge(Worker& worker,
+                        const RestirScene& current,
+                        const PathReservoir& canonical,
+                        const ReservoirDomain& here,
+                        const PathReservoir& other,
+                        const ReservoirDomain& there) const;
     PathReservoir sample_wide_gate(Worker& worker,
                                    const RestirFrame& frame,
                                    const PathReservoir& narrow) const;
