@@ -31,30 +31,27 @@ std::vector<double> tails_of(PassHistogram& histogram, std::size_t num_orders, s
 
 }  // namespace
 
-BounceTruncation find_bounce_truncation(const Scene& scene,
-                                        const core::Scan& scan,
-                                        const core::HistogramAxes& axes,
-                                        const RenderSettings& settings,
-                                        double allowed) {
-    RenderSettings measuring = settings;
+BounceTruncation find_bounce_truncation(const RenderTask& task, double allowed) {
+    RenderSettings measuring = task.settings;
     measuring.by_order = true;
-    const PathTracer tracer(scene, measuring);
-    const SensorPairs sensor_pairs(scene, scan);
+    const PathTracer tracer(task.scene, measuring);
+    const SensorPairs sensor_pairs(task.scene, task.scan);
     constexpr std::size_t kCouples = kRuns / 2;
-    const auto num_orders = static_cast<std::size_t>(settings.max_bounces);
-    const auto bins = static_cast<std::size_t>(axes.time.num_bins);
-    const std::size_t num_pairs = std::min(kMaxPairs, scan.num_pairs());
+    const auto num_orders = static_cast<std::size_t>(task.settings.max_bounces);
+    const auto bins = static_cast<std::size_t>(task.axes.time.num_bins);
+    const std::size_t num_pairs = std::min(kMaxPairs, task.scan.num_pairs());
     // Squared norms of the tails over these pairs, [order - 1][couple of runs]. The product of two
     // independent estimates has no bias from their noise.
     using Norms = Eigen::ArrayXd;
     const Norms zero = Norms::Zero(static_cast<Eigen::Index>(num_orders * kCouples));
     const Norms norms = core::parallel_sum<Norms>(num_pairs, zero, [&](std::size_t i) {
-        const std::size_t pair = (2 * i + 1) * scan.num_pairs() / (2 * num_pairs);
+        const std::size_t pair = (2 * i + 1) * task.scan.num_pairs() / (2 * num_pairs);
         Norms result = zero;
-        PassHistogram histogram({axes.time, {}}, settings.gate, settings.max_bounces);
+        PassHistogram histogram(
+            {task.axes.time, {}}, task.settings.gate, task.settings.max_bounces);
         std::vector<double> first;
         for (std::size_t run = 0; run < kRuns; ++run) {
-            core::Rng rng(settings.seed, kTruncationItem + pair, run);
+            core::Rng rng(task.settings.seed, kTruncationItem + pair, run);
             tracer.trace(sensor_pairs, pair, kSamples, rng, histogram);
             std::vector<double> tails = tails_of(histogram, num_orders, bins);
             if (run % 2 == 0) {
@@ -80,7 +77,7 @@ BounceTruncation find_bounce_truncation(const Scene& scene,
         const double variance = std::max(0.0, squares / kCouples - mean * mean) / (kCouples - 1);
         return std::sqrt(std::max(0.0, mean + deviations * std::sqrt(variance)));
     };
-    BounceTruncation result{settings.max_bounces, 0.0};
+    BounceTruncation result{task.settings.max_bounces, 0.0};
     const double all = norm_from(1, 0.0);
     if (!(all > 0.0)) return result;
     for (; result.last > 3; --result.last) {

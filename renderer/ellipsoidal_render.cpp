@@ -51,27 +51,25 @@ std::string drop_warning(const DroppedSignal& dropped,
 
 }  // namespace
 
-DroppedSignal measure_dropped_signal(const Scene& scene,
-                                     const core::Scan& scan,
-                                     const core::TimeAxis& axis,
-                                     const RenderSettings& settings,
-                                     std::size_t max_pairs) {
+DroppedSignal measure_dropped_signal(const RenderTask& task, std::size_t max_pairs) {
     DroppedSignal dropped;
-    const std::size_t count = std::min(max_pairs, scan.num_pairs());
+    const std::size_t count = std::min(max_pairs, task.scan.num_pairs());
     for (std::size_t i = 0; i < count; ++i) {
-        dropped.pairs.push_back((2 * i + 1) * scan.num_pairs() / (2 * count));
+        dropped.pairs.push_back((2 * i + 1) * task.scan.num_pairs() / (2 * count));
     }
-    const EllipsoidalTracer tracer(scene, scan, axis, settings, ConnectionScope::Excluded);
-    const SensorPairs sensor_pairs(scene, scan);
+    const EllipsoidalTracer tracer(
+        task.scene, task.scan, task.axes.time, task.settings, ConnectionScope::Excluded);
+    const SensorPairs sensor_pairs(task.scene, task.scan);
     using Moments = Eigen::Array2d;  // sum and sum of squares
     // One term per pass: its sum over the pairs.
     const Moments moments = core::parallel_sum<Moments>(
         static_cast<std::size_t>(kMeasuringPasses), Moments::Zero(), [&](std::size_t pass) {
-            PassHistogram histogram(
-                axis, settings.gate, settings.by_order ? settings.max_bounces : 1);
+            PassHistogram histogram({task.axes.time, {}},
+                                    task.settings.gate,
+                                    task.settings.by_order ? task.settings.max_bounces : 1);
             double sum = 0.0;
             for (const std::size_t pair : dropped.pairs) {
-                core::Rng rng(settings.seed, kMeasuringItem + pair, pass);
+                core::Rng rng(task.settings.seed, kMeasuringItem + pair, pass);
                 tracer.trace(sensor_pairs, pair, kMeasuringSamples, rng, histogram);
                 sum += sum_of(histogram);
             }
@@ -88,36 +86,31 @@ std::string surfaces_kept(const RenderSettings& settings, const ExcludedObjects&
     return drops ? "all but the excluded ones" : "all";
 }
 
-void warn_of_dropped_signal(const Scene& scene,
-                            const core::Scan& scan,
-                            const core::TimeAxis& axis,
-                            const RenderSettings& settings,
-                            RenderResult& result) {
-    if (settings.exclude != Exclusion::Drop || result.excluded.names.empty()) return;
-    const DroppedSignal dropped =
-        measure_dropped_signal(scene, scan, axis, settings, kMeasuredPairs);
+void warn_of_dropped_signal(const RenderTask& task, RenderResult& result) {
+    if (task.settings.exclude != Exclusion::Drop || result.excluded.names.empty()) return;
+    const DroppedSignal dropped = measure_dropped_signal(task, kMeasuredPairs);
     const double kept = kept_signal(result.capture, dropped.pairs);
     result.warnings.push_back(drop_warning(dropped, kept, result.excluded.names));
 }
 
-RenderResult render_ellipsoidal(const Scene& scene,
-                                const core::Scan& scan,
-                                const core::HistogramAxes& axes,
-                                const RenderSettings& settings,
-                                const core::Progress& progress) {
-    const bool drops = settings.exclude == Exclusion::Drop;
-    const int first = first_order(scan);
+RenderResult render_ellipsoidal(const RenderTask& task) {
+    const bool drops = task.settings.exclude == Exclusion::Drop;
+    const int first = first_order(task.scan);
     PassWork work;
-    if (settings.max_bounces >= first) {
+    if (task.settings.max_bounces >= first) {
         work.tracer = std::make_shared<const EllipsoidalTracer>(
-            scene, scan, axes.time, settings, drops ? ConnectionScope::Kept : ConnectionScope::All);
+            task.scene,
+            task.scan,
+            task.axes.time,
+            task.settings,
+            drops ? ConnectionScope::Kept : ConnectionScope::All);
     }
-    RenderResult result = render_passes(scene, scan, axes, settings, work, progress);
+    RenderResult result = render_passes(task, work);
     if (work.tracer == nullptr) return result;
-    result.excluded = ExcludedFacets::of(scene, axes.time, settings).objects;
-    const std::string surfaces = surfaces_kept(settings, result.excluded);
-    result.sources.push_back({first, settings.max_bounces, Estimator::Ellipsoidal, surfaces});
-    warn_of_dropped_signal(scene, scan, axes.time, settings, result);
+    result.excluded = ExcludedFacets::of(task.scene, task.axes.time, task.settings).objects;
+    const std::string surfaces = surfaces_kept(task.settings, result.excluded);
+    result.sources.push_back({first, task.settings.max_bounces, Estimator::Ellipsoidal, surfaces});
+    warn_of_dropped_signal(task, result);
     return result;
 }
 

@@ -68,29 +68,25 @@ double sums_bytes_per_pair(const core::HistogramAxes& axes, const RenderSettings
            sizeof(double);
 }
 
-std::size_t pairs_per_tile(const core::Scan& scan,
-                           const core::HistogramAxes& axes,
-                           const RenderSettings& settings,
-                           double max_sums_bytes) {
-    if (is_open_ended(settings)) return scan.num_pairs();
-    const double pairs = std::floor(max_sums_bytes / sums_bytes_per_pair(axes, settings));
-    return static_cast<std::size_t>(std::clamp(pairs, 1.0, static_cast<double>(scan.num_pairs())));
+std::size_t pairs_per_tile(const RenderTask& task, double max_sums_bytes) {
+    if (is_open_ended(task.settings)) return task.scan.num_pairs();
+    const double pairs = std::floor(max_sums_bytes / sums_bytes_per_pair(task.axes, task.settings));
+    return static_cast<std::size_t>(
+        std::clamp(pairs, 1.0, static_cast<double>(task.scan.num_pairs())));
 }
 
-void require_memory_for(const core::Scan& scan,
-                        const core::HistogramAxes& axes,
-                        const RenderSettings& settings,
-                        std::size_t tile_pairs) {
+void require_memory_for(const RenderTask& task, std::size_t tile_pairs) {
     // The capture's arrays, and the sums of one tile.
-    const double kinds = settings.variance ? 2.0 : 1.0;
-    const double values =
-        (channel_count(settings) + kinds) * axes.time.num_bins + kinds * num_velocity_values(axes);
+    const double kinds = task.settings.variance ? 2.0 : 1.0;
+    const double values = (channel_count(task.settings) + kinds) * task.axes.time.num_bins +
+                          kinds * num_velocity_values(task.axes);
     require_memory(
         "render",
-        fmt::format(
-            "{} pairs x {} bins", scan.num_pairs(), axes.time.num_bins + num_velocity_values(axes)),
-        values * sizeof(float) * static_cast<double>(scan.num_pairs()) +
-            sums_bytes_per_pair(axes, settings) * static_cast<double>(tile_pairs));
+        fmt::format("{} pairs x {} bins",
+                    task.scan.num_pairs(),
+                    task.axes.time.num_bins + num_velocity_values(task.axes)),
+        values * sizeof(float) * static_cast<double>(task.scan.num_pairs()) +
+            sums_bytes_per_pair(task.axes, task.settings) * static_cast<double>(tile_pairs));
 }
 
 // Pairs [begin, begin + count) of a scan.
@@ -101,9 +97,7 @@ struct Tile {
 
 // Runs passes over the pairs of a tile until the plan, the clock or the caller ends them.
 struct PassLoop {
-    const Scene& scene;
-    const core::HistogramAxes& axes;
-    const RenderSettings& settings;
+    const RenderTask& task;
     const PassWork& work;
     SensorPairs sensor_pairs;
     TransientAccumulator::SquaredNorms norms{};  ///< of all tiles so far
@@ -121,16 +115,16 @@ std::uint64_t PassLoop::run_passes(
     std::atomic<std::size_t> bad_pair{kNone};
     std::atomic<std::uint64_t> num_rays{0};
     core::parallel_blocks(tile.count, kPairsPerBlock, [&](std::size_t begin, std::size_t end) {
-        PassHistogram histogram(axes, settings.gate, channel_count(settings));
+        PassHistogram histogram(task.axes, task.settings.gate, channel_count(task.settings));
         for (std::size_t i = begin; i < end; ++i) {
             const std::size_t pair = tile.begin + i;
             for (int pass = first; pass < first + count; ++pass) {
-                core::Rng rng(settings.seed, pair, static_cast<std::uint64_t>(pass));
+                core::Rng rng(task.settings.seed, pair, static_cast<std::uint64_t>(pass));
                 if (work.tracer != nullptr) {
                     num_rays += work.tracer->trace(sensor_pairs, pair, samples, rng, histogram);
                 }
                 if (!sensor_pairs.is_image()) {
-                    add_short_paths(scene, sensor_pairs.ends(pair), settings, histogram);
+                    add_short_paths(task.scene, sensor_pairs.ends(pair), task.settings, histogram);
                 }
                 sums.add_pass(i, histogram);
             }
@@ -145,18 +139,18 @@ std::uint64_t PassLoop::run_passes(
                     bad_pair.load(),
                     first,
                     first + count - 1,
-                    settings.seed));
+                    task.settings.seed));
 }
 
 void PassLoop::run(const Tile& tile, const core::Progress& progress, RenderResult& result) {
     const core::Stopwatch watch;
     const bool samples = work.tracer != nullptr;
-    const PassPlan plan = plan_passes(settings, work);
-    HistogramSums sums(tile.count, axes, channel_count(settings), settings.variance);
-    StoppingRule rule(settings, plan.num_passes, work.precomputed);
+    const PassPlan plan = plan_passes(task.settings, work);
+    HistogramSums sums(tile.count, task.axes, channel_count(task.settings), task.settings.variance);
+    StoppingRule rule(task.settings, plan.num_passes, work.precomputed);
     int pass = 0;
     const auto run_round = [&] {
-        const int count = next_round(plan, settings, pass, watch.seconds());
+        const int count = next_round(plan, task.settings, pass, watch.seconds());
         result.num_rays += run_passes(tile, pass, count, plan.samples_per_pass, sums);
         pass += count;
         const double elapsed = watch.seconds();
@@ -198,34 +192,30 @@ core::Capture empty_capture(const core::Scan& scan, const core::HistogramAxes& a
     return capture;
 }
 
-RenderResult render_passes(const Scene& scene,
-                           const core::Scan& scan,
-                           const core::HistogramAxes& axes,
-                           const RenderSettings& settings,
-                           const PassWork& work,
-                           const core::Progress& progress) {
+RenderResult render_passes(const RenderTask& task, const PassWork& work) {
     const core::Stopwatch watch;
-    const std::size_t num_pairs = scan.num_pairs();
-    const std::size_t tile_pairs = pairs_per_tile(scan, axes, settings, work.max_sums_bytes);
-    require_memory_for(scan, axes, settings, tile_pairs);
+    const std::size_t num_pairs = task.scan.num_pairs();
+    const std::size_t tile_pairs = pairs_per_tile(task, work.max_sums_bytes);
+    require_memory_for(task, tile_pairs);
     RenderResult result;
-    result.capture = empty_capture(scan, axes);
-    for (int order = 1; settings.by_order && order <= settings.max_bounces; ++order) {
+    result.capture = empty_capture(task.scan, task.axes);
+    for (int order = 1; task.settings.by_order && order <= task.settings.max_bounces; ++order) {
         result.capture.orders.push_back(order);
-        result.capture.by_order.emplace_back(num_pairs, axes.time.num_bins);
+        result.capture.by_order.emplace_back(num_pairs, task.axes.time.num_bins);
     }
-    PassLoop loop{scene, axes, settings, work, SensorPairs(scene, scan)};
+    PassLoop loop{task, work, SensorPairs(task.scene, task.scan)};
     for (std::size_t begin = 0; begin < num_pairs; begin += tile_pairs) {
         const Tile tile{begin, std::min(tile_pairs, num_pairs - begin)};
-        core::Progress part = progress;
+        core::Progress part = task.progress;
         part.report = [&](double share, const std::string& detail) {
             const double pairs =
                 static_cast<double>(begin) + share * static_cast<double>(tile.count);
-            progress.update(pairs / static_cast<double>(num_pairs), detail);
+            task.progress.update(pairs / static_cast<double>(num_pairs), detail);
         };
         loop.run(tile, part, result);
         if (result.interrupted && tile.count < num_pairs) {
-            throw core::Failure("render", "interrupted before every part of the scan was traced");
+            throw core::Failure("render",
+                                "interrupted before every part of the task.scan was traced");
         }
     }
     result.seconds = watch.seconds();

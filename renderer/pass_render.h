@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/core/progress.h"
 #include "renderer/film/stopping_rule.h"
 #include "renderer/path/tracer.h"
 #include "renderer/render_result.h"
-#include "renderer/scene/scene.h"
+#include "renderer/render_task.h"
 
 namespace renderer {
 
@@ -20,16 +19,11 @@ struct PassWork {
 };
 
 /// Renders by Monte Carlo, in passes over all pairs of a tile, and adds orders 1 and 2 of scans,
-/// which need no sampling. Arguments and results are those of render().
+/// which need no sampling. Results are those of render().
 ///
 /// throws   core::Failure as render() does, also when a scan of more than one tile is interrupted,
 ///          since some pairs would have no result
-RenderResult render_passes(const Scene& scene,
-                           const core::Scan& scan,
-                           const core::HistogramAxes& axes,
-                           const RenderSettings& settings,
-                           const PassWork& work,
-                           const core::Progress& progress);
+RenderResult render_passes(const RenderTask& task, const PassWork& work);
 
 /// Throws core::Failure unless the memory that `what` need is free.
 void require_memory(const std::string& where, const std::string& what, double bytes);

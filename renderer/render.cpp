@@ -36,29 +36,26 @@ Surfaces surfaces_of(const Scene& scene) {
 
 // The integrator knows wall points, wide lobes and no velocities; velocities need wall points that
 // stand still.
-void require_possible(const Scene& scene,
-                      const core::Scan& scan,
-                      const core::HistogramAxes& axes,
-                      const RenderSettings& settings) {
-    if (settings.method == Estimator::ThirdBounce) {
-        if (axes.velocity) {
+void require_possible(const RenderTask& task) {
+    if (task.settings.method == Estimator::ThirdBounce) {
+        if (task.axes.velocity) {
             throw core::Error("render.method",
                               "found third_bounce with velocity_axis",
                               "must be auto, path, ellipsoidal or restir: it knows no velocities");
         }
-        if (scan.camera) {
+        if (task.scan.camera) {
             throw core::Error("render.method",
                               "found third_bounce for a camera",
                               "must be auto or path: there are no wall points");
         }
-        if (surfaces_of(scene).narrow_lobes) {
+        if (surfaces_of(task.scene).narrow_lobes) {
             throw core::Error("render.method",
-                              "found third_bounce for a scene with narrow glossy lobes",
+                              "found third_bounce for a task.scene with narrow glossy lobes",
                               "must be auto or path for such surfaces");
         }
     }
-    if (!axes.velocity || scan.camera) return;
-    for (const Object& object : scene.objects()) {
+    if (!task.axes.velocity || task.scan.camera) return;
+    for (const Object& object : task.scene.objects()) {
         if (object.role != Role::RelayWall || object.velocity_m_per_s.norm() == 0.0) continue;
         throw core::Error("velocity_axis",
                           fmt::format("found a relay wall that moves ({})", object.name),
@@ -75,84 +72,71 @@ void add(const core::Transient& part, core::Transient& sum) {
 }
 
 // scope   which third bounces paths compute, beside all higher orders; nothing: no paths
-RenderResult trace_paths(const Scene& scene,
-                         const core::Scan& scan,
-                         const core::HistogramAxes& axes,
-                         const RenderSettings& settings,
+RenderResult trace_paths(const RenderTask& task,
                          std::optional<ThirdBounceScope> scope,
-                         const PrecomputedPart& precomputed,
-                         const core::Progress& progress) {
+                         const PrecomputedPart& precomputed) {
     PassWork work{nullptr, precomputed};
-    if (scope && (scan.camera || settings.max_bounces >= 3)) {
-        work.tracer = std::make_shared<const PathTracer>(scene, settings, *scope);
+    if (scope && (task.scan.camera || task.settings.max_bounces >= 3)) {
+        work.tracer = std::make_shared<const PathTracer>(task.scene, task.settings, *scope);
     }
-    RenderResult result = render_passes(scene, scan, axes, settings, work, progress);
-    const int first = scope == ThirdBounceScope::NotIntegrable ? 4 : first_order(scan);
-    if (scope && (scan.camera || settings.max_bounces >= first)) {
-        result.sources.push_back({first, settings.max_bounces, Estimator::Path, "all"});
+    RenderResult result = render_passes(task, work);
+    const int first = scope == ThirdBounceScope::NotIntegrable ? 4 : first_order(task.scan);
+    if (scope && (task.scan.camera || task.settings.max_bounces >= first)) {
+        result.sources.push_back({first, task.settings.max_bounces, Estimator::Path, "all"});
     }
     return result;
 }
 
 // `auto` need not compute orders that are far below the error asked for. What it leaves out counts
 // as part of the error.
-double leave_out_orders(const Scene& scene,
-                        const core::Scan& scan,
-                        const core::HistogramAxes& axes,
-                        RenderSettings& settings,
-                        std::vector<std::string>& warnings) {
+double leave_out_orders(RenderTask& task, std::vector<std::string>& warnings) {
     constexpr double kShareOfTarget = 0.5;
-    const bool may = settings.method == Estimator::Auto && settings.target_error &&
-                     !settings.by_order && settings.max_bounces > 3;
+    const bool may = task.settings.method == Estimator::Auto && task.settings.target_error &&
+                     !task.settings.by_order && task.settings.max_bounces > 3;
     if (!may) return 0.0;
-    const BounceTruncation orders = find_bounce_truncation(
-        scene, scan, axes, settings, kShareOfTarget * *settings.target_error);
-    if (orders.last == settings.max_bounces) return 0.0;
+    const BounceTruncation orders =
+        find_bounce_truncation(task, kShareOfTarget * *task.settings.target_error);
+    if (orders.last == task.settings.max_bounces) return 0.0;
     warnings.push_back(fmt::format("orders {} to {} are left out: below {:.2g} of H (relative L2)",
                                    orders.last + 1,
-                                   settings.max_bounces,
+                                   task.settings.max_bounces,
                                    orders.left_out));
-    settings.max_bounces = orders.last;
+    task.settings.max_bounces = orders.last;
     return orders.left_out;
 }
 
 // Third bounces by the integrator, what is left by paths. When both are needed, the integrator,
 // which converges faster, gets half of the error or a quarter of the time.
-RenderResult integrate_and_trace(const Scene& scene,
-                                 const core::Scan& scan,
-                                 const core::HistogramAxes& axes,
-                                 const RenderSettings& settings,
-                                 double left_out,
-                                 const core::Progress& progress) {
+RenderResult integrate_and_trace(const RenderTask& task, double left_out) {
     constexpr double kShareOfTarget = 0.5;
     constexpr double kShareOfTime = 0.25;
-    const Surfaces surfaces = surfaces_of(scene);
+    const Surfaces surfaces = surfaces_of(task.scene);
     std::optional<ThirdBounceScope> scope;
-    if (settings.method != Estimator::ThirdBounce &&
-        (surfaces.narrow_lobes || settings.max_bounces > 3)) {
+    if (task.settings.method != Estimator::ThirdBounce &&
+        (surfaces.narrow_lobes || task.settings.max_bounces > 3)) {
         scope = ThirdBounceScope::NotIntegrable;
     }
     const bool is_all = !scope;
-    RenderSettings integration = settings;
-    RenderSettings tracing = settings;
-    if (settings.target_error) {
-        const double allowed =
-            std::sqrt(std::max(0.0, std::pow(*settings.target_error, 2) - left_out * left_out));
-        integration.target_error = is_all ? allowed : kShareOfTarget * *settings.target_error;
+    RenderSettings integration = task.settings;
+    if (const auto target = task.settings.target_error) {
+        const double allowed = std::sqrt(std::max(0.0, std::pow(*target, 2) - left_out * left_out));
+        integration.target_error = is_all ? allowed : kShareOfTarget * *target;
     }
-    if (settings.seconds && !is_all) integration.seconds = kShareOfTime * *settings.seconds;
+    const auto seconds = task.settings.seconds;
+    if (seconds && !is_all) integration.seconds = kShareOfTime * *seconds;
     const double done = is_all ? 1.0 : 0.1;
-    const ThirdBounce third =
-        integrate_third_bounce(scene, scan, axes.time, integration, progress.part(0.0, done));
-    if (settings.seconds) {
-        tracing.seconds =
-            std::max((1.0 - kShareOfTime) * *settings.seconds, *settings.seconds - third.seconds);
+    const ThirdBounce third = integrate_third_bounce(
+        task.scene, task.scan, task.axes.time, integration, task.progress.part(0.0, done));
+    const core::Progress rest = task.progress.part(done, 1.0);
+    RenderTask tracing{task.scene, task.scan, task.axes, task.settings, rest};
+    if (seconds) {
+        tracing.settings.seconds =
+            std::max((1.0 - kShareOfTime) * *seconds, *seconds - third.seconds);
     }
     const PrecomputedPart precomputed{&third.transient, third.squared_error, left_out};
-    RenderResult result =
-        trace_paths(scene, scan, axes, tracing, scope, precomputed, progress.part(done, 1.0));
+    RenderResult result = trace_paths(tracing, scope, precomputed);
     add(third.transient, result.capture.transient);
-    if (settings.by_order) add(third.transient, result.capture.by_order[2]);
+    if (task.settings.by_order) add(third.transient, result.capture.by_order[2]);
     if (is_all) result.estimated_error = std::hypot(third.estimated_error, left_out);
     std::vector<OrderSource> sources{{3, 3, Estimator::ThirdBounce, "all"}};
     if (surfaces.narrow_lobes) {
@@ -171,30 +155,20 @@ RenderResult integrate_and_trace(const Scene& scene,
 RenderResult render(const Scene& scene,
                     const core::Scan& scan,
                     const core::HistogramAxes& axes,
-                    const RenderSettings& asked,
+                    const RenderSettings& settings,
                     const core::Progress& progress) {
-    require_possible(scene, scan, axes, asked);
-    if (asked.method == Estimator::Ellipsoidal) {
-        return render_ellipsoidal(scene, scan, axes, asked, progress);
-    }
-    if (asked.method == Estimator::Restir) {
-        return render_restir({std::shared_ptr<const Scene>(), &scene}, scan, axes, asked, progress);
-    }
-    RenderSettings settings = asked;
+    RenderTask task{scene, scan, axes, settings, progress};
+    require_possible(task);
+    if (settings.method == Estimator::Ellipsoidal) return render_ellipsoidal(task);
+    if (settings.method == Estimator::Restir) return render_restir(task);
     std::vector<std::string> warnings;
-    const double left_out = leave_out_orders(scene, scan, axes, settings, warnings);
+    const double left_out = leave_out_orders(task, warnings);
     const bool integrates = settings.method != Estimator::Path && !scan.camera && !axes.velocity &&
                             settings.max_bounces >= 3 && settings.gate == GateShape::Box &&
                             surfaces_of(scene).integrable;
     RenderResult result = integrates
-                              ? integrate_and_trace(scene, scan, axes, settings, left_out, progress)
-                              : trace_paths(scene,
-                                            scan,
-                                            axes,
-                                            settings,
-                                            ThirdBounceScope::All,
-                                            {nullptr, 0.0, left_out},
-                                            progress);
+                              ? integrate_and_trace(task, left_out)
+                              : trace_paths(task, ThirdBounceScope::All, {nullptr, 0.0, left_out});
     result.warnings.insert(result.warnings.end(), warnings.begin(), warnings.end());
     return result;
 }

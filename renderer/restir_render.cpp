@@ -176,17 +176,16 @@ RenderResult result_of(const HistogramSums& sums,
 
 }  // namespace
 
-RenderResult render_restir(std::shared_ptr<const Scene> scene,
-                           const core::Scan& scan,
-                           const core::HistogramAxes& axes,
-                           const RenderSettings& asked,
-                           const core::Progress& progress) {
+RenderResult render_restir(const RenderTask& task) {
+    const core::Scan& scan = task.scan;
+    const core::HistogramAxes& axes = task.axes;
     const core::Stopwatch watch;
-    require_gate_to_shrink_to(axes, asked);
-    const RenderSettings settings = with_fitting_frames(asked);
+    require_gate_to_shrink_to(axes, task.settings);
+    const RenderSettings settings = with_fitting_frames(task.settings);
     RestirRenderer renderer(scan, settings);
     require_memory_for(renderer, axes);
-    const auto restir_scene = std::make_shared<RestirScene>(std::move(scene), scan, axes, settings);
+    const auto restir_scene = std::make_shared<RestirScene>(
+        std::shared_ptr<const Scene>(std::shared_ptr<void>(), &task.scene), scan, axes, settings);
     const int per_frame = candidates_per_frame(settings.restir);
     StoppingRule rule(settings, (settings.samples + per_frame - 1) / per_frame, {});
     HistogramSums sums(scan.num_pairs(), axes, 1, settings.variance);
@@ -196,14 +195,14 @@ RenderResult render_restir(std::shared_ptr<const Scene> scene,
         add_frame(renderer.render({restir_scene, axes, nullptr, number}), settings, sums);
         ++done;
         const double share = rule.share_done(done, watch.seconds(), sums.time);
-        progress.update(share, fmt::format("{} frames", done));
+        task.progress.update(share, fmt::format("{} frames", done));
         return share >= 1.0;
     };
     bool interrupted = false;
-    while (!interrupted && !render_frame()) interrupted = progress.should_stop();
+    while (!interrupted && !render_frame()) interrupted = task.progress.should_stop();
     RenderResult result =
         result_of(sums, done, scan, axes, *restir_scene, settings, renderer.counts());
-    warn_of_dropped_signal(*restir_scene->scene, scan, axes.time, settings, result);
+    warn_of_dropped_signal({task.scene, scan, axes, settings, task.progress}, result);
     if (done > 1) {
         result.estimated_error = relative_error(sums.time.squared_norms(done, nullptr), {});
     }

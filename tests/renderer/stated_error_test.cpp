@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Errors that renders state of themselves, and that they are asked to reach.
 #include "renderer/bounce_truncation.h"
+#include "renderer/core/random.h"
 #include "renderer/film/stopping_rule.h"
 #include "renderer/frame_sequence.h"
 #include "tests/support/error_message.h"
@@ -157,14 +158,15 @@ TEST(StatedError, OrdersAreLeftOutWhenTheyAreBelowWhatIsAllowed) {
     };
     for (int order = 6; order > 3; --order) {
         const double share = tail_from(static_cast<std::size_t>(order)) / tail_from(1);
-        const auto [last, left_out] =
-            renderer::find_bounce_truncation(scene, scan, {kStatedAxis, {}}, settings, 2.5 * share);
+        const auto [last, left_out] = renderer::find_bounce_truncation(
+            {scene, scan, {kStatedAxis, {}}, settings, {}}, 2.5 * share);
         EXPECT_LT(last, order) << "share " << share;
         EXPECT_GE(left_out, 0.95 * share);
         EXPECT_LE(left_out, 2.5 * share);
     }
-    EXPECT_EQ(renderer::find_bounce_truncation(scene, scan, {kStatedAxis, {}}, settings, 0.0).last,
-              6);
+    EXPECT_EQ(
+        renderer::find_bounce_truncation({scene, scan, {kStatedAxis, {}}, settings, {}}, 0.0).last,
+        6);
 }
 
 TEST(StatedError, AutoSaysWhichOrdersItLeavesOut) {

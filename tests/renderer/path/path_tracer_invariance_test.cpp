@@ -130,10 +130,10 @@ TEST(PathTracer, TilesGiveTheSameBitsAsTheWholeScan) {
     settings.by_order = true;
     renderer::PassWork work;
     work.tracer = std::make_shared<const renderer::PathTracer>(scene, settings);
-    const auto whole = renderer::render_passes(scene, scan, kInvarianceAxis, settings, work, {});
+    const auto whole = renderer::render_passes({scene, scan, kInvarianceAxis, settings, {}}, work);
     // Room for two pairs of five orders and squares.
     work.max_sums_bytes = 2.5 * 6 * 60 * sizeof(double);
-    const auto tiled = renderer::render_passes(scene, scan, kInvarianceAxis, settings, work, {});
+    const auto tiled = renderer::render_passes({scene, scan, kInvarianceAxis, settings, {}}, work);
     EXPECT_TRUE(
         std::ranges::equal(tiled.capture.transient.values(), whole.capture.transient.values()));
     EXPECT_TRUE(
@@ -143,7 +143,7 @@ TEST(PathTracer, TilesGiveTheSameBitsAsTheWholeScan) {
     EXPECT_EQ(tiled.num_rays, whole.num_rays);
     core::Progress stop;
     stop.stop_requested = [] { return true; };
-    EXPECT_THROW(renderer::render_passes(scene, scan, kInvarianceAxis, settings, work, stop),
+    EXPECT_THROW(renderer::render_passes({scene, scan, kInvarianceAxis, settings, stop}, work),
                  core::Failure);
 }
 
