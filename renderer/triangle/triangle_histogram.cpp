@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/triangle/triangle_histogram.h"
 
-#include "renderer/core/simd.h"
+#include "renderer/triangle/sorted_triangles.h"
 
 #include <algorithm>
 #include <bit>
@@ -19,135 +19,9 @@ using core::TimeAxis;
 constexpr std::size_t kSimdWidth = Simd::size();
 static_assert(TriangleLanes::kSize % kSimdWidth == 0);
 
-constexpr double kThird = 1.0 / 3.0;
 constexpr double kSixth = 1.0 / 6.0;
 // The mean of bent positions lies below that of linear ones by this times the sum of the bends.
 constexpr double kSag = 1.0 / 24.0;
-
-// Triangles side by side with corners sorted by position along the axis; positions in any unit.
-//
-// Let p0 <= p1 <= p2 and K0, K1, K2 be positions and weights. The level set p = e cuts the edge 0-2
-// at the fraction b = (e-p0)/(p2-p0) and, for e < p1, the edge 0-1 at a = (e-p0)/(p1-p0). The part
-// below e is the triangle (corner 0, those two cuts), a share a*b of the area, and the mean of a
-// linear weight over a triangle is the mean of its corner values:
-//
-//     C(e) = a b [K0 + x/3],   x = a (K1-K0) + b (K2-K0),        e <= p1
-//
-// and the same seen from corner 2 for e >= p1, subtracted from the mean (K0+K1+K2)/3.
-//
-// Where positions bend away from linear ones by q, C(e) changes to first order by minus the
-// integral of K q over the cut. Per unit of e the cut is dC/de = 2 a / (p2-p0) of the area for
-// K = 1, its mean weight K0 + x/2, and with q = -(c2 l0 l1 + c1 l0 l2 + c0 l1 l2)/2, its mean over
-// the segment between the two cuts is
-//
-//     q = -[c2 a (3-2a-b) + c1 b (3-2b-a) + c0 a b]/12.
-//
-// p are the linear positions with the true mean, shifted by -(c0+c1+c2)/24, and q the rest. Where
-// a triangle bends more than it rises, this is too much of a correction, and 1/(p2-p0) is held at
-// 1/c.
-//
-// With the ratio r = b/a = (p1-p0)/(p2-p0), all this is a polynomial of a, which lies in [0, 1]
-// like r: nothing cancels, however small the triangle is.
-class SortedTriangles {
-    // Keeps reciprocals finite; in bins.
-    static constexpr double kMinRise = 1e-100;
-
- public:
-    // The unit of lanes that starts at `begin`, after sort_corners().
-    [[gnu::always_inline]] SortedTriangles(const TriangleLanes& lanes, std::size_t begin)
-        : p0_(load(lanes.opl_m[0], begin)),
-          p1_(load(lanes.opl_m[1], begin)),
-          p2_(load(lanes.opl_m[2], begin)) {
-        const Simd area = load(lanes.area_m2, begin);
-        const Simd k0 = area * load(lanes.weight[0], begin);
-        const Simd k1 = area * load(lanes.weight[1], begin);
-        const Simd k2 = area * load(lanes.weight[2], begin);
-        const Simd c0 = load(lanes.bend_m[0], begin);
-        const Simd c1 = load(lanes.bend_m[1], begin);
-        const Simd c2 = load(lanes.bend_m[2], begin);
-        whole_ = (k0 + k1 + k2) * kThird;
-        const Simd rise = max(p2_ - p0_, kMinRise);
-        const Simd per_02 = 1.0 / rise;
-        const Simd held = kSixth / max(max(rise, c0), max(c1, c2));
-        const OfCorners bends{c0 * held, c1 * held, c2 * held};
-        low_ = Side(p1_ - p0_, per_02, {k0, k1, k2}, bends, 1.0);
-        high_ = Side(p2_ - p1_, per_02, {k2, k1, k0}, {bends[2], bends[1], bends[0]}, -1.0);
-    }
-
-    // Where the first of the triangles that weigh anything begins and the last one ends, if not
-    // beyond the given limits.
-    [[gnu::always_inline]] double lowest(double limit) const {
-        return reduce_min(select(whole_ != 0.0, p0_, limit));
-    }
-    [[gnu::always_inline]] double highest(double limit) const {
-        return reduce_max(select(whole_ != 0.0, p2_, limit));
-    }
-    /// What the longest one spans.
-    [[gnu::always_inline]] double longest() const {
-        return reduce_max(select(whole_ != 0.0, p2_ - p0_, 0.0));
-    }
-
-    /// C(e) times the area once all of a triangle lies below e.
-    const Simd& whole() const { return whole_; }
-
-    /// The same, with lane i alone.
-    SortedTriangles only(std::size_t i) const {
-        SortedTriangles one = *this;
-        alignas(64) std::array<double, kSimdWidth> whole{};
-        whole[i] = whole_[i];
-        one.whole_ = load(whole, 0);
-        return one;
-    }
-
-    // C(e) times the area.
-    [[gnu::always_inline]] Simd below(double e) const {
-        const SimdMask low = e < p1_;
-        const Simd reach = max(select(low, e - p0_, p2_ - e), 0.0);
-        const Simd a = reach * select(low, low_.per, high_.per);
-        Simd part = select(low, low_.factor[3], high_.factor[3]);
-        for (std::size_t k = 3; k-- > 0;) {
-            part = part * a + select(low, low_.factor[k], high_.factor[k]);
-        }
-        const Simd within = min(max(part * a, 0.0), whole_);
-        return select(low, within, whole_ - within);
-    }
-
- private:
-    using OfCorners = std::array<Simd, 3>;
-
-    // C(e), or what it lacks to all, as a polynomial of a without a constant term.
-    struct Side {
-        Simd per;  ///< a per distance from the corner
-        std::array<Simd, 4> factor;
-
-        Side() = default;
-        // k      weights of the corner that a counts from, of the middle one and of the other one
-        // c      bends opposite to them
-        // sign   +1 where the part below e is described, -1 for the part above
-        [[gnu::always_inline]] Side(const Simd& rise,
-                                    const Simd& per_02,
-                                    const OfCorners& k,
-                                    const OfCorners& c,
-                                    double sign)
-            : per(1.0 / max(rise, kMinRise)) {
-            const Simd ratio = rise * per_02;
-            const Simd gradient = (k[1] - k[0]) + ratio * (k[2] - k[0]);  // x / a
-            // -2 q / (p2-p0), by powers of a
-            const Simd sum = c[0] + c[1] + c[2];
-            const Simd q0 = -0.5 * sign * sum;
-            const Simd q1 = 3.0 * sign * (c[2] + ratio * c[1]);
-            const Simd q2 =
-                sign * (ratio * (sum - 2.0 * (c[2] + c[1]) - 2.0 * ratio * c[1]) - 2.0 * c[2]);
-            factor[0] = q0 * k[0];
-            factor[1] = ratio * k[0] + q1 * k[0] + 0.5 * q0 * gradient;
-            factor[2] = kThird * ratio * gradient + q2 * k[0] + 0.5 * q1 * gradient;
-            factor[3] = 0.5 * q2 * gradient;
-        }
-    };
-
-    Simd p0_, p1_, p2_, whole_;
-    Side low_, high_;
-};
 
 struct Corner {
     Simd p, k, c;
