@@ -45,13 +45,6 @@ OplBand lengths_of_gate(const core::TimeAxis& axis, GateShape gate) {
     return lengths;
 }
 
-// The relay wall has no third bounce; it takes part from order 4 on.
-std::vector<bool> hidden_objects(const Scene& scene) {
-    std::vector<bool> hidden;
-    for (const Object& object : scene.objects()) hidden.push_back(object.role != Role::RelayWall);
-    return hidden;
-}
-
 }  // namespace
 
 class EllipsoidalTracer::Walk : public PairWalk {
@@ -95,7 +88,7 @@ EllipsoidalTracer::EllipsoidalTracer(const Scene& scene,
                                      const core::TimeAxis& axis,
                                      const RenderSettings& settings,
                                      ConnectionScope scope)
-    : Tracer(scene, settings, hidden_objects(scene)),
+    : Tracer(scene, settings, ThirdBounceScope::All),
       scope_(scope),
       lengths_(lengths_of_gate(axis, settings.gate)),
       excluded_(ExcludedFacets::of(scene, axis, settings)),

@@ -6,20 +6,6 @@
 #include <algorithm>
 
 namespace renderer {
-namespace {
-
-// Per object, whether first vertices on it may reflect straight to the light. The relay wall has no
-// third bounce; it takes part from order 4 on.
-std::vector<bool> objects_that_add(const Scene& scene, ThirdBounceScope scope) {
-    std::vector<bool> adds;
-    for (const Object& object : scene.objects()) {
-        adds.push_back(object.role != Role::RelayWall &&
-                       (scope == ThirdBounceScope::All || !is_integrable(object.material)));
-    }
-    return adds;
-}
-
-}  // namespace
 
 class PathTracer::Walk : public PairWalk {
  public:
@@ -72,7 +58,7 @@ class PathTracer::Walk : public PairWalk {
 };
 
 PathTracer::PathTracer(const Scene& scene, const RenderSettings& settings, ThirdBounceScope scope)
-    : Tracer(scene, settings, objects_that_add(scene, scope)) {}
+    : Tracer(scene, settings, scope) {}
 
 std::unique_ptr<PairWalk> PathTracer::start(const PathEndpoints& ends,
                                             core::Rng& rng,

@@ -5,9 +5,6 @@
 
 namespace renderer {
 
-/// Which surfaces' third bounce a path tracer adds; all add to higher orders.
-enum class ThirdBounceScope { All, NotIntegrable };
-
 /// Transient path tracing from the sensing point.
 ///
 /// Every vertex is drawn either from the hidden area or from the BSDF of the vertex before it; both

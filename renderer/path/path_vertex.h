@@ -49,4 +49,16 @@ struct PathVertex {
     int order = 3;      ///< bounces of the path that goes from here straight to the light
 };
 
+/// A vertex at a point whose path is still to be described.
+inline PathVertex vertex_at(const Scene& scene,
+                            const SurfacePoint& point,
+                            const core::Vec3& to_previous) {
+    PathVertex vertex;
+    vertex.point = point;
+    vertex.normal = scene.facet(point.facet).normal;
+    vertex.to_previous = to_previous;
+    vertex.bsdf = scene.bsdf_at(point);
+    return vertex;
+}
+
 }  // namespace renderer

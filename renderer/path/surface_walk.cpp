@@ -132,11 +132,7 @@ PathVertex SurfaceWalk::advance(const PathVertex& vertex,
                                 const SurfacePoint& next,
                                 const Step& step,
                                 double pdf_area) const {
-    PathVertex advanced;
-    advanced.point = next;
-    advanced.normal = scene_->facet(next.facet).normal;
-    advanced.to_previous = -step.direction;
-    advanced.bsdf = scene_->bsdf_at(next);
+    PathVertex advanced = vertex_at(*scene_, next, -step.direction);
     advanced.throughput = vertex.throughput * step.transport / pdf_area;
     advanced.extent.opl_m = vertex.extent.opl_m + step.distance_m;
     advanced.extent.velocity_m_per_s =

@@ -2,15 +2,27 @@
 #include "renderer/path/tracer.h"
 
 namespace renderer {
+namespace {
 
-Tracer::Tracer(const Scene& scene,
-               const RenderSettings& settings,
-               const std::vector<bool>& adds_third_bounce)
+// Per object, whether first vertices on it may reflect straight to the light. The relay wall has no
+// third bounce; it takes part from order 4 on.
+std::vector<bool> objects_that_add(const Scene& scene, ThirdBounceScope scope) {
+    std::vector<bool> adds;
+    for (const Object& object : scene.objects()) {
+        adds.push_back(object.role != Role::RelayWall &&
+                       (scope == ThirdBounceScope::All || !is_integrable(object.material)));
+    }
+    return adds;
+}
+
+}  // namespace
+
+Tracer::Tracer(const Scene& scene, const RenderSettings& settings, ThirdBounceScope scope)
     : scene_(&scene),
       max_order_(settings.max_bounces),
       by_order_(settings.by_order),
       surface_walk_(scene, settings.laser_spot_m2),
-      facet_traits_(scene, adds_third_bounce) {}
+      facet_traits_(scene, objects_that_add(scene, scope)) {}
 
 std::uint64_t Tracer::trace(const PathEndpoints& ends,
                             int num_samples,

@@ -14,6 +14,9 @@ namespace renderer {
 
 class PairWalk;
 
+/// Which surfaces' third bounce a tracer adds; all add to higher orders.
+enum class ThirdBounceScope { All, NotIntegrable };
+
 /// Estimates H by tracing paths from the sensing point.
 class Tracer {
  public:
@@ -39,10 +42,7 @@ class Tracer {
  protected:
     friend class PairWalk;
 
-    /// adds_third_bounce   per object: whether it may reflect straight to the light
-    Tracer(const Scene& scene,
-           const RenderSettings& settings,
-           const std::vector<bool>& adds_third_bounce);
+    Tracer(const Scene& scene, const RenderSettings& settings, ThirdBounceScope scope);
 
     virtual std::unique_ptr<PairWalk> start(const PathEndpoints& ends,
                                             core::Rng& rng,

@@ -43,11 +43,7 @@ LightVertexCache::LightVertexCache(const Scene& scene,
 }
 
 PathVertex LightVertexCache::first_vertex(const SurfacePoint& point) const {
-    PathVertex vertex;
-    vertex.point = point;
-    vertex.normal = scene_->facet(point.facet).normal;
-    vertex.to_previous = (light_.position - point.position).normalized();
-    vertex.bsdf = scene_->bsdf_at(point);
+    PathVertex vertex = vertex_at(*scene_, point, (light_.position - point.position).normalized());
     vertex.throughput = 1.0;
     return vertex;
 }

@@ -160,8 +160,8 @@ bool PathCandidates::Job::draw_first(PathVertex& vertex) {
     const auto step = first_step(point);
     if (!step) return false;
     // No path through this point is shorter than the one that continues straight to the light.
-    const double shortest = ends_.device_legs_m + step->distance_m +
-                            (ends_.light.position - point.position).norm();
+    const double shortest =
+        ends_.device_legs_m + step->distance_m + (ends_.light.position - point.position).norm();
     if (shortest >= request_.opl_end_m) return false;
     if (max_vertices_ == 1 && shortest < request_.opl_begin_m) return false;
     PathVertex start;

@@ -57,10 +57,7 @@ PathValue PathIntegrand::evaluate(const PathDomain& domain, const ReusablePath& 
             value.radiance = carried * light.factor(-direction) / distance2;
             return value;
         }
-        before.point = path.at(i);
-        before.normal = scene_->facet(before.point.facet).normal;
-        before.to_previous = -direction;
-        before.bsdf = scene_->bsdf_at(before.point);
+        before = vertex_at(*scene_, path.at(i), -direction);
         carried *= std::abs(before.normal.dot(direction)) / distance2;
         if (!(carried > 0.0)) return value;
     }
