@@ -62,14 +62,14 @@ class PassHistogram {
 
     /// Adds a contribution of a path, weighted by the gate.
     void add(int channel, const PathExtent& path, double value);
-    /// Adds what the gate has weighted already, of a path in a bin.
+    /// Adds a contribution that is already weighted by the gate to a bin.
     void add_to_bin(int channel, int bin, double velocity_m_per_s, double value);
     /// Whether a path of this length counts at all.
     bool admits(double opl_m) const {
         int bin = 0;
         return gate_weight(opl_m, bin) > 0.0;
     }
-    /// Adds many contributions, those of 0 left out.
+    /// Adds many contributions; those of 0 are left out.
     ///
     /// opl_m, values   one entry per path, at most kMaxAtOnce
     /// velocities      [m/s] likewise; not looked at unless resolves_velocity()
@@ -107,7 +107,7 @@ class PassHistogram {
         last_touched_ = -1;
     }
 
-    /// Contributions so far that were not finite numbers; they are left out of the bins.
+    /// Contributions so far that were not finite; they are left out of the bins.
     std::uint64_t num_non_finite() const { return num_non_finite_; }
 
  private:

@@ -11,7 +11,7 @@
 
 namespace renderer {
 
-/// What one bin, or a shaped gate, admits: a weight of the path length with peak 1.
+/// A bin or a shaped gate: a weight of the path length with peak 1.
 struct TimeGate {
     double start_m = 0.0;
     double width_m = 0.0;
@@ -30,7 +30,7 @@ struct TimeGate {
         return std::exp(-0.5 * offset * offset);
     }
 
-    /// The lengths of positive weight; a Gaussian is cut where it has fallen to rounding.
+    /// The lengths of positive weight; a Gaussian is cut off where it is below rounding.
     double begin_m() const { return start_m - overhang() * width_m; }
     double end_m() const { return start_m + (1.0 + overhang()) * width_m; }
 
@@ -50,7 +50,7 @@ struct VelocityGate {
     bool contains(double velocity_m_per_s) const { return axis.bin_of(velocity_m_per_s) == bin; }
 };
 
-/// What one reservoir admits: lengths and, when these are resolved, velocities.
+/// The gate of one reservoir: path lengths and, where they are resolved, velocities.
 struct PathGate {
     TimeGate time;
     std::optional<VelocityGate> velocity;
@@ -60,7 +60,7 @@ struct PathGate {
         return time.weight(path.opl_m);
     }
 
-    /// Whether two gates of one measurement admit the same.
+    /// Whether two gates of one scan admit the same paths.
     bool operator==(const PathGate& other) const {
         return time == other.time && velocity.has_value() == other.velocity.has_value() &&
                (!velocity || velocity->bin == other.velocity->bin);

@@ -6,7 +6,7 @@
 
 namespace renderer {
 
-/// Adds orders 1 and 2 of a wall pair, which have no vertex to be drawn; its ends stand still.
+/// Adds orders 1 and 2 of a wall pair, which have no vertex to sample; its ends are at rest.
 void add_short_paths(const Scene& scene,
                      const PathEndpoints& ends,
                      const RenderSettings& settings,
