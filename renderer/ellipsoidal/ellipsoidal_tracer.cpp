@@ -12,8 +12,8 @@ namespace {
 using core::Vec2;
 using core::Vec3;
 
-// Share of samples that choose the length first. They cost several times more than the others, of
-// which only the share `asked` has a length that counts (constants by trial on scenes/bars and
+// Share of samples that choose the length first. They cost several times as much as the others, of
+// which only the share `asked` has a length within the axis (constants tuned on scenes/bars and
 // scenes/letter).
 double ellipsoidal_share(double asked) {
     constexpr double kMax = 0.85;
@@ -22,15 +22,15 @@ double ellipsoidal_share(double asked) {
     return std::max(kMin, kMax / (1.0 + asked / kHalved));
 }
 
-// Connections of a vertex with a lobe this narrow: what it mirrors makes bright, noisy pixels.
+// Connections per vertex with a lobe narrower than this: its reflections make bright, noisy pixels.
 constexpr int kDrawsAlongLobes = 6;
 constexpr double kNarrowLobe_rad = 0.2;
 
-// A Gaussian gate lets through e^-10 of its peak this many widths from its centre; what lies beyond
-// is left to the walk.
+// A Gaussian gate has fallen to e^-10 of its peak this many widths from its centre; what lies
+// beyond is left to the walk.
 constexpr double kGaussianReach = 4.5;
 
-// Entries of a pair's cut: enough to single out facets, few against the samples they serve.
+// Entries of a pair's cut: enough to single out facets, few compared with the samples.
 constexpr std::size_t kMinEntries = 32;
 
 OplBand lengths_of_gate(const core::TimeAxis& axis, GateShape gate) {

@@ -7,7 +7,7 @@
 
 namespace renderer {
 
-/// Which connection vertices an ellipsoidal tracer adds: by whether their facets are excluded.
+/// Which connection vertices an ellipsoidal tracer adds, by whether their facets are excluded.
 enum class ConnectionScope { All, Kept, Excluded };
 
 /// Transient path tracing that chooses the length first.
@@ -21,7 +21,7 @@ class EllipsoidalTracer : public Tracer {
  public:
     /// scene   must outlive the tracer
     /// scan    where sensors and lights may be
-    /// axis    its whole span is asked for, and what the gate's shape lets through beyond
+    /// axis    its span, extended by a shaped gate, is the range of lengths asked for
     EllipsoidalTracer(const Scene& scene,
                       const core::Scan& scan,
                       const core::TimeAxis& axis,

@@ -16,7 +16,7 @@ using core::Vec3;
 constexpr double kMargin = 4e-6;
 // Added to the spread of normals: above the rounding of cosines.
 constexpr float kSpreadMargin = 1e-3F;
-// Of a leg, relative to the radius of a box that may hold its end.
+// Shortest leg assumed, relative to the radius of a box that may contain its end.
 constexpr float kNearestLeg = 0.1F;
 // Deepest level with unbalanced cuts; below it sets are halved, so that facets which cannot be told
 // apart end.
@@ -220,8 +220,8 @@ TriangleHierarchy::Query TriangleHierarchy::make_query(const ConnectionEnds& end
     return query;
 }
 
-// Ends of the children's shares of the sum, the first 0; rounding keeps their order. Shares are
-// differences of these rounded numbers, so that what a descent does is exactly what it says.
+// Cumulative sums of the children's weights, from 0; rounding keeps their order. Probabilities are
+// differences of these rounded numbers, so that they are exactly those of a descent.
 std::array<float, TriangleHierarchy::kWidth + 1> TriangleHierarchy::cumulate(const Lanes& w) {
     const float first2 = w[0] + w[1];
     const float first4 = first2 + (w[2] + w[3]);

@@ -25,10 +25,10 @@ struct FacetChoice {
 
 /// A tree over the facets that ellipsoidal connections use, eight children per node.
 ///
-/// A descent picks children with probabilities proportional to an estimate of what they carry: area
-/// x share of their lengths that is asked for x the four cosines / squared distances, or 0 when
-/// bounds prove that they carry nothing. Children are tested eight at a time in single
-/// precision, relative to the centre of the set; all bounds are widened by more than its rounding.
+/// A descent picks children with probabilities proportional to an estimate of their contribution:
+/// area x share of their lengths within the interval x the four cosines / squared distances, or 0
+/// when bounds prove that there is none. Children are tested eight at a time in single precision,
+/// relative to the centre of the set; all bounds are widened by more than its rounding.
 class TriangleHierarchy {
  public:
     /// scene      must outlive the hierarchy
@@ -78,7 +78,7 @@ class TriangleHierarchy {
     struct QueryEnd {
         Eigen::Vector3f focus = Eigen::Vector3f::Zero();
         Eigen::Vector3f normal = Eigen::Vector3f::Zero();
-        float base = 0.0F;  ///< 1 for an end that has no sides, else 0
+        float base = 0.0F;  ///< 1 for an end without a normal, else 0
     };
     struct Query {
         QueryEnd a, b;
