@@ -50,7 +50,7 @@ RelevantElements::BlockPoints RelevantElements::of_block(std::uint32_t b) const 
 }
 
 // Points from which some path by way of a block may have a length within the axis; `crossing`:
-// those from which others may not.
+// those of them from which other paths may not.
 PointMask RelevantElements::points_reaching(std::uint32_t b, PointMask& crossing) const {
     const auto& [center, radius] = set_.spheres[b];
     LengthBounds other;
@@ -101,7 +101,7 @@ RelevantElements::BlockPoints RelevantElements::points_within_axis(std::uint32_t
     return within;
 }
 
-// Units of which some path from a point may have a length within the axis.
+// SIMD groups by way of which some path from a point may have a length within the axis.
 SimdGroupMask RelevantElements::simd_groups_within_axis(std::uint32_t b, std::size_t p) const {
     static_assert(ElementBlock::kNumSimdGroups == Simd::size());
     const ElementBlock& block = set_.blocks[b];
@@ -125,7 +125,7 @@ SimdGroupMask RelevantElements::simd_groups_within_axis(std::uint32_t b, std::si
     return static_cast<SimdGroupMask>(within.bits());
 }
 
-// Elements of which some path from a point may have a length within the axis.
+// Elements by way of which some path from a point may have a length within the axis.
 std::uint64_t RelevantElements::lanes_within_axis(std::uint32_t b, std::size_t p) const {
     const ElementBlock& block = set_.blocks[b];
     // For a point x = sum of l_c c over corners c, |x-w|^2 = sum of l_c |c-w|^2 - sum of l_c
@@ -160,7 +160,7 @@ std::uint64_t RelevantElements::lanes_within_axis(std::uint32_t b, std::size_t p
     return lanes;
 }
 
-// Points to which an element shows a side that reflects. It may reach in front of a wall point when
+// Points that an element faces with a reflecting side. It may reach in front of a wall point when
 // its centre does not.
 PointMask RelevantElements::points_facing(const ElementBlock& block, std::size_t i) const {
     if (!(block.area_m2[i] * block.mean_reflectance[i] > 0.0)) return 0;

@@ -8,8 +8,8 @@
 
 namespace renderer {
 
-/// Some SIMD groups of a block, runs of ElementBlock::kSimdWidth lanes that lie next to each other:
-/// SIMD group u is bit u.
+/// A set of SIMD groups of a block, runs of ElementBlock::kSimdWidth consecutive lanes: group u is
+/// bit u.
 using SimdGroupMask = std::uint32_t;
 
 inline constexpr SimdGroupMask kAllSimdGroups =

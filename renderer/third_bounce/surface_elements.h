@@ -12,7 +12,7 @@
 
 namespace renderer {
 
-/// How an element's weight follows from the geometry terms of its two legs.
+/// How the weight of an element follows from the geometry terms of its two legs.
 enum class ElementKind { Lambertian, Retroreflective, Glossy };
 
 inline ElementKind kind_of(const Material& material) {
@@ -33,8 +33,8 @@ struct SurfaceElement {
     core::Vec3 midpoint(std::size_t i) const { return 0.5 * (corners[i] + corners[(i + 1) % 3]); }
 };
 
-/// Elements of one kind in the layout of vectorised loops. Nodes 0-2 are corners, 3-5 the middles
-/// of the edges that start there, node 6 is the centre.
+/// Elements of one kind, laid out for vectorised loops. Nodes 0-2 are the corners, 3-5 the
+/// midpoints of the edges that start there, node 6 is the centre.
 struct alignas(64) ElementBlock {
     static constexpr std::size_t kSize = TriangleLanes::kSize;
     static constexpr std::size_t kSimdWidth = core::Simd::size();  ///< see simd_groups.h
@@ -47,7 +47,7 @@ struct alignas(64) ElementBlock {
     Lanes area_m2;
     Lanes rise_m;  ///< the surface lies at most this far above or below the triangle
     std::array<Lanes, 3> squared_edge;  ///< opposite to the corners [m^2]
-    Lanes one_sided;                    ///< +-1: only this side of the normal is ever seen; 0: both
+    Lanes one_sided;                    ///< +-1: only this side of the normal is visible; 0: both
     std::array<Lanes, kNodes> reflectance;  ///< at the nodes; albedo/pi or albedo/spot area
     Lanes mean_reflectance;
     Lanes glossy_alpha;  ///< GGX width, set for glossy elements only
@@ -61,8 +61,8 @@ struct alignas(64) ElementBlock {
     alignas(64) std::array<double, kNumSimdGroups> simd_group_radius_m;
 };
 
-/// A function's mean over a triangle from its values at a corner, a middle and the centre: exact
-/// for cubic ones.
+/// Weights of corners, edge midpoints and the centre in the mean of a function over a triangle;
+/// exact for cubic functions.
 inline constexpr double kShareOfCorner = 1.0 / 20.0;
 inline constexpr double kShareOfMiddle = 2.0 / 15.0;
 inline constexpr double kShareOfCenter = 9.0 / 20.0;

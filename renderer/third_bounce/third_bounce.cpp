@@ -84,7 +84,7 @@ class Integrator {
           pilot_axis_(pilot_axis(axis)),
           target_(settings.target_error.value_or(kDefaultTargetError)),
           seconds_(settings.seconds),
-          cutter_(scene, scan, axis, settings.laser_spot_m2) {}
+          subdivider_(scene, scan, axis, settings.laser_spot_m2) {}
 
     ThirdBounce run(const core::Progress& progress);
 
@@ -115,7 +115,7 @@ class Integrator {
     core::TimeAxis pilot_axis_;
     double target_;
     std::optional<double> seconds_;
-    SurfaceSubdivider cutter_;
+    SurfaceSubdivider subdivider_;
     std::deque<std::pair<int, ElementSet>> cuts_;  ///< the latest
     bool stopped_ = false;                         ///< before all pilot runs were made
     double norm_per_pair_ = 0.0;
@@ -131,7 +131,7 @@ const ElementSet& Integrator::cut(int level) {
         if (cut_level == level) return elements;
     }
     if (cuts_.size() == kMaxCuts) cuts_.pop_front();
-    return cuts_.emplace_back(level, cutter_.cut(tolerance(level))).second;
+    return cuts_.emplace_back(level, subdivider_.cut(tolerance(level))).second;
 }
 
 const Pilot& Integrator::run_pilot(int level) {
@@ -213,7 +213,7 @@ int Integrator::choose_level(const core::Progress& progress) {
         }
         return level;
     }
-    const auto fewest = static_cast<double>(cutter_.min_elements(tolerance(kCoarsest)));
+    const auto fewest = static_cast<double>(subdivider_.min_elements(tolerance(kCoarsest)));
     const auto can_be_coarser = [&] {
         return static_cast<double>(pilots_.at(level).num_elements) > kNearlyFewest * fewest;
     };

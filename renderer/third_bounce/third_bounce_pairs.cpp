@@ -103,9 +103,9 @@ NodeWeights glossy_values(const ElementBlock& block,
     return weights;
 }
 
-// Linear weights with the mean over the element, as the nodes tell it, and the corners'
-// differences; where a corner would fall below 0, all of them shrink until it does not. Into lanes
-// from `begin`.
+// Linear weights with the mean over the element, estimated from the nodes, and the differences
+// between the corners; where a corner would be negative, these are scaled down until it is 0.
+// Written to the lanes from `begin` on.
 [[gnu::always_inline]] inline void fit_weights(const NodeWeights& k,
                                                std::size_t begin,
                                                TriangleLanes& fitted) {
@@ -121,7 +121,7 @@ NodeWeights glossy_values(const ElementBlock& block,
     }
 }
 
-// By one division, which takes as long as a dozen products.
+// With a single division, which takes as long as a dozen products.
 template <std::size_t N>
 [[gnu::always_inline]] inline std::array<Simd, N> reciprocals(const std::array<Simd, N>& values) {
     std::array<Simd, N> result;  // first the products of the values before
@@ -139,8 +139,8 @@ template <std::size_t N>
     return result;
 }
 
-// Weights of the visible part: the product of two linear functions, made linear again with its
-// integral kept.
+// Weights of the visible part: the product of two linear functions, replaced by a linear one with
+// the same integral.
 std::array<double, 3> visible_weights(const std::array<double, 3>& weight, VisibilityMask mask) {
     const std::array<double, 3> share = visible_share(mask);
     std::array<double, 3> product{};
@@ -153,7 +153,7 @@ std::array<double, 3> visible_weights(const std::array<double, 3>& weight, Visib
     return product;
 }
 
-// What both ends see of the elements of a SIMD group.
+// The parts of a SIMD group's elements that are visible from both ends.
 using SimdGroupMasks = std::array<VisibilityMask, ElementBlock::kSimdWidth>;
 
 SimdGroupMasks common_masks(const PairEnd& light, const PairEnd& sensor, std::size_t begin) {

@@ -9,7 +9,7 @@
 
 namespace renderer {
 
-/// A wall point as the integrator sees it; position relative to ElementSet::origin.
+/// A wall point; its position is relative to ElementSet::origin.
 struct WallPoint {
     core::Vec3 position;
     core::Vec3 normal;
@@ -17,7 +17,7 @@ struct WallPoint {
     bool is_confocal = true;  ///< some pair has both its ends here, see CoincidingPoints
 };
 
-/// Some wall points of a WallPointLanes: point p is bit p.
+/// A set of wall points of a WallPointLanes: point p is bit p.
 using PointMask = std::uint16_t;
 
 /// Points of either mask.
@@ -33,8 +33,8 @@ inline PointMask common(PointMask a, PointMask b) {
     return static_cast<PointMask>(a & b);
 }
 
-/// Wall points that are looked from together, as many as a packet has rays: point p in lane p of
-/// all arrays. Lanes beyond `count` repeat the first point.
+/// Wall points whose visibility is traced together, as many as a packet has rays: point p in lane p
+/// of all arrays. Lanes beyond `count` repeat the first point.
 struct alignas(64) WallPointLanes {
     static constexpr std::size_t kSize = SegmentPacket::kSize;
     using Lanes = std::array<double, kSize>;
