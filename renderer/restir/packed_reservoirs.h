@@ -9,7 +9,7 @@
 
 namespace renderer {
 
-/// Many finished reservoirs of paths, in no more memory than their longest paths need.
+/// Many finished reservoirs of paths, stored compactly for paths of limited length.
 class PackedReservoirs {
  public:
     PackedReservoirs(std::size_t count, int max_vertices)

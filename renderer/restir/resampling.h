@@ -5,16 +5,16 @@
 
 namespace renderer {
 
-/// One sample that stands for many candidates (source [Lin2022]).
+/// One sample that represents many candidates (source [Lin2022]).
 ///
-/// Its contribution weight W is an unbiased estimate of one over the density with which it was
-/// chosen: the mean of W f(sample) is the integral of f wherever the target value is positive.
+/// Its contribution weight W is an unbiased estimate of the reciprocal of the density with which it
+/// was chosen: the expectation of W f(sample) is the integral of f where the target is positive.
 template <class Sample>
 struct Reservoir {
     Sample sample{};
     double target_value = 0.0;         ///< p-hat of the sample; 0: there is none
     double contribution_weight = 0.0;  ///< W
-    double confidence = 0.0;           ///< how many frames' candidates it stands for
+    double confidence = 0.0;           ///< number of frames whose candidates it represents
 
     bool empty() const { return !(target_value > 0.0); }
     /// The sample's estimate of the integral of the target function.
@@ -58,12 +58,12 @@ class ReservoirBuilder {
     double weight_sum_ = 0.0;
 };
 
-/// A sample carried into another domain.
+/// A sample shifted into another domain.
 template <class Sample>
 struct Carried {
     Sample sample{};
     double target_value = 0.0;  ///< p-hat there, in that domain's measure
-    double jacobian = 1.0;      ///< of the map that carried it
+    double jacobian = 1.0;      ///< of the shift mapping
 };
 
 /// Weighs two domains' samples against each other by confidence times density: the generalised
@@ -124,8 +124,8 @@ Reservoir<Sample> resample_balance_heuristic(const Reservoir<Sample>& canonical,
 /// Merges a canonical reservoir with neighbours whose number was fixed before any sample was
 /// known, by defensive pairwise MIS (source [Bitterli2022], weights as in [Lin2022]).
 ///
-/// A neighbour whose sample cannot be carried over, or that has none, still counts: its share goes
-/// to the canonical sample. Counting only the successful ones would be biased.
+/// A neighbour without a sample, or whose sample cannot be shifted, still counts: its share goes to
+/// the canonical sample. Counting only successful shifts would be biased.
 template <class Sample>
 class PairwiseMisMerge {
  public:

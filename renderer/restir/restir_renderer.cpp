@@ -12,8 +12,8 @@ namespace {
 
 constexpr std::size_t kPairsPerTask = 16;
 
-// Streams of random numbers of one frame: one for the candidates, one for each round of reuse, and
-// one for the places within pixels.
+// Random number streams of one frame: one for the candidates, one per round of reuse, and one for
+// the positions within pixels.
 constexpr std::uint64_t kStreamsPerFrame = 64;
 constexpr int kCandidateStage = 0;
 constexpr std::uint64_t kPixelStream = kStreamsPerFrame - 1;
@@ -24,7 +24,7 @@ constexpr double kShrink = 0.2;
 // Pixels whose surfaces are tilted further against each other share few useful paths.
 constexpr double kMinNormalCosine = 0.5;
 
-// One frame's candidates count as one, whatever their number.
+// Confidence counts frames, whatever their number of candidates.
 constexpr double kConfidenceOfFrame = 1.0;
 
 PathReservoir limited(PathReservoir reservoir, double most) {
@@ -43,7 +43,7 @@ PathCandidates::Effort effort_of(const RestirSettings& settings, double share) {
 
 }  // namespace
 
-// What a thread needs while it works on some pairs.
+// The state of a thread that works on some pairs.
 struct RestirRenderer::Worker {
     core::Rng rng{0, 0, 0};
     std::size_t pair = 0;

@@ -57,7 +57,7 @@ void sort_corners(TriangleLanes& lanes, std::size_t count, double start_m, doubl
     }
 }
 
-// Adds a unit of triangles, whose corners lie at positions in bins, bin by bin.
+// Adds a SIMD group of triangles, whose corners lie at positions in bins, bin by bin.
 [[gnu::always_inline]] inline void add_together(const SortedTriangles& triangles,
                                                 std::span<double> histogram) {
     const auto num_bins = static_cast<double>(histogram.size());
@@ -75,8 +75,8 @@ void sort_corners(TriangleLanes& lanes, std::size_t count, double start_m, doubl
     if (first <= last) add(last, high < num_bins ? triangles.whole() : triangles.below(num_bins));
 }
 
-// Triangles that together reach over more bins than this and more than this many times the longest
-// one are added one by one.
+// Triangles that together span more bins than kFewBins, and more than kMaxScatter times as many as
+// the longest one, are added one by one.
 constexpr double kFewBins = 16.0;
 constexpr double kMaxScatter = 4.0;
 
@@ -153,7 +153,7 @@ constexpr std::array<QuarterCorner, 3> kQuarterCorners = quarter_corners();
 // 1 in the lanes of the second triangle.
 alignas(64) constexpr std::array<double, kSimdWidth> kSecond{0, 0, 0, 0, 1, 1, 1, 1};
 
-// Sets the unit of `parts` from `begin` to the quarters of two sorted triangles.
+// Sets the SIMD group of `parts` at `begin` to the quarters of two sorted triangles.
 void quarter(const TriangleLanes& lanes,
              std::size_t first,
              std::size_t second,
@@ -186,7 +186,7 @@ void quarter(const TriangleLanes& lanes,
     store(0.25 * both(lanes.area_m2), parts.area_m2, begin);
 }
 
-// Returns the lowest bit, and takes it away.
+// Returns the index of the lowest set bit and clears it.
 std::size_t take_lowest(std::uint64_t& bits) {
     const auto lowest = static_cast<std::size_t>(std::countr_zero(bits));
     bits &= bits - 1;

@@ -31,8 +31,8 @@ TriangleKnots match_midpoints(const TriangleKnots& at_corners, const TriangleKno
 /// Mean over the triangle of weight * [length < opl_m]: the cumulative histogram per unit area.
 double triangle_cumulative(const TriangleKnots& knots, double opl_m);
 
-/// Triangles side by side, one lane each, so that the compiler fills vector units. Weights are
-/// linear, lengths quadratic: with barycentric coordinates l,
+/// Triangles side by side, one per lane, for vectorised loops. Weights are linear, lengths
+/// quadratic: with barycentric coordinates l,
 ///
 ///     opl = sum over corners of l_j opl_m[j] - sum over edges ij of bend_m[k] l_i l_j / 2,
 ///
@@ -63,7 +63,7 @@ void add_triangles(TriangleLanes& lanes,
                    const core::TimeAxis& axis,
                    std::span<double> histogram);
 
-/// The bins that a triangle of unit area reaches, and how they change with its knots.
+/// The bins that a triangle of unit area reaches, and their derivatives by its knots.
 struct TriangleBins {
     /// Value; derivatives by the three lengths, by the three weights, and by the logarithm of the
     /// response's width.
