@@ -2,6 +2,7 @@
 #include "renderer/bounce_truncation.h"
 
 #include "renderer/core/parallel.h"
+#include "renderer/path/path_tracer.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,9 +13,9 @@ namespace renderer {
 namespace {
 
 constexpr std::size_t kMaxPairs = 128;
-constexpr std::size_t kRuns = 16;                      ///< independent ones, in twos
-constexpr int kSamples = 256;                          ///< of a pair in a run
-constexpr std::uint64_t kTruncationItem = 1ULL << 41;  ///< keeps its random numbers apart
+constexpr std::size_t kRuns = 16;                      ///< independent, taken in couples
+constexpr int kSamples = 256;                          ///< per pair and run
+constexpr std::uint64_t kTruncationItem = 1ULL << 41;  ///< for random numbers of its own
 
 // What a pair receives in each order and all later ones: [order - 1][bin].
 std::vector<double> tails_of(PassHistogram& histogram, std::size_t num_orders, std::size_t bins) {
@@ -28,54 +29,44 @@ std::vector<double> tails_of(PassHistogram& histogram, std::size_t num_orders, s
     return tails;
 }
 
-// Squared norms of the tails over some pairs, one entry per order and couple of runs. The product
-// of two independent estimates has no bias from their noise.
-struct SquaredNorms {
-    std::vector<double> values;  ///< [order - 1][couple]
-
-    SquaredNorms& operator+=(const SquaredNorms& other) {
-        for (std::size_t i = 0; i < values.size(); ++i) values[i] += other.values[i];
-        return *this;
-    }
-};
-
 }  // namespace
 
-BounceTruncation find_bounce_truncation(const Scene& scene,
-                                        const core::Scan& scan,
-                                        const core::HistogramAxes& axes,
-                                        const RenderSettings& settings,
-                                        double allowed) {
-    RenderSettings measuring = settings;
+BounceTruncation find_bounce_truncation(const RenderTask& task, double allowed) {
+    RenderSettings measuring = task.settings;
     measuring.by_order = true;
-    const PairEstimator estimate = path_estimator(scene, scan, measuring, ThirdBounceScope::All);
+    const PathTracer tracer(task.scene, measuring);
+    const SensorPairs sensor_pairs(task.scene, task.scan);
     constexpr std::size_t kCouples = kRuns / 2;
-    const auto num_orders = static_cast<std::size_t>(settings.max_bounces);
-    const auto bins = static_cast<std::size_t>(axes.time.num_bins);
-    const std::size_t num_pairs = std::min(kMaxPairs, scan.num_pairs());
-    const SquaredNorms zero{std::vector<double>(num_orders * kCouples)};
-    const SquaredNorms norms =
-        core::parallel_sum<SquaredNorms>(num_pairs, zero, [&](std::size_t i) {
-            const std::size_t pair = (2 * i + 1) * scan.num_pairs() / (2 * num_pairs);
-            SquaredNorms result = zero;
-            PassHistogram histogram({axes.time, {}}, settings.gate, settings.max_bounces);
-            std::vector<double> first;
-            for (std::size_t run = 0; run < kRuns; ++run) {
-                core::Rng rng(settings.seed, kTruncationItem + pair, run);
-                estimate(pair, kSamples, rng, histogram);
-                std::vector<double> tails = tails_of(histogram, num_orders, bins);
-                if (run % 2 == 0) {
-                    first = std::move(tails);
-                    continue;
-                }
-                for (std::size_t j = 0; j < tails.size(); ++j) {
-                    result.values[j / bins * kCouples + run / 2] += first[j] * tails[j];
-                }
+    const auto num_orders = static_cast<std::size_t>(task.settings.max_bounces);
+    const auto bins = static_cast<std::size_t>(task.axes.time.num_bins);
+    const std::size_t num_pairs = std::min(kMaxPairs, task.scan.num_pairs());
+    // Squared norms of the tails over these pairs, [order - 1][couple of runs]. The product of two
+    // independent estimates has no bias from their noise.
+    using Norms = Eigen::ArrayXd;
+    const Norms zero = Norms::Zero(static_cast<Eigen::Index>(num_orders * kCouples));
+    const Norms norms = core::parallel_sum<Norms>(num_pairs, zero, [&](std::size_t i) {
+        const std::size_t pair = (2 * i + 1) * task.scan.num_pairs() / (2 * num_pairs);
+        Norms result = zero;
+        PassHistogram histogram(
+            {task.axes.time, {}}, task.settings.gate, task.settings.max_bounces);
+        std::vector<double> first;
+        for (std::size_t run = 0; run < kRuns; ++run) {
+            core::Rng rng(task.settings.seed, kTruncationItem + pair, run);
+            tracer.trace(sensor_pairs, pair, kSamples, rng, histogram);
+            std::vector<double> tails = tails_of(histogram, num_orders, bins);
+            if (run % 2 == 0) {
+                first = std::move(tails);
+                continue;
             }
-            return result;
-        });
+            for (std::size_t j = 0; j < tails.size(); ++j) {
+                const std::size_t norm = j / bins * kCouples + run / 2;
+                result[static_cast<Eigen::Index>(norm)] += first[j] * tails[j];
+            }
+        }
+        return result;
+    });
     const auto norm_from = [&](std::size_t order, double deviations) {
-        const double* const begin = norms.values.data() + (order - 1) * kCouples;
+        const double* const begin = norms.data() + (order - 1) * kCouples;
         double sum = 0.0;
         double squares = 0.0;
         for (std::size_t c = 0; c < kCouples; ++c) {
@@ -86,7 +77,7 @@ BounceTruncation find_bounce_truncation(const Scene& scene,
         const double variance = std::max(0.0, squares / kCouples - mean * mean) / (kCouples - 1);
         return std::sqrt(std::max(0.0, mean + deviations * std::sqrt(variance)));
     };
-    BounceTruncation result{settings.max_bounces, 0.0};
+    BounceTruncation result{task.settings.max_bounces, 0.0};
     const double all = norm_from(1, 0.0);
     if (!(all > 0.0)) return result;
     for (; result.last > 3; --result.last) {

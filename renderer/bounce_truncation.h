@@ -1,26 +1,20 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/pair_estimator.h"
+#include "renderer/render_task.h"
 
 namespace renderer {
 
-/// How far bounces are worth computing.
+/// How many bounce orders are worth computing.
 struct BounceTruncation {
-    int last = 3;           ///< orders above it are below what is allowed
-    double left_out = 0.0;  ///< relative L2 of all of H in them: measured, and two deviations
+    int last = 3;           ///< higher orders together stay below what is allowed
+    double left_out = 0.0;  ///< their relative L2 over all of H: two sigma above the estimate
 };
 
-/// Measures by a short run of path tracing on some pairs how much of H the last orders hold, and
-/// leaves out as many of them as together stay below `allowed`.
+/// Estimates by a short run of path tracing on some pairs how much of H the last orders hold, and
+/// drops as many of them as together stay below `allowed`.
 ///
-/// axes       of H
-/// settings   max_bounces, gate, seed
-/// allowed    relative L2 over all of H
-BounceTruncation find_bounce_truncation(const Scene& scene,
-                                        const core::Scan& scan,
-                                        const core::HistogramAxes& axes,
-                                        const RenderSettings& settings,
-                                        double allowed);
+/// allowed   relative L2 over all of H
+BounceTruncation find_bounce_truncation(const RenderTask& task, double allowed);
 
 }  // namespace renderer

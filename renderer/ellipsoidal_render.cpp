@@ -2,6 +2,7 @@
 #include "renderer/ellipsoidal_render.h"
 
 #include "renderer/core/parallel.h"
+#include "renderer/ellipsoidal/ellipsoidal_tracer.h"
 #include "renderer/pass_render.h"
 
 #include <fmt/core.h>
@@ -16,9 +17,9 @@ namespace renderer {
 namespace {
 
 constexpr std::size_t kMeasuredPairs = 128;
-constexpr int kMeasuringPasses = 16;  ///< which give the deviation
+constexpr int kMeasuringPasses = 16;  ///< whose spread gives the standard deviation
 constexpr int kMeasuringSamples = 32;
-constexpr std::uint64_t kMeasuringItem = 1ULL << 40;  ///< keeps its random numbers apart
+constexpr std::uint64_t kMeasuringItem = 1ULL << 40;  ///< for random numbers of its own
 
 double sum_of(PassHistogram& histogram) {
     double sum = 0.0;
@@ -50,42 +51,32 @@ std::string drop_warning(const DroppedSignal& dropped,
 
 }  // namespace
 
-DroppedSignal measure_dropped_signal(const Scene& scene,
-                                     const core::Scan& scan,
-                                     const core::TimeAxis& axis,
-                                     const RenderSettings& settings,
-                                     std::size_t max_pairs) {
+DroppedSignal measure_dropped_signal(const RenderTask& task, std::size_t max_pairs) {
     DroppedSignal dropped;
-    const std::size_t count = std::min(max_pairs, scan.num_pairs());
+    const std::size_t count = std::min(max_pairs, task.scan.num_pairs());
     for (std::size_t i = 0; i < count; ++i) {
-        dropped.pairs.push_back((2 * i + 1) * scan.num_pairs() / (2 * count));
+        dropped.pairs.push_back((2 * i + 1) * task.scan.num_pairs() / (2 * count));
     }
-    const PairEstimator estimate =
-        ellipsoidal_estimator(scene, scan, axis, settings, ConnectionScope::Excluded);
-    struct Moments {
-        double sum = 0.0;
-        double squares = 0.0;
-        Moments& operator+=(const Moments& other) {
-            sum += other.sum;
-            squares += other.squares;
-            return *this;
-        }
-    };
+    const EllipsoidalTracer tracer(
+        task.scene, task.scan, task.axes.time, task.settings, ConnectionScope::Excluded);
+    const SensorPairs sensor_pairs(task.scene, task.scan);
+    using Moments = Eigen::Array2d;  // sum and sum of squares
     // One term per pass: its sum over the pairs.
     const Moments moments = core::parallel_sum<Moments>(
-        static_cast<std::size_t>(kMeasuringPasses), {}, [&](std::size_t pass) {
-            PassHistogram histogram(
-                axis, settings.gate, settings.by_order ? settings.max_bounces : 1);
+        static_cast<std::size_t>(kMeasuringPasses), Moments::Zero(), [&](std::size_t pass) {
+            PassHistogram histogram({task.axes.time, {}},
+                                    task.settings.gate,
+                                    task.settings.by_order ? task.settings.max_bounces : 1);
             double sum = 0.0;
             for (const std::size_t pair : dropped.pairs) {
-                core::Rng rng(settings.seed, kMeasuringItem + pair, pass);
-                estimate(pair, kMeasuringSamples, rng, histogram);
+                core::Rng rng(task.settings.seed, kMeasuringItem + pair, pass);
+                tracer.trace(sensor_pairs, pair, kMeasuringSamples, rng, histogram);
                 sum += sum_of(histogram);
             }
-            return Moments{sum, sum * sum};
+            return Moments(sum, sum * sum);
         });
-    dropped.lost = moments.sum / kMeasuringPasses;
-    const double variance = moments.squares / kMeasuringPasses - dropped.lost * dropped.lost;
+    dropped.lost = moments[0] / kMeasuringPasses;
+    const double variance = moments[1] / kMeasuringPasses - dropped.lost * dropped.lost;
     dropped.sigma = std::sqrt(std::max(0.0, variance) / (kMeasuringPasses - 1));
     return dropped;
 }
@@ -95,36 +86,31 @@ std::string surfaces_kept(const RenderSettings& settings, const ExcludedObjects&
     return drops ? "all but the excluded ones" : "all";
 }
 
-void warn_of_dropped_signal(const Scene& scene,
-                            const core::Scan& scan,
-                            const core::TimeAxis& axis,
-                            const RenderSettings& settings,
-                            RenderResult& result) {
-    if (settings.exclude != Exclusion::Drop || result.excluded.names.empty()) return;
-    const DroppedSignal dropped =
-        measure_dropped_signal(scene, scan, axis, settings, kMeasuredPairs);
+void warn_of_dropped_signal(const RenderTask& task, RenderResult& result) {
+    if (task.settings.exclude != Exclusion::Drop || result.excluded.names.empty()) return;
+    const DroppedSignal dropped = measure_dropped_signal(task, kMeasuredPairs);
     const double kept = kept_signal(result.capture, dropped.pairs);
     result.warnings.push_back(drop_warning(dropped, kept, result.excluded.names));
 }
 
-RenderResult render_ellipsoidal(const Scene& scene,
-                                const core::Scan& scan,
-                                const core::HistogramAxes& axes,
-                                const RenderSettings& settings,
-                                const core::Progress& progress) {
-    const bool drops = settings.exclude == Exclusion::Drop;
-    const int first = first_order(scan);
+RenderResult render_ellipsoidal(const RenderTask& task) {
+    const bool drops = task.settings.exclude == Exclusion::Drop;
+    const int first = first_order(task.scan);
     PassWork work;
-    if (settings.max_bounces >= first) {
-        work.estimate = ellipsoidal_estimator(
-            scene, scan, axes.time, settings, drops ? ConnectionScope::Kept : ConnectionScope::All);
+    if (task.settings.max_bounces >= first) {
+        work.tracer = std::make_shared<const EllipsoidalTracer>(
+            task.scene,
+            task.scan,
+            task.axes.time,
+            task.settings,
+            drops ? ConnectionScope::Kept : ConnectionScope::All);
     }
-    RenderResult result = render_passes(scene, scan, axes, settings, work, progress);
-    if (!work.estimate) return result;
-    result.excluded = ExcludedFacets::of(scene, axes.time, settings).objects;
-    const std::string surfaces = surfaces_kept(settings, result.excluded);
-    result.sources.push_back({first, settings.max_bounces, Estimator::Ellipsoidal, surfaces});
-    warn_of_dropped_signal(scene, scan, axes.time, settings, result);
+    RenderResult result = render_passes(task, work);
+    if (work.tracer == nullptr) return result;
+    result.excluded = ExcludedFacets::of(task.scene, task.axes.time, task.settings).objects;
+    const std::string surfaces = surfaces_kept(task.settings, result.excluded);
+    result.sources.push_back({first, task.settings.max_bounces, Estimator::Ellipsoidal, surfaces});
+    warn_of_dropped_signal(task, result);
     return result;
 }
 

@@ -1,21 +1,16 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/core/progress.h"
 #include "renderer/render_result.h"
-#include "renderer/scene/scene.h"
+#include "renderer/render_task.h"
 
 namespace renderer {
 
-/// Renders with ellipsoidal connections; arguments and results are those of render().
+/// Renders with ellipsoidal connections; results are those of render().
 ///
 /// With excluded surfaces dropped, the result's warnings say what share of the signal that lost:
 /// see warn_of_dropped_signal().
-RenderResult render_ellipsoidal(const Scene& scene,
-                                const core::Scan& scan,
-                                const core::HistogramAxes& axes,
-                                const RenderSettings& settings,
-                                const core::Progress& progress);
+RenderResult render_ellipsoidal(const RenderTask& task);
 
 /// What dropping the excluded surfaces loses, by path tracing them alone.
 struct DroppedSignal {
@@ -25,11 +20,7 @@ struct DroppedSignal {
 };
 
 /// Measures it on at most `max_pairs` pairs, spread over the scan.
-DroppedSignal measure_dropped_signal(const Scene& scene,
-                                     const core::Scan& scan,
-                                     const core::TimeAxis& axis,
-                                     const RenderSettings& settings,
-                                     std::size_t max_pairs);
+DroppedSignal measure_dropped_signal(const RenderTask& task, std::size_t max_pairs);
 
 /// Which surfaces connections end on, in words.
 std::string surfaces_kept(const RenderSettings& settings, const ExcludedObjects& excluded);
@@ -38,10 +29,6 @@ std::string surfaces_kept(const RenderSettings& settings, const ExcludedObjects&
 /// measured on some of the pairs.
 ///
 /// result   with the capture and what was excluded
-void warn_of_dropped_signal(const Scene& scene,
-                            const core::Scan& scan,
-                            const core::TimeAxis& axis,
-                            const RenderSettings& settings,
-                            RenderResult& result);
+void warn_of_dropped_signal(const RenderTask& task, RenderResult& result);
 
 }  // namespace renderer

@@ -37,7 +37,7 @@ bool is_open_ended(const RenderSettings& settings) {
 }
 
 PassPlan plan_passes(const RenderSettings& settings, const PassWork& work) {
-    if (!work.estimate) return {0, 1};
+    if (work.tracer == nullptr) return {0, 1};
     if (is_open_ended(settings)) return {kSamplesPerTimedPass, std::numeric_limits<int>::max()};
     int per_pass = std::clamp(settings.samples / kPasses, 1, kMaxSamplesPerPass);
     // Multiples of 4 split into the path tracer's two kinds of samples without rounding noise.
@@ -68,34 +68,25 @@ double sums_bytes_per_pair(const core::HistogramAxes& axes, const RenderSettings
            sizeof(double);
 }
 
-std::size_t pairs_per_tile(const core::Scan& scan,
-                           const core::HistogramAxes& axes,
-                           const RenderSettings& settings,
-                           double max_sums_bytes) {
-    if (is_open_ended(settings)) return scan.num_pairs();
-    const double pairs = std::floor(max_sums_bytes / sums_bytes_per_pair(axes, settings));
-    return static_cast<std::size_t>(std::clamp(pairs, 1.0, static_cast<double>(scan.num_pairs())));
+std::size_t pairs_per_tile(const RenderTask& task, double max_sums_bytes) {
+    if (is_open_ended(task.settings)) return task.scan.num_pairs();
+    const double pairs = std::floor(max_sums_bytes / sums_bytes_per_pair(task.axes, task.settings));
+    return static_cast<std::size_t>(
+        std::clamp(pairs, 1.0, static_cast<double>(task.scan.num_pairs())));
 }
 
-void require_memory(const core::Scan& scan,
-                    const core::HistogramAxes& axes,
-                    const RenderSettings& settings,
-                    std::size_t tile_pairs) {
+void require_memory_for(const RenderTask& task, std::size_t tile_pairs) {
     // The capture's arrays, and the sums of one tile.
-    const double kinds = settings.variance ? 2.0 : 1.0;
-    const double values =
-        (channel_count(settings) + kinds) * axes.time.num_bins + kinds * num_velocity_values(axes);
-    const double needed = values * sizeof(float) * static_cast<double>(scan.num_pairs()) +
-                          sums_bytes_per_pair(axes, settings) * static_cast<double>(tile_pairs);
-    const double available = static_cast<double>(core::available_memory_bytes());
-    if (needed > available) {
-        throw core::Failure("render",
-                            fmt::format("{} pairs x {} bins need {:.1f} GB, {:.1f} GB are free",
-                                        scan.num_pairs(),
-                                        axes.time.num_bins + num_velocity_values(axes),
-                                        needed * 1e-9,
-                                        available * 1e-9));
-    }
+    const double kinds = task.settings.variance ? 2.0 : 1.0;
+    const double values = (channel_count(task.settings) + kinds) * task.axes.time.num_bins +
+                          kinds * num_velocity_values(task.axes);
+    require_memory(
+        "render",
+        fmt::format("{} pairs x {} bins",
+                    task.scan.num_pairs(),
+                    task.axes.time.num_bins + num_velocity_values(task.axes)),
+        values * sizeof(float) * static_cast<double>(task.scan.num_pairs()) +
+            sums_bytes_per_pair(task.axes, task.settings) * static_cast<double>(tile_pairs));
 }
 
 // Pairs [begin, begin + count) of a scan.
@@ -105,173 +96,126 @@ struct Tile {
 };
 
 // Runs passes over the pairs of a tile until the plan, the clock or the caller ends them.
-class PassLoop {
- public:
-    PassLoop(const Scene& scene,
-             const core::Scan& scan,
-             const core::HistogramAxes& axes,
-             const RenderSettings& settings,
-             const PassWork& work)
-        : scene_(scene),
-          scan_(scan),
-          axes_(axes),
-          settings_(settings),
-          work_(work),
-          num_channels_(channel_count(settings)),
-          sensor_pairs_(scene, scan) {}
+struct PassLoop {
+    const RenderTask& task;
+    const PassWork& work;
+    SensorPairs sensor_pairs;
+    TransientAccumulator::SquaredNorms norms{};  ///< of all tiles so far
 
     /// Adds the tile's histograms, samples and rays to `result`.
     void run(const Tile& tile, const core::Progress& progress, RenderResult& result);
-
- private:
-    std::uint64_t trace_pair(std::size_t pair,
-                             int samples,
-                             core::Rng& rng,
-                             PassHistogram& histogram) const;
-    void run_passes(const Tile& tile, int first, int count, int samples, HistogramSums& sums);
-    void fill_capture(const Tile& tile,
-                      const HistogramSums& sums,
-                      int passes,
-                      core::Capture& capture) const;
-
-    const Scene& scene_;
-    const core::Scan& scan_;
-    const core::HistogramAxes& axes_;
-    const RenderSettings& settings_;
-    const PassWork& work_;
-    int num_channels_;
-    SensorPairs sensor_pairs_;
-    std::atomic<std::uint64_t> num_rays_{0};
-    TransientAccumulator::SquaredNorms norms_;  ///< of all tiles so far
+    /// Returns the number of rays.
+    std::uint64_t run_passes(
+        const Tile& tile, int first, int count, int samples, HistogramSums& sums) const;
 };
 
-std::uint64_t PassLoop::trace_pair(std::size_t pair,
-                                   int samples,
-                                   core::Rng& rng,
-                                   PassHistogram& histogram) const {
-    std::uint64_t num_rays = 0;
-    if (work_.estimate) num_rays = work_.estimate(pair, samples, rng, histogram);
-    if (!sensor_pairs_.is_image()) {
-        add_short_paths(scene_, sensor_pairs_.ends(pair), settings_, histogram);
-    }
-    return num_rays;
-}
-
-void PassLoop::run_passes(
-    const Tile& tile, int first, int count, int samples, HistogramSums& sums) {
+std::uint64_t PassLoop::run_passes(
+    const Tile& tile, int first, int count, int samples, HistogramSums& sums) const {
     constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
     std::atomic<std::size_t> bad_pair{kNone};
+    std::atomic<std::uint64_t> num_rays{0};
     core::parallel_blocks(tile.count, kPairsPerBlock, [&](std::size_t begin, std::size_t end) {
-        PassHistogram histogram(axes_, settings_.gate, num_channels_);
+        PassHistogram histogram(task.axes, task.settings.gate, channel_count(task.settings));
         for (std::size_t i = begin; i < end; ++i) {
             const std::size_t pair = tile.begin + i;
             for (int pass = first; pass < first + count; ++pass) {
-                core::Rng rng(settings_.seed, pair, static_cast<std::uint64_t>(pass));
-                num_rays_ += trace_pair(pair, samples, rng, histogram);
+                core::Rng rng(task.settings.seed, pair, static_cast<std::uint64_t>(pass));
+                if (work.tracer != nullptr) {
+                    num_rays += work.tracer->trace(sensor_pairs, pair, samples, rng, histogram);
+                }
+                if (!sensor_pairs.is_image()) {
+                    add_short_paths(task.scene, sensor_pairs.ends(pair), task.settings, histogram);
+                }
                 sums.add_pass(i, histogram);
             }
             if (histogram.num_non_finite() > 0) bad_pair = std::min(bad_pair.load(), pair);
             if (bad_pair != kNone) return;
         }
     });
-    if (bad_pair != kNone) {
-        throw core::Failure(
-            "render",
-            fmt::format("a contribution is not finite (pair {}, passes {} to {}, seed {})",
-                        bad_pair.load(),
-                        first,
-                        first + count - 1,
-                        settings_.seed));
-    }
-}
-
-void PassLoop::fill_capture(const Tile& tile,
-                            const HistogramSums& sums,
-                            int passes,
-                            core::Capture& capture) const {
-    sums.write_to(capture, tile.begin, passes);
-    const auto num_bins = static_cast<std::size_t>(axes_.time.num_bins);
-    for (std::size_t i = 0; i < capture.orders.size(); ++i) {
-        sums.time.write_mean(
-            capture.orders[i] - 1,
-            passes,
-            capture.by_order[i].values().subspan(tile.begin * num_bins, tile.count * num_bins));
-    }
+    if (bad_pair == kNone) return num_rays;
+    throw core::Failure(
+        "render",
+        fmt::format("a contribution is not finite (pair {}, passes {} to {}, seed {})",
+                    bad_pair.load(),
+                    first,
+                    first + count - 1,
+                    task.settings.seed));
 }
 
 void PassLoop::run(const Tile& tile, const core::Progress& progress, RenderResult& result) {
     const core::Stopwatch watch;
-    const PassPlan plan = plan_passes(settings_, work_);
-    HistogramSums sums(tile.count, axes_, num_channels_, settings_.variance);
-    StoppingRule rule(settings_, plan.num_passes, work_.precomputed);
+    const bool samples = work.tracer != nullptr;
+    const PassPlan plan = plan_passes(task.settings, work);
+    HistogramSums sums(tile.count, task.axes, channel_count(task.settings), task.settings.variance);
+    StoppingRule rule(task.settings, plan.num_passes, work.precomputed);
     int pass = 0;
-    for (bool enough = false; !enough;) {
-        const int count = next_round(plan, settings_, pass, watch.seconds());
-        run_passes(tile, pass, count, plan.samples_per_pass, sums);
+    const auto run_round = [&] {
+        const int count = next_round(plan, task.settings, pass, watch.seconds());
+        result.num_rays += run_passes(tile, pass, count, plan.samples_per_pass, sums);
         pass += count;
         const double elapsed = watch.seconds();
-        const double share = work_.estimate ? rule.share_done(pass, elapsed, sums.time) : 1.0;
+        const double share = samples ? rule.share_done(pass, elapsed, sums.time) : 1.0;
         const double paths = static_cast<double>(tile.count) * plan.samples_per_pass * pass;
         progress.update(share, fmt::format("{:.2f} M paths/s", paths / elapsed * 1e-6));
-        enough = share >= 1.0;
-        if (!enough && progress.should_stop()) {
-            result.interrupted = true;
-            break;
-        }
+        return share >= 1.0;
+    };
+    while (!run_round()) {
+        result.interrupted = progress.should_stop();
+        if (result.interrupted) break;
     }
-    if (work_.estimate && pass > 1) {
-        const auto norms = sums.time.squared_norms(pass, work_.precomputed.transient);
-        norms_.noise += norms.noise;
-        norms_.signal += norms.signal;
-        result.estimated_error = relative_error(norms_, work_.precomputed);
+    if (samples && pass > 1) {
+        const auto of_tile = sums.time.squared_norms(pass, work.precomputed.transient);
+        norms.noise += of_tile.noise;
+        norms.signal += of_tile.signal;
+        result.estimated_error = relative_error(norms, work.precomputed);
     }
-    fill_capture(tile, sums, pass, result.capture);
+    sums.write_to(result.capture, tile.begin, pass);
     result.samples_per_pair =
         static_cast<std::uint64_t>(plan.samples_per_pass) * static_cast<std::uint64_t>(pass);
-    result.num_rays += num_rays_.exchange(0);
-}
-
-core::Capture empty_capture(const core::Scan& scan,
-                            const core::HistogramAxes& axes,
-                            const RenderSettings& settings) {
-    core::Capture capture;
-    capture.scan = scan;
-    capture.time_axis = axes.time;
-    if (axes.velocity) capture.velocity = {*axes.velocity, {}, std::nullopt};
-    if (!settings.by_order) return capture;
-    for (int order = 1; order <= channel_count(settings); ++order) {
-        capture.orders.push_back(order);
-        capture.by_order.emplace_back(scan.num_pairs(), axes.time.num_bins);
-    }
-    return capture;
 }
 
 }  // namespace
 
-RenderResult render_passes(const Scene& scene,
-                           const core::Scan& scan,
-                           const core::HistogramAxes& axes,
-                           const RenderSettings& settings,
-                           const PassWork& work,
-                           const core::Progress& progress) {
+void require_memory(const std::string& where, const std::string& what, double bytes) {
+    const auto available = static_cast<double>(core::available_memory_bytes());
+    if (bytes <= available) return;
+    throw core::Failure(
+        where,
+        fmt::format("{} need {:.1f} GB, {:.1f} GB are free", what, bytes * 1e-9, available * 1e-9));
+}
+
+core::Capture empty_capture(const core::Scan& scan, const core::HistogramAxes& axes) {
+    core::Capture capture;
+    capture.scan = scan;
+    capture.time_axis = axes.time;
+    if (axes.velocity) capture.velocity = {*axes.velocity, {}, std::nullopt};
+    return capture;
+}
+
+RenderResult render_passes(const RenderTask& task, const PassWork& work) {
     const core::Stopwatch watch;
-    const std::size_t num_pairs = scan.num_pairs();
-    const std::size_t tile_pairs = pairs_per_tile(scan, axes, settings, work.max_sums_bytes);
-    require_memory(scan, axes, settings, tile_pairs);
+    const std::size_t num_pairs = task.scan.num_pairs();
+    const std::size_t tile_pairs = pairs_per_tile(task, work.max_sums_bytes);
+    require_memory_for(task, tile_pairs);
     RenderResult result;
-    result.capture = empty_capture(scan, axes, settings);
-    PassLoop loop(scene, scan, axes, settings, work);
+    result.capture = empty_capture(task.scan, task.axes);
+    for (int order = 1; task.settings.by_order && order <= task.settings.max_bounces; ++order) {
+        result.capture.orders.push_back(order);
+        result.capture.by_order.emplace_back(num_pairs, task.axes.time.num_bins);
+    }
+    PassLoop loop{task, work, SensorPairs(task.scene, task.scan)};
     for (std::size_t begin = 0; begin < num_pairs; begin += tile_pairs) {
         const Tile tile{begin, std::min(tile_pairs, num_pairs - begin)};
-        core::Progress part = progress;
+        core::Progress part = task.progress;
         part.report = [&](double share, const std::string& detail) {
             const double pairs =
                 static_cast<double>(begin) + share * static_cast<double>(tile.count);
-            progress.update(pairs / static_cast<double>(num_pairs), detail);
+            task.progress.update(pairs / static_cast<double>(num_pairs), detail);
         };
         loop.run(tile, part, result);
         if (result.interrupted && tile.count < num_pairs) {
-            throw core::Failure("render", "interrupted before every part of the scan was traced");
+            throw core::Failure("render",
+                                "interrupted before every part of the task.scan was traced");
         }
     }
     result.seconds = watch.seconds();

@@ -2,13 +2,10 @@
 #include "renderer/restir_render.h"
 
 #include "renderer/core/parallel.h"
-#include "renderer/core/process.h"
 #include "renderer/core/sampling.h"
 #include "renderer/core/stopwatch.h"
 #include "renderer/ellipsoidal_render.h"
-#include "renderer/film/stopping_rule.h"
-#include "renderer/film/transient_accumulator.h"
-#include "renderer/path/sensor_pairs.h"
+#include "renderer/pass_render.h"
 #include "renderer/path/short_paths.h"
 #include "renderer/restir/restir_renderer.h"
 
@@ -53,16 +50,11 @@ void require_gate_to_shrink_to(const core::HistogramAxes& axes, const RenderSett
                       "velocity axis");
 }
 
-void require_memory(double needed) {
-    const auto available = static_cast<double>(core::available_memory_bytes());
-    if (needed <= available) return;
-    throw core::Failure(
-        "restir",
-        fmt::format(
-            "reservoirs need {:.1f} GB, {:.1f} GB are free", needed * 1e-9, available * 1e-9));
+void require_memory_for(const RestirRenderer& renderer, const core::HistogramAxes& axes) {
+    require_memory("restir", "reservoirs", renderer.bytes_needed(axes));
 }
 
-// Whether the end of a bin may cross a pixel; those of velocities may anywhere.
+// Whether a bin may end within a pixel; bins of velocity may do so anywhere.
 bool bin_may_end_in(const OplBand& lengths, const core::HistogramAxes& axes) {
     if (lengths.low_m > axes.time.opl_end_m() || lengths.high_m < axes.time.opl_start_m) {
         return false;
@@ -72,9 +64,9 @@ bool bin_may_end_in(const OplBand& lengths, const core::HistogramAxes& axes) {
     return !first || first != axes.time.bin_of(lengths.high_m);
 }
 
-// What goes straight from the surface that a pixel sees to the light. Where the end of a bin
-// crosses a pixel one place of it would be noise; there they are the points of a lattice shifted at
-// random.
+// Adds the light that the surface seen by a pixel receives directly. A single position within the
+// pixel does where all of it falls into one bin; elsewhere that would be noisy, and the points of a
+// randomly shifted lattice are taken.
 void add_direct_light_of_pixel(const RestirFrame& frame,
                                std::size_t pixel,
                                const RenderSettings& settings,
@@ -86,12 +78,17 @@ void add_direct_light_of_pixel(const RestirFrame& frame,
         places.band(pixel, {lengths.begin_m(), lengths.end_m()});
     const int count = bin_may_end_in(places.around(pixel), frame.bins.axes()) ? kPlaces : 1;
     const PathDomain& domain = frame.domains[pixel];
+    const SurfaceWalk& walk = frame.scene->walk;
     for (int i = 0; i < count; ++i) {
         const core::Vec2 place = band.sample(core::lattice_point(i, count, domain.pixel_u));
         auto seen = frame.scene->sensor_pairs.first_vertex(pixel, place);
         if (!seen) continue;
         seen->throughput = 1.0 / (count * band.pdf(place));
-        add_direct_light(*seen, domain.ends, frame.scene->walk, settings, histogram);
+        const PathExtent path = walk.extent_to_light(*seen, domain.ends);
+        if (seen->order > settings.max_bounces || !histogram.admits(path.opl_m)) continue;
+        const double value = walk.connection_value(*seen, domain.ends);
+        if (!(value > 0.0) || walk.light_is_hidden(*seen, domain.ends)) continue;
+        histogram.add(0, path, value);
     }
 }
 
@@ -159,68 +156,57 @@ RenderResult result_of(const HistogramSums& sums,
                        int num_frames,
                        const core::Scan& scan,
                        const core::HistogramAxes& axes,
-                       const ExcludedObjects& excluded,
-                       const RenderSettings& settings) {
+                       const RestirScene& scene,
+                       const RenderSettings& settings,
+                       const RestirCounts& counts) {
     RenderResult result;
-    result.capture.scan = scan;
-    result.capture.time_axis = axes.time;
-    if (axes.velocity) result.capture.velocity = {*axes.velocity, {}, std::nullopt};
+    result.capture = empty_capture(scan, axes);
     sums.write_to(result.capture, 0, num_frames);
-    result.excluded = excluded;
+    result.excluded = scene.candidates.excluded().objects;
     result.sources.push_back({first_order(scan),
                               settings.max_bounces,
                               Estimator::Restir,
-                              surfaces_kept(settings, excluded)});
+                              surfaces_kept(settings, result.excluded)});
     result.samples_per_pair = static_cast<std::uint64_t>(num_frames) *
                               static_cast<std::uint64_t>(candidates_per_frame(settings.restir));
+    result.num_rays = counts.num_rays;
+    result.restir_counts = counts;
     return result;
-}
-
-HistogramSums empty_sums(const core::Scan& scan,
-                         const core::HistogramAxes& axes,
-                         const RenderSettings& settings) {
-    return {scan.num_pairs(), axes, 1, settings.variance};
 }
 
 }  // namespace
 
-RenderResult render_restir(std::shared_ptr<const Scene> scene,
-                           const core::Scan& scan,
-                           const core::HistogramAxes& axes,
-                           const RenderSettings& asked,
-                           const core::Progress& progress) {
+RenderResult render_restir(const RenderTask& task) {
+    const core::Scan& scan = task.scan;
+    const core::HistogramAxes& axes = task.axes;
     const core::Stopwatch watch;
-    require_gate_to_shrink_to(axes, asked);
-    const RenderSettings settings = with_fitting_frames(asked);
+    require_gate_to_shrink_to(axes, task.settings);
+    const RenderSettings settings = with_fitting_frames(task.settings);
     RestirRenderer renderer(scan, settings);
-    require_memory(renderer.bytes_needed(axes));
-    const auto restir_scene = std::make_shared<RestirScene>(std::move(scene), scan, axes, settings);
+    require_memory_for(renderer, axes);
+    const auto restir_scene = std::make_shared<RestirScene>(
+        std::shared_ptr<const Scene>(std::shared_ptr<void>(), &task.scene), scan, axes, settings);
     const int per_frame = candidates_per_frame(settings.restir);
     StoppingRule rule(settings, (settings.samples + per_frame - 1) / per_frame, {});
-    HistogramSums sums = empty_sums(scan, axes, settings);
+    HistogramSums sums(scan.num_pairs(), axes, 1, settings.variance);
     int done = 0;
-    bool interrupted = false;
-    for (bool enough = false; !enough;) {
+    const auto render_frame = [&] {
         const auto number = static_cast<std::uint64_t>(done);
         add_frame(renderer.render({restir_scene, axes, nullptr, number}), settings, sums);
         ++done;
         const double share = rule.share_done(done, watch.seconds(), sums.time);
-        progress.update(share, fmt::format("{} frames", done));
-        enough = share >= 1.0;
-        if (!enough && progress.should_stop()) {
-            interrupted = true;
-            break;
-        }
-    }
-    const ExcludedObjects& excluded = restir_scene->candidates.excluded().objects;
-    RenderResult result = result_of(sums, done, scan, axes, excluded, settings);
-    warn_of_dropped_signal(*restir_scene->scene, scan, axes.time, settings, result);
+        task.progress.update(share, fmt::format("{} frames", done));
+        return share >= 1.0;
+    };
+    bool interrupted = false;
+    while (!interrupted && !render_frame()) interrupted = task.progress.should_stop();
+    RenderResult result =
+        result_of(sums, done, scan, axes, *restir_scene, settings, renderer.counts());
+    warn_of_dropped_signal({task.scene, scan, axes, settings, task.progress}, result);
     if (done > 1) {
         result.estimated_error = relative_error(sums.time.squared_norms(done, nullptr), {});
     }
     result.interrupted = interrupted;
-    result.num_rays = renderer.counts().num_rays;
-    result.restir_counts = renderer.counts();
     result.seconds = watch.seconds();
     return result;
 }
@@ -232,45 +218,43 @@ FrameRenderer make_restir_frame_renderer(const core::Scan& scan, const RenderSet
                           "must be null: frames share their past, so their spread tells no error");
     }
     struct State {
-        State(const core::Scan& scan_of_frames, const RenderSettings& settings_of_frames)
-            : settings(settings_of_frames), renderer(scan_of_frames, settings_of_frames) {}
         RenderSettings settings;
         RestirRenderer renderer;
         RestirFrame last;
     };
-    const auto state = std::make_shared<State>(scan, settings);
+    const auto state = std::make_shared<State>(State{settings, RestirRenderer(scan, settings), {}});
     return [state](const Frame& frame, const core::Scan& frame_scan, const core::Progress&) {
+        auto& [settings_of_frames, renderer, last] = *state;
         const core::Stopwatch watch;
-        require_gate_to_shrink_to(frame.axes, state->settings);
-        if (frame.index == 0) require_memory(state->renderer.bytes_needed(frame.axes));
-        const bool is_first = state->last.scene == nullptr;
-        const auto scene = !is_first && state->last.scene->scene == frame.scene
-                               ? state->last.scene
+        require_gate_to_shrink_to(frame.axes, settings_of_frames);
+        if (frame.index == 0) require_memory_for(renderer, frame.axes);
+        const RestirFrame* const previous = last.scene != nullptr ? &last : nullptr;
+        const auto scene = previous != nullptr && last.scene->scene == frame.scene
+                               ? last.scene
                                : std::make_shared<RestirScene>(
-                                     frame.scene, frame_scan, frame.axes, state->settings);
-        const std::uint64_t rays_before = state->renderer.counts().num_rays;
-        HistogramSums sums = empty_sums(frame_scan, frame.axes, state->settings);
+                                     frame.scene, frame_scan, frame.axes, settings_of_frames);
+        const std::uint64_t rays_before = renderer.counts().num_rays;
+        HistogramSums sums(frame_scan.num_pairs(), frame.axes, 1, settings_of_frames.variance);
         // Time that is left goes into more estimates from the same past; the last one is kept.
         RestirFrame rendered;
-        int repeats = 0;
+        std::uint64_t repeats = 0;
         do {
-            const std::uint64_t number = static_cast<std::uint64_t>(frame.index) * kMaxRepeats +
-                                         static_cast<std::uint64_t>(repeats);
-            rendered = state->renderer.render(
-                {scene, frame.axes, is_first ? nullptr : &state->last, number});
-            add_frame(rendered, state->settings, sums);
+            const std::uint64_t number =
+                static_cast<std::uint64_t>(frame.index) * kMaxRepeats + repeats;
+            rendered = renderer.render({scene, frame.axes, previous, number});
+            add_frame(rendered, settings_of_frames, sums);
             ++repeats;
-        } while (state->settings.seconds && watch.seconds() < *state->settings.seconds &&
-                 repeats < static_cast<int>(kMaxRepeats));
-        state->last = std::move(rendered);
+        } while (settings_of_frames.seconds && watch.seconds() < *settings_of_frames.seconds &&
+                 repeats < kMaxRepeats);
+        last = std::move(rendered);
         RenderResult result = result_of(sums,
-                                        repeats,
+                                        static_cast<int>(repeats),
                                         frame_scan,
                                         frame.axes,
-                                        scene->candidates.excluded().objects,
-                                        state->settings);
-        result.num_rays = state->renderer.counts().num_rays - rays_before;
-        result.restir_counts = state->renderer.counts();
+                                        *scene,
+                                        settings_of_frames,
+                                        renderer.counts());
+        result.num_rays -= rays_before;
         result.seconds = watch.seconds();
         return result;
     };

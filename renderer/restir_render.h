@@ -1,25 +1,21 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/frame.h"
-
-#include <memory>
+#include "renderer/frame_sequence.h"
+#include "renderer/render_task.h"
 
 namespace renderer {
 
-/// Renders by resampling, in frames that know nothing of each other and are averaged.
+/// Renders by resampling, in independent frames that are averaged.
 ///
-/// Within a frame pairs and bins reuse each other's paths, so their noise is correlated; between
-/// frames it is not, and the variance is taken from the spread of frames. Orders 1 and 2 are added,
-/// and on images order 1, without sampling. Arguments and results are those of render(); `samples`
+/// Within a frame pairs and bins reuse each other's paths, so that their noise is correlated;
+/// between frames it is not, and the variance is estimated from the spread of the frames. Orders 1
+/// and 2, on images order 1, are added without sampling. Results are those of render(); `samples`
 /// counts candidate paths.
-RenderResult render_restir(std::shared_ptr<const Scene> scene,
-                           const core::Scan& scan,
-                           const core::HistogramAxes& axes,
-                           const RenderSettings& settings,
-                           const core::Progress& progress);
+RenderResult render_restir(const RenderTask& task);
 
-/// Renders the frames of a sequence, each from the paths of the frame before it too.
+/// Renders the frames of a sequence, each of which also reuses the paths of the frame before it.
+///
 /// scan   must outlive what is returned
 FrameRenderer make_restir_frame_renderer(const core::Scan& scan, const RenderSettings& settings);
 

@@ -6,10 +6,10 @@
 namespace renderer {
 namespace {
 
-// Of draws from a vertex with a lobe.
+// Share of the draws from a vertex with a narrow lobe that follow it.
 constexpr double kLobeShare = 0.75;
 
-// GGX widths above this leave the choice of a facet to its size and cosines.
+// Lobes of a larger GGX alpha are not narrow: facets are then chosen by size and cosines alone.
 constexpr double kWidestLobe = 0.3;
 
 std::vector<std::uint32_t> kept_facets(const ExcludedFacets& excluded) {
@@ -65,12 +65,13 @@ std::optional<LobeOnFacet> ConnectionTechnique::lobe_of(const PathVertex& vertex
     if (!met || is_excluded_[met->facet]) return std::nullopt;
     const core::Vec3& normal = scene_->facet(met->facet).normal;
     if (normal.dot(mirrored) * normal.dot(met->position - light) <= 0.0) return std::nullopt;
-    // Half vectors at the angle alpha are those of half of the peak; directions turn twice as far.
+    // The lobe falls to half of its peak where the half vector is tilted by about alpha; the
+    // direction turns by twice that angle.
     return LobeOnFacet{met->facet, {mirrored, met->position, 2.0 * ggx->alpha}};
 }
 
-// The facet of the lobe, with the probability of the draws that take it; 0 without a lobe or when
-// no length fits.
+// The facet that the lobe hits, with the probability that a draw takes it; 0 without a lobe or
+// where the facet has none of the lengths.
 FacetChoice ConnectionTechnique::choice_by_lobe(const ConnectionEnds& ends,
                                                 const OplBand& lengths,
                                                 const std::optional<LobeOnFacet>& lobe) const {

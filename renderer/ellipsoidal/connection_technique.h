@@ -17,7 +17,7 @@ struct ConnectionDraw {
     double pdf_area = 0.0;  ///< [1/m^2]
 };
 
-/// A vertex's narrow lobe and the facet that it meets.
+/// The narrow lobe of a vertex and the facet that its axis hits.
 struct LobeOnFacet {
     std::uint32_t facet = 0;
     ConnectionLobe lobe;
@@ -30,13 +30,13 @@ ConnectionEnds connection_ends(const PathEndpoints& ends);
 
 /// Draws the vertex between two others so that the path has a wanted length (source
 /// [Pediredla2019]): a facet from the hierarchy, a length within what the interval and the facet
-/// allow, a point where the ellipsoid of that length cuts the facet. Where the first of the two has
-/// a narrow lobe, most draws take the facet that its middle meets and stay near it.
+/// allow, a point where the ellipsoid of that length intersects the facet. Where the first vertex
+/// has a narrow lobe, most draws take the facet that the lobe's axis hits and stay near the axis.
 class ConnectionTechnique {
  public:
     /// scene      must outlive the technique
-    /// excluded   facets that it never draws
-    /// scan       all its points lie where sensor or light may be: see visible_side()
+    /// excluded   facets that are never drawn
+    /// scan       where sensors and lights may be, see visible_side()
     ConnectionTechnique(const Scene& scene, const ExcludedFacets& excluded, const core::Scan& scan);
 
     const TriangleHierarchy& hierarchy() const { return hierarchy_; }
@@ -44,8 +44,8 @@ class ConnectionTechnique {
     /// ends      neighbours of the vertex
     /// lengths   interval of the length of its two legs [m]
     /// lobe      of focus a, see lobe_of()
-    /// returns   nothing where the draw finds no point; that happens with the probability that
-    ///           pdf_area() lacks to 1
+    /// returns   nothing where the draw finds no point; pdf_area() integrates to the probability
+    ///           that it does
     std::optional<ConnectionDraw> sample(const ConnectionEnds& ends,
                                          const OplBand& lengths,
                                          core::Rng& rng,
@@ -56,10 +56,10 @@ class ConnectionTechnique {
                     const SurfacePoint& point,
                     const std::optional<LobeOnFacet>& lobe = {}) const;
 
-    /// The lobe of a glossy vertex: about where it would mirror what comes from before it.
+    /// The lobe of a glossy vertex about the mirror direction of the previous segment.
     ///
     /// num_rays  raised by the rays traced
-    /// returns   nothing for wide lobes, and where the facet met is excluded or does not reflect
+    /// returns   nothing for wide lobes, and where the facet hit is excluded or does not reflect
     ///           towards `light`
     std::optional<LobeOnFacet> lobe_of(const PathVertex& vertex,
                                        const core::Vec3& light,

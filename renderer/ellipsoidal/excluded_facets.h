@@ -10,20 +10,20 @@
 
 namespace renderer {
 
-/// What is excluded from ellipsoidal connections, by name; see ExcludedFacets.
+/// Names of the objects excluded from ellipsoidal connections; see ExcludedFacets.
 struct ExcludedObjects {
     std::vector<std::string> names;      ///< objects of which some facet is excluded
-    std::vector<std::string> connected;  ///< those of them that `mis` connects to nonetheless
+    std::vector<std::string> connected;  ///< those of them that `mis` connects to all the same
 };
 
-/// Which facets ellipsoidal connections leave out, and why that is known.
+/// Which facets ellipsoidal connections leave out.
 ///
-/// Excluded are, unless the mode is `none`, objects with the role of a wall, objects that say so,
-/// and facets above an area. There the technique has density 0, with an exception: what `mis`
-/// leaves out walks must find, and where the time axis asks for a small part only of the lengths
-/// that a wall gives rise to, they hardly ever do (on scenes/corner, in a gate of 10 mm, 2,000
-/// times the variance). So `mis` connects to an object, unless it is the relay wall, while the axis
-/// is shorter than the object is wide.
+/// Unless the mode is `none`, these are objects with the role of a wall, objects marked as
+/// excluded, and facets above a given area; there the technique has density 0. With `mis`, walks
+/// must find what is left out, which they hardly ever do where the time axis covers only a small
+/// part of the lengths of paths by way of a wall (2,000 times the variance on scenes/corner in a
+/// gate of 10 mm). So `mis` still connects to an object, other than the relay wall, that is wider
+/// than the axis is long.
 struct ExcludedFacets {
     std::vector<bool> facets;  ///< per facet of the scene: whether the technique has density 0
     ExcludedObjects objects;

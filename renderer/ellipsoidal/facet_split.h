@@ -9,16 +9,17 @@
 
 namespace renderer {
 
-/// Cuts a set of facets into parts over which bounds say much.
+/// Splits a set of facets into parts with tight bounds.
 ///
-/// Every cut is the one, by place or by size of the facets, that leaves the least area times
-/// surface of the box around it, summed over both sides (the surface area heuristic with area
-/// instead of rays): a wall beside many small facets would hide them. Costly parts are cut first.
+/// Every split, by position or by size of the facets, minimises the facets' area times the surface
+/// area of their bounding box, summed over both sides: the surface area heuristic with area in
+/// place of the number of primitives, since a wall among many small facets would dominate their
+/// bounds. The costliest part is split first.
 ///
 /// set         facets, reordered so that parts follow each other
 /// facets      of the scene
-/// max_parts  at most this many, at least 2 where the set has 2 facets
-/// halve       cut in the middle of the set instead, so that the parts' sizes are sure to fall
+/// max_parts   at most this many, at least 2 where the set has 2 facets
+/// halve       split in the middle of the set instead, so that the depth is bounded
 /// returns     the parts, none empty, in the order of the set
 std::vector<std::span<std::uint32_t>> split_facets(std::span<std::uint32_t> set,
                                                    std::span<const Facet> facets,

@@ -42,8 +42,8 @@ void HierarchyCut::rebuild(const ConnectionEnds& ends,
     entries_.back().end = 1.0;
 }
 
-// Replaces every node by its children, in the order of their facets; false when there was none or
-// enough is enough.
+// Replaces every node by its children, in the order of their facets; false when there is none left
+// or there are enough entries.
 bool HierarchyCut::expand(std::size_t max_entries) {
     const bool has_node =
         std::any_of(entries_.begin(), entries_.end(), [](const Entry& e) { return e.child >= 0; });
@@ -78,9 +78,9 @@ void HierarchyCut::append_children(std::int32_t node) {
     }
 }
 
-// What a facet carries, about: area asked for, times cosines and falloff at a point of its plane
-// that lies towards the centroid and has the length asked for. Nothing is left out that carries
-// something: a facet in part below an end's horizon keeps a share.
+// Estimated contribution of a facet: its area within the interval times cosines and falloff at a
+// point of its plane in the direction of the centroid that has the wanted length. It is 0 only
+// where the contribution is: a facet partly below an end's horizon keeps a share.
 double HierarchyCut::facet_weight(std::uint32_t index, OplBand& lengths) const {
     const Facet& facet = hierarchy_->scene_->facet(index);
     const double lit_side = double{hierarchy_->sides_[index]};

@@ -5,19 +5,19 @@
 
 namespace renderer {
 
-/// The top of a hierarchy as one pair of ends sees it: for many draws with the same ends.
+/// A cut through a hierarchy for one pair of ends, for many draws with the same ends.
 ///
-/// The descent to these entries is made once; a draw searches a table, and descends further only
-/// where an entry is not a single facet.
+/// The descent to the entries of the cut is made once; a draw searches a table, and descends
+/// further only where an entry is not a single facet.
 class HierarchyCut {
  public:
     explicit HierarchyCut(const TriangleHierarchy& hierarchy) : hierarchy_(&hierarchy) {}
 
-    /// Finds at most about `max_entries` entries.
+    /// Finds the cut for new ends, with about `max_entries` entries at most.
     void rebuild(const ConnectionEnds& ends, const OplBand& lengths, std::size_t max_entries);
 
     bool empty() const { return entries_.empty(); }
-    /// Of what all lengths carry, about, the share within the interval.
+    /// Estimated share of the contribution of all lengths that lies within the interval.
     double share_asked() const { return share_asked_; }
     const FocusPair& foci() const { return ends_.foci; }
 

@@ -13,13 +13,13 @@ namespace {
 using core::Vec2;
 using core::Vec3;
 
-// Of places drawn for their length.
+// Share of the positions drawn by length.
 constexpr double kWantedShare = 0.5;
 
 // Strips that differ by less than this share of their width count as the same.
 constexpr double kSameStrip = 0.25;
 
-// Smaller shares of a pixel are rounding.
+// Smaller shares of a pixel are rounding errors.
 constexpr double kMinShare = 1e-6;
 
 // P(a U + b V < t) for uniform U, V and a >= b >= 0, a > 0.
@@ -61,7 +61,7 @@ void PixelPositionSampler::Band::add_strip(double start_m,
     }
 }
 
-// The length along the steeper side is drawn first, then the place on the line of that length.
+// The length is drawn first, then the position on the line of that length.
 Vec2 PixelPositionSampler::Band::Strip::sample(const Vec2& u) const {
     const int steep = std::abs(slope_m.x()) >= std::abs(slope_m.y()) ? 0 : 1;
     const int flat = 1 - steep;
@@ -100,7 +100,7 @@ double PixelPositionSampler::Band::pdf(const Vec2& place) const {
     return 1.0 - kWantedShare + kWantedShare * wanted / static_cast<double>(num_strips_);
 }
 
-// Lengths at the places of a pixel as if it showed the plane that is seen in the middle of another.
+// Lengths at the positions of a pixel as if it showed the plane seen at the centre of another one.
 class PixelPositionSampler::PlaneLengths {
  public:
     PlaneLengths(const PixelPositionSampler& places, std::size_t pixel, std::size_t seen_by)
@@ -111,8 +111,8 @@ class PixelPositionSampler::PlaneLengths {
           normal_(places.normals_[seen_by]),
           distance_m_(normal_.dot(places.positions_[seen_by] - places.pinhole_)) {}
 
-    // A strip about the line of the length in the middle of those wanted, as wide as they, and as
-    // much wider as the line is off where it leaves the pixel.
+    // Adds a strip about the line of the middle of the wanted lengths, as wide as the interval and
+    // widened by the error of the linearisation where the line leaves the pixel.
     void add_strip(const OplBand& wanted, Band& band) const {
         constexpr int kSteps = 3;
         constexpr double kFarthest = 1.5;  // from the middle, in pixels
@@ -167,7 +167,7 @@ class PixelPositionSampler::PlaneLengths {
     }
 
     // The ray d meets the plane after t = distance / n.d times itself; with t' = -t n.d' / n.d the
-    // slopes of both legs follow. Not a number when the plane is not seen.
+    // gradients of both legs follow. Not a number when the plane is not seen.
     Line tangent(const Vec2& place) const {
         const Vec3 along = ray(place);
         const double towards = normal_.dot(along);

@@ -9,27 +9,27 @@
 
 namespace renderer {
 
-/// Draws places within a pixel, half of them where the way from the camera by the surface seen
-/// there straight to the light is likely to have a wanted length.
+/// Draws positions within a pixel, half of them where the path from the camera by way of the
+/// surface seen there to the light is likely to have a wanted length.
 ///
-/// Surfaces are taken to be the planes seen in the middle of the pixel and of the eight around it,
-/// so that edges and corners are met too. On each the wanted places lie between two lines, straight
-/// and parallel but for what widens the band. Places elsewhere keep half of the density: what these
-/// guesses get wrong costs noise, no bias.
+/// Surfaces are approximated by the planes seen at the centres of the pixel and of its eight
+/// neighbours, so that edges and corners are covered too. On each plane the wanted positions lie
+/// between two nearly straight, parallel lines. Half of the density is uniform over the pixel, so
+/// that errors of the approximation cost noise and add no bias.
 class PixelPositionSampler {
  public:
     /// Traces one ray per pixel.
     PixelPositionSampler(const SensorPairs& sensor_pairs, const core::PinholeCamera& camera);
 
-    /// The places of one pixel.
+    /// The density of positions within one pixel.
     class Band {
      public:
-        /// Adds the places where a length of start + slope.x u + slope.y v at (u, v) lies within
-        /// `lengths`, unless these are none or all, much the same were added before, or enough
-        /// were. Until some are, all places are alike.
+        /// Adds the positions (u, v) where the length start + slope.x u + slope.y v lies within
+        /// `lengths`, unless that is nowhere or everywhere, nearly the same strip was added before,
+        /// or there are enough. Without strips the density is uniform.
         void add_strip(double start_m, const core::Vec2& slope_m, const OplBand& lengths);
 
-        /// A place, from u uniform in [0, 1)^2; the first number may be stratified.
+        /// A position, from u uniform in [0, 1)^2; the first number may be stratified.
         core::Vec2 sample(const core::Vec2& u) const;
         /// Density over the pixel, 1 on average.
         double pdf(const core::Vec2& place) const;
@@ -52,10 +52,10 @@ class PixelPositionSampler {
 
     Band band(std::size_t pixel, const OplBand& wanted) const;
 
-    /// Shortest and longest of the lengths at the middles of a pixel and of the four around it.
+    /// Shortest and longest of the lengths at the centres of a pixel and of its four neighbours.
     OplBand around(std::size_t pixel) const;
 
-    /// Normals of what is seen through the pixels' middles, 0 where that is nothing.
+    /// Normals of the surfaces seen at the pixels' centres, 0 where there is none.
     const std::vector<core::Vec3>& normals() const { return normals_; }
 
  private:
@@ -63,7 +63,7 @@ class PixelPositionSampler {
 
     bool see_the_same_plane(std::size_t a, std::size_t b) const;
 
-    std::vector<double> opl_m_;  ///< at the pixels' middles; infinite where nothing is seen
+    std::vector<double> opl_m_;  ///< at the pixels' centres; infinite where nothing is seen
     std::vector<core::Vec3> positions_, normals_;  ///< of what is seen there
     std::size_t height_;
     core::Vec3 pinhole_, light_;

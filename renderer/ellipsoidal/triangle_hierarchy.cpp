@@ -16,9 +16,10 @@ using core::Vec3;
 constexpr double kMargin = 4e-6;
 // Added to the spread of normals: above the rounding of cosines.
 constexpr float kSpreadMargin = 1e-3F;
-// Of a leg, relative to the radius of a box that may hold its end.
+// Shortest leg assumed, relative to the radius of a box that may contain its end.
 constexpr float kNearestLeg = 0.1F;
-// Levels that may be lopsided. Facets that cannot be told apart need no more.
+// Deepest level with unbalanced cuts; below it sets are halved, so that facets which cannot be told
+// apart end.
 constexpr int kDeepestCut = 40;
 
 Eigen::AlignedBox3d box_of(const Facet& facet) {
@@ -127,48 +128,52 @@ TriangleHierarchy::TriangleHierarchy(const Scene& scene,
     Builder{*this, scene.facets()}.add_node(ids, {}, 0, 0);
 }
 
-// Bounds over a box: centre c, d = focus - c. A normal n within the chord `spread` of the axis m
-// has n.(focus - x) <= m.d + (half the box along m) + spread |focus - x|: a facet turns towards the
-// focus only where that is positive, and so for what lies above an end's horizon. What is not 0 is
-// an estimate, for legs whose sum is the middle of what is asked and whose product is that of the
-// shortest and the longest: for a facet that is large against its distance they are those of the
-// part that has the length.
+// Bounds over a node's boxes as seen from one end.
+struct TriangleHierarchy::NodeView {
+    std::array<Lanes, 3> gap;  ///< to the box along each axis
+    Lanes nearest = Lanes::Zero();
+    Lanes farthest = Lanes::Zero();
+    Lanes along_axis = Lanes::Zero();
+    Lanes above_end = Lanes::Zero();
+};
+
+TriangleHierarchy::NodeView TriangleHierarchy::view_of(const Node& node, const QueryEnd& end) {
+    NodeView view;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const auto i = static_cast<Eigen::Index>(k);
+        const Lanes d = end.focus[i] - node.center[k];
+        const Lanes size = d.abs();
+        view.gap[k] = (size - node.half_size[k]).max(0.0F);
+        view.nearest += view.gap[k].square();
+        view.farthest += (size + node.half_size[k]).square();
+        view.along_axis += node.axis[k] * d;
+        view.above_end += std::abs(end.normal[i]) * node.half_size[k] - end.normal[i] * d;
+    }
+    view.nearest = view.nearest.sqrt();
+    view.farthest = view.farthest.sqrt();
+    return view;
+}
+
+// Bounds over a box with centre c, d = focus - c. For a normal n within the chord `spread` of the
+// axis m, n.(focus - x) <= m.d + (half the box along m) + spread |focus - x|: a facet can face the
+// focus only where that is positive, and likewise for the part above an end's horizon. Values other
+// than 0 are estimates, for legs whose sum is the middle of the lengths asked for and whose product
+// is that of the shortest and the longest: on a facet that is large compared with its distance,
+// they are the legs to the part that has the length.
 TriangleHierarchy::Lanes TriangleHierarchy::importance(const Node& node, const Query& q) const {
-    struct End {
-        std::array<Lanes, 3> gap;  ///< to the box along each axis
-        Lanes nearest = Lanes::Zero();
-        Lanes farthest = Lanes::Zero();
-        Lanes along_axis = Lanes::Zero();
-        Lanes above_end = Lanes::Zero();
-    };
     Lanes half_along_axis = Lanes::Zero();
     for (std::size_t k = 0; k < 3; ++k) half_along_axis += node.axis[k].abs() * node.half_size[k];
-    const auto bound = [&](const Eigen::Vector3f& focus, const Eigen::Vector3f& normal) {
-        End end;
-        for (std::size_t k = 0; k < 3; ++k) {
-            const auto i = static_cast<Eigen::Index>(k);
-            const Lanes d = focus[i] - node.center[k];
-            const Lanes size = d.abs();
-            end.gap[k] = (size - node.half_size[k]).max(0.0F);
-            end.nearest += end.gap[k].square();
-            end.farthest += (size + node.half_size[k]).square();
-            end.along_axis += node.axis[k] * d;
-            end.above_end += std::abs(normal[i]) * node.half_size[k] - normal[i] * d;
-        }
-        end.nearest = end.nearest.sqrt();
-        end.farthest = end.farthest.sqrt();
-        return end;
-    };
-    const End a = bound(q.a, q.normal_a);
-    const End b = q.coincide ? a : bound(q.b, q.normal_b);
+    const NodeView a = view_of(node, q.a);
+    const NodeView b = q.coincide ? a : view_of(node, q.b);
 
     Lanes low = a.nearest + b.nearest;
     if (!q.coincide) {
-        // Two legs are together at least as long as one by the sums of their sizes along the axes.
+        // The two legs together are at least as long as one whose extent along each axis is the sum
+        // of theirs.
         Lanes straight2 = Lanes::Zero();
         for (std::size_t k = 0; k < 3; ++k) {
             const auto i = static_cast<Eigen::Index>(k);
-            straight2 += (a.gap[k] + b.gap[k]).max(std::abs(q.a[i] - q.b[i])).square();
+            straight2 += (a.gap[k] + b.gap[k]).max(std::abs(q.a.focus[i] - q.b.focus[i])).square();
         }
         low = low.max(straight2.sqrt());
     }
@@ -191,8 +196,8 @@ TriangleHierarchy::Lanes TriangleHierarchy::importance(const Node& node, const Q
         cosine((slack_a + a.along_axis) * inverse_a) * cosine((slack_b + b.along_axis) * inverse_b);
     const Lanes back = node.two_sided * cosine((slack_a - a.along_axis) * inverse_a) *
                        cosine((slack_b - b.along_axis) * inverse_b);
-    const Lanes at_a = cosine(a.above_end * inverse_a + q.base_a);
-    const Lanes at_b = cosine(b.above_end * inverse_b + q.base_b);
+    const Lanes at_a = cosine(a.above_end * inverse_a + q.a.base);
+    const Lanes at_b = cosine(b.above_end * inverse_b + q.b.base);
     const Lanes falloff = (inverse_a * inverse_b).square();
     return node.area * ((to - from).max(0.0F) / (high - low)) * front.max(back) * at_a * at_b *
            falloff;
@@ -201,12 +206,13 @@ TriangleHierarchy::Lanes TriangleHierarchy::importance(const Node& node, const Q
 TriangleHierarchy::Query TriangleHierarchy::make_query(const ConnectionEnds& ends,
                                                        const OplBand& lengths) const {
     Query query;
-    query.a = (ends.foci.a - origin_).cast<float>();
-    query.b = (ends.foci.b - origin_).cast<float>();
-    query.normal_a = ends.normal_a.cast<float>();
-    query.normal_b = ends.normal_b.cast<float>();
-    query.base_a = ends.normal_a.isZero(0.0) ? 1.0F : 0.0F;
-    query.base_b = ends.normal_b.isZero(0.0) ? 1.0F : 0.0F;
+    const auto end = [&](const Vec3& focus, const Vec3& normal) {
+        return QueryEnd{(focus - origin_).cast<float>(),
+                        normal.cast<float>(),
+                        normal.isZero(0.0) ? 1.0F : 0.0F};
+    };
+    query.a = end(ends.foci.a, ends.normal_a);
+    query.b = end(ends.foci.b, ends.normal_b);
     query.apart = static_cast<float>((ends.foci.a - ends.foci.b).norm());
     query.from = static_cast<float>(lengths.low_m) - margin_m_;
     query.to = static_cast<float>(lengths.high_m) + margin_m_;
@@ -214,8 +220,8 @@ TriangleHierarchy::Query TriangleHierarchy::make_query(const ConnectionEnds& end
     return query;
 }
 
-// Ends of the children's shares of the sum, the first 0; rounding keeps their order. Shares are
-// differences of these rounded numbers, so that what a descent does is exactly what it says.
+// Cumulative sums of the children's weights, from 0; rounding keeps their order. Probabilities are
+// differences of these rounded numbers, so that they are exactly those of a descent.
 std::array<float, TriangleHierarchy::kWidth + 1> TriangleHierarchy::cumulate(const Lanes& w) {
     const float first2 = w[0] + w[1];
     const float first4 = first2 + (w[2] + w[3]);

@@ -25,10 +25,10 @@ struct FacetChoice {
 
 /// A tree over the facets that ellipsoidal connections use, eight children per node.
 ///
-/// A descent picks children with probabilities proportional to an estimate of what they carry: area
-/// x share of their lengths that is asked for x the four cosines / squared distances, or 0 when
-/// bounds prove that they carry nothing. Children are tested eight at a time in single
-/// precision, relative to the centre of the set; all bounds are widened by more than its rounding.
+/// A descent picks children with probabilities proportional to an estimate of their contribution:
+/// area x share of their lengths within the interval x the four cosines / squared distances, or 0
+/// when bounds prove that there is none. Children are tested eight at a time in single precision,
+/// relative to the centre of the set; all bounds are widened by more than its rounding.
 class TriangleHierarchy {
  public:
     /// scene      must outlive the hierarchy
@@ -75,13 +75,13 @@ class TriangleHierarchy {
         std::array<std::int32_t, kWidth> child;  ///< node, or ~position of a facet in order_
     };
     /// Ends and interval in the hierarchy's frame and precision.
+    struct QueryEnd {
+        Eigen::Vector3f focus = Eigen::Vector3f::Zero();
+        Eigen::Vector3f normal = Eigen::Vector3f::Zero();
+        float base = 0.0F;  ///< 1 for an end without a normal, else 0
+    };
     struct Query {
-        Eigen::Vector3f a = Eigen::Vector3f::Zero();
-        Eigen::Vector3f b = Eigen::Vector3f::Zero();
-        Eigen::Vector3f normal_a = Eigen::Vector3f::Zero();
-        Eigen::Vector3f normal_b = Eigen::Vector3f::Zero();
-        float base_a = 0.0F;  ///< 1 for an end that has no sides, else 0
-        float base_b = 0.0F;
+        QueryEnd a, b;
         float apart = 0.0F;  ///< distance of the foci
         float from = 0.0F;   ///< interval
         float to = 0.0F;
@@ -95,6 +95,8 @@ class TriangleHierarchy {
 
     Query make_query(const ConnectionEnds& ends, const OplBand& lengths) const;
 
+    struct NodeView;
+    static NodeView view_of(const Node& node, const QueryEnd& end);
     Lanes importance(const Node& node, const Query& query) const;
     static std::array<float, kWidth + 1> cumulate(const Lanes& weights);
     /// From `node` down to a leaf: multiplies the probability, returns the facet's position.
@@ -104,6 +106,7 @@ class TriangleHierarchy {
                                          double& probability) const;
     /// Probability that the descent from `top` ends at a facet; 0 when it lies elsewhere.
     double descent_probability(std::int32_t top, const Query& query, std::uint32_t facet) const;
+
     const Scene* scene_;
     core::Vec3 origin_ = core::Vec3::Zero();
     float margin_m_ = 0.0F;  ///< of lengths and box sizes, above the rounding of both

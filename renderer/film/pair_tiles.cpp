@@ -26,9 +26,9 @@ PointRange range_around(std::size_t index, std::size_t size, std::size_t count) 
 
 }  // namespace
 
-// Rows of tiles follow one another by lights: all sensors at once, wherever they fit beside the
-// lights that are looked from together, are looked at once. Else they get half of the places, or
-// what all lights leave.
+// Tiles are ordered in rows of the same lights. Where all sensors fit into memory beside one group
+// of lights, each is traced only once. Else the sensors get half of the memory, or what all lights
+// leave.
 PairTiles::PairTiles(std::size_t num_lights, std::size_t num_sensors, std::size_t points_at_once)
     : num_lights_(num_lights), num_sensors_(num_sensors) {
     const std::size_t all_lights = parts_of(num_lights, kPointsTogether) * kPointsTogether;

@@ -15,13 +15,13 @@ struct PointRange {
     bool operator==(const PointRange&) const = default;
 };
 
-/// The order in which all pairs of illumination and sensing points are worked on: in tiles whose
-/// histograms and tables fit the second-level cache, and in batches of tiles that need what is
-/// known of no more points than memory holds.
+/// The order in which pairs of illumination and sensing points are processed: in tiles whose
+/// histograms and tables fit the L2 cache, and in batches of tiles whose points' visibility fits
+/// the memory.
 class PairTiles {
  public:
-    /// Points of one side that are looked from together, from multiples of this on: so that the
-    /// same ones always are.
+    /// Visibility is traced for groups of this many points of one side that start at multiples of
+    /// it, so that the groups are always the same.
     static constexpr std::size_t kPointsTogether = 16;
     /// Fewest points that must fit at once.
     static constexpr std::size_t kMinPoints = 2 * kPointsTogether;
@@ -39,9 +39,9 @@ class PairTiles {
     /// points_at_once   lights and sensors together that a batch may have, at least kMinPoints
     PairTiles(std::size_t num_lights, std::size_t num_sensors, std::size_t points_at_once);
 
-    /// The tiles of a part, which do not depend on points_at_once; parts follow one another through
-    /// all tiles. Over all parts each range of lights comes up once, and so does each range of
-    /// sensors where it holds all; others come up once for every part and range of lights.
+    /// The tiles of a part, which do not depend on points_at_once; consecutive parts cover all
+    /// tiles. Over all parts each range of lights occurs once, and so does a range of all sensors;
+    /// smaller ranges of sensors occur once per part and range of lights.
     std::vector<Batch> batches(std::size_t part, std::size_t num_parts) const;
 
  private:

@@ -57,7 +57,7 @@ void PassHistogram::add(int channel,
         }
         return;
     }
-    // As TimeAxis::bin_of(), all at once; what lies outside the axis goes to one place.
+    // As TimeAxis::bin_of(), for all at once; lengths outside the axis share one place.
     std::array<int, kMaxAtOnce> places;
     const double start = axis_.opl_start_m;
     const double width = axis_.bin_width_m;
@@ -84,7 +84,8 @@ void PassHistogram::add(int channel,
     }
     first_touched_ = std::min(first_touched_, lowest);
     last_touched_ = std::max(last_touched_, highest);
-    // Neighbours often share a bin, and such additions wait for each other: so four parts in turn.
+    // Neighbours often fall into the same bin, and such additions depend on each other; taking four
+    // parts in turn breaks these chains.
     const std::size_t part = size / 4;
     for (std::size_t i = 0; i < part; ++i) {
         values_[static_cast<std::size_t>(places[i])] += values[i];

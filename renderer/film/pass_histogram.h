@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/film/pass_velocity_histogram.h"
+#include "renderer/core/velocity_axis.h"
 #include "renderer/film/path_extent.h"
 #include "renderer/settings/render_settings.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -13,24 +14,62 @@
 
 namespace renderer {
 
+/// Collects the contributions of one pair during one pass by path velocity. Most bins stay empty,
+/// above all where velocities are resolved in time, so those that are not are listed.
+class PassVelocityHistogram {
+ public:
+    PassVelocityHistogram(const core::VelocityAxis& axis, int num_time_bins)
+        : axis_(axis),
+          num_time_bins_(num_time_bins),
+          values_(static_cast<std::size_t>(axis.num_values(num_time_bins))) {}
+
+    /// Adds a contribution; what lies outside the axis is left out.
+    void add(double velocity_m_per_s, int time_bin, double value) {
+        const auto bin = axis_.bin_of(velocity_m_per_s);
+        if (!bin) return;
+        const auto place =
+            static_cast<std::size_t>(axis_.with_time ? *bin * num_time_bins_ + time_bin : *bin);
+        if (values_[place] == 0.0) touched_.push_back(place);
+        values_[place] += value;
+    }
+
+    /// As PassHistogram::drain() for a single channel.
+    template <class VisitValues, class VisitTotals>
+    void drain(VisitValues&& visit_values, VisitTotals&& visit_totals) {
+        for (const std::size_t place : touched_) {
+            const std::span<const double> value{values_.data() + place, 1};
+            visit_values(place, value);
+            visit_totals(place, value);
+            values_[place] = 0.0;
+        }
+        touched_.clear();
+    }
+
+ private:
+    core::VelocityAxis axis_;
+    int num_time_bins_;
+    std::vector<double> values_;
+    std::vector<std::size_t> touched_;
+};
+
 /// Collects the contributions of one pair during one pass, and remembers which bins it touched.
 ///
-/// A channel is a bounce order, or channel 0 holds all of them. With a velocity axis what counts is
-/// collected by path velocity, too.
+/// A channel is a bounce order, or channel 0 holds all of them. With a velocity axis, contributions
+/// are also collected by path velocity.
 class PassHistogram {
  public:
     PassHistogram(const core::HistogramAxes& axes, GateShape gate, int num_channels);
 
     /// Adds a contribution of a path, weighted by the gate.
     void add(int channel, const PathExtent& path, double value);
-    /// Adds what the gate has weighted already, of a path in a bin.
+    /// Adds a contribution that is already weighted by the gate to a bin.
     void add_to_bin(int channel, int bin, double velocity_m_per_s, double value);
     /// Whether a path of this length counts at all.
     bool admits(double opl_m) const {
         int bin = 0;
         return gate_weight(opl_m, bin) > 0.0;
     }
-    /// Adds many contributions, those of 0 left out.
+    /// Adds many contributions; those of 0 are left out.
     ///
     /// opl_m, values   one entry per path, at most kMaxAtOnce
     /// velocities      [m/s] likewise; not looked at unless resolves_velocity()
@@ -68,7 +107,7 @@ class PassHistogram {
         last_touched_ = -1;
     }
 
-    /// Contributions so far that were not finite numbers; they are left out of the bins.
+    /// Contributions so far that were not finite; they are left out of the bins.
     std::uint64_t num_non_finite() const { return num_non_finite_; }
 
  private:

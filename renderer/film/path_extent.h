@@ -5,7 +5,7 @@
 
 namespace renderer {
 
-/// How long a path is, and how fast that changes as its vertices move along with their surfaces.
+/// The length of a path, and its rate of change as the vertices move with their surfaces.
 ///
 /// The rate is the sum over segments of u . (v_end - v_start), u along the segment, since
 /// d|r|/dt = r/|r| . dr/dt.

@@ -8,8 +8,8 @@
 namespace renderer {
 namespace {
 
-constexpr int kMinPasses = 8;     // their spread is known to a quarter
-constexpr double kMaxGrowth = 2;  // of the passes between two looks at the sums
+constexpr int kMinPasses = 8;     // the standard deviation is then known to a quarter
+constexpr double kMaxGrowth = 2;  // of the number of passes between two checks of the error
 
 }  // namespace
 
@@ -41,8 +41,8 @@ double StoppingRule::share_done(int passes, double elapsed_s, const TransientAcc
 double StoppingRule::share_of_target(int passes, const TransientAccumulator& sums) {
     if (passes >= next_look_) {
         const auto norms = sums.squared_norms(passes, precomputed_.transient);
-        // Noise falls with the number of passes, the rest of the error stays. Where that alone is
-        // above the target, more passes than the target itself asks for would be in vain.
+        // Noise falls with the number of passes, the rest of the error stays. Where the rest alone
+        // exceeds the target, the noise is only brought down to the target.
         const double rest = relative_error({0.0, norms.signal}, precomputed_);
         const double share =
             rest < *target_ ? *target_ * *target_ - rest * rest : *target_ * *target_;

@@ -21,9 +21,9 @@ struct PrecomputedPart {
 double relative_error(const TransientAccumulator::SquaredNorms& norms,
                       const PrecomputedPart& precomputed);
 
-/// When passes over all pairs have done enough: after a number of them, after some time, or when
-/// the error that their spread tells is below the target. A target needs a few passes at least, so
-/// that the spread can be trusted.
+/// When to stop rendering passes: after a number of them, after some time, or when the error
+/// estimated from their spread is below the target. A target needs at least a few passes for the
+/// spread to be reliable.
 class StoppingRule {
  public:
     /// passes_for_samples   that `samples` asks for; counts when neither time nor target is set
@@ -31,7 +31,7 @@ class StoppingRule {
                  int passes_for_samples,
                  const PrecomputedPart& precomputed);
 
-    /// Looks at the sums after a pass.
+    /// To be called after each pass.
     ///
     /// elapsed_s   since the first pass began
     /// returns     the share of the work done so far; 1: enough

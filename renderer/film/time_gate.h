@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/core/time_axis.h"
+#include "renderer/core/velocity_axis.h"
+#include "renderer/film/path_extent.h"
 #include "renderer/settings/render_settings.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <optional>
 
 namespace renderer {
 
-/// What one bin, or a shaped gate, admits: a weight of the path length with peak 1.
+/// A bin or a shaped gate: a weight of the path length with peak 1.
 struct TimeGate {
     double start_m = 0.0;
     double width_m = 0.0;
@@ -29,7 +30,7 @@ struct TimeGate {
         return std::exp(-0.5 * offset * offset);
     }
 
-    /// The lengths of positive weight; a Gaussian is cut where it has fallen to rounding.
+    /// The lengths of positive weight; a Gaussian is cut off where it is below rounding.
     double begin_m() const { return start_m - overhang() * width_m; }
     double end_m() const { return start_m + (1.0 + overhang()) * width_m; }
 
@@ -37,6 +38,32 @@ struct TimeGate {
     double overhang() const {
         if (shape == GateShape::Box) return 0.0;
         return shape == GateShape::Tent ? 0.5 : 8.0;
+    }
+};
+
+/// One bin of a velocity axis.
+struct VelocityGate {
+    core::VelocityAxis axis;
+    int bin = 0;
+
+    double start_m_per_s() const { return axis.bin_begin_m_per_s(bin); }
+    bool contains(double velocity_m_per_s) const { return axis.bin_of(velocity_m_per_s) == bin; }
+};
+
+/// The gate of one reservoir: path lengths and, where they are resolved, velocities.
+struct PathGate {
+    TimeGate time;
+    std::optional<VelocityGate> velocity;
+
+    double weight(const PathExtent& path) const {
+        if (velocity && !velocity->contains(path.velocity_m_per_s)) return 0.0;
+        return time.weight(path.opl_m);
+    }
+
+    /// Whether two gates of one scan admit the same paths.
+    bool operator==(const PathGate& other) const {
+        return time == other.time && velocity.has_value() == other.velocity.has_value() &&
+               (!velocity || velocity->bin == other.velocity->bin);
     }
 };
 

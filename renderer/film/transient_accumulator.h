@@ -44,25 +44,29 @@ class TransientAccumulator {
             });
     }
 
-    std::size_t num_pairs() const { return num_pairs_; }
-    std::size_t num_bins() const { return num_bins_; }
-    bool keeps_squares() const { return !squares_.empty(); }
-
-    /// Writes the mean over passes of one channel; `to` is [pair][bin], as below.
-    void write_mean(int channel, int num_passes, std::span<float> to) const;
-    /// Writes the mean over passes of the sum of all channels.
-    void write_mean_of_all(int num_passes, std::span<float> to) const;
-    /// Writes the variance of that mean; needs two passes and sums of squares.
-    void write_variance(int num_passes, std::span<float> to) const;
+    /// Writes the mean over passes of the sum of all channels, and its variance where there are
+    /// squares of two passes, to the rows of a whole scan's arrays that begin with `first_pair`.
+    /// Arrays that are still empty get `num_scan_pairs` rows.
+    void write(int num_passes,
+               std::size_t num_scan_pairs,
+               std::size_t first_pair,
+               core::Transient& mean,
+               std::optional<core::Transient>& variance) const;
+    /// Likewise the mean of one channel.
+    void write_channel(int channel,
+                       int num_passes,
+                       std::size_t num_scan_pairs,
+                       std::size_t first_pair,
+                       core::Transient& mean) const;
 
     /// Squared L2 norms over all pairs and bins.
     struct SquaredNorms {
         double noise = 0.0;   ///< expected, of the mean of all channels about H
-        double signal = 0.0;  ///< of `known` + H
+        double signal = 0.0;  ///< of `precomputed` + H
     };
     /// Estimates both from the spread of at least two passes, without the arrays of squares.
     ///
-    /// known   what is to be added to H from elsewhere, of its shape; null: nothing
+    /// precomputed   what is to be added to H from elsewhere, of its shape; null: nothing
     SquaredNorms squared_norms(int num_passes, const core::Transient* precomputed) const;
 
  private:
@@ -73,7 +77,7 @@ class TransientAccumulator {
         return Eigen::Map<Array>(begin, static_cast<Eigen::Index>(size));
     }
 
-    // Has the same bits wherever the values lie: Eigen's sums over arrays start at aligned ones.
+    // Eigen's sums depend on the alignment of the values; this one has the same bits for any.
     static double squared_norm(std::span<const double> values) {
         constexpr std::size_t kParts = 8;
         std::array<double, kParts> parts{};
@@ -85,8 +89,17 @@ class TransientAccumulator {
         return std::accumulate(parts.begin(), parts.end(), 0.0);
     }
 
+    std::span<const double> row(std::size_t pair, int channel) const {
+        const std::size_t index = pair * num_channels_ + static_cast<std::size_t>(channel);
+        return {sums_.data() + index * num_bins_, num_bins_};
+    }
     // Sums of all channels of a pair: of a single one its own row, else in `buffer`.
     std::span<const double> totals(std::size_t pair, std::vector<double>& buffer) const;
+    template <class WriteRow>
+    void write_rows(std::size_t num_scan_pairs,
+                    std::size_t first_pair,
+                    core::Transient& array,
+                    const WriteRow& write_row) const;
 
     std::size_t num_pairs_;
     std::size_t num_bins_;
@@ -112,9 +125,8 @@ struct HistogramSums {
         if (velocity) velocity->add_pass(pair, histogram.velocity());
     }
 
-    /// Writes the means, and the variances where there are squares of two passes, to the rows of a
-    /// capture that begin with `first_pair`. Arrays that are still empty get their shape from the
-    /// capture's scan; of velocities the axis must be there.
+    /// Writes means and variances to a capture, see TransientAccumulator::write(), and the means of
+    /// the bounce orders that it lists. With velocities their axis must be set.
     void write_to(core::Capture& capture, std::size_t first_pair, int num_passes) const;
 
     TransientAccumulator time;

@@ -15,7 +15,7 @@ using core::Vec2;
 
 constexpr int kSize = DirectionPacket::kSize;
 
-// Cosines and sines of the azimuths of a packet's lattice points, counted from the first one's.
+// Cosines and sines of the azimuths of a packet's lattice points, relative to the first one.
 struct Turns {
     Turns() {
         for (int i = 0; i < kSize; ++i) {
@@ -52,7 +52,7 @@ void EndpointDirectionSampler::next(DirectionPacket& packet) {
     const double width = 1.0 / count_;
     for (int lane = 0; lane < kSize; ++lane) {
         const auto i = static_cast<std::size_t>(lane);
-        // Lanes beyond the last direction get any.
+        // Lanes beyond the last direction get arbitrary ones.
         const double u = std::min((begin + lane) * width, core::kBelowOne);
         const double z = isotropic * (1.0 - 2.0 * u) + (1.0 - isotropic) * std::sqrt(1.0 - u);
         const double radius = std::sqrt(u * (1.0 - isotropic + isotropic * 4.0 * (1.0 - u)));

@@ -7,15 +7,16 @@
 
 namespace renderer {
 
-/// Directions from a path end, drawn packet by packet: with density cos/pi about the normal of a
-/// wall, 1/(4 pi) from an isotropic end [1/sr].
+/// Draws directions from a path end, packet by packet: cosine-weighted about the normal of a wall,
+/// uniform from an isotropic end.
 ///
-/// They are the warps of a shifted lattice, core::lattice_point(). From one of its points to the
-/// next the azimuth turns by a constant angle, so that a packet needs one sine and one cosine.
+/// The directions are warped from a randomly shifted lattice, core::lattice_point(). From one of
+/// its points to the next the azimuth advances by a constant angle, so that a packet needs one sine
+/// and one cosine.
 class EndpointDirectionSampler {
  public:
     /// scene, end   must outlive the object
-    /// count        of all directions
+    /// count        of directions in all packets
     EndpointDirectionSampler(const Scene& scene,
                              const PathEndpoint& end,
                              int count,

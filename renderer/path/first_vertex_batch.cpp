@@ -13,7 +13,7 @@ namespace {
 using core::kPi;
 using core::Vec3;
 
-// A path end as plain numbers, its factor towards a direction as a maximum of two products.
+// A path end as plain numbers; its factor towards a direction is the maximum of two products.
 struct End {
     explicit End(const PathEndpoint& end)
         : x(end.position.x()),
@@ -28,7 +28,7 @@ struct End {
     double cosine(double dx, double dy, double dz) const {
         return normal_x * dx + normal_y * dy + normal_z * dz;
     }
-    // What PathEndpoint::factor() is without its strength: 1 for isotropic ends.
+    // PathEndpoint::factor() without the strength: 1 for isotropic ends.
     double shape(double cosine) const { return std::max(constant, (1.0 - constant) * cosine); }
 
     double x, y, z, normal_x, normal_y, normal_z, constant, strength;
@@ -54,7 +54,7 @@ FacetTraits::FacetTraits(const Scene& scene, const std::vector<bool>& adds_third
 }
 
 void FirstVertexBatch::draw_by_area(const AreaSampler& sampler, AreaDraws& draws, core::Rng& rng) {
-    // Lanes beyond the last number lie in no share.
+    // Lanes beyond the last number belong to no share.
     alignas(64) std::array<double, kPadded> u1;
     alignas(64) std::array<double, kPadded> u2;
     u1.fill(1.0);
@@ -76,7 +76,7 @@ void FirstVertexBatch::draw_by_area(const AreaSampler& sampler, AreaDraws& draws
     draws.begin += size;
 }
 
-// Appends points of a facet, for rising u1 as far as they belong to its share.
+// Appends points on a facet for increasing u1, as long as u1 lies in its share.
 //
 // returns   their number
 int FirstVertexBatch::add_on_facet(std::uint32_t facet,
@@ -91,7 +91,7 @@ int FirstVertexBatch::add_on_facet(std::uint32_t facet,
     const int begin = count_;
     int inside = kLanes;
     for (int i = 0; inside == kLanes; i += kLanes) {
-        // As Share::remap() and core::sample_triangle(), but that rounding may pass an edge.
+        // As Share::remap() and core::sample_triangle(), except that rounding may cross an edge.
         const Eigen::Map<const Lanes> u(u1 + i);
         const Eigen::Map<const Lanes> v(u2 + i);
         Lanes root = (u - share.begin) * share.inverse_width;
@@ -136,7 +136,7 @@ void FirstVertexBatch::evaluate(const PathEndpoints& ends, const Draw& draw) {
     ends.coincide ? evaluate_legs<true>(ends, draw) : evaluate_legs<false>(ends, draw);
 }
 
-// Ends that coincide share the leg's length, which spares a root and a division.
+// Where both ends coincide, so do the legs, which saves a square root and a division.
 template <bool kCoincide>
 void FirstVertexBatch::evaluate_legs(const PathEndpoints& ends, const Draw& draw) {
     const End sensor(ends.sensor);
@@ -174,7 +174,7 @@ void FirstVertexBatch::evaluate_legs(const PathEndpoints& ends, const Draw& draw
         const double out =
             (normal_x_[i] * lx + normal_y_[i] * ly + normal_z_[i] * lz) * light_inverse;
         const double in = normal_x_[i] * dx + normal_y_[i] * dy + normal_z_[i] * dz;
-        // Facets reflect on both sides: the legs must lie on the same one.
+        // Facets reflect on both sides, and both legs must lie on the same side.
         const double reflected = in * out < 0.0 ? constant_bsdf_[i] * std::abs(out) : 0.0;
         opl_m_[i] = distance + light_distance + legs;
         contribution_[i] = throughput_[i] * reflected * light.strength * light_shape *

@@ -12,7 +12,7 @@
 
 namespace renderer {
 
-/// What first vertices need to know of their facets.
+/// What first vertices need to know about their facets.
 class FacetTraits {
  public:
     /// adds_third_bounce   per object: whether its surface may reflect straight to the light
@@ -38,7 +38,7 @@ class FacetTraits {
 /// with one entry per vertex, so that the compiler fills vector units.
 class FirstVertexBatch {
  public:
-    static constexpr int kCapacity = 128;  // some packets of rays; the arrays stay in the L1 cache
+    static constexpr int kCapacity = 128;  // several ray packets; the arrays fit the L1 cache
 
     /// How the vertices were drawn.
     struct Draw {
@@ -57,7 +57,7 @@ class FirstVertexBatch {
         num_in_sight_ = 0;
     }
 
-    /// Draws by hidden area: numbers of one of `count` strata each, one batch after the other.
+    /// Stratified draws from the hidden area, `count` strata in all, made batch by batch.
     struct AreaDraws {
         int count;
         int begin = 0;
@@ -66,8 +66,8 @@ class FirstVertexBatch {
     };
     /// Appends the next points, uniform by area, until the arrays are full or all are done.
     void draw_by_area(const AreaSampler& sampler, AreaDraws& draws, core::Rng& rng);
-    /// Fills empty arrays with what the next directions meet, until they are nearly full or all are
-    /// done.
+    /// Fills empty arrays with the points that the next directions hit, until the arrays are nearly
+    /// full or all directions are done.
     ///
     /// returns   the number of rays
     std::uint64_t draw_by_direction(EndpointDirectionSampler& directions);
@@ -98,20 +98,21 @@ class FirstVertexBatch {
         constant_bsdf_[i] = traits_.constant(facet);
     }
 
-    /// Computes throughputs, path lengths and what the connections to the light carry if nothing is
-    /// in the way; for facets that vary() the caller sets these.
+    /// Computes throughputs, path lengths and unoccluded contributions of the connections to the
+    /// light; for facets with varies() the caller sets the contributions.
     void evaluate(const PathEndpoints& ends, const Draw& draw);
-    /// Sets to 0 the contributions of vertices that an end does not see, and remembers who is seen.
-    /// The sensor is known to see what its directions met.
+    /// Sets the contributions of vertices that are occluded from an end to 0, and remembers which
+    /// are. Vertices found by rays from the sensor are known to be visible to it.
     ///
     /// returns   the number of rays
     std::uint64_t trace_from_sensor(const PathEndpoints& ends) {
         return trace_from(ends.sensor, num_in_sight_);
     }
     std::uint64_t trace_from_light(const PathEndpoints& ends) { return trace_from(ends.light, 0); }
-    /// Drops vertices that the end did not see that was asked last.
+    /// Drops the vertices that were blocked in the last call of trace_from_sensor() or
+    /// trace_from_light().
     void keep_seen();
-    /// Drops vertices that can carry nothing: by throughput, or by their own contribution.
+    /// Drops vertices whose throughput, or whose own contribution, is zero.
     void keep_useful(bool by_contribution);
 
     /// The vertex of a path that starts at `sensor`.
@@ -125,7 +126,7 @@ class FirstVertexBatch {
     void set_contribution(int index, double value) { contribution_[index] = value; }
     /// Sensor to light by way of each vertex, devices included [m].
     std::span<const double> opl_m() const { return {opl_m_, size_t_count()}; }
-    /// How fast these lengths change [m/s], computed by this call; ends stand still.
+    /// How fast these lengths change [m/s], computed by this call; the ends are at rest.
     std::span<const double> find_velocities(const PathEndpoints& ends);
     std::span<const double> contributions() const { return {contribution_, size_t_count()}; }
 
@@ -142,13 +143,13 @@ class FirstVertexBatch {
     void keep_if(const Predicate& keep);
 
     static constexpr int kLanes = 8;
-    // Points are drawn in groups of kLanes and traced in packets; the last may reach further.
+    // Points are drawn in groups of kLanes and traced in packets; the last group may overhang.
     static constexpr int kPadded = kCapacity + SegmentPacket::kSize;
 
     const Scene& scene_;
     const FacetTraits& traits_;
     int count_ = 0;
-    int num_in_sight_ = 0;  ///< of the first ones, which the sensor's directions met
+    int num_in_sight_ = 0;  ///< leading vertices found by rays from the sensor
     std::uint32_t facet_[kPadded];
     bool seen_[kCapacity];
     alignas(64) double x_[kPadded];

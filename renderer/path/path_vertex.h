@@ -9,8 +9,7 @@
 
 namespace renderer {
 
-/// One end of all light paths: a point of the relay wall, a lit spot, or an isotropic point in
-/// space.
+/// An end of light paths: a point on the relay wall, a lit spot, or an isotropic point in space.
 ///
 /// The factor towards a unit direction w is `strength` * max(0, normal . w) for a Lambertian wall
 /// (strength albedo/pi) and `strength` for an isotropic end (1/(4 pi) for a source of 1 W, 1 for a
@@ -29,24 +28,37 @@ struct PathEndpoint {
     }
 };
 
-/// The two ends of a measurement and the length of the legs to the devices.
+/// The two ends of a pair's paths, and the length of the legs to laser and detector.
 struct PathEndpoints {
     PathEndpoint sensor;
     PathEndpoint light;
     double device_legs_m = 0.0;
-    bool coincide = false;  ///< confocal: what one end sees, the other sees too
+    bool coincide = false;  ///< confocal: both ends see the same
 };
 
-/// A vertex inside a path while it grows from the sensor towards the light.
+/// A vertex of a path that is being traced from the sensor towards the light.
 struct PathVertex {
     SurfacePoint point;
     core::Vec3 normal = core::Vec3::UnitZ();
     core::Vec3 to_previous = core::Vec3::UnitZ();  ///< unit, towards the sensor side
     Bsdf bsdf;
-    /// Everything before this vertex over the density of the draws, cosine at this vertex included.
+    /// Throughput of the path up to here over the density of its vertices; includes the cosine at
+    /// this vertex.
     double throughput = 0.0;
     PathExtent extent;  ///< from the sensor point to here
     int order = 3;      ///< bounces of the path that goes from here straight to the light
 };
+
+/// A vertex at a point whose path is still to be described.
+inline PathVertex vertex_at(const Scene& scene,
+                            const SurfacePoint& point,
+                            const core::Vec3& to_previous) {
+    PathVertex vertex;
+    vertex.point = point;
+    vertex.normal = scene.facet(point.facet).normal;
+    vertex.to_previous = to_previous;
+    vertex.bsdf = scene.bsdf_at(point);
+    return vertex;
+}
 
 }  // namespace renderer

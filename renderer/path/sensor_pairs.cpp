@@ -105,11 +105,7 @@ std::optional<PathVertex> SensorPairs::first_vertex(std::size_t pixel, const cor
     const Vec3 direction = (world_from_image_ * Vec3(x, y, 1.0)).normalized();
     const auto hit = scene_->first_hit(camera.position_m, direction, direction);
     if (!hit) return std::nullopt;
-    PathVertex vertex;
-    vertex.point = *hit;
-    vertex.normal = scene_->facet(hit->facet).normal;
-    vertex.to_previous = -direction;
-    vertex.bsdf = scene_->bsdf_at(*hit);
+    PathVertex vertex = vertex_at(*scene_, *hit, -direction);
     vertex.throughput = 1.0;
     vertex.extent.add_segment(
         hit->position - camera.position_m, Vec3::Zero(), scene_->velocity_m_per_s(hit->facet));

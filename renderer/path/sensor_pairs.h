@@ -13,11 +13,11 @@ namespace renderer {
 /// Bounces of the shortest paths that a scan samples.
 int first_order(const core::Scan& scan);
 
-/// The pairs of a scan as light paths know them: where they start and where they end.
+/// Where the light paths of a scan's pairs start and end.
 ///
-/// Paths of a wall pair run between two wall points. Paths of a pixel start with the surface point
-/// that is seen through it and end at the camera's light. A lit spot counts as a bounce, like the
-/// laser spot of a scan; camera and point light do not.
+/// Paths of a wall pair connect two wall points. Paths of a pixel start at the surface point seen
+/// through it and end at the camera's light. A lit spot counts as a bounce, like the laser spot of
+/// a scan; the camera and a point light do not.
 class SensorPairs {
  public:
     /// Both must outlive this.
@@ -32,11 +32,11 @@ class SensorPairs {
     /// The fixed ends of a pair's paths; the sensor of a pixel is the pinhole.
     PathEndpoints ends(std::size_t pair) const;
 
-    /// Draws the first vertex of a pixel's paths: what is seen through a point of the pixel.
+    /// The first vertex of a pixel's paths: the surface point seen through a point of the pixel.
     ///
-    /// u         uniform in [0, 1)^2: the point's place within the pixel
-    /// returns   a vertex of throughput 1, so that the mean over u of what arrives there towards
-    ///           the camera is the pixel's radiance; nothing when the ray leaves the scene
+    /// u         uniform in [0, 1)^2: the position within the pixel
+    /// returns   a vertex of throughput 1, so that the pixel's radiance is the mean over u of the
+    ///           radiance that leaves it towards the camera; nothing when the ray leaves the scene
     std::optional<PathVertex> first_vertex(std::size_t pixel, const core::Vec2& u) const;
 
  private:

@@ -29,16 +29,4 @@ void add_short_paths(const Scene& scene,
     }
 }
 
-void add_direct_light(const PathVertex& seen,
-                      const PathEndpoints& ends,
-                      const SurfaceWalk& walk,
-                      const RenderSettings& settings,
-                      PassHistogram& histogram) {
-    const PathExtent path = walk.extent_to_light(seen, ends);
-    if (seen.order > settings.max_bounces || !histogram.admits(path.opl_m)) return;
-    const double value = walk.connection_value(seen, ends);
-    if (!(value > 0.0) || walk.light_is_hidden(seen, ends)) return;
-    histogram.add(settings.by_order ? seen.order - 1 : 0, path, value);
-}
-
 }  // namespace renderer

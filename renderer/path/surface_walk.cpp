@@ -10,17 +10,16 @@ namespace {
 using core::kPi;
 using core::Vec3;
 
-// Share of vertices drawn from the hidden area. Seen from the wall, hidden objects are small and
-// most BSDF samples miss; between surfaces BSDF samples follow the lobes and nearby surfaces.
-constexpr double kAreaShareFromWall = 0.75;
+// The same after a vertex on a hidden surface, where BSDF samples follow lobes and find what is
+// near.
 constexpr double kAreaShareBetweenSurfaces = 0.25;
 
 // Paths are always continued up to this order; above it Russian roulette may end them.
 constexpr int kFirstRouletteOrder = 5;
 constexpr double kMinSurvival = 0.1;
 
-// Steps within the plane of a surface, up to rounding. On which side of it they lie would be
-// chance, and differ between a lobe and its density.
+// Directions with a smaller cosine lie in the plane of the surface, up to rounding. On which side
+// of it they lie would be decided by rounding, differently for a sample and for its density.
 constexpr double kMinCosine = 1e-12;
 
 }  // namespace
@@ -133,11 +132,7 @@ PathVertex SurfaceWalk::advance(const PathVertex& vertex,
                                 const SurfacePoint& next,
                                 const Step& step,
                                 double pdf_area) const {
-    PathVertex advanced;
-    advanced.point = next;
-    advanced.normal = scene_->facet(next.facet).normal;
-    advanced.to_previous = -step.direction;
-    advanced.bsdf = scene_->bsdf_at(next);
+    PathVertex advanced = vertex_at(*scene_, next, -step.direction);
     advanced.throughput = vertex.throughput * step.transport / pdf_area;
     advanced.extent.opl_m = vertex.extent.opl_m + step.distance_m;
     advanced.extent.velocity_m_per_s =

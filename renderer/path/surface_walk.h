@@ -9,14 +9,17 @@
 
 namespace renderer {
 
-/// How paths go on from surface vertices, and what they carry to the light: shared by the
-/// estimators.
+/// Share of the first vertices drawn from the hidden area, the others by direction. Seen from the
+/// wall, hidden objects are small and most directions miss them.
+inline constexpr double kAreaShareFromWall = 0.75;
+
+/// How paths continue from surface vertices and connect to the light; shared by the estimators.
 ///
 /// The next vertex is drawn either from the hidden area or from the BSDF; both kinds are weighted
 /// by the balance heuristic (source [Veach1997]).
 class SurfaceWalk {
  public:
-    /// A segment between two surface points, visibility aside.
+    /// A segment between two surface points, without visibility.
     struct Step {
         core::Vec3 direction;  ///< unit, away from the first point
         double distance_m = 0.0;
@@ -35,7 +38,7 @@ class SurfaceWalk {
     /// BSDF value [1/sr] at a vertex towards `outgoing` (unit).
     double evaluate(const PathVertex& vertex, const core::Vec3& outgoing) const;
 
-    /// What the path carries when it goes from `vertex` straight to the light, unless blocked.
+    /// Unoccluded contribution of the path that connects `vertex` to the light.
     double connection_value(const PathVertex& vertex, const PathEndpoints& ends) const;
     /// Length and velocity of that path, legs to the devices included.
     PathExtent extent_to_light(const PathVertex& vertex, const PathEndpoints& ends) const;
@@ -44,10 +47,10 @@ class SurfaceWalk {
             vertex.point.position, vertex.normal, ends.light.position, ends.light.normal);
     }
 
-    /// Russian roulette; false when the path ends here, else its throughput makes up for it.
+    /// Russian roulette: false when the path ends here, else its throughput is compensated.
     bool survives(PathVertex& vertex, core::Rng& rng) const;
 
-    /// The step from a vertex to a point; nothing when it carries nothing.
+    /// The step from a vertex to a point; nothing when its transport is zero.
     std::optional<Step> step_to(const PathVertex& vertex, const SurfacePoint& next) const;
 
     /// Replaces `vertex` by the next one of the path.
@@ -58,7 +61,7 @@ class SurfaceWalk {
                                     core::Rng& rng,
                                     std::uint64_t& num_rays) const;
 
-    /// The vertex after a step, with what the path carries to it over the density `pdf_area`.
+    /// The vertex after a step, its throughput divided by the density `pdf_area`.
     PathVertex advance(const PathVertex& vertex,
                        const SurfacePoint& next,
                        const Step& step,

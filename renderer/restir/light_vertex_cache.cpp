@@ -17,10 +17,10 @@ using core::Vec3;
 constexpr std::size_t kWalksPerBlock = 64;
 constexpr std::uint32_t kVerticesAtOnce = 64;
 
-// Sum of a few rounded coordinates and roots: lengths err by less than this share of the scene.
+// Bound of the rounding of lengths in single precision, relative to the size of the scene.
 constexpr float kRoundingShare = 16.0F * 0x1.0p-24F;
 
-// Multiples of the golden ratio fill an interval evenly, and so does any stretch of them.
+// Multiples of the golden ratio, modulo 1, are evenly spread, and so is any run of them.
 double stratified(double shift, int index) {
     constexpr double kGolden = 0.6180339887498949;
     const double u = shift + index * kGolden;
@@ -43,11 +43,7 @@ LightVertexCache::LightVertexCache(const Scene& scene,
 }
 
 PathVertex LightVertexCache::first_vertex(const SurfacePoint& point) const {
-    PathVertex vertex;
-    vertex.point = point;
-    vertex.normal = scene_->facet(point.facet).normal;
-    vertex.to_previous = (light_.position - point.position).normalized();
-    vertex.bsdf = scene_->bsdf_at(point);
+    PathVertex vertex = vertex_at(*scene_, point, (light_.position - point.position).normalized());
     vertex.throughput = 1.0;
     return vertex;
 }
@@ -152,15 +148,14 @@ void LightVertexCache::find(const PathDomain& domain,
     const float margin = kRoundingShare * (std::abs(end_f) + std::abs(begin_f) + start.norm());
     const float low = begin_f - margin;
     const float high = end_f + margin;
-    // There and back: the first vertex of a walk is its only one.
+    // Confocal, and every walk has a single vertex.
     const bool same_legs =
         by_area_ && domain.ends.coincide && points_.size() + 1 == walk_begin_.size();
     const std::uint32_t last = walk_begin_[static_cast<std::size_t>(walks.first + walks.count)];
     for (std::uint32_t v = walk_begin_[static_cast<std::size_t>(walks.first)]; v < last;) {
         std::array<float, kVerticesAtOnce> length;
         const std::uint32_t count = std::min(kVerticesAtOnce, last - v);
-        // Pointers: the compiler cannot exclude that sums of 32-bit indices wrap around, and would
-        // load one number at a time.
+        // With pointers the loops vectorize; sums of 32-bit indices might wrap around.
         std::array<const float*, kNumColumns> at;
         for (std::size_t c = 0; c < kNumColumns; ++c) at[c] = columns_[c].data() + v;
         const auto [x, y, z, first_x, first_y, first_z, to_light_m] = at;
@@ -180,7 +175,8 @@ void LightVertexCache::find(const PathDomain& domain,
         const auto is_hit = [&](std::uint32_t i) {
             return static_cast<std::uint32_t>((length[i] >= low) & (length[i] < high));
         };
-        // In a narrow gate most blocks have no hit, and where some have, few: no branches.
+        // In a narrow gate most blocks have no hit, and the others few: collect them without
+        // branches.
         std::uint32_t num_hits = 0;
         for (std::uint32_t i = 0; i < count; ++i) num_hits += is_hit(i);
         if (num_hits > 0) {

@@ -14,24 +14,24 @@ namespace renderer {
 
 /// Vertices of walks from the light, traced once and shared by all pairs of a measurement.
 ///
-/// A walk's first vertex is drawn so that it serves every pair: on scans uniformly from the hidden
-/// area, since the laser spot differs from pair to pair; on cameras along directions from the
-/// light. Every vertex of a walk, connected to the start of a pair's paths, completes a path.
+/// The first vertex of a walk is drawn so that it serves every pair: for scans uniformly from the
+/// hidden area, since the laser spot differs between pairs; for cameras along directions from the
+/// light. Every vertex of a walk completes a path when connected to the start of a pair's paths.
 class LightVertexCache {
  public:
     /// All must outlive this.
     LightVertexCache(const Scene& scene, const SurfaceWalk& walk, const SensorPairs& sensor_pairs);
 
-    /// Replaces all vertices by those of new walks; the same for any number of threads.
+    /// Replaces all vertices by those of new walks; the same bits for any number of threads.
     ///
-    /// num_walks      total; first vertices are stratified, also within any consecutive walks
+    /// num_walks      total; first vertices are stratified, also within any run of walks
     /// max_vertices   per walk
     /// returns        the number of rays traced
     std::uint64_t trace(int num_walks, int max_vertices, std::uint64_t seed, std::uint64_t frame);
 
     int num_walks() const { return static_cast<int>(walk_begin_.size()) - 1; }
 
-    /// Whether the light may not see first vertices: they are not drawn from it.
+    /// Whether first vertices may be occluded from the light, since they are not drawn from it.
     bool may_be_dark() const { return by_area_; }
 
     /// Consecutive walks.
@@ -50,7 +50,7 @@ class LightVertexCache {
     /// The path from the start of a pair's paths through a vertex to the light.
     ReusablePath path_from(std::uint32_t vertex) const;
 
-    /// Density with which one walk has a path's vertices, by area at each.
+    /// Density of one walk at a path's vertices, by area at each.
     double pdf_area(const ReusablePath& path) const;
 
  private:

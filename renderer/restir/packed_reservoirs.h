@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/restir/reservoir.h"
+#include "renderer/restir/resampling.h"
 #include "renderer/restir/reusable_path.h"
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace renderer {
 
-/// Many finished reservoirs of paths, in no more memory than their longest paths need.
+/// Many finished reservoirs of paths, stored compactly for paths of limited length.
 class PackedReservoirs {
  public:
     PackedReservoirs(std::size_t count, int max_vertices)

@@ -12,42 +12,68 @@ namespace {
 using core::kPi;
 using core::Vec3;
 
-// As for whole paths: seen from the wall, hidden objects are small and most directions miss.
-constexpr double kAreaShareFromWall = 0.75;
-
-// Shared walks per frame, in multiples of what one pair considers: neighbours then rarely consider
-// the same ones, so that their noise is hardly correlated.
+// Shared walks per frame, in multiples of what one pair tries: neighbouring pairs then rarely try
+// the same walks, so that their noise is hardly correlated.
 constexpr int kStretchesOfSharedWalks = 8;
-
-// The vertex that a connection leaves: of a walk, else what a pixel sees; null on a wall.
-const PathVertex* leaving(const PathDomain& domain, const PathVertex* walked) {
-    if (walked != nullptr) return walked;
-    return domain.seen ? &*domain.seen : nullptr;
-}
-
-ConnectionEnds ends_of(const PathDomain& domain, const PathVertex* vertex) {
-    return vertex != nullptr ? connection_ends(*vertex, domain.ends.light)
-                             : connection_ends(domain.ends);
-}
-
-// Lengths that the two last legs of a path may have after a vertex.
-OplBand remaining(const PathCandidates::Request& request, const PathVertex* vertex) {
-    const double before =
-        request.domain.ends.device_legs_m + (vertex != nullptr ? vertex->extent.opl_m : 0.0);
-    return {request.opl_begin_m - before, request.opl_end_m - before};
-}
 
 }  // namespace
 
 // One call of generate().
-struct PathCandidates::Job {
-    const Request& request;
-    core::Rng& rng;
-    const Offer& offer;
-    std::uint64_t num_rays = 0;
+class PathCandidates::Job {
+ public:
+    Job(const PathCandidates& candidates,
+        const Request& request,
+        core::Rng& rng,
+        const Offer& offer)
+        : candidates_(candidates),
+          scene_(*candidates.scene_),
+          walk_(*candidates.walk_),
+          max_vertices_(candidates.max_vertices_),
+          request_(request),
+          domain_(request.domain),
+          ends_(request.domain.ends),
+          rng_(rng),
+          offer_(offer) {}
 
-    const PathDomain& domain() const { return request.domain; }
-    const PathEndpoints& ends() const { return request.domain.ends; }
+    void walk_from_sensor();
+    void try_shared();
+    std::uint64_t num_rays() const { return num_rays_; }
+
+ private:
+    // Where a connection starts: at a vertex of the walk, else at what a pixel sees or a wall
+    // point.
+    struct Start {
+        ConnectionEnds ends;
+        OplBand lengths;  ///< of the two legs to the light
+        std::optional<LobeOnFacet> lobe;
+    };
+    Start start_of_connection(const PathVertex* walked);
+    void connect_by_ellipsoid(const PathVertex* walked, ReusablePath path);
+    bool draw_first(PathVertex& vertex);
+    std::optional<SurfaceWalk::Step> first_step(const SurfacePoint& next) const;
+    std::optional<PathValue> value_within(const ReusablePath& path) const;
+    double density(const ReusablePath& path);
+    double density_of_walks(const ReusablePath& path);
+    bool is_blocked(const ReusablePath& path, int leg);
+    // Confocal, a single vertex is seen from the light if it is seen from the sensor.
+    bool is_seen_back(const ReusablePath& path) const {
+        return ends_.coincide && path.num_vertices == 1;
+    }
+    double opl_straight_to_light(const PathVertex& vertex) const {
+        return ends_.device_legs_m + vertex.extent.opl_m +
+               (ends_.light.position - vertex.point.position).norm();
+    }
+
+    const PathCandidates& candidates_;
+    const Scene& scene_;
+    const SurfaceWalk& walk_;
+    int max_vertices_;
+    const Request& request_;
+    const PathDomain& domain_;
+    const PathEndpoints& ends_;
+    core::Rng& rng_;
+    const Offer& offer_;
+    std::uint64_t num_rays_ = 0;
 };
 
 PathCandidates::PathCandidates(const Scene& scene,
@@ -82,195 +108,176 @@ std::uint64_t PathCandidates::prepare(std::uint64_t seed, std::uint64_t frame) {
 std::uint64_t PathCandidates::generate(const Request& request,
                                        core::Rng& rng,
                                        const Offer& offer) const {
-    Job job{request, rng, offer};
     if (request.domain.is_dark || max_vertices_ < 1) return 0;
-    for (int i = 0; i < request.effort.walks; ++i) walk_from_sensor(job);
-    if (request.effort.shared_walks > 0) try_shared(job);
-    return job.num_rays;
+    Job job(*this, request, rng, offer);
+    for (int i = 0; i < request.effort.walks; ++i) job.walk_from_sensor();
+    if (request.effort.shared_walks > 0) job.try_shared();
+    return job.num_rays();
 }
 
-std::optional<SurfaceWalk::Step> PathCandidates::first_step(const PathDomain& domain,
-                                                            const SurfacePoint& next) const {
-    if (domain.seen) return walk_->step_to(*domain.seen, next);
-    const PathEndpoint& sensor = domain.ends.sensor;
+std::optional<SurfaceWalk::Step> PathCandidates::Job::first_step(const SurfacePoint& next) const {
+    if (domain_.seen) return walk_.step_to(*domain_.seen, next);
+    const PathEndpoint& sensor = ends_.sensor;
     const Vec3 offset = next.position - sensor.position;
     const double distance2 = offset.squaredNorm();
     SurfaceWalk::Step step;
     step.distance_m = std::sqrt(distance2);
     step.direction = offset / step.distance_m;
     const double per_area =
-        std::abs(scene_->facet(next.facet).normal.dot(step.direction)) / distance2;
+        std::abs(scene_.facet(next.facet).normal.dot(step.direction)) / distance2;
     step.transport = sensor.factor(step.direction) * per_area;
     if (!(step.transport > 0.0)) return std::nullopt;
-    const double area_pdf = scene_->is_hidden(next.facet) ? walk_->area_sampler().pdf_area() : 0.0;
+    const double area_pdf = scene_.is_hidden(next.facet) ? walk_.area_sampler().pdf_area() : 0.0;
     step.pdf_area = kAreaShareFromWall * area_pdf +
                     (1.0 - kAreaShareFromWall) * sensor.normal.dot(step.direction) / kPi * per_area;
     return step;
 }
 
 // The first vertex of a walk; false when there is none or no path through it can be in the gate.
-bool PathCandidates::draw_first(Job& job, PathVertex& vertex) const {
-    if (job.domain().seen) {
-        vertex = *job.domain().seen;
-        return walk_->draw_next(vertex, job.rng, job.num_rays).has_value();
+bool PathCandidates::Job::draw_first(PathVertex& vertex) {
+    if (domain_.seen) {
+        vertex = *domain_.seen;
+        return walk_.draw_next(vertex, rng_, num_rays_).has_value();
     }
-    const PathEndpoint& sensor = job.ends().sensor;
+    const PathEndpoint& sensor = ends_.sensor;
     SurfacePoint point;
-    const bool from_area = job.rng.uniform() < kAreaShareFromWall;
-    const double u1 = job.rng.uniform();
-    const double u2 = job.rng.uniform();
+    const bool from_area = rng_.uniform() < kAreaShareFromWall;
+    const double u1 = rng_.uniform();
+    const double u2 = rng_.uniform();
     if (from_area) {
-        point = walk_->area_sampler().sample(u1, u2);
+        point = walk_.area_sampler().sample(u1, u2);
     } else {
         const core::Mat3 world_from_end =
-            core::frame_from_normal(sensor.normal, scene_->tangent_hint(sensor.normal));
+            core::frame_from_normal(sensor.normal, scene_.tangent_hint(sensor.normal));
         const auto hit =
-            scene_->first_hit(sensor.position,
-                              sensor.normal,
-                              world_from_end * core::sample_cosine_hemisphere({u1, u2}));
-        ++job.num_rays;
+            scene_.first_hit(sensor.position,
+                             sensor.normal,
+                             world_from_end * core::sample_cosine_hemisphere({u1, u2}));
+        ++num_rays_;
         if (!hit) return false;
         point = *hit;
     }
-    const auto step = first_step(job.domain(), point);
+    const auto step = first_step(point);
     if (!step) return false;
     // No path through this point is shorter than the one that continues straight to the light.
-    const double shortest = job.domain().extra_opl_m() + step->distance_m +
-                            (job.ends().light.position - point.position).norm();
-    if (shortest >= job.request.opl_end_m) return false;
-    if (max_vertices_ == 1 && shortest < job.request.opl_begin_m) return false;
-    if (from_area) {
-        ++job.num_rays;
-        if (scene_->rays().is_blocked(sensor.position,
-                                      sensor.normal,
-                                      point.position,
-                                      scene_->facet(point.facet).normal)) {
-            return false;
-        }
-    }
+    const double shortest =
+        ends_.device_legs_m + step->distance_m + (ends_.light.position - point.position).norm();
+    if (shortest >= request_.opl_end_m) return false;
+    if (max_vertices_ == 1 && shortest < request_.opl_begin_m) return false;
     PathVertex start;
     start.throughput = 1.0;
-    vertex = walk_->advance(start, point, *step, step->pdf_area);
-    return true;
+    vertex = walk_.advance(start, point, *step, step->pdf_area);
+    if (!from_area) return true;
+    ++num_rays_;
+    return !scene_.rays().is_blocked(sensor.position, sensor.normal, point.position, vertex.normal);
 }
 
-void PathCandidates::walk_from_sensor(Job& job) const {
+bool PathCandidates::Job::is_blocked(const ReusablePath& path, int leg) {
+    ++num_rays_;
+    return candidates_.integrand_.is_blocked(domain_, path, leg);
+}
+
+void PathCandidates::Job::walk_from_sensor() {
     ReusablePath path;
     PathVertex vertex;
-    connect_by_ellipsoid(job, nullptr, path);
-    if (!draw_first(job, vertex)) return;
+    connect_by_ellipsoid(nullptr, path);
+    if (!draw_first(vertex)) return;
     while (true) {
         path.append(vertex.point);
-        if (const auto value = value_within(job, path)) {
-            const bool seen_back = job.ends().coincide && path.num_vertices == 1;
-            job.num_rays += seen_back ? 0 : 1;
-            if (seen_back || !integrand_.is_blocked(job.domain(), path, path.num_vertices)) {
-                job.offer(path, *value, density(job, path));
-            }
+        const auto value = value_within(path);
+        if (value && (is_seen_back(path) || !is_blocked(path, path.num_vertices))) {
+            offer_(path, *value, density(path));
         }
         if (path.num_vertices == max_vertices_) return;
-        const double shortest = job.ends().device_legs_m + vertex.extent.opl_m +
-                                (job.ends().light.position - vertex.point.position).norm();
-        if (shortest >= job.request.opl_end_m) return;
-        connect_by_ellipsoid(job, &vertex, path);
-        if (!walk_->draw_next(vertex, job.rng, job.num_rays)) return;
+        if (opl_straight_to_light(vertex) >= request_.opl_end_m) return;
+        connect_by_ellipsoid(&vertex, path);
+        if (!walk_.draw_next(vertex, rng_, num_rays_)) return;
     }
 }
 
-void PathCandidates::connect_by_ellipsoid(Job& job,
-                                          const PathVertex* from,
-                                          ReusablePath path) const {
-    if (!connections_ || path.num_vertices == max_vertices_) return;
-    const PathVertex* const vertex = leaving(job.domain(), from);
-    const auto draw = connections_->sample(ends_of(job.domain(), vertex),
-                                           remaining(job.request, vertex),
-                                           job.rng,
-                                           lobe_of(job, vertex));
+PathCandidates::Job::Start PathCandidates::Job::start_of_connection(const PathVertex* walked) {
+    const PathVertex* const vertex = walked == nullptr && domain_.seen ? &*domain_.seen : walked;
+    if (vertex == nullptr) {
+        const double legs = ends_.device_legs_m;
+        return {connection_ends(ends_),
+                {request_.opl_begin_m - legs, request_.opl_end_m - legs},
+                std::nullopt};  // walls are diffuse
+    }
+    const double before = ends_.device_legs_m + vertex->extent.opl_m;
+    return {connection_ends(*vertex, ends_.light),
+            {request_.opl_begin_m - before, request_.opl_end_m - before},
+            candidates_.connections_->lobe_of(*vertex, ends_.light.position, num_rays_)};
+}
+
+void PathCandidates::Job::connect_by_ellipsoid(const PathVertex* walked, ReusablePath path) {
+    const auto& connections = candidates_.connections_;
+    if (!connections || path.num_vertices == max_vertices_) return;
+    const Start start = start_of_connection(walked);
+    const auto draw = connections->sample(start.ends, start.lengths, rng_, start.lobe);
     if (!draw) return;
     path.append(draw->point);
-    const auto value = value_within(job, path);
-    if (!value) return;
-    ++job.num_rays;
-    if (integrand_.is_blocked(job.domain(), path, path.num_vertices - 1)) return;
-    if (!(job.ends().coincide && path.num_vertices == 1)) {
-        ++job.num_rays;
-        if (integrand_.is_blocked(job.domain(), path, path.num_vertices)) return;
-    }
-    job.offer(path, *value, density(job, path));
+    const auto value = value_within(path);
+    if (!value || is_blocked(path, path.num_vertices - 1)) return;
+    if (!is_seen_back(path) && is_blocked(path, path.num_vertices)) return;
+    offer_(path, *value, density(path));
 }
 
-void PathCandidates::try_shared(Job& job) const {
+void PathCandidates::Job::try_shared() {
     thread_local std::vector<std::uint32_t> found;
-    const int num_walks = std::min(job.request.effort.shared_walks, light_vertices_.num_walks());
-    const int first =
-        static_cast<int>(job.rng.uniform() * (light_vertices_.num_walks() - num_walks + 1));
-    light_vertices_.find(
-        job.domain(), {job.request.opl_begin_m, job.request.opl_end_m}, {first, num_walks}, found);
+    const LightVertexCache& cache = candidates_.light_vertices_;
+    const int num_walks = std::min(request_.effort.shared_walks, cache.num_walks());
+    const int first = static_cast<int>(rng_.uniform() * (cache.num_walks() - num_walks + 1));
+    cache.find(domain_, {request_.opl_begin_m, request_.opl_end_m}, {first, num_walks}, found);
     for (const std::uint32_t vertex : found) {
-        const ReusablePath path = light_vertices_.path_from(vertex);
-        const auto value = value_within(job, path);
-        if (!value) continue;
-        ++job.num_rays;
-        if (integrand_.is_blocked(job.domain(), path, 0)) continue;
-        if (light_vertices_.may_be_dark() && !(job.ends().coincide && path.num_vertices == 1)) {
-            ++job.num_rays;
-            if (integrand_.is_blocked(job.domain(), path, path.num_vertices)) continue;
+        const ReusablePath path = cache.path_from(vertex);
+        const auto value = value_within(path);
+        if (!value || is_blocked(path, 0)) continue;
+        if (cache.may_be_dark() && !is_seen_back(path) && is_blocked(path, path.num_vertices)) {
+            continue;
         }
-        job.offer(path, *value, density(job, path));
+        offer_(path, *value, density(path));
     }
 }
 
-std::optional<PathValue> PathCandidates::value_within(const Job& job,
-                                                      const ReusablePath& path) const {
-    const PathValue value = integrand_.evaluate(job.domain(), path);
-    if (!(value.radiance > 0.0) || value.extent.opl_m < job.request.opl_begin_m ||
-        value.extent.opl_m >= job.request.opl_end_m) {
+std::optional<PathValue> PathCandidates::Job::value_within(const ReusablePath& path) const {
+    const PathValue value = candidates_.integrand_.evaluate(domain_, path);
+    if (!(value.radiance > 0.0) || value.extent.opl_m < request_.opl_begin_m ||
+        value.extent.opl_m >= request_.opl_end_m) {
         return std::nullopt;
     }
     return value;
 }
 
-double PathCandidates::density(Job& job, const ReusablePath& path) const {
-    const PathCandidates::Effort& effort = job.request.effort;
+double PathCandidates::Job::density(const ReusablePath& path) {
+    const Effort& effort = request_.effort;
     double total = 0.0;
-    if (effort.walks > 0) {
-        const PathDomain& domain = job.domain();
-        double walked = 1.0;       // density of the vertices up to here
-        double ellipsoidal = 0.0;  // of the last one, by the other technique
-        PathVertex vertex;
-        for (int i = 0; i < path.num_vertices; ++i) {
-            if (connections_ && i + 1 == path.num_vertices) {
-                ellipsoidal =
-                    walked * ellipsoidal_pdf(job, i == 0 ? nullptr : &vertex, path.last());
-            }
-            const auto step =
-                i == 0 ? first_step(domain, path.at(0)) : walk_->step_to(vertex, path.at(i));
-            if (!step) break;  // never: paths without radiance are not offered
-            walked *= step->pdf_area;
-            PathVertex before = vertex;
-            if (i == 0 && domain.seen) before = *domain.seen;
-            before.throughput = 1.0;
-            vertex = walk_->advance(before, path.at(i), *step, step->pdf_area);
-        }
-        total += effort.walks * (walked + ellipsoidal);
-    }
+    if (effort.walks > 0) total += effort.walks * density_of_walks(path);
     if (effort.shared_walks > 0) {
-        total += effort.shared_walks * light_vertices_.pdf_area(path);
+        total += effort.shared_walks * candidates_.light_vertices_.pdf_area(path);
     }
     return total;
 }
 
-double PathCandidates::ellipsoidal_pdf(Job& job,
-                                       const PathVertex* from,
-                                       const SurfacePoint& point) const {
-    const PathVertex* const vertex = leaving(job.domain(), from);
-    return connections_->pdf_area(
-        ends_of(job.domain(), vertex), remaining(job.request, vertex), point, lobe_of(job, vertex));
-}
-
-std::optional<LobeOnFacet> PathCandidates::lobe_of(Job& job, const PathVertex* vertex) const {
-    if (vertex == nullptr) return std::nullopt;  // walls are diffuse
-    return connections_->lobe_of(*vertex, job.ends().light.position, job.num_rays);
+// Of one walk and the connections from its vertices.
+double PathCandidates::Job::density_of_walks(const ReusablePath& path) {
+    double walked = 1.0;       // density of the vertices up to here
+    double ellipsoidal = 0.0;  // of the last one, by the other technique
+    PathVertex vertex;
+    for (int i = 0; i < path.num_vertices; ++i) {
+        if (candidates_.connections_ && i + 1 == path.num_vertices) {
+            const Start start = start_of_connection(i == 0 ? nullptr : &vertex);
+            ellipsoidal = walked * candidates_.connections_->pdf_area(
+                                       start.ends, start.lengths, path.last(), start.lobe);
+        }
+        const auto step = i == 0 ? first_step(path.at(0)) : walk_.step_to(vertex, path.at(i));
+        if (!step) break;  // never: paths without radiance are not offered
+        walked *= step->pdf_area;
+        PathVertex before = vertex;
+        if (i == 0 && domain_.seen) before = *domain_.seen;
+        before.throughput = 1.0;
+        vertex = walk_.advance(before, path.at(i), *step, step->pdf_area);
+    }
+    return walked + ellipsoidal;
 }
 
 }  // namespace renderer

@@ -10,21 +10,20 @@
 
 namespace renderer {
 
-/// Draws paths of a pair for reservoirs to choose from.
+/// Draws the candidate paths of a pair.
 ///
 /// Techniques are weighted by the balance heuristic on the paths' densities: walks from the sensor
 /// and, depending on the settings, an ellipsoidal connection from each vertex to the light, or a
 /// stretch of shared walks from the light (source [Veach1997], [Pediredla2019]).
 class PathCandidates {
  public:
-    /// An unoccluded path whose length lies within the requested interval.
+    /// Receives an unoccluded path whose length lies within the requested interval.
     ///
-    /// value     what it carries
-    /// density   of all techniques together, samples counted: the sum of value / density over all
-    ///           offers estimates the integral over all paths
+    /// density   of all techniques together, times their numbers of samples: the sum of
+    ///           value / density over all offers estimates the integral over all paths
     using Offer = std::function<void(const ReusablePath&, const PathValue& value, double density)>;
 
-    /// How many samples the techniques take of one pair.
+    /// Numbers of samples of the techniques for one pair.
     struct Effort {
         int walks = 1;
         int shared_walks = 0;
@@ -54,22 +53,11 @@ class PathCandidates {
     /// Traces the shared walks of a frame. returns the number of rays
     std::uint64_t prepare(std::uint64_t seed, std::uint64_t frame);
 
-    /// Draws paths and offers those that carry something. returns the number of rays
+    /// Draws paths and offers those with a contribution. returns the number of rays
     std::uint64_t generate(const Request& request, core::Rng& rng, const Offer& offer) const;
 
  private:
-    struct Job;
-
-    void walk_from_sensor(Job& job) const;
-    void connect_by_ellipsoid(Job& job, const PathVertex* from, ReusablePath path) const;
-    void try_shared(Job& job) const;
-    bool draw_first(Job& job, PathVertex& vertex) const;
-    std::optional<SurfaceWalk::Step> first_step(const PathDomain& domain,
-                                                const SurfacePoint& next) const;
-    std::optional<PathValue> value_within(const Job& job, const ReusablePath& path) const;
-    double density(Job& job, const ReusablePath& path) const;
-    double ellipsoidal_pdf(Job& job, const PathVertex* from, const SurfacePoint& point) const;
-    std::optional<LobeOnFacet> lobe_of(Job& job, const PathVertex* vertex) const;
+    class Job;
 
     const Scene* scene_;
     const SurfaceWalk* walk_;

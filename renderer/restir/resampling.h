@@ -1,18 +1,69 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/restir/reservoir.h"
-
 #include <optional>
 
 namespace renderer {
 
-/// A sample carried into another domain.
+/// One sample that represents many candidates (source [Lin2022]).
+///
+/// Its contribution weight W is an unbiased estimate of the reciprocal of the density with which it
+/// was chosen: the expectation of W f(sample) is the integral of f where the target is positive.
+template <class Sample>
+struct Reservoir {
+    Sample sample{};
+    double target_value = 0.0;         ///< p-hat of the sample; 0: there is none
+    double contribution_weight = 0.0;  ///< W
+    double confidence = 0.0;           ///< number of frames whose candidates it represents
+
+    bool empty() const { return !(target_value > 0.0); }
+    /// The sample's estimate of the integral of the target function.
+    double estimate() const { return target_value * contribution_weight; }
+};
+
+/// Chooses one of a stream of samples with probability proportional to resampling weights.
+template <class Sample>
+class ReservoirBuilder {
+ public:
+    /// Offers a sample.
+    ///
+    /// target_value        p-hat of the sample in the domain that is built for
+    /// resampling_weight   its MIS weight times p-hat times its own contribution weight
+    /// u                   uniform in [0, 1)
+    void add(const Sample& sample, double target_value, double resampling_weight, double u) {
+        if (!(resampling_weight > 0.0)) return;
+        weight_sum_ += resampling_weight;
+        if (u * weight_sum_ >= resampling_weight) return;
+        sample_ = sample;
+        target_value_ = target_value;
+    }
+
+    bool empty() const { return !(weight_sum_ > 0.0); }
+
+    /// confidence   of the result
+    /// scale        of the weight sum: one over the number of techniques that pairwise MIS adds up
+    Reservoir<Sample> finish(double confidence, double scale = 1.0) const {
+        Reservoir<Sample> result;
+        result.confidence = confidence;
+        if (empty()) return result;
+        result.sample = sample_;
+        result.target_value = target_value_;
+        result.contribution_weight = scale * weight_sum_ / target_value_;
+        return result;
+    }
+
+ private:
+    Sample sample_{};
+    double target_value_ = 0.0;
+    double weight_sum_ = 0.0;
+};
+
+/// A sample shifted into another domain.
 template <class Sample>
 struct Carried {
     Sample sample{};
     double target_value = 0.0;  ///< p-hat there, in that domain's measure
-    double jacobian = 1.0;      ///< of the map that carried it
+    double jacobian = 1.0;      ///< of the shift mapping
 };
 
 /// Weighs two domains' samples against each other by confidence times density: the generalised
@@ -73,8 +124,8 @@ Reservoir<Sample> resample_balance_heuristic(const Reservoir<Sample>& canonical,
 /// Merges a canonical reservoir with neighbours whose number was fixed before any sample was
 /// known, by defensive pairwise MIS (source [Bitterli2022], weights as in [Lin2022]).
 ///
-/// A neighbour whose sample cannot be carried over, or that has none, still counts: its share goes
-/// to the canonical sample. Counting only the successful ones would be biased.
+/// A neighbour without a sample, or whose sample cannot be shifted, still counts: its share goes to
+/// the canonical sample. Counting only successful shifts would be biased.
 template <class Sample>
 class PairwiseMisMerge {
  public:

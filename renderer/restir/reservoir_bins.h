@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/core/velocity_axis.h"
-#include "renderer/film/path_extent.h"
-#include "renderer/film/path_gate.h"
+#include "renderer/film/time_gate.h"
 
 #include <cstddef>
 #include <optional>
@@ -11,8 +9,8 @@
 namespace renderer {
 
 /// The reservoirs of one pair: one per bin of the time axis or, with a velocity axis, one per bin
-/// of that (of both, where velocities are resolved in time). A last one then takes the paths that
-/// the velocity axis leaves out; it serves the time histogram alone and is not reused.
+/// of that (of both, where velocities are resolved in time). The last one then holds the paths
+/// outside the velocity axis; it serves the time histogram alone and is not reused.
 class ReservoirBins {
  public:
     ReservoirBins() = default;
@@ -29,17 +27,18 @@ class ReservoirBins {
         return axes_.velocity && bin == num_velocity_values();
     }
 
-    /// All lengths that any of them admits.
+    /// The gate of all reservoirs together.
     TimeGate lengths() const;
-    /// The one that admits a path; nothing when its length lies outside.
+    /// The bin of a path; nothing when its length lies outside.
     std::optional<std::size_t> bin_of(const PathExtent& path) const;
-    /// What one of them admits; not for the one that is left out.
+    /// The gate of a bin; not for the one outside the velocity axis.
     PathGate gate(std::size_t bin) const;
 
-    /// The bin beside another one along what a shift keeps, `step` is 1 or -1; nothing at the ends.
+    /// The next bin along the quantity that shifts preserve, `step` is 1 or -1; nothing at the
+    /// ends.
     std::optional<std::size_t> beside(std::size_t bin, int step) const;
 
-    /// Bins of time and velocity that one belongs to; nothing where it holds paths of several.
+    /// The time and the velocity bin of a reservoir; nothing where it holds paths of several.
     std::optional<int> time_bin(std::size_t bin) const;
     std::optional<int> velocity_bin(std::size_t bin) const;
 

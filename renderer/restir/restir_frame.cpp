@@ -21,13 +21,13 @@ std::optional<ShiftMapping> make_shift(const Scene& scene,
     return ShiftMapping(scene, shift, quantity);
 }
 
-// How far a facet lies in `to` from where it lies in `from`.
+// Displacement of a facet between two scenes.
 Vec3 motion(const RestirScene& from, const RestirScene& to, std::uint32_t facet) {
     if (&from == &to) return Vec3::Zero();
     return to.scene->facet(facet).corner - from.scene->facet(facet).corner;
 }
 
-// A path behind its first vertex's two legs, and before them.
+// The extent of a path without the two legs of its first vertex.
 PathExtent rest_of(const ReservoirDomain& side, const ReusablePath& path) {
     const Scene& scene = *side.scene->scene;
     PathExtent rest = side.domain->extra();
@@ -44,8 +44,8 @@ PathExtent rest_of(const ReservoirDomain& side, const ReusablePath& path) {
     return rest;
 }
 
-// How the two legs of the first vertex must change for a path to fit its new place. Velocity bins
-// are all of one width.
+// How the two legs of the first vertex must change for a path to fit its new domain. All velocity
+// bins have the same width.
 ConstraintChange change_between(const ReservoirDomain& from,
                                 const ReusablePath& path_from,
                                 const ReservoirDomain& to,
@@ -86,7 +86,7 @@ bool is_same(const ShiftEnd& a, const ShiftEnd& b) {
     return a.a == b.a && a.y == b.y && a.velocity_a == b.velocity_a && a.velocity_y == b.velocity_y;
 }
 
-// Whether the path velocity of the two legs is 0 wherever on its surface the vertex lies.
+// Whether the path velocity of the two legs is 0 wherever the vertex lies on its surface.
 bool is_at_rest(const ShiftEnd& end, const Vec3& surface_velocity) {
     return end.velocity_a == surface_velocity && end.velocity_y == surface_velocity;
 }
@@ -107,7 +107,7 @@ std::optional<double> shift_first(const PathReservoir& reservoir,
     const ConstraintChange change = change_between(from, reservoir.sample, to, path);
     SurfacePoint& x = path.at(0);
     const Vec3& velocity = current.scene->velocity_m_per_s(facet);
-    // Where nothing moves there is no velocity to change: the vertex stays, from either side.
+    // Where nothing moves there is no velocity to change: the vertex stays, in both directions.
     const bool stays =
         from.gate.velocity && is_at_rest(source, velocity) && is_at_rest(target, velocity);
     if (stays || (change.ratio == 1.0 && change.offset_m == 0.0 && is_same(source, target))) {
@@ -117,18 +117,18 @@ std::optional<double> shift_first(const PathReservoir& reservoir,
     const SurfacePoint start{reservoir.sample.first().position + from_moved, facet};
     const auto shifted = current.shift->shift_path(start, source, target, change, counts);
     if (!shifted) return std::nullopt;
-    // Another object may have moved otherwise.
+    // The vertex may have reached an object with another motion.
     if (motion(*to.scene, current, shifted->point.facet) != to_moved) return std::nullopt;
     x = shifted->point;
     x.position -= to_moved;
     return shifted->jacobian;
 }
 
-// Whether the legs that a move has changed are open.
-bool is_open(const ReservoirDomain& from,
-             const ReservoirDomain& to,
-             const ReusablePath& path,
-             std::uint64_t& num_rays) {
+// Whether the segments changed by a shift are unoccluded.
+bool is_unoccluded(const ReservoirDomain& from,
+                   const ReservoirDomain& to,
+                   const ReusablePath& path,
+                   std::uint64_t& num_rays) {
     const PathIntegrand& integrand = to.scene->candidates.integrand();
     if (from.scene != to.scene) return !integrand.is_any_blocked(*to.domain, path, num_rays);
     const bool there_and_back = to.domain->ends.coincide && path.num_vertices == 1;
@@ -205,7 +205,8 @@ ShiftedSample shift_sample(const PathReservoir& reservoir,
     }
     const PathValue value = to.scene->candidates.integrand().evaluate(*to.domain, carried.sample);
     carried.target_value = value.radiance * to.gate.weight(value.extent);
-    if (!(carried.target_value > 0.0) || !is_open(from, to, carried.sample, counts.num_rays)) {
+    if (!(carried.target_value > 0.0) ||
+        !is_unoccluded(from, to, carried.sample, counts.num_rays)) {
         carried.target_value = 0.0;
     }
     return carried;

@@ -15,10 +15,10 @@
 
 namespace renderer {
 
-/// What reservoirs need to know of a scene; the same for all frames in which nothing moves.
+/// A scene prepared for resampling; shared by all frames in which nothing moves.
 struct RestirScene {
     /// scan   must outlive this
-    /// axes   of all frames: their spans and kinds count, not where they begin
+    /// axes   of any frame: only their spans and kinds matter, not where they begin
     RestirScene(std::shared_ptr<const Scene> scene_of_frames,
                 const core::Scan& scan,
                 const core::HistogramAxes& axes,
@@ -34,7 +34,7 @@ struct RestirScene {
     std::optional<PixelPositionSampler> pixel_places;  ///< of an image
 };
 
-/// One frame's reservoirs, some per pair, and what they belong to.
+/// The reservoirs of one frame, with their scene, bins and domains.
 struct RestirFrame {
     std::shared_ptr<RestirScene> scene;
     ReservoirBins bins;                 ///< of every pair
@@ -42,7 +42,7 @@ struct RestirFrame {
     PackedReservoirs reservoirs{0, 0};  ///< [pair][bin]
 };
 
-/// One reservoir's place: a pair and a gate, in a scene.
+/// The domain of a reservoir: a pair and a gate, in a scene.
 struct ReservoirDomain {
     const RestirScene* scene = nullptr;
     const PathDomain* domain = nullptr;  ///< of a pixel, the one of the frame's own candidates
@@ -60,20 +60,20 @@ struct ReservoirDomain {
 using PathReservoir = Reservoir<ReusablePath>;
 using ShiftedSample = std::optional<Carried<ReusablePath>>;
 
-/// Where the paths through one place of a pixel start and end.
+/// The ends of the paths through one position within a pixel.
 PathDomain pixel_domain(const SensorPairs& sensor_pairs,
                         std::size_t pixel,
                         const core::Vec2& pixel_u);
 
-/// Carries a reservoir's path from one place to another, so that it fits the gate there.
+/// Shifts a reservoir's path from one domain to another, so that it fits the gate there.
 ///
-/// A pixel's paths start anywhere in it: the place within the pixel is a part of the path, and
-/// stays when another pixel takes the path over. Objects may have moved in between. The shift is
-/// solved in the `current` scene: paths of another one are taken there by the motion of the object
-/// that carries the first vertex, both neighbours along with it, which keeps lengths and areas.
+/// The position within the pixel where an image's path starts is part of the path, and is kept when
+/// another pixel reuses it. Objects may have moved between the frames of the two domains. The shift
+/// is solved in the `current` scene: the first vertex and both its neighbours are brought there by
+/// the motion of the object with the first vertex, which preserves lengths and areas.
 ///
 /// counts    receives shifts and rays
-/// returns   the path there, or nothing: what is not carried has no image
+/// returns   the shifted path; nothing where the shift is not defined
 ShiftedSample shift_sample(const PathReservoir& reservoir,
                            ReservoirDomain from,
                            ReservoirDomain to,

@@ -9,8 +9,8 @@
 
 namespace renderer {
 
-/// Which pairs are near each other: pixels by their place in the image, wall points by distance,
-/// which works for scattered points too.
+/// Which pairs are near each other: pixels by position in the image, wall points by distance, so
+/// that scans need not be grids.
 class RestirNeighbours {
  public:
     /// scan   must outlive this

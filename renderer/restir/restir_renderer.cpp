@@ -12,29 +12,24 @@ namespace {
 
 constexpr std::size_t kPairsPerTask = 16;
 
-// Streams of random numbers of one frame: one for the candidates, one for each round of reuse, and
-// one for the places within pixels.
+// Random number streams of one frame: one for the candidates, one per round of reuse, and one for
+// the positions within pixels.
 constexpr std::uint64_t kStreamsPerFrame = 64;
 constexpr int kCandidateStage = 0;
 constexpr std::uint64_t kPixelStream = kStreamsPerFrame - 1;
 
-// Walks against a wider gate are shifted into the narrow one by this ratio of widths.
+// Width of the gate over that of the wider gate from which paths are shifted into it.
 constexpr double kShrink = 0.2;
 
-// Pixels that see surfaces turned this far from each other have little to give each other.
+// Pixels whose surfaces are tilted further against each other share few useful paths.
 constexpr double kMinNormalCosine = 0.5;
 
-// One frame's candidates count as one, whatever their number.
+// Confidence counts frames, whatever their number of candidates.
 constexpr double kConfidenceOfFrame = 1.0;
 
 PathReservoir limited(PathReservoir reservoir, double most) {
     reservoir.confidence = std::min(reservoir.confidence, most);
     return reservoir;
-}
-
-ReusablePath placed(ReusablePath path, const PathDomain& domain) {
-    path.pixel_u = domain.pixel_u;
-    return path;
 }
 
 PathCandidates::Effort effort_of(const RestirSettings& settings, double share) {
@@ -48,7 +43,7 @@ PathCandidates::Effort effort_of(const RestirSettings& settings, double share) {
 
 }  // namespace
 
-// What a thread needs while it works on some pairs.
+// The state of a thread that works on some pairs.
 struct RestirRenderer::Worker {
     core::Rng rng{0, 0, 0};
     std::size_t pair = 0;
@@ -123,10 +118,15 @@ void RestirRenderer::generate_candidates(const FrameInput& input, RestirFrame& f
     const std::size_t num_bins = frame.bins.count();
     const bool reuses = settings_.restir.reuse != Reuse::None && input.previous != nullptr;
     for_each_pair(input, kCandidateStage, [&](Worker& worker, std::size_t pair) {
-        draw(worker, frame, pair);
+        auto& builders = worker.builders;
+        std::fill(builders.begin(), builders.end(), ReservoirBuilder<ReusablePath>());
+        const double share = 1.0 - settings_.restir.shrink_fraction;
+        draw(worker, frame, frame.bins.lengths(), share, [&](const PathExtent& extent) {
+            const auto bin = frame.bins.bin_of(extent);
+            return bin ? &builders[*bin] : nullptr;
+        });
         for (std::size_t bin = 0; bin < num_bins; ++bin) {
-            const double share = 1.0 - settings_.restir.shrink_fraction;
-            PathReservoir fresh = worker.builders[bin].finish(share * kConfidenceOfFrame);
+            PathReservoir fresh = builders[bin].finish(share * kConfidenceOfFrame);
             if (share < 1.0) fresh = sample_wide_gate(worker, frame, fresh);
             const std::size_t index = pair * num_bins + bin;
             const bool is_reused = reuses && !frame.bins.is_left_out(bin);
@@ -137,22 +137,24 @@ void RestirRenderer::generate_candidates(const FrameInput& input, RestirFrame& f
     });
 }
 
-// Candidates of all bins of a pair.
-void RestirRenderer::draw(Worker& worker, const RestirFrame& frame, std::size_t pair) const {
-    std::fill(worker.builders.begin(), worker.builders.end(), ReservoirBuilder<ReusablePath>());
-    const TimeGate lengths = frame.bins.lengths();
+// Draws paths of a pair within a gate and offers them to the builder of their bin.
+template <class BuilderOf>
+void RestirRenderer::draw(Worker& worker,
+                          const RestirFrame& frame,
+                          const TimeGate& gate,
+                          double share,
+                          const BuilderOf& builder_of) const {
+    const PathDomain& domain = frame.domains[worker.pair];
     const PathCandidates::Request request{
-        frame.domains[pair],
-        lengths.begin_m(),
-        lengths.end_m(),
-        effort_of(settings_.restir, 1.0 - settings_.restir.shrink_fraction)};
+        domain, gate.begin_m(), gate.end_m(), effort_of(settings_.restir, share)};
     worker.counts.num_rays += frame.scene->candidates.generate(
         request, worker.rng, [&](const ReusablePath& path, const PathValue& value, double density) {
-            const auto bin = frame.bins.bin_of(value.extent);
-            if (!bin) return;
-            const double target = value.radiance * lengths.weight(value.extent.opl_m);
-            worker.builders[*bin].add(
-                placed(path, request.domain), target, target / density, worker.rng.uniform());
+            ReservoirBuilder<ReusablePath>* const builder = builder_of(value.extent);
+            if (builder == nullptr) return;
+            const double target = value.radiance * gate.weight(value.extent.opl_m);
+            ReusablePath placed = path;
+            placed.pixel_u = domain.pixel_u;
+            builder->add(placed, target, target / density, worker.rng.uniform());
         });
 }
 
@@ -167,20 +169,9 @@ PathReservoir RestirRenderer::sample_wide_gate(Worker& worker,
     gate.width_m /= kShrink;
     gate.start_m -= 0.5 * (gate.width_m - here.gate.time.width_m);
     ReservoirBuilder<ReusablePath> builder;
-    const PathCandidates::Request request{
-        *wide.domain, gate.begin_m(), gate.end_m(), effort_of(settings_.restir, share)};
-    worker.counts.num_rays += frame.scene->candidates.generate(
-        request, worker.rng, [&](const ReusablePath& path, const PathValue& value, double density) {
-            const double target = value.radiance * gate.weight(value.extent.opl_m);
-            builder.add(
-                placed(path, request.domain), target, target / density, worker.rng.uniform());
-        });
-    const PathReservoir other = builder.finish(share * kConfidenceOfFrame);
-    const ShiftedSample in = shift_sample(other, wide, here, *frame.scene, worker.counts);
-    const ShiftedSample out = shift_sample(narrow, here, wide, *frame.scene, worker.counts);
-    ++worker.counts.num_merges;
-    return resample_balance_heuristic(
-        narrow, other, in, out, worker.rng.uniform(), worker.rng.uniform());
+    draw(worker, frame, gate, share, [&](const PathExtent&) { return &builder; });
+    return merge(
+        worker, *frame.scene, narrow, here, builder.finish(share * kConfidenceOfFrame), wide);
 }
 
 PathReservoir RestirRenderer::reuse_temporally(Worker& worker,
@@ -189,15 +180,26 @@ PathReservoir RestirRenderer::reuse_temporally(Worker& worker,
                                                std::size_t index,
                                                const PathReservoir& fresh) const {
     const std::size_t bin = index % frame.bins.count();
-    const ReservoirDomain here(frame, worker.pair, bin);
-    const ReservoirDomain before(previous, worker.pair, bin);
-    const PathReservoir history =
-        limited(previous.reservoirs.load(index), settings_.restir.confidence_cap);
-    const ShiftedSample in = shift_sample(history, before, here, *frame.scene, worker.counts);
-    const ShiftedSample out = shift_sample(fresh, here, before, *frame.scene, worker.counts);
+    return merge(worker,
+                 *frame.scene,
+                 fresh,
+                 {frame, worker.pair, bin},
+                 limited(previous.reservoirs.load(index), settings_.restir.confidence_cap),
+                 {previous, worker.pair, bin});
+}
+
+// Merges the reservoir of another domain into that of `here`.
+PathReservoir RestirRenderer::merge(Worker& worker,
+                                    const RestirScene& current,
+                                    const PathReservoir& canonical,
+                                    const ReservoirDomain& here,
+                                    const PathReservoir& other,
+                                    const ReservoirDomain& there) const {
+    const ShiftedSample in = shift_sample(other, there, here, current, worker.counts);
+    const ShiftedSample out = shift_sample(canonical, here, there, current, worker.counts);
     ++worker.counts.num_merges;
     return resample_balance_heuristic(
-        fresh, history, in, out, worker.rng.uniform(), worker.rng.uniform());
+        canonical, other, in, out, worker.rng.uniform(), worker.rng.uniform());
 }
 
 void RestirRenderer::reuse_spatially(const FrameInput& input, int round, RestirFrame& frame) {
@@ -205,8 +207,8 @@ void RestirRenderer::reuse_spatially(const FrameInput& input, int round, RestirF
     PackedReservoirs merged(frame.reservoirs.size(), max_vertices_);
     for_each_pair(input, kCandidateStage + 1 + round, [&](Worker& worker, std::size_t pair) {
         neighbours_.pick(pair, settings_.restir.neighbours, worker.rng, worker.neighbours);
-        // Which neighbours count depends on nothing that is random in their reservoirs: not on
-        // where in the pixels their paths start, either.
+        // Neighbours must be chosen without regard to anything random in their reservoirs, such as
+        // where in the pixels their paths start.
         if (frame.scene->pixel_places) {
             const std::vector<core::Vec3>& normals = frame.scene->pixel_places->normals();
             std::erase_if(worker.neighbours, [&](std::size_t other) {

@@ -7,22 +7,22 @@
 namespace renderer {
 
 /// Spatio-temporal resampling of paths (source [Kim2026], [Lin2022]): every pair and bin keeps one
-/// path that stands for all its candidates, and reuses those of its past and of its neighbours,
-/// shifted to the path length of its own gate.
+/// path that represents all its candidates, and reuses the paths of the previous frame and of its
+/// neighbours, shifted to the path length of its own gate.
 class RestirRenderer {
  public:
     /// scan   must outlive the renderer
     RestirRenderer(const core::Scan& scan, const RenderSettings& settings);
 
-    /// Memory that rendering frames takes [bytes].
+    /// Memory needed to render frames [bytes].
     double bytes_needed(const core::HistogramAxes& axes) const;
 
-    /// What one frame is made from.
+    /// The inputs of one frame.
     struct FrameInput {
         std::shared_ptr<RestirScene> scene;
         core::HistogramAxes axes;
         const RestirFrame* previous = nullptr;  ///< whose reservoirs to reuse; null: none
-        std::uint64_t number = 0;               ///< among all frames of one seed
+        std::uint64_t number = 0;               ///< unique among the frames of one seed
     };
     /// Renders a frame. Its estimates are those of its reservoirs.
     RestirFrame render(const FrameInput& input);
@@ -34,7 +34,18 @@ class RestirRenderer {
 
     void find_domains(const FrameInput& input, RestirFrame& frame) const;
     void generate_candidates(const FrameInput& input, RestirFrame& frame);
-    void draw(Worker& worker, const RestirFrame& frame, std::size_t pair) const;
+    template <class BuilderOf>
+    void draw(Worker& worker,
+              const RestirFrame& frame,
+              const TimeGate& gate,
+              double share,
+              const BuilderOf& builder_of) const;
+    PathReservoir merge(Worker& worker,
+                        const RestirScene& current,
+                        const PathReservoir& canonical,
+                        const ReservoirDomain& here,
+                        const PathReservoir& other,
+                        const ReservoirDomain& there) const;
     PathReservoir sample_wide_gate(Worker& worker,
                                    const RestirFrame& frame,
                                    const PathReservoir& narrow) const;

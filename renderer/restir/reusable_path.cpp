@@ -17,7 +17,7 @@ PathValue PathIntegrand::evaluate(const PathDomain& domain, const ReusablePath& 
     PathValue value;
     value.extent = domain.extra();
     if (!dropped_.empty() && dropped_[path.last().facet]) return value;
-    // At the third bounce the relay wall only passes light on.
+    // The relay wall has no third bounce.
     if (!domain.seen && path.num_vertices == 1 && !scene_->is_hidden(path.first().facet)) {
         return value;
     }
@@ -40,8 +40,8 @@ PathValue PathIntegrand::evaluate(const PathDomain& domain, const ReusablePath& 
         velocity = next_velocity;
         if (i > 0) {
             if (const auto* retro = std::get_if<Retroreflective>(&before.bsdf)) {
-                // Only straight back, to a light at the sensor: the returned spot's area stands
-                // for the missing density.
+                // Only back to a light at the sensor; the area of the laser spot replaces the
+                // missing density.
                 if (!domain.ends.coincide || path.num_vertices != 1) return value;
                 value.radiance = carried * retro->albedo / laser_spot_m2_ * light.strength;
                 return value;
@@ -57,10 +57,7 @@ PathValue PathIntegrand::evaluate(const PathDomain& domain, const ReusablePath& 
             value.radiance = carried * light.factor(-direction) / distance2;
             return value;
         }
-        before.point = path.at(i);
-        before.normal = scene_->facet(before.point.facet).normal;
-        before.to_previous = -direction;
-        before.bsdf = scene_->bsdf_at(before.point);
+        before = vertex_at(*scene_, path.at(i), -direction);
         carried *= std::abs(before.normal.dot(direction)) / distance2;
         if (!(carried > 0.0)) return value;
     }

@@ -11,7 +11,7 @@
 
 namespace renderer {
 
-/// The surface vertices of a path between its start and the light, from the sensor's side.
+/// The surface vertices of a path between its start and the light, beginning at the sensor.
 ///
 /// The first one is the reconnection vertex: it moves when the path is reused; the others stay.
 struct ReusablePath {
@@ -20,7 +20,7 @@ struct ReusablePath {
     int num_vertices = 0;
     std::array<SurfacePoint, kMaxVertices> vertices;
     core::Vec2 pixel_u =
-        core::Vec2::Zero();  ///< place within the pixel where an image's path starts
+        core::Vec2::Zero();  ///< position within the pixel where an image's path starts
 
     const SurfacePoint& first() const { return vertices[0]; }
     const SurfacePoint& last() const { return at(num_vertices - 1); }
@@ -29,33 +29,33 @@ struct ReusablePath {
     void append(const SurfacePoint& point) { at(num_vertices++) = point; }
 };
 
-/// Where paths of one pair start and end; of a pixel, those through one place of it.
+/// The ends of the paths of one pair; of a pixel, of those through one position within it.
 struct PathDomain {
     PathEndpoints ends;
     core::Vec2 pixel_u = core::Vec2::Zero();
-    std::optional<PathVertex> seen;  ///< of a pixel: what it sees, in place of the sensor
+    std::optional<PathVertex> seen;  ///< of a pixel: the surface point where paths start
     bool is_dark = false;            ///< of a pixel that sees nothing: there are no paths
 
     const core::Vec3& start() const { return seen ? seen->point.position : ends.sensor.position; }
     const core::Vec3& start_normal() const { return seen ? seen->normal : ends.sensor.normal; }
-    /// Length that the axis counts beside the path itself [m].
+    /// Length that counts in addition to that of the path itself [m].
     double extra_opl_m() const { return extra().opl_m; }
-    /// That length and how fast it changes.
+    /// That length and its rate of change.
     PathExtent extra() const {
         PathExtent extent = seen ? seen->extent : PathExtent{};
         extent.opl_m += ends.device_legs_m;
         return extent;
     }
-    /// Of the surface where paths start; wall points stand still.
+    /// Velocity of the surface where paths start; wall points are at rest.
     core::Vec3 start_velocity(const Scene& scene) const {
         return seen ? scene.velocity_m_per_s(seen->point.facet) : core::Vec3(core::Vec3::Zero());
     }
 };
 
-/// What a path carries, as a density over the areas at all its vertices.
+/// The contribution of a path, as a density over the areas at all its vertices.
 struct PathValue {
-    double radiance = 0.0;  ///< [W / (m^2 sr)] per product of areas, visibility aside
-    PathExtent extent;      ///< the whole length that the axis counts, and its rate
+    double radiance = 0.0;  ///< unoccluded [W / (m^2 sr)] per product of areas
+    PathExtent extent;      ///< the whole length on the axis, and its rate of change
 };
 
 /// Evaluates reusable paths.
@@ -69,7 +69,7 @@ class PathIntegrand {
                   double laser_spot_m2,
                   std::vector<bool> dropped);
 
-    /// A path of at least one vertex; radiance 0 when it carries nothing.
+    /// A path of at least one vertex; radiance 0 when it has no contribution.
     PathValue evaluate(const PathDomain& domain, const ReusablePath& path) const;
 
     /// Segment `leg` goes to vertex `leg`, the last one to the light.

@@ -16,7 +16,7 @@ Vec3 area_vector(const SurfaceElement& element) {
     return core::triangle_area_vector(element.corners[0], element.corners[1], element.corners[2]);
 }
 
-// Finds clusters from the whole down.
+// Finds clusters from the top down.
 class Clusterer {
  public:
     Clusterer(const Scene& scene,
@@ -104,7 +104,7 @@ class Clusterer {
     std::uint32_t num_clusters_ = 0;
 };
 
-// Sets of elements that hang together, each named by one of its elements.
+// A disjoint-set forest of connected elements; a set is named by its root.
 class DisjointSets {
  public:
     explicit DisjointSets(std::size_t size) : parent_(size) {

@@ -27,7 +27,7 @@ struct ElementClusters {
     std::vector<std::uint32_t> merged_of;  ///< per element, index into `elements`
 };
 
-/// What may be a cluster.
+/// Limits of a cluster.
 struct ClusterLimits {
     double diameter_m = 0.0;
     double squared_tilt = 0.0;  ///< mean of |normal - mean normal|^2
@@ -36,16 +36,16 @@ struct ClusterLimits {
 /// Splits the elements of each object at medians until each part may be merged; elements of glossy
 /// and textured objects stay single.
 ///
-/// elements              those of an object in a row
-/// may_be_merged       asked for a part's bounding sphere when it keeps the limits
-/// returns             a cluster number per element, counted from 0
+/// elements        sorted by object
+/// may_be_merged   asked about the bounding sphere of a part within the limits
+/// returns         a cluster number per element, counted from 0
 std::vector<std::uint32_t> cluster_elements(
     const Scene& scene,
     std::span<const SurfaceElement> elements,
     const ClusterLimits& limits,
     const std::function<bool(const core::Vec3& center, double diameter_m)>& may_be_merged);
 
-/// Merges elements of the same cluster that hang together.
+/// Merges connected elements of the same cluster.
 ///
 /// clusters   per element
 /// touching   pairs of elements, see adjacent_elements()

@@ -4,6 +4,7 @@
 #include "renderer/core/random.h"
 #include "renderer/geometry/median_split.h"
 #include "renderer/third_bounce/element_adjacency.h"
+#include "renderer/third_bounce/element_clusters.h"
 #include "renderer/third_bounce/simd_groups.h"
 
 #include <algorithm>
@@ -53,51 +54,62 @@ void find_simd_group_spheres(ElementBlock& block) {
         Eigen::AlignedBox3d box;
         for (std::size_t c = 0; c < 3; ++c) {
             for (std::size_t i = begin; i < begin + ElementBlock::kSimdWidth; ++i) {
-                box.extend(Vec3(block.x[c][i], block.y[c][i], block.z[c][i]));
+                box.extend(block.corners[c][i]);
             }
         }
         const std::size_t simd_group = begin / ElementBlock::kSimdWidth;
-        block.simd_group_x[simd_group] = box.center().x();
-        block.simd_group_y[simd_group] = box.center().y();
-        block.simd_group_z[simd_group] = box.center().z();
+        block.simd_group_center.set(simd_group, box.center());
         block.simd_group_radius_m[simd_group] = 0.5 * box.diagonal().norm();
     });
 }
 
-}  // namespace
+class ElementPacker {
+ public:
+    ElementPacker(const Scene& scene, const core::Scan& scan, const PackingRules& rules)
+        : scene_(scene), rules_(rules) {
+        set_.origin = scene.rays().origin();
+        Vec3 sum = Vec3::Zero();
+        for (const Vec3& point : scan.sensing.positions) sum += point - set_.origin;
+        scan_center_ = sum / static_cast<double>(scan.sensing.size());
+    }
 
-ElementPacker::ElementPacker(const Scene& scene,
-                             const core::Scan& scan,
-                             const PackingRules& rules,
-                             std::vector<int> visible_side)
-    : scene_(scene), rules_(rules), visible_side_(std::move(visible_side)) {
-    set_.origin = scene.rays().origin();
-    Vec3 sum = Vec3::Zero();
-    for (const Vec3& point : scan.sensing.positions) sum += point - set_.origin;
-    scan_center_ = sum / static_cast<double>(scan.sensing.size());
-}
+    ElementSet pack(std::span<const SurfaceElement> elements,
+                    std::span<const std::uint32_t> clusters);
+
+ private:
+    struct Range {
+        std::size_t begin;
+        std::size_t end;
+    };
+    void append_blocks(const std::vector<ElementCluster>& elements, ElementKind kind);
+    void fill_lane(ElementBlock& block, std::size_t lane, const ElementCluster& element) const;
+    bool may_be_one_group(const ElementBlock& block, Range lanes) const;
+    bool hangs_together(std::size_t block, Range lanes) const;
+    void form_groups(std::size_t block, Range lanes);
+    void find_group_neighbours();
+
+    const Scene& scene_;
+    const PackingRules& rules_;
+    Vec3 scan_center_;
+    std::vector<std::uint32_t> element_ids_;  ///< block * kSize + lane of every merged element
+    ElementSet set_;
+};
 
 void ElementPacker::fill_lane(ElementBlock& block,
                               std::size_t lane,
                               const ElementCluster& merged) const {
     const SurfaceElement& element = merged.triangle;
     for (std::size_t i = 0; i < 3; ++i) {
-        block.x[i][lane] = element.corners[i].x();
-        block.y[i][lane] = element.corners[i].y();
-        block.z[i][lane] = element.corners[i].z();
+        block.corners[i].set(lane, element.corners[i]);
         block.squared_edge[i][lane] =
             (element.corners[(i + 2) % 3] - element.corners[(i + 1) % 3]).squaredNorm();
     }
-    block.normal_x[lane] = merged.normal.x();
-    block.normal_y[lane] = merged.normal.y();
-    block.normal_z[lane] = merged.normal.z();
+    block.normal.set(lane, merged.normal);
     const Vec3 center = element.center();
-    block.center_x[lane] = center.x();
-    block.center_y[lane] = center.y();
-    block.center_z[lane] = center.z();
+    block.center.set(lane, center);
     block.area_m2[lane] = merged.area_m2;
     block.rise_m[lane] = merged.rise_m;
-    block.one_sided[lane] = visible_side_[scene_.facet(element.facet).object];
+    block.one_sided[lane] = rules_.visible_side[scene_.facet(element.facet).object];
     block.facet[lane] = element.facet;
     block.random_bits[lane] =
         static_cast<std::uint32_t>(core::Rng(0, element.number, /*sample=*/1).next_bits());
@@ -150,45 +162,43 @@ void ElementPacker::append_blocks(const std::vector<ElementCluster>& elements, E
 }
 
 bool ElementPacker::may_be_one_group(const ElementBlock& block, Range lanes) const {
-    const auto normal = [&](std::size_t i) {
-        return Vec3(block.normal_x[i], block.normal_y[i], block.normal_z[i]);
-    };
     Eigen::AlignedBox3d box;
     for (std::size_t i = lanes.begin; i < lanes.end; ++i) {
-        if (std::abs(normal(i).dot(normal(lanes.begin))) < kMinGroupCosine) return false;
+        if (std::abs(block.normal[i].dot(block.normal[lanes.begin])) < kMinGroupCosine)
+            return false;
         if (scene_.facet(block.facet[i]).object != scene_.facet(block.facet[lanes.begin]).object) {
             return false;
         }
         for (std::size_t c = 0; c < 3; ++c) {
-            box.extend(Vec3(block.x[c][i], block.y[c][i], block.z[c][i]));
+            box.extend(block.corners[c][i]);
         }
     }
     const double distance = (box.center() - scan_center_).norm();
     return box.diagonal().norm() <= kGroupSizePerDistance * std::sqrt(rules_.tolerance) * distance;
 }
 
-// Splits lanes in halves, as sort_into_blocks() did, until each part may be one group. The parts'
-// elements must also hang together: of two sheets, one may hide the other.
+// Whether elements of one block are connected. Of two separate sheets, one may hide the other.
+bool ElementPacker::hangs_together(std::size_t block, Range lanes) const {
+    const auto base = static_cast<std::uint32_t>(block * ElementBlock::kSize);
+    std::vector<std::uint32_t> reached{base + static_cast<std::uint32_t>(lanes.begin)};
+    std::array<bool, ElementBlock::kSize> seen{};
+    seen[lanes.begin] = true;
+    for (std::size_t next = 0; next < reached.size(); ++next) {
+        for (const std::uint32_t neighbour : set_.element_neighbours.of(reached[next])) {
+            const std::uint32_t lane = neighbour - base;  // wraps for earlier blocks
+            if (lane < lanes.begin || lane >= lanes.end || seen[lane]) continue;
+            seen[lane] = true;
+            reached.push_back(neighbour);
+        }
+    }
+    return reached.size() == lanes.end - lanes.begin;
+}
+
+// Splits lanes in halves, as sort_into_blocks() did, until each part may be one group.
 void ElementPacker::form_groups(std::size_t block, Range lanes) {
     const std::size_t count = lanes.end - lanes.begin;
-    bool is_group = count == 1 || may_be_one_group(set_.blocks[block], lanes);
-    if (is_group && count > 1) {
-        const auto base = static_cast<std::uint32_t>(block * ElementBlock::kSize);
-        std::vector<std::uint32_t> reached{base + static_cast<std::uint32_t>(lanes.begin)};
-        std::array<bool, ElementBlock::kSize> seen{};
-        seen[lanes.begin] = true;
-        for (std::size_t next = 0; next < reached.size(); ++next) {
-            const auto& lists = set_.element_neighbours;
-            for (std::uint32_t i = lists.begin[reached[next]]; i < lists.begin[reached[next] + 1];
-                 ++i) {
-                const std::uint32_t lane = lists.items[i] - base;  // wraps for earlier blocks
-                if (lane < lanes.begin || lane >= lanes.end || seen[lane]) continue;
-                seen[lane] = true;
-                reached.push_back(lists.items[i]);
-            }
-        }
-        is_group = reached.size() == count;
-    }
+    const bool is_group =
+        count == 1 || (may_be_one_group(set_.blocks[block], lanes) && hangs_together(block, lanes));
     if (is_group) {
         set_.groups.push_back(
             {static_cast<std::uint32_t>(block),
@@ -209,18 +219,17 @@ void ElementPacker::find_group_neighbours() {
         });
     }
     std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
-    const AdjacencyLists& lists = set_.element_neighbours;
     for (const std::uint32_t element : element_ids_) {
-        for (std::uint32_t i = lists.begin[element]; i < lists.begin[element + 1]; ++i) {
-            const std::uint32_t other = group_of[lists.items[i]];
+        for (const std::uint32_t neighbour : set_.element_neighbours.of(element)) {
+            const std::uint32_t other = group_of[neighbour];
             if (group_of[element] < other) pairs.emplace_back(group_of[element], other);
         }
     }
     set_.group_neighbours = adjacency_lists(set_.groups.size(), pairs);
 }
 
-ElementSet ElementPacker::arrange(std::span<const SurfaceElement> elements,
-                                  std::span<const std::uint32_t> clusters) {
+ElementSet ElementPacker::pack(std::span<const SurfaceElement> elements,
+                               std::span<const std::uint32_t> clusters) {
     auto pairs = adjacent_elements(elements);
     const ElementClusters merged = merge_elements(scene_, elements, clusters, pairs);
     set_.num_elements = merged.elements.size();
@@ -242,6 +251,16 @@ ElementSet ElementPacker::arrange(std::span<const SurfaceElement> elements,
     set_.first_group.push_back(static_cast<std::uint32_t>(set_.groups.size()));
     find_group_neighbours();
     return std::move(set_);
+}
+
+}  // namespace
+
+ElementSet pack_elements(const Scene& scene,
+                         const core::Scan& scan,
+                         const PackingRules& rules,
+                         std::span<const SurfaceElement> elements,
+                         std::span<const std::uint32_t> clusters) {
+    return ElementPacker(scene, scan, rules).pack(elements, clusters);
 }
 
 }  // namespace renderer

@@ -10,14 +10,14 @@
 namespace renderer {
 namespace {
 
-constexpr std::size_t kTrialPoints = 32;         // confocal and single
-constexpr std::size_t kTrialPointsPerSide = 12;  // exhaustive
+constexpr std::size_t kPilotPoints = 32;         // confocal and single
+constexpr std::size_t kPilotPointsPerSide = 12;  // exhaustive
 // With few bins there is less to compare per pair.
 constexpr int kFewBins = 16;
-constexpr std::size_t kTrialPointsForFewBins = 128;
-constexpr std::size_t kTrialPointsPerSideForFewBins = 16;
+constexpr std::size_t kPilotPointsForFewBins = 128;
+constexpr std::size_t kPilotPointsPerSideForFewBins = 16;
 
-// `count` indices below `size`, spread evenly and out of step with rows of a grid.
+// `count` indices below `size`, spread evenly but not in step with the rows of a grid.
 std::vector<std::size_t> spread_indices(std::size_t size, std::size_t count) {
     constexpr double kGolden = 0.6180339887498949;
     std::vector<std::size_t> indices;
@@ -43,7 +43,7 @@ core::WallPoints subset(const core::WallPoints& points, std::size_t count) {
     return chosen;
 }
 
-// Adds a pair whose ends coincide, if the scan has one and the pilot run none.
+// Adds a pair whose ends coincide, if the scan has one and the pilot run has none.
 void add_confocal_pair(const core::Scan& scan, core::Scan& pilot) {
     const CoincidingPoints coinciding(scan);
     if (!coinciding.any() || CoincidingPoints(pilot).any()) return;
@@ -67,8 +67,8 @@ core::Scan pilot_scan(const Scene& scene, const core::Scan& scan, int num_bins) 
     core::Scan pilot = scan;
     const bool exhaustive = scan.pattern == core::ScanPattern::Exhaustive;
     const bool few_bins = num_bins < kFewBins;
-    const std::size_t num_points = few_bins ? kTrialPointsForFewBins : kTrialPoints;
-    const std::size_t per_side = few_bins ? kTrialPointsPerSideForFewBins : kTrialPointsPerSide;
+    const std::size_t num_points = few_bins ? kPilotPointsForFewBins : kPilotPoints;
+    const std::size_t per_side = few_bins ? kPilotPointsPerSideForFewBins : kPilotPointsPerSide;
     pilot.sensing = subset(scan.sensing, exhaustive ? per_side : num_points);
     if (exhaustive) pilot.illumination = subset(scan.illumination, per_side);
     if (scan.pattern == core::ScanPattern::Confocal) pilot.illumination = pilot.sensing;

@@ -14,18 +14,6 @@ using core::Vec3;
 
 constexpr std::size_t kPoints = WallPointLanes::kSize;
 
-// Positions of wall points from `begin` on, relative to `origin`.
-[[gnu::always_inline]] inline SimdGroupPoints positions(const WallPointLanes& points,
-                                                        std::size_t begin,
-                                                        const Vec3& origin) {
-    return load_points(points.x, points.y, points.z, begin, origin);
-}
-
-[[gnu::always_inline]] inline SimdGroupPoints normals(const WallPointLanes& points,
-                                                      std::size_t begin) {
-    return load_points(points.normal_x, points.normal_y, points.normal_z, begin, Vec3::Zero());
-}
-
 [[gnu::always_inline]] inline PointMask point_mask(const core::SimdMask& mask, std::size_t begin) {
     return static_cast<PointMask>(mask.bits() << begin);
 }
@@ -62,7 +50,7 @@ RelevantElements::BlockPoints RelevantElements::of_block(std::uint32_t b) const 
 }
 
 // Points from which some path by way of a block may have a length within the axis; `crossing`:
-// those from which others may not.
+// those of them from which other paths may not.
 PointMask RelevantElements::points_reaching(std::uint32_t b, PointMask& crossing) const {
     const auto& [center, radius] = set_.spheres[b];
     LengthBounds other;
@@ -75,7 +63,7 @@ PointMask RelevantElements::points_reaching(std::uint32_t b, PointMask& crossing
     PointMask reaching = 0;
     crossing = 0;
     for (std::size_t begin = 0; begin < kPoints; begin += Simd::size()) {
-        const SimdGroupPoints away = positions(points_, begin, center);
+        const SimdVec3 away = points_.position.load(begin, center);
         const Simd leg = core::sqrt(away.dot(away));
         Simd least = leg - radius;
         Simd most = leg + radius;
@@ -88,7 +76,7 @@ PointMask RelevantElements::points_reaching(std::uint32_t b, PointMask& crossing
         }
         const Simd opl_begin = load(opl_begin_m_, begin);
         const Simd opl_end = load(opl_end_m_, begin);
-        const core::SimdMask in_front = away.dot(normals(points_, begin)) <= radius;
+        const core::SimdMask in_front = away.dot(points_.normal.load(begin)) <= radius;
         const core::SimdMask within = in_front & (opl_begin <= most) & (least <= opl_end);
         const core::SimdMask inside = (opl_begin <= least) & (most <= opl_end);
         reaching = combine(reaching, point_mask(within, begin));
@@ -113,17 +101,16 @@ RelevantElements::BlockPoints RelevantElements::points_within_axis(std::uint32_t
     return within;
 }
 
-// Units of which some path from a point may have a length within the axis.
+// SIMD groups by way of which some path from a point may have a length within the axis.
 SimdGroupMask RelevantElements::simd_groups_within_axis(std::uint32_t b, std::size_t p) const {
     static_assert(ElementBlock::kNumSimdGroups == Simd::size());
     const ElementBlock& block = set_.blocks[b];
     const auto distance = [&](const Vec3& from) {
-        const SimdGroupPoints d =
-            load_points(block.simd_group_x, block.simd_group_y, block.simd_group_z, 0, from);
+        const SimdVec3 d = block.simd_group_center.load(0, from);
         return core::sqrt(d.dot(d));
     };
     const Simd radius = load(block.simd_group_radius_m, 0);
-    const Simd leg = distance(points_.position(p));
+    const Simd leg = distance(points_.position[p]);
     Simd least = leg - radius;
     Simd most = leg + radius;
     if (!rules_->other_legs.empty()) {
@@ -138,7 +125,7 @@ SimdGroupMask RelevantElements::simd_groups_within_axis(std::uint32_t b, std::si
     return static_cast<SimdGroupMask>(within.bits());
 }
 
-// Elements of which some path from a point may have a length within the axis.
+// Elements by way of which some path from a point may have a length within the axis.
 std::uint64_t RelevantElements::lanes_within_axis(std::uint32_t b, std::size_t p) const {
     const ElementBlock& block = set_.blocks[b];
     // For a point x = sum of l_c c over corners c, |x-w|^2 = sum of l_c |c-w|^2 - sum of l_c
@@ -152,15 +139,14 @@ std::uint64_t RelevantElements::lanes_within_axis(std::uint32_t b, std::size_t p
         const auto legs_from = [&](const Vec3& from) {
             std::array<Simd, 3> d2;
             for (std::size_t c = 0; c < 3; ++c) {
-                const SimdGroupPoints d =
-                    load_points(block.x[c], block.y[c], block.z[c], begin, from);
+                const SimdVec3 d = block.corners[c].load(begin, from);
                 d2[c] = d.dot(d);
             }
             const Simd least2 = core::min(core::min(d2[0], d2[1]), d2[2]) - most_below2;
             const Simd most2 = core::max(core::max(d2[0], d2[1]), d2[2]);
             return Legs{core::sqrt(core::max(least2, 0.0)), core::sqrt(most2)};
         };
-        const Legs legs = legs_from(points_.position(p));
+        const Legs legs = legs_from(points_.position[p]);
         Legs others = legs;
         if (!rules_->other_legs.empty()) {
             others = {rules_->other_legs[b].min_m, rules_->other_legs[b].max_m};
@@ -174,12 +160,12 @@ std::uint64_t RelevantElements::lanes_within_axis(std::uint32_t b, std::size_t p
     return lanes;
 }
 
-// Points to which an element shows a side that reflects. It may reach in front of a wall point when
+// Points that an element faces with a reflecting side. It may reach in front of a wall point when
 // its centre does not.
 PointMask RelevantElements::points_facing(const ElementBlock& block, std::size_t i) const {
     if (!(block.area_m2[i] * block.mean_reflectance[i] > 0.0)) return 0;
-    const Vec3 center(block.center_x[i], block.center_y[i], block.center_z[i]);
-    const Vec3 normal(block.normal_x[i], block.normal_y[i], block.normal_z[i]);
+    const Vec3 center = block.center[i];
+    const Vec3 normal = block.normal[i];
     const bool has_one_end = rules_->other_legs.empty() && rules_->other_end &&
                              block.kind != ElementKind::Retroreflective;
     if (has_one_end) {
@@ -189,10 +175,10 @@ PointMask RelevantElements::points_facing(const ElementBlock& block, std::size_t
     }
     PointMask facing = 0;
     for (std::size_t begin = 0; begin < kPoints; begin += Simd::size()) {
-        const SimdGroupPoints away = positions(points_, begin, center);
+        const SimdVec3 away = points_.position.load(begin, center);
         const Simd side = away.dot(normal);
         const core::SimdMask in_front =
-            away.dot(normals(points_, begin)) < Simd(block.longest_edge_m);
+            away.dot(points_.normal.load(begin)) < Simd(block.longest_edge_m);
         const core::SimdMask reflects = (side != 0.0) & (0.0 <= Simd(block.one_sided[i]) * side);
         facing = combine(facing, point_mask(in_front & reflects, begin));
     }
@@ -203,8 +189,8 @@ PointMask RelevantElements::points_facing(const ElementBlock& block, std::size_t
 RelevantElements::Masses RelevantElements::masses_of(std::uint32_t element) const {
     const ElementBlock& block = set_.blocks[element / ElementBlock::kSize];
     const std::size_t i = element % ElementBlock::kSize;
-    const Vec3 center(block.center_x[i], block.center_y[i], block.center_z[i]);
-    const Vec3 normal(block.normal_x[i], block.normal_y[i], block.normal_z[i]);
+    const Vec3 center = block.center[i];
+    const Vec3 normal = block.normal[i];
     const double reflected = block.area_m2[i] * block.mean_reflectance[i];
     const bool looks_back = block.kind == ElementKind::Retroreflective;
     double other_term = 1.0;
@@ -218,10 +204,10 @@ RelevantElements::Masses RelevantElements::masses_of(std::uint32_t element) cons
     const bool confocal = !rules_->other_end && !looks_back;
     Masses masses;
     for (std::size_t begin = 0; begin < kPoints; begin += Simd::size()) {
-        const SimdGroupPoints away = positions(points_, begin, center);
+        const SimdVec3 away = points_.position.load(begin, center);
         const Simd d2 = away.dot(away);
         const Simd front =
-            core::max(Simd(block.longest_edge_m) - away.dot(normals(points_, begin)), 0.0);
+            core::max(Simd(block.longest_edge_m) - away.dot(points_.normal.load(begin)), 0.0);
         const Simd side = away.dot(normal);
         const Simd term = front * core::max(side, -side) / (d2 * d2);
         store(term * (confocal ? term : Simd(other_term)) * reflected, masses.of_point, begin);

@@ -12,25 +12,26 @@
 
 namespace renderer {
 
-/// What limits the work of some wall points.
+/// What is known of the paths from some wall points, and the error allowed.
 struct VisibilityRules {
-    /// Lengths of the axis, device legs left out, per point or one for all.
+    /// Path lengths within the axis without the device legs, per point or one for all.
     std::vector<LengthBounds> opl;
     /// The other end of the paths, or one that stands for all of them; empty: confocal.
     std::optional<WallPoint> other_end;
     /// Per block, bounds of the other end's leg; empty: there is only one other end.
     std::vector<LengthBounds> other_legs;
-    double negligible_error = 0.0;  ///< errors of a value of H that need no more rays
-    /// Pairs that a point is an end of; retroreflectors return light in one of them.
+    double negligible_error = 0.0;  ///< error of a value of H below which no more rays are traced
+    /// Number of pairs of each point; retroreflectors return light in one of them.
     double pairs_per_point = 1.0;
 
     const LengthBounds& opl_of(std::size_t point) const { return opl[opl.size() > 1 ? point : 0]; }
 };
 
-/// Which elements can matter to which of some wall points, shadows left aside, and how much.
+/// Which elements can contribute to the paths from some wall points, visibility aside, and how
+/// much.
 class RelevantElements {
  public:
-    /// What an element adds to H if all of it is seen, per point.
+    /// What an element adds to H if it is fully visible, per point.
     struct alignas(64) Masses {
         WallPointLanes::Lanes of_point{};
     };
@@ -40,10 +41,10 @@ class RelevantElements {
     /// elements   must outlive this
     explicit RelevantElements(const ElementSet& elements);
 
-    /// rules   must outlive all questions about these points
+    /// rules   must outlive all queries about these points
     void look_from(const WallPointLanes& points, const VisibilityRules& rules);
 
-    /// The points to which each element shows a side that reflects, on paths within the axis.
+    /// Per element, the points that it faces with a reflecting side on paths within the axis.
     BlockPoints of_block(std::uint32_t block) const;
     Masses masses_of(std::uint32_t element) const;
 

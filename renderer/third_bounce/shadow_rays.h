@@ -11,9 +11,9 @@
 
 namespace renderer {
 
-/// The parts of an element that its first rays go to, one in each quarter, drawn anew for each wall
-/// point: of shadows that cover less than half of many elements, as bumps cast, fixed parts would
-/// see nothing. Every part is as likely as any other, so that shadows count by what they cover.
+/// The parts of an element that its first rays go to, one in each quarter, drawn at random for each
+/// wall point. Fixed parts would miss shadows that cover less than half of many elements, such as
+/// those of bumps. All parts are equally likely, so that shadows count by the area they cover.
 class DrawnParts {
  public:
     /// Random bits of an element and of wall points.
@@ -31,7 +31,7 @@ class DrawnParts {
     }
 
  private:
-    // The last step of MurmurHash3 (source [Appleby2011]): any change turns about half of all bits.
+    // The finalizer of MurmurHash3 (source [Appleby2011]): any change flips about half of the bits.
     std::uint32_t draw(std::size_t point) const {
         std::uint32_t bits = element_bits_ ^ (*point_bits_)[point];
         bits = (bits ^ (bits >> 16)) * 0x85ebca6bU;
@@ -48,7 +48,7 @@ struct ShadowRays {
     std::uint32_t element = 0;
     PointMask points = 0;
     std::uint8_t part = 0;  ///< drawn() or fixed()
-    PointMask seen = 0;     ///< of `points`: where nothing is in the way; set by tracing
+    PointMask seen = 0;     ///< of `points`, those with an unoccluded ray; set by tracing
 
     /// `part` of the part drawn from the quarter that comes k-th.
     static constexpr std::uint8_t drawn(std::uint32_t k) { return static_cast<std::uint8_t>(k); }
@@ -59,14 +59,26 @@ struct ShadowRays {
     static constexpr std::uint8_t kFirstFixed = 4;
 };
 
+/// What tracing shadow rays takes.
+struct TracingCost {
+    std::uint64_t num_rays = 0;
+    double seconds = 0.0;  ///< aiming rays, tracing them and reading the answers, of all threads
+
+    TracingCost& operator+=(const TracingCost& other) {
+        num_rays += other.num_rays;
+        seconds += other.seconds;
+        return *this;
+    }
+};
+
 /// Traces shadow rays from up to WallPointLanes::kSize wall points in packets. Rays from
-/// neighbouring wall points to one element run side by side and need its corners only once.
+/// neighbouring wall points to one element are coherent and load its corners only once.
 class ShadowRayTracer {
  public:
     /// scene, elements   must outlive the tracer
     ShadowRayTracer(const Scene& scene, const ElementSet& elements);
 
-    /// From now on, rays begin at these points.
+    /// Sets the points at which rays begin.
     void look_from(const WallPointLanes& points);
 
     DrawnParts drawn_parts(std::uint32_t element) const;
@@ -74,20 +86,28 @@ class ShadowRayTracer {
     /// Sets `seen` of all.
     void trace(std::span<ShadowRays> rays);
 
-    std::uint64_t num_rays() const { return num_rays_; }
-    /// What aiming rays, tracing them and reading the answers took.
-    double seconds() const { return seconds_; }
+    const TracingCost& cost() const { return cost_; }
 
  private:
     struct Pending {
         ShadowRays* rays;
         std::size_t point;
     };
+    /// Ends of segments on surfaces.
+    struct Ends {
+        Vec3Lanes<SegmentPacket::kSize> position{}, normal{};
+
+        SurfacePointLanes lanes() const {
+            const auto& [x, y, z] = position;
+            return {
+                x.data(), y.data(), z.data(), normal.x.data(), normal.y.data(), normal.z.data()};
+        }
+    };
     /// Segments before they are aimed.
     struct Segments {
-        SegmentEnds from;                         ///< world
-        SegmentEnds to;                           ///< relative to ElementSet::origin
-        alignas(64) SegmentEnds::Lanes rise_m{};  ///< what `to` is moved by to the side of `from`
+        Ends from;                                   ///< world
+        Ends to;                                     ///< relative to ElementSet::origin
+        alignas(64) WallPointLanes::Lanes rise_m{};  ///< what `to` is moved by towards `from`
     };
     static std::uint32_t bit_of(const ShadowRays& rays, const DrawnParts& parts, std::size_t point);
     void trace_from_all(ShadowRays& rays);
@@ -102,8 +122,7 @@ class ShadowRayTracer {
     Segments appended_;                                  ///< any others
     std::array<Pending, SegmentPacket::kSize> pending_;  ///< the rays of appended_
     std::size_t num_pending_ = 0;
-    std::uint64_t num_rays_ = 0;
-    double seconds_ = 0.0;
+    TracingCost cost_;
 };
 
 }  // namespace renderer

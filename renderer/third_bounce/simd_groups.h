@@ -8,39 +8,12 @@
 
 namespace renderer {
 
-/// Some SIMD groups of a block, runs of ElementBlock::kSimdWidth lanes that lie next to each other:
-/// SIMD group u is bit u.
+/// A set of SIMD groups of a block, runs of ElementBlock::kSimdWidth consecutive lanes: group u is
+/// bit u.
 using SimdGroupMask = std::uint32_t;
 
 inline constexpr SimdGroupMask kAllSimdGroups =
     (SimdGroupMask{1} << ElementBlock::kNumSimdGroups) - 1;
-
-/// A value per element of a SIMD group.
-using SimdGroupValues = std::array<double, ElementBlock::kSimdWidth>;
-
-/// Three coordinates per element of a SIMD group.
-struct SimdGroupPoints {
-    core::Simd x, y, z;
-
-    [[gnu::always_inline]] core::Simd dot(const core::Vec3& v) const {
-        return x * v.x() + y * v.y() + z * v.z();
-    }
-    [[gnu::always_inline]] core::Simd dot(const SimdGroupPoints& v) const {
-        return x * v.x + y * v.y + z * v.z;
-    }
-};
-
-/// Points of a SIMD group's elements, the first of them in lane `begin`, relative to `origin`.
-template <std::size_t N>
-[[gnu::always_inline]] inline SimdGroupPoints load_points(const std::array<double, N>& x,
-                                                          const std::array<double, N>& y,
-                                                          const std::array<double, N>& z,
-                                                          std::size_t begin,
-                                                          const core::Vec3& origin) {
-    return {core::load(x, begin) - origin.x(),
-            core::load(y, begin) - origin.y(),
-            core::load(z, begin) - origin.z()};
-}
 
 /// Calls work(i) for each bit i that is set, in order.
 template <class Work>

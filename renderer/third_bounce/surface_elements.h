@@ -1,21 +1,25 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/core/simd.h"
-#include "renderer/core/types.h"
 #include "renderer/material/material.h"
+#include "renderer/third_bounce/vec3_lanes.h"
 #include "renderer/triangle/triangle_histogram.h"
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace renderer {
 
-/// How an element's weight follows from the geometry terms of its two legs.
+/// How the weight of an element follows from the geometry terms of its two legs.
 enum class ElementKind { Lambertian, Retroreflective, Glossy };
 
-ElementKind kind_of(const Material& material);
+inline ElementKind kind_of(const Material& material) {
+    if (material.model == SurfaceModel::Ggx) return ElementKind::Glossy;
+    return material.model == SurfaceModel::Retroreflective ? ElementKind::Retroreflective
+                                                           : ElementKind::Lambertian;
+}
 
 /// A flat triangle small enough for the closed-form kernel; positions relative to
 /// ElementSet::origin.
@@ -29,8 +33,8 @@ struct SurfaceElement {
     core::Vec3 midpoint(std::size_t i) const { return 0.5 * (corners[i] + corners[(i + 1) % 3]); }
 };
 
-/// Elements of one kind in the layout of vectorised loops. Nodes 0-2 are corners, 3-5 the middles
-/// of the edges that start there, node 6 is the centre.
+/// Elements of one kind, laid out for vectorised loops. Nodes 0-2 are the corners, 3-5 the
+/// midpoints of the edges that start there, node 6 is the centre.
 struct alignas(64) ElementBlock {
     static constexpr std::size_t kSize = TriangleLanes::kSize;
     static constexpr std::size_t kSimdWidth = core::Simd::size();  ///< see simd_groups.h
@@ -38,13 +42,12 @@ struct alignas(64) ElementBlock {
     static constexpr std::size_t kNodes = 7;
     using Lanes = TriangleLanes::Lanes;
 
-    std::array<Lanes, 3> x, y, z;  ///< corners, relative to ElementSet::origin [m]
-    Lanes normal_x, normal_y, normal_z;
-    Lanes center_x, center_y, center_z;
+    std::array<Vec3Lanes<kSize>, 3> corners;  ///< relative to ElementSet::origin [m]
+    Vec3Lanes<kSize> normal, center;
     Lanes area_m2;
     Lanes rise_m;  ///< the surface lies at most this far above or below the triangle
     std::array<Lanes, 3> squared_edge;  ///< opposite to the corners [m^2]
-    Lanes one_sided;                    ///< +-1: only this side of the normal is ever seen; 0: both
+    Lanes one_sided;                    ///< +-1: only this side of the normal is visible; 0: both
     std::array<Lanes, kNodes> reflectance;  ///< at the nodes; albedo/pi or albedo/spot area
     Lanes mean_reflectance;
     Lanes glossy_alpha;  ///< GGX width, set for glossy elements only
@@ -54,12 +57,12 @@ struct alignas(64) ElementBlock {
     std::size_t count = 0;  ///< lanes beyond it repeat lane 0 with area 0
     double longest_edge_m = 0.0;
     /// Spheres that hold the corners of each SIMD group.
-    alignas(64) std::array<double, kNumSimdGroups> simd_group_x, simd_group_y, simd_group_z,
-        simd_group_radius_m;
+    Vec3Lanes<kNumSimdGroups> simd_group_center;
+    alignas(64) std::array<double, kNumSimdGroups> simd_group_radius_m;
 };
 
-/// A function's mean over a triangle from its values at a corner, a middle and the centre: exact
-/// for cubic ones.
+/// Weights of corners, edge midpoints and the centre in the mean of a function over a triangle;
+/// exact for cubic functions.
 inline constexpr double kShareOfCorner = 1.0 / 20.0;
 inline constexpr double kShareOfMiddle = 2.0 / 15.0;
 inline constexpr double kShareOfCenter = 9.0 / 20.0;
@@ -80,6 +83,10 @@ struct VisibilityGroup {
 struct AdjacencyLists {
     std::vector<std::uint32_t> begin;
     std::vector<std::uint32_t> items;
+
+    std::span<const std::uint32_t> of(std::size_t item) const {
+        return std::span(items).subspan(begin[item], begin[item + 1] - begin[item]);
+    }
 };
 
 /// The hidden surfaces cut into elements, element i in lane i % kSize of block i / kSize.

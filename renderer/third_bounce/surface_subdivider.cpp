@@ -20,7 +20,7 @@ using core::Vec3;
 // [measured]; weights, linear over an element, err with (h/d)^2.
 constexpr double kKappaPerTolerance = 80.0;
 constexpr double kSquaredSizePerTolerance = 3.0;
-// However coarse, energy errs by a few 1e-5 at most.
+// Keeps the error of the energy below a few 1e-5 at any level.
 constexpr double kMaxSquaredSize = 0.05;
 
 // Facets are merged up to this size, squared, in bins: histograms of merged ones err by about 0.001
@@ -31,9 +31,9 @@ constexpr double kSquaredTiltPerTolerance = 0.3;
 constexpr double kMaxSquaredBins = 16.0;
 constexpr double kMaxSquaredTilt = 0.03;
 
-// A facet is bisected at most this often, even where it touches a wall point.
+// Most bisections of a facet, even where it touches a wall point.
 constexpr int kMaxBisections = 28;
-constexpr std::size_t kMaxPieces = 8'000'000;
+constexpr std::size_t kMaxElements = 8'000'000;
 
 struct LongestEdge {
     std::size_t index = 0;
@@ -144,7 +144,7 @@ void SurfaceSubdivider::bisect(const SurfaceElement& facet,
         if (boxes_.is_behind(center, reach)) continue;
         if (depth == kMaxBisections || is_small_enough(legs, center, longest.squared, tolerance)) {
             elements.push_back(element);
-            if (elements.size() > kMaxPieces) {
+            if (elements.size() > kMaxElements) {
                 throw core::Failure("third_bounce",
                                     "needs more than 8 million elements of surface");
             }
@@ -208,8 +208,8 @@ std::vector<std::uint32_t> SurfaceSubdivider::cluster(std::span<const SurfaceEle
 ElementSet SurfaceSubdivider::cut(double tolerance) const {
     std::vector<SurfaceElement> elements = cut_all(tolerance);
     std::vector<std::uint32_t> clusters = cluster(elements, tolerance);
-    return ElementPacker(scene_, scan_, {tolerance, laser_spot_m2_}, visible_sides_)
-        .arrange(elements, clusters);
+    return pack_elements(
+        scene_, scan_, {tolerance, laser_spot_m2_, visible_sides_}, elements, clusters);
 }
 
 std::size_t SurfaceSubdivider::min_elements(double tolerance) const {

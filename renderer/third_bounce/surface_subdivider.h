@@ -15,7 +15,7 @@ namespace renderer {
 /// Cuts the integrable hidden facets in front of a scan's points into elements.
 class SurfaceSubdivider {
  public:
-    /// scene, scan   must outlive the cutter
+    /// scene, scan   must outlive the subdivider
     SurfaceSubdivider(const Scene& scene,
                       const core::Scan& scan,
                       const core::TimeAxis& axis,

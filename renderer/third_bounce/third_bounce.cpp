@@ -23,27 +23,23 @@ using core::Transient;
 
 constexpr double kDefaultTargetError = 0.01;
 
-// Refinement level k has the tolerance target * 2^k. The first one tried meets the target more
-// often than not.
+// Refinement level k has the tolerance target * 2^k. The first one tried usually meets the target.
 constexpr int kCoarsest = 5;
 constexpr int kFirst = 1;
 constexpr int kFinest = -10;
 constexpr int kReferenceSteps = 2;  // a reference is at least this much finer
-// A cut with this times the elements of the coarsest one is as coarse as can be: facets limit it.
+// A cut with at most this many times the fewest elements cannot become much coarser: facets are
+// not merged beyond that.
 constexpr double kNearlyFewest = 1.05;
 
-// A reference has an error of its own, and the pilot run pairs are not all pairs.
+// A reference has an error of its own, and the pairs of the pilot run are not all pairs.
 constexpr double kCaution = 1.5;
 
-// Elements whose visibility may be wrong add up; each may err by this much of the whole.
+// Errors of elements whose visibility is wrong add up; each may err by this share of the tolerance.
 constexpr double kNegligibleShare = 0.1;
 
-// What visibility may take of the memory that is free.
+// Share of the free memory that visibility may take.
 constexpr double kShareOfMemory = 0.5;
-
-double memory_for_visibility() {
-    return kShareOfMemory * static_cast<double>(core::available_memory_bytes());
-}
 
 double squared_norm(const Transient& transient) {
     double sum = 0.0;
@@ -62,6 +58,18 @@ double relative_difference(const Transient& a, const Transient& b) {
     return norm > 0.0 ? std::sqrt(sum / norm) : std::numeric_limits<double>::infinity();
 }
 
+// A run on a few pairs at one refinement level.
+struct Pilot {
+    Transient transient;
+    std::size_t num_elements = 0;
+    double shadow_error = 0.0;    ///< expected, absolute
+    std::optional<double> error;  ///< relative, once compared with a reference
+    double cut_seconds = 0.0;     ///< for cutting the surfaces
+    double seconds = 0.0;         ///< for integrating
+
+    double all_seconds() const { return seconds + cut_seconds; }
+};
+
 // Finds the refinement level that meets the target, and integrates with it.
 class Integrator {
  public:
@@ -76,21 +84,25 @@ class Integrator {
           pilot_axis_(pilot_axis(axis)),
           target_(settings.target_error.value_or(kDefaultTargetError)),
           seconds_(settings.seconds),
-          cutter_(scene, scan, axis, settings.laser_spot_m2) {}
+          subdivider_(scene, scan, axis, settings.laser_spot_m2) {}
 
     ThirdBounce run(const core::Progress& progress);
 
  private:
     double tolerance(int level) const { return target_ * std::exp2(level); }
     const ElementSet& cut(int level);
-    double negligible_error(int level) const {
-        return kNegligibleShare * tolerance(level) * norm_per_pair_;
+    ThirdBounceScan integrator_of(const core::Scan& scan,
+                                  const core::TimeAxis& axis,
+                                  const ElementSet& elements,
+                                  int level) const {
+        return {scene_,
+                scan,
+                axis,
+                elements,
+                kNegligibleShare * tolerance(level) * norm_per_pair_,
+                kShareOfMemory * static_cast<double>(core::available_memory_bytes())};
     }
-    void count_rays(const ThirdBounceScan& scan) {
-        num_rays_ += scan.num_rays();
-        tracing_seconds_ += scan.tracing_seconds();
-    }
-    const Transient& run_pilot(int level);
+    const Pilot& run_pilot(int level);
     double error_of(int level);
     int choose_level(const core::Progress& progress);
     int finest_in_time(const core::Progress& progress);
@@ -103,22 +115,15 @@ class Integrator {
     core::TimeAxis pilot_axis_;
     double target_;
     std::optional<double> seconds_;
-    SurfaceSubdivider cutter_;
+    SurfaceSubdivider subdivider_;
     std::deque<std::pair<int, ElementSet>> cuts_;  ///< the latest
     bool stopped_ = false;                         ///< before all pilot runs were made
     double norm_per_pair_ = 0.0;
-    std::map<int, Transient> pilots_;
-    std::map<int, std::size_t> num_elements_;
-    std::map<int, double> shadow_errors_;  // expected ones, absolute
-    std::map<int, double> errors_;
-    // What pilot runs took, and cutting the surfaces for them.
-    std::map<int, double> pilot_seconds_;
-    std::map<int, double> cut_seconds_;
-    std::uint64_t num_rays_ = 0;
-    double tracing_seconds_ = 0.0;
+    std::map<int, Pilot> pilots_;  ///< by level
+    TracingCost cost_;
 };
 
-// Valid until two others are asked for: the refinement level chosen is often the one before that
+// Valid until two others are asked for: the level chosen is often the one before the last tried,
 // which missed the target.
 const ElementSet& Integrator::cut(int level) {
     constexpr std::size_t kMaxCuts = 2;
@@ -126,34 +131,30 @@ const ElementSet& Integrator::cut(int level) {
         if (cut_level == level) return elements;
     }
     if (cuts_.size() == kMaxCuts) cuts_.pop_front();
-    return cuts_.emplace_back(level, cutter_.cut(tolerance(level))).second;
+    return cuts_.emplace_back(level, subdivider_.cut(tolerance(level))).second;
 }
 
-const Transient& Integrator::run_pilot(int level) {
-    if (const auto it = pilots_.find(level); it != pilots_.end()) return it->second;
+const Pilot& Integrator::run_pilot(int level) {
+    const auto [it, is_new] = pilots_.try_emplace(level);
+    Pilot& pilot = it->second;
+    if (!is_new) return pilot;
     const core::Stopwatch cutting;
     const ElementSet& elements = cut(level);
-    cut_seconds_[level] = cutting.seconds();
-    num_elements_[level] = elements.num_elements;
+    pilot.cut_seconds = cutting.seconds();
+    pilot.num_elements = elements.num_elements;
     const core::Stopwatch watch;
-    ThirdBounceScan pilot(scene_,
-                          pilot_scan_,
-                          pilot_axis_,
-                          elements,
-                          negligible_error(level),
-                          memory_for_visibility());
-    Transient& result =
-        pilots_.try_emplace(level, pilot_scan_.num_pairs(), pilot_axis_.num_bins).first->second;
-    pilot.integrate(
-        0, [](double) { return true; }, result);
-    pilot_seconds_[level] = watch.seconds();
-    shadow_errors_[level] = std::sqrt(pilot.squared_shadow_error());
-    count_rays(pilot);
+    ThirdBounceScan integrator = integrator_of(pilot_scan_, pilot_axis_, elements, level);
+    pilot.transient = Transient(pilot_scan_.num_pairs(), pilot_axis_.num_bins);
+    integrator.integrate(
+        0, [](double) { return true; }, pilot.transient);
+    pilot.seconds = watch.seconds();
+    pilot.shadow_error = std::sqrt(integrator.squared_shadow_error());
+    cost_ += integrator.cost();
     if (norm_per_pair_ == 0.0) {
         norm_per_pair_ =
-            std::sqrt(squared_norm(result) / static_cast<double>(pilot_scan_.num_pairs()));
+            std::sqrt(squared_norm(pilot.transient) / static_cast<double>(pilot_scan_.num_pairs()));
     }
-    return result;
+    return pilot;
 }
 
 // Against the finest pilot run so far, which is at least kReferenceSteps finer.
@@ -161,18 +162,18 @@ double Integrator::error_of(int level) {
     if (pilots_.empty() || pilots_.begin()->first > level - kReferenceSteps) {
         run_pilot(level - kReferenceSteps);
     }
-    const Transient& pilot = run_pilot(level);
-    const Transient& reference = pilots_.begin()->second;
+    run_pilot(level);
+    Pilot& pilot = pilots_.at(level);
+    const Transient& reference = pilots_.begin()->second.transient;
     const double norm = std::sqrt(squared_norm(reference));
     // Shadow edges that both pilot runs leave uncertain do not show in their difference.
-    const double shadows = norm > 0.0 ? shadow_errors_[level] / norm : 0.0;
-    const double error = kCaution * std::hypot(relative_difference(pilot, reference), shadows);
-    errors_[level] = error;
-    return error;
+    const double shadows = norm > 0.0 ? pilot.shadow_error / norm : 0.0;
+    pilot.error = kCaution * std::hypot(relative_difference(pilot.transient, reference), shadows);
+    return *pilot.error;
 }
 
-// The finest that will be done in time, its error known, if all pairs take as long as those of the
-// pilot runs, and a finer pilot run longer by as much as the last ones did.
+// The finest level that can be finished in time with its error known, assuming that all pairs take
+// as long as those of the pilot runs, and that times keep growing from level to level as they did.
 int Integrator::finest_in_time(const core::Progress& progress) {
     const double pilots_to_all =
         static_cast<double>(scan_.num_pairs()) / static_cast<double>(pilot_scan_.num_pairs());
@@ -182,26 +183,27 @@ int Integrator::finest_in_time(const core::Progress& progress) {
     for (; level > kFinest && !progress.should_stop(); --level) {
         const int next = level - 1;
         const int finest = pilots_.begin()->first;
-        const auto pilot_and_cut = [&](int k) { return pilot_seconds_[k] + cut_seconds_[k]; };
+        const double finest_seconds = pilots_.begin()->second.all_seconds();
         const double growth =
-            std::max(1.0, pilot_and_cut(finest) / pilot_and_cut(finest + kReferenceSteps));
-        const double reference = std::pow(growth, 1.0 / kReferenceSteps) * pilot_and_cut(finest);
+            std::max(1.0, finest_seconds / pilots_.at(finest + kReferenceSteps).all_seconds());
+        const double reference = std::pow(growth, 1.0 / kReferenceSteps) * finest_seconds;
         if (watch.seconds() + reference > *seconds_) break;
         error_of(next);
-        const double all = pilot_seconds_[next] * pilots_to_all + cut_seconds_[next];
+        const Pilot& pilot = pilots_.at(next);
+        const double all = pilot.seconds * pilots_to_all + pilot.cut_seconds;
         if (watch.seconds() + all > *seconds_) break;
     }
     stopped_ = progress.should_stop();
     return level;
 }
 
-// The coarsest refinement level that meets the target, or simply the coarsest when the caller will
-// not wait.
+// The coarsest refinement level that meets the target, or simply the coarsest when the caller asks
+// to stop.
 int Integrator::choose_level(const core::Progress& progress) {
     if (seconds_) return finest_in_time(progress);
     int level = kFirst;
-    // Fine enough for the next finer one, too. A coarser reference misses shadows that both leave
-    // out.
+    // Fine enough as a reference for the next finer level, too. A coarser one would miss shadows
+    // that both leave out.
     run_pilot(level - 1 - kReferenceSteps);
     if (error_of(level) > target_) {
         while (level > kFinest && error_of(--level) > target_) {
@@ -211,9 +213,9 @@ int Integrator::choose_level(const core::Progress& progress) {
         }
         return level;
     }
-    const auto fewest = static_cast<double>(cutter_.min_elements(tolerance(kCoarsest)));
+    const auto fewest = static_cast<double>(subdivider_.min_elements(tolerance(kCoarsest)));
     const auto can_be_coarser = [&] {
-        return static_cast<double>(num_elements_.at(level)) > kNearlyFewest * fewest;
+        return static_cast<double>(pilots_.at(level).num_elements) > kNearlyFewest * fewest;
     };
     while (level < kCoarsest && can_be_coarser() && error_of(level + 1) <= target_) {
         ++level;
@@ -227,17 +229,18 @@ int Integrator::integrate(int level,
                           const core::Progress& progress,
                           ThirdBounce& result) {
     const ElementSet& elements = cut(level);
-    ThirdBounceScan scan(
-        scene_, scan_, axis_, elements, negligible_error(level), memory_for_visibility());
+    ThirdBounceScan scan = integrator_of(scan_, axis_, elements, level);
     const auto go_on = [&](double share) {
         progress.update(share, fmt::format("{} elements", elements.num_elements));
         return !progress.should_stop();
     };
     const int part = scan.integrate(first_part, go_on, result.transient);
     result.num_elements = std::max(result.num_elements, elements.num_elements);
-    count_rays(scan);
-    if (!errors_.contains(level)) error_of(level);
-    result.estimated_error = std::max(result.estimated_error, errors_.at(level));
+    cost_ += scan.cost();
+    const auto pilot = pilots_.find(level);
+    const bool is_known = pilot != pilots_.end() && pilot->second.error;
+    result.estimated_error =
+        std::max(result.estimated_error, is_known ? *pilot->second.error : error_of(level));
     return part;
 }
 
@@ -251,8 +254,8 @@ ThirdBounce Integrator::run(const core::Progress& progress) {
         to_the_end.report = progress.report;
         integrate(kCoarsest, part, to_the_end, result);
     }
-    result.num_rays = num_rays_;
-    result.tracing_seconds = tracing_seconds_;
+    result.num_rays = cost_.num_rays;
+    result.tracing_seconds = cost_.seconds;
     const double wall = scene_.wall_albedo() / core::kPi;
     for (float& value : result.transient.values()) value = static_cast<float>(value * wall * wall);
     const double norm = squared_norm(result.transient);

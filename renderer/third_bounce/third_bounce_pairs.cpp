@@ -18,7 +18,7 @@ using core::store;
 
 using NodeWeights = std::array<Simd, ElementBlock::kNodes>;
 
-using Nodes = std::array<SimdGroupPoints, ElementBlock::kNodes>;
+using Nodes = std::array<SimdVec3, ElementBlock::kNodes>;
 
 // Nodes of the elements of the SIMD group that starts at lane `begin`, relative to a wall point.
 [[gnu::always_inline]] inline Nodes load_nodes(const ElementBlock& block,
@@ -27,21 +27,21 @@ using Nodes = std::array<SimdGroupPoints, ElementBlock::kNodes>;
     const Vec3& origin = point.position;
     Nodes nodes;
     for (std::size_t j = 0; j < 3; ++j) {
-        nodes[j] = load_points(block.x[j], block.y[j], block.z[j], begin, origin);
+        nodes[j] = block.corners[j].load(begin, origin);
     }
     for (std::size_t j = 0; j < 3; ++j) {
-        const SimdGroupPoints& p = nodes[j];
-        const SimdGroupPoints& q = nodes[(j + 1) % 3];
+        const SimdVec3& p = nodes[j];
+        const SimdVec3& q = nodes[(j + 1) % 3];
         nodes[3 + j] = {0.5 * (p.x + q.x), 0.5 * (p.y + q.y), 0.5 * (p.z + q.z)};
     }
-    nodes[6] = load_points(block.center_x, block.center_y, block.center_z, begin, origin);
+    nodes[6] = block.center.load(begin, origin);
     return nodes;
 }
 
 // Keeps products of an element's squared distances from becoming 0 [m^2].
 constexpr double kMinSquaredDistance = 1e-40;
 
-[[gnu::always_inline]] inline Simd squared_length(const SimdGroupPoints& d) {
+[[gnu::always_inline]] inline Simd squared_length(const SimdVec3& d) {
     return core::max(d.dot(d), kMinSquaredDistance);
 }
 
@@ -61,8 +61,8 @@ NodeWeights glossy_values(const ElementBlock& block,
     const Simd sensor_height = distance_to_plane(sensor);
     NodeWeights values;
     for (std::size_t node = 0; node < values.size(); ++node) {
-        const SimdGroupPoints& in = from_light[node];
-        const SimdGroupPoints& out = from_sensor[node];
+        const SimdVec3& in = from_light[node];
+        const SimdVec3& out = from_sensor[node];
         const Simd per_in = 1.0 / core::sqrt(squared_length(in));
         const Simd per_out = 1.0 / core::sqrt(squared_length(out));
         const Simd cos_in = light_height * per_in;
@@ -103,9 +103,9 @@ NodeWeights glossy_values(const ElementBlock& block,
     return weights;
 }
 
-// Linear weights with the mean over the element, as the nodes tell it, and the corners'
-// differences; where a corner would fall below 0, all of them shrink until it does not. Into lanes
-// from `begin`.
+// Linear weights with the mean over the element, estimated from the nodes, and the differences
+// between the corners; where a corner would be negative, these are scaled down until it is 0.
+// Written to the lanes from `begin` on.
 [[gnu::always_inline]] inline void fit_weights(const NodeWeights& k,
                                                std::size_t begin,
                                                TriangleLanes& fitted) {
@@ -121,7 +121,7 @@ NodeWeights glossy_values(const ElementBlock& block,
     }
 }
 
-// By one division, which takes as long as a dozen products.
+// With a single division, which takes as long as a dozen products.
 template <std::size_t N>
 [[gnu::always_inline]] inline std::array<Simd, N> reciprocals(const std::array<Simd, N>& values) {
     std::array<Simd, N> result;  // first the products of the values before
@@ -139,8 +139,8 @@ template <std::size_t N>
     return result;
 }
 
-// Weights of the visible part: the product of two linear functions, made linear again with its
-// integral kept.
+// Weights of the visible part: the product of two linear functions, replaced by a linear one with
+// the same integral.
 std::array<double, 3> visible_weights(const std::array<double, 3>& weight, VisibilityMask mask) {
     const std::array<double, 3> share = visible_share(mask);
     std::array<double, 3> product{};
@@ -153,7 +153,7 @@ std::array<double, 3> visible_weights(const std::array<double, 3>& weight, Visib
     return product;
 }
 
-// What both ends see of the elements of a SIMD group.
+// The parts of a SIMD group's elements that are visible from both ends.
 using SimdGroupMasks = std::array<VisibilityMask, ElementBlock::kSimdWidth>;
 
 SimdGroupMasks common_masks(const PairEnd& light, const PairEnd& sensor, std::size_t begin) {
@@ -188,8 +188,7 @@ void compute_table(const ElementBlock& block,
     table.simd_groups = simd_groups;
     for_each_simd_group(simd_groups, [&](std::size_t begin) {
         const Nodes nodes = load_nodes(block, begin, point);
-        const SimdGroupPoints normal =
-            load_points(block.normal_x, block.normal_y, block.normal_z, begin, Vec3::Zero());
+        const SimdVec3 normal = block.normal.load(begin);
         // All points of the element have the same distance from the wall point along its normal.
         const Simd side = -nodes[0].dot(normal);
         const Simd facing = core::max(side, -side);

@@ -9,7 +9,7 @@
 
 namespace renderer {
 
-/// What one wall point contributes to every path through the elements of a block that it sees.
+/// What one end contributes to all paths by way of the visible elements of a block.
 struct alignas(64) BlockTable {
     /// Length of the leg at the corners, and how it bends along the edges opposite to them, see
     /// TriangleLanes [m].
@@ -23,7 +23,7 @@ struct alignas(64) BlockTable {
 
 /// Fills `table` for one wall point.
 ///
-/// SIMD groups   with elements that the point sees
+/// simd_groups   with elements visible from the point
 void compute_table(const ElementBlock& block,
                    const WallPoint& point,
                    SimdGroupMask simd_groups,

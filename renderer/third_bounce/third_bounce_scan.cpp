@@ -2,6 +2,7 @@
 #include "renderer/third_bounce/third_bounce_scan.h"
 
 #include "renderer/core/parallel.h"
+#include "renderer/scene/coinciding_points.h"
 #include "renderer/third_bounce/third_bounce_pairs.h"
 
 #include <fmt/core.h>
@@ -18,8 +19,8 @@ using core::Vec3;
 constexpr std::size_t kPointsPerBlock = PairTiles::kPointsTogether;
 static_assert(kPointsPerBlock == WallPointLanes::kSize);
 
-// Where part `part` of a confocal scan's points begins: parts hold whole blocks, a few at least for
-// threads to share, so that the last parts of small scans are empty.
+// Where part `part` of a confocal scan's points begins. Parts hold whole blocks, and at least a few
+// for threads to share, so that the last parts of small scans are empty.
 std::size_t begin_of_part(int part, std::size_t num_points) {
     constexpr std::size_t kMinBlocks = 4;
     const std::size_t num_blocks = (num_points + kPointsPerBlock - 1) / kPointsPerBlock;
@@ -80,15 +81,19 @@ ThirdBounceScan::ThirdBounceScan(const Scene& scene,
       scan_(scan),
       axis_(axis),
       elements_(elements),
-      coinciding_(scan),
       negligible_error_(negligible_error),
       memory_bytes_(memory_bytes),
-      light_errors_(scan.illumination.size()),
-      sensor_errors_(scan.sensing.size()) {}
+      lights_{scan.illumination,
+              CoincidingPoints(scan).illumination,
+              std::vector<double>(scan.illumination.size())},
+      sensors_{
+          scan.sensing, CoincidingPoints(scan).sensing, std::vector<double>(scan.sensing.size())} {}
 
 double ThirdBounceScan::squared_shadow_error() const {
-    return std::accumulate(sensor_errors_.begin(), sensor_errors_.end(), 0.0) +
-           std::accumulate(light_errors_.begin(), light_errors_.end(), 0.0);
+    const auto sum = [](const std::vector<double>& values) {
+        return std::accumulate(values.begin(), values.end(), 0.0);
+    };
+    return sum(sensors_.squared_errors) + sum(lights_.squared_errors);
 }
 
 int ThirdBounceScan::integrate(int first_part,
@@ -111,21 +116,17 @@ int ThirdBounceScan::integrate(int first_part,
     return kParts;
 }
 
-WallPoint ThirdBounceScan::wall_point(const core::WallPoints& points, std::size_t index) const {
-    const std::vector<bool>& confocal =
-        &points == &scan_.sensing ? coinciding_.sensing : coinciding_.illumination;
-    return {points.positions[index] - elements_.origin,
+WallPoint ThirdBounceScan::Side::wall_point(std::size_t index, const Vec3& origin) const {
+    return {points.positions[index] - origin,
             points.normals[index],
             static_cast<std::uint32_t>(index),
-            confocal[index]};
+            is_confocal[index]};
 }
 
-std::vector<WallPoint> ThirdBounceScan::wall_points(const core::WallPoints& points,
-                                                    const PointRange& range) const {
+std::vector<WallPoint> ThirdBounceScan::Side::wall_points(const PointRange& of,
+                                                          const Vec3& origin) const {
     std::vector<WallPoint> result;
-    for (std::size_t i = range.begin; i < range.end; ++i) {
-        result.push_back(wall_point(points, i));
-    }
+    for (std::size_t i = of.begin; i < of.end; ++i) result.push_back(wall_point(i, origin));
     return result;
 }
 
@@ -136,8 +137,8 @@ core::TimeAxis ThirdBounceScan::axis_of_pair(std::size_t pair) const {
 }
 
 void ThirdBounceScan::add_costs(const VisibilityTracer& tracer) {
-    num_rays_ += tracer.num_rays();
-    tracing_seconds_ += tracer.tracing_seconds();
+    num_rays_ += tracer.cost().num_rays;
+    tracing_seconds_ += tracer.cost().seconds;
 }
 
 void ThirdBounceScan::store(std::size_t pair, std::span<const double> histogram) {
@@ -149,7 +150,7 @@ void ThirdBounceScan::store(std::size_t pair, std::span<const double> histogram)
 
 // Looks from all points [begin, end) together.
 void ThirdBounceScan::integrate_confocal(std::size_t begin, std::size_t end) {
-    const std::vector<WallPoint> points = wall_points(scan_.sensing, {begin, end});
+    const std::vector<WallPoint> points = sensors_.wall_points({begin, end}, elements_.origin);
     std::vector<core::TimeAxis> axes;
     VisibilityRules rules;
     rules.negligible_error = negligible_error_;
@@ -178,15 +179,14 @@ void ThirdBounceScan::integrate_confocal(std::size_t begin, std::size_t end) {
         }
     }
     for (std::size_t i = 0; i < points.size(); ++i) {
-        sensor_errors_[begin + i] = seen[i].squared_error;
+        sensors_.squared_errors[begin + i] = seen[i].squared_error;
         store(begin + i, histogram_of(i));
     }
 }
 
-// What the `num_points` points of one side need to know of the other side, all of it: so that a
-// point sees the same whatever is looked at with it.
-VisibilityRules ThirdBounceScan::rules_towards(const core::WallPoints& others,
-                                               std::size_t num_points) const {
+// What the `num_points` points of one side need to know of the other side. They are told of all its
+// points, so that what a point sees does not depend on the tile that is worked on.
+VisibilityRules ThirdBounceScan::rules_towards(const Side& others, std::size_t num_points) const {
     VisibilityRules rules;
     rules.negligible_error = negligible_error_;
     rules.pairs_per_point =
@@ -195,13 +195,13 @@ VisibilityRules ThirdBounceScan::rules_towards(const core::WallPoints& others,
     rules.opl.push_back({axis_.opl_start_m - max_legs, axis_.opl_end_m() - min_legs});
     WallPoint& middle = rules.other_end.emplace(WallPoint{Vec3::Zero(), Vec3::Zero()});
     Eigen::AlignedBox3d box;
-    for (std::size_t i = 0; i < others.size(); ++i) {
-        const WallPoint other = wall_point(others, i);
+    for (std::size_t i = 0; i < others.points.size(); ++i) {
+        const WallPoint other = others.wall_point(i, elements_.origin);
         box.extend(other.position);
-        middle.position += other.position / static_cast<double>(others.size());
-        middle.normal += other.normal / static_cast<double>(others.size());
+        middle.position += other.position / static_cast<double>(others.points.size());
+        middle.normal += other.normal / static_cast<double>(others.points.size());
     }
-    if (others.size() > 1) {
+    if (others.points.size() > 1) {
         for (const auto& [c, radius_m] : elements_.spheres) {
             const Vec3 farthest = (c - box.min()).cwiseAbs().cwiseMax((c - box.max()).cwiseAbs());
             rules.other_legs.push_back(
@@ -211,22 +211,18 @@ VisibilityRules ThirdBounceScan::rules_towards(const core::WallPoints& others,
     return rules;
 }
 
-void ThirdBounceScan::look_from(const core::WallPoints& points,
-                                const PointRange& range,
-                                const VisibilityRules& rules,
-                                Views& views,
-                                std::vector<double>& squared_errors) {
-    if (views.range == range) return;
-    views.range = range;
-    views.seen.resize(range.size());
+void ThirdBounceScan::look_from(Side& side, const PointRange& range, const VisibilityRules& rules) {
+    if (side.range == range) return;
+    side.range = range;
+    side.seen.resize(range.size());
     core::parallel_blocks(range.size(), kPointsPerBlock, [&](std::size_t begin, std::size_t end) {
         VisibilityTracer tracer(scene_, elements_);
-        tracer.trace(wall_points(points, {range.begin + begin, range.begin + end}),
+        tracer.trace(side.wall_points({range.begin + begin, range.begin + end}, elements_.origin),
                      rules,
-                     std::span(views.seen).subspan(begin, end - begin));
+                     std::span(side.seen).subspan(begin, end - begin));
         add_costs(tracer);
         for (std::size_t i = begin; i < end; ++i) {
-            squared_errors[range.begin + i] = views.seen[i].squared_error;
+            side.squared_errors[range.begin + i] = side.seen[i].squared_error;
         }
     });
 }
@@ -251,37 +247,32 @@ int ThirdBounceScan::integrate_pairs(int first_part,
         static_cast<double>(num_lights + scan_.sensing.size() + PairTiles::kMinPoints);
     const PairTiles tiles(
         num_lights, scan_.sensing.size(), static_cast<std::size_t>(std::min(fitting, enough)));
-    const VisibilityRules from_lights = rules_towards(scan_.sensing, scan_.illumination.size());
-    const VisibilityRules from_sensors = rules_towards(scan_.illumination, scan_.sensing.size());
-    Views lights;
-    Views sensors;
+    const VisibilityRules from_lights = rules_towards(sensors_, scan_.illumination.size());
+    const VisibilityRules from_sensors = rules_towards(lights_, scan_.sensing.size());
+    lights_.range = sensors_.range = {};
     constexpr double kShareOfLooking = 0.25;
     for (int part = first_part; part < kParts; ++part) {
         for (const PairTiles::Batch& batch :
              tiles.batches(static_cast<std::size_t>(part), kParts)) {
-            look_from(scan_.illumination, batch.lights, from_lights, lights, light_errors_);
-            look_from(scan_.sensing, batch.sensors, from_sensors, sensors, sensor_errors_);
+            look_from(lights_, batch.lights, from_lights);
+            look_from(sensors_, batch.sensors, from_sensors);
             if (!go_on(kShareOfLooking + (1.0 - kShareOfLooking) * part / kParts)) return part;
-            core::parallel_for(batch.tiles.size(), [&](std::size_t i) {
-                integrate_tile(batch.tiles[i], lights, sensors);
-            });
+            core::parallel_for(batch.tiles.size(),
+                               [&](std::size_t i) { integrate_tile(batch.tiles[i]); });
         }
     }
     go_on(1.0);
     return kParts;
 }
 
-void ThirdBounceScan::integrate_tile(const PairTiles::Tile& tile,
-                                     const Views& light_views,
-                                     const Views& sensor_views) {
-    const auto tables =
-        [&](const core::WallPoints& all, const PointRange& range, const Views& views) {
-            return TileTables(
-                wall_points(all, range),
-                std::span(views.seen).subspan(range.begin - views.range.begin, range.size()));
-        };
-    TileTables lights = tables(scan_.illumination, tile.lights, light_views);
-    TileTables sensors = tables(scan_.sensing, tile.sensors, sensor_views);
+void ThirdBounceScan::integrate_tile(const PairTiles::Tile& tile) {
+    const auto tables = [&](const Side& side, const PointRange& range) {
+        return TileTables(
+            side.wall_points(range, elements_.origin),
+            std::span(side.seen).subspan(range.begin - side.range.begin, range.size()));
+    };
+    TileTables lights = tables(lights_, tile.lights);
+    TileTables sensors = tables(sensors_, tile.sensors);
     const std::size_t num_sensors = tile.sensors.size();
     const auto num_bins = static_cast<std::size_t>(axis_.num_bins);
     std::vector<double> histograms(tile.lights.size() * num_sensors * num_bins);

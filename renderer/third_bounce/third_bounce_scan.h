@@ -3,7 +3,6 @@
 
 #include "renderer/core/capture.h"
 #include "renderer/film/pair_tiles.h"
-#include "renderer/scene/coinciding_points.h"
 #include "renderer/third_bounce/third_bounce_visibility.h"
 
 #include <atomic>
@@ -20,9 +19,9 @@ class ThirdBounceScan {
     /// All references must outlive this.
     ///
     /// negligible_error   as in VisibilityRules
-    /// memory_bytes       that masks of a single or exhaustive scan may take; where it does not
-    ///                    hold those of all points, some points are looked at more than once
-    /// throws             core::Failure when it does not even hold PairTiles::kMinPoints
+    /// memory_bytes       that masks of a single or exhaustive scan may take; where those of all
+    ///                    points do not fit, visibility from some points is traced more than once
+    /// throws             core::Failure when those of PairTiles::kMinPoints points do not fit
     ThirdBounceScan(const Scene& scene,
                     const core::Scan& scan,
                     const core::TimeAxis& axis,
@@ -41,33 +40,29 @@ class ThirdBounceScan {
                   const std::function<bool(double share)>& go_on,
                   core::Transient& result);
 
-    std::uint64_t num_rays() const { return num_rays_; }
-    /// Of all threads together.
-    double tracing_seconds() const { return tracing_seconds_; }
-    /// Expected squared error of all of H at shadow edges, as far as elements are too coarse for
-    /// them.
+    TracingCost cost() const { return {num_rays_, tracing_seconds_}; }
+    /// Expected squared error of all of H from shadow edges that elements are too coarse for.
     double squared_shadow_error() const;
 
  private:
-    /// What some points of one side of the scan see of all elements.
-    struct Views {
-        PointRange range;
-        std::vector<VisibleElements> seen;  ///< one per point of the range
+    /// The illumination or the sensing points of the scan.
+    struct Side {
+        const core::WallPoints& points;
+        std::vector<bool> is_confocal;       ///< see CoincidingPoints
+        std::vector<double> squared_errors;  ///< of all pairs of each point
+        PointRange range{};                  ///< of the points in `seen`
+        std::vector<VisibleElements> seen{};
+
+        WallPoint wall_point(std::size_t index, const core::Vec3& origin) const;
+        std::vector<WallPoint> wall_points(const PointRange& of, const core::Vec3& origin) const;
     };
 
-    WallPoint wall_point(const core::WallPoints& points, std::size_t index) const;
-    std::vector<WallPoint> wall_points(const core::WallPoints& points,
-                                       const PointRange& range) const;
     core::TimeAxis axis_of_pair(std::size_t pair) const;
     void integrate_confocal(std::size_t begin, std::size_t end);
     int integrate_pairs(int first_part, const std::function<bool(double share)>& go_on);
-    VisibilityRules rules_towards(const core::WallPoints& others, std::size_t num_points) const;
-    void look_from(const core::WallPoints& points,
-                   const PointRange& range,
-                   const VisibilityRules& rules,
-                   Views& views,
-                   std::vector<double>& squared_errors);
-    void integrate_tile(const PairTiles::Tile& tile, const Views& lights, const Views& sensors);
+    VisibilityRules rules_towards(const Side& others, std::size_t num_points) const;
+    void look_from(Side& side, const PointRange& range, const VisibilityRules& rules);
+    void integrate_tile(const PairTiles::Tile& tile);
     void add_costs(const VisibilityTracer& tracer);
     void store(std::size_t pair, std::span<const double> histogram);
 
@@ -75,12 +70,11 @@ class ThirdBounceScan {
     const core::Scan& scan_;
     const core::TimeAxis& axis_;
     const ElementSet& elements_;
-    CoincidingPoints coinciding_;
     double negligible_error_;
     double memory_bytes_;
     core::Transient* result_ = nullptr;  ///< while integrate() runs
-    std::vector<double> light_errors_;   ///< squared, of all pairs of each illumination point
-    std::vector<double> sensor_errors_;
+    Side lights_;
+    Side sensors_;
     std::atomic<std::uint64_t> num_rays_{0};
     std::atomic<double> tracing_seconds_{0.0};
 };

@@ -10,8 +10,9 @@ namespace {
 
 constexpr std::size_t kPoints = WallPointLanes::kSize;
 
-// Standard deviation of the visible share of an element that a shadow's straight edge crosses, known
-// from one part drawn of 16, from one drawn in each quarter, and from all 16 [found by simulation].
+// Standard deviation of the visible share of an element that a shadow's straight edge crosses,
+// known from one part drawn of 16, from one drawn in each quarter, and from all 16 [found by
+// simulation].
 constexpr double kErrorFromOne = 0.34;
 constexpr double kErrorFromQuarters = 0.12;
 constexpr double kErrorFromSixteenths = 0.03;
@@ -81,7 +82,7 @@ void VisibilityTracer::classify() {
     }
 }
 
-// Points to which a wrong share of what they may see is not negligible.
+// Points for which an error of this share of the mass is not negligible.
 PointMask VisibilityTracer::points_that_matter(const RelevantElements::Masses& masses,
                                                double share) const {
     PointMask points = 0;
@@ -92,8 +93,8 @@ PointMask VisibilityTracer::points_that_matter(const RelevantElements::Masses& m
     return points;
 }
 
-// In each group, the relevant element next to the middle gets the ray: drawn ones disagree with
-// those of neighbouring groups more often, and cost a fifth more rays.
+// In each group, the relevant element nearest to the middle gets the ray. Random ones disagree with
+// those of neighbouring groups more often, which costs a fifth more rays.
 void VisibilityTracer::choose_representatives(std::uint32_t b) {
     for (std::uint32_t g = set_.first_group[b]; g < set_.first_group[b + 1]; ++g) {
         const auto [begin, end] = elements_of(set_.groups[g]);
@@ -136,8 +137,8 @@ void VisibilityTracer::trace_groups() {
     }
 }
 
-// Points for which an item's neighbours are not of its state; without neighbours to ask, it has to
-// be looked at closely.
+// Points for which neighbours of an item differ from it in visibility, or for which it has fewer
+// than two relevant neighbours to compare with.
 PointMask VisibilityTracer::mixed_points(const AdjacencyLists& lists,
                                          std::uint32_t item,
                                          const std::vector<State>& states) {
@@ -145,8 +146,8 @@ PointMask VisibilityTracer::mixed_points(const AdjacencyLists& lists,
     PointMask differ = 0;
     PointMask asked = 0;
     PointMask asked_twice = 0;
-    for (std::uint32_t i = lists.begin[item]; i < lists.begin[item + 1]; ++i) {
-        const State& other = states[lists.items[i]];
+    for (const std::uint32_t neighbour : lists.of(item)) {
+        const State& other = states[neighbour];
         differ = combine(differ, common(other.relevant, other.visible ^ visible));
         asked_twice = combine(asked_twice, common(asked, other.relevant));
         asked = combine(asked, other.relevant);
@@ -223,7 +224,7 @@ void VisibilityTracer::refine_mixed_elements() {
     refine_quarters();
 }
 
-// Elements of which only some quarters are seen get rays to all their parts.
+// Traces rays to all parts of elements of which only some quarters are visible.
 void VisibilityTracer::refine_quarters() {
     shadow_rays_.clear();
     std::vector<std::size_t> refined_of_rays;

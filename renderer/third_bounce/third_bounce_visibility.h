@@ -12,43 +12,42 @@
 
 namespace renderer {
 
-/// What a wall point sees of the elements.
+/// The visible parts of the elements from one wall point.
 struct VisibleElements {
     std::vector<SimdGroupMask>
-        simd_groups;  ///< per block: those with elements of which a part is seen
+        simd_groups;  ///< per block: those with partly or fully visible elements
     std::vector<VisibilityMask>
-        masks;  ///< block * kSize + lane, of these SIMD groups; others: anything
-    /// Expected, of H, in all pairs of the point: of shadow edges that 16 rays leave uncertain.
+        masks;  ///< [block * kSize + lane], for these SIMD groups; undefined for others
+    /// Expected squared error of H, over all pairs of the point, at shadow edges that 16 rays do
+    /// not resolve.
     double squared_error = 0.0;
 };
 
-/// Finds what wall points see of the elements, for several of them at once.
+/// Finds the visible parts of the elements from several wall points at once.
 ///
-/// One ray goes from every point to each group, to a part of an element that is drawn. Where
-/// neighbouring groups disagree, each element of theirs gets a ray, where neighbouring elements
-/// disagree, 4 and then 16: each step only if what the element could add wrongly to H is not
-/// negligible. What is known of a group or element is one bit per point, so that all points are
-/// asked by one operation.
+/// One ray goes from every point to each group, to a randomly drawn part of one of its elements.
+/// Where neighbouring groups disagree, each of their elements gets a ray; where neighbouring
+/// elements disagree, 4 and then 16 rays, each step only if the possible error of H is not
+/// negligible. The state of a group or element is one bit per point, so that one operation covers
+/// all points.
 class VisibilityTracer {
  public:
     /// scene, elements   must outlive the tracer
     VisibilityTracer(const Scene& scene, const ElementSet& elements);
 
-    /// Sets `seen`; elements that cannot matter are not.
+    /// Sets `seen`; elements that cannot contribute count as invisible.
     ///
-    /// points   1 to WallPointLanes::kSize, best close to each other; what one of them sees does
+    /// points   1 to WallPointLanes::kSize, preferably close to each other; the result for one does
     ///          not depend on the others
     /// seen     one per point
     void trace(std::span<const WallPoint> points,
                const VisibilityRules& rules,
                std::span<VisibleElements> seen);
 
-    std::uint64_t num_rays() const { return rays_.num_rays(); }
-    /// What aiming rays, tracing them and reading the answers took.
-    double tracing_seconds() const { return rays_.seconds(); }
+    const TracingCost& cost() const { return rays_.cost(); }
 
  private:
-    /// What is known of a group or an element; `visible` is part of `relevant`.
+    /// The state of a group or an element; `visible` is a subset of `relevant`.
     struct State {
         PointMask relevant = 0;
         PointMask visible = 0;
@@ -58,7 +57,7 @@ class VisibilityTracer {
         std::uint32_t element;
         PointMask points;
     };
-    /// Elements of which parts are seen.
+    /// Elements that may be partly visible.
     struct Refined {
         std::uint32_t element;
         PointMask points;

@@ -2,13 +2,14 @@
 #pragma once
 
 #include "renderer/scene/ray_caster.h"
+#include "renderer/third_bounce/vec3_lanes.h"
 
 #include <cstdint>
 #include <span>
 
 namespace renderer {
 
-/// A wall point as the integrator sees it; position relative to ElementSet::origin.
+/// A wall point; its position is relative to ElementSet::origin.
 struct WallPoint {
     core::Vec3 position;
     core::Vec3 normal;
@@ -16,7 +17,7 @@ struct WallPoint {
     bool is_confocal = true;  ///< some pair has both its ends here, see CoincidingPoints
 };
 
-/// Some wall points of a WallPointLanes: point p is bit p.
+/// A set of wall points of a WallPointLanes: point p is bit p.
 using PointMask = std::uint16_t;
 
 /// Points of either mask.
@@ -32,14 +33,13 @@ inline PointMask common(PointMask a, PointMask b) {
     return static_cast<PointMask>(a & b);
 }
 
-/// Wall points that are looked from together, as many as a packet has rays: point p in lane p of
-/// all arrays. Lanes beyond `count` repeat the first point.
+/// Wall points whose visibility is traced together, as many as a packet has rays: point p in lane p
+/// of all arrays. Lanes beyond `count` repeat the first point.
 struct alignas(64) WallPointLanes {
     static constexpr std::size_t kSize = SegmentPacket::kSize;
     using Lanes = std::array<double, kSize>;
 
-    Lanes x, y, z;
-    Lanes normal_x, normal_y, normal_z;
+    Vec3Lanes<kSize> position, normal;
     std::array<std::uint32_t, kSize> index;
     PointMask confocal = 0;  ///< those with WallPoint::is_confocal
     std::size_t count = 0;
@@ -49,18 +49,13 @@ struct alignas(64) WallPointLanes {
     explicit WallPointLanes(std::span<const WallPoint> points) : count(points.size()) {
         for (std::size_t p = 0; p < kSize; ++p) {
             const WallPoint& point = points[p < count ? p : 0];
-            x[p] = point.position.x();
-            y[p] = point.position.y();
-            z[p] = point.position.z();
-            normal_x[p] = point.normal.x();
-            normal_y[p] = point.normal.y();
-            normal_z[p] = point.normal.z();
+            position.set(p, point.position);
+            normal.set(p, point.normal);
             index[p] = point.index;
             confocal = static_cast<PointMask>(confocal | std::uint32_t{point.is_confocal} << p);
         }
     }
     PointMask all() const { return static_cast<PointMask>((std::uint32_t{1} << count) - 1U); }
-    core::Vec3 position(std::size_t p) const { return {x[p], y[p], z[p]}; }
 };
 
 }  // namespace renderer

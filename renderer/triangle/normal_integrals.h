@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "renderer/core/types.h"
+
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -35,7 +37,10 @@ class NormalIntegralTable {
         return {2.0 * h1, h2, h3};
     }
 
-    static const NormalIntegralTable& instance();
+    static const NormalIntegralTable& instance() {
+        static const NormalIntegralTable kTable;
+        return kTable;
+    }
 
  private:
     static constexpr double kReach = 8.5;
@@ -44,7 +49,28 @@ class NormalIntegralTable {
     static constexpr std::size_t kTerms = 11;
     using Coefficients = std::array<double, kTerms>;
 
-    NormalIntegralTable();
+    NormalIntegralTable() {
+        for (std::size_t node = 0; node < kNumNodes; ++node) {
+            const double u = static_cast<double>(node) / kNodesPerUnit - kReach;
+            const double density = std::exp(-0.5 * u * u) / std::sqrt(2.0 * core::kPi);
+            const double cumulative = 0.5 * std::erfc(-std::sqrt(0.5) * u);
+            Coefficients& c = nodes_[node];
+            c[3] = cumulative;
+            c[2] = u * c[3] + density;
+            c[1] = 0.5 * (u * c[2] + c[3]);
+            c[0] = (u * c[1] + c[2]) / 3.0;
+            c[4] = density;
+            c[5] = -u * density;
+            for (std::size_t k = 6; k < kTerms; ++k) {
+                c[k] = -u * c[k - 1] - static_cast<double>(k - 5) * c[k - 2];
+            }
+            double factorial = 1.0;
+            for (std::size_t k = 2; k < kTerms; ++k) {
+                factorial *= static_cast<double>(k);
+                c[k] /= factorial;
+            }
+        }
+    }
 
     std::array<Coefficients, kNumNodes> nodes_;
 };

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/triangle/triangle_histogram.h"
 
-#include "renderer/core/simd.h"
-#include "renderer/triangle/triangle_splines.h"
+#include "renderer/triangle/sorted_triangles.h"
 
 #include <algorithm>
 #include <bit>
@@ -20,135 +19,9 @@ using core::TimeAxis;
 constexpr std::size_t kSimdWidth = Simd::size();
 static_assert(TriangleLanes::kSize % kSimdWidth == 0);
 
-constexpr double kThird = 1.0 / 3.0;
 constexpr double kSixth = 1.0 / 6.0;
 // The mean of bent positions lies below that of linear ones by this times the sum of the bends.
 constexpr double kSag = 1.0 / 24.0;
-
-// Triangles side by side with corners sorted by position along the axis; positions in any unit.
-//
-// Let p0 <= p1 <= p2 and K0, K1, K2 be positions and weights. The level set p = e cuts the edge 0-2
-// at the fraction b = (e-p0)/(p2-p0) and, for e < p1, the edge 0-1 at a = (e-p0)/(p1-p0). The part
-// below e is the triangle (corner 0, those two cuts), a share a*b of the area, and the mean of a
-// linear weight over a triangle is the mean of its corner values:
-//
-//     C(e) = a b [K0 + x/3],   x = a (K1-K0) + b (K2-K0),        e <= p1
-//
-// and the same seen from corner 2 for e >= p1, subtracted from the mean (K0+K1+K2)/3.
-//
-// Where positions bend away from linear ones by q, C(e) changes to first order by minus the
-// integral of K q over the cut. Per unit of e the cut is dC/de = 2 a / (p2-p0) of the area for
-// K = 1, its mean weight K0 + x/2, and with q = -(c2 l0 l1 + c1 l0 l2 + c0 l1 l2)/2, its mean over
-// the segment between the two cuts is
-//
-//     q = -[c2 a (3-2a-b) + c1 b (3-2b-a) + c0 a b]/12.
-//
-// p are the linear positions with the true mean, shifted by -(c0+c1+c2)/24, and q the rest. Where
-// a triangle bends more than it rises, this is too much of a correction, and 1/(p2-p0) is held at
-// 1/c.
-//
-// With the ratio r = b/a = (p1-p0)/(p2-p0), all this is a polynomial of a, which lies in [0, 1]
-// like r: nothing cancels, however small the triangle is.
-class SortedTriangles {
-    // Keeps reciprocals finite; in bins.
-    static constexpr double kMinRise = 1e-100;
-
- public:
-    // The unit of lanes that starts at `begin`, after sort_corners().
-    [[gnu::always_inline]] SortedTriangles(const TriangleLanes& lanes, std::size_t begin)
-        : p0_(load(lanes.opl_m[0], begin)),
-          p1_(load(lanes.opl_m[1], begin)),
-          p2_(load(lanes.opl_m[2], begin)) {
-        const Simd area = load(lanes.area_m2, begin);
-        const Simd k0 = area * load(lanes.weight[0], begin);
-        const Simd k1 = area * load(lanes.weight[1], begin);
-        const Simd k2 = area * load(lanes.weight[2], begin);
-        const Simd c0 = load(lanes.bend_m[0], begin);
-        const Simd c1 = load(lanes.bend_m[1], begin);
-        const Simd c2 = load(lanes.bend_m[2], begin);
-        whole_ = (k0 + k1 + k2) * kThird;
-        const Simd rise = max(p2_ - p0_, kMinRise);
-        const Simd per_02 = 1.0 / rise;
-        const Simd held = kSixth / max(max(rise, c0), max(c1, c2));
-        const OfCorners bends{c0 * held, c1 * held, c2 * held};
-        low_ = Side(p1_ - p0_, per_02, {k0, k1, k2}, bends, 1.0);
-        high_ = Side(p2_ - p1_, per_02, {k2, k1, k0}, {bends[2], bends[1], bends[0]}, -1.0);
-    }
-
-    // Where the first of the triangles that weigh anything begins and the last one ends, if not
-    // beyond the given limits.
-    [[gnu::always_inline]] double lowest(double limit) const {
-        return reduce_min(select(whole_ != 0.0, p0_, limit));
-    }
-    [[gnu::always_inline]] double highest(double limit) const {
-        return reduce_max(select(whole_ != 0.0, p2_, limit));
-    }
-    /// What the longest one spans.
-    [[gnu::always_inline]] double longest() const {
-        return reduce_max(select(whole_ != 0.0, p2_ - p0_, 0.0));
-    }
-
-    /// C(e) times the area once all of a triangle lies below e.
-    const Simd& whole() const { return whole_; }
-
-    /// The same, with lane i alone.
-    SortedTriangles only(std::size_t i) const {
-        SortedTriangles one = *this;
-        alignas(64) std::array<double, kSimdWidth> whole{};
-        whole[i] = whole_[i];
-        one.whole_ = load(whole, 0);
-        return one;
-    }
-
-    // C(e) times the area.
-    [[gnu::always_inline]] Simd below(double e) const {
-        const SimdMask low = e < p1_;
-        const Simd reach = max(select(low, e - p0_, p2_ - e), 0.0);
-        const Simd a = reach * select(low, low_.per, high_.per);
-        Simd part = select(low, low_.factor[3], high_.factor[3]);
-        for (std::size_t k = 3; k-- > 0;) {
-            part = part * a + select(low, low_.factor[k], high_.factor[k]);
-        }
-        const Simd within = min(max(part * a, 0.0), whole_);
-        return select(low, within, whole_ - within);
-    }
-
- private:
-    using OfCorners = std::array<Simd, 3>;
-
-    // C(e), or what it lacks to all, as a polynomial of a without a constant term.
-    struct Side {
-        Simd per;  ///< a per distance from the corner
-        std::array<Simd, 4> factor;
-
-        Side() = default;
-        // k      weights of the corner that a counts from, of the middle one and of the other one
-        // c      bends opposite to them
-        // sign   +1 where the part below e is described, -1 for the part above
-        [[gnu::always_inline]] Side(const Simd& rise,
-                                    const Simd& per_02,
-                                    const OfCorners& k,
-                                    const OfCorners& c,
-                                    double sign)
-            : per(1.0 / max(rise, kMinRise)) {
-            const Simd ratio = rise * per_02;
-            const Simd gradient = (k[1] - k[0]) + ratio * (k[2] - k[0]);  // x / a
-            // -2 q / (p2-p0), by powers of a
-            const Simd sum = c[0] + c[1] + c[2];
-            const Simd q0 = -0.5 * sign * sum;
-            const Simd q1 = 3.0 * sign * (c[2] + ratio * c[1]);
-            const Simd q2 =
-                sign * (ratio * (sum - 2.0 * (c[2] + c[1]) - 2.0 * ratio * c[1]) - 2.0 * c[2]);
-            factor[0] = q0 * k[0];
-            factor[1] = ratio * k[0] + q1 * k[0] + 0.5 * q0 * gradient;
-            factor[2] = kThird * ratio * gradient + q2 * k[0] + 0.5 * q1 * gradient;
-            factor[3] = 0.5 * q2 * gradient;
-        }
-    };
-
-    Simd p0_, p1_, p2_, whole_;
-    Side low_, high_;
-};
 
 struct Corner {
     Simd p, k, c;
@@ -184,19 +57,7 @@ void sort_corners(TriangleLanes& lanes, std::size_t count, double start_m, doubl
     }
 }
 
-// A triangle in the first lane.
-TriangleLanes single_lane(const TriangleKnots& knots, double area_m2) {
-    TriangleLanes lanes;
-    lanes.area_m2[0] = area_m2;
-    for (std::size_t j = 0; j < 3; ++j) {
-        lanes.opl_m[j][0] = knots.opl_m[j];
-        lanes.bend_m[j][0] = 0.0;
-        lanes.weight[j][0] = knots.weight[j];
-    }
-    return lanes;
-}
-
-// Adds a unit of triangles, whose corners lie at positions in bins, bin by bin.
+// Adds a SIMD group of triangles, whose corners lie at positions in bins, bin by bin.
 [[gnu::always_inline]] inline void add_together(const SortedTriangles& triangles,
                                                 std::span<double> histogram) {
     const auto num_bins = static_cast<double>(histogram.size());
@@ -214,8 +75,8 @@ TriangleLanes single_lane(const TriangleKnots& knots, double area_m2) {
     if (first <= last) add(last, high < num_bins ? triangles.whole() : triangles.below(num_bins));
 }
 
-// Triangles that together reach over more bins than this and more than this many times the longest
-// one are added one by one.
+// Triangles that together span more bins than kFewBins, and more than kMaxScatter times as many as
+// the longest one, are added one by one.
 constexpr double kFewBins = 16.0;
 constexpr double kMaxScatter = 4.0;
 
@@ -292,7 +153,7 @@ constexpr std::array<QuarterCorner, 3> kQuarterCorners = quarter_corners();
 // 1 in the lanes of the second triangle.
 alignas(64) constexpr std::array<double, kSimdWidth> kSecond{0, 0, 0, 0, 1, 1, 1, 1};
 
-// Sets the unit of `parts` from `begin` to the quarters of two sorted triangles.
+// Sets the SIMD group of `parts` at `begin` to the quarters of two sorted triangles.
 void quarter(const TriangleLanes& lanes,
              std::size_t first,
              std::size_t second,
@@ -325,7 +186,7 @@ void quarter(const TriangleLanes& lanes,
     store(0.25 * both(lanes.area_m2), parts.area_m2, begin);
 }
 
-// Returns the lowest bit, and takes it away.
+// Returns the index of the lowest set bit and clears it.
 std::size_t take_lowest(std::uint64_t& bits) {
     const auto lowest = static_cast<std::size_t>(std::countr_zero(bits));
     bits &= bits - 1;
@@ -367,62 +228,16 @@ void add_lanes(TriangleLanes& lanes,
     }
 }
 
-double mean_of(const std::array<double, 3>& values) {
-    return (values[0] + values[1] + values[2]) * kThird;
-}
-
-// The Gaussian response is cut off this many standard deviations away: beyond, it holds 1e-11.
-constexpr double kReach = 6.8;
-
-using Slots = std::array<double, TriangleBins::kSlots>;
-
-// The cumulative histogram and its gradients from the splines, edge_m from the first knot; the mean
-// over a triangle is twice the integral over the barycentric coordinates.
-Slots cumulative_of(const TriangleSplines<double>::Values& values,
-                    const TriangleKnots& knots,
-                    double edge_m,
-                    double per_m,
-                    Gradients gradients) {
-    Slots cumulative{};
-    for (std::size_t j = 0; j < 3; ++j) {
-        cumulative[0] += 2.0 * values.share[j] * knots.weight[j];
-    }
-    if (gradients == Gradients::Without) return cumulative;
-    const auto& s = values.gradient;
-    const auto& k = knots.weight;
-    cumulative[1] = 2.0 * per_m * (2.0 * s[0] * k[0] + s[1] * k[1] + s[2] * k[2]);
-    cumulative[2] = 2.0 * per_m * (s[1] * k[0] + 2.0 * s[3] * k[1] + s[4] * k[2]);
-    cumulative[3] = 2.0 * per_m * (s[2] * k[0] + s[4] * k[1] + 2.0 * s[5] * k[2]);
-    for (std::size_t j = 0; j < 3; ++j) {
-        cumulative[4 + j] = 2.0 * values.share[j];
-        // Shares depend on (edge, knots) / sigma only, and on differences of these.
-        cumulative[7] += (edge_m - (knots.opl_m[j] - knots.opl_m[0])) * cumulative[1 + j];
-    }
-    return cumulative;
-}
-
-// What is reached once the whole triangle lies below the edge.
-Slots whole_triangle(const TriangleKnots& knots) {
-    return {mean_of(knots.weight), 0.0, 0.0, 0.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0, 0.0};
-}
-
 }  // namespace
 
-TriangleKnots match_midpoints(const TriangleKnots& at_corners, const TriangleKnots& at_midpoints) {
-    TriangleKnots knots = at_corners;
-    const double shift = mean_of(at_midpoints.opl_m) - mean_of(at_corners.opl_m);
-    for (double& opl : knots.opl_m) opl += shift;
-
-    const double mean = mean_of(at_midpoints.weight);
-    const double corner_mean = mean_of(at_corners.weight);
-    const double lowest = *std::min_element(knots.weight.begin(), knots.weight.end()) - corner_mean;
-    const double spread = lowest < -mean ? mean / -lowest : 1.0;
-    for (double& weight : knots.weight) weight = mean + spread * (weight - corner_mean);
-    return knots;
-}
-
 double triangle_cumulative(const TriangleKnots& knots, double opl_m) {
-    TriangleLanes lanes = single_lane(knots, 1.0);
+    TriangleLanes lanes;
+    lanes.area_m2[0] = 1.0;
+    for (std::size_t j = 0; j < 3; ++j) {
+        lanes.opl_m[j][0] = knots.opl_m[j];
+        lanes.bend_m[j][0] = 0.0;
+        lanes.weight[j][0] = knots.weight[j];
+    }
     sort_corners(lanes, 1, 0.0, 1.0);
     return SortedTriangles(lanes, 0).below(opl_m)[0];
 }
@@ -432,53 +247,6 @@ void add_triangles(TriangleLanes& lanes,
                    const TimeAxis& axis,
                    std::span<double> histogram) {
     add_lanes(lanes, count, axis.opl_start_m, 1.0 / axis.bin_width_m, 0, histogram);
-}
-
-void add_triangle(const TriangleKnots& knots,
-                  double area_m2,
-                  const TimeAxis& axis,
-                  std::span<double> histogram) {
-    TriangleLanes lanes = single_lane(knots, area_m2);
-    add_triangles(lanes, 1, axis, histogram);
-}
-
-void evaluate_triangle(const TriangleKnots& knots,
-                       double sigma_m,
-                       const TimeAxis& axis,
-                       Gradients gradients,
-                       TriangleBins& bins) {
-    const auto [least, most] = std::minmax_element(knots.opl_m.begin(), knots.opl_m.end());
-    const double reach = kReach * sigma_m;
-    const double begin = (*least - reach - axis.opl_start_m) / axis.bin_width_m;
-    const double end = (*most + reach - axis.opl_start_m) / axis.bin_width_m;
-    bins.bins.clear();
-    bins.first_bin = 0;
-    if (!(end > 0.0) || !(begin < axis.num_bins)) return;
-    bins.first_bin = static_cast<int>(std::max(0.0, std::floor(begin)));
-    const int last_bin = static_cast<int>(std::min(axis.num_bins - 1.0, std::floor(end)));
-
-    const double per_m = 1.0 / (sigma_m > 0.0 ? sigma_m : axis.bin_width_m);
-    const TriangleSplines<double> splines(
-        {0.0, (knots.opl_m[1] - knots.opl_m[0]) * per_m, (knots.opl_m[2] - knots.opl_m[0]) * per_m},
-        sigma_m > 0.0 ? Smear::Gaussian : Smear::None);
-    TriangleSplines<double>::Values values;
-    const auto cumulative_at = [&](int edge) {
-        if (edge <= begin) return Slots{};
-        if (edge >= end) return whole_triangle(knots);
-        if (sigma_m == 0.0 && gradients == Gradients::Without) {
-            return Slots{triangle_cumulative(knots, axis.bin_begin_m(edge))};
-        }
-        const double edge_m = axis.bin_begin_m(edge) - knots.opl_m[0];
-        splines.evaluate(edge_m * per_m, gradients == Gradients::With, values);
-        return cumulative_of(values, knots, edge_m, per_m, gradients);
-    };
-    Slots below = cumulative_at(bins.first_bin);
-    for (int bin = bins.first_bin; bin <= last_bin; ++bin) {
-        const Slots next = cumulative_at(bin + 1);
-        TriangleBins::Bin& target = bins.bins.emplace_back();
-        for (std::size_t i = 0; i < below.size(); ++i) target.slots[i] = next[i] - below[i];
-        below = next;
-    }
 }
 
 }  // namespace renderer

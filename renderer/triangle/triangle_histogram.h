@@ -31,20 +31,8 @@ TriangleKnots match_midpoints(const TriangleKnots& at_corners, const TriangleKno
 /// Mean over the triangle of weight * [length < opl_m]: the cumulative histogram per unit area.
 double triangle_cumulative(const TriangleKnots& knots, double opl_m);
 
-/// Adds a triangle's exact histogram: every bin receives area times the mean over the triangle of
-/// weight * [length in bin]. What lies outside the axis is left out.
-///
-/// area_m2     of the triangle
-/// histogram   axis.num_bins values
-/// source      the linear case s -> 0 of the divided-difference form in [deBoor1978]; derived in
-///             triangle_histogram.cpp
-void add_triangle(const TriangleKnots& knots,
-                  double area_m2,
-                  const core::TimeAxis& axis,
-                  std::span<double> histogram);
-
-/// Triangles side by side, one lane each, so that the compiler fills vector units. Weights are
-/// linear, lengths quadratic: with barycentric coordinates l,
+/// Triangles side by side, one per lane, for vectorised loops. Weights are linear, lengths
+/// quadratic: with barycentric coordinates l,
 ///
 ///     opl = sum over corners of l_j opl_m[j] - sum over edges ij of bend_m[k] l_i l_j / 2,
 ///
@@ -59,21 +47,23 @@ struct TriangleLanes {
     alignas(64) Lanes area_m2;
 };
 
-/// Adds the histograms of the first lanes: without bend that of add_triangle(), else right to first
-/// order in the bend. Where a bin's edge falls into a triangle whose bend is not small against what
-/// its lengths span, its quarters are added instead, down to 256ths. No weight is lost, and no bin
-/// receives less than 0.
+/// Adds the histograms of the first lanes: every bin receives area times the mean over the triangle
+/// of weight * [length in bin], exactly without bend, else to first order in it. What lies outside
+/// the axis is left out. Where a bin's edge falls into a triangle whose bend is not small against
+/// what its lengths span, its quarters are added instead, down to 256ths. No weight is lost, and no
+/// bin receives less than 0.
 ///
 /// lanes       overwritten: corners are sorted by length, which become positions in bins
 /// count       of lanes that are used; what the others hold is ignored
 /// histogram   axis.num_bins values
-/// source      derived in triangle_histogram.cpp
+/// source      the linear case s -> 0 of the divided-difference form in [deBoor1978]; derived in
+///             triangle_histogram.cpp
 void add_triangles(TriangleLanes& lanes,
                    std::size_t count,
                    const core::TimeAxis& axis,
                    std::span<double> histogram);
 
-/// The bins that a triangle of unit area reaches, and how they change with its knots.
+/// The bins that a triangle of unit area reaches, and their derivatives by its knots.
 struct TriangleBins {
     /// Value; derivatives by the three lengths, by the three weights, and by the logarithm of the
     /// response's width.
@@ -89,10 +79,11 @@ struct TriangleBins {
 /// Whether derivatives are wanted.
 enum class Gradients { Without, With };
 
-/// The histogram of add_triangle() seen through a Gaussian response, in closed form.
+/// The histogram of a triangle without bend, as add_triangles() gives it, seen through a Gaussian
+/// response, in closed form.
 ///
 /// sigma_m   standard deviation of the response in path length [m]; 0: none
-/// gradients    without them only slot 0 of each bin is set
+/// gradients without them only slot 0 of each bin is set
 /// bins      overwritten; memory is kept from call to call
 /// source    [deBoor1978]; derived in triangle_splines.h
 void evaluate_triangle(const TriangleKnots& knots,

@@ -9,6 +9,7 @@
 #include "tests/hard_cases/extended_precision.h"
 #include "tests/hard_cases/hard_case.h"
 #include "tests/support/random_geometry.h"
+#include "tests/support/single_triangle.h"
 #include "tests/support/statistics.h"
 
 #include <array>
@@ -110,7 +111,7 @@ double kernel_of_tiny_triangles_and_slivers() {
         // Of bins of 1 mm: energy, and the mean length to a part of a bin.
         const TimeAxis axis{0.0, 0.001, 5000};
         std::vector<double> histogram(5000, 0.0);
-        renderer::add_triangle(knots, area_vector.norm(), axis, histogram);
+        test_support::add_triangle(knots, area_vector.norm(), axis, histogram);
         double energy = 0.0;
         for (const double value : histogram) energy += value;
         double moment = 0.0;  // of the linear triangle: A/12 sum K_j r_k (1 + [j == k])

@@ -6,6 +6,7 @@
 #include "tests/hard_cases/extended_precision.h"
 #include "tests/hard_cases/hard_case.h"
 #include "tests/support/random_geometry.h"
+#include "tests/support/single_triangle.h"
 #include "tests/support/statistics.h"
 
 #include <algorithm>
@@ -162,7 +163,7 @@ double box_kernel_error(std::string_view seed, double start, double from, double
         const TriangleKnots knots =
             random_knots(rng, axis.bin_begin_m(2.0 + rng.uniform()), width * spread);
         std::vector<double> histogram(64, 0.0);
-        renderer::add_triangle(knots, 1.0, axis, histogram);
+        test_support::add_triangle(knots, 1.0, axis, histogram);
         const double whole = mean_weight(knots);
         for (int bin = 0; bin < 64; ++bin) {
             const auto edge = [&](int k) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Errors that renders state of themselves, and that they are asked to reach.
 #include "renderer/bounce_truncation.h"
+#include "renderer/core/random.h"
 #include "renderer/film/stopping_rule.h"
 #include "renderer/frame_sequence.h"
 #include "tests/support/error_message.h"
@@ -71,14 +72,13 @@ TEST(StatedError, NoiseFromSumsIsThatFromEveryVariance) {
         }
     }
     double noise = 0.0;
-    core::Transient variance(3, kBins);
-    sums.write_variance(kPasses, variance.values());
-    for (const float value : variance.values()) noise += double{value};
+    core::Transient mean;
+    std::optional<core::Transient> variance;
+    sums.write(kPasses, 3, 0, mean, variance);
+    for (const float value : variance->values()) noise += double{value};
     core::Transient known(3, kBins);
     for (float& value : known.values()) value = 2.0F;
     double all = 0.0;
-    core::Transient mean(3, kBins);
-    sums.write_mean_of_all(kPasses, mean.values());
     for (const float value : mean.values()) all += std::pow(2.0 + double{value}, 2);
     const auto norms = sums.squared_norms(kPasses, &known);
     EXPECT_NEAR(norms.noise, noise, 1e-6 * noise);  // variances are stored as float
@@ -158,14 +158,15 @@ TEST(StatedError, OrdersAreLeftOutWhenTheyAreBelowWhatIsAllowed) {
     };
     for (int order = 6; order > 3; --order) {
         const double share = tail_from(static_cast<std::size_t>(order)) / tail_from(1);
-        const auto [last, left_out] =
-            renderer::find_bounce_truncation(scene, scan, {kStatedAxis, {}}, settings, 2.5 * share);
+        const auto [last, left_out] = renderer::find_bounce_truncation(
+            {scene, scan, {kStatedAxis, {}}, settings, {}}, 2.5 * share);
         EXPECT_LT(last, order) << "share " << share;
         EXPECT_GE(left_out, 0.95 * share);
         EXPECT_LE(left_out, 2.5 * share);
     }
-    EXPECT_EQ(renderer::find_bounce_truncation(scene, scan, {kStatedAxis, {}}, settings, 0.0).last,
-              6);
+    EXPECT_EQ(
+        renderer::find_bounce_truncation({scene, scan, {kStatedAxis, {}}, settings, {}}, 0.0).last,
+        6);
 }
 
 TEST(StatedError, AutoSaysWhichOrdersItLeavesOut) {

@@ -193,7 +193,7 @@ TEST(EllipsoidalTracer, DropLosesExactlyTheSignalOfTheExcludedSurfaces) {
         variance += variance_of(all, i) + variance_of(kept, i);
     }
     const auto measured =
-        renderer::measure_dropped_signal(few.scene, few.scan, few.axis, settings, 4);
+        renderer::measure_dropped_signal({few.scene, few.scan, few.axis, settings, {}}, 4);
     const double sigma = std::hypot(measured.sigma, std::sqrt(variance));
     EXPECT_GT(test_support::normal_tail((measured.lost - expected) / sigma), 1e-4)
         << measured.lost << " +- " << measured.sigma << " expected " << expected;

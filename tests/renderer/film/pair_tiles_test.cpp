@@ -146,7 +146,7 @@ TEST(ThirdBounceMemory, ChangesNothingButTheNumberOfRays) {
                       0, [](double) { return true; }, result),
                   renderer::ThirdBounceScan::kParts);
         values[points].assign(result.values().begin(), result.values().end());
-        rays[points] = integrator.num_rays();
+        rays[points] = integrator.cost().num_rays;
         errors[points] = integrator.squared_shadow_error();
     }
     EXPECT_GT(*std::max_element(values[1000].begin(), values[1000].end()), 0.0F);

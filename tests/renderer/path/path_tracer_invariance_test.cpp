@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What must not change when a set-up is described in another way.
 #include "renderer/pass_render.h"
-#include "renderer/path/surface_walk.h"
+#include "renderer/path/path_tracer.h"
 #include "tests/support/statistics.h"
 #include "tests/support/test_scenes.h"
 
@@ -129,12 +129,11 @@ TEST(PathTracer, TilesGiveTheSameBitsAsTheWholeScan) {
     renderer::RenderSettings settings = settings_with(100);
     settings.by_order = true;
     renderer::PassWork work;
-    work.estimate =
-        renderer::path_estimator(scene, scan, settings, renderer::ThirdBounceScope::All);
-    const auto whole = renderer::render_passes(scene, scan, kInvarianceAxis, settings, work, {});
+    work.tracer = std::make_shared<const renderer::PathTracer>(scene, settings);
+    const auto whole = renderer::render_passes({scene, scan, kInvarianceAxis, settings, {}}, work);
     // Room for two pairs of five orders and squares.
     work.max_sums_bytes = 2.5 * 6 * 60 * sizeof(double);
-    const auto tiled = renderer::render_passes(scene, scan, kInvarianceAxis, settings, work, {});
+    const auto tiled = renderer::render_passes({scene, scan, kInvarianceAxis, settings, {}}, work);
     EXPECT_TRUE(
         std::ranges::equal(tiled.capture.transient.values(), whole.capture.transient.values()));
     EXPECT_TRUE(
@@ -144,7 +143,7 @@ TEST(PathTracer, TilesGiveTheSameBitsAsTheWholeScan) {
     EXPECT_EQ(tiled.num_rays, whole.num_rays);
     core::Progress stop;
     stop.stop_requested = [] { return true; };
-    EXPECT_THROW(renderer::render_passes(scene, scan, kInvarianceAxis, settings, work, stop),
+    EXPECT_THROW(renderer::render_passes({scene, scan, kInvarianceAxis, settings, stop}, work),
                  core::Failure);
 }
 

@@ -87,7 +87,7 @@ TEST(ShadowRayTracer, AnswersAsSingleRays) {
             EXPECT_EQ(rays.seen & ~rays.points, 0);
             const ElementBlock& block = setup.elements.blocks[rays.element / ElementBlock::kSize];
             const std::size_t i = rays.element % ElementBlock::kSize;
-            const Vec3 normal(block.normal_x[i], block.normal_y[i], block.normal_z[i]);
+            const Vec3 normal = block.normal[i];
             const renderer::DrawnParts parts = tracer.drawn_parts(rays.element);
             for (std::size_t p = 0; p < count; ++p) {
                 if ((rays.points >> p & 1U) == 0) continue;
@@ -97,7 +97,7 @@ TEST(ShadowRayTracer, AnswersAsSingleRays) {
                 const auto& share = renderer::centers_of_bits()[bit];
                 Vec3 end = setup.elements.origin;
                 for (std::size_t c = 0; c < 3; ++c) {
-                    end += share[c] * Vec3(block.x[c][i], block.y[c][i], block.z[c][i]);
+                    end += share[c] * block.corners[c][i];
                 }
                 const Vec3 from = points[p].position + setup.elements.origin;
                 end += std::copysign(block.rise_m[i], normal.dot(from - end)) * normal;
@@ -108,7 +108,7 @@ TEST(ShadowRayTracer, AnswersAsSingleRays) {
             }
         }
     }
-    EXPECT_EQ(tracer.num_rays(), num_rays);
+    EXPECT_EQ(tracer.cost().num_rays, num_rays);
     EXPECT_GT(num_seen, static_cast<int>(num_rays / 4));
     EXPECT_LT(num_seen, static_cast<int>(num_rays * 3 / 4));
 }
@@ -165,7 +165,7 @@ TEST_P(VisibilityTracerTowards, PointsSeeTogetherWhatTheySeeAlone) {
     }
     std::vector<renderer::VisibleElements> together(points.size());
     tracer.trace(points, rules, together);
-    const std::uint64_t num_rays = tracer.num_rays();
+    const std::uint64_t num_rays = tracer.cost().num_rays;
     std::size_t num_partial = 0;
     for (std::size_t p = 0; p < points.size(); ++p) {
         renderer::VisibilityRules own = rules;
@@ -184,7 +184,7 @@ TEST_P(VisibilityTracerTowards, PointsSeeTogetherWhatTheySeeAlone) {
             });
         }
     }
-    EXPECT_EQ(tracer.num_rays(), 2 * num_rays);
+    EXPECT_EQ(tracer.cost().num_rays, 2 * num_rays);
     EXPECT_GT(num_partial, 20U);
 }
 

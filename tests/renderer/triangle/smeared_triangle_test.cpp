@@ -3,6 +3,7 @@
 #include "renderer/core/instrument_response.h"
 #include "renderer/core/random.h"
 #include "renderer/triangle/triangle_histogram.h"
+#include "tests/support/single_triangle.h"
 #include "tests/support/statistics.h"
 
 #include <gtest/gtest.h>
@@ -64,7 +65,7 @@ TEST(SmearedTriangle, WithoutResponseItIsTheBoxKernel) {
     for (int trial = 0; trial < kTrials; ++trial) {
         const TriangleKnots knots = knots_of_any_spread(rng);
         std::vector<double> expected(static_cast<std::size_t>(kAxis.num_bins));
-        renderer::add_triangle(knots, 1.0, kAxis, expected);
+        test_support::add_triangle(knots, 1.0, kAxis, expected);
         EXPECT_LT(distance(slot(knots, 0.0, 0), expected), 1e-7);
     }
 }
@@ -81,7 +82,7 @@ TEST(SmearedTriangle, EqualsTheFinelySampledConvolution) {
             knots_of_any_spread(rng);  // wide, so that fine bins are narrow against it
         knots.opl_m = {1.1, 1.13 + 0.02 * rng.uniform(), 1.05 - 0.02 * rng.uniform()};
         std::vector<double> sharp(static_cast<std::size_t>(fine.num_bins));
-        renderer::add_triangle(knots, 1.0, fine, sharp);
+        test_support::add_triangle(knots, 1.0, fine, sharp);
         std::vector<double> smeared(sharp.size());
         const auto filter =
             core::sample_response(core::GaussianResponse{kSigma_m}, fine.bin_width_m);

@@ -5,6 +5,7 @@
 #include "renderer/core/random.h"
 #include "renderer/core/sampling.h"
 #include "renderer/triangle/exact_arcs.h"
+#include "tests/support/single_triangle.h"
 #include "tests/support/statistics.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +22,7 @@ using Corners = std::array<Vec3, 3>;
 
 std::vector<double> histogram_of(const TriangleKnots& knots, double area, const TimeAxis& axis) {
     std::vector<double> histogram(static_cast<std::size_t>(axis.num_bins));
-    renderer::add_triangle(knots, area, axis, histogram);
+    test_support::add_triangle(knots, area, axis, histogram);
     return histogram;
 }
 
@@ -66,11 +67,11 @@ std::vector<double> pieces_of(const Corners& corners,
         for (int j = 0; i + j < steps; ++j) {
             const Vec3 p = corners[0] + i * e1 + j * e2;
             const Corners lower{p, p + e1, p + e2};
-            renderer::add_triangle(
+            test_support::add_triangle(
                 confocal_knots(lower, wall_normal, normal), area_vector.norm(), axis, histogram);
             if (i + j + 1 == steps) continue;
             const Corners upper{p + e1, p + e1 + e2, p + e2};
-            renderer::add_triangle(
+            test_support::add_triangle(
                 confocal_knots(upper, wall_normal, normal), area_vector.norm(), axis, histogram);
         }
     }
@@ -134,7 +135,7 @@ TEST(TriangleHistogram, LanesAddWhatEachTriangleAloneDoes) {
                 lanes.weight[j][i] = knots.weight[j];
             }
             lanes.area_m2[i] = rng.uniform();
-            if (i < count) renderer::add_triangle(knots, lanes.area_m2[i], axis, expected);
+            if (i < count) test_support::add_triangle(knots, lanes.area_m2[i], axis, expected);
         }
         std::vector<double> histogram(9);
         renderer::add_triangles(lanes, count, axis, histogram);

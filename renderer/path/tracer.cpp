@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/path/tracer.h"
+
+namespace renderer {
+namespace {
+
+// Per object, whether first vertices on it may reflect straight to the light. The relay wall has no
+// third bounce; it takes part from order 4 on.
+std::vector<bool> objects_that_add(const Scene& scene, ThirdBounceScope scope) {
+    std::vector<bool> adds;
+    for (const Object& object : scene.objects()) {
+        adds.push_back(object.role != Role::RelayWall &&
+                       (scope == ThirdBounceScope::All || !is_integrable(object.material)));
+    }
+    return adds;
+}
+
+}  // namespace
+
+Tracer::Tracer(const Scene& scene, const RenderSettings& settings, ThirdBounceScope scope)
+    : scene_(&scene),
+      max_order_(settings.max_bounces),
+      by_order_(settings.by_order),
+      surface_walk_(scene, settings.laser_spot_m2),
+      facet_traits_(scene, objects_that_add(scene, scope)) {}
+
+std::uint64_t Tracer::trace(const PathEndpoints& ends,
+                            int num_samples,
+                            core::Rng& rng,
+                            PassHistogram& histogram) const {
+    const auto walk = start(ends, rng, histogram);
+    walk->trace_samples(num_samples);
+    return walk->num_rays();
+}
+
+std::uint64_t Tracer::trace(const SensorPairs& sensor_pairs,
+                            std::size_t pair,
+                            int num_samples,
+                            core::Rng& rng,
+                            PassHistogram& histogram) const {
+    const PathEndpoints ends = sensor_pairs.ends(pair);
+    if (!sensor_pairs.is_image()) return trace(ends, num_samples, rng, histogram);
+    const auto walk = start(ends, rng, histogram);
+    walk->trace_pixel_samples(sensor_pairs, pair, num_samples);
+    return walk->num_rays();
+}
+
+PairWalk::PairWalk(const Tracer& tracer,
+                   const PathEndpoints& ends,
+                   core::Rng& rng,
+                   PassHistogram& histogram)
+    : scene_(*tracer.scene_),
+      ends_(ends),
+      rng_(rng),
+      histogram_(histogram),
+      first_(*tracer.scene_, tracer.facet_traits_),
+      tracer_(tracer) {}
+
+void PairWalk::trace_walks(int num_area, int num_directions, double weight) {
+    EndpointDirectionSampler directions(scene_, ends_.sensor, num_directions, rng_);
+    FirstVertexBatch::AreaDraws by_area{num_area};
+    while (!by_area.done() || !directions.done()) {
+        num_rays_ += first_.draw(directions, tracer_.surface_walk_.area_sampler(), by_area, rng_);
+        finish_first_vertices(weight);
+    }
+}
+
+// Connects first vertices to the light and continues their paths.
+void PairWalk::finish_first_vertices(double weight) {
+    evaluate_first_vertices(weight);
+    weigh_first_vertices();
+    const bool continues = tracer_.max_order_ > 3;
+    first_.keep_useful(!continues);
+    num_rays_ += first_.trace_from_sensor(ends_);
+    if (continues || !ends_.coincide) first_.keep_seen();
+    continued_.clear();
+    for (int i = 0; i < first_.size() && continues; ++i) {
+        continued_.push_back(first_.vertex(i, ends_.sensor));
+    }
+    if (continues && !ends_.coincide) first_.keep_useful(true);
+    connect_first_vertices();
+    for (const PathVertex& vertex : continued_) extend(vertex);
+}
+
+void PairWalk::evaluate_first_vertices(double weight) {
+    const SurfaceWalk& walk = tracer_.surface_walk_;
+    first_.evaluate(ends_, {weight, kAreaShareFromWall, walk.area_sampler().pdf_area()});
+    for (int i = 0; i < first_.size() && tracer_.facet_traits_.any_varies(); ++i) {
+        if (!tracer_.facet_traits_.varies(first_.facet(i))) continue;
+        first_.set_contribution(i, walk.connection_value(first_.vertex(i, ends_.sensor), ends_));
+    }
+}
+
+void PairWalk::connect_first_vertices() {
+    if (!ends_.coincide) num_rays_ += first_.trace_from_light(ends_);
+    std::span<const double> velocities;
+    if (histogram_.resolves_velocity()) velocities = first_.find_velocities(ends_);
+    histogram_.add(tracer_.by_order_ ? 2 : 0, first_.opl_m(), velocities, first_.contributions());
+    first_.clear();
+}
+
+void PairWalk::deposit(const PathVertex& vertex, double value) {
+    histogram_.add(tracer_.by_order_ ? vertex.order - 1 : 0,
+                   tracer_.surface_walk_.extent_to_light(vertex, ends_),
+                   value);
+}
+
+}  // namespace renderer
