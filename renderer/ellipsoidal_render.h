@@ -8,25 +8,25 @@ namespace renderer {
 
 /// Renders with ellipsoidal connections; results are those of render().
 ///
-/// With excluded surfaces dropped, the result's warnings say what share of the signal that lost:
-/// see warn_of_dropped_signal().
+/// With excluded surfaces dropped, a warning states what share of the signal is lost, see
+/// warn_of_dropped_signal().
 RenderResult render_ellipsoidal(const RenderTask& task);
 
-/// What dropping the excluded surfaces loses, by path tracing them alone.
+/// The signal of the excluded surfaces, by path tracing them alone.
 struct DroppedSignal {
-    double lost = 0.0;   ///< sum over the pairs looked at and all bins
+    double lost = 0.0;   ///< sum over the measured pairs and all bins
     double sigma = 0.0;  ///< standard deviation of `lost`
     std::vector<std::size_t> pairs;
 };
 
-/// Measures it on at most `max_pairs` pairs, spread over the scan.
+/// Estimates it on at most `max_pairs` pairs, spread over the scan.
 DroppedSignal measure_dropped_signal(const RenderTask& task, std::size_t max_pairs);
 
 /// Which surfaces connections end on, in words.
 std::string surfaces_kept(const RenderSettings& settings, const ExcludedObjects& excluded);
 
-/// With excluded surfaces dropped, adds a warning that says what share of the signal that lost, as
-/// measured on some of the pairs.
+/// With excluded surfaces dropped, adds a warning that states what share of the signal is lost,
+/// estimated on some of the pairs.
 ///
 /// result   with the capture and what was excluded
 void warn_of_dropped_signal(const RenderTask& task, RenderResult& result);

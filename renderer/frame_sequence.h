@@ -13,26 +13,25 @@ namespace renderer {
 /// One frame of a sequence, ready to be rendered.
 struct Frame {
     int index = 0;
-    std::shared_ptr<const Scene>
-        scene;                 ///< objects where they are now; the same while nothing moves
-    core::HistogramAxes axes;  ///< the gate where it is now
-    RenderSettings settings;   ///< with a seed of the frame's own
+    std::shared_ptr<const Scene> scene;  ///< at the time of the frame; shared while nothing moves
+    core::HistogramAxes axes;            ///< with the gate of the frame
+    RenderSettings settings;             ///< with the seed of the frame
 };
 
-/// Renders one frame. Called in order; what carries state from frame to frame owns it.
+/// Renders one frame. Frames are rendered in order; any state kept between them is its own.
 using FrameRenderer =
     std::function<RenderResult(const Frame&, const core::Scan&, const core::Progress&)>;
 
-/// The renderer of the frames that the settings ask for: `restir` carries its paths on from frame
-/// to frame, the others render() every frame on its own.
+/// The frame renderer for the method in the settings: `restir` reuses the paths of earlier frames,
+/// the others render() every frame independently.
 ///
 /// scan   must outlive what is returned
 FrameRenderer make_frame_renderer(const core::Scan& scan, const RenderSettings& settings);
 
-/// Objects where they are after `seconds` at their velocities.
+/// The objects, moved at their velocities for `seconds`.
 SceneGeometry moved_by(const Scene& scene, double seconds);
 
-/// Renders `frames` of a description: gate and objects move on from frame to frame.
+/// Renders the frames of a description; gate and objects move from frame to frame.
 ///
 /// scene         the description's scene, as the first frame sees it
 /// scan          as make_scan() gives it

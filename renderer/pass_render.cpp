@@ -22,8 +22,8 @@ constexpr int kPasses = 8;
 constexpr int kMaxSamplesPerPass = 256;
 constexpr int kSamplesPerTimedPass = 32;  ///< also when an error is to be reached
 constexpr std::size_t kPairsPerBlock = 16;
-// Passes run in rounds, all of a round for one pair after the other, so that its sums stay in the
-// cache. Between rounds the caller may end the run.
+// Passes run in rounds: all passes of a round for one pair, then for the next, so that the sums of
+// a pair stay in the cache. Between rounds the caller may stop the render.
 constexpr double kMaxSecondsPerRound = 0.1;
 
 struct PassPlan {
@@ -31,7 +31,7 @@ struct PassPlan {
     int num_passes = 1;
 };
 
-// Every pair then must get the same number of samples.
+// Without a fixed number of samples; every pair must still get the same number.
 bool is_open_ended(const RenderSettings& settings) {
     return settings.seconds || settings.target_error;
 }
@@ -45,7 +45,8 @@ PassPlan plan_passes(const RenderSettings& settings, const PassWork& work) {
     return {per_pass, (settings.samples + per_pass - 1) / per_pass};
 }
 
-// How many passes the next round has when `done` of them took `elapsed_s`. It changes no result.
+// Number of passes of the next round when `done` of them took `elapsed_s`; results do not depend on
+// it.
 int next_round(const PassPlan& plan, const RenderSettings& settings, int done, double elapsed_s) {
     if (done == 0 || is_open_ended(settings)) return 1;
     const double fit = kMaxSecondsPerRound * done / elapsed_s;

@@ -60,7 +60,7 @@ std::optional<ChartPoint> HemisphereChart::at(const Vec2& xi) const {
     const auto hit = scene_->rays().first_hit(y_, world_from_local_.col(2), direction);
     if (!hit) return std::nullopt;
     auto point = on_facet(xi, hit->triangle);
-    // Rays are traced in single precision; near its edge a facet may be met just outside.
+    // Rays are traced in single precision and may hit a facet just outside its edge.
     if (point &&
         !is_in_triangle(barycentric_of(scene_->facet(hit->triangle), point->position + origin_))) {
         return std::nullopt;
@@ -96,7 +96,7 @@ std::optional<ChartPoint> HemisphereChart::on_facet(const Vec2& xi, std::uint32_
     point.second12 =
         world(dir.by_mu_psi - a * dir.by_psi - b * dir.by_mu + (2.0 * a * b - a_b) * dir.d);
     point.second22 = world(dir.by_psi_psi - 2.0 * b * dir.by_psi + (2.0 * b * b - b_b) * dir.d);
-    // Both y and the angle are rounded; seen edge-on, the point moves by more.
+    // Both y and the angle are rounded, which moves a point seen at a grazing angle further.
     const double sine = std::sqrt(1.0 - xi.x() * xi.x());
     point.rounding_m =
         (rounding_m_ + rho * std::numeric_limits<double>::epsilon() / sine) / std::abs(s);

@@ -10,7 +10,7 @@
 
 namespace renderer {
 
-/// A surface around one of its points, as a chart X(xi), xi in R^2, sees it to second order.
+/// A surface near one of its points, in a chart X(xi), xi in R^2, to second order.
 struct ChartPoint {
     core::Vec3 position;  ///< X [m], relative to the chart's origin
     core::Vec3 tangent1;  ///< dX/dxi_1
@@ -20,7 +20,7 @@ struct ChartPoint {
     core::Vec3 second12 = core::Vec3::Zero();
     core::Vec3 second22 = core::Vec3::Zero();
     double area_density = 0.0;  ///< |dX/dxi_1 x dX/dxi_2|
-    double rounding_m = 0.0;    ///< how far off the position may be
+    double rounding_m = 0.0;    ///< bound of the rounding error of the position
     core::Vec3 velocity;        ///< of the surface [m/s]
     std::uint32_t facet = 0;    ///< where the surface is a mesh
 };
@@ -35,8 +35,8 @@ concept SurfaceChart = requires(const C& chart, const core::Vec2& xi) {
     { C::kPeriodic } -> std::convertible_to<bool>;                // xi_2 repeats with period 1
 };
 
-/// Plane and barycentric charts: X = origin + xi_1 tangent1 + xi_2 tangent2. The surface goes on
-/// beyond the facet; whether a point lies on it is checked afterwards.
+/// Plane and barycentric charts: X = origin + xi_1 tangent1 + xi_2 tangent2. The chart extends
+/// beyond the facet; whether a point lies on the surface is checked afterwards.
 class AffineChart {
  public:
     static constexpr bool kAffine = true;
@@ -65,9 +65,9 @@ class AffineChart {
     ChartPoint at_origin_;
 };
 
-/// The surface as a point y sees it: mu = cosine to the normal at y, psi = azimuth/(2 pi) from an
-/// axis fixed in the world, the point by a ray. An element dmu dpsi covers 2 pi dmu dpsi
-/// steradians. Near the pole (mu > 1 - 1e-4) and near the horizon the coordinates are no use.
+/// The surface seen from a point y: mu = cosine to the normal at y, psi = azimuth/(2 pi) from an
+/// axis fixed in the world; the surface point is found by a ray. An element dmu dpsi covers 2 pi
+/// dmu dpsi steradians. The chart ends near the pole (mu > 1 - 1e-4) and near the horizon.
 class HemisphereChart {
  public:
     static constexpr bool kAffine = false;
@@ -89,7 +89,7 @@ class HemisphereChart {
     /// The plane of `facet` along the direction of xi; no ray.
     std::optional<ChartPoint> on_facet(const core::Vec2& xi, std::uint32_t facet) const;
 
-    /// Whether a world point lies on the side of y that the chart shows.
+    /// Whether a world point lies in the hemisphere of the chart.
     bool is_above(const core::Vec3& position) const {
         return world_from_local_.col(2).dot(position - y_) > 0.0;
     }

@@ -5,12 +5,13 @@
 
 namespace renderer {
 
-/// What a path keeps, up to a given change, while its reconnection vertex p moves between the
-/// neighbours a and y ("foci"). A functional gives `expand(p, velocity of the surface at p)`, an
-/// expansion with `value`, `gradient`, `hessian_times(t)`, and two sizes to measure errors by:
-/// `gradient_size`, which the gradient's norm cannot exceed by much, and the shorter of the legs.
+/// A functional is a quantity of a path that changes by a given amount while its reconnection
+/// vertex p moves between the neighbours a and y (the foci). Its `expand(p, velocity of the surface
+/// at p)` gives an expansion with `value`, `gradient`, `hessian_times(t)` and `gradient_size`, a
+/// scale that the norm of the gradient cannot exceed by much.
 ///
-/// Points are relative to one origin near p, so that foci far from the world's origin lose nothing.
+/// Points are relative to an origin near p, so that no precision is lost far from the world's
+/// origin.
 ///
 /// To add one: a struct with `expand`; instantiate the routes of shift_mapping.cpp with it.
 /// With r = focus - p, d = |r|, u = r/d:  du/dp = -(I - u u^T)/d, and everything below follows.

@@ -9,7 +9,7 @@
 namespace renderer {
 namespace {
 
-// One end of the shift: the curve of its length and the legs to a point of it.
+// One end of the shift: the curve of points with its path length.
 struct PlaneEnd {
     std::optional<EllipsoidSection> section;
     double length = 0.0;
@@ -20,11 +20,11 @@ struct PlaneEnd {
           length(length_m),
           flatness(1.0 - (foci.b - foci.a).squaredNorm() / (length_m * length_m)) {}
 
-    // The flatness, and the circle's radius where the ellipsoid touches the plane, are roots of
-    // differences; where either is small its rounding shows in the Jacobian. On a thin ellipse the
-    // angle is felt through the shorter axis, and the Jacobian turns within the ratio of the axes.
-    // Such ends are left out, like those that the solver cannot resolve, and on both sides of a
-    // shift.
+    // The flatness, and the radius of the circle where the ellipsoid touches the plane, are square
+    // roots of differences; where either is small, rounding shows in the Jacobian. On a thin
+    // ellipse the angle depends on the shorter axis, and the Jacobian varies over angles of the
+    // ratio of the axes. Such ends are rejected on both sides of a shift, like those that the
+    // solver cannot resolve.
     bool is_resolved(double leg_a, double leg_b, double rounding_m) const {
         const double radius = section->circle_radius();
         const double shorter = std::min(leg_a, leg_b);

@@ -17,7 +17,7 @@ struct ConstraintChange {
     ConstraintChange inverse() const { return {1.0 / ratio, -offset_m / ratio}; }
 };
 
-/// Where a plane's point goes, and by how much areas grow.
+/// The displacement of a point within a plane, and the change of areas.
 struct PlaneShift {
     core::Vec3 displacement;  ///< from the vertex [m]
     double jacobian = 0.0;    ///< dA'/dA
@@ -25,8 +25,8 @@ struct PlaneShift {
 
 /// Moves a point within its plane so that its path length changes as required, in closed form.
 ///
-/// The point keeps its angle theta on the closed curve of its length (EllipsoidSection), which
-/// makes the map one-to-one, defined wherever the target's curve exists, and free of any search.
+/// The point keeps its angle theta on the closed curve of its length (EllipsoidSection): the map is
+/// one-to-one, defined wherever the target's curve exists, and needs no iteration.
 /// With dA = K dtau dtheta on either side and dtau' = S dtau: dA'/dA = S K'/K.
 ///
 /// plane            through the point: normal, and edge1 as the direction of theta = 0

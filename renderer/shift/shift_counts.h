@@ -10,21 +10,21 @@
 
 namespace renderer {
 
-/// Whether a solved shift is solved backwards as well.
+/// Whether a shift is also solved in reverse.
 enum class ReverseCheck { On, Off };
 
-/// Why a shift has no result. Occlusion of the new legs is no matter of the shift.
+/// Why a shift has no result. Occlusion of the new legs is not checked by the shift.
 enum class ShiftRejection {
     BelowMinimum,   ///< no point of the surface's plane, or of space, has a path this short
     Degenerate,     ///< a determinant is zero: near the tangent point or the foci's segment
-    Folded,         ///< the map turns its orientation
-    NotConverged,   ///< Newton's method, or the residuals after a closed form
-    LeftChart,      ///< outside the coordinates, or the ray met nothing
-    LeftSurface,    ///< the plane's point lies on no facet of the surface
+    Folded,         ///< the map reverses orientation
+    NotConverged,   ///< of Newton's method, or by the residuals of a closed form
+    LeftChart,      ///< outside the chart, or the ray hit nothing
+    LeftSurface,    ///< the point of the plane lies on no facet of the surface
     SecondRoot,     ///< another branch of the curve
-    NotReversible,  ///< the reverse solve ends elsewhere
-    OtherRoute,     ///< the adaptive chart takes another route from the far end
-    JacobianBound,  ///< stretches or squeezes area too much
+    NotReversible,  ///< the reverse shift ends elsewhere
+    OtherRoute,     ///< the adaptive chart takes another route in reverse
+    JacobianBound,  ///< the Jacobian is too large or too small
 };
 
 inline constexpr std::array<std::string_view, 10> kShiftRejectionNames{"below_minimum",

@@ -21,7 +21,7 @@ struct GaugeTerms {
     core::Vec2 by_source;   ///< dF2/dxi
 };
 
-/// Where the equations stand: both ends and both functionals expanded there.
+/// An iterate of the solver: both ends with the functionals expanded there.
 struct ShiftState {
     core::Vec2 xi;
     core::Vec2 xi_new;
@@ -33,8 +33,8 @@ struct ShiftState {
 
 /// The gauges that the solver takes.
 struct EquationGauge {
-    /// The solver's last step may not have been longer than this share of the reach: the next one,
-    /// quadratically smaller, is below rounding.
+    /// Longest last step of the solver, as a share of the reach: the next one would be
+    /// quadratically smaller, below rounding.
     static constexpr double kLastStep = 1e-6;
 };
 

@@ -98,10 +98,9 @@ class ShiftMapping::Attempt {
     bool by_ray() const { return by_ray_; }
 
  private:
-    // Let P be the points from which the plane route has a result. From P take the plane; its
-    // results are the points from which the plane route leads back. From elsewhere take the ray,
-    // and keep only results from which the plane route has no way back: two one-to-one maps with
-    // separate images.
+    // Points from which the plane route has a result take it; its results are the points from which
+    // the plane route leads back. All others take the ray, and keep only results from which the
+    // plane route does not lead back: two one-to-one maps with disjoint images.
     Result shift_adaptively() {
         if (const Result by_plane = shift_by_plane()) return by_plane;
         const Result result = shift_by_ray();
@@ -176,7 +175,7 @@ class ShiftMapping::Attempt {
         at_x->position.setZero();  // exactly, whatever the coordinates' rounding
         const auto solution = solve(charts, *xi, *at_x);
         if (!solution) return std::nullopt;
-        // From the far end the source's chart must show the same side of y.
+        // The reverse shift must use the same hemisphere at the source.
         if (!charts[0].is_above(x + solution->at_target.position)) {
             return trace_.reject(ShiftRejection::LeftChart);
         }

@@ -19,7 +19,7 @@ inline constexpr double kShiftTolerance = 1e-9;
 
 /// Determinants below this share of what the gradients' sizes allow count as zero.
 inline constexpr double kTinyDeterminant = 1e-6;
-/// Shorter legs, as a share of both, count as none.
+/// Legs shorter than this share of both count as zero.
 inline constexpr double kShortestLeg = 1e-6;
 /// With steepness s = reach/leg, coordinates right to e give a solution right to e/s, and from it a
 /// determinant right to e/s over the reach, e/(leg s^2). What is left of the leg must exceed this
@@ -39,7 +39,7 @@ struct ShiftSolution {
     ChartExpansion at_target;
 };
 
-/// Whether an end is far enough from its foci and from tangent points for a shift to mean anything.
+/// Whether an end is far enough from its foci and from tangent points for a meaningful shift.
 inline bool is_resolved(const ChartExpansion& e, const core::Vec2& gauge) {
     const double reach = e.reach_m(gauge);
     return e.shorter_leg_m > kShortestLeg * e.legs_m &&
@@ -123,7 +123,8 @@ std::optional<ShiftSolution> newton_shift(const Gauge& gauge,
             const double next_f1 = target->value - goal;
             const double next_merit =
                 next_f1 * next_f1 + next_terms->residual * next_terms->residual;
-            // Once both are small the merit is rounding, and the full step the best there is.
+            // Once both residuals are small, the merit is dominated by rounding: take the full
+            // step.
             if (!(next_merit < merit || is_small)) continue;
             // A halved step says nothing about the next one.
             last_step = halving == 0 ? (target->position - state.at_target.position).norm()
@@ -137,8 +138,8 @@ std::optional<ShiftSolution> newton_shift(const Gauge& gauge,
     return solution_at(state, terms, trace);
 }
 
-/// The equations can have a second root, on another branch of the curve. On the right one the
-/// movement goes up (or down) both functionals at both ends; all four gradients along D share a
+/// The equations can have a second root, on another branch of the curve. On the right branch all
+/// four directional derivatives along the step, of both functionals at both ends, have the same
 /// sign.
 inline bool is_on_first_branch(const core::Vec2& step,
                                const ChartExpansion& source_at_start,
@@ -153,8 +154,8 @@ inline bool is_on_first_branch(const core::Vec2& step,
     return *least >= 0.0 || *most <= 0.0;
 }
 
-/// Solves a shift, selects the root and, with `reverse_check`, solves it backwards too: only what
-/// comes back to where it started belongs to a one-to-one map.
+/// Solves a shift, checks the branch and, with `reverse_check`, solves the reverse shift: only what
+/// returns to its start belongs to a one-to-one map.
 ///
 /// at_source   source's functional at xi
 /// returns     the solution; nullopt with the reason in `trace`

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/third_bounce/element_adjacency.h"
+#include "renderer/third_bounce/element_clusters.h"
 
 #include <algorithm>
 #include <bit>

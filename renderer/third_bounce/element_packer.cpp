@@ -3,9 +3,7 @@
 
 #include "renderer/core/random.h"
 #include "renderer/geometry/median_split.h"
-#include "renderer/third_bounce/element_adjacency.h"
 #include "renderer/third_bounce/element_clusters.h"
-#include "renderer/third_bounce/simd_groups.h"
 
 #include <algorithm>
 #include <cmath>

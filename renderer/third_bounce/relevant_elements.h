@@ -2,7 +2,7 @@
 #pragma once
 
 #include "renderer/geometry/wall_boxes.h"
-#include "renderer/third_bounce/simd_groups.h"
+#include "renderer/third_bounce/surface_elements.h"
 #include "renderer/third_bounce/wall_point_lanes.h"
 
 #include <array>

@@ -3,7 +3,6 @@
 
 #include "renderer/core/random.h"
 #include "renderer/core/stopwatch.h"
-#include "renderer/third_bounce/simd_groups.h"
 
 #include <bit>
 

@@ -6,6 +6,7 @@
 #include "renderer/triangle/triangle_histogram.h"
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -37,7 +38,7 @@ struct SurfaceElement {
 /// midpoints of the edges that start there, node 6 is the centre.
 struct alignas(64) ElementBlock {
     static constexpr std::size_t kSize = TriangleLanes::kSize;
-    static constexpr std::size_t kSimdWidth = core::Simd::size();  ///< see simd_groups.h
+    static constexpr std::size_t kSimdWidth = core::Simd::size();
     static constexpr std::size_t kNumSimdGroups = kSize / kSimdWidth;
     static constexpr std::size_t kNodes = 7;
     using Lanes = TriangleLanes::Lanes;
@@ -60,6 +61,26 @@ struct alignas(64) ElementBlock {
     Vec3Lanes<kNumSimdGroups> simd_group_center;
     alignas(64) std::array<double, kNumSimdGroups> simd_group_radius_m;
 };
+
+/// A set of SIMD groups of a block, runs of ElementBlock::kSimdWidth consecutive lanes: group u is
+/// bit u.
+using SimdGroupMask = std::uint32_t;
+
+inline constexpr SimdGroupMask kAllSimdGroups =
+    (SimdGroupMask{1} << ElementBlock::kNumSimdGroups) - 1;
+
+/// Calls work(i) for each bit i that is set, in order.
+template <class Work>
+void for_each_bit(std::uint64_t bits, const Work& work) {
+    for (; bits != 0; bits &= bits - 1) work(static_cast<std::size_t>(std::countr_zero(bits)));
+}
+
+/// Calls work(first lane) for each SIMD group.
+template <class Work>
+void for_each_simd_group(SimdGroupMask simd_groups, const Work& work) {
+    for_each_bit(simd_groups,
+                 [&](std::size_t simd_group) { work(simd_group * ElementBlock::kSimdWidth); });
+}
 
 /// Weights of corners, edge midpoints and the centre in the mean of a function over a triangle;
 /// exact for cubic functions.

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "renderer/core/time_axis.h"
-#include "renderer/third_bounce/simd_groups.h"
 #include "renderer/third_bounce/third_bounce_visibility.h"
 
 #include <span>

@@ -3,7 +3,6 @@
 
 #include "renderer/third_bounce/relevant_elements.h"
 #include "renderer/third_bounce/shadow_rays.h"
-#include "renderer/third_bounce/simd_groups.h"
 
 #include <array>
 #include <cstdint>

@@ -2,7 +2,6 @@
 // Facets that are integrated together: what their merged triangle keeps, and what stays apart.
 #include "renderer/third_bounce/element_clusters.h"
 
-#include "renderer/third_bounce/element_adjacency.h"
 #include "renderer/third_bounce/third_bounce.h"
 #include "tests/support/statistics.h"
 #include "tests/support/test_scenes.h"
