@@ -16,7 +16,7 @@ using core::Vec3;
 
 constexpr std::size_t kSamples = 4000;
 constexpr std::size_t kCloudSamples = 40'000;
-constexpr std::uint64_t kSeed = 1;
+constexpr std::uint64_t kSampleSeed = 1;
 
 // The objects of one node as one mesh.
 struct Shape {
@@ -57,7 +57,7 @@ core::Mat3 rotation_of(const Shape& shape) {
 // Principal axes of the surface in the frame of its node, about its centroid.
 core::Mat3 principal_axes(const Shape& shape) {
     core::Mat3 moments = core::Mat3::Zero();
-    for (const Vec3& p : core::sample_surface(shape.mesh, kSamples, kSeed).positions) {
+    for (const Vec3& p : core::sample_surface(shape.mesh, kSamples, kSampleSeed).positions) {
         const Vec3 d = rotation_of(shape).transpose() * (p - shape.centroid);
         moments += d * d.transpose();
     }
@@ -111,7 +111,7 @@ std::vector<core::Mat3> symmetries(const Shape& shape) {
 }
 
 void append_samples(const Shape& shape, core::PointCloud& cloud) {
-    const core::PointCloud samples = core::sample_surface(shape.mesh, kCloudSamples, kSeed);
+    const core::PointCloud samples = core::sample_surface(shape.mesh, kCloudSamples, kSampleSeed);
     cloud.positions.insert(
         cloud.positions.end(), samples.positions.begin(), samples.positions.end());
     cloud.normals.insert(cloud.normals.end(), samples.normals.begin(), samples.normals.end());
@@ -157,7 +157,8 @@ FitErrors compare_fit(const FitResult& fit,
         }
         for (const renderer::Object& object : truth.objects) {
             if (object.role == renderer::Role::RelayWall) continue;
-            for (const Vec3& p : core::sample_surface(object.mesh, kSamples, kSeed).positions) {
+            for (const Vec3& p :
+                 core::sample_surface(object.mesh, kSamples, kSampleSeed).positions) {
                 nearest = std::min(nearest, (p - point.position_m).norm());
             }
         }

@@ -25,13 +25,13 @@ using core::Vec3;
 constexpr int kScoutIterations = 8;     // of each of many starts, on the coarsest data
 constexpr std::size_t kKeptStarts = 3;  // that go on to the second stage
 
-struct Candidate {
+struct FitCandidate {
     std::string name;
     SceneState state;
     SolveSummary summary;
 };
 
-void sort_by_cost(std::vector<Candidate>& candidates) {
+void sort_by_cost(std::vector<FitCandidate>& candidates) {
     std::stable_sort(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) {
         return a.summary.cost < b.summary.cost;
     });
@@ -76,8 +76,8 @@ FitAgreement compare_with_data(const FitDriver& driver,
 // Solves one more candidate on the sharp data, and sorts it in.
 void add_solved(const FitDriver& driver,
                 FitDriver::Stage& last,
-                Candidate candidate,
-                std::vector<Candidate>& candidates,
+                FitCandidate candidate,
+                std::vector<FitCandidate>& candidates,
                 FitCourse& course) {
     candidate.summary = driver.solve(last, candidate.state, driver.settings.max_iterations);
     course.iterations += candidate.summary.iterations;
@@ -88,7 +88,7 @@ void add_solved(const FitDriver& driver,
 // Blur can merge what lies apart: a start that was given is then also solved without it.
 void retry_without_blur(const FitDriver& driver,
                         FitDriver::Stage& last,
-                        std::vector<Candidate>& candidates,
+                        std::vector<FitCandidate>& candidates,
                         FitCourse& course) {
     constexpr double kNotableExcess = 5.0;
     const bool has_blur = driver.settings.blur_schedule_m.size() > 1;
@@ -108,11 +108,11 @@ void retry_without_blur(const FitDriver& driver,
 void keep_best(const SceneModel& model,
                std::size_t most,
                double tellable,
-               std::vector<Candidate>& candidates) {
+               std::vector<FitCandidate>& candidates) {
     const double limit = candidates.front().summary.cost + tellable;
-    std::vector<Candidate> kept;
-    for (Candidate& candidate : candidates) {
-        const bool is_new = std::all_of(kept.begin(), kept.end(), [&](const Candidate& other) {
+    std::vector<FitCandidate> kept;
+    for (FitCandidate& candidate : candidates) {
+        const bool is_new = std::all_of(kept.begin(), kept.end(), [&](const FitCandidate& other) {
             return are_different_poses(model, other.state, candidate.state);
         });
         const bool is_good = kept.empty() || candidate.summary.cost < limit;
@@ -123,25 +123,25 @@ void keep_best(const SceneModel& model,
 
 // Solves from all starts on blurred data, drops the worse ones stage by stage, and solves from the
 // rest on the sharp data. Returns the solutions, best first.
-std::vector<Candidate> run_stages(const FitDriver& driver,
-                                  const core::Progress& progress,
-                                  FitDriver::Stage& last,
-                                  FitCourse& course) {
+std::vector<FitCandidate> run_stages(const FitDriver& driver,
+                                     const core::Progress& progress,
+                                     FitDriver::Stage& last,
+                                     FitCourse& course) {
     constexpr double kAnyCost = std::numeric_limits<double>::infinity();
     constexpr double kTellableCost = 5.0;
-    std::vector<Candidate> candidates;
+    std::vector<FitCandidate> candidates;
     for (auto& [name, state] : driver.starts()) candidates.push_back({name, state, {}});
     if (driver.settings.start == "given") driver.check_light(last, candidates.front().state);
     const auto note_starts = [&] {
         if (!course.starts.empty()) return;
-        for (const Candidate& c : candidates) course.starts.push_back({c.name, c.summary.cost});
+        for (const FitCandidate& c : candidates) course.starts.push_back({c.name, c.summary.cost});
     };
     const auto& schedule = driver.settings.blur_schedule_m;
     for (std::size_t s = 0; s + 1 < schedule.size(); ++s) {
         FitDriver::Stage stage = driver.make_stage(*driver.model, schedule[s]);
         if (!driver.is_usable(stage)) continue;
         const bool is_scouting = candidates.size() > 1;
-        for (Candidate& candidate : candidates) {
+        for (FitCandidate& candidate : candidates) {
             progress.update(static_cast<double>(s) / static_cast<double>(schedule.size()),
                             fmt::format("blur {:g} m, {}", schedule[s], candidate.name));
             candidate.summary =
@@ -154,8 +154,8 @@ std::vector<Candidate> run_stages(const FitDriver& driver,
         note_starts();
         keep_best(*driver.model, kKeptStarts, s == 0 ? kAnyCost : kTellableCost, candidates);
     }
-    std::vector<Candidate> solved;
-    for (Candidate& candidate : candidates) {
+    std::vector<FitCandidate> solved;
+    for (FitCandidate& candidate : candidates) {
         add_solved(driver, last, std::move(candidate), solved, course);
     }
     candidates = std::move(solved);
@@ -256,9 +256,9 @@ FittedValues fitted_values(const FitDriver& driver,
 // and named when the data cannot tell them apart.
 void try_symmetric_poses(const FitDriver& driver,
                          FitDriver::Stage& last,
-                         std::vector<Candidate>& candidates,
+                         std::vector<FitCandidate>& candidates,
                          FitCourse& course) {
-    const Candidate best = candidates.front();
+    const FitCandidate best = candidates.front();
     for (auto& [name, state] : driver.turned(best.state)) {
         add_solved(driver, last, {best.name + ", " + name, state, {}}, candidates, course);
     }
@@ -266,12 +266,12 @@ void try_symmetric_poses(const FitDriver& driver,
 
 // Twice the difference of costs is the difference of deviances: 9 is three standard deviations.
 void warn_of_ambiguity(const FitDriver& driver,
-                       const std::vector<Candidate>& candidates,
+                       const std::vector<FitCandidate>& candidates,
                        FitResult& result) {
     constexpr double kTellable = 9.0;
     if (!driver.is_poisson || !result.converged) return;
     std::vector<SceneState> known{candidates.front().state};
-    for (const Candidate& other : candidates) {
+    for (const FitCandidate& other : candidates) {
         const double excess = 2.0 * (other.summary.cost - candidates.front().summary.cost);
         const bool is_other = std::all_of(known.begin(), known.end(), [&](const SceneState& state) {
             return are_different_poses(*driver.model, state, other.state);
@@ -315,9 +315,9 @@ FitResult fit_scene(const FitInput& input, const core::Progress& progress) {
     const FitDriver driver(input, progress);
     FitResult result;
     FitDriver::Stage last = driver.make_stage(*driver.model, input.settings.blur_schedule_m.back());
-    std::vector<Candidate> candidates = run_stages(driver, progress, last, result);
+    std::vector<FitCandidate> candidates = run_stages(driver, progress, last, result);
     try_symmetric_poses(driver, last, candidates, result);
-    Candidate& best = candidates.front();
+    FitCandidate& best = candidates.front();
     const RefinedSolution refined = refine(driver, last, best.state);
     static_cast<FitAgreement&>(result) = compare_with_data(driver, last, best.state);
 

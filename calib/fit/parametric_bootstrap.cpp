@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kRefits = 40;
 constexpr int kRefitIterations = 20;
-constexpr std::uint64_t kSeed = 0x7265666974;
+constexpr std::uint64_t kRefitSeed = 0x7265666974;
 
 // Inversion of the distribution function: means are far below 1 where there are few photons.
 double draw_count(core::Rng& rng, double mean) {
@@ -44,7 +44,7 @@ Eigen::VectorXd bootstrap_scatter(const FitDriver& driver,
     SolveSettings settings = driver.solve_settings;
     settings.max_iterations = kRefitIterations;
     for (std::uint64_t refit = 0; refit < kRefits; ++refit) {
-        core::Rng rng(kSeed, refit, 0);
+        core::Rng rng(kRefitSeed, refit, 0);
         FitData data = *stage.data;
         for (std::size_t i = 0; i < means.size(); ++i) {
             data.values[i] = draw_count(rng, std::max(means[i], data.min_mean));

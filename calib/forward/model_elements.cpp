@@ -18,7 +18,7 @@ constexpr double kSquaredAspectPerTolerance = 6.0;
 constexpr std::size_t kMaxPieces = 200'000;
 constexpr int kMaxBisections = 24;
 
-struct Candidate {
+struct SplitElement {
     ModelElement element;
     int depth = 0;
 };
@@ -45,9 +45,10 @@ std::vector<ModelElement> cut_elements(const SceneModel& model,
             return Vec3(weights[0] * motion.corners[0] + weights[1] * motion.corners[1] +
                         weights[2] * motion.corners[2]);
         };
-        std::vector<Candidate> stack{{{f, {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()}, 1.0}, 0}};
+        std::vector<SplitElement> stack{
+            {{f, {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()}, 1.0}, 0}};
         while (!stack.empty()) {
-            const Candidate candidate = stack.back();
+            const SplitElement candidate = stack.back();
             stack.pop_back();
             const auto& corners = candidate.element.barycentric;
             std::size_t longest = 0;
@@ -70,10 +71,10 @@ std::vector<ModelElement> cut_elements(const SceneModel& model,
                 continue;
             }
             const Vec3 middle = 0.5 * (corners[longest] + corners[(longest + 1) % 3]);
-            Candidate first = candidate;
+            SplitElement first = candidate;
             first.depth = candidate.depth + 1;
             first.element.area_share = 0.5 * candidate.element.area_share;
-            Candidate second = first;
+            SplitElement second = first;
             first.element.barycentric[(longest + 1) % 3] = middle;
             second.element.barycentric[longest] = middle;
             stack.push_back(second);

@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kPilotPoints = 32;         // confocal and single
 constexpr std::size_t kPilotPointsPerSide = 12;  // exhaustive
 // With few bins there is less to compare per pair.
-constexpr int kFewBins = 16;
+constexpr int kPilotFewBins = 16;
 constexpr std::size_t kPilotPointsForFewBins = 128;
 constexpr std::size_t kPilotPointsPerSideForFewBins = 16;
 
@@ -66,7 +66,7 @@ void add_confocal_pair(const core::Scan& scan, core::Scan& pilot) {
 core::Scan pilot_scan(const Scene& scene, const core::Scan& scan, int num_bins) {
     core::Scan pilot = scan;
     const bool exhaustive = scan.pattern == core::ScanPattern::Exhaustive;
-    const bool few_bins = num_bins < kFewBins;
+    const bool few_bins = num_bins < kPilotFewBins;
     const std::size_t num_points = few_bins ? kPilotPointsForFewBins : kPilotPoints;
     const std::size_t per_side = few_bins ? kPilotPointsPerSideForFewBins : kPilotPointsPerSide;
     pilot.sensing = subset(scan.sensing, exhaustive ? per_side : num_points);
@@ -80,7 +80,7 @@ core::Scan pilot_scan(const Scene& scene, const core::Scan& scan, int num_bins) 
 }
 
 core::TimeAxis pilot_axis(const core::TimeAxis& axis) {
-    if (axis.num_bins < kFewBins) return axis;
+    if (axis.num_bins < kPilotFewBins) return axis;
     const double first_bin = std::floor(axis.opl_start_m / axis.bin_width_m);
     return {first_bin * axis.bin_width_m, axis.bin_width_m, axis.num_bins + 1};
 }

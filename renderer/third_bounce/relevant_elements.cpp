@@ -12,8 +12,6 @@ using core::Simd;
 using core::store;
 using core::Vec3;
 
-constexpr std::size_t kPoints = WallPointLanes::kSize;
-
 [[gnu::always_inline]] inline PointMask point_mask(const core::SimdMask& mask, std::size_t begin) {
     return static_cast<PointMask>(mask.bits() << begin);
 }
@@ -25,7 +23,7 @@ RelevantElements::RelevantElements(const ElementSet& elements) : set_(elements) 
 void RelevantElements::look_from(const WallPointLanes& points, const VisibilityRules& rules) {
     points_ = points;
     rules_ = &rules;
-    for (std::size_t p = 0; p < kPoints; ++p) {
+    for (std::size_t p = 0; p < WallPointLanes::kSize; ++p) {
         const LengthBounds& opl = rules.opl_of(p < points_.count ? p : 0);
         opl_begin_m_[p] = opl.min_m;
         opl_end_m_[p] = opl.max_m;
@@ -62,7 +60,7 @@ PointMask RelevantElements::points_reaching(std::uint32_t b, PointMask& crossing
     }
     PointMask reaching = 0;
     crossing = 0;
-    for (std::size_t begin = 0; begin < kPoints; begin += Simd::size()) {
+    for (std::size_t begin = 0; begin < WallPointLanes::kSize; begin += Simd::size()) {
         const SimdVec3 away = points_.position.load(begin, center);
         const Simd leg = core::sqrt(away.dot(away));
         Simd least = leg - radius;
@@ -174,7 +172,7 @@ PointMask RelevantElements::points_facing(const ElementBlock& block, std::size_t
         if (away.dot(other_normal) >= block.longest_edge_m || away.dot(normal) == 0.0) return 0;
     }
     PointMask facing = 0;
-    for (std::size_t begin = 0; begin < kPoints; begin += Simd::size()) {
+    for (std::size_t begin = 0; begin < WallPointLanes::kSize; begin += Simd::size()) {
         const SimdVec3 away = points_.position.load(begin, center);
         const Simd side = away.dot(normal);
         const core::SimdMask in_front =
@@ -203,7 +201,7 @@ RelevantElements::Masses RelevantElements::masses_of(std::uint32_t element) cons
     }
     const bool confocal = !rules_->other_end && !looks_back;
     Masses masses;
-    for (std::size_t begin = 0; begin < kPoints; begin += Simd::size()) {
+    for (std::size_t begin = 0; begin < WallPointLanes::kSize; begin += Simd::size()) {
         const SimdVec3 away = points_.position.load(begin, center);
         const Simd d2 = away.dot(away);
         const Simd front =

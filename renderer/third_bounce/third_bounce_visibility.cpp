@@ -8,8 +8,6 @@
 namespace renderer {
 namespace {
 
-constexpr std::size_t kPoints = WallPointLanes::kSize;
-
 // Standard deviation of the visible share of an element that a shadow's straight edge crosses,
 // known from one part drawn of 16, from one drawn in each quarter, and from all 16 [found by
 // simulation].
@@ -86,7 +84,7 @@ void VisibilityTracer::classify() {
 PointMask VisibilityTracer::points_that_matter(const RelevantElements::Masses& masses,
                                                double share) const {
     PointMask points = 0;
-    for (std::size_t p = 0; p < kPoints; ++p) {
+    for (std::size_t p = 0; p < WallPointLanes::kSize; ++p) {
         const bool matters = share * masses.of_point[p] > negligible_error_;
         points = static_cast<PointMask>(points | std::uint32_t{matters} << p);
     }
@@ -167,7 +165,7 @@ void VisibilityTracer::open_mixed_groups() {
             const PointMask relevant = elements_[element].relevant;
             if (relevant == 0) continue;
             const RelevantElements::Masses of_element = relevant_.masses_of(element);
-            for (std::size_t p = 0; p < kPoints; ++p) {
+            for (std::size_t p = 0; p < WallPointLanes::kSize; ++p) {
                 mass.of_point[p] += (relevant >> p & 1U) != 0 ? of_element.of_point[p] : 0.0;
             }
         }
