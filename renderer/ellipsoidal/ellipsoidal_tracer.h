@@ -3,6 +3,7 @@
 
 #include "renderer/ellipsoidal/connection_technique.h"
 #include "renderer/ellipsoidal/pixel_position_sampler.h"
+#include "renderer/film/pass_histogram.h"
 #include "renderer/path/tracer.h"
 
 namespace renderer {
