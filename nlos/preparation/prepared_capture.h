@@ -26,13 +26,13 @@ struct PreparedCapture {
 /// The part of a capture that `crop` leaves. A scan of many illumination points and one sensing
 /// point becomes the single-laser scan that it equals by reciprocity.
 ///
-/// capture   must outlive the measurement
+/// capture   must outlive the result
 /// throws    core::Error when nothing is left; core::Failure when memory does not suffice
 PreparedCapture crop_capture(const core::Capture& capture, const CropSettings& crop);
 
 /// Converts a single or exhaustive measurement to the confocal one it resembles.
 ///
-/// returns   false when its midpoints do not fill an even grid; the measurement is then unchanged
+/// returns   false when its midpoints do not fill an even grid; `prepared` is then unchanged
 /// throws    core::Failure when memory does not suffice
 bool convert_to_confocal(PreparedCapture& prepared);
 

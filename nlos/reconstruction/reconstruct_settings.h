@@ -60,7 +60,8 @@ struct TvSettings {
     int iterations = 60;
 };
 
-/// How to reconstruct; adding a method: a name in Method, a case in reconstruct(), one .cpp.
+/// How to reconstruct. To add a method: a name in Method, a row in functions_of() of
+/// nlos/reconstruct.cpp, and one .cpp in nlos/methods.
 struct ReconstructSettings {
     Method method = Method::Auto;
     VolumeSettings volume;
