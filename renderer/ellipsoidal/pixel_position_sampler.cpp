@@ -40,26 +40,30 @@ double below_share(double a, double b, double share) {
 
 }  // namespace
 
-void PixelPositionSampler::Band::add_strip(const LinearLength& length, const OplBand& lengths) {
-    const double a = length.slope_m.cwiseAbs().maxCoeff();
-    const double b = length.slope_m.cwiseAbs().minCoeff();
+void PixelPositionSampler::Band::add_strip(double start_m,
+                                           const Vec2& slope_m,
+                                           const OplBand& lengths) {
+    const double a = slope_m.cwiseAbs().maxCoeff();
+    const double b = slope_m.cwiseAbs().minCoeff();
     if (num_strips_ == kMaxStrips || !(a > 0.0) || !std::isfinite(a)) return;
     for (std::size_t i = 0; i < num_strips_; ++i) {
-        const LinearLength off{length.start_m - strips_[i].start_m,
-                               length.slope_m - strips_[i].slope_m};
-        const double most = std::max(std::abs(off.shortest_m()), std::abs(off.longest_m()));
+        const double start_off = start_m - strips_[i].start_m;
+        const Vec2 slope_off = slope_m - strips_[i].slope_m;
+        const double most = std::max(std::abs(start_off + slope_off.cwiseMin(0.0).sum()),
+                                     std::abs(start_off + slope_off.cwiseMax(0.0).sum()));
         if (most < kSameStrip * (lengths.high_m - lengths.low_m)) return;
     }
-    const double below = share_below(a, b, lengths.low_m - length.shortest_m());
-    const double share = share_below(a, b, lengths.high_m - length.shortest_m()) - below;
+    const double shortest = start_m + slope_m.cwiseMin(0.0).sum();
+    const double below = share_below(a, b, lengths.low_m - shortest);
+    const double share = share_below(a, b, lengths.high_m - shortest) - below;
     if (share > kMinShare && share < 1.0) {
-        strips_[num_strips_++] = {length, lengths, below, share};
+        strips_[num_strips_++] = {start_m, slope_m, lengths, below, share};
     }
 }
 
 // The length is drawn first, then the position on the line of that length.
 Vec2 PixelPositionSampler::Band::Strip::sample(const Vec2& u) const {
-    const int steep = steep_side();
+    const int steep = std::abs(slope_m.x()) >= std::abs(slope_m.y()) ? 0 : 1;
     const int flat = 1 - steep;
     const double a = std::abs(slope_m[steep]);
     const double b = std::abs(slope_m[flat]);
@@ -88,7 +92,7 @@ double PixelPositionSampler::Band::pdf(const Vec2& place) const {
     double wanted = 0.0;
     for (std::size_t i = 0; i < num_strips_; ++i) {
         const Strip& strip = strips_[i];
-        const double opl_m = strip.at(place);
+        const double opl_m = strip.start_m + strip.slope_m.dot(place);
         if (opl_m >= strip.lengths.low_m && opl_m <= strip.lengths.high_m) {
             wanted += 1.0 / strip.share;
         }
@@ -112,9 +116,9 @@ class PixelPositionSampler::PlaneLengths {
     void add_strip(const OplBand& wanted, Band& band) const {
         constexpr int kSteps = 3;
         constexpr double kFarthest = 1.5;  // from the middle, in pixels
-        LinearLength line = tangent({0.5, 0.5});
-        const double shortest = line.shortest_m();
-        const double longest = line.longest_m();
+        Line line = tangent({0.5, 0.5});
+        const double shortest = line.start_m + line.slope_m.cwiseMin(0.0).sum();
+        const double longest = line.start_m + line.slope_m.cwiseMax(0.0).sum();
         const double middle_m = 0.5 * (std::clamp(wanted.low_m, shortest, longest) +
                                        std::clamp(wanted.high_m, shortest, longest));
         Vec2 place(0.5, 0.5);
@@ -126,26 +130,31 @@ class PixelPositionSampler::PlaneLengths {
         }
         double off = 0.0;
         for (const double end : {0.0, 1.0}) {
-            off = std::max(off, std::abs(opl_m(place_at_end(line, middle_m, end)) - middle_m));
+            off = std::max(off, std::abs(opl_m(line.place_at_end(middle_m, end)) - middle_m));
         }
-        band.add_strip(line, {wanted.low_m - off, wanted.high_m + off});
+        band.add_strip(line.start_m, line.slope_m, {wanted.low_m - off, wanted.high_m + off});
     }
 
  private:
-    // Where the line of a length leaves the pixel on one side.
-    static Vec2 place_at_end(const LinearLength& line, double opl, double end) {
-        const int steep = line.steep_side();
-        const int flat = 1 - steep;
-        const auto& [start, slope] = line;
-        Vec2 place;
-        place[flat] = end;
-        place[steep] = std::clamp((opl - start - end * slope[flat]) / slope[steep], 0.0, 1.0);
-        if (slope[flat] != 0.0) {
-            place[flat] =
-                std::clamp((opl - start - slope[steep] * place[steep]) / slope[flat], 0.0, 1.0);
+    struct Line {
+        double start_m;
+        Vec2 slope_m;
+
+        // Where the line of a length leaves the pixel on one side.
+        Vec2 place_at_end(double opl, double end) const {
+            const int steep = std::abs(slope_m.x()) >= std::abs(slope_m.y()) ? 0 : 1;
+            const int flat = 1 - steep;
+            Vec2 place;
+            place[flat] = end;
+            place[steep] =
+                std::clamp((opl - start_m - end * slope_m[flat]) / slope_m[steep], 0.0, 1.0);
+            if (slope_m[flat] != 0.0) {
+                place[flat] = std::clamp(
+                    (opl - start_m - slope_m[steep] * place[steep]) / slope_m[flat], 0.0, 1.0);
+            }
+            return place;
         }
-        return place;
-    }
+    };
 
     Vec3 ray(const Vec2& place) const {
         return places_.world_from_image_ * (corner_ + Vec3(place.x(), place.y(), 0.0));
@@ -159,14 +168,14 @@ class PixelPositionSampler::PlaneLengths {
 
     // The ray d meets the plane after t = distance / n.d times itself; with t' = -t n.d' / n.d the
     // gradients of both legs follow. Not a number when the plane is not seen.
-    LinearLength tangent(const Vec2& place) const {
+    Line tangent(const Vec2& place) const {
         const Vec3 along = ray(place);
         const double towards = normal_.dot(along);
         const double t = distance_m_ / towards;
         if (!(t > 0.0)) return {std::nan(""), Vec2::Constant(std::nan(""))};
         const Vec3 seen = places_.pinhole_ + t * along;
         const Vec3 growth = along.normalized() + (seen - places_.light_).normalized();
-        LinearLength line;
+        Line line;
         for (const int side : {0, 1}) {
             const Vec3 turn = places_.world_from_image_.col(side);
             line.slope_m[side] = growth.dot(t * turn - t * normal_.dot(turn) / towards * along);

@@ -5,7 +5,6 @@
 #include "renderer/path/sensor_pairs.h"
 
 #include <array>
-#include <cmath>
 #include <vector>
 
 namespace renderer {
@@ -22,25 +21,13 @@ class PixelPositionSampler {
     /// Traces one ray per pixel.
     PixelPositionSampler(const SensorPairs& sensor_pairs, const core::PinholeCamera& camera);
 
-    /// A length start + slope.x u + slope.y v at the position (u, v) within a pixel.
-    struct LinearLength {
-        double start_m = 0.0;
-        core::Vec2 slope_m = core::Vec2::Zero();
-
-        double at(const core::Vec2& place) const { return start_m + slope_m.dot(place); }
-        double shortest_m() const { return start_m + slope_m.cwiseMin(0.0).sum(); }
-        double longest_m() const { return start_m + slope_m.cwiseMax(0.0).sum(); }
-        /// The side of the pixel along which the length changes most.
-        int steep_side() const { return std::abs(slope_m.x()) >= std::abs(slope_m.y()) ? 0 : 1; }
-    };
-
     /// The density of positions within one pixel.
     class Band {
      public:
-        /// Adds the positions where a length lies within `lengths`, unless that is nowhere or
-        /// everywhere, nearly the same strip was added before, or there are enough. Without strips
-        /// the density is uniform.
-        void add_strip(const LinearLength& length, const OplBand& lengths);
+        /// Adds the positions (u, v) where the length start + slope.x u + slope.y v lies within
+        /// `lengths`, unless that is nowhere or everywhere, nearly the same strip was added before,
+        /// or there are enough. Without strips the density is uniform.
+        void add_strip(double start_m, const core::Vec2& slope_m, const OplBand& lengths);
 
         /// A position, from u uniform in [0, 1)^2; the first number may be stratified.
         core::Vec2 sample(const core::Vec2& u) const;
@@ -48,7 +35,9 @@ class PixelPositionSampler {
         double pdf(const core::Vec2& place) const;
 
      private:
-        struct Strip : LinearLength {
+        struct Strip {
+            double start_m = 0.0;
+            core::Vec2 slope_m = core::Vec2::Zero();
             OplBand lengths;
             double below = 0.0;  ///< share of the pixel with shorter lengths
             double share = 0.0;  ///< share with these lengths

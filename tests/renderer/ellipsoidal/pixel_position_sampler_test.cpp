@@ -21,8 +21,8 @@ struct BandCase {
 
 PixelPositionSampler::Band band_of(const BandCase& c) {
     PixelPositionSampler::Band band;
-    band.add_strip({1.0, c.slope_m}, c.wanted);
-    band.add_strip({1.0, c.other_slope_m}, c.wanted);
+    band.add_strip(1.0, c.slope_m, c.wanted);
+    band.add_strip(1.0, c.other_slope_m, c.wanted);
     return band;
 }
 
