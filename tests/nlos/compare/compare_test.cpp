@@ -19,7 +19,7 @@ namespace {
 using test_support::column_volume;
 using test_support::truth_of;
 
-constexpr double kBackground = test_support::kBackground;
+using test_support::kBackground;
 
 std::vector<core::Vec3> random_points(std::size_t count, std::uint64_t seed) {
     core::Rng rng(seed, 0, 0);
