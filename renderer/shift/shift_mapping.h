@@ -8,11 +8,15 @@
 #include "renderer/shift/shift_counts.h"
 #include "renderer/shift/shift_gauges.h"
 
+#include <array>
 #include <optional>
 
 namespace renderer {
 
-/// The quantity that a shift preserves up to the given change.
+struct ChartPoint;
+struct ShiftSolution;
+
+/// What a shift keeps, up to the given change.
 enum class ShiftQuantity { PathLength, PathVelocity };
 
 struct ShiftSettings {
@@ -26,7 +30,7 @@ struct ShiftSettings {
     bool reverse_check = true;
 };
 
-/// The fixed neighbours of the reconnection vertex x of a path: a -> x -> y.
+/// What stays fixed of a path while its reconnection vertex x moves: a -> x -> y.
 struct ShiftEnd {
     core::Vec3 a;         ///< the vertex before x, on the sensor's side [m, world]
     core::Vec3 y;         ///< the one after it, on the light's side [m, world]
@@ -35,7 +39,7 @@ struct ShiftEnd {
     core::Vec3 velocity_y = core::Vec3::Zero();  ///< path velocities
 };
 
-/// The shifted reconnection vertex.
+/// Where the reconnection vertex goes.
 struct ShiftedPath {
     SurfacePoint point;
     double jacobian = 0.0;  ///< dA'/dA on the surface, positive
@@ -45,18 +49,17 @@ struct ShiftedPath {
 /// path from one pair of neighbours to another so that |a'-x'| + |x'-y'| = S (|a-x| + |x-y|) +
 /// offset, one-to-one, with the change of area that goes with it.
 ///
-/// Checked here: both residuals, both determinants, the root, the reverse shift, that x' lies on a
-/// surface of the scene, that both directions take the same route, and the bound of the Jacobian;
-/// on the hemisphere also that x' is the first surface seen from y'. NOT checked: visibility of x'
-/// from a', on the plane also from y', the side of the facet, and the gate. These belong to the
-/// caller's target function.
+/// Checked inside: both residuals, both determinants, the root, the way back, x' on the scene's
+/// surface, the same route from both ends, and the bound of the Jacobian; on the hemisphere also
+/// that x' is the first surface seen from y'. NOT checked: whether a' sees x', whether y' sees x'
+/// on the plane, the side of the facet, the gate. These belong to the caller's target function.
 ///
 /// Charts:
 ///   plane        within the flat piece of surface (PlanarPatches) around x
 ///   barycentric  within the facet of x, in its own coordinates
 ///   hemisphere   directions at y, the surface by ray, on any facet
-///   adaptive     plane where that works, else hemisphere. The result of the latter counts only if
-///                the reverse shift would use it too, which keeps the map one-to-one.
+///   adaptive     plane where that works, else hemisphere. The ray's result counts only when the
+///                way back would take the ray too, which keeps the map one-to-one.
 class ShiftMapping {
  public:
     /// scene      must outlive the mapping
@@ -67,7 +70,7 @@ class ShiftMapping {
 
     /// x         the vertex on the source path; source, target: its neighbours before and after
     /// change    of the kept quantity: l' = S l + offset [m], or [m/s] for path velocities
-    /// counts    receives the outcome
+    /// counts    receives what happened
     /// returns   nullopt when the shift is not defined: weight 0 on both sides
     /// throws    nothing
     std::optional<ShiftedPath> shift_path(const SurfacePoint& x,
@@ -77,7 +80,27 @@ class ShiftMapping {
                                           ShiftCounts& counts) const;
 
  private:
-    class Attempt;
+    struct Task;
+    using Result = std::optional<ShiftedPath>;
+
+    Result shift_by_route(const Task& task, ShiftTrace& trace, bool& by_ray) const;
+    Result shift_adaptively(const Task& task, ShiftTrace& trace, bool& by_ray) const;
+    Result shift_by_plane(const Task& task, ShiftTrace& trace) const;
+    Result shift_in_closed_form(const Task& task, ShiftTrace& trace) const;
+    Result shift_in_facet(const Task& task, ShiftTrace& trace) const;
+    Result shift_by_ray(const Task& task, ShiftTrace& trace) const;
+    /// In the coordinates that `plane`'s edges span from `origin`; xi: those of the vertex.
+    std::optional<ShiftSolution> solve_on_plane(const Task& task,
+                                                const Facet& plane,
+                                                const core::Vec3& origin,
+                                                const core::Vec2& xi,
+                                                ShiftTrace& trace) const;
+    template <class Chart>
+    std::optional<ShiftSolution> solve(const Task& task,
+                                       const std::array<Chart, 2>& charts,
+                                       const core::Vec2& xi,
+                                       const ChartPoint& at_x,
+                                       ShiftTrace& trace) const;
 
     const Scene* scene_;
     ShiftSettings settings_;
