@@ -55,7 +55,7 @@ struct ShiftedPath {
 /// on the plane, the side of the facet, the gate. These belong to the caller's target function.
 ///
 /// Charts:
-///   plane        within the flat piece of surface (PlanarPatches) around x
+///   plane        within the planar patch (PlanarPatches) around x
 ///   barycentric  within the facet of x, in its own coordinates
 ///   hemisphere   directions at y, the surface by ray, on any facet
 ///   adaptive     plane where that works, else hemisphere. The ray's result counts only when the
