@@ -63,7 +63,10 @@ double sum_of(const core::Capture& capture) {
 double counts_per_value(const core::Capture& capture, const DetectorSettings& s) {
     const double sum = sum_of(capture);
     if (s.photons || s.photons_per_point) {
-        require(sum > 0.0, "capture: sum", sum, "above 0 to be scaled to a number of photons");
+        if (!(sum > 0.0)) {
+            throw core::Error(
+                "capture", "found no light", "must hold light to scale to a number of photons");
+        }
         const auto pairs = static_cast<double>(capture.scan.num_pairs());
         return s.photons.value_or(s.photons_per_point.value_or(0.0) * pairs) / sum;
     }
