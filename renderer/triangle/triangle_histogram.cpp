@@ -202,7 +202,9 @@ void add_lanes(TriangleLanes& lanes,
                std::span<double> histogram) {
     for (; count % kSimdWidth != 0; ++count) {
         lanes.area_m2[count] = 0.0;
-        for (TriangleLanes::Lanes& weight : lanes.weight) weight[count] = 0.0;
+        for (auto* values : {&lanes.opl_m, &lanes.bend_m, &lanes.weight}) {
+            for (TriangleLanes::Lanes& of_corner : *values) of_corner[count] = 0.0;
+        }
     }
     sort_corners(lanes, count, start_m, bins_per_m);
     std::uint64_t bent = num_splits == kMaxSplits

@@ -11,6 +11,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
+#include <numeric>
 
 namespace {
 
@@ -143,6 +145,23 @@ TEST(TriangleHistogram, LanesAddWhatEachTriangleAloneDoes) {
             EXPECT_NEAR(histogram[bin], expected[bin], 1e-13) << count;
         }
     }
+}
+
+TEST(TriangleHistogram, UnusedLanesMayHoldAnything) {
+    renderer::TriangleLanes lanes;
+    for (auto* values : {&lanes.opl_m, &lanes.bend_m, &lanes.weight}) {
+        for (auto& of_corner : *values) of_corner.fill(std::numeric_limits<double>::quiet_NaN());
+    }
+    lanes.area_m2.fill(std::numeric_limits<double>::quiet_NaN());
+    lanes.area_m2[0] = 2.0;
+    for (std::size_t j = 0; j < 3; ++j) {
+        lanes.opl_m[j][0] = 1.0 + 0.01 * static_cast<double>(j);
+        lanes.bend_m[j][0] = 0.0;
+        lanes.weight[j][0] = 0.5;
+    }
+    std::vector<double> histogram(8);
+    renderer::add_triangles(lanes, 1, {0.99, 0.005, 8}, histogram);
+    EXPECT_NEAR(std::accumulate(histogram.begin(), histogram.end(), 0.0), 1.0, 1e-14);
 }
 
 TEST(TriangleHistogram, EnergyDoesNotDependOnTheAxis) {
