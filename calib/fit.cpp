@@ -90,7 +90,6 @@ void retry_without_blur(const FitDriver& driver,
                         FitDriver::Stage& last,
                         std::vector<FitCandidate>& candidates,
                         FitCourse& course) {
-    constexpr double kNotableExcess = 5.0;
     const bool has_blur = driver.settings.blur_schedule_m.size() > 1;
     if (driver.settings.start != "given" || !has_blur || !driver.is_poisson) return;
     const FitAgreement fit = compare_with_data(driver, last, candidates.front().state);

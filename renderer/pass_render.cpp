@@ -216,7 +216,7 @@ RenderResult render_passes(const RenderTask& task, const PassWork& work) {
         loop.run(tile, part, result);
         if (result.interrupted && tile.count < num_pairs) {
             throw core::Failure("render",
-                                "interrupted before every part of the task.scan was traced");
+                                "interrupted before every part of the scan was traced");
         }
     }
     result.seconds = watch.seconds();

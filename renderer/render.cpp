@@ -50,7 +50,7 @@ void require_possible(const RenderTask& task) {
         }
         if (surfaces_of(task.scene).narrow_lobes) {
             throw core::Error("render.method",
-                              "found third_bounce for a task.scene with narrow glossy lobes",
+                              "found third_bounce for a scene with narrow glossy lobes",
                               "must be auto or path for such surfaces");
         }
     }

@@ -12,7 +12,6 @@
 namespace calib {
 namespace {
 
-constexpr double kNotableExcess = 5.0;  // standard deviations
 constexpr double kNotableStep = 5.0;
 constexpr std::size_t kMaxNamed = 8;
 

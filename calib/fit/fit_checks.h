@@ -5,6 +5,9 @@
 
 namespace calib {
 
+/// Standard deviations above which a deviance says that the model does not explain the data.
+inline constexpr double kNotableExcess = 5.0;
+
 /// Adds warnings of what makes a fit's stated errors doubtful: light beyond the axis, bounds, data
 /// that the model does not explain and what would explain them, wild wall points. Without light of
 /// the model in the data, result.converged becomes false.
