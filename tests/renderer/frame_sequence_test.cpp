@@ -14,16 +14,16 @@ namespace {
 using core::Vec3;
 using test_support::Parallelogram;
 
-const Vec3 kVelocity(0.4, 0.1, -0.3);
+const Vec3 kObjectVelocity(0.4, 0.1, -0.3);
 
 std::vector<renderer::Object> objects_after(double seconds) {
-    const Vec3 way = seconds * kVelocity;
+    const Vec3 way = seconds * kObjectVelocity;
     std::vector<renderer::Object> objects{
         test_support::parallelogram_object(
             {Vec3(-0.3, -0.2, 0.7) + way, Vec3(0.4, 0, 0.1), Vec3(0, 0.4, 0), 0.8}),
         test_support::parallelogram_object(
             {Vec3(-0.8, -0.8, 1.2), Vec3(1.6, 0, 0), Vec3(0, 1.6, 0), 0.6})};
-    objects[0].velocity_m_per_s = kVelocity;
+    objects[0].velocity_m_per_s = kObjectVelocity;
     return objects;
 }
 
@@ -38,11 +38,7 @@ renderer::SceneDescription description_with(const renderer::FrameSettings& frame
     return description;
 }
 
-core::Scan scan_of_three() {
-    return test_support::confocal_scan({{-0.3, 0.1, 0.0}, {0.0, 0.0, 0.0}, {0.35, -0.25, 0.0}});
-}
-
-core::Scan image() {
+core::Scan image_of_four_by_three() {
     core::PinholeCamera camera;
     camera.position_m = Vec3(0.1, 0.2, -0.5);
     camera.look_at_m = Vec3(0, 0, 1);
@@ -72,7 +68,7 @@ TEST(FrameSequence, MovingGateSeesTheBinsOfTheHistogram) {
     description.render.method = renderer::Estimator::ThirdBounce;
     description.render.max_bounces = 3;
     description.render.target_error = 0.01;
-    const core::Scan scan = scan_of_three();
+    const core::Scan scan = test_support::confocal_scan(test_support::kThreeWallPoints);
     const auto sequence = *render_sequence(scan, description).capture.sequence;
     ASSERT_EQ(sequence.frames.size(), 8U);
     EXPECT_EQ(sequence.gate_step_m, 0.1);
@@ -94,7 +90,8 @@ TEST(FrameSequence, MovingGateSeesTheBinsOfTheHistogram) {
 
 // Frame i is what a scene with the objects moved gives, to the bit, for scans and for cameras.
 TEST(FrameSequence, FramesAreRendersOfTheMovedScene) {
-    for (const core::Scan& scan : {scan_of_three(), image()}) {
+    for (const core::Scan& scan :
+         {test_support::confocal_scan(test_support::kThreeWallPoints), image_of_four_by_three()}) {
         auto description = description_with({3, 0.05, 0.25});
         description.time_axis.bin_width_m = 1.8;
         std::vector<renderer::Frame> seen;
@@ -131,7 +128,7 @@ TEST(FrameSequence, FramesAreRendersOfTheMovedScene) {
 }
 
 TEST(FrameSequence, FirstFrameIsTheRenderWithoutFramesAndNoiseIsNew) {
-    const core::Scan scan = image();
+    const core::Scan scan = image_of_four_by_three();
     auto description = description_with({4, 0.0, 0.0});
     description.time_axis = {0.0, 20.0, 1};
     const auto frames = render_sequence(scan, description).capture.sequence->frames;
@@ -154,7 +151,8 @@ TEST(FrameSequence, InterruptionKeepsTheFramesSoFar) {
         frames_done = static_cast<int>(share * 5.0 + 1e-9);
     };
     progress.stop_requested = [&] { return frames_done >= 2; };
-    const auto result = render_sequence(image(), description_with({5, 0.1, 0.0}), progress);
+    const auto result =
+        render_sequence(image_of_four_by_three(), description_with({5, 0.1, 0.0}), progress);
     EXPECT_TRUE(result.interrupted);
     EXPECT_GE(result.capture.sequence->frames.size(), 2U);
     EXPECT_LT(result.capture.sequence->frames.size(), 5U);

@@ -19,6 +19,14 @@ struct Parallelogram {
 
 renderer::Object parallelogram_object(const Parallelogram& shape);
 
+/// A tilted panel that no symmetry simplifies, a black screen that hides part of it, and points of
+/// the wall z = 0 that see both.
+inline const Parallelogram kTiltedPanel{
+    {-0.25, -0.2, 0.75}, {0.45, 0.05, 0.15}, {-0.05, 0.4, -0.1}, 0.6};
+inline const Parallelogram kBlackScreen{{-0.05, -0.1, 0.4}, {0.15, 0, 0.02}, {0.02, 0.2, 0}, 0.0};
+inline const std::vector<core::Vec3> kThreeWallPoints{
+    {-0.3, 0.1, 0.0}, {0.0, 0.0, 0.0}, {0.35, -0.25, 0.0}};
+
 /// A sphere of `2 * 4^subdivisions * 4` facets with vertices on the sphere, inside-out or not: the
 /// facets' orientation does not matter to the renderer.
 renderer::Object sphere_object(const core::Vec3& center,

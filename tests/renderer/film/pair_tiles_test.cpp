@@ -112,8 +112,7 @@ struct TwoSheets {
     renderer::Scene scene = [this] {
         renderer::SceneGeometry geometry;
         for (const auto& shape :
-             {test_support::Parallelogram{
-                  Vec3(-0.25, -0.2, 0.75), Vec3(0.45, 0.05, 0.15), Vec3(-0.05, 0.4, -0.1), 0.6},
+             {test_support::kTiltedPanel,
               test_support::Parallelogram{
                   Vec3(-0.05, -0.1, 0.4), Vec3(0.15, 0, 0.02), Vec3(0.02, 0.2, 0), 0.3}}) {
             geometry.objects.push_back(test_support::parallelogram_object(shape));

@@ -45,7 +45,7 @@ renderer::RenderSettings settings_with(int samples, int max_bounces) {
     return settings;
 }
 
-renderer::Scene scene_of(const std::vector<renderer::Object>& objects, const core::Scan& scan) {
+renderer::Scene scene_with(const std::vector<renderer::Object>& objects, const core::Scan& scan) {
     return renderer::Scene({objects, {}}, scan, {});
 }
 
@@ -54,7 +54,7 @@ core::Capture render_image(const std::vector<renderer::Object>& objects,
                            const core::TimeAxis& axis,
                            const renderer::RenderSettings& settings) {
     const core::Scan scan = image_of(camera);
-    return renderer::render(scene_of(objects, scan), scan, axis, settings, {}).capture;
+    return renderer::render(scene_with(objects, scan), scan, axis, settings, {}).capture;
 }
 
 TEST(PinholeCamera, ImageIsRightHandedFromTheTopLeft) {
@@ -155,7 +155,7 @@ TEST(Camera, SpotBesideEverySurfaceIsRefused) {
     core::PinholeCamera camera = camera_at(Vec3(0, 0, 1), Vec3::Zero());
     camera.light_spot_m = Vec3(0.5, 0.5, 0.01);
     const core::Scan scan = image_of(camera);
-    const renderer::Scene scene = scene_of({test_support::parallelogram_object(kFloor)}, scan);
+    const renderer::Scene scene = scene_with({test_support::parallelogram_object(kFloor)}, scan);
     EXPECT_ERROR_WITH(renderer::SensorPairs(scene, scan), "camera.light_spot_m");
 }
 

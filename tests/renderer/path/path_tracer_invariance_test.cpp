@@ -13,12 +13,11 @@ namespace {
 
 using core::Transform;
 using core::Vec3;
+using test_support::kThreeWallPoints;
+using test_support::kTiltedPanel;
 using test_support::Parallelogram;
 
-const Parallelogram kHidden{
-    Vec3(-0.25, -0.2, 0.75), Vec3(0.45, 0.05, 0.15), Vec3(-0.05, 0.4, -0.1), 0.6};
 const Parallelogram kOther{Vec3(0.2, -0.3, 0.5), Vec3(0.2, 0, 0.3), Vec3(0, 0.5, 0), 0.9};
-const std::vector<Vec3> kPoints{{-0.3, 0.1, 0.0}, {0.0, 0.0, 0.0}, {0.35, -0.25, 0.0}};
 const core::TimeAxis kInvarianceAxis{1.0, 0.02, 60};
 
 renderer::RenderSettings settings_with(int samples) {
@@ -36,7 +35,7 @@ core::Capture render_posed(const core::Scan& scan,
                            const core::TimeAxis& axis,
                            const renderer::RenderSettings& settings) {
     renderer::SceneGeometry geometry;
-    for (const Parallelogram& shape : {kHidden, kOther}) {
+    for (const Parallelogram& shape : {kTiltedPanel, kOther}) {
         geometry.objects.push_back(test_support::parallelogram_object(shape));
         for (Vec3& vertex : geometry.objects.back().mesh.vertices) vertex = pose * vertex;
     }
@@ -69,7 +68,7 @@ TEST(PathTracer, RotatedAndTranslatedSetUpGivesTheSameTransient) {
     pose.pretranslate(Vec3(1000.0, -300.0, 650.0));
     renderer::RenderSettings settings = settings_with(4000);
     settings.max_bounces = 3;
-    const core::Scan scan = test_support::confocal_scan(kPoints);
+    const core::Scan scan = test_support::confocal_scan(kThreeWallPoints);
     const core::TimeAxis axis{1.0, 0.008, 512};
     const auto plain = render_plain(scan, axis, settings);
     const auto posed = render_posed(scan, pose, axis, settings);
@@ -77,7 +76,7 @@ TEST(PathTracer, RotatedAndTranslatedSetUpGivesTheSameTransient) {
 }
 
 TEST(PathTracer, DeviceOriginShiftsHistogramsByTheLegs) {
-    core::Scan scan = test_support::single_scan(Vec3(0.1, 0.2, 0.0), {kPoints[0]});
+    core::Scan scan = test_support::single_scan(Vec3(0.1, 0.2, 0.0), {kThreeWallPoints[0]});
     const auto wall_origin = render_plain(scan, kInvarianceAxis, settings_with(2000));
     scan.opl_origin = core::OplOrigin::Device;
     scan.laser_position = Vec3(-0.5, 0.1, 0.25);
@@ -94,11 +93,15 @@ TEST(PathTracer, DeviceOriginShiftsHistogramsByTheLegs) {
 TEST(PathTracer, PatternsAgreeWherePairsCoincide) {
     const renderer::RenderSettings settings = settings_with(200'000);
     const auto exhaustive =
-        render_plain(test_support::exhaustive_scan(kPoints, kPoints), kInvarianceAxis, settings);
+        render_plain(test_support::exhaustive_scan(kThreeWallPoints, kThreeWallPoints),
+                     kInvarianceAxis,
+                     settings);
     const auto confocal =
-        render_plain(test_support::confocal_scan(kPoints), kInvarianceAxis, settings);
+        render_plain(test_support::confocal_scan(kThreeWallPoints), kInvarianceAxis, settings);
     const auto single =
-        render_plain(test_support::single_scan(kPoints[1], kPoints), kInvarianceAxis, settings);
+        render_plain(test_support::single_scan(kThreeWallPoints[1], kThreeWallPoints),
+                     kInvarianceAxis,
+                     settings);
     const auto expect_same = [&](const core::Capture& a,
                                  std::size_t pair,
                                  std::size_t of_exhaustive) {
@@ -114,17 +117,17 @@ TEST(PathTracer, PatternsAgreeWherePairsCoincide) {
                 << "pair " << pair << " bin " << bin;
         }
     };
-    for (std::size_t i = 0; i < kPoints.size(); ++i) {
-        expect_same(confocal, i, i * kPoints.size() + i);
-        expect_same(single, i, kPoints.size() + i);
+    for (std::size_t i = 0; i < kThreeWallPoints.size(); ++i) {
+        expect_same(confocal, i, i * kThreeWallPoints.size() + i);
+        expect_same(single, i, kThreeWallPoints.size() + i);
     }
 }
 
 // Scans whose sums do not fit are traced in tiles; that changes no bit.
 TEST(PathTracer, TilesGiveTheSameBitsAsTheWholeScan) {
     renderer::SceneGeometry geometry;
-    geometry.objects.push_back(test_support::parallelogram_object(kHidden));
-    const core::Scan scan = test_support::exhaustive_scan(kPoints, kPoints);
+    geometry.objects.push_back(test_support::parallelogram_object(kTiltedPanel));
+    const core::Scan scan = test_support::exhaustive_scan(kThreeWallPoints, kThreeWallPoints);
     const renderer::Scene scene(std::move(geometry), scan, renderer::RelayWall{});
     renderer::RenderSettings settings = settings_with(100);
     settings.by_order = true;
@@ -153,13 +156,13 @@ TEST(PathTracer, DirectReturnIsTheLitSpotAfterTheDeviceLegs) {
     settings.by_order = true;
     settings.direct_return = true;
     settings.laser_spot_m2 = 2e-4;
-    core::Scan scan = test_support::confocal_scan({kPoints[0]});
+    core::Scan scan = test_support::confocal_scan({kThreeWallPoints[0]});
     scan.opl_origin = core::OplOrigin::Device;
     scan.laser_position = scan.detector_position = Vec3(0.0, 0.0, 1.0);
     const core::TimeAxis axis{0.0, 0.02, 200};
     const auto capture = render_plain(scan, axis, settings);
     const auto direct = capture.by_order[0].histogram(0);
-    const int bin = *axis.bin_of(2.0 * (kPoints[0] - scan.laser_position).norm());
+    const int bin = *axis.bin_of(2.0 * (kThreeWallPoints[0] - scan.laser_position).norm());
     for (int i = 0; i < axis.num_bins; ++i) {
         const double expected = i == bin ? 1.0 / (core::kPi * settings.laser_spot_m2) : 0.0;
         EXPECT_NEAR(direct[static_cast<std::size_t>(i)], expected, 1e-6 * (1.0 + expected)) << i;
@@ -171,10 +174,10 @@ TEST(PathTracer, SwappingLightAndSensorGivesTheSameEnergyPerOrder) {
     renderer::RenderSettings settings = settings_with(400'000);
     settings.by_order = true;
     const core::TimeAxis axis{0.0, 20.0, 1};
-    const auto there =
-        render_plain(test_support::single_scan(kPoints[0], {kPoints[2]}), axis, settings);
-    const auto back =
-        render_plain(test_support::single_scan(kPoints[2], {kPoints[0]}), axis, settings);
+    const auto there = render_plain(
+        test_support::single_scan(kThreeWallPoints[0], {kThreeWallPoints[2]}), axis, settings);
+    const auto back = render_plain(
+        test_support::single_scan(kThreeWallPoints[2], {kThreeWallPoints[0]}), axis, settings);
     for (const std::size_t order : {3U, 4U, 5U}) {
         const double a = double{there.by_order[order - 1].values()[0]};
         const double b = double{back.by_order[order - 1].values()[0]};
@@ -187,7 +190,7 @@ TEST(PathTracer, SwappingLightAndSensorGivesTheSameEnergyPerOrder) {
 // own frame, must not be asked.
 TEST(SurfaceWalk, StepsWithinAPlaneCarryNothing) {
     core::Rng rng(test_support::seed_of("SurfaceWalk"), 0, 0);
-    const core::Scan scan = test_support::confocal_scan(kPoints);
+    const core::Scan scan = test_support::confocal_scan(kThreeWallPoints);
     for (int i = 0; i < 100; ++i) {
         const Parallelogram shape{Vec3(-0.3, -0.2, 0.6),
                                   Vec3(0.5, rng.uniform(), 0.4 * rng.uniform()),

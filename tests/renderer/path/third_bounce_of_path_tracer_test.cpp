@@ -15,6 +15,9 @@
 namespace {
 
 using core::Vec3;
+using test_support::kBlackScreen;
+using test_support::kThreeWallPoints;
+using test_support::kTiltedPanel;
 using test_support::Parallelogram;
 
 renderer::RenderSettings path_settings(const std::string& test, int samples) {
@@ -67,22 +70,16 @@ TEST(PathTracer, LargeParallelPlaneMatchesTheClosedForm) {
     EXPECT_LT(test_support::relative_l2(measured, expected), 0.005);
 }
 
-// A tilted rectangle, partly hidden by another one, that no symmetry simplifies.
-const Parallelogram kTilted{
-    Vec3(-0.25, -0.2, 0.75), Vec3(0.45, 0.05, 0.15), Vec3(-0.05, 0.4, -0.1), 0.6};
-const Parallelogram kScreen{Vec3(-0.05, -0.1, 0.4), Vec3(0.15, 0, 0.02), Vec3(0.02, 0.2, 0), 0.0};
-const std::vector<Vec3> kWallPoints{{-0.3, 0.1, 0.0}, {0.0, 0.0, 0.0}, {0.35, -0.25, 0.0}};
-
 class ThirdBouncePatterns : public testing::TestWithParam<core::ScanPattern> {
  protected:
     core::Scan scan() const {
         if (GetParam() == core::ScanPattern::Confocal)
-            return test_support::confocal_scan(kWallPoints);
+            return test_support::confocal_scan(kThreeWallPoints);
         if (GetParam() == core::ScanPattern::Single) {
-            return test_support::single_scan(Vec3(0.1, 0.2, 0.0), kWallPoints);
+            return test_support::single_scan(Vec3(0.1, 0.2, 0.0), kThreeWallPoints);
         }
         return test_support::exhaustive_scan({Vec3(0.1, 0.2, 0.0), Vec3(-0.4, -0.4, 0.0)},
-                                             kWallPoints);
+                                             kThreeWallPoints);
     }
 };
 
@@ -90,9 +87,9 @@ TEST_P(ThirdBouncePatterns, OccludedTiltedRectangleMatchesBruteForce) {
     const core::TimeAxis axis{1.2, 0.02, 40};
     const core::Scan pairs = scan();
     const auto expected = test_support::third_bounce_by_quadrature(
-        kTilted, kScreen, pairs, axis, 0.8, /*steps=*/1500);
+        kTiltedPanel, kBlackScreen, pairs, axis, 0.8, /*steps=*/1500);
     // The occluder is black: it hides and adds nothing.
-    const auto result = renderer::render(scene_of({kTilted, kScreen}, pairs, 0.8),
+    const auto result = renderer::render(scene_of({kTiltedPanel, kBlackScreen}, pairs, 0.8),
                                          pairs,
                                          axis,
                                          path_settings("OccludedTiltedRectangle", 1'000'000),
@@ -119,7 +116,7 @@ TEST_P(ThirdBouncePatterns, OccludedTiltedRectangleMatchesBruteForce) {
 TEST_P(ThirdBouncePatterns, SameBitsForAnyNumberOfThreads) {
     const core::TimeAxis axis{1.2, 0.02, 40};
     const core::Scan pairs = scan();
-    const renderer::Scene scene = scene_of({kTilted, kScreen}, pairs, 0.8);
+    const renderer::Scene scene = scene_of({kTiltedPanel, kBlackScreen}, pairs, 0.8);
     renderer::RenderSettings settings = path_settings("SameBits", 300);
     settings.max_bounces = 5;
     std::vector<std::vector<float>> results;
@@ -141,8 +138,8 @@ INSTANTIATE_TEST_SUITE_P(AllPatterns,
 
 // Of eight passes. Who listens slowly is asked after each; the others after rounds of several.
 TEST(PathTracer, InterruptedRenderKeepsWholePasses) {
-    const core::Scan scan = test_support::confocal_scan(kWallPoints);
-    const renderer::Scene scene = scene_of({kTilted}, scan, 1.0);
+    const core::Scan scan = test_support::confocal_scan(kThreeWallPoints);
+    const renderer::Scene scene = scene_of({kTiltedPanel}, scan, 1.0);
     const core::TimeAxis axis{1.2, 0.02, 40};
     const renderer::RenderSettings settings = path_settings("Interrupted", 800);
     core::Progress progress;

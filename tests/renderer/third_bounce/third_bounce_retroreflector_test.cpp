@@ -23,8 +23,7 @@ const core::TimeAxis kRetroAxis{0.8, 0.02, 60};
 
 renderer::Scene scene_of(const core::Scan& scan) {
     renderer::SceneGeometry geometry;
-    geometry.objects.push_back(test_support::parallelogram_object(
-        {Vec3(-0.25, -0.2, 0.75), Vec3(0.45, 0.05, 0.15), Vec3(-0.05, 0.4, -0.1), 0.6}));
+    geometry.objects.push_back(test_support::parallelogram_object(test_support::kTiltedPanel));
     geometry.objects.back().material.model = renderer::SurfaceModel::Retroreflective;
     return {std::move(geometry), scan, renderer::RelayWall{}};
 }

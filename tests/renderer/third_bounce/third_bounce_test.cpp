@@ -17,13 +17,12 @@ namespace {
 
 using core::Vec3;
 using renderer::Estimator;
+using test_support::kBlackScreen;
+using test_support::kThreeWallPoints;
+using test_support::kTiltedPanel;
 using test_support::Parallelogram;
 
-const Parallelogram kHidden{
-    Vec3(-0.25, -0.2, 0.75), Vec3(0.45, 0.05, 0.15), Vec3(-0.05, 0.4, -0.1), 0.6};
-const Parallelogram kOccluder{Vec3(-0.05, -0.1, 0.4), Vec3(0.15, 0, 0.02), Vec3(0.02, 0.2, 0), 0.0};
 const Parallelogram kNoOccluder{Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), 0.0};
-const std::vector<Vec3> kPoints{{-0.3, 0.1, 0.0}, {0.0, 0.0, 0.0}, {0.35, -0.25, 0.0}};
 const core::TimeAxis kAxis{1.2, 0.02, 40};
 constexpr double kWallAlbedo = 0.8;
 
@@ -61,34 +60,36 @@ std::vector<float> render_shapes(const std::vector<Parallelogram>& shapes,
 class ThirdBounce : public testing::TestWithParam<core::ScanPattern> {
  protected:
     core::Scan scan() const {
-        if (GetParam() == core::ScanPattern::Confocal) return test_support::confocal_scan(kPoints);
+        if (GetParam() == core::ScanPattern::Confocal)
+            return test_support::confocal_scan(kThreeWallPoints);
         if (GetParam() == core::ScanPattern::Single) {
-            return test_support::single_scan(Vec3(0.1, 0.2, 0.0), kPoints);
+            return test_support::single_scan(Vec3(0.1, 0.2, 0.0), kThreeWallPoints);
         }
-        return test_support::exhaustive_scan({Vec3(0.1, 0.2, 0.0), Vec3(-0.4, -0.4, 0.0)}, kPoints);
+        return test_support::exhaustive_scan({Vec3(0.1, 0.2, 0.0), Vec3(-0.4, -0.4, 0.0)},
+                                             kThreeWallPoints);
     }
 };
 
 TEST_P(ThirdBounce, MatchesBruteForceWithoutOccluder) {
     const auto expected = test_support::third_bounce_by_quadrature(
-        kHidden, kNoOccluder, scan(), kAxis, kWallAlbedo, /*steps=*/2000);
-    const auto result = render_shapes({kHidden}, scan(), kAxis, 1e-3);
+        kTiltedPanel, kNoOccluder, scan(), kAxis, kWallAlbedo, /*steps=*/2000);
+    const auto result = render_shapes({kTiltedPanel}, scan(), kAxis, 1e-3);
     EXPECT_LT(test_support::relative_l2(result, expected), 1.5e-3);
     EXPECT_NEAR(test_support::sum_of(result) / test_support::sum_of(expected), 1.0, 1e-5);
 }
 
 TEST_P(ThirdBounce, MatchesBruteForceBehindAnOccluder) {
     const auto expected = test_support::third_bounce_by_quadrature(
-        kHidden, kOccluder, scan(), kAxis, kWallAlbedo, /*steps=*/2000);
+        kTiltedPanel, kBlackScreen, scan(), kAxis, kWallAlbedo, /*steps=*/2000);
     for (const double target : {0.02, 0.005, 0.002}) {
-        const auto result = render_shapes({kHidden, kOccluder}, scan(), kAxis, target);
+        const auto result = render_shapes({kTiltedPanel, kBlackScreen}, scan(), kAxis, target);
         EXPECT_LT(test_support::relative_l2(result, expected), target + 5e-4);
     }
 }
 
 TEST_P(ThirdBounce, MatchesBruteForceOfGlossySurfaces) {
     for (const double roughness : {0.4, 0.8}) {
-        Parallelogram glossy = kHidden;
+        Parallelogram glossy = kTiltedPanel;
         glossy.roughness = roughness;
         const auto expected = test_support::third_bounce_by_quadrature(
             glossy, kNoOccluder, scan(), kAxis, kWallAlbedo, /*steps=*/1000);
@@ -103,7 +104,7 @@ TEST_P(ThirdBounce, SameBitsForAnyNumberOfThreads) {
     std::vector<std::vector<float>> results;
     for (const int threads : {1, 7}) {
         const core::ThreadLimit limit(threads);
-        results.push_back(render_shapes({kHidden, kOccluder}, scan(), kAxis, 0.01));
+        results.push_back(render_shapes({kTiltedPanel, kBlackScreen}, scan(), kAxis, 0.01));
     }
     EXPECT_EQ(results[0], results[1]);
 }
@@ -122,9 +123,9 @@ TEST_P(ThirdBounce, MovingEverythingByAKilometreChangesNothing) {
     renderer::RelayWall wall;
     wall.albedo = kWallAlbedo;
     wall.center_m = shift;
-    const renderer::Scene scene(geometry_of({moved(kHidden), moved(kOccluder)}), far, wall);
+    const renderer::Scene scene(geometry_of({moved(kTiltedPanel), moved(kBlackScreen)}), far, wall);
     const auto there = renderer::render(scene, far, kAxis, settings_for(0.01), {});
-    const auto here = render_shapes({kHidden, kOccluder}, scan(), kAxis, 0.01);
+    const auto here = render_shapes({kTiltedPanel, kBlackScreen}, scan(), kAxis, 0.01);
     // A ray in single precision may fall on the other side of an edge.
     EXPECT_LT(test_support::relative_l2(there.capture.transient.values(), here), 1e-5);
 }
@@ -132,7 +133,7 @@ TEST_P(ThirdBounce, MovingEverythingByAKilometreChangesNothing) {
 TEST_P(ThirdBounce, SubBinShiftsOfTheAxisKeepTheEnergy) {
     const auto shifted = [&](double share) {
         const core::TimeAxis axis{1.1 - share * 0.02, 0.02, 60};
-        return test_support::sum_of(render_shapes({kHidden}, scan(), axis, 0.01));
+        return test_support::sum_of(render_shapes({kTiltedPanel}, scan(), axis, 0.01));
     };
     const double expected = shifted(0.0);
     for (const double share : {0.13, 0.5, 0.77}) {
@@ -141,11 +142,11 @@ TEST_P(ThirdBounce, SubBinShiftsOfTheAxisKeepTheEnergy) {
 }
 
 TEST_P(ThirdBounce, GateEqualsTheBinOfAHistogram) {
-    const auto histogram = render_shapes({kHidden, kOccluder}, scan(), kAxis, 1e-3);
+    const auto histogram = render_shapes({kTiltedPanel, kBlackScreen}, scan(), kAxis, 1e-3);
     std::vector<float> bin;
     for (std::size_t i = 15; i < histogram.size(); i += 40) bin.push_back(histogram[i]);
     const auto gate =
-        render_shapes({kHidden, kOccluder}, scan(), {kAxis.bin_begin_m(15), 0.02, 1}, 1e-3);
+        render_shapes({kTiltedPanel, kBlackScreen}, scan(), {kAxis.bin_begin_m(15), 0.02, 1}, 1e-3);
     EXPECT_LT(test_support::relative_l2(gate, bin), 4e-3);
 }
 
@@ -154,8 +155,8 @@ TEST_P(ThirdBounce, DeviceLegsShiftTheAxis) {
     scan_with_legs.opl_origin = core::OplOrigin::Device;
     scan_with_legs.laser_position = Vec3(0.2, 0.0, 2.0);
     scan_with_legs.detector_position = Vec3(-0.2, 0.1, 2.0);
-    const auto with_legs = render_shapes({kHidden}, scan_with_legs, {4.5, 0.02, 100}, 1e-3);
-    const auto without = render_shapes({kHidden}, scan(), {0.0, 0.02, 200}, 1e-3);
+    const auto with_legs = render_shapes({kTiltedPanel}, scan_with_legs, {4.5, 0.02, 100}, 1e-3);
+    const auto without = render_shapes({kTiltedPanel}, scan(), {0.0, 0.02, 200}, 1e-3);
     EXPECT_NEAR(test_support::sum_of(with_legs) / test_support::sum_of(without), 1.0, 1e-5);
     for (std::size_t pair = 0; pair < scan().num_pairs(); ++pair) {
         double mean_with = 0.0;
@@ -249,7 +250,7 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& test) { return std::string(test.param.name); });
 
 TEST(ThirdBounceScenes, FacetThatPiercesTheWallCountsInFrontOfItOnly) {
-    const core::Scan scan = test_support::confocal_scan(kPoints);
+    const core::Scan scan = test_support::confocal_scan(kThreeWallPoints);
     const Parallelogram piercing{
         Vec3(0.1, -0.1, -0.2), Vec3(0.02, 0.0, 0.4), Vec3(0.0, 0.2, 0.0), 1.0};
     const Parallelogram front{
@@ -319,12 +320,18 @@ TEST(ThirdBounceScenes, ShadowsWithinFacetsOfARoughBallCount) {
 }
 
 TEST(ThirdBounceScenes, PatternsAgreeOnTheSamePairs) {
-    const auto exhaustive = render_shapes(
-        {kHidden, kOccluder}, test_support::exhaustive_scan(kPoints, kPoints), kAxis, 1e-3);
-    const auto confocal =
-        render_shapes({kHidden, kOccluder}, test_support::confocal_scan(kPoints), kAxis, 1e-3);
-    const auto single = render_shapes(
-        {kHidden, kOccluder}, test_support::single_scan(kPoints[1], kPoints), kAxis, 1e-3);
+    const auto exhaustive =
+        render_shapes({kTiltedPanel, kBlackScreen},
+                      test_support::exhaustive_scan(kThreeWallPoints, kThreeWallPoints),
+                      kAxis,
+                      1e-3);
+    const auto confocal = render_shapes(
+        {kTiltedPanel, kBlackScreen}, test_support::confocal_scan(kThreeWallPoints), kAxis, 1e-3);
+    const auto single =
+        render_shapes({kTiltedPanel, kBlackScreen},
+                      test_support::single_scan(kThreeWallPoints[1], kThreeWallPoints),
+                      kAxis,
+                      1e-3);
     const std::vector<float> middle(exhaustive.begin() + 120, exhaustive.begin() + 240);
     EXPECT_LT(test_support::relative_l2(single, middle), 2e-3);
     std::vector<float> diagonal;
@@ -346,7 +353,7 @@ TEST(ThirdBounceScenes, InterruptedRenderIsCompleteButCoarser) {
     };
     for (const core::Scan& scan : {test_support::confocal_scan(grid(20, 20)),
                                    test_support::exhaustive_scan(grid(8, 4), grid(8, 8))}) {
-        const renderer::Scene scene = scene_of(geometry_of({kHidden, kOccluder}), scan);
+        const renderer::Scene scene = scene_of(geometry_of({kTiltedPanel, kBlackScreen}), scan);
         const auto whole = renderer::render(scene, scan, kAxis, settings_for(1e-3), {});
         for (const int patience : {1, 4}) {
             core::Progress progress;
@@ -365,8 +372,8 @@ TEST(ThirdBounceScenes, InterruptedRenderIsCompleteButCoarser) {
 
 // Where so few points are left that they are integrated at once, too.
 TEST(ThirdBounceScenes, RenderInterruptedBeforeItBeginsSaysSo) {
-    const core::Scan scan = test_support::confocal_scan(kPoints);
-    const renderer::Scene scene = scene_of(geometry_of({kHidden, kOccluder}), scan);
+    const core::Scan scan = test_support::confocal_scan(kThreeWallPoints);
+    const renderer::Scene scene = scene_of(geometry_of({kTiltedPanel, kBlackScreen}), scan);
     core::Progress progress;
     progress.stop_requested = [] { return true; };
     const auto early = renderer::render(scene, scan, kAxis, settings_for(1e-4), progress);
@@ -386,8 +393,8 @@ TEST(ThirdBounceScenes, MethodNamesWhatItCannotDo) {
     settings = settings_for(0.0);
     EXPECT_ERROR_WITH(renderer::validate(settings, "render"), "render.target_error: found 0");
 
-    const core::Scan scan = test_support::confocal_scan(kPoints);
-    renderer::SceneGeometry geometry = geometry_of({kHidden});
+    const core::Scan scan = test_support::confocal_scan(kThreeWallPoints);
+    renderer::SceneGeometry geometry = geometry_of({kTiltedPanel});
     geometry.objects[0].material.model = renderer::SurfaceModel::Ggx;
     geometry.objects[0].material.roughness = 0.1;
     const renderer::Scene scene = scene_of(std::move(geometry), scan);
