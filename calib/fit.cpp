@@ -5,6 +5,7 @@
 #include "calib/fit/fit_driver.h"
 #include "calib/fit/parametric_bootstrap.h"
 #include "calib/fit/shadow_refinement.h"
+#include "calib/fit/stage_solver.h"
 #include "calib/model/pose_ambiguity.h"
 #include "calib/statistics/poisson_deviance.h"
 #include "calib/statistics/uncertainty.h"
@@ -225,10 +226,29 @@ double ambient_of(const FitDriver::Stage& stage, const SceneState& state) {
                                    static_cast<double>(stage.model->settings().bins_per_ambient);
 }
 
+// How large the errors of least squares are.
+struct LeastSquaresNoise {
+    double variance = 0.0;   ///< of each value of the data
+    double inflation = 1.0;  ///< of variances, over what independent errors of that size give
+};
+
+// Errors that are independent average out over the n values of the data. Those of noise-free data
+// do not: they are the capture's own error and that of the model's elements, alike in neighbours. A
+// residual r that points along a parameter as a whole moves it by |r| sqrt((J^T J)^-1), n times the
+// variance of independent errors, and by no more; the correlation says how much of it is like that.
+LeastSquaresNoise noise_of(const FitAgreement& fit, Eigen::Index num_parameters) {
+    const double freedom =
+        std::max(1.0, static_cast<double>(fit.data.size()) - static_cast<double>(num_parameters));
+    const double correlation = residual_correlation(fit);
+    const double inflation = 1.0 - correlation + correlation * freedom;
+    return {fit.deviance / freedom * inflation, inflation};
+}
+
 FittedValues fitted_values(const FitDriver& driver,
                            const FitDriver::Stage& last,
                            const SceneState& state,
-                           const Uncertainty& uncertainty) {
+                           const Uncertainty& uncertainty,
+                           double noise_variance) {
     const Sigmas sigmas(*driver.model, uncertainty);
     const auto estimate = [&](double value, ParameterKind kind) {
         return Estimate{value, sigmas.at(kind)};
@@ -242,6 +262,13 @@ FittedValues fitted_values(const FitDriver& driver,
     result.scale = positive(std::exp(state.log_scale), ParameterKind::Scale);
     result.time_zero_m = estimate(state.time_zero_m, ParameterKind::TimeZero);
     result.ambient = positive(ambient_of(last, state), ParameterKind::Ambient);
+    const FitObjective& objective = *last.objective;
+    const auto linear_sigma = objective.linear_sigma(noise_variance, uncertainty.covariance);
+    if (driver.elimination.scale) result.scale = {objective.scale(), linear_sigma[0]};
+    if (driver.elimination.ambient) {
+        result.ambient.sigma =
+            linear_sigma[1] / static_cast<double>(last.model->settings().bins_per_ambient);
+    }
     result.response_fwhm_ps =
         positive(driver.settings.response.jitter_fwhm_ps * std::exp(state.log_width),
                  ParameterKind::ResponseWidth);
@@ -321,9 +348,19 @@ FitResult fit_scene(const FitInput& input, const core::Progress& progress) {
     static_cast<FitAgreement&>(result) = compare_with_data(driver, last, best.state);
 
     result.parameters = driver.model->column_names();
-    Uncertainty uncertainty = assess(refined.information, result.parameters);
+    Eigen::MatrixXd information = refined.information;
+    LeastSquaresNoise noise;
+    if (!driver.is_poisson) {
+        noise = noise_of(result, information.rows());
+        const Eigen::MatrixXd prior = prior_information(*driver.model, driver.solve_settings);
+        information = prior + (information - prior) / noise.inflation;
+    }
+    Uncertainty uncertainty = assess(information, result.parameters);
+    uncertainty.covariance += refined.element_error * refined.element_error.transpose();
+    uncertainty.sigma = uncertainty.sigma.cwiseMax(uncertainty.covariance.diagonal().cwiseSqrt());
     widen_sigma(driver, last, best.state, uncertainty, result);
-    static_cast<FittedValues&>(result) = fitted_values(driver, last, best.state, uncertainty);
+    static_cast<FittedValues&>(result) =
+        fitted_values(driver, last, best.state, uncertainty, noise.variance);
     result.correlations = uncertainty.correlations;
     result.condition_number = uncertainty.condition_number;
     result.unidentifiable = uncertainty.unidentifiable;

@@ -139,7 +139,7 @@ Json fitted_scene_json(const FitInput& input, const std::string& geometry_file) 
     renderer::SceneDescription scene = input.scene;
     const core::Capture& capture = input.capture;
     scene.geometry = geometry_file;
-    scene.time_axis = capture.time_axis;
+    scene.time_axis = {capture.time_axis};
     scene.scan.pattern = capture.scan.pattern;
     scene.scan.sensing_points_m = capture.scan.sensing.positions;
     scene.scan.sensing_normals = capture.scan.sensing.normals;

@@ -17,6 +17,7 @@
 #include "nlos/preparation/wiener_snr.h"
 #include "nlos/reconstruction/surface.h"
 #include "renderer/core/process.h"
+#include "renderer/core/recorded_detector.h"
 #include "renderer/core/stopwatch.h"
 
 #include <fmt/format.h>
@@ -240,7 +241,11 @@ Reconstruction reconstruct(const core::Capture& capture,
 
     Reconstruction result;
     result.settings = settings;
-    result.warnings = timing_warnings(capture);
+    result.settings.response = core::resolve_response(settings.response, capture, "response");
+    result.warnings = capture_warnings(capture);
+    for (std::string& text : core::detector_warnings(capture, result.settings.response)) {
+        result.warnings.push_back(std::move(text));
+    }
     PreparedCapture prepared = crop_capture(capture, settings.crop);
     const MethodChoice choice = choose_method(settings, prepared);
     result.settings.method = choice.method;

@@ -49,9 +49,10 @@ void require_possible(const RenderTask& task) {
                               "must be auto or path: there are no wall points");
         }
         if (surfaces_of(task.scene).narrow_lobes) {
-            throw core::Error("render.method",
-                              "found third_bounce for a scene with narrow glossy lobes",
-                              "must be auto or path for such surfaces");
+            throw core::Error(
+                "render.method",
+                "found third_bounce for a scene with narrow glossy lobes or dielectrics",
+                "must be auto or path for such surfaces");
         }
     }
     if (!task.axes.velocity || task.scan.camera) return;
@@ -89,20 +90,17 @@ RenderResult trace_paths(const RenderTask& task,
 
 // `auto` need not compute orders that are far below the error asked for. What it leaves out counts
 // as part of the error.
-double leave_out_orders(RenderTask& task, std::vector<std::string>& warnings) {
+std::optional<LeftOutOrders> leave_out_orders(RenderTask& task) {
     constexpr double kShareOfTarget = 0.5;
     const bool may = task.settings.method == Estimator::Auto && task.settings.target_error &&
                      !task.settings.by_order && task.settings.max_bounces > 3;
-    if (!may) return 0.0;
+    if (!may) return std::nullopt;
     const BounceTruncation orders =
         find_bounce_truncation(task, kShareOfTarget * *task.settings.target_error);
-    if (orders.last == task.settings.max_bounces) return 0.0;
-    warnings.push_back(fmt::format("orders {} to {} are left out: below {:.2g} of H (relative L2)",
-                                   orders.last + 1,
-                                   task.settings.max_bounces,
-                                   orders.left_out));
+    if (orders.last == task.settings.max_bounces) return std::nullopt;
+    const LeftOutOrders left_out{orders.last + 1, task.settings.max_bounces, orders.left_out};
     task.settings.max_bounces = orders.last;
-    return orders.left_out;
+    return left_out;
 }
 
 // Third bounces by the integrator, what is left by paths. When both are needed, the integrator,
@@ -140,8 +138,8 @@ RenderResult integrate_and_trace(const RenderTask& task, double left_out) {
     if (is_all) result.estimated_error = std::hypot(third.estimated_error, left_out);
     std::vector<OrderSource> sources{{3, 3, Estimator::ThirdBounce, "all"}};
     if (surfaces.narrow_lobes) {
-        sources[0].surfaces = "all but narrow glossy lobes";
-        sources.push_back({3, 3, Estimator::Path, "narrow glossy lobes"});
+        sources[0].surfaces = "all but narrow glossy lobes and dielectrics";
+        sources.push_back({3, 3, Estimator::Path, "narrow glossy lobes and dielectrics"});
     }
     result.sources.insert(result.sources.begin(), sources.begin(), sources.end());
     result.num_rays += third.num_rays;
@@ -161,15 +159,15 @@ RenderResult render(const Scene& scene,
     require_possible(task);
     if (settings.method == Estimator::Ellipsoidal) return render_ellipsoidal(task);
     if (settings.method == Estimator::Restir) return render_restir(task);
-    std::vector<std::string> warnings;
-    const double left_out = leave_out_orders(task, warnings);
+    const auto left_out = leave_out_orders(task);
+    const double left_out_error = left_out ? left_out->error : 0.0;
     const bool integrates = settings.method != Estimator::Path && !scan.camera && !axes.velocity &&
                             settings.max_bounces >= 3 && settings.gate == GateShape::Box &&
                             surfaces_of(scene).integrable;
-    RenderResult result = integrates
-                              ? integrate_and_trace(task, left_out)
-                              : trace_paths(task, ThirdBounceScope::All, {nullptr, 0.0, left_out});
-    result.warnings.insert(result.warnings.end(), warnings.begin(), warnings.end());
+    RenderResult result =
+        integrates ? integrate_and_trace(task, left_out_error)
+                   : trace_paths(task, ThirdBounceScope::All, {nullptr, 0.0, left_out_error});
+    result.left_out = left_out;
     return result;
 }
 

@@ -21,11 +21,20 @@ struct OrderSource {
     std::string surfaces = "all";
 };
 
+/// Bounce orders that `auto` did not compute.
+struct LeftOutOrders {
+    int first = 0;
+    int last = 0;
+    double error =
+        0.0;  ///< relative L2 over all of H that this costs: two sigma above the estimate
+};
+
 /// What render() computed and what it took.
 struct RenderResult {
     core::Capture capture;
     std::vector<OrderSource> sources;       ///< orders 1 and 2 need no estimator
     std::optional<double> estimated_error;  ///< relative L2 over all of H; empty: not known
+    std::optional<LeftOutOrders> left_out;  ///< counts as part of the error
     std::uint64_t samples_per_pair = 0;     ///< candidate paths used, whole passes
     std::uint64_t num_rays = 0;
     double seconds = 0.0;

@@ -28,13 +28,15 @@ int candidates_per_frame(const RestirSettings& settings) {
     return settings.walks + (has_shared_walks(settings.candidates) ? settings.shared_walks : 0);
 }
 
-// Settings whose frames take no more candidates than are asked for in all.
+// Settings whose frames take no more candidates than are asked for in all: by at least two frames,
+// whose difference tells the error, unless there is but one candidate.
 RenderSettings with_fitting_frames(RenderSettings settings) {
     RestirSettings& restir = settings.restir;
+    const int most = std::max(1, settings.samples / 2);
     const bool is_open_ended = settings.seconds || settings.target_error;
-    if (is_open_ended || candidates_per_frame(restir) <= settings.samples) return settings;
-    restir.walks = std::min(restir.walks, settings.samples);
-    restir.shared_walks = settings.samples - restir.walks;
+    if (is_open_ended || candidates_per_frame(restir) <= most) return settings;
+    restir.walks = std::min(restir.walks, most);
+    restir.shared_walks = most - restir.walks;
     return settings;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/arguments.h"
 #include "apps/commands.h"
+#include "apps/estimate_text.h"
 #include "apps/version.h"
 #include "calib/calibrate.h"
 #include "nlos/formats/capture_file.h"
@@ -35,7 +36,7 @@ void run(const CalibrateArguments& arguments) {
     for (std::size_t i = 0; i < setup.values.size(); ++i) {
         if (setup.sigma[i] == 0.0) continue;
         fmt::print(
-            "{:<18} {:>11.6g} +- {:.2g}\n", calib::kSetupNames[i], setup.values[i], setup.sigma[i]);
+            "{:<18} {}\n", calib::kSetupNames[i], estimate_text(setup.values[i], setup.sigma[i]));
     }
     const auto response = json["response"];
     fmt::print("{:<18} {:>11.6g} ps\n", "response FWHM", response["jitter_fwhm_ps"].get<double>());

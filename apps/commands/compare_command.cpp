@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <memory>
+#include <optional>
 
 namespace apps {
 namespace {
@@ -16,21 +17,23 @@ struct CompareArguments {
     std::string a;
     std::string b;
     std::string output;
-    double fscore_threshold_m = 0.01;
+    std::optional<double> fscore_threshold_m;
 };
 
 void run(const CompareArguments& arguments) {
-    if (!(arguments.fscore_threshold_m > 0.0 && std::isfinite(arguments.fscore_threshold_m))) {
+    const auto& threshold = arguments.fscore_threshold_m;
+    if (threshold && !(*threshold > 0.0 && std::isfinite(*threshold))) {
         throw core::Error("--fscore-threshold-m",
-                          fmt::format("found {}", arguments.fscore_threshold_m),
+                          fmt::format("found {}", *threshold),
                           "must be positive and finite [m]");
     }
-    const nlos::Metrics metrics =
-        compare_files(arguments.a, arguments.b, arguments.output, arguments.fscore_threshold_m);
-    nlos::Metrics copy = metrics;
-    for_each_field(copy, [](const char* name, const auto& value, const char* meaning) {
-        if (value) fmt::print("{:<20} {:<12.6g} {}\n", name, static_cast<double>(*value), meaning);
-    });
+    Comparison comparison = compare_files(arguments.a, arguments.b, arguments.output, threshold);
+    for_each_field(
+        comparison.metrics, [](const char* name, const auto& value, const char* meaning) {
+            if (!value) return;
+            fmt::print("{:<24} {:<12.6g} {}\n", name, static_cast<double>(*value), meaning);
+        });
+    for (const std::string& text : comparison.warnings) fmt::print(stderr, "warning: {}\n", text);
     if (!arguments.output.empty()) fmt::print("wrote {}\n", arguments.output);
 }
 
@@ -48,11 +51,10 @@ void add_compare_command(CLI::App& app) {
     command->add_option("B", arguments->b, "scene.json as the truth, or another of A's kind")
         ->required();
     command->add_option("-o,--output", arguments->output, "Metrics to write (.json)");
-    command
-        ->add_option("--fscore-threshold-m",
-                     arguments->fscore_threshold_m,
-                     "Distance that counts as a match for clouds and meshes [m]")
-        ->capture_default_str();
+    command->add_option("--fscore-threshold-m",
+                        arguments->fscore_threshold_m,
+                        "Distance that counts as a match of points [m] (default 0.01, of volumes "
+                        "their voxel diagonal)");
     command->footer(settings_footer(
         {}, "nlos compare scenes/letter/scene.glb scenes/letter/scene.json -o metrics.json"));
     command->callback([arguments] { run(*arguments); });

@@ -22,6 +22,7 @@ namespace {
 
 constexpr std::size_t kSurfaceSamples = 100'000;
 constexpr std::uint64_t kSurfaceSeed = 0;
+constexpr double kDefaultThreshold_m = 0.01;
 
 core::PointCloud points_of_file(const std::string& path) {
     core::TriangleMesh mesh;
@@ -42,14 +43,15 @@ core::PointCloud points_of_file(const std::string& path) {
 
 nlos::Metrics compare_volume_to_scene(const std::string& a,
                                       const std::string& b,
-                                      const std::string& picture_path) {
+                                      const std::string& picture_path,
+                                      std::optional<double> threshold_m) {
     const nlos::Reconstruction result = nlos::read_volume(a);
     const nlos::VolumeAxes& axes = result.volume.axes;
     const core::DepthMap truth = SceneTruth(b).depth_map(axes.world_from_wall, axes.x_m, axes.y_m);
     if (!picture_path.empty()) {
         nlos::write_panels_png(picture_path, nlos::comparison_panels(result, truth), 3);
     }
-    return nlos::compare_to_truth(result, truth);
+    return nlos::compare_to_truth(result, truth, threshold_m);
 }
 
 // A fit's poses and, beside them, its surfaces as samples; `b` is a scene, or a fit and its scene.
@@ -86,30 +88,36 @@ bool is_surface(FileKind kind) {
     return kind == FileKind::Geometry || kind == FileKind::PointCloud;
 }
 
-nlos::Metrics compare_kinds(const std::string& a,
-                            const std::string& b,
-                            const std::string& picture_path,
-                            double threshold_m) {
+Comparison compare_kinds(const std::string& a,
+                         const std::string& b,
+                         const std::string& picture_path,
+                         std::optional<double> threshold_m) {
     const FileKind kind_a = kind_of_file(a);
     const FileKind kind_b = kind_of_file(b);
+    const double between_points = threshold_m.value_or(kDefaultThreshold_m);
     if (kind_a == FileKind::Volume && kind_b == FileKind::Scene) {
-        return compare_volume_to_scene(a, b, picture_path);
+        return {compare_volume_to_scene(a, b, picture_path, threshold_m), {}};
     }
     if (kind_a == FileKind::Fit && (kind_b == FileKind::Scene || kind_b == FileKind::Fit)) {
-        return compare_fit_to_scene(a, b, picture_path, threshold_m);
+        return {compare_fit_to_scene(a, b, picture_path, between_points), {}};
     }
     if (is_surface(kind_a) && kind_b == FileKind::Scene) {
-        return nlos::compare_points(
-            points_of_file(a), core::surface_points(SceneTruth(b).depth_map()), threshold_m);
+        return {
+            nlos::compare_points(
+                points_of_file(a), core::surface_points(SceneTruth(b).depth_map()), between_points),
+            {}};
     }
     if (kind_a == FileKind::Volume && kind_b == FileKind::Volume) {
-        return nlos::compare_volumes(nlos::read_volume(a), nlos::read_volume(b));
+        return {nlos::compare_volumes(nlos::read_volume(a), nlos::read_volume(b), threshold_m), {}};
     }
     if (is_surface(kind_a) && is_surface(kind_b)) {
-        return nlos::compare_points(points_of_file(a), points_of_file(b), threshold_m);
+        return {nlos::compare_points(points_of_file(a), points_of_file(b), between_points), {}};
     }
     if (kind_a == FileKind::Capture && kind_b == FileKind::Capture) {
-        return nlos::compare_captures(nlos::read_capture(a), nlos::read_capture(b));
+        const core::Capture result = nlos::read_capture(a);
+        const core::Capture reference = nlos::read_capture(b);
+        return {nlos::compare_captures(result, reference),
+                nlos::comparison_warnings(result, reference)};
     }
     throw core::Error(
         a,
@@ -120,21 +128,22 @@ nlos::Metrics compare_kinds(const std::string& a,
 
 }  // namespace
 
-nlos::Metrics compare_files(const std::string& a,
-                            const std::string& b,
-                            const std::string& metrics_path,
-                            double fscore_threshold_m) {
+Comparison compare_files(const std::string& a,
+                         const std::string& b,
+                         const std::string& metrics_path,
+                         std::optional<double> fscore_threshold_m) {
     const std::string picture = metrics_path.empty() ? "" : with_suffix(metrics_path, ".png");
     require_suffix(metrics_path, {".json"});
     core::check_targets({metrics_path, picture}, {a, b});
-    const nlos::Metrics metrics = compare_kinds(a, b, picture, fscore_threshold_m);
+    Comparison comparison = compare_kinds(a, b, picture, fscore_threshold_m);
     if (!metrics_path.empty()) {
-        core::Json json = core::write_value(metrics);
+        core::Json json = core::write_value(comparison.metrics);
         json["result"] = a;
         json["reference"] = b;
+        if (!comparison.warnings.empty()) json["warnings"] = comparison.warnings;
         core::write_text_file(metrics_path, json.dump(2) + "\n");
     }
-    return metrics;
+    return comparison;
 }
 
 }  // namespace apps

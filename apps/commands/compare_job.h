@@ -3,9 +3,17 @@
 
 #include "nlos/compare/compare.h"
 
+#include <optional>
 #include <string>
+#include <vector>
 
 namespace apps {
+
+/// Scores, and what casts doubt on them.
+struct Comparison {
+    nlos::Metrics metrics;
+    std::vector<std::string> warnings;
+};
 
 /// Scores file A against file B: a volume, mesh, point cloud or fit against a scene.json (its
 /// ray-traced truth; for a fit, its objects), or a volume, mesh, point cloud or capture against
@@ -13,12 +21,12 @@ namespace apps {
 ///
 /// metrics_path         METRICS.json to write; empty: none. A picture goes beside it when a volume
 ///                      or fit is scored against a scene.
-/// fscore_threshold_m   distance that counts as a match for surfaces and clouds; volumes take their
-///                      voxel diagonal
+/// fscore_threshold_m   distance that counts as a match of points; nothing: 0.01 m for surfaces and
+///                      clouds, the voxel diagonal for volumes
 /// throws               core::Error when the two cannot be compared
-nlos::Metrics compare_files(const std::string& a,
-                            const std::string& b,
-                            const std::string& metrics_path,
-                            double fscore_threshold_m);
+Comparison compare_files(const std::string& a,
+                         const std::string& b,
+                         const std::string& metrics_path,
+                         std::optional<double> fscore_threshold_m = std::nullopt);
 
 }  // namespace apps

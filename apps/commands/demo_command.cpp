@@ -8,6 +8,8 @@
 #include "apps/commands/render_job.h"
 #include "apps/report/report.h"
 #include "apps/terminal.h"
+#include "nlos/detector/detector.h"
+#include "nlos/formats/capture_file.h"
 #include "renderer/core/error.h"
 
 #include <fmt/core.h>
@@ -19,6 +21,10 @@ namespace apps {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr double kMatch_m = 0.02;  // of points with the truth, in all scores
+constexpr double kPhotons = 1e5;
+constexpr double kJitterFwhm_ps = 200.0;
 
 struct DemoArguments {
     std::string folder = "out/demo";
@@ -51,19 +57,31 @@ void run(const DemoArguments& arguments) {
         const std::string volume = file("volume_" + method + ".h5");
         const auto result =
             reconstruct_to_file(file("capture.h5"), {"method=" + method}, volume, "");
-        const auto metrics =
-            compare_files(volume, scene, file("metrics_" + method + ".json"), 0.01);
-        fmt::print("{:<12} {} ({:.2f} s, depth error {:.2f} mm, mask IoU {:.3f})\n",
+        const nlos::Metrics metrics =
+            compare_files(volume, scene, file("metrics_" + method + ".json"), kMatch_m).metrics;
+        fmt::print("{:<12} {} ({:.2f} s, depth error {:.2f} mm over {:.0f} % of the letter)\n",
                    method,
                    volume,
                    result.seconds,
                    1e3 * metrics.depth_mae_m.value_or(0.0),
-                   metrics.mask_iou_best.value_or(0.0));
+                   1e2 * metrics.depth_coverage.value_or(0.0));
     }
     stop_if_interrupted();
+    nlos::DetectorSettings detector;
+    detector.photons = kPhotons;
+    detector.response.jitter_fwhm_ps = kJitterFwhm_ps;
+    const core::Capture counts = nlos::detect(render.capture, detector);
+    nlos::write_capture(file("counts.h5"), counts);
+    fmt::print("{:<12} {} ({:.0g} photons, jitter {} ps)\n",
+               "counts",
+               file("counts.h5"),
+               kPhotons,
+               kJitterFwhm_ps);
     const std::string model = (fs::path(scene).parent_path() / "model.json").string();
-    const calib::FitResult fit = fit_to_file(file("capture.h5"), model, {}, "", file("fit.json"));
-    const auto errors = compare_files(file("fit.json"), scene, file("metrics_fit.json"), 0.01);
+    const calib::FitResult fit =
+        fit_to_file(file("counts.h5"), model, {"response=capture"}, "", file("fit.json"));
+    const nlos::Metrics errors =
+        compare_files(file("fit.json"), scene, file("metrics_fit.json"), kMatch_m).metrics;
     fmt::print("{:<12} {} ({:.2f} s, position error {:.2f} mm, rotation error {:.2f} deg)\n",
                "fit",
                file("fit.json"),

@@ -2,6 +2,7 @@
 #include "apps/arguments.h"
 #include "apps/commands.h"
 #include "apps/commands/fit_job.h"
+#include "apps/estimate_text.h"
 #include "renderer/core/error.h"
 #include "renderer/core/parallel.h"
 
@@ -21,22 +22,20 @@ struct FitArguments {
     int threads = 0;
 };
 
+std::string place_text(const core::Vec3& position_m, const core::Vec3& sigma_m) {
+    return fmt::format("at ({}, {}, {}) m",
+                       estimate_text(position_m.x(), sigma_m.x()),
+                       estimate_text(position_m.y(), sigma_m.y()),
+                       estimate_text(position_m.z(), sigma_m.z()));
+}
+
 void print_object(const calib::FittedObject& object) {
-    const auto& p = object.position_m;
-    const auto& s = object.position_sigma_m;
-    fmt::print(
-        "{:<14} at ({:.4f}, {:.4f}, {:.4f}) m +- ({:.2f}, {:.2f}, {:.2f}) mm, turned +- "
-        "{:.2f} deg, size {:.4f}, albedo {:.3f}\n",
-        object.name,
-        p.x(),
-        p.y(),
-        p.z(),
-        1e3 * s.x(),
-        1e3 * s.y(),
-        1e3 * s.z(),
-        object.rotation_sigma_deg.norm(),
-        object.size,
-        object.albedo);
+    fmt::print("{:<14} {}, turned +- {:.2g} deg, size {}, albedo {}\n",
+               object.name,
+               place_text(object.position_m, object.position_sigma_m),
+               object.rotation_sigma_deg.norm(),
+               estimate_text(object.size, object.size_sigma),
+               estimate_text(object.albedo, object.albedo_sigma));
 }
 
 void run(const FitArguments& arguments) {
@@ -48,15 +47,7 @@ void run(const FitArguments& arguments) {
                                                 arguments.output);
     for (const calib::FittedObject& object : result.objects) print_object(object);
     for (const calib::FittedPoint& point : result.points) {
-        const auto& p = point.position_m;
-        const auto& s = point.position_sigma_m;
-        fmt::print("point          at ({:.4f}, {:.4f}, {:.4f}) m +- ({:.2f}, {:.2f}, {:.2f}) mm\n",
-                   p.x(),
-                   p.y(),
-                   p.z(),
-                   1e3 * s.x(),
-                   1e3 * s.y(),
-                   1e3 * s.z());
+        fmt::print("point          {}\n", place_text(point.position_m, point.position_sigma_m));
     }
     fmt::print(
         "wrote {}, {}, {}, {} ({}, deviance {:.4g} of {:.4g} expected, {} iterations, "

@@ -2,6 +2,7 @@
 #include "apps/arguments.h"
 #include "apps/capture_options.h"
 #include "apps/commands.h"
+#include "apps/commands/describe_scene.h"
 #include "apps/commands/file_picture.h"
 #include "apps/file_kind.h"
 #include "calib/fit_file.h"
@@ -9,8 +10,7 @@
 #include "nlos/formats/ply_file.h"
 #include "nlos/formats/volume_file.h"
 #include "nlos/preparation/capture_check.h"
-#include "renderer/gltf/gltf.h"
-#include "renderer/scene/scene_file.h"
+#include "renderer/core/recorded_detector.h"
 
 #include <fmt/core.h>
 
@@ -34,34 +34,50 @@ void print_range(const char* axis, const std::vector<double>& centers_m) {
                centers_m.back());
 }
 
-// One line per key: texts and numbers as they are, lists by their length.
-void print_keys(const core::Json& json, const std::string& indent) {
-    for (const auto& [key, value] : json.items()) {
-        if (value.is_object() && !value.empty() && key != "settings") {
-            fmt::print("{}{}:\n", indent, key);
-            print_keys(value, indent + "  ");
-        } else if (value.is_array() && (value.size() > 4 || value.flatten().size() > 4)) {
-            fmt::print("{}{}: {} items\n", indent, key, value.size());
-        } else if (value.is_string()) {
-            fmt::print("{}{}: {}\n", indent, key, value.get<std::string>());
-        } else if (!value.is_null()) {
-            fmt::print("{}{}: {}\n",
-                       indent,
-                       key,
-                       value.dump(-1, ' ', false, core::Json::error_handler_t::replace));
+// One line per key, texts and numbers as they are, lists by their length; and no more than a screen
+// or two, since files from elsewhere may hold anything.
+class KeyPrinter {
+ public:
+    void print(const core::Json& json, const std::string& indent) {
+        for (const auto& [key, value] : json.items()) {
+            if (lines_left_ == 0) {
+                fmt::print("{}... and more\n", indent);
+                return;
+            }
+            --lines_left_;
+            if (value.is_object() && !value.empty() && key != "settings") {
+                fmt::print("{}{}:\n", indent, key);
+                print(value, indent + "  ");
+            } else if (value.is_array() && (value.size() > 4 || value.flatten().size() > 4)) {
+                fmt::print("{}{}: {} items\n", indent, key, value.size());
+            } else if (!value.is_null()) {
+                fmt::print("{}{}: {}\n", indent, key, text_of(value));
+            }
         }
     }
-}
+
+ private:
+    static std::string text_of(const core::Json& value) {
+        constexpr std::size_t kLongest = 4000;
+        std::string text = value.is_string()
+                               ? value.get<std::string>()
+                               : value.dump(-1, ' ', false, core::Json::error_handler_t::replace);
+        if (text.size() > kLongest) text = text.substr(0, kLongest) + " ...";
+        return text;
+    }
+
+    int lines_left_ = 100;
+};
 
 void print_provenance(const core::Json& made) {
     if (!made.is_object() || made.empty()) return;
     fmt::print("provenance:\n");
-    print_keys(made, "  ");
+    KeyPrinter().print(made, "  ");
 }
 
 void describe_json(const std::string& path, const char* format) {
     fmt::print("format: {}\n", format);
-    print_keys(core::read_json_file(path), "");
+    KeyPrinter().print(core::read_json_file(path), "");
 }
 
 void describe_volume(const std::string& path) {
@@ -77,33 +93,6 @@ void describe_volume(const std::string& path) {
                static_cast<double>(volume.peak_bytes) * 1e-9);
     fmt::print("settings: {}\n", core::write_value(volume.settings).dump());
     print_provenance(volume.provenance);
-}
-
-void describe_scene(const std::string& path) {
-    const renderer::SceneDescription scene = renderer::read_scene_description(path, {});
-    fmt::print("format: scene description\n{}\n", core::write_value(scene).dump(2));
-}
-
-void describe_geometry(const std::string& path) {
-    const renderer::SceneGeometry geometry = renderer::load_gltf(path);
-    fmt::print("format: glTF 2.0\n");
-    for (const renderer::Object& object : geometry.objects) {
-        Eigen::AlignedBox3d box;
-        for (const core::Vec3& vertex : object.mesh.vertices) box.extend(vertex);
-        fmt::print(
-            "object {}: {} triangles, role {}, albedo {:.3f}, x {:.3f} to {:.3f}, "
-            "y {:.3f} to {:.3f}, z {:.3f} to {:.3f} m\n",
-            object.name.empty() ? "(unnamed)" : object.name,
-            object.mesh.triangles.size(),
-            core::enum_name(object.role),
-            object.material.albedo,
-            box.min().x(),
-            box.max().x(),
-            box.min().y(),
-            box.max().y(),
-            box.min().z(),
-            box.max().z());
-    }
 }
 
 void describe_point_cloud(const std::string& path) {
@@ -129,7 +118,10 @@ void describe_capture_file(const std::string& path, const std::vector<std::strin
             "as --set capture.pitch_m=... capture.bin_width_m=... stands as 1 m above\n");
         return;
     }
-    for (const std::string& warning : nlos::timing_warnings(capture)) {
+    for (const std::string& warning : nlos::capture_warnings(capture)) {
+        fmt::print("warning: {}\n", warning);
+    }
+    for (const std::string& warning : core::detector_warnings(capture, {})) {
         fmt::print("warning: {}\n", warning);
     }
 }

@@ -55,6 +55,12 @@ void run(const RenderArguments& arguments) {
     std::string effort;
     if (result.estimated_error)
         effort += fmt::format("error about {:.1e}, ", *result.estimated_error);
+    if (const auto& orders = result.left_out) {
+        effort += fmt::format("of which {:.1e} for orders {} to {}, which are left out, ",
+                              orders->error,
+                              orders->first,
+                              orders->last);
+    }
     if (result.samples_per_pair > 0)
         effort += fmt::format("{} samples per pair, ", result.samples_per_pair);
     if (result.interrupted) {

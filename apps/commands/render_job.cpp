@@ -9,10 +9,17 @@
 #include "nlos/pictures/pictures.h"
 #include "renderer/core/output_file.h"
 #include "renderer/frame_sequence.h"
+#include "renderer/light_range.h"
 #include "renderer/render.h"
 #include "renderer/scene/scene_file.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <filesystem>
+#include <memory>
 
 namespace apps {
 namespace {
@@ -48,6 +55,11 @@ core::Json provenance(const std::string& scene_path,
                                   {"surfaces", source.surfaces}});
     }
     if (result.estimated_error) info["estimated_error"] = *result.estimated_error;
+    if (result.left_out) {
+        info["orders_left_out"] = {{"first", result.left_out->first},
+                                   {"last", result.left_out->last},
+                                   {"error", result.left_out->error}};
+    }
     if (names == "ellipsoidal" || names == "restir") {
         info["excluded"] = {{"mode", std::string(core::enum_name(description.render.exclude))},
                             {"objects", result.excluded.names},
@@ -62,11 +74,10 @@ core::Json provenance(const std::string& scene_path,
     return info;
 }
 
-renderer::RenderResult run(const renderer::SceneDescription& description,
+renderer::RenderResult run(const std::shared_ptr<const renderer::Scene>& scene,
+                           const renderer::SceneDescription& description,
                            const core::Scan& scan,
                            const core::Progress& progress) {
-    const auto scene =
-        std::make_shared<const renderer::Scene>(renderer::load_scene(description, scan));
     if (description.frames) {
         return renderer::render_frames(scene,
                                        scan,
@@ -79,6 +90,50 @@ renderer::RenderResult run(const renderer::SceneDescription& description,
                             {description.time_axis, description.velocity_axis},
                             description.render,
                             progress);
+}
+
+// What a device with these offsets records of light on an axis between wall points.
+core::TimeAxis axis_of_device(const calib::AppliedCalibration& calibration, core::TimeAxis axis) {
+    const auto [least, most] =
+        std::minmax_element(calibration.opl_offset_m.begin(), calibration.opl_offset_m.end());
+    axis.opl_start_m += *least;
+    axis.num_bins += static_cast<int>(std::ceil((*most - *least) / axis.bin_width_m));
+    return axis;
+}
+
+// Darkness has no error that could be stated relative to it.
+void report_darkness(renderer::RenderResult& result) {
+    if (const auto& sequence = result.capture.sequence) {
+        const auto dark = std::count_if(
+            sequence->frames.begin(), sequence->frames.end(), [](const core::Transient& frame) {
+                return frame.is_dark();
+            });
+        if (dark > 0) {
+            result.warnings.push_back(
+                fmt::format("{} of {} frames hold no light", dark, sequence->frames.size()));
+        }
+    } else if (result.capture.transient.is_dark()) {
+        result.warnings.push_back("the capture holds no light: all its values are 0");
+    }
+    if (result.capture.transient.is_dark()) result.estimated_error.reset();
+}
+
+void print_light(const renderer::LightRange& light, const core::TimeAxis& axis) {
+    fmt::print(
+        "paths of {:.4g} to {:.4g} m are possible; the time axis, {:.4g} to {:.4g} m, holds "
+        "{:.3g} % of the light\n",
+        light.possible_m[0],
+        light.possible_m[1],
+        axis.opl_start_m,
+        axis.opl_end_m(),
+        100.0 * light.share_between(axis.opl_start_m, axis.opl_end_m()));
+    std::fflush(stdout);
+}
+
+core::Json write_light(const renderer::LightRange& light, const core::TimeAxis& axis) {
+    return {{"possible_m", light.possible_m},
+            {"found_m", light.without_tails(0.0)},
+            {"share_in_axis", light.share_between(axis.opl_start_m, axis.opl_end_m())}};
 }
 
 }  // namespace
@@ -98,10 +153,9 @@ renderer::RenderResult render_to_file(const std::string& scene_path,
                                       const std::string& calibration_path) {
     nlos::check_capture_suffix(capture_path);
     core::check_targets({capture_path}, {scene_path, calibration_path});
-    const renderer::SceneDescription description =
+    renderer::SceneDescription description =
         renderer::read_scene_description(scene_path, overrides);
     core::Scan scan = renderer::make_scan(description);
-    renderer::SceneDescription rendered = description;
     std::optional<calib::AppliedCalibration> calibration;
     if (!calibration_path.empty()) {
         if (scan.camera || description.frames || description.velocity_axis) {
@@ -111,14 +165,36 @@ renderer::RenderResult render_to_file(const std::string& scene_path,
         }
         calibration = calib::read_calibration(calibration_path);
         calib::replace_points(*calibration, scan);
-        rendered.time_axis = calib::axis_to_render(*calibration, description.time_axis);
     }
+    const auto scene =
+        std::make_shared<const renderer::Scene>(renderer::load_scene(description, scan));
+    const auto light = renderer::find_light_range(*scene, scan, description.render);
+    if (description.time_axis.automatic) {
+        core::TimeAxis axis = renderer::choose_time_axis(light, *scene, scan, description);
+        description.time_axis = {calibration ? axis_of_device(*calibration, axis) : axis};
+        renderer::validate(description, scene_path + ": ");
+    }
+    renderer::SceneDescription rendered = description;
+    if (calibration) {
+        rendered.time_axis = {calib::axis_to_render(*calibration, description.time_axis)};
+    }
+    std::vector<std::string> doubts = scene->warnings();
+    if (light) {
+        const auto texts = renderer::axis_warnings(*light, rendered.time_axis, description.frames);
+        doubts.insert(doubts.end(), texts.begin(), texts.end());
+    }
+    if (light && !light->is_dark()) print_light(*light, rendered.time_axis);
+    for (const std::string& doubt : doubts) fmt::print(stderr, "warning: {}\n", doubt);
+
     ProgressBar bar("render");
-    renderer::RenderResult result = run(rendered, scan, bar.progress());
+    renderer::RenderResult result = run(scene, rendered, scan, bar.progress());
     if (calibration) {
         result.capture = calib::record_with(*calibration, result.capture, description.time_axis);
     }
+    report_darkness(result);
     result.capture.scene_info = provenance(scene_path, description, result);
+    if (light) result.capture.scene_info["light"] = write_light(*light, rendered.time_axis);
+    for (const std::string& doubt : doubts) result.capture.scene_info["warnings"].push_back(doubt);
     const std::vector<std::string> left_out = nlos::write_capture(capture_path, result.capture);
     if (scan.camera) {
         core::write_text_file(with_suffix(capture_path, ".png"),

@@ -61,6 +61,9 @@ void run(const NoiseArguments& arguments) {
         for (const std::string& text : *texts) core::apply_override(options, text);
     }
     const core::Capture capture = nlos::read_capture(arguments.capture, options.capture);
+    if (const auto warning = nlos::coarse_bins_warning(capture, options.detector)) {
+        fmt::print(stderr, "warning: {}\n", *warning);
+    }
     core::Capture noisy = nlos::detect(capture, options.detector);
     noisy.scene_info["detector"]["program"] = version_text();
     noisy.scene_info["detector"]["command"] = command_line();

@@ -25,19 +25,26 @@ struct MetricStyle {
     Better better;
 };
 
-constexpr std::array<MetricStyle, 21> kStyles{{
-    {"depth_mae_m", "Depth error, mean", 1e3, "mm", Better::Lower},
-    {"depth_median_m", "Depth error, median", 1e3, "mm", Better::Lower},
-    {"depth_rmse_m", "Depth error, RMS", 1e3, "mm", Better::Lower},
+// Errors of depths and normals are of what was found alone, and the projection's amplitudes are no
+// albedo: for these there is no best.
+constexpr std::array<MetricStyle, 26> kStyles{{
+    {"depth_mae_m", "Depth error, mean", 1e3, "mm", Better::Neither},
+    {"depth_median_m", "Depth error, median", 1e3, "mm", Better::Neither},
+    {"depth_rmse_m", "Depth error, RMS", 1e3, "mm", Better::Neither},
+    {"depth_coverage", "... of this share of the surface", 1e2, "%", Better::Higher},
     {"mask_iou", "Mask IoU at 20 %", 1e2, "%", Better::Higher},
+    {"mask_iou_stated", "Mask IoU, as the result states", 1e2, "%", Better::Higher},
     {"mask_iou_best", "Mask IoU, best threshold", 1e2, "%", Better::Higher},
-    {"normal_mae_deg", "Normal error, mean", 1.0, "deg", Better::Lower},
-    {"normal_median_deg", "Normal error, median", 1.0, "deg", Better::Lower},
+    {"mask_iou_best_threshold", "... which is, of the maximum", 1e2, "%", Better::Neither},
+    {"normal_mae_deg", "Normal error, mean", 1.0, "deg", Better::Neither},
+    {"normal_median_deg", "Normal error, median", 1.0, "deg", Better::Neither},
     {"chamfer_m", "Chamfer distance", 1e3, "mm", Better::Lower},
     {"fscore", "F-score", 1e2, "%", Better::Higher},
-    {"fscore_threshold_m", "F-score threshold", 1e3, "mm", Better::Neither},
-    {"psnr_db", "PSNR", 1.0, "dB", Better::Higher},
-    {"ssim", "SSIM", 1.0, "", Better::Higher},
+    {"completeness", "Completeness: true surface found", 1e2, "%", Better::Higher},
+    {"accuracy", "Accuracy: found surface true", 1e2, "%", Better::Higher},
+    {"fscore_threshold_m", "Threshold of these three", 1e3, "mm", Better::Neither},
+    {"psnr_db", "PSNR of the projection", 1.0, "dB", Better::Neither},
+    {"ssim", "SSIM of the projection", 1.0, "", Better::Neither},
     {"peak_distance_m", "Peak to truth", 1e3, "mm", Better::Lower},
     {"position_error_m", "Position error", 1e3, "mm", Better::Lower},
     {"rotation_error_deg", "Rotation error", 1.0, "deg", Better::Lower},
@@ -153,24 +160,60 @@ std::string metrics_table(const std::vector<ScoredResult>& scores) {
     return html + "</tbody></table></div>\n";
 }
 
+std::vector<std::vector<ScoredResult>> groups_by_threshold(
+    const std::vector<ScoredResult>& scores) {
+    constexpr double kSame_m = 1e-6;
+    std::vector<std::vector<ScoredResult>> groups;
+    std::vector<std::optional<double>> thresholds;
+    for (const ScoredResult& scored : scores) {
+        const auto& threshold = scored.metrics.fscore_threshold_m;
+        std::size_t group = 0;
+        while (group < groups.size() && threshold && thresholds[group] &&
+               std::abs(*threshold - *thresholds[group]) > kSame_m) {
+            ++group;
+        }
+        if (group == groups.size()) {
+            groups.emplace_back();
+            thresholds.emplace_back();
+        }
+        groups[group].push_back(scored);
+        if (threshold) thresholds[group] = threshold;
+    }
+    return groups;
+}
+
 std::string metrics_tiles(const std::vector<ScoredResult>& scores) {
-    constexpr std::array<std::string_view, 4> kTelling{
-        "depth_mae_m", "mask_iou_best", "fscore", "ssim"};
+    const auto leader =
+        std::max_element(scores.begin(), scores.end(), [](const auto& a, const auto& b) {
+            return a.metrics.fscore.value_or(-1.0) < b.metrics.fscore.value_or(-1.0);
+        });
+    if (leader == scores.end() || !leader->metrics.fscore) return "";
+    const nlos::Metrics& best = leader->metrics;
     std::string html;
-    for (const MetricRow& row : rows_of(scores)) {
-        if (std::find(kTelling.begin(), kTelling.end(), row.key) == kTelling.end()) continue;
-        const MetricStyle style = style_of(row);
-        const std::optional<double> best = best_value(row, style.better);
-        const auto winner = std::find(row.values.begin(), row.values.end(), best);
-        const auto& name = scores[static_cast<std::size_t>(winner - row.values.begin())].name;
+    const auto add = [&](const std::string& label,
+                         const std::optional<double>& value,
+                         double factor,
+                         const std::string& unit,
+                         const std::string& remark) {
+        if (!value) return;
         html += fmt::format(
             "<div class=\"tile\"><span>{}</span><b>{}<i>{}</i></b><small>{}</small></div>",
-            escape_html(style.label),
-            three_digits(*best * style.factor),
-            escape_html(style.unit),
-            escape_html(name));
-    }
-    return html.empty() ? html : "<div class=\"tiles\">" + html + "</div>\n";
+            escape_html(label),
+            three_digits(*value * factor),
+            unit,
+            escape_html(remark));
+    };
+    const std::string within = three_digits(1e3 * best.fscore_threshold_m.value_or(0.0)) + " mm";
+    add("F-score within " + within, best.fscore, 1e2, "%", leader->name);
+    add("Completeness", best.completeness, 1e2, "%", "of the true surface found");
+    add("Accuracy", best.accuracy, 1e2, "%", "of the found surface true");
+    add("Depth error, mean",
+        best.depth_mae_m,
+        1e3,
+        "mm",
+        fmt::format("over {} % of the true surface",
+                    three_digits(1e2 * best.depth_coverage.value_or(0.0))));
+    return "<div class=\"tiles\">" + html + "</div>\n";
 }
 
 }  // namespace apps

@@ -8,11 +8,19 @@
 
 namespace apps {
 
+/// The results that can stand in one table: those whose F-scores have one threshold. Results
+/// without any stand in the first.
+std::vector<std::vector<ScoredResult>> groups_by_threshold(const std::vector<ScoredResult>& scores);
+
 /// An HTML table with one row per metric that any result has and one column per result, in units
 /// that people read; the best value of each row is marked.
+///
+/// scores   at one threshold, see groups_by_threshold()
 std::string metrics_table(const std::vector<ScoredResult>& scores);
 
-/// A few headline figures: the best value of the most telling metrics and which result has it.
+/// Headline figures of the result with the highest F-score: what of the truth it found, what of it
+/// is true, and its depth error with the share of the surface that this is of. Nothing without
+/// F-scores.
 std::string metrics_tiles(const std::vector<ScoredResult>& scores);
 
 }  // namespace apps

@@ -55,9 +55,15 @@ std::string section_html(const std::string& anchor,
 }
 
 std::string scores_html(const std::vector<ScoredResult>& scores) {
-    if (scores.empty()) return "";
-    std::string html = metrics_tiles(scores) + metrics_table(scores);
-    if (scores.size() > 1) html += "<p class=\"hint\">The best value of each row is marked.</p>\n";
+    std::string html;
+    for (const std::vector<ScoredResult>& group : groups_by_threshold(scores)) {
+        html += metrics_tiles(group) + metrics_table(group);
+        if (group.size() > 1) {
+            html +=
+                "<p class=\"hint\">The best value of a row is marked where results can be "
+                "compared by it.</p>\n";
+        }
+    }
     return html;
 }
 

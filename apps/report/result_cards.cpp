@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/report/result_cards.h"
 
+#include "apps/estimate_text.h"
 #include "calib/fit_file.h"
 #include "nlos/formats/capture_file.h"
 #include "nlos/formats/volume_file.h"
@@ -125,17 +126,10 @@ std::vector<Fact> volume_facts(const nlos::Reconstruction& result) {
     return facts;
 }
 
-std::string with_sigma(double value, double sigma, double unit) {
-    const std::string text = short_number(unit * value);
-    if (sigma == calib::kFixed) return text;
-    if (!std::isfinite(sigma)) return text + " (unknown)";
-    return text + " +- " + short_number(unit * sigma);
-}
-
 std::string place_text(const core::Vec3& position_m, const core::Vec3& sigma_m) {
     std::string text;
     for (int a = 0; a < 3; ++a) {
-        text += (a == 0 ? "" : ", ") + with_sigma(position_m[a], sigma_m[a], 1e3);
+        text += (a == 0 ? "" : ", ") + estimate_text(1e3 * position_m[a], 1e3 * sigma_m[a]);
     }
     return "(" + text + ") mm";
 }
@@ -147,8 +141,8 @@ std::vector<Fact> fit_facts(const calib::FitResult& fit, const core::Json& json)
         if (object.rotation_sigma_deg.norm() > 0.0) {
             text += ", turned +- " + short_number(object.rotation_sigma_deg.norm()) + " deg";
         }
-        text += ", size " + with_sigma(object.size, object.size_sigma, 1.0) + ", albedo " +
-                with_sigma(object.albedo, object.albedo_sigma, 1.0);
+        text += ", size " + estimate_text(object.size, object.size_sigma) + ", albedo " +
+                estimate_text(object.albedo, object.albedo_sigma);
         facts.emplace_back(object.name, text);
     }
     for (std::size_t i = 0; i < fit.points.size(); ++i) {

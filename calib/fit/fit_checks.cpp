@@ -2,6 +2,7 @@
 #include "calib/fit/fit_checks.h"
 
 #include "calib/statistics/poisson_deviance.h"
+#include "renderer/core/recorded_detector.h"
 
 #include <Eigen/Dense>
 #include <fmt/core.h>
@@ -126,30 +127,20 @@ void check_for_light(double min_mean, FitResult& result) {
         gain);
 }
 
-// Least squares takes its noise from the residual, as if that were independent from bin to bin:
-// neighbours that agree come from the model.
+// A residual that is alike from bin to bin and large comes from a model that is none of the scene.
 void warn_of_patterns(FitResult& result) {
     constexpr double kNotableCorrelation = 0.3;
     constexpr double kNotableShare = 1e-3;  // of the data's energy
-    const auto bins = static_cast<std::size_t>(result.axis.num_bins);
     double energy = 0.0;
-    double squares = 0.0;
-    double products = 0.0;
-    double last = 0.0;
-    for (std::size_t i = 0; i < result.data.size(); ++i) {
-        const double residual = result.data[i] - result.model[i];
-        energy += result.data[i] * result.data[i];
-        squares += residual * residual;
-        if (i % bins != 0) products += residual * last;
-        last = residual;
-    }
-    if (products < kNotableCorrelation * squares || squares < kNotableShare * energy) return;
+    for (const double value : result.data) energy += value * value;
+    const double correlation = residual_correlation(result);
+    if (correlation < kNotableCorrelation || result.deviance < kNotableShare * energy) return;
     result.warnings.push_back(
-        fmt::format("the residual holds {:.1f} % of the data's energy and is alike from bin to bin "
-                    "(correlation {:.2f}): the model does not explain the data, and true errors "
-                    "exceed the stated ones",
-                    100.0 * squares / energy,
-                    products / squares));
+        fmt::format("the residual holds {:.1f} % of the data's energy and is alike between "
+                    "neighbours (correlation {:.2f}): the model does not explain the data, and "
+                    "true errors exceed the stated ones",
+                    100.0 * result.deviance / energy,
+                    correlation));
 }
 
 // What is fixed but could be free.
@@ -220,11 +211,33 @@ void warn_of_misfits(const FitDriver& driver, const SceneState& state, FitResult
 
 }  // namespace
 
+double residual_correlation(const FitAgreement& fit) {
+    constexpr double kSignificance = 3.0;  // standard deviations of what chance gives
+    const auto bins = static_cast<std::size_t>(fit.axis.num_bins);
+    double squares = 0.0;
+    double along_bins = 0.0;
+    double along_pairs = 0.0;
+    const auto residual = [&](std::size_t i) { return fit.data[i] - fit.model[i]; };
+    for (std::size_t i = 0; i < fit.data.size(); ++i) {
+        squares += residual(i) * residual(i);
+        if (i % bins != 0) along_bins += residual(i) * residual(i - 1);
+        if (i >= bins) along_pairs += residual(i) * residual(i - bins);
+    }
+    if (!(squares > 0.0)) return 0.0;
+    const double correlation = std::max(std::abs(along_bins), std::abs(along_pairs)) / squares;
+    const double chance = kSignificance / std::sqrt(static_cast<double>(fit.data.size()));
+    return correlation > chance ? std::min(1.0, correlation) : 0.0;
+}
+
 void add_warnings(const FitDriver& driver,
                   const FitDriver::Stage& stage,
                   const SceneState& state,
                   FitResult& result) {
     warn_of_cut_light(driver.data.axis, result);
+    for (std::string& text :
+         core::detector_warnings(driver.input.capture, driver.settings.response)) {
+        result.warnings.push_back(std::move(text));
+    }
     if (state.has_ambient && state.log_ambient < driver.solve_settings.lowest_log_ambient + 0.01) {
         result.warnings.push_back("ambient: at its lower bound");
     }

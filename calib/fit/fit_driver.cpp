@@ -5,6 +5,7 @@
 #include "calib/model/pose_ambiguity.h"
 #include "renderer/core/error.h"
 #include "renderer/core/parallel.h"
+#include "renderer/core/recorded_detector.h"
 
 #include <fmt/core.h>
 
@@ -157,6 +158,7 @@ void match_brightness(const FitDriver& driver, FitDriver::Stage& stage, SceneSta
 FitDriver::FitDriver(const FitInput& fit_input, const core::Progress& progress)
     : input(fit_input), settings(fit_input.settings) {
     validate(settings, "model: ");
+    settings.response = core::resolve_response(settings.response, input.capture, "model: response");
     response = core::make_response(settings.response, "model: response");
     response_sigma_m = std::sqrt(core::moments(response).variance_m2);
     const bool is_gaussian = std::holds_alternative<core::GaussianResponse>(response);

@@ -110,9 +110,11 @@ void FitObjective::eliminate(std::vector<MatrixXd>& grams, bool with_gradients) 
     }
     Eigen::CompleteOrthogonalDecomposition<MatrixXd> solver;
     VectorXd linear;
+    linear_gradient_ = MatrixXd::Zero(size, columns);
     if (size > 0) {
         solver.compute(normal);
         linear = solver.solve(right);
+        linear_inverse_ = solver.pseudoInverse();
     }
     Eigen::Index next = 0;
     scale_ = elimination_.scale ? linear(next++) : 1.0;
@@ -134,6 +136,7 @@ void FitObjective::eliminate(std::vector<MatrixXd>& grams, bool with_gradients) 
         }
         if (elimination_.ambient) side(next) = -scale_ * total(one, c);
         const VectorXd change = solver.solve(side);
+        linear_gradient_.col(c) = change;
         next = 0;
         if (elimination_.scale) transform(m, c) = change(next++);
         if (elimination_.ambient) transform(one, c) = change(next);
@@ -178,6 +181,21 @@ void FitObjective::compress(const MatrixXd& gram, bool with_gradients, PairRows&
     }
     rows.residual(columns) =
         std::sqrt(std::max(0.0, gram(columns, columns) - rows.residual.squaredNorm()));
+}
+
+// What is eliminated varies with the data at given parameters, and with the parameters.
+std::array<double, 2> FitObjective::linear_sigma(double noise_variance,
+                                                 const MatrixXd& covariance) const {
+    std::array<double, 2> sigma{0.0, 0.0};
+    Eigen::Index next = 0;
+    for (const std::size_t i : {0, 1}) {
+        if (!(i == 0 ? elimination_.scale : elimination_.ambient)) continue;
+        const auto gradient = linear_gradient_.row(next);
+        sigma[i] = std::sqrt(noise_variance * linear_inverse_(next, next) +
+                             gradient.dot(covariance * gradient.transpose()));
+        ++next;
+    }
+    return sigma;
 }
 
 double FitObjective::sum_of_squares() const {

@@ -6,6 +6,7 @@
 
 #include <Eigen/Dense>
 
+#include <array>
 #include <vector>
 
 namespace calib {
@@ -41,6 +42,12 @@ class FitObjective {
     /// Data per model and per bin, as least squares eliminated them at the last evaluation.
     double scale() const { return scale_; }
     double ambient() const { return ambient_; }
+    /// Standard deviations of scale() and ambient(), as far as they were eliminated.
+    ///
+    /// noise_variance   of each of the data's values
+    /// covariance       of the parameters; the last evaluation had gradients
+    std::array<double, 2> linear_sigma(double noise_variance,
+                                       const Eigen::MatrixXd& covariance) const;
     double sum_of_squares() const;
 
     /// Fisher information of Poisson counts at a state: sum of J^T J / mean.
@@ -61,6 +68,8 @@ class FitObjective {
     std::vector<PairRows> rows_;
     double scale_ = 1.0;
     double ambient_ = 0.0;
+    Eigen::MatrixXd linear_gradient_;  ///< of what is eliminated, by parameter
+    Eigen::MatrixXd linear_inverse_;   ///< of its normal equations
 };
 
 }  // namespace calib

@@ -69,6 +69,29 @@ double refinement(const ForwardModel& model) {
     return std::clamp(kMaxViews / views, 1.0, kMaxRefinement);
 }
 
+// One step towards what finer elements say, if it leads there.
+RefinedSolution refine_elements(const FitDriver& driver,
+                                FitDriver::Stage& stage,
+                                SceneState& state) {
+    constexpr double kFinerElements = 4.0;
+    stage = driver.make_stage(*driver.model, 0.0, kFinerElements);
+    stage.model->refresh(state);
+    const Newton before = newton_at(driver, stage, state);
+    const SceneState start = state;
+    state = moved_by(*driver.model, state, before.step);
+    stage.model->refresh(state);
+    const Newton after = newton_at(driver, stage, state);
+    const VectorXd error = before.step.cwiseAbs();
+    const VectorXd none = VectorXd::Zero(error.size());
+    if (after.length() < 0.5 * before.length()) {
+        return {after.information, true, error / (kFinerElements - 1.0)};
+    }
+    state = start;
+    stage.model->refresh(state);
+    const bool is_far = error.allFinite() && before.length() > 1.0;
+    return {newton_at(driver, stage, state).information, true, is_far ? error : none};
+}
+
 }  // namespace
 
 RefinedSolution refine(const FitDriver& driver, FitDriver::Stage& stage, SceneState& state) {
@@ -81,7 +104,8 @@ RefinedSolution refine(const FitDriver& driver, FitDriver::Stage& stage, SceneSt
         return newton_at(driver, stage, state);
     };
     stage.model->refresh(state);
-    if (!stage.model->has_shadow_edges()) return {newton_at(driver, stage, state).information};
+    const auto size = driver.model->num_columns();
+    if (!stage.model->has_shadow_edges()) return refine_elements(driver, stage, state);
     stage = driver.make_stage(*driver.model, 0.0, refinement(*stage.model));
     Newton newton = look_anew();
     for (int i = 0; i < kMaxSteps; ++i) {
@@ -89,7 +113,7 @@ RefinedSolution refine(const FitDriver& driver, FitDriver::Stage& stage, SceneSt
         state = moved_by(*driver.model, state, newton.step);
         newton = look_anew();
     }
-    return {newton.information, newton.length() < 1.0};
+    return {newton.information, newton.length() < 1.0, VectorXd::Zero(size)};
 }
 
 }  // namespace calib

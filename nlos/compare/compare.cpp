@@ -63,16 +63,35 @@ void check_same_columns(const VolumeAxes& axes, const core::DepthMap& map) {
     check_same_wall(axes.world_from_wall, map.world_from_wall);
 }
 
-/// Columns in which both masks are set and both depths exist.
-std::vector<std::size_t> common_columns(const Mask& mask,
-                                        const core::DepthMap& depth,
-                                        const core::DepthMap& truth) {
+/// Columns in which both maps have a depth.
+std::vector<std::size_t> common_columns(const core::DepthMap& depth, const core::DepthMap& truth) {
     std::vector<std::size_t> columns;
-    if (depth.depth_m.size() != mask.size()) return columns;
-    for (std::size_t i = 0; i < mask.size(); ++i) {
-        if (mask[i] && truth.is_foreground(i) && depth.is_foreground(i)) columns.push_back(i);
+    if (depth.depth_m.size() != truth.depth_m.size()) return columns;
+    for (std::size_t i = 0; i < truth.depth_m.size(); ++i) {
+        if (truth.is_foreground(i) && depth.is_foreground(i)) columns.push_back(i);
     }
     return columns;
+}
+
+Mask foreground_of(const core::DepthMap& map) {
+    Mask mask(map.depth_m.size());
+    for (std::size_t i = 0; i < mask.size(); ++i) mask[i] = map.is_foreground(i);
+    return mask;
+}
+
+/// Overlap of the masks that a result's projection and depths give with a true one.
+void score_masks(const std::vector<float>& projection,
+                 const core::DepthMap& depth,
+                 const Mask& truth,
+                 Metrics& metrics) {
+    metrics.mask_iou = mask_iou(mask_above_share(projection, kMaskShare), truth);
+    if (depth.depth_m.size() == truth.size()) {
+        metrics.mask_iou_stated = mask_iou(foreground_of(depth), truth);
+    }
+    if (const auto best = best_mask(projection, truth)) {
+        metrics.mask_iou_best = best->iou;
+        metrics.mask_iou_best_threshold = best->share;
+    }
 }
 
 void score_depth(const core::DepthMap& depth,
@@ -80,6 +99,11 @@ void score_depth(const core::DepthMap& depth,
                  const std::vector<std::size_t>& columns,
                  Metrics& metrics) {
     if (columns.empty()) return;
+    const auto true_columns = std::count_if(truth.depth_m.begin(),
+                                            truth.depth_m.end(),
+                                            [](double depth_m) { return std::isfinite(depth_m); });
+    metrics.depth_coverage =
+        static_cast<double>(columns.size()) / static_cast<double>(true_columns);
     std::vector<double> errors_m;
     double sum = 0.0;
     double squares = 0.0;
@@ -122,11 +146,13 @@ void score_image(const std::vector<float>& image,
 
 void score_points(const core::PointCloud& result,
                   const core::PointCloud& truth,
-                  const VolumeAxes& axes,
+                  double threshold_m,
                   Metrics& metrics) {
-    const Metrics scores = compare_points(result, truth, voxel_diagonal_m(axes));
+    const Metrics scores = compare_points(result, truth, threshold_m);
     metrics.chamfer_m = scores.chamfer_m;
     metrics.fscore = scores.fscore;
+    metrics.completeness = scores.completeness;
+    metrics.accuracy = scores.accuracy;
     metrics.fscore_threshold_m = scores.fscore_threshold_m;
     if (metrics.normal_mae_deg) return;
     metrics.normal_mae_deg = scores.normal_mae_deg;
@@ -150,12 +176,6 @@ void record_cost(const Reconstruction& result, Metrics& metrics) {
     if (result.peak_bytes > 0) metrics.peak_rss_bytes = result.peak_bytes;
 }
 
-Mask foreground_of(const core::DepthMap& map) {
-    Mask mask(map.depth_m.size());
-    for (std::size_t i = 0; i < mask.size(); ++i) mask[i] = map.is_foreground(i);
-    return mask;
-}
-
 /// The picture an eye at the wall would see: albedo of the surface, 0 in the background.
 std::vector<float> albedo_image(const core::DepthMap& map) {
     std::vector<float> image(map.depth_m.size(), 0.0F);
@@ -168,21 +188,21 @@ std::vector<float> albedo_image(const core::DepthMap& map) {
 
 }  // namespace
 
-Metrics compare_to_truth(const Reconstruction& result, const core::DepthMap& truth) {
-    check_same_columns(result.volume.axes, truth);
+Metrics compare_to_truth(const Reconstruction& result,
+                         const core::DepthMap& truth,
+                         std::optional<double> threshold_m) {
+    const VolumeAxes& axes = result.volume.axes;
+    check_same_columns(axes, truth);
     const std::vector<float> projection = max_projection(result.volume);
-    const Mask mask = mask_above_share(projection, kMaskShare);
-    const Mask true_mask = foreground_of(truth);
-    const std::vector<std::size_t> columns = common_columns(mask, result.depth, truth);
+    const std::vector<std::size_t> columns = common_columns(result.depth, truth);
     const core::PointCloud true_points = surface_points(truth);
 
     Metrics metrics;
     score_depth(result.depth, truth, columns, metrics);
-    metrics.mask_iou = mask_iou(mask, true_mask);
-    metrics.mask_iou_best = best_mask_iou(projection, true_mask);
+    score_masks(projection, result.depth, foreground_of(truth), metrics);
     score_normals(result.volume, truth, columns, metrics);
-    score_points(result.points, true_points, result.volume.axes, metrics);
-    score_image(projection, albedo_image(truth), result.volume.axes, metrics);
+    score_points(result.points, true_points, threshold_m.value_or(voxel_diagonal_m(axes)), metrics);
+    score_image(projection, albedo_image(truth), axes, metrics);
     const auto peak = peak_world(result.volume);
     if (peak && !true_points.positions.empty()) {
         metrics.peak_distance_m =
@@ -192,7 +212,9 @@ Metrics compare_to_truth(const Reconstruction& result, const core::DepthMap& tru
     return metrics;
 }
 
-Metrics compare_volumes(const Reconstruction& result, const Reconstruction& reference) {
+Metrics compare_volumes(const Reconstruction& result,
+                        const Reconstruction& reference,
+                        std::optional<double> threshold_m) {
     const VolumeAxes& axes = reference.volume.axes;
     check_same_axis(result.volume.axes.x_m, axes.x_m, "x");
     check_same_axis(result.volume.axes.y_m, axes.y_m, "y");
@@ -200,21 +222,14 @@ Metrics compare_volumes(const Reconstruction& result, const Reconstruction& refe
     check_same_wall(result.volume.axes.world_from_wall, axes.world_from_wall);
     const std::vector<float> projection = max_projection(result.volume);
     const std::vector<float> reference_projection = max_projection(reference.volume);
-    const Mask mask = mask_above_share(projection, kMaskShare);
     const Mask reference_mask = mask_above_share(reference_projection, kMaskShare);
 
     Metrics metrics;
-    if (reference.depth.depth_m.size() == mask.size()) {
-        Mask both = mask;
-        for (std::size_t i = 0; i < both.size(); ++i) both[i] &= reference_mask[i];
-        score_depth(result.depth,
-                    reference.depth,
-                    common_columns(both, result.depth, reference.depth),
-                    metrics);
-    }
-    metrics.mask_iou = mask_iou(mask, reference_mask);
-    metrics.mask_iou_best = best_mask_iou(projection, reference_mask);
-    score_points(result.points, reference.points, axes, metrics);
+    score_depth(
+        result.depth, reference.depth, common_columns(result.depth, reference.depth), metrics);
+    score_masks(projection, result.depth, reference_mask, metrics);
+    score_points(
+        result.points, reference.points, threshold_m.value_or(voxel_diagonal_m(axes)), metrics);
     score_image(projection, reference_projection, axes, metrics);
     const auto peak = peak_world(result.volume);
     const auto reference_peak = peak_world(reference.volume);

@@ -7,22 +7,31 @@
 #include "renderer/core/depth_map.h"
 #include "renderer/core/mesh.h"
 
+#include <optional>
+#include <string>
+#include <vector>
+
 namespace nlos {
 
 /// Scores a reconstructed volume against the scene's depth map.
 ///
-/// Masks: the true one is the truth's foreground, the reconstructed one the columns whose maximum
-/// projection exceeds 20 % of its maximum. Depth and normal errors are taken where both masks and
-/// `result.depth` have a value. The true image is the albedo seen (1 when unknown), divided by its
-/// maximum; the surface samples are the truth's foreground columns; a match is a voxel diagonal.
+/// Masks: the true one is the truth's foreground; the reconstructed one are the columns that
+/// `result.depth` gives a depth, and for mask_iou those whose maximum projection exceeds 20 % of
+/// its maximum. Depth and normal errors are taken where both masks have a value, and depth_coverage
+/// is the share of the true mask that this is. The true image is the albedo seen (1 when unknown),
+/// divided by its maximum; the surface samples are the truth's foreground columns.
 ///
-/// result   volume with depth and points; its normals, if any, point towards the wall
-/// truth    what the wall's orthographic view sees at exactly the volume's (x, y) columns
+/// result       volume with depth and points; its normals, if any, point towards the wall
+/// truth        what the wall's orthographic view sees at exactly the volume's (x, y) columns
+/// threshold_m  distance that counts as a match of points [m]; nothing: a voxel diagonal
 /// returns  no value for a score that lacks its data: an empty mask, no points, no positive voxel
 /// throws   core::Error when the columns or the walls differ
-Metrics compare_to_truth(const Reconstruction& result, const core::DepthMap& truth);
+Metrics compare_to_truth(const Reconstruction& result,
+                         const core::DepthMap& truth,
+                         std::optional<double> threshold_m = std::nullopt);
 
-/// Scores surface points against surface samples of the truth (Chamfer, F-score, normals).
+/// Scores surface points against surface samples of the truth (Chamfer distance; completeness,
+/// accuracy and their harmonic mean, the F-score; normals).
 ///
 /// result, truth  points in the same frame; normals are compared at nearest neighbours,
 ///                whichever side they point to
@@ -35,16 +44,23 @@ Metrics compare_points(const core::PointCloud& result,
 
 /// Scores one volume against another on the same grid: projections, depths, points, voxels.
 ///
-/// Both masks are at 20 % of their own maximum; peak_distance_m is the distance of the two
-/// brightest voxels; rel_l2 and rel_mse compare the voxels as they are, without scaling.
+/// For mask_iou both masks are at 20 % of their own maximum; peak_distance_m is the distance of the
+/// two brightest voxels; rel_l2 and rel_mse compare the voxels as they are, without scaling.
 ///
 /// throws    core::Error when the grids or the walls differ
-Metrics compare_volumes(const Reconstruction& result, const Reconstruction& reference);
+Metrics compare_volumes(const Reconstruction& result,
+                        const Reconstruction& reference,
+                        std::optional<double> threshold_m = std::nullopt);
 
 /// Relative differences of two captures; rel_l2 = |a-b|/|b|, rel_mse its square. Pairs are those of
 /// the same wall points, in whatever order they stand; where the points differ, those of one index.
 ///
 /// throws    core::Error when shapes, units or time axes differ
 Metrics compare_captures(const core::Capture& result, const core::Capture& reference);
+
+/// Why relative differences of two captures say little: scans that differ, captures without light.
+/// A sentence each, for people.
+std::vector<std::string> comparison_warnings(const core::Capture& result,
+                                             const core::Capture& reference);
 
 }  // namespace nlos

@@ -89,4 +89,51 @@ Metrics compare_captures(const core::Capture& result, const core::Capture& refer
     return metrics;
 }
 
+std::vector<std::string> comparison_warnings(const core::Capture& result,
+                                             const core::Capture& reference) {
+    constexpr double kTolerance_m = 1e-4;
+    std::vector<std::string> warnings;
+    const core::Scan& a = result.scan;
+    const core::Scan& b = reference.scan;
+    const auto compare = [&](const char* name,
+                             const std::vector<core::Vec3>& points,
+                             const std::vector<core::Vec3>& wanted) {
+        if (points.size() != wanted.size()) {
+            warnings.push_back(fmt::format(
+                "the scans differ: {} {} points against {}", points.size(), name, wanted.size()));
+            return;
+        }
+        const std::vector<std::size_t> order = counterparts(wanted, points);
+        double largest_m = 0.0;
+        for (std::size_t i = 0; i < wanted.size(); ++i) {
+            largest_m = std::max(largest_m, (points[order[i]] - wanted[i]).norm());
+        }
+        if (largest_m <= kTolerance_m) return;
+        warnings.push_back(
+            fmt::format("the scans differ: {} points lie up to {:.3g} m from those they are "
+                        "compared with",
+                        name,
+                        largest_m));
+    };
+    if (a.camera.has_value() != b.camera.has_value()) {
+        warnings.emplace_back("one is the image of a camera, the other a scan");
+    } else if (a.pattern != b.pattern) {
+        warnings.push_back(fmt::format("the scans differ: {} against {}",
+                                       core::enum_name(a.pattern),
+                                       core::enum_name(b.pattern)));
+    } else if (!a.camera) {
+        compare("sensing", a.sensing.positions, b.sensing.positions);
+        compare("illumination", a.illumination.positions, b.illumination.positions);
+    }
+    if (a.opl_origin != b.opl_origin) {
+        warnings.push_back(
+            fmt::format("path lengths begin at the {} in one and the {} in the other",
+                        core::enum_name(a.opl_origin),
+                        core::enum_name(b.opl_origin)));
+    }
+    if (result.transient.is_dark()) warnings.emplace_back("the result holds no light");
+    if (reference.transient.is_dark()) warnings.emplace_back("the reference holds no light");
+    return warnings;
+}
+
 }  // namespace nlos

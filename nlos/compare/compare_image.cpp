@@ -86,7 +86,7 @@ std::optional<double> mask_iou(const Mask& a, const Mask& b) {
     return static_cast<double>(both) / static_cast<double>(count_a + count_b - both);
 }
 
-std::optional<double> best_mask_iou(const std::vector<float>& image, const Mask& truth) {
+std::optional<ThresholdedMask> best_mask(const std::vector<float>& image, const Mask& truth) {
     const auto wanted = static_cast<std::size_t>(std::count(truth.begin(), truth.end(), 1));
     if (wanted == 0 || !(largest(image) > 0.0F)) return std::nullopt;
 
@@ -97,13 +97,13 @@ std::optional<double> best_mask_iou(const std::vector<float>& image, const Mask&
     std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) {
         return image[i] > image[j];
     });
-    double best = 0.0;
+    ThresholdedMask best;
     std::size_t both = 0;
     for (std::size_t taken = 1; taken <= order.size(); ++taken) {
         both += truth[order[taken - 1]];
         if (taken < order.size() && image[order[taken]] == image[order[taken - 1]]) continue;
-        best =
-            std::max(best, static_cast<double>(both) / static_cast<double>(wanted + taken - both));
+        const double iou = static_cast<double>(both) / static_cast<double>(wanted + taken - both);
+        if (iou > best.iou) best = {iou, double{image[order[taken - 1]]} / largest(image)};
     }
     return best;
 }

@@ -17,12 +17,18 @@ Mask mask_above_share(const std::vector<float>& image, double share);
 /// Intersection over union; empty when either mask is.
 std::optional<double> mask_iou(const Mask& a, const Mask& b);
 
+/// The mask of an image that a threshold cuts out.
+struct ThresholdedMask {
+    double iou = 0.0;    ///< intersection over union with the truth
+    double share = 0.0;  ///< the least value in the mask, of the image's largest
+};
+
 /// The largest intersection over union that any threshold on `image` reaches, found exactly.
 ///
 /// image    one value per pixel
 /// truth    the mask to reach, as many pixels
-/// returns  in (0, 1]; empty when the mask is empty or no value is positive
-std::optional<double> best_mask_iou(const std::vector<float>& image, const Mask& truth);
+/// returns  iou in (0, 1]; empty when the mask is empty or no value is positive
+std::optional<ThresholdedMask> best_mask(const std::vector<float>& image, const Mask& truth);
 
 /// The image divided by its largest value, negative values set to 0; empty when none is positive.
 std::optional<std::vector<double>> normalised(const std::vector<float>& image);

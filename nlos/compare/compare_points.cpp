@@ -51,10 +51,12 @@ Metrics compare_points(const core::PointCloud& result,
         core::nearest_neighbours(truth.positions, result.positions);
     metrics.chamfer_m = 0.5 * (mean(to_truth.distances_m) + mean(to_result.distances_m));
 
-    const double precision = share_within(to_truth.distances_m, threshold_m);
-    const double recall = share_within(to_result.distances_m, threshold_m);
-    const double sum = precision + recall;
-    metrics.fscore = sum > 0.0 ? 2.0 * precision * recall / sum : 0.0;
+    const double accuracy = share_within(to_truth.distances_m, threshold_m);
+    const double completeness = share_within(to_result.distances_m, threshold_m);
+    const double sum = accuracy + completeness;
+    metrics.fscore = sum > 0.0 ? 2.0 * accuracy * completeness / sum : 0.0;
+    metrics.completeness = completeness;
+    metrics.accuracy = accuracy;
     metrics.fscore_threshold_m = threshold_m;
 
     const bool both_have_normals = result.normals.size() == result.positions.size() &&

@@ -7,6 +7,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -160,6 +161,21 @@ void record(const Detector& detector,
 }
 
 }  // namespace
+
+std::optional<std::string> coarse_bins_warning(const core::Capture& capture,
+                                               const DetectorSettings& settings) {
+    constexpr double kFewBins = 2.0;  // standard deviations of the response; 1 % of its width
+    if (!core::is_stated(settings.response)) return std::nullopt;
+    const core::ResponseMoments response =
+        core::moments(core::make_response(settings.response, "response"));
+    const double bins = std::sqrt(response.variance_m2) / capture.time_axis.bin_width_m;
+    if (bins == 0.0 || bins >= kFewBins) return std::nullopt;
+    return fmt::format(
+        "the response is {:.2g} bins wide (standard deviation): sharp edges come "
+        "out up to {:.2g} % narrower than it; finer bins of light help",
+        bins,
+        100.0 * (1.0 - std::sqrt(std::max(0.0, 1.0 - 1.0 / (12.0 * bins * bins)))));
+}
 
 core::Capture detect(const core::Capture& capture, const DetectorSettings& settings) {
     validate(settings);

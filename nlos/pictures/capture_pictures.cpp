@@ -76,6 +76,19 @@ Range light_range(std::vector<float> values, double brightest_share) {
     return {0.0, double{top}};
 }
 
+/// Light of which most is far below the brightest is drawn on a scale that shows it.
+void choose_scale(ImagePanel& panel) {
+    constexpr double kFaint = 0.1;  // of the range's top: the middle of what is lit
+    std::vector<float> lit;
+    for (const float value : panel.values) {
+        if (value > 0.0F) lit.push_back(value);
+    }
+    if (lit.empty()) return;
+    const auto middle = lit.begin() + static_cast<std::ptrdiff_t>(lit.size() / 2);
+    std::nth_element(lit.begin(), middle, lit.end());
+    if (*middle < kFaint * (*panel.value_range)[1]) panel.value_scale = ValueScale::Gamma;
+}
+
 ImagePanel streak_panel(const core::Capture& capture,
                         const std::optional<WallGrid>& grid,
                         const std::array<std::size_t, 2>& bins) {
@@ -98,10 +111,12 @@ ImagePanel streak_panel(const core::Capture& capture,
     panel.y_range = {capture.time_axis.bin_begin_m(static_cast<double>(bins[0])),
                      capture.time_axis.bin_begin_m(static_cast<double>(bins[1]))};
     panel.y_label = "path length [m]";
+    if (grid) panel.x_direction = AxisDirection::Reversed;  // as the wall beside it is seen
     panel.y_direction = AxisDirection::Reversed;
     panel.value_label = unit_of(capture) + " per bin";
     panel.scale = AxisScale::Free;
     panel.value_range = light_range(panel.values, kBrightestShare);
+    choose_scale(panel);
     return panel;
 }
 
@@ -146,6 +161,7 @@ ImagePanel gated_panel(const core::PinholeCamera& camera,
     }
     ImagePanel panel = camera_panel(camera, sums);
     panel.value_range = light_range(panel.values, kBrightestPixels);
+    choose_scale(panel);
     return panel;
 }
 
@@ -219,8 +235,12 @@ std::vector<Panel> film_strip(const core::Capture& capture) {
     }
     const Range range = light_range(values, kBrightestPixels);
     std::vector<Panel> panels;
+    const bool is_faint = std::any_of(images.begin(), images.end(), [](const ImagePanel& image) {
+        return image.value_scale == ValueScale::Gamma;
+    });
     for (ImagePanel& image : images) {
         image.value_range = range;
+        image.value_scale = is_faint ? ValueScale::Gamma : ValueScale::Linear;
         panels.emplace_back(std::move(image));
     }
     return panels;

@@ -18,6 +18,10 @@ enum class AxisDirection { Usual, Reversed };
 /// Whether a metre is as long along x as along y.
 enum class AxisScale { Equal, Free };
 
+/// How values become colours. Gamma: by their square root above the lower end, which shows what is
+/// far below the brightest; the colour bar's ticks say so.
+enum class ValueScale { Linear, Gamma };
+
 /// Values on a regular grid, drawn as colours with axes and a colour bar.
 struct ImagePanel {
     std::string title;
@@ -33,6 +37,7 @@ struct ImagePanel {
     AxisDirection x_direction = AxisDirection::Usual;
     AxisDirection y_direction = AxisDirection::Usual;
     AxisScale scale = AxisScale::Equal;
+    ValueScale value_scale = ValueScale::Linear;
     std::optional<std::array<double, 2>> value_range;  ///< empty: from the values
 };
 

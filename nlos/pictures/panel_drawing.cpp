@@ -161,6 +161,12 @@ std::array<double, 2> value_range(const ImagePanel& panel) {
     return low <= high ? std::array{low - 0.5, low + 0.5} : std::array{0.0, 1.0};
 }
 
+/// Place of a value on the colour map, 0 to 1 within the range.
+double colour_share(const ImagePanel& panel, const std::array<double, 2>& range, double value) {
+    const double share = (value - range[0]) / (range[1] - range[0]);
+    return panel.value_scale == ValueScale::Gamma ? std::sqrt(std::max(0.0, share)) : share;
+}
+
 /// Colours in the order of drawing: rows from the top, columns from the left.
 std::vector<Colour> panel_colours(const ImagePanel& panel, const std::array<double, 2>& range) {
     std::vector<Colour> colours;
@@ -172,8 +178,10 @@ std::vector<Colour> panel_colours(const ImagePanel& panel, const std::array<doub
         for (std::size_t column = 0; column < panel.width; ++column) {
             const std::size_t ix = leftwards ? panel.width - 1 - column : column;
             const float value = panel.values[iy * panel.width + ix];
-            const double share = (static_cast<double>(value) - range[0]) / (range[1] - range[0]);
-            colours.push_back(std::isfinite(value) ? colour_at(panel.colour_map, share) : kNoValue);
+            colours.push_back(
+                std::isfinite(value)
+                    ? colour_at(panel.colour_map, colour_share(panel, range, double{value}))
+                    : kNoValue);
         }
     }
     return colours;
@@ -188,16 +196,18 @@ void draw_colour_bar(Canvas& canvas,
     canvas.image(bar, 1, static_cast<int>(table.size()), {table.rbegin(), table.rend()});
     canvas.frame(bar, kAxis, kLine);
 
-    const PixelAxis axis{range[0], range[1], bar.bottom(), bar.y};
+    const PixelAxis axis{0.0, 1.0, bar.bottom(), bar.y};
     const AxisTicks ticks = choose_ticks(range[0], range[1], tick_count(bar.height));
     for (std::size_t i = 0; i < ticks.values.size(); ++i) {
-        const int y = static_cast<int>(std::lround(axis.pixel(ticks.values[i])));
+        const int y =
+            static_cast<int>(std::lround(axis.pixel(colour_share(panel, range, ticks.values[i]))));
         canvas.fill({bar.right() + kLine, y - kLine / 2, kTickLength, kLine}, kAxis);
         canvas.text(bar.right() + 18, y, ticks.labels[i], anchored(kTickText, TextAnchor::Start));
     }
     canvas.text(bar.right() + kBarLabels - 16,
                 bar.y + bar.height / 2,
-                label_with_exponent(panel.value_label, ticks.exponent),
+                label_with_exponent(panel.value_label, ticks.exponent) +
+                    (panel.value_scale == ValueScale::Gamma ? ", square-root scale" : ""),
                 upwards(kLabelText));
 }
 

@@ -12,7 +12,7 @@ namespace nlos {
 namespace {
 
 constexpr double kNarrowestDepthRange_m = 0.1;
-constexpr double kNarrowestErrorRange_mm = 1.0;
+constexpr double kErrorRange = 0.02;  // of the true depth
 
 using Range = std::array<double, 2>;
 
@@ -186,20 +186,15 @@ std::vector<Panel> comparison_panels(const Reconstruction& reconstruction,
     // The truth sets the colours: far-off depths of a poor result would wash out both maps.
     std::optional<Range> range = depth_range(truth.depth_m);
     if (!range) range = depth_range(found.depth_m);
-    std::vector<double> errors_mm(truth.depth_m.size());
-    std::vector<double> sizes_mm(truth.depth_m.size());
-    for (std::size_t i = 0; i < errors_mm.size(); ++i) {
-        errors_mm[i] = 1000.0 * (found.depth_m[i] - truth.depth_m[i]);
-        sizes_mm[i] = std::abs(errors_mm[i]);
-    }
-    ImagePanel error =
-        front_view_of(truth.x_m, truth.y_m, [&](std::size_t i) { return errors_mm[i]; });
+    ImagePanel error = front_view_of(truth.x_m, truth.y_m, [&](std::size_t i) {
+        return 1000.0 * (found.depth_m[i] - truth.depth_m[i]);
+    });
     error.title = "Error where both are";
     error.value_label = "found - true [mm]";
     error.colour_map = ColourMap::Diverging;
-    // fmax also drops the NaN of an error map without a common column.
-    const double limit_mm = std::fmax(kNarrowestErrorRange_mm, percentile(sizes_mm, 0.95));
-    error.value_range = Range{-limit_mm, limit_mm};
+    // One scale for all results of a scene, so that their maps can be compared.
+    const double limit_mm = 1000.0 * kErrorRange * percentile(truth.depth_m, 0.5);
+    if (limit_mm > 0.0) error.value_range = Range{-limit_mm, limit_mm};
     return {depth_panel(truth, "True depth", range),
             depth_panel(found, "Reconstructed depth", range),
             error};

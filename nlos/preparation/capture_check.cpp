@@ -134,12 +134,29 @@ std::optional<std::string> bent_onset(const core::Capture& capture,
     return std::nullopt;
 }
 
+/// Light that the renderer knows to lie outside the axis.
+std::optional<std::string> cut_light(const core::Capture& capture) {
+    constexpr double kMostMissing = 0.01;
+    const core::Json& made = capture.scene_info;
+    if (!made.is_object() || !made.contains("light") || !made["light"].is_object()) return {};
+    const core::Json share = made["light"].value("share_in_axis", core::Json());
+    if (!share.is_number() || share.get<double>() >= 1.0 - kMostMissing) return {};
+    return fmt::format(
+        "the capture is cut by its gate: {:.4g} to {:.4g} m of path length hold "
+        "{:.2g} % of the scene's light",
+        capture.time_axis.opl_start_m,
+        capture.time_axis.opl_end_m(),
+        100.0 * share.get<double>());
+}
+
 }  // namespace
 
-std::vector<std::string> timing_warnings(const core::Capture& capture) {
-    if (capture.scan.camera) return {};
-    const std::vector<double> ambient = ambient_of(capture);
+std::vector<std::string> capture_warnings(const core::Capture& capture) {
+    if (capture.transient.is_dark()) return {"the capture holds no light: all its values are 0"};
     std::vector<std::string> warnings;
+    if (auto warning = cut_light(capture)) warnings.push_back(*warning);
+    if (capture.scan.camera) return warnings;
+    const std::vector<double> ambient = ambient_of(capture);
     if (auto warning = early_light(capture, ambient)) warnings.push_back(*warning);
     if (auto warning = fast_onset(capture, ambient)) {
         warnings.push_back(*warning);

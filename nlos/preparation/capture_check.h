@@ -8,8 +8,9 @@
 
 namespace nlos {
 
-/// What looks wrong about a capture's time axis, a sentence each, for people:
+/// What looks wrong about a capture, a sentence each, for people:
 ///
+/// - no light at all;
 /// - light that arrives before the shortest possible path, |l - s| plus device legs: time zero is
 ///   late;
 /// - first light that moves along the wall faster than any path length can change (1 m per metre of
@@ -18,8 +19,11 @@ namespace nlos {
 ///   than that of points, edges and tips: bins are narrower or wider than stated, or the wall's
 ///   size is wrong, see bend_of_first_light().
 ///
-/// returns   empty when nothing does; never for captures too small or dark to tell, nor for images
+/// - a time axis that cuts most light off, where the capture's provenance knows how much there is.
+///
+/// returns   empty when nothing does; nothing about timing for captures too small or dark to tell,
+///           nor for images
 /// throws    nothing
-std::vector<std::string> timing_warnings(const core::Capture& capture);
+std::vector<std::string> capture_warnings(const core::Capture& capture);
 
 }  // namespace nlos

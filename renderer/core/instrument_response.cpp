@@ -176,6 +176,17 @@ void trim(ResponseFilter& filter) {
 
 }  // namespace
 
+void read_value(const Json& json, const std::string& where, ResponseSettings& settings) {
+    settings.of_capture = json == "capture";
+    if (settings.of_capture) return;
+    if (!json.is_object()) throw_wrong_type(where, json, "capture, or an object with named fields");
+    read_value<ResponseSettings>(json, where, settings);
+}
+
+Json write_value(const ResponseSettings& settings) {
+    return settings.of_capture ? Json("capture") : write_value<ResponseSettings>(settings);
+}
+
 InstrumentResponse make_response(const ResponseSettings& settings, const std::string& where) {
     const auto check = [&](const char* key, double value) {
         constexpr double kLargest = 1e9;  // [ps], 300 km

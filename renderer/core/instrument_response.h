@@ -38,11 +38,13 @@ struct MeasuredResponse {
 using InstrumentResponse =
     std::variant<GaussianResponse, ExponentialGaussianResponse, MeasuredResponse>;
 
-/// The response as users state it, in picoseconds; all 0 and empty: none.
+/// The response as users state it, in picoseconds; all 0 and empty: none. The text `capture` asks
+/// for the one that a capture's provenance states, see recorded_detector.h.
 struct ResponseSettings {
     double jitter_fwhm_ps = 0.0;
     double tail_ps = 0.0;
     std::string curve;
+    bool of_capture = false;
 };
 
 template <class Visitor>
@@ -55,9 +57,13 @@ void for_each_field(ResponseSettings& s, Visitor&& visit) {
           "text file of a measured response instead: a delay [ps] and a weight on every line");
 }
 
+void read_value(const Json& json, const std::string& where, ResponseSettings& settings);
+Json write_value(const ResponseSettings& settings);
+
 /// Whether there is any response.
 inline bool is_stated(const ResponseSettings& settings) {
-    return settings.jitter_fwhm_ps != 0.0 || settings.tail_ps != 0.0 || !settings.curve.empty();
+    return settings.of_capture || settings.jitter_fwhm_ps != 0.0 || settings.tail_ps != 0.0 ||
+           !settings.curve.empty();
 }
 
 /// Throws Error naming `where` unless widths are finite and not negative and the curve stands alone

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -27,6 +28,11 @@ class Transient {
     std::span<const float> histogram(std::size_t pair) const {
         return {values_.data() + pair * num_bins_, num_bins_};
     }
+    /// Whether all values are 0.
+    bool is_dark() const {
+        return std::all_of(values_.begin(), values_.end(), [](float v) { return v == 0.0F; });
+    }
+
     std::span<float> values() { return values_; }
     std::span<const float> values() const { return values_; }
 

@@ -165,6 +165,10 @@ class SceneReader {
                           : !mesh.name.empty() ? mesh.name
                                                : fmt::format("node{}", visit.node);
             object.material = loaded.material;
+            for (const std::string& text : loaded.warnings) {
+                auto& all = geometry_.warnings;
+                if (std::find(all.begin(), all.end(), text) == all.end()) all.push_back(text);
+            }
             if (extras.retroreflective.value_or(false)) {
                 object.material.model = SurfaceModel::Retroreflective;
             }

@@ -6,6 +6,7 @@
 #include <fmt/core.h>
 #include <tiny_gltf.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 
@@ -97,6 +98,33 @@ std::shared_ptr<const Texture> read_texture(const GltfDocument& document,
     return texture;
 }
 
+// What makes a difference to light and is not modelled.
+std::vector<std::string> material_warnings(const tinygltf::Material& source, int index) {
+    const std::string name =
+        source.name.empty() ? fmt::format("material {}", index) : "material " + source.name;
+    const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
+    std::vector<std::string> warnings;
+    const auto warn = [&](bool applies, const std::string& text) {
+        if (applies) warnings.push_back(name + ": " + text);
+    };
+    warn(pbr.metallicFactor > 0.0 && pbr.metallicFactor < 1.0,
+         fmt::format("a metallicFactor of {:.3g} is taken as metal", pbr.metallicFactor));
+    warn(pbr.metallicRoughnessTexture.index >= 0,
+         "its metallic-roughness texture is not modelled; the factors count alone");
+    warn(source.normalTexture.index >= 0, "its normal map is not modelled");
+    warn(source.emissiveTexture.index >= 0 ||
+             std::any_of(source.emissiveFactor.begin(),
+                         source.emissiveFactor.end(),
+                         [](double factor) { return factor > 0.0; }),
+         "its emission is not modelled");
+    warn(source.alphaMode == "BLEND" || source.alphaMode == "MASK",
+         "its transparency is not modelled: it is opaque");
+    for (const auto& [extension, value] : source.extensions) {
+        warn(true, "its extension " + extension + " is not modelled");
+    }
+    return warnings;
+}
+
 LoadedMaterial read_material(const GltfDocument& document, int index) {
     const tinygltf::Material& source = document.model->materials[static_cast<std::size_t>(index)];
     const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
@@ -109,13 +137,33 @@ LoadedMaterial read_material(const GltfDocument& document, int index) {
     // The mean, written so that equal components keep their value to the last bit.
     loaded.material.albedo = factor[0] + ((factor[1] - factor[0]) + (factor[2] - factor[0])) / 3.0;
     loaded.material.roughness = pbr.roughnessFactor;
+    loaded.warnings = material_warnings(source, index);
+    const core::Json& json = document.json["materials"][static_cast<std::size_t>(index)];
+    const core::Json factors = json.value("pbrMetallicRoughness", core::Json::object());
+    if (!factors.contains("metallicFactor") && !factors.contains("roughnessFactor")) {
+        loaded.warnings.push_back(
+            fmt::format("material {}: without metallicFactor and roughnessFactor it is a rough "
+                        "metal by glTF's defaults",
+                        source.name.empty() ? std::to_string(index) : source.name));
+    }
     if (pbr.baseColorTexture.index >= 0) {
         loaded.material.albedo_texture = read_texture(document, pbr.baseColorTexture, factor);
         loaded.texture_coordinate_set = pbr.baseColorTexture.texCoord;
     }
-    loaded.extras = read_nlos_extras(document.json["materials"][static_cast<std::size_t>(index)],
-                                     document.where(fmt::format("materials[{}]", index)));
+    loaded.extras = read_nlos_extras(json, document.where(fmt::format("materials[{}]", index)));
     return loaded;
+}
+
+// Keys of ours without `nlos_`, or without their unit, which would be overlooked.
+void refuse_without_prefix(const std::string& key, const std::string& where) {
+    NlosExtras known;
+    for_each_field(known, [&](const std::string& name, const auto&, const char*) {
+        const std::string bare = name.substr(std::string("nlos_").size());
+        const std::string without_unit = bare.substr(0, bare.find("_m_per_s"));
+        if (key != bare && key != without_unit && key != "nlos_" + without_unit) return;
+        if (key == name) return;
+        throw core::Error(where + ".extras", "found " + key, "must be " + name);
+    });
 }
 
 }  // namespace
@@ -134,6 +182,7 @@ NlosExtras read_nlos_extras(const core::Json& owner, const std::string& where) {
     if (const auto extras = owner.find("extras"); extras != owner.end() && extras->is_object()) {
         for (const auto& [key, value] : extras->items()) {
             if (key.starts_with("nlos_")) ours[key] = value;
+            refuse_without_prefix(key, where);
         }
     }
     NlosExtras result;

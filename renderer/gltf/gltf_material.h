@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace renderer {
 
@@ -30,14 +31,16 @@ void for_each_field(NlosExtras& extras, Visitor&& visit) {
 }
 
 /// Reads the nlos_ entries of the extras of `owner`, a node or material; others are left alone.
-/// Throws core::Error for unknown nlos_ keys and wrong types.
+/// Throws core::Error for unknown nlos_ keys, for wrong types, and for keys of ours without the
+/// prefix, which would be overlooked.
 NlosExtras read_nlos_extras(const core::Json& owner, const std::string& where);
 
 /// A material of the file, with what it says about its surfaces.
 struct LoadedMaterial {
     Material material;
     NlosExtras extras;
-    int texture_coordinate_set = 0;  ///< the n of TEXCOORD_n that the albedo texture uses
+    std::vector<std::string> warnings;  ///< what the file says of it that is not modelled
+    int texture_coordinate_set = 0;     ///< the n of TEXCOORD_n that the albedo texture uses
 };
 
 /// Reads materials and decodes their textures, each once.

@@ -14,6 +14,8 @@ using core::kPi;
 using core::Vec2;
 using core::Vec3;
 
+constexpr double kDielectricReflectance = 0.04;  // at normal incidence, index 1.5
+
 // All overloads see incoming.z > 0 and outgoing.z > 0.
 
 double evaluate_(const Lambertian& bsdf, const Vec3&, const Vec3&) {
@@ -26,15 +28,15 @@ std::optional<Vec3> sample_(const Lambertian&, const Vec3&, const Vec2& u) {
     return core::sample_cosine_hemisphere(u);
 }
 
-double normal_density(const Ggx& bsdf, const Vec3& half) {
-    return ggx_normal_density(bsdf.alpha, half.z() * half.z(), half.head<2>().squaredNorm());
+double normal_density(double alpha, const Vec3& half) {
+    return ggx_normal_density(alpha, half.z() * half.z(), half.head<2>().squaredNorm());
 }
 
 double evaluate_(const Ggx& bsdf, const Vec3& incoming, const Vec3& outgoing) {
     const Vec3 half = (incoming + outgoing).normalized();
     return ggx_value(bsdf.albedo,
                      bsdf.alpha,
-                     normal_density(bsdf, half),
+                     normal_density(bsdf.alpha, half),
                      incoming.z(),
                      outgoing.z(),
                      half.dot(incoming));
@@ -44,7 +46,7 @@ double evaluate_(const Ggx& bsdf, const Vec3& incoming, const Vec3& outgoing) {
 // divides it by 4 i.h.
 double pdf_(const Ggx& bsdf, const Vec3& incoming, const Vec3& outgoing) {
     const Vec3 half = (incoming + outgoing).normalized();
-    return normal_density(bsdf, half) /
+    return normal_density(bsdf.alpha, half) /
            (2.0 * (incoming.z() + ggx_masking(bsdf.alpha, incoming.z())));
 }
 
@@ -82,6 +84,36 @@ double pdf_(const Retroreflective&, const Vec3&, const Vec3&) {
 }
 std::optional<Vec3> sample_(const Retroreflective&, const Vec3&, const Vec2&) {
     return std::nullopt;
+}
+
+// Reflected share at an angle of this cosine, by Schlick's approximation.
+double dielectric_fresnel(double cosine) {
+    return kDielectricReflectance + (1.0 - kDielectricReflectance) * std::pow(1.0 - cosine, 5);
+}
+
+double evaluate_(const Dielectric& bsdf, const Vec3& incoming, const Vec3& outgoing) {
+    const double let_through =
+        (1.0 - dielectric_fresnel(incoming.z())) * (1.0 - dielectric_fresnel(outgoing.z()));
+    return let_through * bsdf.albedo / kPi +
+           evaluate_(Ggx{kDielectricReflectance, bsdf.alpha}, incoming, outgoing);
+}
+
+// How often the interface is sampled instead of the body.
+double share_of_interface(const Dielectric& bsdf, const Vec3& incoming) {
+    const double reflected = dielectric_fresnel(incoming.z());
+    return std::clamp(reflected / (reflected + (1.0 - reflected) * bsdf.albedo), 0.1, 0.9);
+}
+
+double pdf_(const Dielectric& bsdf, const Vec3& incoming, const Vec3& outgoing) {
+    const double share = share_of_interface(bsdf, incoming);
+    return share * pdf_(Ggx{1.0, bsdf.alpha}, incoming, outgoing) +
+           (1.0 - share) * pdf_(Lambertian{}, incoming, outgoing);
+}
+
+std::optional<Vec3> sample_(const Dielectric& bsdf, const Vec3& incoming, const Vec2& u) {
+    const double share = share_of_interface(bsdf, incoming);
+    if (u.x() < share) return sample_(Ggx{1.0, bsdf.alpha}, incoming, {u.x() / share, u.y()});
+    return sample_(Lambertian{}, incoming, {(u.x() - share) / (1.0 - share), u.y()});
 }
 
 bool same_side(const Vec3& a, const Vec3& b) {

@@ -31,7 +31,16 @@ struct Retroreflective {
     double albedo = 1.0;
 };
 
-using Bsdf = std::variant<Lambertian, Ggx, Retroreflective>;
+/// Rough dielectric: GGX reflection at an interface of index 1.5, 0.04 at normal incidence, over a
+/// diffuse body that gets what the interface lets in and out. Source [glTF2], appendix B, but for
+/// the body's share: there it depends on the half vector, and grazing light comes back as more than
+/// all.
+struct Dielectric {
+    double albedo = 1.0;  ///< of the body
+    double alpha = 1.0;   ///< GGX width
+};
+
+using Bsdf = std::variant<Lambertian, Ggx, Retroreflective, Dielectric>;
 
 /// Smallest GGX width: narrower lobes are practically mirrors and lose precision.
 inline constexpr double kSmallestGgxAlpha = 1e-3;

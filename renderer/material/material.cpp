@@ -7,6 +7,7 @@ namespace renderer {
 constexpr double kSmallestGlossyAlpha = 0.03;
 
 bool is_integrable(const Material& material) {
+    if (material.model == SurfaceModel::Dielectric) return false;
     return material.model != SurfaceModel::Ggx ||
            material.roughness * material.roughness >= kSmallestGlossyAlpha;
 }

@@ -40,8 +40,9 @@ struct Camera {
 
 /// What a glTF file holds, flattened to world coordinates.
 struct SceneGeometry {
-    std::vector<Object> objects;  ///< an instanced mesh appears once per instance
-    std::vector<Camera> cameras;  ///< perspective ones
+    std::vector<Object> objects;          ///< an instanced mesh appears once per instance
+    std::vector<Camera> cameras;          ///< perspective ones
+    std::vector<std::string> warnings{};  ///< what the file says that is not modelled, for people
 };
 
 }  // namespace renderer

@@ -93,6 +93,9 @@ Bsdf make_bsdf(const Material& material) {
                        std::max(kSmallestGgxAlpha, material.roughness * material.roughness)};
         case SurfaceModel::Retroreflective:
             return Retroreflective{material.albedo};
+        case SurfaceModel::Dielectric:
+            return Dielectric{material.albedo,
+                              std::max(kSmallestGgxAlpha, material.roughness * material.roughness)};
         case SurfaceModel::Lambertian:
             break;
     }
@@ -176,6 +179,11 @@ std::optional<SurfacePoint> Scene::first_hit(const Vec3& from,
 
 Scene load_scene(const SceneDescription& description, const core::Scan& scan) {
     SceneGeometry geometry = load_gltf(description.geometry);
+    for (Object& object : geometry.objects) {
+        if (!description.render.dielectric_specular) break;
+        Material& material = object.material;
+        if (material.model == SurfaceModel::Lambertian) material.model = SurfaceModel::Dielectric;
+    }
     const auto in_front = [&](const Object& object) {
         if (object.role == Role::RelayWall) return false;
         for (std::size_t i = 0; i < scan.sensing.size(); ++i) {

@@ -45,6 +45,8 @@ class Scene {
     Scene(SceneGeometry geometry, const core::Scan& scan, const RelayWall& wall);
 
     const std::vector<Object>& objects() const { return geometry_.objects; }
+    /// What the geometry's file says that is not modelled, for people.
+    const std::vector<std::string>& warnings() const { return geometry_.warnings; }
     std::span<const Facet> facets() const { return facets_; }
     const Facet& facet(std::uint32_t index) const { return facets_[index]; }
     const Object& object_of(std::uint32_t facet) const {

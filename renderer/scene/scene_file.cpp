@@ -178,6 +178,19 @@ void refuse_two_setups(const core::Json& keys, const std::string& where) {
 
 }  // namespace
 
+void read_value(const core::Json& json, const std::string& where, SceneTimeAxis& axis) {
+    axis.automatic = json == "auto";
+    if (axis.automatic) return;
+    if (!json.is_object()) {
+        core::throw_wrong_type(where, json, "auto, or an object with named fields");
+    }
+    core::read_value<SceneTimeAxis>(json, where, axis);
+}
+
+core::Json write_value(const SceneTimeAxis& axis) {
+    return axis.automatic ? core::Json("auto") : core::write_value<SceneTimeAxis>(axis);
+}
+
 void read_value(const core::Json& json, const std::string& where, CameraSettings& camera) {
     if (json.is_string()) {
         camera.name = json.get<std::string>();
@@ -229,7 +242,7 @@ void validate(const SceneDescription& scene, const std::string& where) {
         validate_wall(scene.relay_wall, where + "relay_wall");
         validate_scan(scene.scan, where + "scan");
     }
-    core::validate(scene.time_axis, where + "time_axis");
+    if (!scene.time_axis.automatic) core::validate(scene.time_axis, where + "time_axis");
     if (scene.velocity_axis) core::validate(*scene.velocity_axis, where + "velocity_axis");
     if (scene.frames) core::check_ranges(*scene.frames, where + "frames");
     validate(scene.render, where + "render");

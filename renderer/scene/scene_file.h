@@ -50,6 +50,12 @@ struct FrameSettings {
     double frame_s = 0.0;
 };
 
+/// The bins of path length: an object, or the text `auto`, which leaves the choice to geometry and
+/// scan.
+struct SceneTimeAxis : core::TimeAxis {
+    bool automatic = false;  ///< still to be chosen; see choose_time_axis()
+};
+
 struct GroundTruthSettings {
     std::array<int, 2> depth_resolution{256, 256};
 };
@@ -60,7 +66,7 @@ struct SceneDescription {
     RelayWall relay_wall;
     ScanSettings scan;
     std::optional<CameraSettings> camera;  ///< replaces relay_wall and scan
-    core::TimeAxis time_axis;
+    SceneTimeAxis time_axis;
     std::optional<core::VelocityAxis> velocity_axis;  ///< nothing: velocities are not resolved
     std::optional<FrameSettings> frames;              ///< nothing: one frame
     RenderSettings render;
@@ -105,6 +111,15 @@ void for_each_field(CameraSettings& camera, Visitor&& visit) {
 void read_value(const core::Json& json, const std::string& where, CameraSettings& camera);
 
 template <class Visitor>
+void for_each_field(SceneTimeAxis& axis, Visitor&& visit) {
+    for_each_field(static_cast<core::TimeAxis&>(axis), visit);
+}
+
+/// A time axis is an object with fields or the text `auto`.
+void read_value(const core::Json& json, const std::string& where, SceneTimeAxis& axis);
+core::Json write_value(const SceneTimeAxis& axis);
+
+template <class Visitor>
 void for_each_field(FrameSettings& frames, Visitor&& visit) {
     visit("count", frames.count, core::at_least(1, "number of frames"));
     visit("gate_step_m", frames.gate_step_m, "by which the time axis moves per frame [m]");
@@ -127,7 +142,7 @@ void for_each_field(SceneDescription& scene, Visitor&& visit) {
           scene.camera,
           "instead of relay_wall and scan: an image; position_m, look_at_m, up, fov_y_deg, "
           "resolution, light_m, light_spot_m, or the name of a glTF camera");
-    visit("time_axis", scene.time_axis, "bins of optical path length");
+    visit("time_axis", scene.time_axis, "bins of optical path length, or auto");
     visit("velocity_axis",
           scene.velocity_axis,
           "Doppler: bins of path velocity; start_m_per_s, bin_width_m_per_s, num_bins, with_time, "

@@ -37,6 +37,7 @@ struct RenderSettings {
     bool by_order = false;
     bool direct_return = false;
     double laser_spot_m2 = 1e-4;
+    bool dielectric_specular = false;
     RestirSettings restir;
 };
 
@@ -73,6 +74,10 @@ void for_each_field(RenderSettings& s, Visitor&& visit) {
           s.laser_spot_m2,
           core::above(
               0, "area of the laser spot on the wall: direct return and retroreflectors [m^2]"));
+    visit("dielectric_specular",
+          s.dielectric_specular,
+          "give materials that are not metallic the specular reflection that glTF defines, of 4 % "
+          "at normal incidence; without, they are diffuse");
     visit("restir", s.restir, "reservoir reuse");
 }
 

@@ -27,7 +27,9 @@ constexpr double kDefaultTargetError = 0.01;
 constexpr int kCoarsest = 5;
 constexpr int kFirst = 1;
 constexpr int kFinest = -10;
-constexpr int kReferenceSteps = 2;  // a reference is at least this much finer
+constexpr int kReferenceSteps = 2;         // a reference is at least this much finer
+constexpr double kSuspiciousShare = 0.05;  // of the target: a difference too small to be believed
+constexpr double kFinerReference = 3.0;    // then: times as many elements
 // A cut with at most this many times the fewest elements cannot become much coarser: facets are
 // not merged beyond that.
 constexpr double kNearlyFewest = 1.05;
@@ -157,18 +159,24 @@ const Pilot& Integrator::run_pilot(int level) {
     return pilot;
 }
 
-// Against the finest pilot run so far, which is at least kReferenceSteps finer.
+// Against the finest pilot run so far, which is at least kReferenceSteps finer. Where facets are
+// few and large, levels hardly differ: what both leave out must not count as no error, and the
+// reference becomes finer until it has many more elements.
 double Integrator::error_of(int level) {
-    if (pilots_.empty() || pilots_.begin()->first > level - kReferenceSteps) {
-        run_pilot(level - kReferenceSteps);
-    }
-    run_pilot(level);
+    int finest = pilots_.empty() ? level : pilots_.begin()->first;
+    finest = std::min(finest, level - kReferenceSteps);
+    run_pilot(finest);
+    const auto elements = static_cast<double>(run_pilot(level).num_elements);
     Pilot& pilot = pilots_.at(level);
-    const Transient& reference = pilots_.begin()->second.transient;
-    const double norm = std::sqrt(squared_norm(reference));
+    double difference = relative_difference(pilot.transient, pilots_.at(finest).transient);
+    while (difference < kSuspiciousShare * target_ && finest > kFinest - kReferenceSteps &&
+           static_cast<double>(pilots_.at(finest).num_elements) < kFinerReference * elements) {
+        difference = relative_difference(pilot.transient, run_pilot(--finest).transient);
+    }
+    const double norm = std::sqrt(squared_norm(pilots_.at(finest).transient));
     // Shadow edges that both pilot runs leave uncertain do not show in their difference.
     const double shadows = norm > 0.0 ? pilot.shadow_error / norm : 0.0;
-    pilot.error = kCaution * std::hypot(relative_difference(pilot.transient, reference), shadows);
+    pilot.error = kCaution * std::hypot(difference, shadows);
     return *pilot.error;
 }
 

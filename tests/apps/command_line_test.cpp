@@ -116,6 +116,77 @@ TEST_F(CommandLine, SceneToScoredReconstruction) {
     }
 }
 
+TEST_F(CommandLine, DarknessIsNamedFromRenderToFit) {
+    const std::string scene = make_scene("scene.json", {{"scan", {{"sensing_points", {4, 4}}}}});
+    const std::string dark = file("dark.h5");
+    const Outcome render =
+        run("render " + scene + " -o " + dark + " --set time_axis.opl_start_m=50");
+    EXPECT_EQ(render.status, 0);
+    EXPECT_NE(render.err.find("and no light: paths are 1."), std::string::npos) << render.err;
+    EXPECT_NE(render.err.find("the capture holds no light"), std::string::npos) << render.err;
+    EXPECT_EQ(render.out.find("error about"), std::string::npos) << render.out;
+    EXPECT_NE(run("info " + dark).out.find("the capture holds no light"), std::string::npos);
+    const Outcome reconstruct = run("reconstruct " + dark + " -o " + file("v.h5"));
+    EXPECT_NE(reconstruct.err.find("the capture holds no light"), std::string::npos)
+        << reconstruct.err;
+    const Outcome compare = run("compare " + dark + " " + dark);
+    EXPECT_NE(compare.err.find("the reference holds no light"), std::string::npos) << compare.err;
+    write_file_bytes(file("model.json"),
+                     R"({"scene": "scene.json", "free": {"letter": ["pose"]}})");
+    expect_bad_input("fit " + dark + " " + file("model.json") + " -o " + file("f.json"),
+                     "found no light");
+
+    const Outcome frames = run("render " + scene + " -o " + file("frames.h5") +
+                               " --set time_axis.num_bins=1 time_axis.bin_width_m=0.1 "
+                               "time_axis.opl_start_m=0.9 frames.count=6 frames.gate_step_m=0.1");
+    EXPECT_NE(frames.err.find("of 6 frames hold no light"), std::string::npos) << frames.err;
+}
+
+TEST_F(CommandLine, TimeAxesCanBeChosenByTheProgram) {
+    const std::string scene =
+        make_scene("scene.json", {{"scan", {{"sensing_points", {4, 4}}}}, {"time_axis", "auto"}});
+    const Outcome render = run("render " + scene + " -o " + file("auto.h5"));
+    EXPECT_EQ(render.status, 0) << render.err;
+    EXPECT_EQ(render.err, "");
+    const core::Capture capture = nlos::read_capture(file("auto.h5"));
+    EXPECT_GT(capture.scene_info["light"]["share_in_axis"].get<double>(), 0.999);
+    EXPECT_EQ(capture.scene_info["settings"]["time_axis"]["num_bins"], capture.time_axis.num_bins);
+    EXPECT_NE(run("info " + scene).out.find("(auto)"), std::string::npos);
+    EXPECT_EQ(run("render scenes/letter/scene.json -o " + file("set.h5") +
+                  " --samples 4 --set time_axis=auto scan.sensing_points=[4,4]")
+                  .status,
+              0);
+    expect_bad_input("render " + scene + " -o " + file("x.h5") + " --set time_axis=automatic",
+                     "must be auto, or an object");
+}
+
+TEST_F(CommandLine, InfoOfASceneSaysFirstWhatItIs) {
+    const Outcome info = run("info scenes/letter/scene.json");
+    EXPECT_EQ(info.status, 0);
+    EXPECT_LT(std::count(info.out.begin(), info.out.end(), '\n'), 30) << info.out;
+    for (const char* part : {"object letter: ", "lambertian", "scan: confocal", "light: from 1."}) {
+        EXPECT_NE(info.out.find(part), std::string::npos) << part << "\n" << info.out;
+    }
+}
+
+TEST_F(CommandLine, ResponsesOfCapturesAreOffered) {
+    const std::string counts = file("counts.h5");
+    ASSERT_EQ(
+        run("simulate-noise data/letter.h5 -o " + counts + " --photons 1e6 --jitter-fwhm-ps 100")
+            .status,
+        0);
+    const std::string reconstruct = "reconstruct " + counts + " -o " + file("v.h5");
+    const Outcome ignored = run(reconstruct);
+    EXPECT_NE(ignored.err.find("response=capture"), std::string::npos) << ignored.err;
+    const Outcome used = run(reconstruct + " --set response=capture");
+    EXPECT_EQ(used.status, 0) << used.err;
+    EXPECT_EQ(used.err.find("response"), std::string::npos) << used.err;
+    EXPECT_EQ(nlos::read_volume(file("v.h5")).settings.response.jitter_fwhm_ps, 100.0);
+    EXPECT_NE(run("info " + counts).out.find("response of 100 ps"), std::string::npos);
+    expect_bad_input("reconstruct data/letter.h5 -o " + file("w.h5") + " --set response=capture",
+                     "states no response");
+}
+
 TEST_F(CommandLine, CalibrationsServeRenderReconstructAndFit) {
     const std::string scene = make_scene("scene.json", {{"scan", {{"sensing_points", {8, 8}}}}});
     ASSERT_EQ(run("render " + scene + " -o " + file("plain.h5")).status, 0);
@@ -328,8 +399,9 @@ TEST_F(CommandLine, ImagesOfACamera) {
     EXPECT_NE(run("info " + out).out.find("camera: 16 x 12 pixels"), std::string::npos);
     EXPECT_EQ(run("compare " + out + " " + out).status, 0);
     ASSERT_EQ(run("render scenes/box/scene.json -o " + file("same.exr") + small).status, 0);
-    EXPECT_NE(run("compare " + file("same.exr") + " " + out).out.find("rel_l2               0 "),
-              std::string::npos);
+    EXPECT_NE(
+        run("compare " + file("same.exr") + " " + out).out.find("rel_l2                   0 "),
+        std::string::npos);
     expect_bad_input("render scenes/box/scene.json -o " + file("image.tiff") + small, "image.tiff");
     expect_bad_input("reconstruct " + out + " -o " + file("v.h5"), "image of a camera");
     expect_bad_input("compare " + out + " scenes/box/scene.json", "cannot be compared");

@@ -181,11 +181,52 @@ TEST(StatedError, AutoSaysWhichOrdersItLeavesOut) {
     settings.max_bounces = 6;
     settings.target_error = 0.05;
     const auto result = renderer::render(scene, scan, {kStatedAxis, {}}, settings, {});
-    ASSERT_EQ(result.warnings.size(), 1U);
-    EXPECT_NE(result.warnings[0].find("to 6 are left out"), std::string::npos)
-        << result.warnings[0];
+    ASSERT_TRUE(result.left_out);
+    EXPECT_EQ(result.left_out->last, 6);
+    EXPECT_GE(*result.estimated_error, result.left_out->error);
     settings.target_error.reset();
-    EXPECT_TRUE(renderer::render(scene, scan, {kStatedAxis, {}}, settings, {}).warnings.empty());
+    EXPECT_FALSE(renderer::render(scene, scan, {kStatedAxis, {}}, settings, {}).left_out);
+}
+
+// Few large facets need few elements: however coarse the target, the error is not 0, and what is
+// stated bounds it.
+TEST(StatedError, CoarseTargetsOnLargeFacetsStateAnError) {
+    const core::Scan scan = scan_of(8);
+    const renderer::Scene scene(
+        {{test_support::parallelogram_object({{-0.2, -0.2, 0.6}, {0.4, 0.05, 0}, {0, 0.4, 0.1}})},
+         {}},
+        scan,
+        {});
+    const core::Transient reference = reference_of(scene, scan);
+    for (const double target : {0.4, 0.2, 0.1, 0.05, 0.02}) {
+        renderer::RenderSettings settings;
+        settings.method = Estimator::ThirdBounce;
+        settings.target_error = target;
+        const auto result = renderer::render(scene, scan, {kStatedAxis, {}}, settings, {});
+        const double error = relative_distance(result.capture.transient, reference);
+        EXPECT_LE(error, target);
+        EXPECT_LE(error, *result.estimated_error + 2e-3) << target;
+        EXPECT_GT(*result.estimated_error, 0.0) << target;
+    }
+}
+
+TEST(StatedError, RestirStatesOneForFewSamples) {
+    const core::Scan scan = scan_of(6);
+    const renderer::Scene scene = facing_scene(scan);
+    const core::TimeAxis gate{1.5, 0.3, 1};
+    renderer::RenderSettings settings;
+    settings.method = Estimator::Restir;
+    const auto render = [&](int samples) {
+        settings.samples = samples;
+        return renderer::render(scene, scan, {gate, {}}, settings, {});
+    };
+    EXPECT_FALSE(render(1).estimated_error);
+    for (const int samples : {2, 32, 256}) {
+        const auto result = render(samples);
+        ASSERT_TRUE(result.estimated_error) << samples;
+        EXPECT_GT(*result.estimated_error, 0.0) << samples;
+        EXPECT_LE(result.samples_per_pair, static_cast<std::uint64_t>(samples) + 1) << samples;
+    }
 }
 
 // More passes would not help.

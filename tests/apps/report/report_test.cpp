@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/report/report.h"
 
+#include "apps/estimate_text.h"
 #include "apps/report/html.h"
 #include "apps/report/metrics_table.h"
 #include "calib/fit_file.h"
@@ -16,6 +17,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 #include <sstream>
 
@@ -78,7 +80,7 @@ TEST(Report, ShowsFitsWithTheirErrorsAndDoubts) {
     EXPECT_TRUE(results.documents.empty());
     const std::string html = render_report(results);
     EXPECT_TRUE(contains(html, "<h2>Fits</h2>"));
-    EXPECT_TRUE(contains(html, "400 +- 0.5"));
+    EXPECT_TRUE(contains(html, "400.00 +- 0.50"));
     EXPECT_TRUE(contains(html, "Warning: light &lt;is&gt; cut off"));
     EXPECT_TRUE(contains(html, "Unidentifiable: time_zero against chart.z"));
 }
@@ -182,20 +184,63 @@ TEST(Report, ListsFilesThatCannotBeRead) {
 TEST(Report, MarksTheBestValueOfEachRow) {
     ScoredResult a;
     a.name = "first";
-    a.metrics = scores(0.002, 0.75);
+    a.metrics = scores(0.003, 0.75);
+    a.metrics.chamfer_m = 0.002;
     ScoredResult b;
     b.name = "second";
-    b.metrics = scores(0.001, 0.5);
+    b.metrics = scores(0.0015, 0.5);
+    b.metrics.chamfer_m = 0.001;
     const std::string table = metrics_table({a, b});
     EXPECT_TRUE(contains(table, "<td>2.00</td><td class=\"best\">1.00</td>"));  // mm, lower
+    EXPECT_TRUE(contains(table, "<td>3.00</td><td>1.50</td>"));  // of other shares of the surface
     EXPECT_TRUE(contains(table, "<td class=\"best\">75.0</td><td>50.0</td>"));  // %, higher
-    EXPECT_EQ(count_of(table, "<tr>"), 3U);  // metrics nobody has are left out
+    EXPECT_EQ(count_of(table, "<tr>"), 4U);  // metrics nobody has are left out
     EXPECT_FALSE(contains(metrics_table({a}), "best\""));
     EXPECT_FALSE(contains(metrics_table({a, a}), "best\""));
     ScoredResult same = a;
-    same.metrics.depth_mae_m = 0.002 + 1e-12;  // reads the same
+    same.metrics.chamfer_m = 0.002 + 1e-12;  // reads the same
     EXPECT_FALSE(contains(metrics_table({a, same}), "best\""));
-    EXPECT_TRUE(contains(metrics_tiles({a, b}), "<b>1.00<i>mm</i></b><small>second</small>"));
+}
+
+TEST(Report, HeadlinesAreOfTheResultWithTheHighestFScore) {
+    // The first has the smaller depth error, of next to nothing.
+    ScoredResult few;
+    few.name = "few";
+    few.metrics = scores(0.0001, 0.1);
+    few.metrics.depth_coverage = 0.02;
+    few.metrics.fscore = 0.04;
+    few.metrics.fscore_threshold_m = 0.01;
+    ScoredResult most = few;
+    most.name = "most";
+    most.metrics = scores(0.002, 0.9);
+    most.metrics.depth_coverage = 0.95;
+    most.metrics.fscore = 0.9;
+    const std::string tiles = metrics_tiles({few, most});
+    EXPECT_TRUE(contains(tiles, "<b>90.0<i>%</i></b><small>most</small>")) << tiles;
+    EXPECT_TRUE(contains(tiles, "<b>2.00<i>mm</i></b><small>over 95.0 % of the true surface"));
+    EXPECT_FALSE(contains(tiles, "0.100"));
+    EXPECT_EQ(metrics_tiles({}), "");
+}
+
+TEST(Report, TablesHaveOneThreshold) {
+    ScoredResult a;
+    a.metrics.fscore_threshold_m = 0.02;
+    ScoredResult b;
+    b.metrics.fscore_threshold_m = 0.01;
+    const ScoredResult none;
+    const auto groups = groups_by_threshold({a, b, none, a});
+    ASSERT_EQ(groups.size(), 2U);
+    EXPECT_EQ(groups[0].size(), 3U);
+    EXPECT_EQ(groups[1][0].metrics.fscore_threshold_m, 0.01);
+    EXPECT_EQ(groups_by_threshold({none, a, a}).size(), 1U);
+}
+
+TEST(Report, EstimatesReadWithTheirErrors) {
+    EXPECT_EQ(estimate_text(0.7000213, 0.000128), "0.70002 +- 0.00013");
+    EXPECT_EQ(estimate_text(12.3456, 3.21), "12.3 +- 3.2");
+    EXPECT_EQ(estimate_text(1234.6, 321.0), "1235 +- 321");
+    EXPECT_EQ(estimate_text(0.5, 0.0), "0.5");
+    EXPECT_EQ(estimate_text(0.5, INFINITY), "0.5 (unknown)");
 }
 
 TEST(Report, EveryMetricHasALabelOfItsOwn) {

@@ -44,15 +44,18 @@ std::vector<std::string> scored_names(Metrics metrics) {
 }
 
 TEST(Compare, DepthErrorsAreThoseOfTheCommonColumns) {
-    // Errors +1, -2 and +6 mm; column 3 is too dark for the mask, column 4 is background in truth,
-    // column 5 has no reconstructed depth.
-    const Reconstruction result = column_volume({1.0F, 0.9F, 0.5F, 0.19F, 0.8F, 0.7F},
-                                                {0.701, 0.698, 0.706, 0.9, 0.9, kBackground});
+    // Errors +1, -2 and +6 mm; columns 3 and 5 have no reconstructed depth, however bright, column
+    // 4 is background in truth.
+    const Reconstruction result =
+        column_volume({1.0F, 0.9F, 0.1F, 0.19F, 0.8F, 0.7F},
+                      {0.701, 0.698, 0.706, kBackground, 0.9, kBackground});
     const core::DepthMap truth = truth_of(result, {0.7, 0.7, 0.7, 0.7, kBackground, 0.7});
     const Metrics metrics = compare_to_truth(result, truth);
     EXPECT_NEAR(metrics.depth_mae_m.value(), 3e-3, 1e-12);
     EXPECT_NEAR(metrics.depth_median_m.value(), 2e-3, 1e-12);
     EXPECT_NEAR(metrics.depth_rmse_m.value(), std::sqrt(41e-6 / 3.0), 1e-12);
+    EXPECT_DOUBLE_EQ(metrics.depth_coverage.value(), 3.0 / 5.0);
+    EXPECT_DOUBLE_EQ(metrics.mask_iou_stated.value(), 3.0 / 6.0);
 }
 
 TEST(Compare, MedianOfAnEvenNumberOfErrorsIsTheMiddle) {
@@ -69,6 +72,7 @@ TEST(Compare, MaskIouCountsColumnsAboveAFifthOfTheMaximum) {
     EXPECT_DOUBLE_EQ(metrics.mask_iou.value(), 2.0 / 5.0);
     // Best: between 0.75 and 0.25, where five columns are in and four of them rightly.
     EXPECT_DOUBLE_EQ(metrics.mask_iou_best.value(), 4.0 / 5.0);
+    EXPECT_DOUBLE_EQ(metrics.mask_iou_best_threshold.value(), 0.75 / 5.0);
 }
 
 TEST(Compare, BestMaskIouIsTheBestOfAllThresholds) {
@@ -92,9 +96,12 @@ TEST(Compare, BestMaskIouIsTheBestOfAllThresholds) {
             }
             best = std::max(best, both / either);
         }
-        const double exact = best_mask_iou(image, truth).value();
-        EXPECT_DOUBLE_EQ(exact, best);
-        EXPECT_GE(exact, mask_iou(mask_above_share(image, 0.2), truth).value_or(0.0));
+        const ThresholdedMask exact = best_mask(image, truth).value();
+        EXPECT_DOUBLE_EQ(exact.iou, best);
+        // Just below its share of the maximum lies the threshold that gives it.
+        EXPECT_DOUBLE_EQ(
+            mask_iou(mask_above_share(image, exact.share * (1.0 - 1e-6)), truth).value(), best);
+        EXPECT_GE(exact.iou, mask_iou(mask_above_share(image, 0.2), truth).value_or(0.0));
     }
 }
 
@@ -119,7 +126,8 @@ TEST(Compare, ChamferAndFScoreMatchTheHandComputedValues) {
     const Metrics metrics = compare_points(result, truth, 0.2);
     const double far = std::hypot(0.3, 0.1);
     EXPECT_NEAR(metrics.chamfer_m.value(), 0.5 * ((0.1 + far) / 2.0 + 0.1), 1e-15);
-    // Precision 1/2, recall 1.
+    EXPECT_DOUBLE_EQ(metrics.accuracy.value(), 0.5);
+    EXPECT_DOUBLE_EQ(metrics.completeness.value(), 1.0);
     EXPECT_NEAR(metrics.fscore.value(), 2.0 / 3.0, 1e-15);
     EXPECT_DOUBLE_EQ(metrics.fscore_threshold_m.value(), 0.2);
     EXPECT_EQ(compare_points(result, truth, 0.05).fscore.value(), 0.0);
@@ -196,6 +204,9 @@ TEST(Compare, MatchesAreWithinAVoxelDiagonal) {
                 std::hypot(axes.x_m[1] - axes.x_m[0], axes.z_m[1] - axes.z_m[0]),
                 1e-12);
     EXPECT_DOUBLE_EQ(metrics.fscore.value(), 1.0);
+    EXPECT_DOUBLE_EQ(
+        compare_to_truth(result, truth_of(result, {0.7, 0.7}), 0.1).fscore_threshold_m.value(), 0.1)
+        << "unless one is given";
 }
 
 TEST(Compare, MissingDataGivesNoScoreAndNeverNan) {
@@ -275,6 +286,25 @@ TEST(Compare, OrderOfWallPointsDoesNotMatter) {
         for (core::Vec3& point : turned.scan.sensing.positions) point.x() += 0.01;
         EXPECT_GT(compare_captures(turned, reference).rel_l2.value(), 0.0);
     }
+}
+
+TEST(Compare, CapturesOfDifferentScansAreNamed) {
+    const core::Capture reference = test_support::example_capture(core::ScanPattern::Confocal);
+    EXPECT_TRUE(comparison_warnings(reference, reference).empty());
+    core::Capture other = reference;
+    for (core::Vec3& point : other.scan.sensing.positions) point.x() += 0.03;
+    const auto moved = comparison_warnings(other, reference);
+    ASSERT_FALSE(moved.empty());
+    EXPECT_NE(moved[0].find("up to 0.03 m"), std::string::npos) << moved[0];
+    other = reference;
+    other.scan.pattern = core::ScanPattern::Single;
+    ASSERT_EQ(comparison_warnings(other, reference).size(), 1U);
+    EXPECT_NE(comparison_warnings(other, reference)[0].find("single against confocal"),
+              std::string::npos);
+    other = reference;
+    for (float& value : other.transient.values()) value = 0.0F;
+    EXPECT_EQ(comparison_warnings(other, reference),
+              std::vector<std::string>{"the result holds no light"});
 }
 
 TEST(Compare, CapturesThatDoNotMatchAreRefused) {

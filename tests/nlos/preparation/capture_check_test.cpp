@@ -20,17 +20,17 @@ core::Capture lit_capture() {
 }
 
 TEST(CaptureCheck, HasNothingToSayAboutAGoodCapture) {
-    EXPECT_TRUE(timing_warnings(lit_capture()).empty());
+    EXPECT_TRUE(capture_warnings(lit_capture()).empty());
     core::Capture counts = lit_capture();
     counts.unit = core::TransientUnit::Counts;
     for (float& value : counts.transient.values()) value = std::round(100.0F * value) + 3.0F;
-    EXPECT_TRUE(timing_warnings(counts).empty());
+    EXPECT_TRUE(capture_warnings(counts).empty());
 }
 
 TEST(CaptureCheck, WarnsOfLightBeforeTheShortestPath) {
     core::Capture capture = lit_capture();
     capture.time_axis.opl_start_m -= 2.5;
-    const auto warnings = timing_warnings(capture);
+    const auto warnings = capture_warnings(capture);
     ASSERT_EQ(warnings.size(), 1U);
     EXPECT_NE(warnings[0].find("time zero"), std::string::npos) << warnings[0];
 }
@@ -38,7 +38,7 @@ TEST(CaptureCheck, WarnsOfLightBeforeTheShortestPath) {
 TEST(CaptureCheck, WarnsOfBinsThatAreStatedTooWide) {
     core::Capture capture = lit_capture();
     capture.time_axis.bin_width_m *= 2.0;
-    const auto warnings = timing_warnings(capture);
+    const auto warnings = capture_warnings(capture);
     ASSERT_EQ(warnings.size(), 1U);
     EXPECT_NE(warnings[0].find("narrower"), std::string::npos) << warnings[0];
 }
@@ -63,11 +63,11 @@ core::Capture bar_capture(core::TransientUnit unit) {
 TEST(CaptureCheck, WarnsOfBinsStatedTooWideOrTooNarrow) {
     for (const auto unit : {core::TransientUnit::Radiance, core::TransientUnit::Counts}) {
         const core::Capture right = bar_capture(unit);
-        EXPECT_TRUE(timing_warnings(right).empty());
+        EXPECT_TRUE(capture_warnings(right).empty());
         for (const double factor : {0.5, 0.75, 1.25, 1.7}) {
             core::Capture wrong = right;
             wrong.time_axis.bin_width_m *= factor;
-            const auto warnings = timing_warnings(wrong);
+            const auto warnings = capture_warnings(wrong);
             ASSERT_EQ(warnings.size(), 1U) << factor;
             EXPECT_NE(warnings[0].find(factor > 1.0 ? "look narrower" : "look wider"),
                       std::string::npos)
@@ -102,14 +102,27 @@ TEST(CaptureCheck, APlaneSaysNothingOfBins) {
     for (const double factor : {0.5, 1.0, 2.0}) {
         core::Capture scaled = capture;
         scaled.time_axis.bin_width_m *= factor;
-        EXPECT_TRUE(timing_warnings(scaled).empty()) << factor;
+        EXPECT_TRUE(capture_warnings(scaled).empty()) << factor;
     }
 }
 
-TEST(CaptureCheck, SaysNothingAboutDarkness) {
+TEST(CaptureCheck, OfDarknessSaysThatAlone) {
     core::Capture capture = lit_capture();
     std::fill(capture.transient.values().begin(), capture.transient.values().end(), 0.0F);
-    EXPECT_TRUE(timing_warnings(capture).empty());
+    EXPECT_EQ(capture_warnings(capture),
+              std::vector<std::string>{"the capture holds no light: all its values are 0"});
+}
+
+TEST(CaptureCheck, GatesThatCutLightAreNamed) {
+    core::Capture capture = lit_capture();
+    capture.scene_info["light"] = {{"share_in_axis", 0.4}};
+    ASSERT_EQ(capture_warnings(capture).size(), 1U);
+    EXPECT_NE(capture_warnings(capture)[0].find("hold 40 % of the scene's light"),
+              std::string::npos);
+    capture.scene_info["light"] = {{"share_in_axis", 0.999}};
+    EXPECT_TRUE(capture_warnings(capture).empty());
+    capture.scene_info["light"] = "bright";
+    EXPECT_TRUE(capture_warnings(capture).empty());
 }
 
 }  // namespace

@@ -241,10 +241,48 @@ TEST(Gltf, MaterialsDecideAlbedoAndModel) {
     EXPECT_EQ(file.load().objects[0].material.model, SurfaceModel::Ggx);
     EXPECT_EQ(file.load().objects[0].material.roughness, 0.3);
 
+    EXPECT_EQ(
+        file.load().warnings,
+        std::vector<std::string>{"material paint: a metallicFactor of 0.5 is taken as metal"});
+
     file.json["materials"][0] = Json::object();
+    ASSERT_EQ(file.load().warnings.size(), 1U);
+    EXPECT_NE(file.load().warnings[0].find("a rough metal by glTF's defaults"), std::string::npos);
     EXPECT_EQ(file.load().objects[0].material.model, SurfaceModel::Ggx)
         << "metallicFactor is 1 by default";
     EXPECT_EQ(file.load().objects[0].material.roughness, 1.0);
+}
+
+TEST(Gltf, WhatIsNotModelledIsNamed) {
+    GltfFile file = square_file();
+    EXPECT_TRUE(file.load().warnings.empty());
+    file.primitive()["material"] = 0;
+    file.json["materials"] = Json::parse(R"([{"name": "glass",
+        "pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 0.1},
+        "alphaMode": "BLEND", "emissiveFactor": [0, 0.5, 0],
+        "extensions": {"KHR_materials_transmission": {"transmissionFactor": 1}}}])");
+    file.json["extensionsUsed"] = {"KHR_materials_transmission"};
+    const SceneGeometry geometry = file.load();
+    EXPECT_EQ(geometry.warnings,
+              (std::vector<std::string>{
+                  "material glass: its emission is not modelled",
+                  "material glass: its transparency is not modelled: it is opaque",
+                  "material glass: its extension KHR_materials_transmission is not modelled"}));
+    EXPECT_EQ(geometry.objects[0].material.roughness, 0.1);
+}
+
+TEST(Gltf, ExtrasThatLookLikeOursAreRefused) {
+    for (const auto& [found, wanted] : {std::pair{"velocity", "nlos_velocity_m_per_s"},
+                                        std::pair{"velocity_m_per_s", "nlos_velocity_m_per_s"},
+                                        std::pair{"nlos_velocity", "nlos_velocity_m_per_s"},
+                                        std::pair{"role", "nlos_role"},
+                                        std::pair{"retroreflective", "nlos_retroreflective"}}) {
+        GltfFile file = square_file();
+        file.json["nodes"][0]["extras"] = {{found, {1, 0, 0}}};
+        const std::string error = error_of(file);
+        EXPECT_NE(error.find(std::string("found ") + found), std::string::npos) << error;
+        EXPECT_NE(error.find(std::string("must be ") + wanted), std::string::npos) << error;
+    }
 }
 
 /// A PNG of two pixels: red, and a grey of code 188, which is 0.5029 linear.

@@ -285,7 +285,7 @@ TEST_P(RestirFrames, EveryFrameAgreesWithPathTracing) {
          std::vector<std::pair<double, double>>{{0.02, 0.0}, {0.0, 0.0}, {0.01, 0.1}}) {
         SCOPED_TRACE(testing::Message() << "gate step " << step << ", frame " << frame_s << " s");
         renderer::SceneDescription description;
-        description.time_axis = is_image ? core::TimeAxis{2.45, 0.5, 1} : kGate;
+        description.time_axis = {is_image ? core::TimeAxis{2.45, 0.5, 1} : kGate};
         description.frames = {6, step, frame_s};
         const auto sequence = [&](Estimator method, int samples) {
             description.render = restir_settings(method, samples, is_image ? 3 : 4);
@@ -336,7 +336,7 @@ TEST(Restir, StaticFramesSettle) {
     // With a gate that stands still, what frames have seen adds up.
     const core::Scan scan = wall_scan(core::ScanPattern::Confocal);
     renderer::SceneDescription description;
-    description.time_axis = kGate;
+    description.time_axis = {kGate};
     description.frames = {20, 0.0, 0.0};
     description.render = restir_settings(Estimator::Restir, 65, 3);
     description.render.restir.confidence_cap = 50;

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: MIT
+#include "apps/commands/describe_scene.h"
+
+#include "renderer/gltf/gltf.h"
+#include "renderer/light_range.h"
+
+#include <fmt/core.h>
+
+namespace apps {
+namespace {
+
+std::string describe_material(const renderer::Material& material) {
+    std::string text =
+        fmt::format("{}, albedo {:.3f}", core::enum_name(material.model), material.albedo);
+    if (material.model == renderer::SurfaceModel::Ggx ||
+        material.model == renderer::SurfaceModel::Dielectric) {
+        text += fmt::format(", roughness {:.2f}", material.roughness);
+    }
+    if (material.albedo_texture) text += " (textured)";
+    return text;
+}
+
+void print_object(const renderer::Object& object) {
+    Eigen::AlignedBox3d box;
+    for (const core::Vec3& vertex : object.mesh.vertices) box.extend(vertex);
+    fmt::print(
+        "object {}: {} triangles, role {}, {}, x {:.4g} to {:.4g}, y {:.4g} to {:.4g}, "
+        "z {:.4g} to {:.4g} m{}\n",
+        object.name.empty() ? "(unnamed)" : object.name,
+        object.mesh.triangles.size(),
+        core::enum_name(object.role),
+        describe_material(object.material),
+        box.min().x(),
+        box.max().x(),
+        box.min().y(),
+        box.max().y(),
+        box.min().z(),
+        box.max().z(),
+        object.velocity_m_per_s.norm() > 0.0
+            ? fmt::format(", moves at {:.3g} m/s", object.velocity_m_per_s.norm())
+            : "");
+}
+
+void print_warnings(const std::vector<std::string>& warnings) {
+    for (const std::string& text : warnings) fmt::print("warning: {}\n", text);
+}
+
+// "key: value" lines, with the full key, of what differs from `usual`.
+void print_differences(const core::Json& json, const core::Json& usual, const std::string& prefix) {
+    for (const auto& [key, value] : json.items()) {
+        const core::Json other = usual.is_object() ? usual.value(key, core::Json()) : core::Json();
+        if (value == other) continue;
+        if (value.is_object()) {
+            print_differences(value, other, prefix + key + ".");
+        } else if (value.is_array() && value.flatten().size() > 4) {
+            fmt::print("  {}{}: {} items\n", prefix, key, value.size());
+        } else {
+            fmt::print("  {}{}: {}\n", prefix, key, value.dump());
+        }
+    }
+}
+
+void print_measurement(const renderer::SceneDescription& description, const core::Scan& scan) {
+    if (scan.camera) {
+        fmt::print("camera: {} x {} pixels\n", scan.camera->width(), scan.camera->height());
+        return;
+    }
+    fmt::print("scan: {}, {} sensing points, {} illumination points, wall {:.4g} x {:.4g} m\n",
+               core::enum_name(scan.pattern),
+               scan.sensing.size(),
+               scan.illumination.size(),
+               description.relay_wall.size_m[0],
+               description.relay_wall.size_m[1]);
+}
+
+void print_light(const renderer::Scene& scene,
+                 const core::Scan& scan,
+                 const renderer::SceneDescription& description) {
+    const auto range = renderer::find_light_range(scene, scan, description.render);
+    core::TimeAxis axis = description.time_axis;
+    if (range && !range->is_dark()) {
+        const auto [first, last] = range->without_tails(0.001);
+        fmt::print("light: from {:.4g} to {:.4g} m of path length (99.8 % of it)\n", first, last);
+        if (description.time_axis.automatic) {
+            axis = renderer::choose_time_axis(range, scene, scan, description);
+        }
+    }
+    fmt::print("time axis: {:.4g} to {:.4g} m, {} bins of {:.4g} m{}\n",
+               axis.opl_start_m,
+               axis.opl_end_m(),
+               axis.num_bins,
+               axis.bin_width_m,
+               description.time_axis.automatic ? " (auto)" : "");
+    if (!range) return;
+    print_warnings(renderer::axis_warnings(*range, axis, description.frames));
+}
+
+}  // namespace
+
+void describe_geometry(const std::string& path) {
+    const renderer::SceneGeometry geometry = renderer::load_gltf(path);
+    fmt::print("format: glTF 2.0\n");
+    for (const renderer::Object& object : geometry.objects) print_object(object);
+    print_warnings(geometry.warnings);
+}
+
+void describe_scene(const std::string& path) {
+    const renderer::SceneDescription description = renderer::read_scene_description(path, {});
+    const core::Scan scan = renderer::make_scan(description);
+    const renderer::Scene scene = renderer::load_scene(description, scan);
+    fmt::print("format: scene description\ngeometry: {}\n", description.geometry);
+    for (const renderer::Object& object : scene.objects()) print_object(object);
+    print_warnings(scene.warnings());
+    print_measurement(description, scan);
+    print_light(scene, scan, description);
+    fmt::print("settings that differ from the defaults (nlos render --help lists all):\n");
+    core::Json settings = core::write_value(description);
+    settings.erase("geometry");
+    print_differences(settings, core::write_value(renderer::SceneDescription{}), "");
+}
+
+}  // namespace apps

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+namespace apps {
+
+/// Prints what the objects of a glTF file are to the renderer. Throws core::Error as load_gltf().
+void describe_geometry(const std::string& path);
+
+/// Prints a scene's objects, its scan, where its light lies on the time axis, and the settings that
+/// differ from the defaults. Throws core::Error when the scene cannot be rendered.
+void describe_scene(const std::string& path);
+
+}  // namespace apps

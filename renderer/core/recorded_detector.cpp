@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/core/recorded_detector.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace core {
+namespace {
+
+// Provenance comes from anywhere: what is no object of ours counts as nothing.
+const Json* detector_of(const Capture& capture) {
+    if (!capture.scene_info.is_object()) return nullptr;
+    const auto found = capture.scene_info.find("detector");
+    return found != capture.scene_info.end() && found->is_object() ? &*found : nullptr;
+}
+
+double number_at(const Json& json, const char* key) {
+    const auto found = json.find(key);
+    return found != json.end() && found->is_number() ? found->get<double>() : 0.0;
+}
+
+// A measured curve always matters: that is why it was measured.
+bool matters(const ResponseSettings& response, double bin_width_m) {
+    if (!response.curve.empty()) return true;
+    const ResponseMoments m = moments(make_response(response, "response"));
+    return std::max(std::sqrt(m.variance_m2), std::abs(m.mean_m)) > 0.5 * bin_width_m;
+}
+
+std::string describe(const ResponseSettings& response) {
+    if (!response.curve.empty()) return "a measured response (" + response.curve + ")";
+    std::string text = fmt::format("a response of {:.4g} ps (FWHM)", response.jitter_fwhm_ps);
+    if (response.tail_ps > 0.0) text += fmt::format(" with a tail of {:.4g} ps", response.tail_ps);
+    return text;
+}
+
+// Photons per pulse of the brightest pair: late ones hide behind as large a share of them.
+double largest_share_of_pulses(const Capture& capture, double pulses) {
+    double largest = 0.0;
+    for (std::size_t pair = 0; pair < capture.transient.num_pairs(); ++pair) {
+        const auto histogram = capture.transient.histogram(pair);
+        largest = std::max(largest, std::accumulate(histogram.begin(), histogram.end(), 0.0));
+    }
+    return largest / pulses;
+}
+
+}  // namespace
+
+std::optional<ResponseSettings> recorded_response(const Capture& capture) {
+    const Json* detector = detector_of(capture);
+    if (detector == nullptr) return std::nullopt;
+    const auto stated = detector->find("response");
+    if (stated == detector->end() || !stated->is_object()) return std::nullopt;
+    ResponseSettings response;
+    response.jitter_fwhm_ps = std::max(0.0, number_at(*stated, "jitter_fwhm_ps"));
+    response.tail_ps = std::max(0.0, number_at(*stated, "tail_ps"));
+    if (const auto curve = stated->find("curve"); curve != stated->end() && curve->is_string()) {
+        response.curve = curve->get<std::string>();
+    }
+    if (!is_stated(response)) return std::nullopt;
+    return response;
+}
+
+ResponseSettings resolve_response(const ResponseSettings& asked,
+                                  const Capture& capture,
+                                  const std::string& where) {
+    if (!asked.of_capture) return asked;
+    const auto recorded = recorded_response(capture);
+    require(recorded.has_value(),
+            where,
+            "capture, whose provenance states no response",
+            "jitter_fwhm_ps, tail_ps or curve");
+    return *recorded;
+}
+
+std::vector<std::string> detector_warnings(const Capture& capture, const ResponseSettings& used) {
+    constexpr double kNotablePileUp = 0.05;
+    std::vector<std::string> warnings;
+    const Json* detector = detector_of(capture);
+    if (detector == nullptr) return warnings;
+    const auto response = recorded_response(capture);
+    if (response && !is_stated(used) && matters(*response, capture.time_axis.bin_width_m)) {
+        warnings.push_back(fmt::format(
+            "the capture was recorded with {}, which is left aside; response=capture uses it",
+            describe(*response)));
+    }
+    const double pulses = number_at(*detector, "pulses");
+    const double share = pulses > 0.0 ? largest_share_of_pulses(capture, pulses) : 0.0;
+    if (share > kNotablePileUp) {
+        warnings.push_back(
+            fmt::format("the detector was blind after photons, up to {:.2g} per pulse: early light "
+                        "hides late light (pile-up), which is not modelled",
+                        share));
+    }
+    return warnings;
+}
+
+}  // namespace core

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/core/recorded_detector.h"
+
+#include "tests/support/error_message.h"
+
+#include <gtest/gtest.h>
+
+namespace {
+
+// One pair, one bin of 8 mm (27 ps), recorded by a detector.
+core::Capture recorded_by(const core::Json& detector) {
+    core::Capture capture;
+    capture.time_axis = {1.0, 0.008, 1};
+    capture.transient = core::Transient(1, 1);
+    capture.transient.values()[0] = 100.0F;
+    capture.scene_info["detector"] = detector;
+    return capture;
+}
+
+const core::Json kResponse = {{"jitter_fwhm_ps", 60.0}, {"tail_ps", 20.0}, {"curve", ""}};
+
+TEST(RecordedDetector, ResponseIsThatOfTheProvenance) {
+    const core::Capture capture = recorded_by({{"response", kResponse}});
+    const auto response = core::recorded_response(capture);
+    ASSERT_TRUE(response);
+    EXPECT_EQ(response->jitter_fwhm_ps, 60.0);
+    EXPECT_EQ(response->tail_ps, 20.0);
+
+    core::ResponseSettings asked;
+    core::read_value(core::Json("capture"), "response", asked);
+    EXPECT_EQ(core::write_value(asked), "capture");
+    EXPECT_EQ(core::resolve_response(asked, capture, "response").jitter_fwhm_ps, 60.0);
+    core::read_value(core::Json{{"jitter_fwhm_ps", 5.0}}, "response", asked);
+    EXPECT_EQ(core::resolve_response(asked, capture, "response").jitter_fwhm_ps, 5.0);
+}
+
+TEST(RecordedDetector, CapturesThatStateNoneHaveNone) {
+    for (const core::Json& made : {core::Json(nullptr),
+                                   core::Json::array({1, 2}),
+                                   core::Json{{"detector", "a SPAD"}},
+                                   core::Json{{"detector", {{"response", 7}}}},
+                                   core::Json{{"detector", {{"response", {{"tail_ps", "x"}}}}}}}) {
+        core::Capture capture = recorded_by(nullptr);
+        capture.scene_info = made;
+        EXPECT_FALSE(core::recorded_response(capture)) << made;
+        EXPECT_TRUE(core::detector_warnings(capture, {}).empty()) << made;
+        core::ResponseSettings asked;
+        asked.of_capture = true;
+        EXPECT_ERROR_WITH(core::resolve_response(asked, capture, "response"), "states no response");
+    }
+}
+
+TEST(RecordedDetector, WhatIsIgnoredAndMattersIsNamed) {
+    const core::Capture capture = recorded_by({{"response", kResponse}});
+    const auto ignored = core::detector_warnings(capture, {});
+    ASSERT_EQ(ignored.size(), 1U);
+    EXPECT_NE(ignored[0].find("60 ps (FWHM) with a tail of 20 ps"), std::string::npos);
+    EXPECT_NE(ignored[0].find("response=capture"), std::string::npos);
+    core::ResponseSettings used;
+    used.jitter_fwhm_ps = 55.0;
+    EXPECT_TRUE(core::detector_warnings(capture, used).empty());
+    // A tenth of a bin does not matter.
+    EXPECT_TRUE(core::detector_warnings(recorded_by({{"response", {{"jitter_fwhm_ps", 6.0}}}}), {})
+                    .empty());
+}
+
+TEST(RecordedDetector, PileUpIsNamedWhereItMatters) {
+    const auto many = core::detector_warnings(recorded_by({{"pulses", 1000}}), {});
+    ASSERT_EQ(many.size(), 1U);
+    EXPECT_NE(many[0].find("0.1 per pulse"), std::string::npos) << many[0];
+    EXPECT_TRUE(core::detector_warnings(recorded_by({{"pulses", 100000}}), {}).empty());
+}
+
+}  // namespace
