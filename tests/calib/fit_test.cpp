@@ -142,6 +142,17 @@ TEST(Fit, CountsOfUnknownScaleKeepOneAlbedoAndSayIt) {
     EXPECT_TRUE(test_support::mentions(fit.unidentifiable, "scale with target.albedo"));
 }
 
+TEST(Fit, LeastSquaresStatesTheScaleThatItEliminates) {
+    core::Capture capture = counted(expected_capture(truth(), confocal_grid(8), 1e6, 0.5), "Scale");
+    capture.counts_per_radiance.reset();
+    calib::FitInput input = fit_input(capture, displaced());
+    const calib::FitResult poisson = calib::fit_scene(input, {});
+    input.settings.residual = calib::ResidualKind::LeastSquares;
+    const calib::FitResult squares = calib::fit_scene(input, {});
+    EXPECT_GT(squares.scale.sigma, 0.0);
+    EXPECT_NEAR(squares.scale.value / poisson.scale.value, 1.0, 0.02);
+}
+
 TEST(Fit, RobustLossRejectsWildWallPoints) {
     core::Capture capture =
         counted(expected_capture(truth(), confocal_grid(8), 1e5, 1.0), "Outliers");
