@@ -152,7 +152,14 @@ std::optional<std::string> cut_light(const core::Capture& capture) {
 }  // namespace
 
 std::vector<std::string> capture_warnings(const core::Capture& capture) {
-    if (capture.transient.is_dark()) return {"the capture holds no light: all its values are 0"};
+    const auto& sequence = capture.sequence;
+    const bool other_frames_are_lit =
+        sequence && !std::all_of(sequence->frames.begin(),
+                                 sequence->frames.end(),
+                                 [](const core::Transient& frame) { return frame.is_dark(); });
+    if (capture.transient.is_dark() && !other_frames_are_lit) {
+        return {"the capture holds no light: all its values are 0"};
+    }
     std::vector<std::string> warnings;
     if (auto warning = cut_light(capture)) warnings.push_back(*warning);
     if (capture.scan.camera) return warnings;

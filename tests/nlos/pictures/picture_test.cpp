@@ -58,6 +58,35 @@ std::array<double, 2> centre_of_red(const ImagePanel& panel) {
     return {sum[0] / count / picture.cols, sum[1] / count / picture.rows};
 }
 
+TEST(Pictures, ErrorMapsOfASceneShareOneScale) {
+    const Reconstruction good = test_support::column_volume({1.0F, 1.0F}, {0.701, 0.7});
+    const Reconstruction poor = test_support::column_volume({1.0F, 1.0F}, {0.9, 0.5});
+    const core::DepthMap truth = test_support::truth_of(good, {0.7, 0.7});
+    const auto range = [&](const Reconstruction& result) {
+        return std::get<ImagePanel>(comparison_panels(result, truth)[2]).value_range.value();
+    };
+    EXPECT_NEAR(range(good)[1], 14.0, 1e-9);  // mm: 2 % of the true depth
+    EXPECT_EQ(range(good), range(poor));
+}
+
+TEST(Pictures, StreaksRunAsTheWallBesideThem) {
+    const auto panels = capture_panels(test_support::example_capture(core::ScanPattern::Confocal));
+    EXPECT_EQ(std::get<ImagePanel>(panels[0]).x_direction,
+              std::get<ImagePanel>(panels[1]).x_direction);
+    EXPECT_EQ(std::get<ImagePanel>(panels[0]).x_direction, AxisDirection::Reversed);
+}
+
+TEST(Pictures, FaintLightIsDrawnOnAScaleThatShowsIt) {
+    core::Capture capture = test_support::example_capture(core::ScanPattern::Confocal);
+    const auto scale = [&] { return std::get<ImagePanel>(capture_panels(capture)[0]).value_scale; };
+    for (float& value : capture.transient.values()) value = 1.0F;
+    EXPECT_EQ(scale(), ValueScale::Linear);
+    for (std::size_t pair = 0; pair < capture.transient.num_pairs(); ++pair) {
+        capture.transient.histogram(pair)[2] = 1000.0F;
+    }
+    EXPECT_EQ(scale(), ValueScale::Gamma);
+}
+
 TEST(Picture, UsualAxesRunRightAndUp) {
     ImagePanel panel = small_panel();
     panel.values[0] = 1.0F;  // smallest x, smallest y
