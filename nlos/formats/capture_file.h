@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "nlos/formats/capture_settings.h"
+#include "nlos/layouts/capture_settings.h"
 #include "renderer/core/capture.h"
 
 #include <optional>
