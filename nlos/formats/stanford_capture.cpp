@@ -223,9 +223,10 @@ std::vector<std::string> write_stanford(const std::string& path,
                     kOwnAxis)};
     if (!is_integer) losses.emplace_back("rect_data is single precision: values are no counts");
     if (capture.variance || !capture.orders.empty() || capture.sequence || capture.velocity ||
-        !capture.scene_info.empty()) {
+        capture.observed || !capture.scene_info.empty()) {
         losses.emplace_back(
-            "variance, orders of bounces, velocities, frames and scene_info are left out");
+            "variance, orders of bounces, velocities, frames, observed bins and scene_info are "
+            "left out");
     }
     return losses;
 }
