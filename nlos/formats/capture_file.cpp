@@ -2,6 +2,8 @@
 #include "nlos/formats/capture_file.h"
 
 #include "nlos/formats/capture_format.h"
+#include "nlos/layouts/layout_capture.h"
+#include "nlos/layouts/layout_guess.h"
 #include "renderer/core/error.h"
 
 #include <fmt/core.h>
@@ -15,10 +17,31 @@ namespace nlos {
 namespace {
 
 const CaptureFormat* find_format(const std::string& path) {
+    if (std::filesystem::is_directory(path)) return nullptr;
     for (const CaptureFormat& format : capture_formats()) {
-        if (format.recognise(path)) return &format;
+        if (format.recognise != nullptr && format.recognise(path)) return &format;
     }
     return nullptr;
+}
+
+/// The layout that was asked for, or that of a file or folder in no format of its own.
+std::optional<LayoutSource> find_layout_of(const std::string& path,
+                                           const CaptureReadSettings& settings) {
+    if (!settings.layout.empty()) return layout_source(path, find_layout(settings.layout));
+    return find_format(path) == nullptr ? find_layout_source(path) : std::nullopt;
+}
+
+[[noreturn]] void throw_unknown(const std::string& path) {
+    if (!container_of(path)) {
+        throw core::Error(path,
+                          "is no capture in a known format",
+                          "must be HDF5, MATLAB, NumPy, OpenEXR, .ti, JSON or CSV");
+    }
+    throw core::Error(path,
+                      "is no capture in a known format or layout",
+                      fmt::format("`nlos info {}` lists its arrays; the nearest layout is {}",
+                                  path,
+                                  nearest_layouts(path).at(0)));
 }
 
 /// The format to write by the suffix of `path`.
@@ -33,6 +56,20 @@ const CaptureFormat& format_to_write(const std::string& path) {
         }
     }
     throw core::Error(path, "has the suffix '" + suffix + "'", "must be one of " + known);
+}
+
+void take_frame(int frame, const std::string& path, core::Capture& capture) {
+    const std::size_t count = capture.sequence ? capture.sequence->frames.size() : 1;
+    if (static_cast<std::size_t>(frame) >= count) {
+        throw core::Error("capture.frame",
+                          fmt::format("found {}", frame),
+                          fmt::format("must be less than the {} frames of {}", count, path));
+    }
+    if (!capture.sequence) return;
+    const auto later = static_cast<double>(count - 1 - static_cast<std::size_t>(frame));
+    capture.time_axis.opl_start_m -= later * capture.sequence->gate_step_m;
+    capture.transient = capture.sequence->frames[static_cast<std::size_t>(frame)];
+    capture.sequence.reset();
 }
 
 void drop_leading_bins(int wanted, core::Capture& capture) {
@@ -159,31 +196,34 @@ core::Capture read_capture(const std::string& path, const CaptureReadSettings& s
     if (!std::filesystem::exists(path)) {
         throw core::Error(path, "does not exist", "must be a capture file");
     }
-    const CaptureFormat* format = find_format(path);
-    if (format == nullptr) {
-        std::string known;
-        for (const CaptureFormat& row : capture_formats()) {
-            known += (known.empty() ? "" : ", or ") + std::string(row.content);
-        }
-        throw core::Error(path, "is no capture in a known format", "must be " + known);
+    core::Capture capture;
+    int zero_bins = 0;
+    if (const auto source = find_layout_of(path, settings)) {
+        capture = read_layout_capture(*source, settings);
+        zero_bins = source->layout.bins.leading_unobserved;
+    } else if (const CaptureFormat* format = find_format(path)) {
+        capture = format->read(path, settings);
+        if (settings.frame) take_frame(*settings.frame, path, capture);
+    } else {
+        throw_unknown(path);
     }
-    core::Capture capture = format->read(path, settings);
-    const int zero_bins = format->default_zero_bins ? format->default_zero_bins(capture) : 0;
     drop_leading_bins(settings.zero_bins.value_or(zero_bins), capture);
     capture.time_axis.opl_start_m += settings.opl_shift_m.value_or(0.0);
     validate(capture, path);
     return capture;
 }
 
-std::optional<std::string> capture_format(const std::string& path) {
-    const CaptureFormat* format = find_format(path);
-    if (format == nullptr) return std::nullopt;
-    return format->name;
+std::optional<std::string> capture_format(const std::string& path,
+                                          const CaptureReadSettings& settings) {
+    if (const auto source = find_layout_of(path, settings)) return source->layout.title;
+    if (const CaptureFormat* format = find_format(path)) return format->name;
+    return std::nullopt;
 }
 
-bool lacks_scale(const std::string& path) {
-    const CaptureFormat* format = find_format(path);
-    return format != nullptr && format->lacks_scale;
+std::vector<std::string> missing_settings(const std::string& path,
+                                          const CaptureReadSettings& settings) {
+    const auto source = find_layout_of(path, settings);
+    return source ? open_questions(source->layout, settings) : std::vector<std::string>{};
 }
 
 std::vector<std::string> write_capture(const std::string& path,

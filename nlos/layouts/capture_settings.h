@@ -3,7 +3,9 @@
 
 #include "renderer/core/settings.h"
 
+#include <array>
 #include <optional>
+#include <string>
 
 namespace nlos {
 
@@ -13,6 +15,9 @@ struct CaptureReadSettings {
     std::optional<double> bin_width_m;  ///< replaces the file's bin width [m of path]
     std::optional<double> pitch_m;  ///< distance of grid neighbours, where only indices are stored
     std::optional<double> opl_shift_m;  ///< added to the axis start (time zero)
+    std::optional<std::array<double, 2>> wall_size_m;  ///< scanned extents along x and y [m]
+    std::optional<int> frame;  ///< the only frame to read of a sequence
+    std::string layout;        ///< name or JSON file of a layout; empty: recognised by content
 };
 
 template <class Visitor>
@@ -31,6 +36,13 @@ void for_each_field(CaptureReadSettings& s, Visitor&& visit) {
     visit("opl_shift_m",
           s.opl_shift_m,
           core::Ranged{"added to the start of the axis (time zero) [m]", {}});
+    visit("wall_size_m",
+          s.wall_size_m,
+          core::above(0, "extents of the scanned points along x and y, first to last [m]"));
+    visit("frame", s.frame, core::at_least(0, "the only frame to read of a sequence, from 0"));
+    visit("layout",
+          s.layout,
+          "name or JSON file of the layout, as --layout; empty: recognised by content");
 }
 
 /// How a capture is written where a format leaves a choice.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/layouts/layout_capture.h"
 
+#include "nlos/layouts/layout_bins.h"
 #include "nlos/layouts/layout_histograms.h"
 #include "nlos/layouts/layout_points.h"
 #include "renderer/core/error.h"
@@ -98,8 +99,14 @@ PairNumbers read_points(const LayoutFiles& files,
                         const HistogramArray& array,
                         const CaptureReadSettings& settings,
                         core::Scan& scan) {
+    // The devices stand on the side of the wall on which the hidden scene is.
+    const std::optional<Vec3> towards =
+        scan.opl_origin == core::OplOrigin::Device
+            ? std::optional<Vec3>(0.5 * (scan.laser_position + scan.detector_position))
+            : std::nullopt;
     const PointAxes sensed = point_axes(files, array, {"x", "y", "sx", "sy", "s", "pair"});
-    PlacedPoints sensing = place_points(files, layout.sensing, sensed, settings, "sensing");
+    PlacedPoints sensing =
+        place_points(files, layout.sensing, sensed, settings, towards, "sensing");
     PairNumbers numbers;
     numbers.sensing = std::move(sensing.of_entry);
     numbers.num_sensing = sensing.points.size();
@@ -133,7 +140,7 @@ PairNumbers read_points(const LayoutFiles& files,
         numbers.illumination = {0};
     } else {
         PlacedPoints placed =
-            place_points(files, layout.illumination, lit, settings, "illumination");
+            place_points(files, layout.illumination, lit, settings, towards, "illumination");
         scan.illumination = std::move(placed.points);
         numbers.illumination = std::move(placed.of_entry);
     }
@@ -176,117 +183,6 @@ void read_devices(const LayoutFiles& files, const Layout& layout, Capture& captu
     scan.opl_origin = included ? core::OplOrigin::Device : core::OplOrigin::RelayWall;
 }
 
-core::TimeAxis read_axis(const LayoutFiles& files,
-                         const LayoutBins& bins,
-                         std::size_t count,
-                         const CaptureReadSettings& settings) {
-    core::TimeAxis axis;
-    axis.num_bins = static_cast<int>(count);
-    if (settings.bin_width_m) {
-        axis.bin_width_m = *settings.bin_width_m;
-    } else if (const auto width_m = files.number(bins.width_m, "capture.bin_width_m")) {
-        axis.bin_width_m = *width_m;
-    } else {
-        axis.bin_width_m =
-            core::opl_from_seconds(*files.number(bins.width_s, "capture.bin_width_m"));
-    }
-    axis.opl_start_m = 0.0;
-    if (const auto start_m = files.number(bins.start_m, "capture.opl_shift_m")) {
-        axis.opl_start_m = *start_m;
-    } else if (const auto start_s = files.number(bins.start_s, "capture.opl_shift_m")) {
-        axis.opl_start_m = core::opl_from_seconds(*start_s);
-    } else if (const auto start = files.number(bins.start_bins, "capture.opl_shift_m")) {
-        axis.opl_start_m = *start * axis.bin_width_m;
-    } else if (const auto centre_m = files.number(bins.centre_m, "capture.opl_shift_m")) {
-        axis.opl_start_m = *centre_m - 0.5 * axis.bin_width_m;
-    }
-    core::validate(axis, files.path() + ": time axis");
-    return axis;
-}
-
-/// Whole bins by which each pair's histogram starts late.
-std::vector<int> read_delays(const LayoutFiles& files,
-                             const LayoutShift& shift,
-                             const HistogramArray& histograms,
-                             const PairNumbers& numbers) {
-    Layout delays;
-    delays.histogram.array = {shift.array};
-    delays.histogram.axes = shift.axes;
-    const auto array = find_histograms(files, delays);
-    const auto fits = [&](const std::string& axis) {
-        return array->extent(axis) == histograms.extent(axis);
-    };
-    if (!array || !std::all_of(shift.axes.begin(), shift.axes.end(), fits)) {
-        throw Error(files.where(shift.array),
-                    "has shape " + shape_text(files.shape(shift.array)),
-                    "must have one value for each histogram");
-    }
-    const std::vector<double> values = files.read(shift.array);
-    const bool x_first = shift.axes.front().back() == 'x';
-    const std::size_t rows = array->extents[x_first ? 1 : 0];
-    const std::size_t columns = array->extents[x_first ? 0 : 1];
-    const bool first_fastest = files.first_index_fastest(shift.array);
-    std::vector<int> bins(numbers.sensing.size());
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        const double delay = std::floor(values[i] * shift.bins_per_unit);
-        if (!(std::abs(delay) < 1e9)) {
-            throw Error(files.where(shift.array),
-                        fmt::format("value {} is {}", i, values[i]),
-                        "must be finite delays");
-        }
-        // Storage runs along the first or the last axis; entries have x before y.
-        const bool x_fastest = x_first == first_fastest;
-        const std::size_t x = x_fastest ? i % columns : i / rows;
-        const std::size_t y = x_fastest ? i / columns : i % rows;
-        bins[numbers.sensing[x * rows + y]] = static_cast<int>(delay);
-    }
-    return bins;
-}
-
-/// Moves every histogram by its delay towards bin 0. Bins that this leaves open were not observed.
-void take_off_delays(const std::vector<int>& delays, Capture& capture) {
-    std::vector<core::BinRange> observed;
-    const int bins = capture.time_axis.num_bins;
-    for (std::size_t pair = 0; pair < delays.size(); ++pair) {
-        const int delay = std::clamp(delays[pair], -bins, bins);
-        const auto move = [&](core::Transient& transient) {
-            const auto histogram = transient.histogram(pair);
-            if (delay > 0) {
-                std::shift_left(histogram.begin(), histogram.end(), delay);
-            } else {
-                std::shift_right(histogram.begin(), histogram.end(), -delay);
-            }
-        };
-        move(capture.transient);
-        if (capture.sequence) {
-            for (core::Transient& frame : capture.sequence->frames) move(frame);
-        }
-        observed.push_back({std::max(0, -delay), bins - std::max(0, delay)});
-    }
-    core::restrict_observed(capture, observed);
-}
-
-/// The bins between the first and the last that is not 0 in all histograms.
-core::BinRange lit_bins(const Capture& capture) {
-    core::BinRange lit{capture.time_axis.num_bins, 0};
-    const auto look_at = [&](const core::Transient& transient) {
-        for (std::size_t pair = 0; pair < transient.num_pairs(); ++pair) {
-            const auto histogram = transient.histogram(pair);
-            const auto is_lit = [](float value) { return value != 0.0F; };
-            const auto first = std::find_if(histogram.begin(), histogram.end(), is_lit);
-            if (first == histogram.end()) continue;
-            const auto last = std::find_if(histogram.rbegin(), histogram.rend(), is_lit);
-            lit.begin = std::min(lit.begin, static_cast<int>(first - histogram.begin()));
-            lit.end = std::max(lit.end, static_cast<int>(histogram.rend() - last));
-        }
-    };
-    look_at(capture.transient);
-    if (capture.sequence) {
-        for (const core::Transient& frame : capture.sequence->frames) look_at(frame);
-    }
-    return lit.begin < lit.end ? lit : core::BinRange{0, capture.time_axis.num_bins};
-}
-
 void keep_frames(std::vector<core::Transient> frames, Capture& capture) {
     capture.transient = frames.back();
     if (frames.size() == 1) return;
@@ -304,8 +200,10 @@ void describe(const LayoutFiles& files, const Layout& layout, Capture& capture) 
         for (const std::size_t extent : shape) count *= extent;
         if (count <= kLongest) capture.scene_info["arrays"][name] = files.read(name);
     }
-    if (const auto fwhm_s = files.number(layout.response_fwhm_s, "response")) {
-        capture.scene_info["detector"]["response"]["jitter_fwhm_ps"] = *fwhm_s * 1e12;
+    const LayoutNumber& fwhm = layout.response_fwhm_s;
+    if (fwhm.value || (!fwhm.array.empty() && files.has(fwhm.array))) {
+        const double fwhm_s = *files.number(fwhm, "response");
+        capture.scene_info["detector"]["response"]["jitter_fwhm_ps"] = fwhm_s * 1e12;
     }
     capture.notes.push_back(fmt::format("layout {}{}{}",
                                         layout.name,
@@ -337,22 +235,14 @@ Capture read_one(const std::string& path,
                     "must hold what the layout says");
     }
     Capture capture;
-    const PairNumbers numbers = read_points(files, layout, *array, settings, capture.scan);
     read_devices(files, layout, capture);
+    const PairNumbers numbers = read_points(files, layout, *array, settings, capture.scan);
     capture.time_axis = read_axis(files, layout.bins, *array->extent("t"), settings);
     keep_frames(
         read_histograms(files, *array, numbers, capture.scan.num_pairs(), settings.frame), capture);
     read_unit(files, layout.histogram, capture);
     describe(files, layout, capture);
     if (layout.bins.zeros_are_unobserved) core::restrict_observed(capture, lit_bins(capture));
-    if (layout.bins.leading_unobserved > 0) {
-        const int leading = settings.zero_bins.value_or(layout.bins.leading_unobserved);
-        const int bins = capture.time_axis.num_bins;
-        core::restrict_observed(capture, core::BinRange{std::min(leading, bins), bins});
-        capture.notes.push_back(fmt::format(
-            "the first {} bins (the direct return) are left out; capture.zero_bins overrides",
-            std::min(leading, bins)));
-    }
     const auto& background = layout.histogram.background;
     if (!background.empty() && std::all_of(background.begin(),
                                            background.end(),
@@ -402,15 +292,15 @@ std::optional<LayoutSource> find_layout_source(const std::string& path) {
         const LayoutFiles files(candidate);
         for (const Layout& layout : shipped_layouts()) {
             if (!mismatches(files, layout).empty()) continue;
-            return is_folder ? layout_source(path, layout) : LayoutSource{&layout, {path}};
+            return is_folder ? layout_source(path, layout) : LayoutSource{layout, {path}};
         }
     }
     return std::nullopt;
 }
 
 LayoutSource layout_source(const std::string& path, const Layout& layout) {
-    if (!fs::is_directory(path)) return {&layout, {path}};
-    LayoutSource source{&layout, {}};
+    if (!fs::is_directory(path)) return {layout, {path}};
+    LayoutSource source{layout, {}};
     for (const std::string& file : files_in(path)) {
         if (!is_of(file, layout)) continue;
         source.files.push_back(file);
@@ -423,11 +313,11 @@ LayoutSource layout_source(const std::string& path, const Layout& layout) {
 }
 
 Capture read_layout_capture(const LayoutSource& source, const CaptureReadSettings& settings) {
-    if (source.files.size() == 1) return read_one(source.files[0], *source.layout, settings);
+    if (source.files.size() == 1) return read_one(source.files[0], source.layout, settings);
     std::vector<core::Transient> frames;
     Capture capture;
     for (const std::string& file : source.files) {
-        Capture frame = read_one(file, *source.layout, settings);
+        Capture frame = read_one(file, source.layout, settings);
         if (!frames.empty() && (frame.scan.num_pairs() != frames[0].num_pairs() ||
                                 frame.transient.num_bins() != frames[0].num_bins())) {
             throw Error(file,
@@ -448,7 +338,7 @@ Capture read_layout_capture(const LayoutSource& source, const CaptureReadSetting
                         fmt::format("found {}", *settings.frame),
                         fmt::format("must be less than the {} frames", source.files.size()));
         }
-        return read_one(source.files[wanted], *source.layout, settings);
+        return read_one(source.files[wanted], source.layout, settings);
     }
     keep_frames(std::move(frames), capture);
     capture.notes.push_back(fmt::format("{} files are frames; the wall points are those of the last",

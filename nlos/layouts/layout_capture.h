@@ -12,7 +12,7 @@ namespace nlos {
 
 /// Files that one capture is read from: one, or its frames in order.
 struct LayoutSource {
-    const Layout* layout = nullptr;
+    Layout layout;
     std::vector<std::string> files;
 };
 

@@ -70,8 +70,9 @@ std::optional<double> LayoutFiles::number(const LayoutNumber& number,
         const auto element = static_cast<std::size_t>(number.element);
         if (element >= values.size() || !std::isfinite(values[element])) {
             throw Error(where(number.array),
-                        fmt::format("holds {} values", values.size()),
-                        fmt::format("must have a finite one at {}", element));
+                        element < values.size() ? fmt::format("found {}", values[element])
+                                                : fmt::format("holds {} values", values.size()),
+                        fmt::format("must have a finite number at {}", element));
         }
         return values[element] * number.factor + number.offset;
     }

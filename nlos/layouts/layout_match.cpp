@@ -120,9 +120,10 @@ std::vector<std::string> mismatches(const LayoutFiles& files, const Layout& layo
         }
     }
     if (!find_histograms(files, layout)) {
-        lacks.push_back(fmt::format("no array {} with axes ({})",
+        lacks.push_back(fmt::format("no array {} with axes ({}){}",
                                     fmt::join(layout.histogram.array, " or "),
-                                    fmt::join(layout.histogram.axes, ", ")));
+                                    fmt::join(layout.histogram.axes, ", "),
+                                    layout.histogram.square ? " and x as long as y" : ""));
     }
     return lacks;
 }
