@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/containers/mat_file.h"
+#include "nlos/containers/mat5_writer.h"
 #include "nlos/formats/capture_format.h"
+#include "nlos/formats/mat_array.h"
 #include "renderer/core/error.h"
 
 #include <fmt/core.h>
@@ -23,9 +24,7 @@ constexpr const char* kName = "Stanford 2018 confocal .mat";
 constexpr const char* kOwnAxis = "nlos_axis";
 
 bool recognise_stanford(const std::string& path) {
-    if (!is_mat5_file(path)) return false;
-    const auto names = mat_variable_names(path);
-    return std::find(names.begin(), names.end(), "rect_data") != names.end();
+    return container_of(path) == "matlab-v5" && ArrayReader(path).has_object("rect_data");
 }
 
 /// Sample points on the wall: linspace with both ends, axis 0 along +x and axis 1 along -y.
@@ -58,8 +57,7 @@ double read_half_width(const std::string& path) {
 
 /// What we add to files that we write: axis and unit, which the layout itself fixes.
 std::optional<std::vector<double>> read_own_axis(const std::string& path) {
-    const auto names = mat_variable_names(path);
-    if (std::find(names.begin(), names.end(), kOwnAxis) == names.end()) return std::nullopt;
+    if (!ArrayReader(path).has_object(kOwnAxis)) return std::nullopt;
     const auto axis = read_mat_array<double>(path, kOwnAxis);
     if (axis.values.size() != 4) {
         throw Error(path + ": " + kOwnAxis,
