@@ -21,18 +21,43 @@ const CaptureFormat* find_format(const std::string& path) {
     return nullptr;
 }
 
-/// The format to write by the suffix of `path`.
-const CaptureFormat& format_to_write(const std::string& path) {
+/// `texts` without repetitions, separated by commas.
+std::string join(const std::vector<std::string>& texts) {
+    std::string joined;
+    for (auto text = texts.begin(); text != texts.end(); ++text) {
+        if (std::find(texts.begin(), text, *text) != text) continue;
+        joined += (joined.empty() ? "" : ", ") + *text;
+    }
+    return joined;
+}
+
+bool has_suffix(const CaptureWriter& writer, const std::string& suffix) {
+    return std::ranges::any_of(
+        writer.suffixes, [&](const char* known) { return known != nullptr && suffix == known; });
+}
+
+/// How to write by the suffix of `path` and the layout that is asked for.
+const CaptureWriter& find_writer(const std::string& path, const std::string& layout) {
     const std::string suffix = std::filesystem::path(path).extension().string();
-    std::string known;
-    for (const CaptureFormat& format : capture_formats()) {
-        for (const char* candidate : format.suffixes) {
-            if (candidate == nullptr) continue;
-            if (suffix == candidate) return format;
-            known += (known.empty() ? "" : ", ") + std::string(candidate);
+    std::vector<std::string> layouts;
+    std::vector<std::string> suffixes;
+    for (const CaptureWriter& writer : capture_writers()) {
+        layouts.emplace_back(writer.layout);
+        if (!layout.empty() && layout != writer.layout) continue;
+        if (has_suffix(writer, suffix)) return writer;
+        for (const char* known : writer.suffixes) {
+            if (known != nullptr) suffixes.emplace_back(known);
         }
     }
-    throw core::Error(path, "has the suffix '" + suffix + "'", "must be one of " + known);
+    if (suffixes.empty()) {
+        throw core::Error("layout",
+                          "'" + layout + "' is none that is written",
+                          "must be one of " + join(layouts));
+    }
+    throw core::Error(
+        path,
+        "has the suffix '" + suffix + "'",
+        "must be one of " + join(suffixes) + (layout.empty() ? "" : " for the layout " + layout));
 }
 
 void zero_leading_bins(int wanted, core::Capture& capture) {
@@ -153,13 +178,13 @@ bool lacks_scale(const std::string& path) {
 std::vector<std::string> write_capture(const std::string& path,
                                        const core::Capture& capture,
                                        const CaptureWriteSettings& settings) {
-    const CaptureFormat& format = format_to_write(path);
+    const CaptureWriter& writer = find_writer(path, settings.layout);
     validate(capture, path);
-    return format.write(path, capture, settings);
+    return writer.write(path, capture, settings);
 }
 
-void check_capture_suffix(const std::string& path) {
-    format_to_write(path);
+void check_capture_suffix(const std::string& path, const CaptureWriteSettings& settings) {
+    find_writer(path, settings.layout);
 }
 
 std::vector<std::string> describe_capture(const core::Capture& capture) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/containers/mat_file.h"
 #include "nlos/formats/capture_format.h"
+#include "nlos/formats/stanford_scan.h"
 #include "renderer/core/error.h"
 
 #include <fmt/core.h>
@@ -20,28 +21,10 @@ constexpr double kBinSeconds = 4e-12;
 constexpr int kDirectReturnBins = 600;
 constexpr const char* kName = "Stanford 2018 confocal .mat";
 
-constexpr const char* kOwnAxis = "nlos_axis";
-
 bool recognise_stanford(const std::string& path) {
     if (!is_mat5_file(path)) return false;
     const auto names = mat_variable_names(path);
     return std::find(names.begin(), names.end(), "rect_data") != names.end();
-}
-
-/// Sample points on the wall: linspace with both ends, axis 0 along +x and axis 1 along -y.
-core::WallPoints scan_points(std::size_t count, double half_width_m) {
-    core::WallPoints points;
-    points.grid = {count, count};
-    const double pitch_m = 2.0 * half_width_m / static_cast<double>(count - 1);
-    for (std::size_t i = 0; i < count; ++i) {
-        for (std::size_t j = 0; j < count; ++j) {
-            points.positions.emplace_back(-half_width_m + pitch_m * static_cast<double>(i),
-                                          half_width_m - pitch_m * static_cast<double>(j),
-                                          0.0);
-        }
-    }
-    points.normals.assign(points.size(), core::Vec3::UnitZ());
-    return points;
 }
 
 double read_half_width(const std::string& path) {
@@ -56,7 +39,6 @@ double read_half_width(const std::string& path) {
     return width.values[0];
 }
 
-/// What we add to files that we write: axis and unit, which the layout itself fixes.
 std::optional<std::vector<double>> read_own_axis(const std::string& path) {
     const auto names = mat_variable_names(path);
     if (std::find(names.begin(), names.end(), kOwnAxis) == names.end()) return std::nullopt;
@@ -93,7 +75,7 @@ Capture read_stanford(const std::string& path, const CaptureReadSettings& settin
 
     Capture capture;
     capture.scan.pattern = core::ScanPattern::Confocal;
-    capture.scan.sensing = scan_points(side, half_width_m);
+    capture.scan.sensing = stanford_points(side, half_width_m);
     capture.scan.illumination = capture.scan.sensing;
     capture.unit = core::TransientUnit::Counts;
     capture.time_axis.num_bins = static_cast<int>(bins);
@@ -128,108 +110,6 @@ int default_zero_bins(const Capture& capture) {
     return capture.scene_info.contains(kOwnAxis) ? 0 : kDirectReturnBins;
 }
 
-/// How a scan's pairs stand in rect_data.
-struct SquareScan {
-    double half_width_m = 0.0;
-    std::size_t side = 0;
-    bool y_ascends = true;
-
-    /// The pair at index i along axis 0 (+x) and j along axis 1 (-y).
-    std::size_t pair(std::size_t i, std::size_t j) const {
-        return i * side + (y_ascends ? side - 1 - j : j);
-    }
-};
-
-/// What rect_data can hold: a confocal square on the wall z = 0 around the origin.
-SquareScan square_scan(const std::string& path, const core::Scan& scan) {
-    constexpr double kTolerance_m = 1e-6;  // other files hold single precision
-    const auto refuse = [&](const std::string& found) {
-        throw Error(path,
-                    "cannot hold " + found,
-                    "must be a confocal square of points on z = 0 around the origin, ends "
-                    "included, with path lengths from and to the wall");
-    };
-    if (scan.camera) refuse("the image of a camera");
-    if (scan.pattern != core::ScanPattern::Confocal) {
-        refuse(fmt::format("a scan that is {}", enum_name(scan.pattern)));
-    }
-    if (scan.opl_origin != core::OplOrigin::RelayWall) refuse("path lengths with device legs");
-    if (!scan.sensing.grid || (*scan.sensing.grid)[0] != (*scan.sensing.grid)[1] ||
-        (*scan.sensing.grid)[0] < 2) {
-        refuse("points that are no square grid");
-    }
-    SquareScan square;
-    square.side = (*scan.sensing.grid)[0];
-    square.half_width_m = -scan.sensing.positions.front().x();
-    square.y_ascends = scan.sensing.positions.front().y() < scan.sensing.positions.back().y();
-    if (!(square.half_width_m > 0.0)) refuse("points whose x does not ascend around 0");
-    const core::WallPoints wanted = scan_points(square.side, square.half_width_m);
-    for (std::size_t i = 0; i < square.side; ++i) {
-        for (std::size_t j = 0; j < square.side; ++j) {
-            const std::size_t pair = square.pair(i, j);
-            const core::Vec3& position = wanted.positions[i * square.side + j];
-            if ((scan.sensing.positions[pair] - position).norm() > kTolerance_m ||
-                (scan.sensing.normals[pair] - core::Vec3::UnitZ()).norm() > kTolerance_m) {
-                refuse(fmt::format("point {} where it is", pair));
-            }
-        }
-    }
-    return square;
-}
-
-/// Values in the order of the file: [bin][j][i], i fastest.
-template <class T>
-std::vector<T> to_rect_data(const core::Transient& transient, const SquareScan& square) {
-    std::vector<T> data;
-    data.reserve(transient.values().size());
-    for (std::size_t bin = 0; bin < transient.num_bins(); ++bin) {
-        for (std::size_t j = 0; j < square.side; ++j) {
-            for (std::size_t i = 0; i < square.side; ++i) {
-                data.push_back(static_cast<T>(transient.histogram(square.pair(i, j))[bin]));
-            }
-        }
-    }
-    return data;
-}
-
-bool fits_uint16(const core::Transient& transient) {
-    return std::ranges::all_of(transient.values(), [](float value) {
-        return value >= 0.0F && value <= 65535.0F && value == std::trunc(value);
-    });
-}
-
-std::vector<std::string> write_stanford(const std::string& path,
-                                        const Capture& capture,
-                                        const CaptureWriteSettings&) {
-    const SquareScan square = square_scan(path, capture.scan);
-    const bool is_integer = fits_uint16(capture.transient);
-    MatVariable data{"rect_data", {square.side, square.side, capture.transient.num_bins()}, {}};
-    if (is_integer) {
-        data.values = to_rect_data<std::uint16_t>(capture.transient, square);
-    } else {
-        data.values = to_rect_data<float>(capture.transient, square);
-    }
-    const std::vector<double> axis{capture.time_axis.opl_start_m,
-                                   capture.time_axis.bin_width_m,
-                                   capture.unit == core::TransientUnit::Counts ? 1.0 : 0.0,
-                                   capture.counts_per_radiance.value_or(0.0)};
-    write_mat_file(path,
-                   {data,
-                    {"width", {1, 1}, std::vector<double>{square.half_width_m}},
-                    {kOwnAxis, {1, axis.size()}, axis}});
-    std::vector<std::string> losses{
-        fmt::format("axis and unit stand in {}, which only this program reads; others assume bins "
-                    "of 4 ps from the direct return on",
-                    kOwnAxis)};
-    if (!is_integer) losses.emplace_back("rect_data is single precision: values are no counts");
-    if (capture.variance || !capture.orders.empty() || capture.sequence || capture.velocity ||
-        !capture.scene_info.empty()) {
-        losses.emplace_back(
-            "variance, orders of bounces, velocities, frames and scene_info are left out");
-    }
-    return losses;
-}
-
 }  // namespace
 
 CaptureFormat stanford_format() {
@@ -237,8 +117,6 @@ CaptureFormat stanford_format() {
             "MATLAB v5 with rect_data and width",
             recognise_stanford,
             read_stanford,
-            {".mat"},
-            write_stanford,
             default_zero_bins};
 }
 

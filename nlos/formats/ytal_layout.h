@@ -56,11 +56,6 @@ inline constexpr const char* kVelocityCarrier = "carrier_hz";
 /// The key of scene_info that holds the unit where the group /nlos is left out.
 inline constexpr const char* kUnitKey = "nlos_unit";
 
-/// Writes a capture in this layout, see write_capture().
-std::vector<std::string> write_ytal_capture(const std::string& path,
-                                            const core::Capture& capture,
-                                            const CaptureWriteSettings& settings);
-
 /// A dictionary as text that both JSON and YAML 1.1 readers understand.
 ///
 /// A dictionary whose only key is "yaml" stands for a YAML text that is no JSON; it gives that

@@ -227,12 +227,7 @@ Capture read_ytal(const std::string& path, const CaptureReadSettings& settings) 
 }  // namespace
 
 CaptureFormat ytal_format() {
-    return {"y-tal HDF5",
-            "HDF5 with a dataset H",
-            recognise_ytal,
-            read_ytal,
-            {".h5", ".hdf5"},
-            write_ytal_capture};
+    return {"y-tal HDF5", "HDF5 with a dataset H", recognise_ytal, read_ytal};
 }
 
 }  // namespace nlos
