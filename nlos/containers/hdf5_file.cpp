@@ -9,8 +9,7 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <limits>
-#include <type_traits>
+#include <set>
 #include <vector>
 
 namespace nlos {
@@ -32,25 +31,13 @@ Shape extents_of(const Hdf5Handle& space, const std::string& where) {
     return {extents.begin(), extents.end()};
 }
 
-/// Number of values times `bytes` each; the largest number when that does not fit 64 bits.
-std::uint64_t total_bytes(const Shape& extents, std::uint64_t bytes) {
-    std::uint64_t total = bytes;
-    for (const std::size_t extent : extents) {
-        if (extent != 0 && total > std::numeric_limits<std::uint64_t>::max() / extent) {
-            return std::numeric_limits<std::uint64_t>::max();
-        }
-        total *= extent;
-    }
-    return total;
-}
-
-Hdf5Kind kind_of(const Hdf5Handle& type) {
+ElementKind kind_of(const Hdf5Handle& type) {
     constexpr std::size_t kWidestNumber = 16;
     const H5T_class_t type_class = H5Tget_class(type.id());
-    if (type_class == H5T_STRING) return Hdf5Kind::Text;
-    if (H5Tget_size(type.id()) > kWidestNumber) return Hdf5Kind::Other;
-    if (type_class == H5T_INTEGER || type_class == H5T_ENUM) return Hdf5Kind::Integer;
-    return type_class == H5T_FLOAT ? Hdf5Kind::Real : Hdf5Kind::Other;
+    if (type_class == H5T_STRING) return ElementKind::Text;
+    if (H5Tget_size(type.id()) > kWidestNumber) return ElementKind::Other;
+    if (type_class == H5T_INTEGER || type_class == H5T_ENUM) return ElementKind::Integer;
+    return type_class == H5T_FLOAT ? ElementKind::Real : ElementKind::Other;
 }
 
 /// The only text of a dataset or attribute of type `type`; `read` fetches it into a buffer.
@@ -81,13 +68,13 @@ Json attribute_value(const Hdf5Handle& attribute, const std::string& where) {
     const Hdf5Handle space(H5Aget_space(attribute.id()), H5Sclose);
     if (H5Sget_simple_extent_type(space.id()) == H5S_NULL) return nullptr;
     const std::uint64_t count = total_bytes(extents_of(space, where), 1);
-    const Hdf5Kind kind = kind_of(type);
-    if (kind == Hdf5Kind::Text && count == 1) {
+    const ElementKind kind = kind_of(type);
+    if (kind == ElementKind::Text && count == 1) {
         return fetch_text(type, where, [&](hid_t memory, void* target) {
             return H5Aread(attribute.id(), memory, target) >= 0;
         });
     }
-    if ((kind != Hdf5Kind::Integer && kind != Hdf5Kind::Real) || count > kMaxValues) {
+    if ((kind != ElementKind::Integer && kind != ElementKind::Real) || count > kMaxValues) {
         return nullptr;
     }
     std::vector<double> values(count);
@@ -106,15 +93,77 @@ Shape chunk_of(const Hdf5Handle& dataset, std::size_t rank) {
     return {chunk.begin(), chunk.end()};
 }
 
+/// Whole chunks, as many as make a read, so that none is decompressed twice.
 std::size_t rows_per_read(const Hdf5Handle& dataset, const Shape& shape) {
-    constexpr std::size_t kValuesPerRead = std::size_t{1} << 22;
-    const std::size_t row_values =
-        std::max<std::size_t>(1, total_bytes(Shape(shape.begin() + 1, shape.end()), 1));
-    const std::size_t rows = std::max<std::size_t>(1, kValuesPerRead / row_values);
-    // Whole chunks at a time, so that none is decompressed twice.
+    const std::size_t rows = rows_of_read(shape);
     const Shape chunk = chunk_of(dataset, shape.size());
     const std::size_t rows_of_chunk = chunk.empty() ? 1 : std::max<std::size_t>(1, chunk[0]);
     return (rows + rows_of_chunk - 1) / rows_of_chunk * rows_of_chunk;
+}
+
+std::string type_name(const Hdf5Handle& type) {
+    const std::size_t bits = 8 * H5Tget_size(type.id());
+    switch (H5Tget_class(type.id())) {
+        case H5T_INTEGER:
+            return fmt::format("{}int{}", H5Tget_sign(type.id()) == H5T_SGN_NONE ? "u" : "", bits);
+        case H5T_FLOAT:
+            return fmt::format("float{}", bits);
+        case H5T_STRING:
+            return "text";
+        case H5T_ENUM:
+            return "enumeration";
+        case H5T_REFERENCE:
+            return "reference";
+        case H5T_COMPOUND:
+            return "compound";
+        default:
+            return "other";
+    }
+}
+
+/// A walk over all groups of a file that notes the datasets.
+struct Walk {
+    static constexpr std::size_t kDeepest = 32;
+
+    ArrayNames found;
+    std::set<haddr_t> groups;  ///< seen so far: links may form cycles
+};
+
+void list_group(const Hdf5Handle& group, const std::string& prefix, std::size_t depth, Walk& walk);
+
+void list_object(const Hdf5Handle& object, const std::string& name, std::size_t depth, Walk& walk) {
+    const H5I_type_t type = H5Iget_type(object.id());
+    if (type == H5I_DATASET) walk.found.names.push_back(name);
+    H5O_info_t info{};
+    if (type != H5I_GROUP || H5Oget_info2(object.id(), &info, H5O_INFO_BASIC) < 0) return;
+    if (walk.groups.insert(info.addr).second) list_group(object, name + "/", depth + 1, walk);
+}
+
+/// The names of links that stay within the file, at most ArrayNames::kMost + 1 of them.
+std::vector<std::string> links_of(const Hdf5Handle& group) {
+    std::vector<std::string> links;
+    const auto add = [](hid_t, const char* name, const H5L_info_t* info, void* list) {
+        auto& names = *static_cast<std::vector<std::string>*>(list);
+        if (info->type == H5L_TYPE_HARD || info->type == H5L_TYPE_SOFT) names.emplace_back(name);
+        return names.size() > ArrayNames::kMost ? 1 : 0;
+    };
+    H5Literate(group.id(), H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, add, &links);
+    return links;
+}
+
+void list_group(const Hdf5Handle& group, const std::string& prefix, std::size_t depth, Walk& walk) {
+    if (depth > Walk::kDeepest) {
+        walk.found.is_complete = false;
+        return;
+    }
+    for (const std::string& link : links_of(group)) {
+        if (walk.found.names.size() == ArrayNames::kMost) {
+            walk.found.is_complete = false;
+            return;
+        }
+        const Hdf5Handle object(H5Oopen(group.id(), link.c_str(), H5P_DEFAULT), H5Oclose);
+        if (object.is_valid()) list_object(object, prefix + link, depth, walk);
+    }
 }
 
 }  // namespace
@@ -122,7 +171,6 @@ std::size_t rows_per_read(const Hdf5Handle& dataset, const Shape& shape) {
 Hdf5File::Hdf5File(std::string path) : path_(std::move(path)) {
     prepare_hdf5();
     file_bytes_ = std::filesystem::file_size(path_);
-    if (!is_hdf5_file(path_)) throw core::Error(path_, "is not HDF5", "must be an HDF5 file");
     file_ = Hdf5Handle(H5Fopen(path_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
     if (!file_.is_valid()) {
         throw core::Error(path_,
@@ -131,25 +179,35 @@ Hdf5File::Hdf5File(std::string path) : path_(std::move(path)) {
     }
 }
 
-Json Hdf5File::describe(const std::string& name) const {
-    if (!exists(name)) return nullptr;
+ArrayNames Hdf5File::names() const {
+    Walk walk;
+    const Hdf5Handle root(H5Gopen2(file_.id(), "/", H5P_DEFAULT), H5Gclose);
+    if (!root.is_valid()) throw_unreadable(path_);
+    list_group(root, "", 0, walk);
+    return walk.found;
+}
+
+std::optional<ArrayDescription> Hdf5File::describe(const std::string& name) const {
+    if (!exists(name)) return std::nullopt;
     const Hdf5Handle object(H5Oopen(file_.id(), name.c_str(), H5P_DEFAULT), H5Oclose);
     if (!object.is_valid()) throw_unreadable(where(name));
-    Json description{{kAttributes, describe_attributes(object, name)}};
+    ArrayDescription description;
+    description.attributes = describe_attributes(object, name);
+    description.type = "group";
     if (H5Iget_type(object.id()) != H5I_DATASET) return description;
+    const Hdf5Handle type(H5Dget_type(object.id()), H5Tclose);
+    description.type = type_name(type);
     const Hdf5Handle space(H5Dget_space(object.id()), H5Sclose);
     if (H5Sget_simple_extent_type(space.id()) == H5S_NULL) return description;
-    const Hdf5Handle type(H5Dget_type(object.id()), H5Tclose);
     const Shape shape = extents_of(space, where(name));
-    const Hdf5Kind kind = kind_of(type);
-    description[kShape] = shape;
-    description[kKind] = kind;
-    if (kind == Hdf5Kind::Text && (shape.empty() || shape == Shape{1})) {
-        description[kText] = fetch_text(type, where(name), [&](hid_t memory, void* target) {
+    description.shape = shape;
+    description.kind = kind_of(type);
+    if (description.kind == ElementKind::Text && (shape.empty() || shape == Shape{1})) {
+        description.text = fetch_text(type, where(name), [&](hid_t memory, void* target) {
             return H5Dread(object.id(), memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, target) >= 0;
         });
     }
-    if (!shape.empty()) description[kRowsPerRead] = rows_per_read(object, shape);
+    if (!shape.empty()) description.rows_per_read = rows_per_read(object, shape);
     return description;
 }
 
@@ -207,8 +265,10 @@ void Hdf5File::check_size(const Hdf5Handle& dataset,
     require_memory(std::max(total_bytes(shape, 2 * sizeof(double)), chunk_bytes), where);
 }
 
-template <class T>
-std::string Hdf5File::read(const std::string& name, std::size_t first, std::size_t count) const {
+std::string Hdf5File::read(const std::string& name,
+                           std::size_t first,
+                           std::size_t count,
+                           Precision precision) const {
     const Hdf5Handle dataset(H5Dopen2(file_.id(), name.c_str(), H5P_DEFAULT), H5Dclose);
     const Hdf5Handle space(H5Dget_space(dataset.id()), H5Sclose);
     const Shape shape = extents_of(space, where(name));
@@ -221,10 +281,12 @@ std::string Hdf5File::read(const std::string& name, std::size_t first, std::size
         H5Sselect_hyperslab(
             space.id(), H5S_SELECT_SET, start.data(), nullptr, size.data(), nullptr);
     }
-    std::string values(total_bytes({size.begin(), size.end()}, sizeof(T)), '\0');
+    const bool is_double = precision == Precision::Double;
+    const std::size_t value_bytes = is_double ? sizeof(double) : sizeof(float);
+    std::string values(total_bytes({size.begin(), size.end()}, value_bytes), '\0');
     const Hdf5Handle memory(H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr),
                             H5Sclose);
-    const hid_t type = std::is_same_v<T, double> ? H5T_NATIVE_DOUBLE : H5T_NATIVE_FLOAT;
+    const hid_t type = is_double ? H5T_NATIVE_DOUBLE : H5T_NATIVE_FLOAT;
     if (!values.empty() &&
         H5Dread(dataset.id(), type, memory.id(), space.id(), H5P_DEFAULT, values.data()) < 0) {
         throw_unreadable(where(name));
@@ -232,7 +294,10 @@ std::string Hdf5File::read(const std::string& name, std::size_t first, std::size
     return values;
 }
 
-template std::string Hdf5File::read<float>(const std::string&, std::size_t, std::size_t) const;
-template std::string Hdf5File::read<double>(const std::string&, std::size_t, std::size_t) const;
+Container hdf5_container() {
+    return {"HDF5", is_hdf5_file, [](const std::string& path) -> std::unique_ptr<ArrayFile> {
+                return std::make_unique<Hdf5File>(path);
+            }};
+}
 
 }  // namespace nlos

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/containers/hdf5_handle.h"
 
-#include <fmt/ranges.h>
 #include <hdf5.h>
 
 #include <array>
@@ -10,11 +9,6 @@
 namespace nlos {
 
 static_assert(std::is_same_v<hid_t, std::int64_t>, "Hdf5Handle stores HDF5 identifiers");
-
-std::string shape_text(const Shape& shape) {
-    return shape.size() == 1 ? fmt::format("({},)", shape[0])
-                             : fmt::format("({})", fmt::join(shape, ", "));
-}
 
 bool is_hdf5_file(const std::string& path) {
     constexpr std::array<char, 8> kSignature{'\x89', 'H', 'D', 'F', '\r', '\n', '\x1a', '\n'};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "nlos/containers/hdf5_handle.h"
+#include "nlos/containers/shape.h"
 #include "renderer/core/capture.h"
 
 namespace nlos {

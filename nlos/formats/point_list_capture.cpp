@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/containers/mat_file.h"
 #include "nlos/formats/capture_format.h"
+#include "nlos/formats/mat_array.h"
 #include "renderer/core/error.h"
 
 #include <fmt/core.h>
@@ -31,9 +31,7 @@ std::string file_of(const std::string& path, const std::string& variable) {
 bool recognise_point_list(const std::string& path) {
     std::error_code ignored;
     if (fs::is_directory(path, ignored)) return fs::exists(file_of(path, "sub_Sig"), ignored);
-    if (!is_mat5_file(path)) return false;
-    const auto names = mat_variable_names(path);
-    return std::find(names.begin(), names.end(), "sub_Sig") != names.end();
+    return container_of(path) == "matlab-v5" && ArrayReader(path).has_object("sub_Sig");
 }
 
 /// Grid indices of the illumination (C_i) or detection (C_d) point of every histogram.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/containers/mat_file.h"
 #include "nlos/formats/capture_format.h"
+#include "nlos/formats/mat_array.h"
 #include "nlos/formats/stanford_scan.h"
 #include "renderer/core/error.h"
 
@@ -22,9 +22,7 @@ constexpr int kDirectReturnBins = 600;
 constexpr const char* kName = "Stanford 2018 confocal .mat";
 
 bool recognise_stanford(const std::string& path) {
-    if (!is_mat5_file(path)) return false;
-    const auto names = mat_variable_names(path);
-    return std::find(names.begin(), names.end(), "rect_data") != names.end();
+    return container_of(path) == "matlab-v5" && ArrayReader(path).has_object("rect_data");
 }
 
 double read_half_width(const std::string& path) {
@@ -40,8 +38,7 @@ double read_half_width(const std::string& path) {
 }
 
 std::optional<std::vector<double>> read_own_axis(const std::string& path) {
-    const auto names = mat_variable_names(path);
-    if (std::find(names.begin(), names.end(), kOwnAxis) == names.end()) return std::nullopt;
+    if (!ArrayReader(path).has_object(kOwnAxis)) return std::nullopt;
     const auto axis = read_mat_array<double>(path, kOwnAxis);
     if (axis.values.size() != 4) {
         throw Error(path + ": " + kOwnAxis,

@@ -137,7 +137,7 @@ TEST(PointListCapture, RefusesPairsThatAreNoScan) {
 TEST(PointListCapture, NamesTheFileThatIsMissingOrWrong) {
     const PointLists lists(one_detector());
     std::filesystem::remove(lists.file("C_d.mat"));
-    EXPECT_ERROR_WITH(lists.read(), "C_d.mat: is no MATLAB v5 file");
+    EXPECT_ERROR_WITH(lists.read(), "C_d.mat: cannot be opened");
     const std::vector<std::uint8_t> few(6, 1);
     write_mat(lists.file("C_d.mat"), {mat_variable("C_d", {2, 3}, few)});
     EXPECT_ERROR_WITH(lists.read(), "C_d: has shape (2, 3); must have shape (6, 3)");

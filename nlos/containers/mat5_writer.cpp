@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+#include "nlos/containers/mat5_writer.h"
+
+#include "renderer/core/error.h"
+#include "renderer/core/output_file.h"
+
+#include <fmt/core.h>
+#include <matio.h>
+
+#include <memory>
+#include <type_traits>
+
+namespace nlos {
+namespace {
+
+using MatFile = std::unique_ptr<mat_t, int (*)(mat_t*)>;
+using MatPointer = std::unique_ptr<matvar_t, void (*)(matvar_t*)>;
+
+template <class T>
+MatPointer create_array(const MatVariable& variable, const std::vector<T>& values) {
+    constexpr matio_classes kClass = std::is_same_v<T, double>  ? MAT_C_DOUBLE
+                                     : std::is_same_v<T, float> ? MAT_C_SINGLE
+                                                                : MAT_C_UINT16;
+    constexpr matio_types kType = std::is_same_v<T, double>  ? MAT_T_DOUBLE
+                                  : std::is_same_v<T, float> ? MAT_T_SINGLE
+                                                             : MAT_T_UINT16;
+    Shape shape = variable.shape;
+    return {Mat_VarCreate(variable.name.c_str(),
+                          kClass,
+                          kType,
+                          static_cast<int>(shape.size()),
+                          shape.data(),
+                          const_cast<T*>(values.data()),  // only read
+                          MAT_F_DONT_COPY_DATA),
+            Mat_VarFree};
+}
+
+MatPointer create_variable(const MatVariable& variable);
+
+MatPointer create_array(const MatVariable& variable, const std::vector<MatVariable>& fields) {
+    std::vector<const char*> names;
+    for (const MatVariable& field : fields) names.push_back(field.name.c_str());
+    Shape shape{1, 1};
+    MatPointer parent(Mat_VarCreateStruct(variable.name.c_str(),
+                                          static_cast<int>(shape.size()),
+                                          shape.data(),
+                                          names.data(),
+                                          static_cast<unsigned>(names.size())),
+                      Mat_VarFree);
+    if (parent == nullptr) return parent;
+    for (const MatVariable& field : fields) {
+        MatPointer value = create_variable(field);
+        if (value == nullptr) return value;
+        Mat_VarSetStructFieldByName(parent.get(), field.name.c_str(), 0, value.release());
+    }
+    return parent;
+}
+
+/// Stands for the values of `variable`, which it does not copy.
+MatPointer create_variable(const MatVariable& variable) {
+    return std::visit([&](const auto& values) { return create_array(variable, values); },
+                      variable.values);
+}
+
+std::size_t size_bytes(const MatVariable& variable) {
+    return std::visit(
+        [](const auto& values) {
+            using T = typename std::decay_t<decltype(values)>::value_type;
+            if constexpr (std::is_same_v<T, MatVariable>) {
+                std::size_t sum = 0;
+                for (const MatVariable& field : values) sum += size_bytes(field);
+                return sum;
+            } else {
+                return sizeof(T) * values.size();
+            }
+        },
+        variable.values);
+}
+
+}  // namespace
+
+void write_mat_file(const std::string& path, const std::vector<MatVariable>& variables) {
+    constexpr std::size_t kMaxBytes = std::size_t{1} << 31;
+    for (const MatVariable& variable : variables) {
+        if (size_bytes(variable) < kMaxBytes) continue;
+        throw core::Error(path + ": " + variable.name,
+                          fmt::format("takes {} bytes", size_bytes(variable)),
+                          fmt::format("must take less than {} in a MATLAB v5 file", kMaxBytes));
+    }
+    core::OutputFile output(path);
+    const auto check = [&](bool ok) {
+        if (!ok) throw core::Failure(path, "cannot be written (disk full?)");
+    };
+    MatFile file(Mat_CreateVer(output.temporary().c_str(), nullptr, MAT_FT_MAT5), Mat_Close);
+    check(file != nullptr);
+    for (const MatVariable& variable : variables) {
+        const MatPointer array = create_variable(variable);
+        check(array != nullptr);
+        check(Mat_VarWrite(file.get(), array.get(), MAT_COMPRESSION_ZLIB) == 0);
+    }
+    check(Mat_Close(file.release()) == 0);
+    output.commit();
+}
+
+}  // namespace nlos
