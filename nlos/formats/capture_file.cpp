@@ -60,16 +60,52 @@ const CaptureWriter& find_writer(const std::string& path, const std::string& lay
         "must be one of " + join(suffixes) + (layout.empty() ? "" : " for the layout " + layout));
 }
 
-void zero_leading_bins(int wanted, core::Capture& capture) {
+void drop_leading_bins(int wanted, core::Capture& capture) {
     const int count = std::min(wanted, capture.time_axis.num_bins);
     if (count <= 0) return;
+    core::restrict_observed(capture, {count, capture.time_axis.num_bins});
+    capture.notes.push_back(
+        fmt::format("the first {} bins (the direct return) are set to 0 and count as not observed; "
+                    "capture.zero_bins overrides",
+                    count));
+}
+
+/// What the observed bins hold.
+std::string describe_values(const core::Capture& capture) {
+    double sum = 0.0;
+    std::optional<std::array<float, 2>> range;
     for (std::size_t pair = 0; pair < capture.transient.num_pairs(); ++pair) {
-        const auto leading =
-            capture.transient.histogram(pair).first(static_cast<std::size_t>(count));
-        std::fill(leading.begin(), leading.end(), 0.0F);
+        for (const float value : capture.observed_values(pair)) {
+            sum += value;
+            if (!range) range = {value, value};
+            range = {std::min((*range)[0], value), std::max((*range)[1], value)};
+        }
     }
-    capture.notes.push_back(fmt::format(
-        "the first {} bins (the direct return) are set to 0; capture.zero_bins overrides", count));
+    const auto [low, high] = range.value_or(std::array{0.0F, 0.0F});
+    return fmt::format("histograms: {}, from {:.6g} to {:.6g}, sum {:.6g}",
+                       enum_name(capture.unit),
+                       low,
+                       high,
+                       sum);
+}
+
+/// Which bins of which points were observed, when not all were.
+std::string describe_observed(const core::Capture& capture) {
+    const std::vector<core::BinRange>& observed = *capture.observed;
+    const std::size_t blind = static_cast<std::size_t>(std::ranges::count_if(
+        observed, [](const core::BinRange& range) { return range.size() == 0; }));
+    const core::BinRange hull = core::observed_hull(capture.observed, capture.time_axis.num_bins);
+    if (hull.size() == 0) return fmt::format("observed: no bin of {} pairs", observed.size());
+    const std::size_t whole = static_cast<std::size_t>(std::ranges::count(observed, hull));
+    std::string text = fmt::format("observed: bins {} to {} of {} of {} pairs",
+                                   hull.begin,
+                                   hull.end - 1,
+                                   whole == observed.size() ? "all" : std::to_string(whole),
+                                   observed.size());
+    const std::size_t partial = observed.size() - whole - blind;
+    if (partial > 0) text += fmt::format("; fewer of {}", partial);
+    if (blind > 0) text += fmt::format("; {} not at all", blind);
+    return text;
 }
 
 std::string point_count(const core::WallPoints& points) {
@@ -158,7 +194,7 @@ core::Capture read_capture(const std::string& path, const CaptureReadSettings& s
     }
     core::Capture capture = format->read(path, settings);
     const int zero_bins = format->default_zero_bins ? format->default_zero_bins(capture) : 0;
-    zero_leading_bins(settings.zero_bins.value_or(zero_bins), capture);
+    drop_leading_bins(settings.zero_bins.value_or(zero_bins), capture);
     capture.time_axis.opl_start_m += settings.opl_shift_m.value_or(0.0);
     validate(capture, path);
     return capture;
@@ -190,14 +226,6 @@ void check_capture_suffix(const std::string& path, const CaptureWriteSettings& s
 std::vector<std::string> describe_capture(const core::Capture& capture) {
     const core::Scan& scan = capture.scan;
     const core::TimeAxis& axis = capture.time_axis;
-    double sum = 0.0;
-    float low = capture.transient.values()[0];
-    float high = low;
-    for (const float value : capture.transient.values()) {
-        sum += value;
-        low = std::min(low, value);
-        high = std::max(high, value);
-    }
     std::vector<std::string> lines =
         scan.camera ? describe_camera(*scan.camera) : describe_points(scan);
     lines.push_back(
@@ -211,6 +239,7 @@ std::vector<std::string> describe_capture(const core::Capture& capture) {
             fmt::format("path lengths {} the legs to laser and detector",
                         scan.opl_origin == core::OplOrigin::Device ? "include" : "exclude"));
     }
+    if (capture.observed) lines.push_back(describe_observed(capture));
     if (capture.velocity) lines.push_back(describe_velocity(*capture.velocity));
     if (capture.sequence) {
         lines.push_back(
@@ -220,20 +249,17 @@ std::vector<std::string> describe_capture(const core::Capture& capture) {
                         capture.sequence->frame_s,
                         capture.sequence->gate_step_m));
     }
-    lines.push_back(fmt::format("histograms: {}, from {:.6g} to {:.6g}, sum {:.6g}",
-                                enum_name(capture.unit),
-                                low,
-                                high,
-                                sum));
+    lines.push_back(describe_values(capture));
     if (capture.counts_per_radiance) {
         lines.push_back(
             fmt::format("counts per unit of radiance: {:.6g}", *capture.counts_per_radiance));
     }
     if (scan.opl_origin == core::OplOrigin::RelayWall) {
         // Seen at right angles from a confocal point, depth is half the path length.
+        const core::BinRange hull = core::observed_hull(capture.observed, axis.num_bins);
         lines.push_back(fmt::format("depth range: {:.4g} to {:.4g} m",
-                                    0.5 * std::max(0.0, axis.opl_start_m),
-                                    0.5 * axis.opl_end_m()));
+                                    0.5 * std::max(0.0, axis.bin_begin_m(hull.begin)),
+                                    0.5 * axis.bin_begin_m(hull.end)));
     }
     lines.insert(lines.end(), capture.notes.begin(), capture.notes.end());
     return lines;

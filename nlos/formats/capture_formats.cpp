@@ -44,6 +44,7 @@ std::optional<std::string> extras_left_out(const core::Capture& capture) {
     add(!capture.orders.empty(), "orders of bounces");
     add(capture.velocity.has_value(), "velocities");
     add(capture.sequence.has_value(), "frames");
+    add(capture.observed.has_value(), "observed bins");
     add(!capture.scene_info.empty(), "scene_info");
     if (names.empty()) return std::nullopt;
     return "left out: " + names;

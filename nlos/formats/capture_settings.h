@@ -10,7 +10,7 @@ namespace nlos {
 
 /// What a capture file leaves open; empty fields take the format's own defaults.
 struct CaptureReadSettings {
-    std::optional<int> zero_bins;       ///< leading bins set to 0 (Stanford: 600)
+    std::optional<int> zero_bins;       ///< leading bins that are dropped (Stanford: 600)
     std::optional<double> bin_width_m;  ///< replaces the file's bin width [m of path]
     std::optional<double> pitch_m;  ///< distance of grid neighbours, where only indices are stored
     std::optional<double> opl_shift_m;  ///< added to the axis start (time zero)
@@ -20,7 +20,9 @@ template <class Visitor>
 void for_each_field(CaptureReadSettings& s, Visitor&& visit) {
     visit("zero_bins",
           s.zero_bins,
-          core::at_least(0, "leading bins set to 0; null: the format's own (Stanford 600)"));
+          core::at_least(0,
+                         "leading bins that are set to 0 and count as not observed; null: the "
+                         "format's own (Stanford 600)"));
     visit("bin_width_m",
           s.bin_width_m,
           core::above(0, "replaces the file's bin width [m of path length]"));
