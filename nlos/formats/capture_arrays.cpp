@@ -37,6 +37,13 @@ Shape histogram_shape(const core::Capture& capture) {
     return shape;
 }
 
+std::vector<int> observed_array(const std::vector<core::BinRange>& observed) {
+    std::vector<int> bins;
+    for (const core::BinRange& range : observed) bins.push_back(range.begin);
+    for (const core::BinRange& range : observed) bins.push_back(range.end);
+    return bins;
+}
+
 void copy_rows(const core::Transient& transient,
                std::size_t first,
                std::size_t count,

@@ -6,6 +6,7 @@ namespace nlos {
 // Each is defined in the .cpp of its format.
 using Losses = std::vector<std::string>;
 CaptureFormat ytal_format();
+CaptureFormat npz_format();
 CaptureFormat exr_format();
 CaptureFormat stanford_format();
 CaptureFormat point_list_format();
@@ -20,7 +21,7 @@ Losses write_conv_nlos(const std::string&, const core::Capture&, const CaptureWr
 
 const std::vector<CaptureFormat>& capture_formats() {
     static const std::vector<CaptureFormat> formats{
-        ytal_format(), exr_format(), stanford_format(), point_list_format()};
+        ytal_format(), npz_format(), exr_format(), stanford_format(), point_list_format()};
     return formats;
 }
 

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/containers/npz_writer.h"
+#include "nlos/formats/capture_array_reader.h"
 #include "nlos/formats/capture_arrays.h"
 #include "nlos/formats/capture_format.h"
 #include "nlos/formats/ytal_layout.h"
+#include "nlos/formats/ytal_scan.h"
+#include "renderer/core/error.h"
+
+#include <cmath>
 
 namespace nlos {
 namespace {
@@ -24,6 +29,8 @@ using core::WallPoints;
 //   counts_per_radiance                      float64 (), when known
 //   variance                                 as H, when known
 //   orders, H_by_order                       int32 (K,) and float32 (K, as H), when resolved
+//   observed_bins                            int32 (2, as H without T): first observed bin and the
+//                                            one after the last, where some were not observed
 //   frames, gate_step_m, frame_s             float32 (F, as H) and float64 (), of a sequence
 
 void write_points(NpzWriter& file,
@@ -78,7 +85,45 @@ void write_stack(NpzWriter& file,
         });
 }
 
+bool recognise_npz(const std::string& path) {
+    return container_of(path) == "npz" && ArrayReader(path).has_object("H");
+}
+
+Capture read_npz(const std::string& path, const CaptureReadSettings& settings) {
+    const ArrayReader file(path);
+    Capture capture;
+    if (file.has("scene_info")) capture.scene_info = parse_scene_info(file.read_text("scene_info"));
+    read_ytal_scan(file, capture);
+    read_axis(file, settings, capture);
+    capture.transient = read_transient(file, "H", capture);
+    if (file.has("unit")) {
+        core::read_value(core::Json(file.read_text("unit")), file.where("unit"), capture.unit);
+    } else {
+        capture.notes.emplace_back("unit is missing: radiance assumed");
+    }
+    if (file.has("counts_per_radiance")) {
+        capture.counts_per_radiance = file.read_real("counts_per_radiance");
+        if (!std::isfinite(*capture.counts_per_radiance) || *capture.counts_per_radiance <= 0.0) {
+            throw core::Error(file.where("counts_per_radiance"),
+                              "is no positive number",
+                              "must be one positive number");
+        }
+    }
+    read_optional_arrays(file, "", capture);
+    if (capture.sequence && file.has("gate_step_m")) {
+        capture.sequence->gate_step_m = file.read_real("gate_step_m");
+    }
+    if (capture.sequence && file.has("frame_s")) {
+        capture.sequence->frame_s = file.read_real("frame_s");
+    }
+    return capture;
+}
+
 }  // namespace
+
+CaptureFormat npz_format() {
+    return {"NumPy .npz", "NumPy .npz with an array H", recognise_npz, read_npz};
+}
 
 std::vector<std::string> write_npz(const std::string& path,
                                    const Capture& capture,
@@ -97,6 +142,11 @@ std::vector<std::string> write_npz(const std::string& path,
                     scene_info.dump(-1, ' ', false, core::Json::error_handler_t::replace));
     if (capture.counts_per_radiance) {
         file.write_real("counts_per_radiance", *capture.counts_per_radiance);
+    }
+    if (capture.observed) {
+        Shape bins = shape;
+        bins[0] = 2;
+        file.write("observed_bins", bins, observed_array(*capture.observed));
     }
     if (capture.variance) write_transient(file, "variance", shape, *capture.variance);
     if (!capture.orders.empty()) {

@@ -87,16 +87,12 @@ void write_stack(Hdf5Writer& file,
         });
 }
 
-/// First bins of all pairs, then the bins after their last ones.
 void write_observed_bins(Hdf5Writer& file,
                          const Shape& h_shape,
                          const std::vector<core::BinRange>& observed) {
     Shape shape = h_shape;
     shape[0] = 2;
-    std::vector<int> bins;
-    for (const core::BinRange& range : observed) bins.push_back(range.begin);
-    for (const core::BinRange& range : observed) bins.push_back(range.end);
-    file.write(kObservedBins, shape, bins);
+    file.write("nlos/observed_bins", shape, observed_array(observed));
 }
 
 /// What y-tal has no name for, if there is any and y-tal need not read the file.

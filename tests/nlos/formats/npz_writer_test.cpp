@@ -161,6 +161,9 @@ TEST(NpzWriter, TextsAreUnicodeOfFourBytesPerCharacter) {
 TEST(NpzWriter, WhatElseACaptureHoldsIsThere) {
     Capture capture = example_capture(ScanPattern::Exhaustive);
     EXPECT_FALSE(write_and_read(capture).contains("variance"));
+    capture.observed.emplace(24, core::BinRange{0, 5});
+    (*capture.observed)[7] = {1, 4};
+    capture.transient.histogram(7)[0] = capture.transient.histogram(7)[4] = 0.0F;
     capture.counts_per_radiance = 77.5;
     capture.variance = capture.transient;
     capture.orders = {3, 11};
@@ -172,6 +175,12 @@ TEST(NpzWriter, WhatElseACaptureHoldsIsThere) {
     stack.insert(stack.end(), second.begin(), second.end());
     const auto members = write_and_read(capture);
     EXPECT_EQ(members.at("counts_per_radiance").values<double>(), std::vector<double>{77.5});
+    std::vector<int> bins(24, 0);
+    bins.resize(48, 5);
+    bins[7] = 1;
+    bins[24 + 7] = 4;
+    EXPECT_EQ(members.at("observed_bins").dictionary, dictionary("<i4", "(2,2,2,3,2,)"));
+    EXPECT_EQ(members.at("observed_bins").values<int>(), bins);
     EXPECT_EQ(members.at("variance").values<float>(), time_slowest(capture.transient));
     EXPECT_EQ(members.at("orders").dictionary, dictionary("<i4", "(2,)"));
     EXPECT_EQ(members.at("orders").values<int>(), (std::vector<int>{3, 11}));
