@@ -20,7 +20,7 @@ enum class Precision { Single, Double };
 struct ArrayDescription {
     std::optional<Shape> shape;  ///< nothing: a group, a struct, or nothing stored
     ElementKind kind = ElementKind::Other;
-    std::string type;                 ///< of the elements, for people: "float32", "text", "cell"
+    std::string type = "file";        ///< of the elements, for people: "float32", "text", "cell"
     std::optional<std::string> text;  ///< of an array that holds one text
     std::size_t rows_per_read = 1;    ///< how much of the slowest index is best read at once
     core::Json attributes = core::Json::object();  ///< texts, lists of numbers, or null

@@ -15,7 +15,7 @@ namespace nlos {
 
 class SandboxedProcess;
 
-/// A file of named arrays open for reading, whatever its container: HDF5, MATLAB v5.
+/// A file of named arrays open for reading, whatever its container.
 ///
 /// Libraries for file formats crash on some damaged files, whatever is asked of them. They
 /// therefore run in a process of their own, which describes objects and reads rows of values. Every
@@ -35,7 +35,7 @@ class ArrayReader {
     /// How messages name an array: `file: name`.
     std::string where(const std::string& name) const { return path_ + ": " + name; }
 
-    /// "hdf5" or "matlab-v5".
+    /// "hdf5", "matlab-v5", "matlab-v7.3".
     const std::string& container() const { return container_; }
 
     /// True for MATLAB files, whose writers count axes in the reverse of shape(): shapes are always

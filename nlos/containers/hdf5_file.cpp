@@ -13,22 +13,13 @@
 #include <vector>
 
 namespace nlos {
-namespace {
 
 using core::Json;
 
+namespace {
+
 [[noreturn]] void throw_unreadable(const std::string& where) {
     throw core::Error(where, "cannot be read", "must be an undamaged, complete file");
-}
-
-Shape extents_of(const Hdf5Handle& space, const std::string& where) {
-    const int rank = H5Sget_simple_extent_ndims(space.id());
-    if (rank < 0) throw_unreadable(where);
-    std::vector<hsize_t> extents(static_cast<std::size_t>(rank));
-    if (rank > 0 && H5Sget_simple_extent_dims(space.id(), extents.data(), nullptr) < 0) {
-        throw_unreadable(where);
-    }
-    return {extents.begin(), extents.end()};
 }
 
 ElementKind kind_of(const Hdf5Handle& type) {
@@ -122,24 +113,62 @@ std::string type_name(const Hdf5Handle& type) {
 }
 
 /// A walk over all groups of a file that notes the datasets.
-struct Walk {
-    static constexpr std::size_t kDeepest = 32;
+class GroupWalk {
+ public:
+    ArrayNames run(const Hdf5Handle& root) {
+        list_group(root, "", 0);
+        return std::move(found_);
+    }
 
-    ArrayNames found;
-    std::set<haddr_t> groups;  ///< seen so far: links may form cycles
+ private:
+    static constexpr std::size_t kDeepest = 32;
+    static constexpr std::size_t kMostObjects = 4 * ArrayNames::kMost;
+
+    void list_group(const Hdf5Handle& group, const std::string& prefix, std::size_t depth) {
+        if (depth > kDeepest) found_.is_complete = false;
+        for (const std::string& link : links_of(group)) {
+            if (found_.names.size() == ArrayNames::kMost || num_objects_++ == kMostObjects) {
+                found_.is_complete = false;
+            }
+            if (!found_.is_complete) return;
+            const Hdf5Handle object(H5Oopen(group.id(), link.c_str(), H5P_DEFAULT), H5Oclose);
+            if (object.is_valid()) list_object(object, prefix + link, depth);
+        }
+    }
+
+    void list_object(const Hdf5Handle& object, const std::string& name, std::size_t depth) {
+        const H5I_type_t type = H5Iget_type(object.id());
+        if (type == H5I_DATASET) found_.names.push_back(name);
+        H5O_info_t info{};
+        if (type != H5I_GROUP || H5Oget_info2(object.id(), &info, H5O_INFO_BASIC) < 0) return;
+        if (groups_.insert(info.addr).second) list_group(object, name + "/", depth + 1);
+    }
+
+    ArrayNames found_;
+    std::size_t num_objects_ = 0;
+    std::set<haddr_t> groups_;  ///< seen so far: links may form cycles
 };
 
-void list_group(const Hdf5Handle& group, const std::string& prefix, std::size_t depth, Walk& walk);
-
-void list_object(const Hdf5Handle& object, const std::string& name, std::size_t depth, Walk& walk) {
-    const H5I_type_t type = H5Iget_type(object.id());
-    if (type == H5I_DATASET) walk.found.names.push_back(name);
-    H5O_info_t info{};
-    if (type != H5I_GROUP || H5Oget_info2(object.id(), &info, H5O_INFO_BASIC) < 0) return;
-    if (walk.groups.insert(info.addr).second) list_group(object, name + "/", depth + 1, walk);
+/// Throws for a dataset whose values are not in this file, before the library looks for them.
+void require_own_storage(const Hdf5Handle& dataset, const std::string& where) {
+    const Hdf5Handle plan(H5Dget_create_plist(dataset.id()), H5Pclose);
+    if (H5Pget_layout(plan.id()) == H5D_VIRTUAL || H5Pget_external_count(plan.id()) > 0) {
+        throw core::Error(where, "is kept in other files", "must be in this file");
+    }
 }
 
-/// The names of links that stay within the file, at most ArrayNames::kMost + 1 of them.
+}  // namespace
+
+Shape extents_of(const Hdf5Handle& space, const std::string& where) {
+    const int rank = H5Sget_simple_extent_ndims(space.id());
+    if (rank < 0) throw_unreadable(where);
+    std::vector<hsize_t> extents(static_cast<std::size_t>(rank));
+    if (rank > 0 && H5Sget_simple_extent_dims(space.id(), extents.data(), nullptr) < 0) {
+        throw_unreadable(where);
+    }
+    return {extents.begin(), extents.end()};
+}
+
 std::vector<std::string> links_of(const Hdf5Handle& group) {
     std::vector<std::string> links;
     const auto add = [](hid_t, const char* name, const H5L_info_t* info, void* list) {
@@ -151,25 +180,9 @@ std::vector<std::string> links_of(const Hdf5Handle& group) {
     return links;
 }
 
-void list_group(const Hdf5Handle& group, const std::string& prefix, std::size_t depth, Walk& walk) {
-    if (depth > Walk::kDeepest) {
-        walk.found.is_complete = false;
-        return;
-    }
-    for (const std::string& link : links_of(group)) {
-        if (walk.found.names.size() == ArrayNames::kMost) {
-            walk.found.is_complete = false;
-            return;
-        }
-        const Hdf5Handle object(H5Oopen(group.id(), link.c_str(), H5P_DEFAULT), H5Oclose);
-        if (object.is_valid()) list_object(object, prefix + link, depth, walk);
-    }
-}
-
-}  // namespace
-
 Hdf5File::Hdf5File(std::string path) : path_(std::move(path)) {
     prepare_hdf5();
+    H5Lunregister(H5L_TYPE_EXTERNAL);  // no link leads out of the file
     file_bytes_ = std::filesystem::file_size(path_);
     file_ = Hdf5Handle(H5Fopen(path_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
     if (!file_.is_valid()) {
@@ -179,22 +192,29 @@ Hdf5File::Hdf5File(std::string path) : path_(std::move(path)) {
     }
 }
 
-ArrayNames Hdf5File::names() const {
-    Walk walk;
-    const Hdf5Handle root(H5Gopen2(file_.id(), "/", H5P_DEFAULT), H5Gclose);
+Hdf5Handle Hdf5File::open_root() const {
+    Hdf5Handle root(H5Gopen2(file_.id(), "/", H5P_DEFAULT), H5Gclose);
     if (!root.is_valid()) throw_unreadable(path_);
-    list_group(root, "", 0, walk);
-    return walk.found;
+    return root;
+}
+
+ArrayNames Hdf5File::names() const {
+    return GroupWalk().run(open_root());
 }
 
 std::optional<ArrayDescription> Hdf5File::describe(const std::string& name) const {
-    if (!exists(name)) return std::nullopt;
-    const Hdf5Handle object(H5Oopen(file_.id(), name.c_str(), H5P_DEFAULT), H5Oclose);
-    if (!object.is_valid()) throw_unreadable(where(name));
+    const Hdf5Handle object = open_object(name);
+    if (!object.is_valid()) return std::nullopt;
+    return describe_object(object, name);
+}
+
+ArrayDescription Hdf5File::describe_object(const Hdf5Handle& object,
+                                           const std::string& name) const {
     ArrayDescription description;
     description.attributes = describe_attributes(object, name);
     description.type = "group";
     if (H5Iget_type(object.id()) != H5I_DATASET) return description;
+    require_own_storage(object, where(name));
     const Hdf5Handle type(H5Dget_type(object.id()), H5Tclose);
     description.type = type_name(type);
     const Hdf5Handle space(H5Dget_space(object.id()), H5Sclose);
@@ -211,23 +231,38 @@ std::optional<ArrayDescription> Hdf5File::describe(const std::string& name) cons
     return description;
 }
 
-bool Hdf5File::exists(const std::string& name) const {
-    if (name == "/") return true;
+Hdf5Handle Hdf5File::open_object(const std::string& name) const {
+    Hdf5Handle root = open_root();
+    return name == "/" ? std::move(root) : open_member(root, name);
+}
+
+Hdf5Handle Hdf5File::open_member(const Hdf5Handle& group, const std::string& path) const {
     // Every part of the path must be asked for, or the library reports an error.
-    for (std::size_t slash = name.find('/');; slash = name.find('/', slash + 1)) {
-        if (H5Lexists(file_.id(), name.substr(0, slash).c_str(), H5P_DEFAULT) <= 0) {
-            return false;
+    for (std::size_t slash = path.find('/');; slash = path.find('/', slash + 1)) {
+        const std::string part = path.substr(0, slash);
+        H5L_info_t link{};
+        if (H5Lexists(group.id(), part.c_str(), H5P_DEFAULT) <= 0 ||
+            H5Lget_info(group.id(), part.c_str(), &link, H5P_DEFAULT) < 0) {
+            return {};
+        }
+        if (link.type != H5L_TYPE_HARD && link.type != H5L_TYPE_SOFT) {
+            throw core::Error(where(path), "is kept in another file", "must be in this file");
         }
         if (slash == std::string::npos) break;
     }
-    return H5Oexists_by_name(file_.id(), name.c_str(), H5P_DEFAULT) > 0;
+    if (H5Oexists_by_name(group.id(), path.c_str(), H5P_DEFAULT) <= 0) return {};
+    Hdf5Handle object(H5Oopen(group.id(), path.c_str(), H5P_DEFAULT), H5Oclose);
+    if (!object.is_valid()) throw_unreadable(where(path));
+    return object;
 }
 
 Json Hdf5File::describe_attributes(const Hdf5Handle& object, const std::string& name) const {
     Json attributes = Json::object();
     const auto add = [](hid_t id, const char* attribute, const H5A_info_t*, void* list) {
-        (*static_cast<Json*>(list))[attribute] = nullptr;
-        return id < 0 ? -1 : 0;
+        constexpr std::size_t kMost = 1024;
+        auto& names = *static_cast<Json*>(list);
+        names[attribute] = nullptr;
+        return id < 0 ? -1 : names.size() == kMost ? 1 : 0;
     };
     if (H5Aiterate2(object.id(), H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, add, &attributes) < 0) {
         throw_unreadable(where(name));
@@ -240,17 +275,12 @@ Json Hdf5File::describe_attributes(const Hdf5Handle& object, const std::string& 
     return attributes;
 }
 
-/// Throws unless what a dataset claims to hold is stored in the file and fits in memory.
 void Hdf5File::check_size(const Hdf5Handle& dataset,
                           const Shape& shape,
                           const std::string& where) const {
     // Deflate, the strongest filter in use, shrinks by less than 1032 to 1.
     constexpr std::uint64_t kLargestRatio = 1100;
     const Hdf5Handle type(H5Dget_type(dataset.id()), H5Tclose);
-    const Hdf5Handle plan(H5Dget_create_plist(dataset.id()), H5Pclose);
-    if (H5Pget_layout(plan.id()) == H5D_VIRTUAL || H5Pget_external_count(plan.id()) > 0) {
-        throw core::Error(where, "is kept in other files", "must be in this file");
-    }
     const Shape chunk = chunk_of(dataset, shape.size());
     const std::uint64_t stored =
         std::min<std::uint64_t>(H5Dget_storage_size(dataset.id()), file_bytes_);
@@ -269,7 +299,7 @@ std::string Hdf5File::read(const std::string& name,
                            std::size_t first,
                            std::size_t count,
                            Precision precision) const {
-    const Hdf5Handle dataset(H5Dopen2(file_.id(), name.c_str(), H5P_DEFAULT), H5Dclose);
+    const Hdf5Handle dataset = open_object(name);
     const Hdf5Handle space(H5Dget_space(dataset.id()), H5Sclose);
     const Shape shape = extents_of(space, where(name));
     check_size(dataset, shape, where(name));
@@ -295,8 +325,12 @@ std::string Hdf5File::read(const std::string& name,
 }
 
 Container hdf5_container() {
-    return {"HDF5", is_hdf5_file, [](const std::string& path) -> std::unique_ptr<ArrayFile> {
-                return std::make_unique<Hdf5File>(path);
+    return {"HDF5 (MATLAB v7.3 too)",
+            is_hdf5_file,
+            [](const std::string& path) -> std::unique_ptr<ArrayFile> {
+                auto file = std::make_unique<Hdf5File>(path);
+                if (is_mat73_file(*file, path)) return open_mat73_file(path);
+                return file;
             }};
 }
 

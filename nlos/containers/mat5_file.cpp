@@ -3,6 +3,7 @@
 #include "nlos/containers/file_memory.h"
 #include "nlos/containers/matlab_name.h"
 #include "nlos/containers/stored_number.h"
+#include "nlos/containers/unicode_text.h"
 #include "renderer/core/error.h"
 
 #include <fmt/core.h>
@@ -114,6 +115,58 @@ std::size_t element_count(const matvar_t& variable) {
     return count;
 }
 
+/// Whether the parts of a struct or cell array are there; those of an empty one are not.
+bool has_parts(const matvar_t& variable, matio_classes wanted) {
+    return variable.class_type == wanted && variable.data != nullptr && variable.dims != nullptr;
+}
+
+/// Null when there is no such part.
+matvar_t* cell_of(matvar_t& variable, std::size_t index) {
+    if (!has_parts(variable, MAT_C_CELL) || index >= element_count(variable)) return nullptr;
+    return static_cast<matvar_t**>(variable.data)[index];
+}
+
+/// The field of an element; of the only one where none is named.
+matvar_t* field_of(matvar_t& variable,
+                   const std::string& field,
+                   std::optional<std::size_t> element) {
+    if (!has_parts(variable, MAT_C_STRUCT)) return nullptr;
+    const std::size_t count = element_count(variable);
+    if (element.value_or(0) >= count || (!element && count > 1)) return nullptr;
+    return Mat_VarGetStructFieldByName(&variable, field.c_str(), element.value_or(0));
+}
+
+void list(matvar_t* variable, const std::string& name, ArrayNames& found);
+
+void list_fields(matvar_t& variable, const std::string& name, ArrayNames& found) {
+    const std::size_t count = element_count(variable);
+    const unsigned num_fields = Mat_VarGetNumberOfFields(&variable);
+    const char* const* fields = Mat_VarGetStructFieldnames(&variable);
+    for (std::size_t element = 0; element < count && found.is_complete; ++element) {
+        const std::string owner = count == 1 ? name : fmt::format("{}({})", name, element);
+        for (unsigned i = 0; i < num_fields && found.is_complete; ++i) {
+            const std::string field = fields[i] == nullptr ? "" : fields[i];
+            list(field_of(variable, field, element), owner + "." + field, found);
+        }
+    }
+}
+
+/// Notes the names of a variable's parts, or its own if it has none.
+void list(matvar_t* variable, const std::string& name, ArrayNames& found) {
+    if (variable == nullptr) return;
+    if (has_parts(*variable, MAT_C_STRUCT)) return list_fields(*variable, name, found);
+    if (has_parts(*variable, MAT_C_CELL)) {
+        const std::size_t count = element_count(*variable);
+        for (std::size_t i = 0; i < count && found.is_complete; ++i) {
+            list(cell_of(*variable, i), fmt::format("{}{{{}}}", name, i), found);
+        }
+        return;
+    }
+    if (variable->class_type == MAT_C_STRUCT || variable->class_type == MAT_C_CELL) return;
+    found.is_complete = found.names.size() < ArrayNames::kMost;
+    if (found.is_complete) found.names.push_back(name);
+}
+
 /// A MATLAB v5 file. What a variable holds is known once the file is open; the values of an array
 /// are read when they are first asked for, and kept.
 class Mat5File : public ArrayFile {
@@ -131,6 +184,7 @@ class Mat5File : public ArrayFile {
 
  private:
     matvar_t* find(const std::string& name) const;
+    std::optional<std::string> read_text(matvar_t& variable, const std::string& name) const;
     Shape checked_shape(const matvar_t& variable, const std::string& name) const;
     void read_values(matvar_t& variable, const std::string& name) const;
 
@@ -154,15 +208,31 @@ Mat5File::Mat5File(const std::string& path)
 
 ArrayNames Mat5File::names() const {
     ArrayNames found;
-    for (const MatPointer& variable : variables_) found.names.emplace_back(variable->name);
+    for (const MatPointer& variable : variables_) list(variable.get(), variable->name, found);
     return found;
 }
 
 matvar_t* Mat5File::find(const std::string& name) const {
+    const auto steps = parse_matlab_name(name);
+    if (!steps) return nullptr;
+    matvar_t* at = nullptr;
     for (const MatPointer& variable : variables_) {
-        if (name == variable->name) return variable.get();
+        if (steps->front().field == variable->name) at = variable.get();
     }
-    return nullptr;
+    std::optional<std::size_t> element;
+    for (std::size_t i = 1; i < steps->size() && at != nullptr; ++i) {
+        const MatlabStep& step = (*steps)[i];
+        if (step.kind == MatlabStep::Kind::Element) {
+            if (element) return nullptr;
+            element = step.index;
+        } else if (step.kind == MatlabStep::Kind::Cell) {
+            at = cell_of(*at, step.index);
+        } else {
+            at = field_of(*at, step.field, element);
+            element.reset();
+        }
+    }
+    return element ? nullptr : at;
 }
 
 /// Extents of an array, slowest first, after checking them against the file's size.
@@ -184,28 +254,47 @@ Shape Mat5File::checked_shape(const matvar_t& variable, const std::string& name)
 }
 
 std::optional<ArrayDescription> Mat5File::describe(const std::string& name) const {
-    const matvar_t* variable = find(name);
-    if (variable == nullptr) return std::nullopt;
     ArrayDescription description;
+    if (name == "/") return description;
+    matvar_t* variable = find(name);
+    if (variable == nullptr) return std::nullopt;
     description.type = type_name(*variable);
     const auto number = number_of(variable->class_type);
-    if (!number) return description;
+    const bool is_text = variable->class_type == MAT_C_CHAR;
+    if (!number && !is_text) return description;
     description.shape = checked_shape(*variable, name);
     description.rows_per_read = rows_of_read(*description.shape);
-    if (variable->isComplex == 0) {
+    if (is_text) {
+        description.kind = ElementKind::Text;
+        description.text = read_text(*variable, name);
+    } else if (variable->isComplex == 0) {
         description.kind = variable->isLogical != 0 ? ElementKind::Integer : kind_of(*number);
     }
     return description;
 }
 
+/// The text of a row of characters, or of none.
+std::optional<std::string> Mat5File::read_text(matvar_t& variable, const std::string& name) const {
+    const std::size_t count = element_count(variable);
+    if (count == 0) return "";
+    if (variable.rank != 2 || variable.dims[0] != 1) return std::nullopt;
+    read_values(variable, name);
+    const std::size_t unit_bytes = Mat_SizeOf(variable.data_type);
+    if (unit_bytes != 1 && unit_bytes != 2 && unit_bytes != 4) return std::nullopt;
+    return utf8_text(static_cast<const char*>(variable.data),
+                     variable.nbytes / unit_bytes,
+                     unit_bytes,
+                     std::endian::native);
+}
+
 /// Reads the values of an array unless they are there.
 void Mat5File::read_values(matvar_t& variable, const std::string& name) const {
     if (variable.data != nullptr) return;
-    const auto value_bytes = static_cast<std::uint64_t>(variable.data_size);
-    require_memory(total_bytes(checked_shape(variable, name), value_bytes + sizeof(double)),
+    // As stored, and as the caller gets them.
+    require_memory(total_bytes(checked_shape(variable, name), 2 * sizeof(double)),
                    path_ + ": " + name);
     if (Mat_VarReadDataAll(file_.get(), &variable) != 0 || variable.data == nullptr ||
-        variable.nbytes < element_count(variable) * value_bytes) {
+        variable.nbytes < element_count(variable) * static_cast<std::size_t>(variable.data_size)) {
         throw_damaged_mat(path_);
     }
 }
