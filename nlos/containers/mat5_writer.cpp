@@ -6,7 +6,10 @@
 
 #include <fmt/core.h>
 #include <matio.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
+#include <fstream>
 #include <memory>
 #include <type_traits>
 
@@ -77,6 +80,24 @@ std::size_t size_bytes(const MatVariable& variable) {
         variable.values);
 }
 
+/// A file without a name that lies in memory.
+class MemoryFile {
+ public:
+    MemoryFile() : descriptor_(::memfd_create("mat", MFD_CLOEXEC)) {}
+    ~MemoryFile() { ::close(descriptor_); }
+    MemoryFile(const MemoryFile&) = delete;
+    MemoryFile& operator=(const MemoryFile&) = delete;
+
+    std::string path() const { return fmt::format("/proc/self/fd/{}", descriptor_); }
+    std::string bytes() const {
+        std::ifstream stream(path(), std::ios::binary);
+        return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+    }
+
+ private:
+    int descriptor_;
+};
+
 }  // namespace
 
 void write_mat_file(const std::string& path, const std::vector<MatVariable>& variables) {
@@ -87,11 +108,12 @@ void write_mat_file(const std::string& path, const std::vector<MatVariable>& var
                           fmt::format("takes {} bytes", size_bytes(variable)),
                           fmt::format("must take less than {} in a MATLAB v5 file", kMaxBytes));
     }
-    core::OutputFile output(path);
     const auto check = [&](bool ok) {
-        if (!ok) throw core::Failure(path, "cannot be written (disk full?)");
+        if (!ok) throw core::Failure(path, "cannot be written (out of memory?)");
     };
-    MatFile file(Mat_CreateVer(output.temporary().c_str(), nullptr, MAT_FT_MAT5), Mat_Close);
+    // matio does not notice when a disk is full, so that it writes to memory.
+    const MemoryFile memory;
+    MatFile file(Mat_CreateVer(memory.path().c_str(), nullptr, MAT_FT_MAT5), Mat_Close);
     check(file != nullptr);
     for (const MatVariable& variable : variables) {
         const MatPointer array = create_variable(variable);
@@ -99,7 +121,7 @@ void write_mat_file(const std::string& path, const std::vector<MatVariable>& var
         check(Mat_VarWrite(file.get(), array.get(), MAT_COMPRESSION_ZLIB) == 0);
     }
     check(Mat_Close(file.release()) == 0);
-    output.commit();
+    core::write_text_file(path, memory.bytes());
 }
 
 }  // namespace nlos

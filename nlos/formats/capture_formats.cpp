@@ -48,7 +48,7 @@ std::optional<std::string> extras_left_out(const core::Capture& capture) {
     add(capture.observed.has_value(), "observed bins");
     add(!capture.scene_info.empty(), "scene_info");
     if (names.empty()) return std::nullopt;
-    return "left out: " + names;
+    return "the file has no place for " + names;
 }
 
 std::vector<float> to_floats(const std::vector<core::Vec3>& points) {

@@ -27,7 +27,8 @@ using core::WallPoints;
 //
 // The origin is the middle of the hidden scene and the wall stands at z = target_dist. A capture
 // does not tell where the scene's middle is: the middle of the axis stands for it. x and y are kept
-// and z becomes target_dist - z, so that theirs is the mirror image of our world.
+// and z becomes target_dist - z, so that theirs is the mirror image of our world: in the authors'
+// front view, x to the right, left and right are exchanged.
 
 /// What NLOSDATA can hold: points on z = 0, with path lengths from and to the wall.
 void check_scan(const std::string& path, const core::Scan& scan) {
@@ -86,7 +87,9 @@ MatVariable transient_variable(const Capture& capture) {
 }
 
 std::vector<std::string> losses(const Capture& capture) {
-    std::vector<std::string> sentences{"the unit is left out"};
+    std::vector<std::string> sentences{
+        "the unit is left out",
+        "the wall's z runs the other way: the authors' programs show left and right exchanged"};
     const bool has_grid = capture.scan.sensing.grid || capture.scan.illumination.grid;
     if (capture.scan.pattern != core::ScanPattern::Confocal && has_grid) {
         sentences.emplace_back("grids become lists of points");

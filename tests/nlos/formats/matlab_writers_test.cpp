@@ -124,8 +124,8 @@ TEST(StanfordFkWriter, NamesWhatIsLeftOut) {
     capture.scene_info["seed"] = 7;
     for (const char* layout : {"stanford-fk-2019", "conv-nlos"}) {
         const auto losses = write_as(layout, folder.file("a.mat"), capture);
-        ASSERT_EQ(losses.size(), 2U);
-        EXPECT_EQ(losses[1], "left out: variance, scene_info");
+        ASSERT_GE(losses.size(), 2U);
+        EXPECT_EQ(losses.back(), "the file has no place for variance, scene_info");
     }
 }
 
@@ -210,7 +210,7 @@ TEST(ConvNlosWriter, OtherTransientsAreLitThenSeenThenTime) {
     for (const auto pattern : {ScanPattern::Single, ScanPattern::Exhaustive}) {
         const Capture capture = example_capture(pattern);
         const auto losses = write_as("conv-nlos", folder.file("a.mat"), capture);
-        EXPECT_EQ(losses[1], "grids become lists of points");
+        EXPECT_EQ(losses.back(), "grids become lists of points");
         const NlosData data(folder.file("a.mat"));
         const std::size_t lit = capture.scan.illumination.size();
         EXPECT_EQ(data.shape("transient"), (std::vector<std::size_t>{lit, 6, 5}));
