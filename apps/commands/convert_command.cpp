@@ -23,7 +23,7 @@ struct ConvertArguments {
 };
 
 void run(const ConvertArguments& arguments) {
-    nlos::check_capture_suffix(arguments.output);
+    nlos::check_capture_suffix(arguments.output, arguments.write);
     core::check_targets({arguments.output}, {arguments.input});
     core::Capture capture =
         nlos::read_capture(arguments.input, capture_options(arguments.overrides).capture);
@@ -54,9 +54,13 @@ void add_convert_command(CLI::App& app) {
     command
         ->add_option("OUT",
                      arguments->output,
-                     "Capture to write: .h5 or .hdf5 (y-tal), .exr (a streak image), .mat "
-                     "(Stanford 2018)")
+                     "Capture to write: .h5 or .hdf5 (y-tal), .npz (NumPy), .exr (a streak image), "
+                     ".mat (stanford-2018, or what --out-layout says)")
         ->required();
+    command->add_option("--out-layout",
+                        arguments->write.layout,
+                        "Layout of OUT where its suffix has several: of .mat stanford-2018 "
+                        "(MATLAB v5), stanford-fk-2019 (MATLAB v7.3) or conv-nlos (MATLAB v5)");
     CLI::Option* steady =
         command->add_flag("--steady", arguments->steady, "Sum over all bins: a steady-state image");
     command

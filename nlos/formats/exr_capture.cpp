@@ -272,6 +272,8 @@ Capture read_exr(const std::string& path, const CaptureReadSettings& settings) {
     return capture;
 }
 
+}  // namespace
+
 std::vector<std::string> write_exr(const std::string& path,
                                    const Capture& capture,
                                    const CaptureWriteSettings&) {
@@ -321,15 +323,8 @@ std::vector<std::string> write_exr(const std::string& path,
     return {};
 }
 
-}  // namespace
-
 CaptureFormat exr_format() {
-    return {"OpenEXR",
-            "OpenEXR with the header attribute nlosFormat",
-            recognise_exr,
-            read_exr,
-            {".exr"},
-            write_exr};
+    return {"OpenEXR", recognise_exr, read_exr};
 }
 
 }  // namespace nlos
