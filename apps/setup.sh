@@ -6,8 +6,8 @@ set -euo pipefail
 packages=(
     g++ cmake ninja-build pkg-config git ca-certificates
     libembree-dev libtbb-dev libtinygltf-dev nlohmann-json3-dev libfmt-dev libcli11-dev
-    libeigen3-dev libfftw3-dev libhdf5-dev libmatio-dev libopenexr-dev libflann-dev liblz4-dev libopencv-dev
-    libceres-dev libzip-dev
+    libeigen3-dev libfftw3-dev libhdf5-dev libmatio-dev libzip-dev libopenexr-dev libflann-dev liblz4-dev libopencv-dev
+    libceres-dev
     libgtest-dev gnuplot-nox
 )
 

@@ -46,7 +46,7 @@ set(anywhere
 set(third_renderer/core "flann/|malloc\\.h")
 set(third_renderer/gltf "tiny_gltf")
 set(third_renderer/scene "embree3/")
-set(third_nlos/containers "hdf5\\.h|matio\\.h|OpenEXR/")
+set(third_nlos/containers "hdf5\\.h|matio\\.h|zip\\.h|OpenEXR/")
 set(third_nlos/fourier "fftw3\\.h")
 set(third_nlos/pictures "opencv2/")
 set(third_calib/setup "ceres/|opencv2/")

@@ -171,7 +171,13 @@ std::vector<T> ArrayReader::read_values(const std::string& name,
     std::string request;
     Json::to_cbor(Json::array({"read", name, first, count, kPrecision}), request);
     const std::string bytes = process_->ask(request);
-    std::vector<T> values(bytes.size() / sizeof(T));
+    const Shape found = shape(name);
+    const std::uint64_t row =
+        found.empty() ? 1 : total_bytes(Shape(found.begin() + 1, found.end()), 1);
+    if (bytes.size() != count * row * sizeof(T)) {
+        throw core::Error(where(name), "cannot be read", "must be an undamaged file");
+    }
+    std::vector<T> values(count * row);
     if (!values.empty()) std::memcpy(values.data(), bytes.data(), values.size() * sizeof(T));
     return values;
 }
