@@ -29,7 +29,7 @@ void write_captures(const std::string& folder) {
             capture.orders = {3};
             capture.by_order = {capture.transient};
         }
-        for (const std::string suffix : {".h5", ".exr"}) {
+        for (const std::string suffix : {".h5", ".npz", ".exr"}) {
             nlos::write_capture(folder + "/" + std::to_string(number) + suffix, capture);
         }
         nlos::write_old_hdf5(folder + "/old" + std::to_string(number) + ".h5", capture);

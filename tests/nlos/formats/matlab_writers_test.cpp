@@ -11,6 +11,7 @@
 #include <hdf5.h>
 #include <matio.h>
 
+#include <algorithm>
 #include <memory>
 
 namespace nlos {
@@ -210,7 +211,7 @@ TEST(ConvNlosWriter, OtherTransientsAreLitThenSeenThenTime) {
     for (const auto pattern : {ScanPattern::Single, ScanPattern::Exhaustive}) {
         const Capture capture = example_capture(pattern);
         const auto losses = write_as("conv-nlos", folder.file("a.mat"), capture);
-        EXPECT_EQ(losses.back(), "grids become lists of points");
+        EXPECT_TRUE(std::ranges::count(losses, "grids become lists of points"));
         const NlosData data(folder.file("a.mat"));
         const std::size_t lit = capture.scan.illumination.size();
         EXPECT_EQ(data.shape("transient"), (std::vector<std::size_t>{lit, 6, 5}));
