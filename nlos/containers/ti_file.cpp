@@ -6,6 +6,7 @@
 #include <fmt/core.h>
 
 #include <array>
+#include <bit>
 #include <fstream>
 #include <map>
 #include <utility>
@@ -69,6 +70,15 @@ class TiFile : public JsonLeaves {
         return count;
     }
 
+    double take_real(const std::string& name) {
+        std::uint32_t bits = 0;
+        for (std::size_t i = std::min(kWordBytes, rest_.size()); i-- > 0;) {
+            bits = bits << 8 | static_cast<unsigned char>(rest_[i]);
+        }
+        take_array(name, StoredNumber::Float32, {});
+        return std::bit_cast<float>(bits);
+    }
+
     void take_version_4() {
         constexpr std::uint64_t kPlaneMode = 10;
         const std::uint64_t mode = take_count("pixelMode");
@@ -95,8 +105,14 @@ class TiFile : public JsonLeaves {
         const std::array<const char*, 3> names =
             is_old ? std::array{"vRes", "numBins", "uRes"} : std::array{"numBins", "uRes", "vRes"};
         for (const char* name : names) counts[name] = take_count(name);
-        take_array("tmin", StoredNumber::Float32, {});
-        take_array("tmax", StoredNumber::Float32, {});
+        const double begin = take_real("tmin");
+        const double end = take_real("tmax");
+        // As the newer version states it.
+        add_values("tDelta",
+                   {},
+                   {(end - begin) / static_cast<double>(counts["numBins"])},
+                   ElementKind::Real,
+                   "float64");
         const std::uint64_t pixels = counts["uRes"] * counts["vRes"];
         add_values("numPixels", {}, {static_cast<double>(pixels)}, ElementKind::Integer, "uint32");
         take_array("data", StoredNumber::Float32, {pixels, counts["numBins"]});

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "nlos/containers/array_reader.h"
-#include "nlos/formats/capture_settings.h"
+#include "nlos/layouts/capture_settings.h"
 #include "renderer/core/capture.h"
 
 namespace nlos {
