@@ -2,8 +2,8 @@
 #include "nlos/containers/hdf5_reader.h"
 
 #include "nlos/containers/hdf5_file.h"
-#include "nlos/containers/sandboxed_process.h"
 #include "renderer/core/error.h"
+#include "renderer/core/sandboxed_process.h"
 
 #include <cstring>
 #include <filesystem>
@@ -37,10 +37,11 @@ Hdf5Reader::Hdf5Reader(std::string path) : path_(std::move(path)) {
     }
     // The file is opened in the child, at the first request.
     const auto file = std::make_shared<std::optional<Hdf5File>>();
-    process_ = std::make_unique<SandboxedProcess>(path_, [file, this](const std::string& request) {
-        if (!*file) file->emplace(path_);
-        return answer(**file, Json::from_cbor(request));
-    });
+    process_ =
+        std::make_unique<core::SandboxedProcess>(path_, [file, this](const std::string& request) {
+            if (!*file) file->emplace(path_);
+            return answer(**file, Json::from_cbor(request));
+        });
     describe("/");
 }
 

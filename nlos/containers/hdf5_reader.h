@@ -12,9 +12,11 @@
 #include <string>
 #include <vector>
 
-namespace nlos {
-
+namespace core {
 class SandboxedProcess;
+}
+
+namespace nlos {
 
 /// An HDF5 file open for reading.
 ///
@@ -78,7 +80,7 @@ class Hdf5Reader {
     std::vector<T> read_values(const std::string& name, std::size_t first, std::size_t count) const;
 
     std::string path_;
-    std::unique_ptr<SandboxedProcess> process_;
+    std::unique_ptr<core::SandboxedProcess> process_;
     mutable std::map<std::string, core::Json> described_;  ///< objects asked for so far
 };
 

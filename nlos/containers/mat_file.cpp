@@ -2,9 +2,9 @@
 #include "nlos/containers/mat_file.h"
 
 #include "nlos/containers/file_memory.h"
-#include "nlos/containers/sandboxed_process.h"
 #include "renderer/core/error.h"
 #include "renderer/core/output_file.h"
+#include "renderer/core/sandboxed_process.h"
 
 #include <fmt/core.h>
 #include <matio.h>
@@ -171,7 +171,7 @@ bool is_mat5_file(const std::string& path) {
 
 std::vector<std::string> mat_variable_names(const std::string& path) {
     // Names end with a zero each.
-    const std::string answer = run_sandboxed(path, [&] {
+    const std::string answer = core::run_sandboxed(path, [&] {
         std::string text;
         for (const std::string& name : names_of_variables(path))
             text += std::string(name.c_str()) + '\0';
@@ -188,7 +188,7 @@ std::vector<std::string> mat_variable_names(const std::string& path) {
 template <class T>
 MatArray<T> read_mat_array(const std::string& path, const std::string& variable) {
     // The number of extents, these, and the values.
-    const std::string answer = run_sandboxed(path, [&] {
+    const std::string answer = core::run_sandboxed(path, [&] {
         const MatArray<T> array = read_with_library<T>(path, variable);
         const std::size_t rank = array.shape.size();
         std::string bytes(reinterpret_cast<const char*>(&rank), sizeof(rank));
