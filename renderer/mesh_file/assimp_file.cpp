@@ -79,13 +79,11 @@ class MaterialFiles : public Assimp::DefaultIOSystem {
         }
     }
 
+    /// Assimp goes on to try other names, which nobody gave.
     void note_missing(const std::string& path) {
-        const std::string name = one_line(fs::path(path).filename().string());
-        const std::string text =
-            name + " is not beside it: materials that it would define are white";
-        if (std::find(warnings_.begin(), warnings_.end(), text) == warnings_.end()) {
-            warnings_.push_back(text);
-        }
+        if (!warnings_.empty()) return;
+        warnings_.push_back(one_line(fs::path(path).filename().string()) +
+                            " is not beside it: materials that it would define are white");
     }
 
     std::string mesh_path_;
@@ -169,9 +167,21 @@ void keep_one_format(Assimp::Importer& importer, const std::string& suffix) {
     }
 }
 
-AssimpFile read_with_library(const std::string& path) {
+/// In the header of a PLY file that does not end, assimp looks for its end forever.
+void require_ply_header(const std::string& path) {
+    constexpr std::size_t kLongestHeader = 1 << 20;
+    std::string start(kLongestHeader, '\0');
+    std::ifstream file(path, std::ios::binary);
+    file.read(start.data(), static_cast<std::streamsize>(start.size()));
+    start.resize(static_cast<std::size_t>(file.gcount()));
+    if (start.starts_with("ply") && start.find("end_header") != std::string::npos) return;
+    throw core::Error(path, "is damaged: its PLY header is not complete", kAllowed);
+}
+
+AssimpFile read_with_library(const std::string& path, const std::string& suffix) {
     Assimp::Importer importer;
-    keep_one_format(importer, fs::path(path).extension().string());
+    if (suffix == ".ply") require_ply_header(path);
+    keep_one_format(importer, suffix);
     auto files = std::make_unique<MaterialFiles>(path);
     MaterialFiles& material_files = *files;
     importer.SetIOHandler(files.release());  // which owns it from here on
@@ -245,11 +255,11 @@ AssimpFile from_json(const core::Json& json) {
 
 }  // namespace
 
-AssimpFile read_with_assimp(const std::string& path) {
+AssimpFile read_with_assimp(const std::string& path, const std::string& suffix) {
     const std::string answer = core::run_sandboxed(path, [&] {
         try {
             std::string bytes;
-            core::Json::to_cbor(to_json(read_with_library(path)), bytes);
+            core::Json::to_cbor(to_json(read_with_library(path, suffix)), bytes);
             return bytes;
         } catch (const core::Error&) {
             throw;

@@ -32,11 +32,12 @@ struct AssimpFile {
     std::vector<std::string> warnings;  ///< of the file as a whole
 };
 
-/// Reads a Wavefront OBJ, PLY or STL file, told by its suffix, in a sandboxed process; of an OBJ
-/// file also the material files (MTL) beside it. Polygons become triangles; points and lines are
-/// left out.
+/// Reads a Wavefront OBJ, PLY or STL file in a sandboxed process, since some damaged files crash
+/// assimp; of an OBJ file also the material files (MTL) beside it. Polygons become triangles;
+/// points and lines are left out.
 ///
+/// suffix   .obj, .ply or .stl: the format
 /// throws   core::Error when the file is damaged, core::Failure when it does not fit in memory
-AssimpFile read_with_assimp(const std::string& path);
+AssimpFile read_with_assimp(const std::string& path, const std::string& suffix);
 
 }  // namespace renderer

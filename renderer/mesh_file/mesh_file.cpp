@@ -120,7 +120,7 @@ bool is_mesh_file(const std::string& path) {
 
 SceneGeometry load_mesh_file(const std::string& path, const MeshFrame& frame) {
     require_readable(path);
-    const AssimpFile file = read_with_assimp(path);
+    const AssimpFile file = read_with_assimp(path, lower_suffix(path));
     const core::Mat3 world_from_file = frame.unit_m * world_from_axes(frame.up);
     SceneGeometry geometry;
     for (const FileMesh& source : file.meshes) {

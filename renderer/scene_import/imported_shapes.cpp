@@ -131,19 +131,26 @@ void note_mirrored_wall(const core::Transform& to_world, ImportedScene& scene) {
         "columns of wall points run against those of the foreign scene, whose wall is mirrored");
 }
 
-void set_bounces(int only, int most, ImportedScene& scene) {
+void set_bounces(const ForeignBounces& bounces, ImportedScene& scene) {
     constexpr int kFewest = 3;  // wall, object, wall
     constexpr int kUnlimited = 5;
-    if (only > kFewest) {
+    int& most = scene.description.render.max_bounces;
+    if (bounces.filter > 0) {
+        most = bounces.filter;
         scene.not_translated.push_back(fmt::format(
-            "light of fewer than {} bounces is rendered too, not {} alone", only, only));
-    }
-    if (only <= 0 && most < 0) {
+            "filter_bounces: light of all orders from 3 to {} is rendered{}",
+            std::max(kFewest, most),
+            bounces.laser_sampling ? "; mitransient 1.3 with nlos_laser_sampling keeps one more"
+                                   : ""));
+    } else if (bounces.max_depth < 0) {
+        most = kUnlimited;
         scene.not_translated.push_back(
-            fmt::format("bounces are unlimited there; render.max_bounces is {} here", kUnlimited));
+            fmt::format("max_depth: bounces are unlimited there, at most {} here", kUnlimited));
+    } else {
+        // Measured with mitransient 1.3.1: see ForeignBounces.
+        most = bounces.laser_sampling ? bounces.max_depth : bounces.max_depth - 1;
     }
-    const int wanted = only > 0 ? only : most < 0 ? kUnlimited : most;
-    scene.description.render.max_bounces = std::max(kFewest, wanted);
+    most = std::max(kFewest, most);
 }
 
 }  // namespace renderer

@@ -37,10 +37,15 @@ void set_wall_material(const Material& material, ImportedScene& scene);
 /// Says in the list when columns of the wall's points run against those of the foreign scene.
 void note_mirrored_wall(const core::Transform& to_world, ImportedScene& scene);
 
+/// How a scene of mitransient limits bounces.
+struct ForeignBounces {
+    int filter = -1;     ///< the one number of bounces that it keeps; 0 or less: all
+    int max_depth = -1;  ///< of its paths; negative: unlimited
+    bool laser_sampling =
+        false;  ///< then the lit spot does not count in max_depth, else the laser does
+};
+
 /// Sets how many bounces are rendered.
-///
-/// only   the one number of bounces that the foreign scene keeps; 0 or less: all
-/// most   the largest number that it renders; negative: any
-void set_bounces(int only, int most, ImportedScene& scene);
+void set_bounces(const ForeignBounces& bounces, ImportedScene& scene);
 
 }  // namespace renderer

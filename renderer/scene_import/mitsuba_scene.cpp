@@ -223,9 +223,11 @@ class MitsubaImport {
         if (keys.get("account_first_and_last_bounces", false)) {
             scan.opl_origin = core::OplOrigin::Device;
         }
-        const int only = keys.get("filter_bounces", keys.get("filter_depth", 0) - 1);
-        const int depth = keys.get("max_depth", 6);
-        set_bounces(only, depth < 0 ? depth : depth - 1, scene_);
+        ForeignBounces bounces;
+        bounces.filter = keys.get("filter_bounces", keys.get("filter_depth", 0) - 1);
+        bounces.max_depth = keys.get("max_depth", 6);
+        bounces.laser_sampling = keys.get("nlos_laser_sampling", false);
+        set_bounces(bounces, scene_);
         keys.ignore({"type", "id"});
         note_unread(keys, key);
     }

@@ -87,7 +87,8 @@ ImportedScene import_scene(const std::string& path) {
             path, "has no hidden objects that are known here", "must have at least one");
     }
     scene.not_translated.emplace_back(
-        "surfaces scatter on both sides here; in Mitsuba only those with twosided do");
+        "surfaces scatter on both sides here, in Mitsuba only those with twosided do; and by the "
+        "normals of facets, where Mitsuba may interpolate those of vertices");
     validate(scene.description, path + ", translated: ");
     return scene;
 }

@@ -35,7 +35,10 @@ class YtalImport {
         read_axis();
         read_geometry();
         read_scan();
-        set_bounces(keys_.get("integrator_filter_bounces", -1), bounces(), scene_);
+        set_bounces({keys_.get("integrator_filter_bounces", -1),
+                     keys_.get("integrator_max_depth", -1),
+                     keys_.get("integrator_nlos_laser_sampling", true)},
+                    scene_);
         keys_.ignore({"name", "mitsuba_variant", "description", "histogram_mode"});
         if (keys_.find("laser_emission") != nullptr) {
             note("laser_emission", "its power is not translated: each spot is lit by 1 W");
@@ -47,11 +50,6 @@ class YtalImport {
  private:
     void note(const std::string& key, const std::string& text) {
         scene_.not_translated.push_back(key + ": " + text);
-    }
-
-    int bounces() {
-        const int depth = keys_.get("integrator_max_depth", -1);
-        return depth < 0 ? depth : depth - 1;
     }
 
     void read_axis() {

@@ -10,45 +10,8 @@ namespace {
 using namespace scene_import_test;
 using core::Vec3;
 
-/// What a scene needs, with places to put more in; @@ in names keeps them apart from Mitsuba's $.
-const std::string kScene = R"(<scene version="3.5.0">
-  @@root
-  <integrator type="transient_nlos_path">@@integrator</integrator>
-  <emitter type="projector" id="laser">
-    <transform name="to_world"><lookat origin="-0.5, 0, 0.25" target="@@target" up="0,1,0"/></transform>
-    <rgb name="irradiance" value="1"/>
-  </emitter>
-  <shape type="@@type" id="hidden">
-    @@shape
-    <transform name="to_world"><translate z="1"/></transform>
-  </shape>
-  <shape type="rectangle" id="wall">
-    @@wall
-    <sensor type="nlos_capture_meter">
-      @@sensor
-      <point name="sensor_origin" x="0.1" y="0.2" z="0.3"/>
-      <film type="transient_hdr_film">
-        <integer name="width" value="12"/><integer name="height" value="8"/>
-        <integer name="temporal_bins" value="300"/>
-        <float name="bin_width_opl" value="0.01"/><float name="start_opl" value="1.5"/>
-        @@film
-      </film>
-    </sensor>
-  </shape>
-</scene>)";
-
-renderer::ImportedScene import_xml(std::vector<std::pair<std::string, std::string>> values) {
-    for (const auto& [name, usual] : {std::pair{"@@target", "0.25, -0.125, 0"},
-                                      {"@@type", "rectangle"},
-                                      {"@@root", ""},
-                                      {"@@integrator", ""},
-                                      {"@@shape", ""},
-                                      {"@@wall", ""},
-                                      {"@@sensor", ""},
-                                      {"@@film", ""}}) {
-        values.emplace_back(name, usual);
-    }
-    return import_text("scene.xml", filled(kScene, values));
+renderer::ImportedScene import_xml(const Values& values) {
+    return import_text("scene.xml", example_xml(values));
 }
 
 double hidden_albedo(const std::string& bsdf) {
@@ -90,6 +53,12 @@ TEST(MitsubaScene, PatternAndBouncesComeFromTheIntegrator) {
     EXPECT_EQ(bounces("max_depth", 4), 3);
     EXPECT_EQ(bounces("filter_bounces", 3), 3);
     EXPECT_EQ(bounces("filter_depth", 6), 5);
+    EXPECT_EQ(bounces("max_depth", -1), 5);  // unlimited
+    EXPECT_EQ(import_xml({{"@@integrator",
+                           R"(<integer name="max_depth" value="4"/>
+                              <boolean name="nlos_laser_sampling" value="true"/>)"}})
+                  .description.render.max_bounces,
+              4);
 }
 
 TEST(MitsubaScene, ConfocalScansOfOnePixelHaveTheOriginalGrid) {
@@ -171,20 +140,12 @@ TEST(MitsubaScene, ShapesStandWhereTheirTransformsPutThem) {
 }
 
 TEST(MitsubaScene, TransformsActInTheirOrder) {
-    const auto scene = import_text(
-        "scene.xml",
-        filled(kScene,
-               {{"@@target", "0, 0, 0"},
-                {"@@type", "obj"},
-                {"<translate z=\"1\"/>",
-                 R"(<translate x="1"/><rotate z="1" angle="90"/><scale x="2" y="3" z="4"/>
-                    <matrix value="1 0 0 0.5  0 1 0 0  0 0 1 1  0 0 0 1"/>)"},
-                {"@@shape", R"(<string name="filename" value="shape.obj"/>)"},
-                {"@@root", ""},
-                {"@@integrator", ""},
-                {"@@wall", ""},
-                {"@@sensor", ""},
-                {"@@film", ""}}));
+    const auto scene =
+        import_xml({{"@@type", "obj"},
+                    {"@@place",
+                     R"(<translate x="1"/><rotate z="1" angle="90"/><scale x="2" y="3" z="4"/>
+             <matrix value="1 0 0 0.5  0 1 0 0  0 0 1 1  0 0 0 1"/>)"},
+                    {"@@shape", R"(<string name="filename" value="shape.obj"/>)"}});
     // The corner at the origin: to (1, 0, 0), turned to (0, 1, 0), stretched to (0, 3, 0), moved.
     EXPECT_LT((scene.geometry.objects.at(0).mesh.vertices.at(0) - Vec3(0.5, 3, 1)).norm(), 1e-12);
 }
@@ -237,7 +198,7 @@ TEST(MitsubaScene, RoughConductorsKeepTheirWidthAndReflectance) {
 
 TEST(MitsubaScene, WhatIsNotTranslatedIsListed) {
     const auto scene = import_xml(
-        {{"@@integrator", R"(<boolean name="nlos_laser_sampling" value="true"/>)"},
+        {{"@@integrator", R"(<boolean name="nlos_hidden_geometry_sampling" value="true"/>)"},
          {"@@sensor",
           R"(<sampler type="independent"><integer name="sample_count" value="9"/></sampler>)"},
          {"@@film", R"(<integer name="crop_width" value="4"/>)"},
@@ -246,7 +207,7 @@ TEST(MitsubaScene, WhatIsNotTranslatedIsListed) {
              <shape type="rectangle" id="lamp"><emitter type="area"/></shape>)"},
          {"@@shape",
           R"(<bsdf type="plastic"><rgb name="diffuse_reflectance" value="0.1"/></bsdf>)"}});
-    for (const char* part : {"integrator.nlos_laser_sampling: is not translated",
+    for (const char* part : {"integrator.nlos_hidden_geometry_sampling: is not translated",
                              "wall.sensor.sampler: is not translated",
                              "wall.sensor.film.crop_width: is not translated",
                              "fur: a shape of type hair is left out",
@@ -260,16 +221,7 @@ TEST(MitsubaScene, WhatIsNotTranslatedIsListed) {
 }
 
 TEST(MitsubaScene, TheDictionaryAsJsonIsTheSameScene) {
-    const auto scene = import_text("scene.json", R"({
-      "type": "scene",
-      "integrator": {"type": "transient_nlos_path", "capture_type": "Confocal", "max_depth": 4},
-      "laser": {"type": "projector", "to_world": [[1,0,0,0.5],[0,1,0,0],[0,0,1,1],[0,0,0,1]]},
-      "ball": {"type": "sphere", "center": [0, 0, 1], "radius": 0.25,
-               "bsdf": {"type": "diffuse", "reflectance": {"type": "rgb", "value": [0.3, 0.3, 0.3]}}},
-      "wall": {"type": "rectangle",
-               "sensor": {"type": "nlos_capture_meter", "sensor_origin": [0, 0, 1],
-                          "film": {"type": "transient_hdr_film", "width": 4, "height": 2,
-                                   "temporal_bins": 10, "bin_width_opl": 0.1, "start_opl": 2}}}})");
+    const auto scene = import_text("scene.json", example_json());
     EXPECT_EQ(scene.description.scan.pattern, core::ScanPattern::Confocal);
     EXPECT_EQ(scene.description.scan.sensing_points, (std::array<int, 2>{4, 2}));
     EXPECT_EQ(scene.description.time_axis.opl_start_m, 2.0);
@@ -292,7 +244,8 @@ TEST(MitsubaScene, ScenesWithoutAScanAreRefused) {
 }
 
 TEST(MitsubaScene, TheDescriptionReadsBackAsItIs) {
-    const auto scene = import_xml({});
+    const auto scene =
+        import_xml({{"@@integrator", R"(<string name="capture_type" value="Exhaustive"/>)"}});
     const test_support::TemporaryFolder folder;
     test_support::write_file_bytes(folder.file("scene.json"),
                                    renderer::imported_scene_json(scene, "scene.glb").dump());

@@ -10,33 +10,7 @@ namespace {
 using namespace scene_import_test;
 using core::Vec3;
 
-/// As `tal render new` writes it, where most keys are comments.
-const std::string kGeometry = R"(
-geometry:
-- name: Z
-  description: >
-    Hidden geometry of the scene
-  mesh:
-    type: obj
-    filename: ./shape.obj
-  displacement_x: 0.5
-  displacement_z: 1.0
-  rot_degrees_z: 90.0
-  scale_x: 2
-  material:
-    id: white
-- name: relay_wall
-  mesh:
-    type: rectangle
-  displacement_x: 0.0
-  displacement_y: 0.1
-  scale_x: 1
-  scale_y: 0.5
-  scale_z: 1
-  material:
-    id: white
-relay_wall: relay_wall
-)";
+const std::string kGeometry = example_yaml();
 
 renderer::ImportedScene import_yaml(const std::string& keys,
                                     const std::string& geometry = kGeometry) {
@@ -136,9 +110,9 @@ TEST(YtalScene, MaterialsAreTranslated) {
 TEST(YtalScene, WhatIsNotTranslatedIsListed) {
     const auto scene = import_yaml(
         "mitsuba_variant: llvm_ad_rgb\nsample_count: 1_000_000\n"
-        "integrator_nlos_laser_sampling: true\nlaser_emission: 1.0, 1.0, 1.0\n");
+        "integrator_nlos_hidden_geometry_sampling: true\nlaser_emission: 1.0, 1.0, 1.0\n");
     EXPECT_TRUE(lists(scene, "sample_count: is not translated"));
-    EXPECT_TRUE(lists(scene, "integrator_nlos_laser_sampling: is not translated"));
+    EXPECT_TRUE(lists(scene, "integrator_nlos_hidden_geometry_sampling: is not translated"));
     EXPECT_TRUE(lists(scene, "laser_emission: its power is not translated"));
     EXPECT_FALSE(lists(scene, "mitsuba_variant"));
 }
