@@ -139,7 +139,10 @@ bool is_fit_file(const std::string& path) {
 Json fitted_scene_json(const FitInput& input, const std::string& geometry_file) {
     renderer::SceneDescription scene = input.scene;
     const core::Capture& capture = input.capture;
-    scene.geometry = geometry_file;
+    scene.geometry = geometry_file;  // which is in metres and holds what objects were set to
+    scene.geometry_unit_m.reset();
+    scene.geometry_up.reset();
+    scene.objects.clear();
     scene.time_axis = {capture.time_axis};
     scene.scan.pattern = capture.scan.pattern;
     scene.scan.sensing_points_m = capture.scan.sensing.positions;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/containers/array_reader.h"
 
-#include "nlos/containers/sandboxed_process.h"
+#include "renderer/core/sandboxed_process.h"
 #include "renderer/core/error.h"
 
 #include <fmt/core.h>
@@ -90,7 +90,7 @@ ArrayReader::ArrayReader(std::string path) : path_(std::move(path)) {
     // The file is opened in the child, at the first request.
     const auto file = std::make_shared<std::unique_ptr<ArrayFile>>();
     process_ =
-        std::make_unique<SandboxedProcess>(path_, [file, &kind, this](const std::string& request) {
+        std::make_unique<core::SandboxedProcess>(path_, [file, &kind, this](const std::string& request) {
             if (!*file) *file = kind.open(path_);
             return answer(**file, Json::from_cbor(request));
         });

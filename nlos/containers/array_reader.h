@@ -11,9 +11,11 @@
 #include <string>
 #include <vector>
 
-namespace nlos {
-
+namespace core {
 class SandboxedProcess;
+}
+
+namespace nlos {
 
 /// A file of named arrays open for reading, whatever its container.
 ///
@@ -103,7 +105,7 @@ class ArrayReader {
     std::string path_;
     std::string container_;
     bool first_index_fastest_ = false;
-    std::unique_ptr<SandboxedProcess> process_;
+    std::unique_ptr<core::SandboxedProcess> process_;
     mutable std::optional<ArrayNames> names_;
     /// Objects asked for so far.
     mutable std::map<std::string, std::optional<ArrayDescription>> described_;
