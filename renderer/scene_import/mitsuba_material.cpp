@@ -19,7 +19,7 @@ namespace {
 
 using core::Json;
 
-constexpr int kDeepest = 8;  // of BSDFs in BSDFs; references may form cycles
+constexpr int kDeepestBsdf = 8;  // of BSDFs in BSDFs; references may form cycles
 
 constexpr std::array<const char*, 18> kBsdfs{"diffuse",
                                              "twosided",
@@ -56,7 +56,7 @@ class MaterialImport {
         : scene_(scene), notes_(notes) {}
 
     Material read(const Json& bsdf, const std::string& where, int depth = 0) {
-        if (depth > kDeepest) {
+        if (depth > kDeepestBsdf) {
             throw core::Error(where, "nests BSDFs without end", "must be a plain material");
         }
         if (type_of(bsdf) == "ref") {
