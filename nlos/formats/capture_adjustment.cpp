@@ -54,9 +54,10 @@ std::vector<std::size_t> stored_order(const WallPoints& points,
     std::iota(order.begin(), order.end(), std::size_t{0});
     if (points.size() < 2) return order;
     if (!points.grid) {
-        throw core::Error(where,
-                          "has a list of wall points",
-                          "must have a grid for capture.swap_xy, capture.flip_x and capture.flip_y");
+        throw core::Error(
+            where,
+            "has a list of wall points",
+            "must have a grid for capture.swap_xy, capture.flip_x and capture.flip_y");
     }
     const auto [nx, ny] = *points.grid;
     for (std::size_t ix = 0; ix < nx; ++ix) {
@@ -81,8 +82,8 @@ void move_histograms(const CaptureReadSettings& settings,
     for_each_transient(capture, [&](core::Transient& transient) {
         const core::Transient stored = transient;
         for (std::size_t pair = 0; pair < stored.num_pairs(); ++pair) {
-            const std::size_t from = lit[pair / sensed.size()] * sensed.size() +
-                                     sensed[pair % sensed.size()];
+            const std::size_t from =
+                lit[pair / sensed.size()] * sensed.size() + sensed[pair % sensed.size()];
             std::ranges::copy(stored.histogram(from), transient.histogram(pair).begin());
         }
     });

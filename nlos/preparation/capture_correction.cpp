@@ -20,8 +20,8 @@ constexpr double kMostBin_m = 1.0;
 
 constexpr double kC = core::kSpeedOfLight;
 constexpr std::array kLengthFactors{2.0, 0.5, kC * 1e-9, 1e9 / kC};
-constexpr std::array kFarFactors{1e-3, 1e3, 1e-6, 1e6, 1e-9, 1e9, 1e-12, 1e12,
-                                 kC, 1.0 / kC, kC * 1e-12, 1e12 / kC};
+constexpr std::array kFarFactors{
+    1e-3, 1e3, 1e-6, 1e6, 1e-9, 1e9, 1e-12, 1e12, kC, 1.0 / kC, kC * 1e-12, 1e12 / kC};
 
 /// The point whose histogram each point's place in the file holds, of a grid.
 std::size_t moved_point(const core::WallPoints& points,
@@ -49,10 +49,6 @@ std::vector<Vec3> corrected_points(const core::WallPoints& points,
         }
     }
     return positions;
-}
-
-bool moves_histograms(const CaptureCorrection& correction) {
-    return correction.swap_xy || correction.flip_x || correction.flip_y;
 }
 
 /// Half the length in the middle of the sample, device legs taken off.
@@ -165,9 +161,8 @@ bool is_mirror_image(const core::Capture& capture,
                                   (g.illumination[a] - g.sensing[b]).norm(),
                                   (g.sensing[a] - g.illumination[b]).norm()};
             };
-            if (!std::ranges::equal(apart(own), apart(moved), [&](double x, double y) {
-                    return !differ(x, y);
-                })) {
+            if (!std::ranges::equal(
+                    apart(own), apart(moved), [&](double x, double y) { return !differ(x, y); })) {
                 return false;
             }
         }
@@ -201,9 +196,8 @@ std::vector<CaptureCorrection> possible_corrections(const core::Capture& capture
     }
     list.emplace_back().flip_t = true;
     if (!scan.sensing.grid) return list;
-    for (auto axis : {&CaptureCorrection::swap_xy,
-                      &CaptureCorrection::flip_x,
-                      &CaptureCorrection::flip_y}) {
+    for (auto axis :
+         {&CaptureCorrection::swap_xy, &CaptureCorrection::flip_x, &CaptureCorrection::flip_y}) {
         CaptureCorrection correction;
         correction.*axis = true;
         if (!is_mirror_image(capture, sample, correction)) list.push_back(correction);

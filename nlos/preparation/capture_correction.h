@@ -12,10 +12,10 @@ namespace nlos {
 
 /// What would make a capture right if one slip had been made in describing it.
 struct CaptureCorrection {
-    double length_factor = 1.0;     ///< of bin width and, unless `keeps_start`, axis start
-    bool keeps_start = false;       ///< the axis start stays
-    double shift_m = 0.0;           ///< added to all lengths
-    double wall_factor = 1.0;       ///< of the wall's extents
+    double length_factor = 1.0;  ///< of bin width and, unless `keeps_start`, axis start
+    bool keeps_start = false;    ///< the axis start stays
+    double shift_m = 0.0;        ///< added to all lengths
+    double wall_factor = 1.0;    ///< of the wall's extents
     std::optional<core::OplOrigin> origin;
     bool swap_xy = false;
     bool flip_x = false;

@@ -76,10 +76,9 @@ std::vector<double> mean_profile(const core::Capture& capture,
 }
 
 double shortest_m(const core::Scan& scan, std::size_t pair) {
-    return scan.device_legs_m(pair) +
-           (scan.illumination.positions[scan.illumination_index(pair)] -
-            scan.sensing.positions[scan.sensing_index(pair)])
-               .norm();
+    return scan.device_legs_m(pair) + (scan.illumination.positions[scan.illumination_index(pair)] -
+                                       scan.sensing.positions[scan.sensing_index(pair)])
+                                          .norm();
 }
 
 /// Whether light at bins around `peak` outshines all that follows, and most other light follows.

@@ -11,8 +11,8 @@ namespace nlos {
 
 /// Light that came from the lit point of the wall to the sensing point with nothing in between.
 struct DirectReturn {
-    double offset_m = 0.0;     ///< by which it is later than the geometry has it
-    std::size_t end_bin = 0;   ///< of the capture: from here on it has faded
+    double offset_m = 0.0;    ///< by which it is later than the geometry has it
+    std::size_t end_bin = 0;  ///< of the capture: from here on it has faded
 };
 
 /// A capture's direct return, known by what nothing hidden does: in nearly every histogram the

@@ -16,10 +16,10 @@ constexpr std::size_t kRanges = 16;      // cells to begin with
 constexpr std::size_t kDirections = 16;  // per side of the square around the hemisphere
 constexpr std::size_t kKeptCells = 600;  // that are halved along each coordinate
 constexpr int kStages = 3;
-constexpr int kIterations = 6;  // of expectation maximisation per stage
-constexpr double kNearest = 0.02;      // of the farthest range; nearer cells see one point alone
-constexpr double kStray = 1e-3;        // of the mean value, everywhere: no bin is impossible
-constexpr std::size_t kBlock = 256;    // cells at once
+constexpr int kIterations = 6;       // of expectation maximisation per stage
+constexpr double kNearest = 0.02;    // of the farthest range; nearer cells see one point alone
+constexpr double kStray = 1e-3;      // of the mean value, everywhere: no bin is impossible
+constexpr std::size_t kBlock = 256;  // cells at once
 
 /// A cell before the wall: range and the first two components of its direction.
 using Cell = Eigen::Vector3d;
@@ -27,7 +27,8 @@ using Cell = Eigen::Vector3d;
 struct Cells {
     std::vector<Cell> centers;
     Cell size = Cell::Zero();
-    std::vector<double> light;  ///< that each sends
+    std::vector<double> light;  ///< of each
+    std::vector<float> reach;   ///< what each sends to the sample for unit light
 };
 
 Vec3 position_of(const Cell& cell, const core::Transform& world_from_wall) {
@@ -52,16 +53,16 @@ Cells coarse_cells(double low_m, double high_m) {
             if (is_before_the_wall(center)) cells.centers.push_back(center);
         }
     }
-    cells.light.assign(cells.centers.size(), 1.0);
     return cells;
 }
 
 /// The eighths of the cells that send most light to the sample.
-Cells halved_cells(const Cells& cells, const std::vector<double>& reach) {
+Cells halved_cells(const Cells& cells) {
     std::vector<std::size_t> order(cells.centers.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     const auto is_heavier = [&](std::size_t a, std::size_t b) {
-        const double difference = cells.light[a] * reach[a] - cells.light[b] * reach[b];
+        const double difference = cells.light[a] * static_cast<double>(cells.reach[a]) -
+                                  cells.light[b] * static_cast<double>(cells.reach[b]);
         return difference > 0.0 || (difference == 0.0 && a < b);
     };
     const std::size_t kept = std::min(kKeptCells, order.size());
@@ -71,7 +72,8 @@ Cells halved_cells(const Cells& cells, const std::vector<double>& reach) {
     halves.size = 0.5 * cells.size;
     for (std::size_t i = 0; i < kept; ++i) {
         for (int corner = 0; corner < 8; ++corner) {
-            const Cell side(corner & 1 ? 0.5 : -0.5, corner & 2 ? 0.5 : -0.5, corner & 4 ? 0.5 : -0.5);
+            const Cell side(
+                corner & 1 ? 0.5 : -0.5, corner & 2 ? 0.5 : -0.5, corner & 4 ? 0.5 : -0.5);
             const Cell center = cells.centers[order[i]] + side.cwiseProduct(halves.size);
             if (!is_before_the_wall(center)) continue;
             halves.centers.push_back(center);
@@ -80,6 +82,12 @@ Cells halved_cells(const Cells& cells, const std::vector<double>& reach) {
     }
     return halves;
 }
+
+/// Sums over all bins that cells reach.
+struct Reach {
+    std::vector<float> plain;
+    std::vector<float> rated;
+};
 
 /// How light of cells reaches the bins of a sample: a weight and a position between two bins for
 /// each pair and cell.
@@ -111,28 +119,32 @@ class Transport {
                 row[bin] += (1.0 - late) * value;
                 row[bin + 1] += late * value;
             }
-            std::copy(row.begin(), row.end(), model.begin() + static_cast<std::ptrdiff_t>(pair * num_bins_));
+            std::copy(row.begin(),
+                      row.end(),
+                      model.begin() + static_cast<std::ptrdiff_t>(pair * num_bins_));
         });
         return model;
     }
 
-    /// Sums over all bins that each cell reaches of `ratio` [pair][bin], times each pair's gain.
-    std::vector<double> backward(const std::vector<float>& ratio,
-                                 const std::vector<double>& gain) const {
-        std::vector<double> sums(num_cells_, 0.0);
+    /// What each cell sends to the sample's bins for unit light, each pair times its gain, and the
+    /// same with every bin times `ratio` [pair][bin].
+    Reach backward(const std::vector<float>& ratio, const std::vector<double>& gain) const {
+        Reach reach{std::vector<float>(num_cells_), std::vector<float>(num_cells_)};
         core::parallel_blocks(num_cells_, kBlock, [&](std::size_t begin, std::size_t end) {
             for (std::size_t pair = 0; pair < num_pairs_; ++pair) {
                 const float* row = ratio.data() + pair * num_bins_;
+                const auto pair_gain = static_cast<float>(gain[pair]);
                 for (std::size_t cell = begin; cell < end; ++cell) {
                     const std::size_t i = pair * num_cells_ + cell;
-                    const auto bin = static_cast<std::size_t>(position_[i]);
+                    const auto bin = static_cast<int>(position_[i]);
                     const float late = position_[i] - static_cast<float>(bin);
-                    const float mean = row[bin] + late * (row[bin + 1] - row[bin]);
-                    sums[cell] += gain[pair] * static_cast<double>(weight_[i] * mean);
+                    const float weight = pair_gain * weight_[i];
+                    reach.plain[cell] += weight;
+                    reach.rated[cell] += weight * (row[bin] + late * (row[bin + 1] - row[bin]));
                 }
             }
         });
-        return sums;
+        return reach;
     }
 
  private:
@@ -244,11 +256,34 @@ std::array<double, 2> range_limits(const HistogramSample& sample, const PathGeom
         legs_m += share * geometry.legs_m[i];
         apart += share * (geometry.illumination[i] - geometry.sensing[i]);
     }
-    const double end_m = geometry.opl_start_m +
-                         geometry.bin_width_m * static_cast<double>(sample.num_bins);
+    const double end_m =
+        geometry.opl_start_m + geometry.bin_width_m * static_cast<double>(sample.num_bins);
     const double low = 0.5 * (std::min(geometry.opl_start_m, end_m) - legs_m - apart.norm());
     const double high = 0.5 * (std::max(geometry.opl_start_m, end_m) - legs_m + apart.norm());
     return {std::max(low, kNearest * high), high};
+}
+
+/// Fits the light of cells to a sample; returns what it leaves over.
+double fit_light(const HistogramSample& sample, const Transport& transport, Cells& cells) {
+    const std::vector<float> ones(sample.values.size(), 1.0F);
+    cells.reach = transport.backward(ones, std::vector<double>(sample.pairs.size(), 1.0)).plain;
+    if (cells.light.empty()) {
+        for (const float reach : cells.reach) {
+            cells.light.push_back(reach > 0.0F ? 1.0 / static_cast<double>(reach) : 0.0);
+        }
+    }
+    std::vector<float> model = transport.forward(cells.light);
+    std::vector<double> gains = fit_gains(sample, model);
+    for (int i = 0; i < kIterations; ++i) {
+        const Reach reach = transport.backward(ratios(sample, model, gains), gains);
+        for (std::size_t c = 0; c < cells.light.size(); ++c) {
+            cells.light[c] *=
+                reach.plain[c] > 0.0F ? static_cast<double>(reach.rated[c] / reach.plain[c]) : 0.0;
+        }
+        model = transport.forward(cells.light);
+        gains = fit_gains(sample, model);
+    }
+    return misfit(sample, model, gains);
 }
 
 }  // namespace
@@ -262,34 +297,15 @@ bool has_structure(const HistogramSample& sample) {
 double unexplained_share(const HistogramSample& sample, const PathGeometry& geometry) {
     const auto [low_m, high_m] = range_limits(sample, geometry);
     if (!(high_m > low_m)) return 1.0;
+    const double structure = std::max(misfit_without_geometry(sample), 1e-30);
     Cells cells = coarse_cells(low_m, high_m);
     double left_over = 0.0;
     for (int stage = 0; stage < kStages; ++stage) {
+        if (stage > 0) cells = halved_cells(cells);
         const Transport transport(sample, geometry, cells);
-        const std::vector<float> ones(sample.values.size(), 1.0F);
-        const std::vector<double> reach =
-            transport.backward(ones, std::vector<double>(sample.pairs.size(), 1.0));
-        if (stage == 0) {
-            for (std::size_t i = 0; i < reach.size(); ++i) {
-                cells.light[i] = reach[i] > 0.0 ? 1.0 / reach[i] : 0.0;
-            }
-        }
-        std::vector<float> model = transport.forward(cells.light);
-        std::vector<double> gains = fit_gains(sample, model);
-        for (int i = 0; i < kIterations; ++i) {
-            const std::vector<double> sums =
-                transport.backward(ratios(sample, model, gains), gains);
-            const std::vector<double> all = transport.backward(ones, gains);
-            for (std::size_t c = 0; c < sums.size(); ++c) {
-                cells.light[c] *= all[c] > 0.0 ? sums[c] / all[c] : 0.0;
-            }
-            model = transport.forward(cells.light);
-            gains = fit_gains(sample, model);
-        }
-        left_over = misfit(sample, model, gains);
-        if (stage + 1 < kStages) cells = halved_cells(cells, reach);
+        left_over = fit_light(sample, transport, cells);
     }
-    return std::max(0.0, left_over) / std::max(misfit_without_geometry(sample), 1e-30);
+    return std::max(0.0, left_over) / structure;
 }
 
 }  // namespace nlos

@@ -11,12 +11,12 @@ namespace nlos {
 /// A few histograms of a capture, a few dozen bins each: enough to ask whether a geometry can be
 /// true.
 struct HistogramSample {
-    std::vector<std::size_t> pairs;    ///< numbers in the capture
-    std::size_t num_bins = 0;          ///< per histogram
-    double first_bin = 0.0;            ///< of the capture, where the sample begins
-    double merged_bins = 1.0;          ///< bins of the capture in one of these
-    std::vector<float> values;         ///< [pair][bin], photon counts or what stands for them
-    std::vector<float> ambient;        ///< per bin of each pair
+    std::vector<std::size_t> pairs;  ///< numbers in the capture
+    std::size_t num_bins = 0;        ///< per histogram
+    double first_bin = 0.0;          ///< of the capture, where the sample begins
+    double merged_bins = 1.0;        ///< bins of the capture in one of these
+    std::vector<float> values;       ///< [pair][bin], photon counts or what stands for them
+    std::vector<float> ambient;      ///< per bin of each pair
     bool has_poisson_noise = false;
 
     const float* histogram(std::size_t pair) const { return values.data() + pair * num_bins; }
@@ -24,12 +24,12 @@ struct HistogramSample {
 
 /// Where the light of a sample's histograms went, as a hypothesis has it.
 struct PathGeometry {
-    std::vector<core::Vec3> illumination;          ///< point of each pair [m]
-    std::vector<core::Vec3> sensing;               ///< point of each pair [m]
-    std::vector<double> legs_m;                    ///< length of the device legs in each pair's axis
+    std::vector<core::Vec3> illumination;  ///< point of each pair [m]
+    std::vector<core::Vec3> sensing;       ///< point of each pair [m]
+    std::vector<double> legs_m;            ///< length of the device legs in each pair's axis
     core::Transform world_from_wall = core::Transform::Identity();  ///< z towards the hidden side
-    double opl_start_m = 0.0;                      ///< of the sample's bin 0
-    double bin_width_m = 0.0;                      ///< of the sample; negative: time runs backwards
+    double opl_start_m = 0.0;                                       ///< of the sample's bin 0
+    double bin_width_m = 0.0;  ///< of the sample; negative: time runs backwards
 };
 
 /// The share of a sample's structure that no hidden scene explains under a geometry.

@@ -10,8 +10,8 @@
 namespace nlos {
 namespace {
 
-constexpr double kWellExplained = 0.2;  // no questions are asked
-constexpr double kDecisive = 1.5;       // by which the description must explain less
+constexpr double kWellExplained = 0.2;     // no questions are asked
+constexpr double kDecisive = 1.5;          // by which the description must explain less
 constexpr double kMostUnexplained = 0.75;  // by a slip that is named
 constexpr double kRareSlip = 1.15;  // a guessed time zero must be better than named slips by this
 
@@ -64,8 +64,7 @@ CorrectionShare best_shift(const core::Capture& capture,
                            const Trial& trial) {
     const PathGeometry geometry = corrected_geometry(capture, sample, {});
     const double first_m =
-        geometry.opl_start_m -
-        *std::min_element(geometry.legs_m.begin(), geometry.legs_m.end());
+        geometry.opl_start_m - *std::min_element(geometry.legs_m.begin(), geometry.legs_m.end());
     const double wall_m = extent_m(capture);
     CorrectionShare best;
     double step_m = 0.0;
@@ -108,7 +107,8 @@ std::optional<SlipEvidence> slip_evidence(const core::Capture& capture,
 }
 
 std::optional<CaptureCorrection> recognise_slip(const SlipEvidence& evidence) {
-    const auto best = std::ranges::min_element(evidence.corrections, {}, &CorrectionShare::unexplained);
+    const auto best =
+        std::ranges::min_element(evidence.corrections, {}, &CorrectionShare::unexplained);
     if (best == evidence.corrections.end()) return std::nullopt;
     if (evidence.given < kWellExplained || best->unexplained > kMostUnexplained ||
         evidence.given < kDecisive * best->unexplained) {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/preparation/capture_correction.h"
-
 #include "renderer/core/scan_extent.h"
 
 #include <fmt/format.h>
@@ -18,23 +17,22 @@ struct FactorStory {
     double factor;
     const char* text;
 };
-constexpr FactorStory kFactorStories[] = {
-    {2.0, "as if half of each round trip had been stated"},
-     {0.5, "as if round trips had been doubled once more"},
-     {kC * 1e-9, "as if ns had been taken for metres"},
-     {1e9 / kC, "as if metres had been taken for ns"},
-     {1e-3, "as if ps had been taken for ns"},
-     {1e3, "as if ns had been taken for ps"},
-     {1e-6, "as if ps had been taken for us"},
-     {1e6, "as if us had been taken for ps"},
-     {1e-9, "as if ns had been taken for s"},
-     {1e9, "as if s had been taken for ns"},
-     {1e-12, "as if ps had been taken for s"},
-     {1e12, "as if s had been taken for ps"},
-     {kC, "as if s had been taken for metres"},
-     {1.0 / kC, "as if metres had been taken for s"},
-     {kC * 1e-12, "as if ps had been taken for metres"},
-     {1e12 / kC, "as if metres had been taken for ps"}};
+constexpr FactorStory kFactorStories[] = {{2.0, "as if half of each round trip had been stated"},
+                                          {0.5, "as if round trips had been doubled once more"},
+                                          {kC * 1e-9, "as if ns had been taken for metres"},
+                                          {1e9 / kC, "as if metres had been taken for ns"},
+                                          {1e-3, "as if ps had been taken for ns"},
+                                          {1e3, "as if ns had been taken for ps"},
+                                          {1e-6, "as if ps had been taken for us"},
+                                          {1e6, "as if us had been taken for ps"},
+                                          {1e-9, "as if ns had been taken for s"},
+                                          {1e9, "as if s had been taken for ns"},
+                                          {1e-12, "as if ps had been taken for s"},
+                                          {1e12, "as if s had been taken for ps"},
+                                          {kC, "as if s had been taken for metres"},
+                                          {1.0 / kC, "as if metres had been taken for s"},
+                                          {kC * 1e-12, "as if ps had been taken for metres"},
+                                          {1e12 / kC, "as if metres had been taken for ps"}};
 
 std::string setting_of_wall(const core::Capture& capture, double factor) {
     const core::ScanExtent extent = core::scan_extent(capture.scan);
@@ -62,9 +60,8 @@ std::string text_of_lengths(const core::Capture& capture, const CaptureCorrectio
                               std::max(factor, 1.0 / factor),
                               factor < 1.0 ? "small" : "large",
                               factor == 0.5 ? ", as if half its width had been taken for the width"
-                              : factor == 2.0
-                                  ? ", as if the width had been taken for half of it"
-                                  : "",
+                              : factor == 2.0 ? ", as if the width had been taken for half of it"
+                                              : "",
                               setting_of_wall(capture, 1.0 / factor));
 }
 
