@@ -13,8 +13,8 @@ constexpr std::size_t kMostPairs = kSide * kSide;
 constexpr std::size_t kFewestPairs = 9;
 constexpr std::size_t kMostBins = 48;
 constexpr std::size_t kFewestBins = 8;
-constexpr double kFirstLight = 0.002;  // share of all light before the sample
-constexpr double kLastLight = 0.95;
+constexpr double kFirstLight = 0.01;  // share of all light before the sample
+constexpr double kLastLight = 0.98;
 constexpr double kMeanRadiance = 20.0;  // per bin, in place of counts
 
 constexpr double kDirectBins = 1.5;      // to which a direct return is equally late
@@ -45,34 +45,63 @@ std::vector<std::size_t> some_points(const core::WallPoints& points) {
     return chosen;
 }
 
-std::vector<std::size_t> some_pairs(const core::Scan& scan) {
-    const std::vector<std::size_t> sensed = some_points(scan.sensing);
-    if (scan.pattern != core::ScanPattern::Exhaustive) return sensed;
-    const std::vector<std::size_t> lit = some_points(scan.illumination);
-    constexpr std::size_t kStride = 37;  // prime: pairs of all kinds, none twice
-    std::vector<std::size_t> pairs;
-    for (std::size_t i = 0; i < std::min(kMostPairs, sensed.size() * lit.size()); ++i) {
-        const std::size_t s = sensed[i % sensed.size()];
-        const std::size_t l = lit[(kStride * i + i / sensed.size()) % lit.size()];
-        pairs.push_back(l * scan.sensing.size() + s);
-    }
-    std::ranges::sort(pairs);
-    pairs.erase(std::ranges::unique(pairs).begin(), pairs.end());
-    return pairs;
-}
-
-/// Light of all pairs per bin, above the background.
-std::vector<double> mean_profile(const core::Capture& capture,
-                                 const std::vector<double>& ambient,
-                                 const std::vector<std::size_t>& pairs) {
-    std::vector<double> profile(capture.transient.num_bins(), 0.0);
-    for (const std::size_t pair : pairs) {
-        const auto histogram = capture.transient.histogram(pair);
-        for (std::size_t bin = 0; bin < profile.size(); ++bin) {
-            profile[bin] += static_cast<double>(histogram[bin]) - ambient[pair];
+/// Sums over the sampled pairs of all light up to each bin, above the background.
+std::vector<double> light_until(const core::Capture& capture,
+                                const std::vector<double>& ambient,
+                                const std::vector<std::size_t>& pairs,
+                                const std::vector<std::size_t>& first_bins) {
+    std::vector<double> sums(capture.transient.num_bins(), 0.0);
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        const auto histogram = capture.transient.histogram(pairs[i]);
+        for (std::size_t bin = first_bins[i]; bin < sums.size(); ++bin) {
+            sums[bin] += static_cast<double>(histogram[bin]) - ambient[pairs[i]];
         }
     }
-    return profile;
+    std::partial_sum(sums.begin(), sums.end(), sums.begin());
+    return sums;
+}
+
+/// Chooses the bins that hold nearly all light; false when there are too few.
+bool choose_bins(const std::vector<double>& light, HistogramSample& sample) {
+    const double total = *std::ranges::max_element(light);
+    if (!(total > 0.0)) return false;
+    const auto bin_at = [&](double share) {
+        return static_cast<std::size_t>(
+            std::ranges::find_if(light, [&](double sum) { return sum > share * total; }) -
+            light.begin());
+    };
+    std::size_t begin = bin_at(kFirstLight);
+    if (begin > 0) --begin;
+    const std::size_t length = bin_at(kLastLight) + 1 - begin;
+    const std::size_t merged = (length + kMostBins - 1) / kMostBins;
+    sample.num_bins = std::min((light.size() - begin) / merged, (length + merged - 1) / merged);
+    sample.first_bin = static_cast<double>(begin);
+    sample.merged_bins = static_cast<double>(merged);
+    return sample.num_bins >= kFewestBins;
+}
+
+/// Copies the chosen bins of one pair.
+void append_histogram(std::span<const float> histogram,
+                      std::size_t first_bin,
+                      HistogramSample& sample) {
+    const auto merged = static_cast<std::size_t>(sample.merged_bins);
+    for (std::size_t i = 0; i < sample.num_bins; ++i) {
+        const std::size_t begin = static_cast<std::size_t>(sample.first_bin) + i * merged;
+        const bool is_observed = begin >= first_bin;
+        const auto bins = histogram.subspan(begin, merged);
+        sample.observed.push_back(is_observed ? 1.0F : 0.0F);
+        sample.values.push_back(is_observed ? std::accumulate(bins.begin(), bins.end(), 0.0F)
+                                            : 0.0F);
+    }
+}
+
+/// Brings radiance to the size of counts, where single photons matter little.
+void scale_radiance(HistogramSample& sample) {
+    const double sum = std::accumulate(sample.values.begin(), sample.values.end(), 0.0);
+    const auto scale =
+        static_cast<float>(kMeanRadiance * static_cast<double>(sample.values.size()) / sum);
+    for (float& value : sample.values) value *= scale;
+    for (float& value : sample.ambient) value *= scale;
 }
 
 double shortest_m(const core::Scan& scan, std::size_t pair) {
@@ -110,9 +139,25 @@ std::size_t fading_end(const std::span<const float>& histogram, std::size_t peak
 
 }  // namespace
 
+std::vector<std::size_t> sampled_pairs(const core::Scan& scan) {
+    const std::vector<std::size_t> sensed = some_points(scan.sensing);
+    if (scan.pattern != core::ScanPattern::Exhaustive) return sensed;
+    const std::vector<std::size_t> lit = some_points(scan.illumination);
+    constexpr std::size_t kStride = 37;  // prime: pairs of all kinds, none twice
+    std::vector<std::size_t> pairs;
+    for (std::size_t i = 0; i < std::min(kMostPairs, sensed.size() * lit.size()); ++i) {
+        const std::size_t s = sensed[i % sensed.size()];
+        const std::size_t l = lit[(kStride * i + i / sensed.size()) % lit.size()];
+        pairs.push_back(l * scan.sensing.size() + s);
+    }
+    std::ranges::sort(pairs);
+    pairs.erase(std::ranges::unique(pairs).begin(), pairs.end());
+    return pairs;
+}
+
 std::optional<DirectReturn> find_direct_return(const core::Capture& capture,
                                                const std::vector<double>& ambient) {
-    const std::vector<std::size_t> pairs = some_pairs(capture.scan);
+    const std::vector<std::size_t> pairs = sampled_pairs(capture.scan);
     std::vector<double> late_m;
     DirectReturn found;
     std::size_t standing_out = 0;
@@ -122,7 +167,7 @@ std::optional<DirectReturn> find_direct_return(const core::Capture& capture,
             std::max_element(histogram.begin(), histogram.end()) - histogram.begin());
         const std::size_t end = fading_end(histogram, peak, ambient[pair]);
         standing_out += stands_out(histogram, peak, end, ambient[pair]) ? 1 : 0;
-        found.end_bin = std::max(found.end_bin, end);
+        found.end_bins.push_back(end);
         late_m.push_back(capture.time_axis.bin_center_m(static_cast<double>(peak)) -
                          shortest_m(capture.scan, pair));
     }
@@ -139,46 +184,22 @@ std::optional<DirectReturn> find_direct_return(const core::Capture& capture,
 
 std::optional<HistogramSample> sample_histograms(const core::Capture& capture,
                                                  const std::vector<double>& ambient,
-                                                 std::size_t first_bin) {
+                                                 const std::optional<DirectReturn>& direct) {
     HistogramSample sample;
-    sample.pairs = some_pairs(capture.scan);
+    sample.pairs = sampled_pairs(capture.scan);
     if (sample.pairs.size() < kFewestPairs) return std::nullopt;
-    std::vector<double> profile = mean_profile(capture, ambient, sample.pairs);
-    if (first_bin >= profile.size()) return std::nullopt;
-    std::fill(profile.begin(), profile.begin() + static_cast<std::ptrdiff_t>(first_bin), 0.0);
-    std::partial_sum(profile.begin(), profile.end(), profile.begin());
-    const double total = *std::ranges::max_element(profile);
-    if (!(total > 0.0)) return std::nullopt;
-    const auto bin_at = [&](double share) {
-        return static_cast<std::size_t>(
-            std::ranges::find_if(profile, [&](double sum) { return sum > share * total; }) -
-            profile.begin());
-    };
-    std::size_t begin = std::max(first_bin, bin_at(kFirstLight));
-    if (begin > first_bin) --begin;
-    const std::size_t length = bin_at(kLastLight) + 1 - begin;
-    const std::size_t merged = (length + kMostBins - 1) / kMostBins;
-    sample.num_bins = std::min(kMostBins, (profile.size() - begin) / merged);
-    sample.num_bins = std::min(sample.num_bins, (length + merged - 1) / merged);
-    if (sample.num_bins < kFewestBins) return std::nullopt;
-    sample.first_bin = static_cast<double>(begin);
-    sample.merged_bins = static_cast<double>(merged);
-    sample.has_poisson_noise = capture.unit == core::TransientUnit::Counts;
-    for (const std::size_t pair : sample.pairs) {
+    const std::vector<std::size_t> first_bins =
+        direct ? direct->end_bins : std::vector<std::size_t>(sample.pairs.size(), 0);
+    if (!choose_bins(light_until(capture, ambient, sample.pairs, first_bins), sample)) {
+        return std::nullopt;
+    }
+    for (std::size_t i = 0; i < sample.pairs.size(); ++i) {
+        const std::size_t pair = sample.pairs[i];
+        append_histogram(capture.transient.histogram(pair), first_bins[i], sample);
         sample.ambient.push_back(static_cast<float>(ambient[pair] * sample.merged_bins));
-        const auto histogram = capture.transient.histogram(pair);
-        for (std::size_t bin = 0; bin < sample.num_bins; ++bin) {
-            const auto bins = histogram.subspan(begin + bin * merged, merged);
-            sample.values.push_back(std::accumulate(bins.begin(), bins.end(), 0.0F));
-        }
     }
-    if (!sample.has_poisson_noise) {
-        const double sum = std::accumulate(sample.values.begin(), sample.values.end(), 0.0);
-        const auto scale =
-            static_cast<float>(kMeanRadiance * static_cast<double>(sample.values.size()) / sum);
-        for (float& value : sample.values) value *= scale;
-        for (float& value : sample.ambient) value *= scale;
-    }
+    sample.has_poisson_noise = capture.unit == core::TransientUnit::Counts;
+    if (!sample.has_poisson_noise) scale_radiance(sample);
     return sample;
 }
 

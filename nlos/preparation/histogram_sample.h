@@ -9,10 +9,13 @@
 
 namespace nlos {
 
+/// The pairs that a sample holds: at most 100, spread over the scanned points.
+std::vector<std::size_t> sampled_pairs(const core::Scan& scan);
+
 /// Light that came from the lit point of the wall to the sensing point with nothing in between.
 struct DirectReturn {
-    double offset_m = 0.0;    ///< by which it is later than the geometry has it
-    std::size_t end_bin = 0;  ///< of the capture: from here on it has faded
+    double offset_m = 0.0;              ///< by which it is later than the geometry has it
+    std::vector<std::size_t> end_bins;  ///< of the sampled pairs: from here on it has faded
 };
 
 /// A capture's direct return, known by what nothing hidden does: in nearly every histogram the
@@ -24,12 +27,13 @@ struct DirectReturn {
 std::optional<DirectReturn> find_direct_return(const core::Capture& capture,
                                                const std::vector<double>& ambient);
 
-/// At most 100 histograms, spread over the scanned points, in at most 48 bins that hold the first
-/// 95 % of their light from `first_bin` on. Radiance is scaled to a mean of 20 per bin.
+/// Histograms of the sampled pairs, in at most 48 bins that hold nearly all of their light. Bins of
+/// a direct return and those before it count as not observed. Radiance is scaled to a mean of 20
+/// per bin.
 ///
 /// returns   nothing for fewer than 9 pairs or 8 bins, and in the dark
 std::optional<HistogramSample> sample_histograms(const core::Capture& capture,
                                                  const std::vector<double>& ambient,
-                                                 std::size_t first_bin);
+                                                 const std::optional<DirectReturn>& direct);
 
 }  // namespace nlos

@@ -16,10 +16,9 @@ struct HistogramSample {
     double first_bin = 0.0;          ///< of the capture, where the sample begins
     double merged_bins = 1.0;        ///< bins of the capture in one of these
     std::vector<float> values;       ///< [pair][bin], photon counts or what stands for them
+    std::vector<float> observed;     ///< [pair][bin], 1 where something could be recorded, else 0
     std::vector<float> ambient;      ///< per bin of each pair
     bool has_poisson_noise = false;
-
-    const float* histogram(std::size_t pair) const { return values.data() + pair * num_bins; }
 };
 
 /// Where the light of a sample's histograms went, as a hypothesis has it.

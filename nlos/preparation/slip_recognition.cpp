@@ -10,14 +10,19 @@
 namespace nlos {
 namespace {
 
-constexpr double kWellExplained = 0.2;     // no questions are asked
-constexpr double kDecisive = 1.5;          // by which the description must explain less
+constexpr double kWellExplained = 0.1;     // no questions are asked
+constexpr double kDecisive = 1.35;         // by which the description must explain less
 constexpr double kMostUnexplained = 0.75;  // by a slip that is named
-constexpr double kRareSlip = 1.15;  // a guessed time zero must be better than named slips by this
+constexpr double kTie = 1.25;              // slips that explain so much alike are all named
+constexpr std::size_t kMostNamed = 2;
+
+// A free time zero explains nearly everything a little better.
+constexpr double kGuessedZero = 1.5;
+constexpr double kZeroIsAsked = 0.2;
 
 /// First lengths of light, as shares of the wall's extent, to which time zero may have to move.
 constexpr std::array kFirstLengths{0.3, 0.5, 0.8, 1.2, 1.8, 2.6, 4.0};
-constexpr int kShiftRefinements = 4;
+constexpr int kShiftRefinements = 3;
 
 class Trial {
  public:
@@ -86,7 +91,7 @@ std::optional<SlipEvidence> slip_evidence(const core::Capture& capture,
                                           const std::vector<double>& ambient) {
     if (capture.scan.camera || !(extent_m(capture) > 0.0)) return std::nullopt;
     const std::optional<DirectReturn> direct = find_direct_return(capture, ambient);
-    const auto sample = sample_histograms(capture, ambient, direct ? direct->end_bin : 0);
+    const auto sample = sample_histograms(capture, ambient, direct);
     if (!sample || !has_structure(*sample)) return std::nullopt;
 
     const Trial trial(capture, *sample);
@@ -98,23 +103,28 @@ std::optional<SlipEvidence> slip_evidence(const core::Capture& capture,
     }
     if (direct && std::abs(direct->offset_m) > 2.0 * capture.time_axis.bin_width_m) {
         evidence.corrections.push_back(trial.shifted(-direct->offset_m));
-    } else if (!direct && is_in_proportion(capture, *sample, {})) {
+    } else if (!direct && evidence.given > kZeroIsAsked && is_in_proportion(capture, *sample, {})) {
         CorrectionShare shift = best_shift(capture, *sample, trial);
-        shift.unexplained *= kRareSlip;
+        shift.unexplained *= kGuessedZero;
         evidence.corrections.push_back(shift);
     }
     return evidence;
 }
 
-std::optional<CaptureCorrection> recognise_slip(const SlipEvidence& evidence) {
-    const auto best =
-        std::ranges::min_element(evidence.corrections, {}, &CorrectionShare::unexplained);
-    if (best == evidence.corrections.end()) return std::nullopt;
-    if (evidence.given < kWellExplained || best->unexplained > kMostUnexplained ||
-        evidence.given < kDecisive * best->unexplained) {
-        return std::nullopt;
+std::vector<CaptureCorrection> recognise_slips(const SlipEvidence& evidence) {
+    std::vector<CorrectionShare> best = evidence.corrections;
+    std::ranges::stable_sort(best, {}, &CorrectionShare::unexplained);
+    if (best.empty() || evidence.given < kWellExplained ||
+        best.front().unexplained > kMostUnexplained ||
+        evidence.given < kDecisive * best.front().unexplained) {
+        return {};
     }
-    return best->correction;
+    std::vector<CaptureCorrection> named;
+    for (const CorrectionShare& candidate : best) {
+        if (candidate.unexplained > kTie * best.front().unexplained) break;
+        if (named.size() < kMostNamed) named.push_back(candidate.correction);
+    }
+    return named;
 }
 
 }  // namespace nlos

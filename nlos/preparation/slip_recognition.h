@@ -29,8 +29,8 @@ struct SlipEvidence {
 std::optional<SlipEvidence> slip_evidence(const core::Capture& capture,
                                           const std::vector<double>& ambient);
 
-/// The slip that explains a capture decisively better than its description, which explains it
-/// badly; nothing when there is none.
-std::optional<CaptureCorrection> recognise_slip(const SlipEvidence& evidence);
+/// The slips that explain a capture decisively better than its description, which explains it
+/// badly: one, or two that explain it alike, the better one first; empty when there is none.
+std::vector<CaptureCorrection> recognise_slips(const SlipEvidence& evidence);
 
 }  // namespace nlos
