@@ -116,6 +116,7 @@ std::string type_name(const Hdf5Handle& type) {
 class GroupWalk {
  public:
     ArrayNames run(const Hdf5Handle& root) {
+        is_new(root);
         list_group(root, "", 0);
         return std::move(found_);
     }
@@ -139,14 +140,19 @@ class GroupWalk {
     void list_object(const Hdf5Handle& object, const std::string& name, std::size_t depth) {
         const H5I_type_t type = H5Iget_type(object.id());
         if (type == H5I_DATASET) found_.names.push_back(name);
+        if (type == H5I_GROUP && is_new(object)) list_group(object, name + "/", depth + 1);
+    }
+
+    /// Whether a group was not seen before: links may form cycles.
+    bool is_new(const Hdf5Handle& group) {
         H5O_info_t info{};
-        if (type != H5I_GROUP || H5Oget_info2(object.id(), &info, H5O_INFO_BASIC) < 0) return;
-        if (groups_.insert(info.addr).second) list_group(object, name + "/", depth + 1);
+        return H5Oget_info2(group.id(), &info, H5O_INFO_BASIC) >= 0 &&
+               groups_.insert(info.addr).second;
     }
 
     ArrayNames found_;
     std::size_t num_objects_ = 0;
-    std::set<haddr_t> groups_;  ///< seen so far: links may form cycles
+    std::set<haddr_t> groups_;  ///< seen so far
 };
 
 /// Throws for a dataset whose values are not in this file, before the library looks for them.
@@ -223,6 +229,7 @@ ArrayDescription Hdf5File::describe_object(const Hdf5Handle& object,
     description.shape = shape;
     description.kind = kind_of(type);
     if (description.kind == ElementKind::Text && (shape.empty() || shape == Shape{1})) {
+        if (!chunk_of(object, shape.size()).empty()) check_size(object, shape, where(name));
         description.text = fetch_text(type, where(name), [&](hid_t memory, void* target) {
             return H5Dread(object.id(), memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, target) >= 0;
         });
@@ -285,13 +292,14 @@ void Hdf5File::check_size(const Hdf5Handle& dataset,
     const std::uint64_t stored =
         std::min<std::uint64_t>(H5Dget_storage_size(dataset.id()), file_bytes_);
     const std::uint64_t value_bytes = H5Tget_size(type.id());
-    if (total_bytes(shape, value_bytes) > stored * (chunk.empty() ? 1 : kLargestRatio)) {
+    const std::uint64_t chunk_bytes = chunk.empty() ? 0 : total_bytes(chunk, value_bytes);
+    const std::uint64_t most = stored * (chunk.empty() ? 1 : kLargestRatio);
+    if (std::max(total_bytes(shape, value_bytes), chunk_bytes) > most) {
         throw core::Error(
             where,
             fmt::format("claims shape {} but only {} bytes are stored", shape_text(shape), stored),
             "must be complete");
     }
-    const std::uint64_t chunk_bytes = chunk.empty() ? 0 : total_bytes(chunk, value_bytes);
     require_memory(std::max(total_bytes(shape, 2 * sizeof(double)), chunk_bytes), where);
 }
 

@@ -15,6 +15,12 @@ namespace nlos {
 namespace {
 
 const CaptureFormat* find_format(const std::string& path) {
+    // Whoever opens a pipe or a device may wait for ever.
+    const auto type = std::filesystem::status(path).type();
+    if (type != std::filesystem::file_type::regular &&
+        type != std::filesystem::file_type::directory) {
+        return nullptr;
+    }
     for (const CaptureFormat& format : capture_formats()) {
         if (format.recognise(path)) return &format;
     }
