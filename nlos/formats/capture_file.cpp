@@ -18,7 +18,8 @@ namespace nlos {
 namespace {
 
 const CaptureFormat* find_format(const std::string& path) {
-    if (std::filesystem::is_directory(path)) return nullptr;
+    // Folders are the layouts' business; whoever opens a pipe or a device may wait for ever.
+    if (!std::filesystem::is_regular_file(path)) return nullptr;
     for (const CaptureFormat& format : capture_formats()) {
         if (format.recognise(path)) return &format;
     }
