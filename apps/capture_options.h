@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "apps/arguments.h"
 #include "nlos/formats/capture_file.h"
 
+#include <algorithm>
+#include <array>
 #include <string>
 #include <vector>
 
@@ -16,6 +19,30 @@ struct CaptureOptions {
 template <class Visitor>
 void for_each_field(CaptureOptions& options, Visitor&& visit) {
     visit("capture", options.capture, "what the capture file leaves open");
+}
+
+/// `--layout`, for every command that reads a capture.
+inline constexpr std::array kCaptureShorthands{
+    Shorthand{"--layout",
+              "capture.layout",
+              "NAME|FILE",
+              "Layout of the capture: a name or a JSON file (default: by its content)"}};
+
+/// Declares `--layout` and `--set`; both go to `overrides`.
+inline void add_capture_options(CLI::App& command, std::vector<std::string>& overrides) {
+    add_shorthands(command, kCaptureShorthands, overrides);
+    add_set_option(command, overrides);
+}
+
+/// Moves the texts that begin with `capture.` out of `overrides`, for commands whose own settings
+/// are read elsewhere.
+inline std::vector<std::string> take_capture_overrides(std::vector<std::string>& overrides) {
+    const auto others = std::stable_partition(overrides.begin(),
+                                              overrides.end(),
+                                              [](const auto& t) { return !t.starts_with("capture."); });
+    std::vector<std::string> taken(others, overrides.end());
+    overrides.erase(others, overrides.end());
+    return taken;
 }
 
 /// overrides   `key.path=value` texts

@@ -2,6 +2,7 @@
 #include "apps/file_kind.h"
 
 #include "calib/fit_file.h"
+#include "nlos/formats/capture_file.h"
 #include "nlos/formats/volume_file.h"
 #include "renderer/core/settings.h"
 
@@ -21,6 +22,8 @@ FileKind kind_of_json(const std::string& path) {
     if (has("scene", "free")) return FileKind::Model;
     if (has("direct_returns", "commands")) return FileKind::Setup;
     if (has("points_m", "opl_offset_m")) return FileKind::Calibration;
+    const bool is_scene = json.is_object() && (json.contains("geometry") || json.contains("scan"));
+    if (!is_scene && nlos::capture_format(path)) return FileKind::Capture;
     return FileKind::Scene;
 }
 
@@ -31,6 +34,7 @@ FileKind kind_of_file(const std::string& path) {
         throw core::Error(
             path, "does not exist", "must be a capture, volume, fit, scene.json, glTF or PLY file");
     }
+    if (std::filesystem::is_directory(path)) return FileKind::Capture;
     const std::string suffix = std::filesystem::path(path).extension().string();
     if (suffix == ".json") return kind_of_json(path);
     if (suffix == ".glb" || suffix == ".gltf") return FileKind::Geometry;

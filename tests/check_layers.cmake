@@ -18,6 +18,7 @@ set(floors_renderer
     "renderer")
 set(floors_nlos
     "nlos/containers|nlos/fourier|nlos/detector|nlos/reconstruction"
+    "nlos/layouts"
     "nlos/formats|nlos/compare|nlos/preparation"
     "nlos/methods|nlos/pictures"
     "nlos")

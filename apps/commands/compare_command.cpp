@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "apps/arguments.h"
+#include "apps/capture_options.h"
 #include "apps/commands.h"
 #include "apps/commands/compare_job.h"
 #include "renderer/core/error.h"
@@ -18,6 +19,7 @@ struct CompareArguments {
     std::string b;
     std::string output;
     std::optional<double> fscore_threshold_m;
+    std::vector<std::string> overrides;
 };
 
 void run(const CompareArguments& arguments) {
@@ -27,7 +29,11 @@ void run(const CompareArguments& arguments) {
                           fmt::format("found {}", *threshold),
                           "must be positive and finite [m]");
     }
-    Comparison comparison = compare_files(arguments.a, arguments.b, arguments.output, threshold);
+    Comparison comparison = compare_files(arguments.a,
+                                          arguments.b,
+                                          arguments.output,
+                                          threshold,
+                                          capture_options(arguments.overrides).capture);
     for_each_field(
         comparison.metrics, [](const char* name, const auto& value, const char* meaning) {
             if (!value) return;
@@ -55,8 +61,9 @@ void add_compare_command(CLI::App& app) {
                         arguments->fscore_threshold_m,
                         "Distance that counts as a match of points [m] (default 0.01, of volumes "
                         "their voxel diagonal)");
+    add_capture_options(*command, arguments->overrides);
     command->footer(settings_footer(
-        {}, "nlos compare scenes/letter/scene.glb scenes/letter/scene.json -o metrics.json"));
+        core::settings_help(CaptureOptions{}), "nlos compare scenes/letter/scene.glb scenes/letter/scene.json -o metrics.json"));
     command->callback([arguments] { run(*arguments); });
 }
 

@@ -91,7 +91,8 @@ bool is_surface(FileKind kind) {
 Comparison compare_kinds(const std::string& a,
                          const std::string& b,
                          const std::string& picture_path,
-                         std::optional<double> threshold_m) {
+                         std::optional<double> threshold_m,
+                         const nlos::CaptureReadSettings& settings) {
     const FileKind kind_a = kind_of_file(a);
     const FileKind kind_b = kind_of_file(b);
     const double between_points = threshold_m.value_or(kDefaultThreshold_m);
@@ -114,7 +115,7 @@ Comparison compare_kinds(const std::string& a,
         return {nlos::compare_points(points_of_file(a), points_of_file(b), between_points), {}};
     }
     if (kind_a == FileKind::Capture && kind_b == FileKind::Capture) {
-        const core::Capture result = nlos::read_capture(a);
+        const core::Capture result = nlos::read_capture(a, settings);
         const core::Capture reference = nlos::read_capture(b);
         return {nlos::compare_captures(result, reference),
                 nlos::comparison_warnings(result, reference)};
@@ -131,11 +132,12 @@ Comparison compare_kinds(const std::string& a,
 Comparison compare_files(const std::string& a,
                          const std::string& b,
                          const std::string& metrics_path,
-                         std::optional<double> fscore_threshold_m) {
+                         std::optional<double> fscore_threshold_m,
+                         const nlos::CaptureReadSettings& settings) {
     const std::string picture = metrics_path.empty() ? "" : with_suffix(metrics_path, ".png");
     require_suffix(metrics_path, {".json"});
     core::check_targets({metrics_path, picture}, {a, b});
-    Comparison comparison = compare_kinds(a, b, picture, fscore_threshold_m);
+    Comparison comparison = compare_kinds(a, b, picture, fscore_threshold_m, settings);
     if (!metrics_path.empty()) {
         core::Json json = core::write_value(comparison.metrics);
         json["result"] = a;

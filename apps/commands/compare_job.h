@@ -23,10 +23,12 @@ struct Comparison {
 ///                      or fit is scored against a scene.
 /// fscore_threshold_m   distance that counts as a match of points; nothing: 0.01 m for surfaces and
 ///                      clouds, the voxel diagonal for volumes
+/// settings             how A is read when it is a capture
 /// throws               core::Error when the two cannot be compared
 Comparison compare_files(const std::string& a,
                          const std::string& b,
                          const std::string& metrics_path,
-                         std::optional<double> fscore_threshold_m = std::nullopt);
+                         std::optional<double> fscore_threshold_m = std::nullopt,
+                         const nlos::CaptureReadSettings& settings = {});
 
 }  // namespace apps

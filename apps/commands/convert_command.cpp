@@ -69,7 +69,7 @@ void add_convert_command(CLI::App& app) {
     command->add_flag("--for-ytal",
                       arguments->write.for_ytal,
                       "HDF5 without the group /nlos, with which y-tal refuses files");
-    add_set_option(*command, arguments->overrides);
+    add_capture_options(*command, arguments->overrides);
     command->footer(settings_footer(core::settings_help(CaptureOptions{}),
                                     "nlos convert data/letter.h5 letter.exr"));
     command->callback([arguments] { run(*arguments); });

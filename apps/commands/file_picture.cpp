@@ -12,7 +12,9 @@
 
 namespace apps {
 
-void write_picture(const std::string& path, const std::string& png_path) {
+void write_picture(const std::string& path,
+                   const std::string& png_path,
+                   const nlos::CaptureReadSettings& settings) {
     require_suffix(png_path, {".png"});
     core::check_targets({png_path}, {path});
     switch (kind_of_file(path)) {
@@ -23,7 +25,8 @@ void write_picture(const std::string& path, const std::string& png_path) {
             nlos::write_panels_png(png_path, nlos::volume_panels(nlos::read_volume(path)), 2);
             return;
         case FileKind::Capture:
-            nlos::write_panels_png(png_path, nlos::capture_panels(nlos::read_capture(path)), 3);
+            nlos::write_panels_png(
+                png_path, nlos::capture_panels(nlos::read_capture(path, settings)), 3);
             return;
         case FileKind::Fit:
         case FileKind::Metrics:

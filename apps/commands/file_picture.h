@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "nlos/formats/capture_file.h"
+
 #include <string>
 
 namespace apps {
@@ -8,7 +10,10 @@ namespace apps {
 /// Draws a file: a scene.json as its wall sees it, a capture as streak image, integrated image and
 /// mean transient, a volume by its projections and depth map.
 ///
+/// settings of a capture
 /// throws   core::Error for other kinds of files and bad targets
-void write_picture(const std::string& path, const std::string& png_path);
+void write_picture(const std::string& path,
+                   const std::string& png_path,
+                   const nlos::CaptureReadSettings& settings = {});
 
 }  // namespace apps

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "apps/arguments.h"
+#include "apps/capture_options.h"
 #include "apps/commands.h"
 #include "apps/commands/fit_job.h"
 #include "apps/estimate_text.h"
@@ -76,6 +77,13 @@ void run(const FitArguments& arguments) {
     for (const std::string& text : result.warnings) fmt::print(stderr, "warning: {}\n", text);
 }
 
+std::vector<core::SettingHelp> fit_help() {
+    std::vector<core::SettingHelp> lines = core::settings_help(calib::FitSettings{});
+    const auto of_capture = core::settings_help(CaptureOptions{});
+    lines.insert(lines.end(), of_capture.begin(), of_capture.end());
+    return lines;
+}
+
 }  // namespace
 
 void add_fit_command(CLI::App& app) {
@@ -93,9 +101,9 @@ void add_fit_command(CLI::App& app) {
     command->add_option(
         "--calibration", arguments->calibration, "Calibration of the set-up (.json)");
     add_threads_option(*command, arguments->threads);
-    add_set_option(*command, arguments->overrides);
+    add_capture_options(*command, arguments->overrides);
     command->footer(
-        settings_footer(core::settings_help(calib::FitSettings{}),
+        settings_footer(fit_help(),
                         "nlos fit data/letter.h5 scenes/letter/model.json -o fit.json"));
     command->callback([arguments] { run(*arguments); });
 }

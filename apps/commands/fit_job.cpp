@@ -2,6 +2,7 @@
 #include "apps/commands/fit_job.h"
 
 #include "apps/arguments.h"
+#include "apps/capture_options.h"
 #include "apps/commands/fit_pictures.h"
 #include "apps/terminal.h"
 #include "apps/version.h"
@@ -21,10 +22,11 @@ namespace fs = std::filesystem;
 
 calib::FitInput make_input(const std::string& capture_path,
                            const std::string& model_path,
-                           const std::vector<std::string>& overrides) {
+                           std::vector<std::string> overrides) {
     calib::FitInput input;
+    const CaptureOptions options = capture_options(take_capture_overrides(overrides));
     input.settings = calib::read_fit_settings(model_path, overrides);
-    input.capture = nlos::read_capture(capture_path);
+    input.capture = nlos::read_capture(capture_path, options.capture);
     input.scene = renderer::read_scene_description(input.settings.scene, {});
     input.geometry = renderer::load_gltf(input.scene.geometry);
     if (input.capture.scan.camera || input.scene.camera) {

@@ -6,13 +6,16 @@
 #include "apps/commands/file_picture.h"
 #include "apps/file_kind.h"
 #include "calib/fit_file.h"
+#include "nlos/containers/array_reader.h"
 #include "nlos/formats/capture_file.h"
 #include "nlos/formats/ply_file.h"
 #include "nlos/formats/volume_file.h"
+#include "nlos/layouts/layout_guess.h"
 #include "nlos/preparation/capture_check.h"
+#include "renderer/core/output_file.h"
 #include "renderer/core/recorded_detector.h"
 
-#include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <memory>
 
@@ -22,6 +25,7 @@ namespace {
 struct InfoArguments {
     std::string file;
     std::string picture;
+    std::string write_layout;
     std::vector<std::string> overrides;
 };
 
@@ -101,21 +105,51 @@ void describe_point_cloud(const std::string& path) {
         "format: PLY\npoints: {}\ntriangles: {}\n", mesh.vertices.size(), mesh.triangles.size());
 }
 
-void describe_capture_file(const std::string& path, const std::vector<std::string>& overrides) {
-    nlos::CaptureReadSettings settings = capture_options(overrides).capture;
-    const bool in_steps = nlos::lacks_scale(path) && !(settings.pitch_m && settings.bin_width_m);
-    if (in_steps) {
+/// A file in no known format or layout: what it holds and what that could mean.
+void describe_unknown(const std::string& path) {
+    const nlos::LayoutGuess guess = nlos::guess_layout(path);
+    fmt::print("format: no known capture; arrays:\n");
+    for (const std::string& line : guess.arrays) fmt::print("  {}\n", line);
+    fmt::print("what could be what:\n");
+    for (const std::string& line : guess.findings) fmt::print("  {}\n", line);
+    fmt::print("nearest layouts, and what speaks against them:\n");
+    for (const std::string& line : guess.nearest) fmt::print("  {}\n", line);
+    if (guess.layout.is_null()) return;
+    fmt::print("`nlos info {} --write-layout my.json` writes a layout to complete, and --layout "
+               "my.json uses it\n",
+               path);
+}
+
+void write_layout(const std::string& path, const std::string& layout_path) {
+    core::check_targets({layout_path}, {path});
+    const nlos::LayoutGuess guess = nlos::guess_layout(path);
+    if (guess.layout.is_null()) {
+        throw core::Error(path, "holds no array that could be histograms", "must hold one");
+    }
+    core::write_text_file(layout_path, guess.layout.dump(2) + "\n");
+    for (const std::string& line : guess.findings) fmt::print("{}\n", line);
+    fmt::print("wrote {}\n", layout_path);
+}
+
+void describe_capture_file(const std::string& path, nlos::CaptureReadSettings settings) {
+    const auto format = nlos::capture_format(path, settings);
+    if (!format && nlos::container_of(path)) {
+        describe_unknown(path);
+        return;
+    }
+    const std::vector<std::string> missing = nlos::missing_settings(path, settings);
+    if (!missing.empty()) {
         settings.pitch_m = settings.pitch_m.value_or(1.0);
         settings.bin_width_m = settings.bin_width_m.value_or(1.0);
+        settings.wall_size_m = settings.wall_size_m.value_or(std::array{1.0, 1.0});
     }
     const core::Capture capture = nlos::read_capture(path, settings);
-    fmt::print("format: {}\n", nlos::capture_format(path).value_or("unknown"));
+    fmt::print("format: {}\n", format.value_or("unknown"));
     for (const std::string& line : nlos::describe_capture(capture)) fmt::print("{}\n", line);
     print_provenance(capture.scene_info);
-    if (in_steps) {
-        fmt::print(
-            "warning: the file holds neither the grid's pitch nor the bin width; what is not given "
-            "as --set capture.pitch_m=... capture.bin_width_m=... stands as 1 m above\n");
+    if (!missing.empty()) {
+        fmt::print("warning: the file does not hold what stands as 1 m above: --set {}\n",
+                   fmt::join(missing, " "));
         return;
     }
     for (const std::string& warning : nlos::capture_warnings(capture)) {
@@ -147,6 +181,11 @@ void describe_fit(const std::string& path) {
 }
 
 void run(const InfoArguments& arguments) {
+    if (!arguments.write_layout.empty()) {
+        write_layout(arguments.file, arguments.write_layout);
+        return;
+    }
+    const nlos::CaptureReadSettings settings = capture_options(arguments.overrides).capture;
     switch (kind_of_file(arguments.file)) {
         case FileKind::Scene:
             describe_scene(arguments.file);
@@ -176,11 +215,11 @@ void run(const InfoArguments& arguments) {
             describe_volume(arguments.file);
             break;
         case FileKind::Capture:
-            describe_capture_file(arguments.file, arguments.overrides);
+            describe_capture_file(arguments.file, settings);
             break;
     }
     if (arguments.picture.empty()) return;
-    write_picture(arguments.file, arguments.picture);
+    write_picture(arguments.file, arguments.picture, settings);
     fmt::print("wrote {}\n", arguments.picture);
 }
 
@@ -197,7 +236,10 @@ void add_info_command(CLI::App& app) {
     command->add_option("--picture",
                         arguments->picture,
                         "Also draw it (.png): a scene as the wall sees it, a capture, a volume");
-    add_set_option(*command, arguments->overrides);
+    command->add_option("--write-layout",
+                        arguments->write_layout,
+                        "Write a layout for a file of named arrays, to be completed (.json)");
+    add_capture_options(*command, arguments->overrides);
     command->footer(settings_footer(core::settings_help(CaptureOptions{}),
                                     "nlos info scenes/letter/scene.json"));
     command->callback([arguments] { run(*arguments); });

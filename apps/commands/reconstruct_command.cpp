@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "apps/arguments.h"
+#include "apps/capture_options.h"
 #include "apps/commands.h"
 #include "apps/commands/reconstruct_job.h"
 #include "renderer/core/parallel.h"
@@ -69,7 +70,7 @@ void add_reconstruct_command(CLI::App& app) {
     command->add_option(
         "--calibration", arguments->calibration, "Calibration of the set-up (.json)");
     add_threads_option(*command, arguments->threads);
-    add_set_option(*command, arguments->overrides);
+    add_capture_options(*command, arguments->overrides);
     command->footer(settings_footer(core::settings_help(ReconstructOptions{}),
                                     "nlos reconstruct data/letter.h5 -o volume.h5 --method lct"));
     command->callback([arguments] { run(*arguments); });

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "apps/arguments.h"
+#include "apps/capture_options.h"
 #include "apps/commands.h"
 #include "apps/version.h"
 #include "nlos/detector/detector.h"
@@ -94,7 +95,7 @@ void add_simulate_noise_command(CLI::App& app) {
         ->required();
     add_shorthands(*command, kNoiseShorthands, arguments->shorthands);
     add_threads_option(*command, arguments->threads);
-    add_set_option(*command, arguments->overrides);
+    add_capture_options(*command, arguments->overrides);
     command->footer(settings_footer(core::settings_help(NoiseOptions{}),
                                     "nlos simulate-noise data/letter.h5 -o noisy.h5 "
                                     "--photons-per-point 1000 --jitter-fwhm-ps 60"));

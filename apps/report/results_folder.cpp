@@ -58,7 +58,8 @@ std::vector<fs::path> visible_files(const fs::path& folder) {
 }
 
 bool is_measurement(const std::string& suffix) {
-    return suffix == ".h5" || suffix == ".hdf5" || suffix == ".mat" || suffix == ".exr";
+    static const std::set<std::string> suffixes{".h5", ".hdf5", ".mat", ".exr", ".npz", ".npy", ".ti"};
+    return suffixes.contains(suffix);
 }
 
 void read_file(const fs::path& path, ResultsFolder& results) {
@@ -67,7 +68,7 @@ void read_file(const fs::path& path, ResultsFolder& results) {
     if (is_measurement(suffix)) {
         if (nlos::is_volume_file(path.string())) {
             results.volumes.push_back(volume_card(path.string()));
-        } else {
+        } else if (nlos::capture_format(path.string())) {
             results.captures.push_back(capture_card(path.string()));
         }
     } else if (suffix == ".json") {

@@ -2,6 +2,8 @@
 #include "nlos/formats/capture_file.h"
 
 #include "nlos/formats/capture_format.h"
+#include "nlos/layouts/layout_capture.h"
+#include "nlos/layouts/layout_guess.h"
 #include "renderer/core/error.h"
 
 #include <fmt/core.h>
@@ -15,10 +17,31 @@ namespace nlos {
 namespace {
 
 const CaptureFormat* find_format(const std::string& path) {
+    if (std::filesystem::is_directory(path)) return nullptr;
     for (const CaptureFormat& format : capture_formats()) {
-        if (format.recognise(path)) return &format;
+        if (format.recognise != nullptr && format.recognise(path)) return &format;
     }
     return nullptr;
+}
+
+/// The layout that was asked for, or that of a file or folder in no format of its own.
+std::optional<LayoutSource> find_layout_of(const std::string& path,
+                                           const CaptureReadSettings& settings) {
+    if (!settings.layout.empty()) return layout_source(path, find_layout(settings.layout));
+    return find_format(path) == nullptr ? find_layout_source(path) : std::nullopt;
+}
+
+[[noreturn]] void throw_unknown(const std::string& path) {
+    if (!container_of(path)) {
+        throw core::Error(path,
+                          "is no capture in a known format",
+                          "must be HDF5, MATLAB, NumPy, OpenEXR, .ti, JSON or CSV");
+    }
+    throw core::Error(path,
+                      "is no capture in a known format or layout",
+                      fmt::format("`nlos info {}` lists its arrays; the nearest layout is {}",
+                                  path,
+                                  nearest_layouts(path).at(0)));
 }
 
 /// The format to write by the suffix of `path`.
@@ -35,16 +58,66 @@ const CaptureFormat& format_to_write(const std::string& path) {
     throw core::Error(path, "has the suffix '" + suffix + "'", "must be one of " + known);
 }
 
-void zero_leading_bins(int wanted, core::Capture& capture) {
+void take_frame(int frame, const std::string& path, core::Capture& capture) {
+    const std::size_t count = capture.sequence ? capture.sequence->frames.size() : 1;
+    if (static_cast<std::size_t>(frame) >= count) {
+        throw core::Error("capture.frame",
+                          fmt::format("found {}", frame),
+                          fmt::format("must be less than the {} frames of {}", count, path));
+    }
+    if (!capture.sequence) return;
+    const auto later = static_cast<double>(count - 1 - static_cast<std::size_t>(frame));
+    capture.time_axis.opl_start_m -= later * capture.sequence->gate_step_m;
+    capture.transient = capture.sequence->frames[static_cast<std::size_t>(frame)];
+    capture.sequence.reset();
+}
+
+void drop_leading_bins(int wanted, core::Capture& capture) {
     const int count = std::min(wanted, capture.time_axis.num_bins);
     if (count <= 0) return;
+    core::restrict_observed(capture, {count, capture.time_axis.num_bins});
+    capture.notes.push_back(
+        fmt::format("the first {} bins (the direct return) are set to 0 and count as not observed; "
+                    "capture.zero_bins overrides",
+                    count));
+}
+
+/// What the observed bins hold.
+std::string describe_values(const core::Capture& capture) {
+    double sum = 0.0;
+    std::optional<std::array<float, 2>> range;
     for (std::size_t pair = 0; pair < capture.transient.num_pairs(); ++pair) {
-        const auto leading =
-            capture.transient.histogram(pair).first(static_cast<std::size_t>(count));
-        std::fill(leading.begin(), leading.end(), 0.0F);
+        for (const float value : capture.observed_values(pair)) {
+            sum += value;
+            if (!range) range = {value, value};
+            range = {std::min((*range)[0], value), std::max((*range)[1], value)};
+        }
     }
-    capture.notes.push_back(fmt::format(
-        "the first {} bins (the direct return) are set to 0; capture.zero_bins overrides", count));
+    const auto [low, high] = range.value_or(std::array{0.0F, 0.0F});
+    return fmt::format("histograms: {}, from {:.6g} to {:.6g}, sum {:.6g}",
+                       enum_name(capture.unit),
+                       low,
+                       high,
+                       sum);
+}
+
+/// Which bins of which points were observed, when not all were.
+std::string describe_observed(const core::Capture& capture) {
+    const std::vector<core::BinRange>& observed = *capture.observed;
+    const std::size_t blind = static_cast<std::size_t>(std::ranges::count_if(
+        observed, [](const core::BinRange& range) { return range.size() == 0; }));
+    const core::BinRange hull = core::observed_hull(capture.observed, capture.time_axis.num_bins);
+    if (hull.size() == 0) return fmt::format("observed: no bin of {} pairs", observed.size());
+    const std::size_t whole = static_cast<std::size_t>(std::ranges::count(observed, hull));
+    std::string text = fmt::format("observed: bins {} to {} of {} of {} pairs",
+                                   hull.begin,
+                                   hull.end - 1,
+                                   whole == observed.size() ? "all" : std::to_string(whole),
+                                   observed.size());
+    const std::size_t partial = observed.size() - whole - blind;
+    if (partial > 0) text += fmt::format("; fewer of {}", partial);
+    if (blind > 0) text += fmt::format("; {} not at all", blind);
+    return text;
 }
 
 std::string point_count(const core::WallPoints& points) {
@@ -123,31 +196,34 @@ core::Capture read_capture(const std::string& path, const CaptureReadSettings& s
     if (!std::filesystem::exists(path)) {
         throw core::Error(path, "does not exist", "must be a capture file");
     }
-    const CaptureFormat* format = find_format(path);
-    if (format == nullptr) {
-        std::string known;
-        for (const CaptureFormat& row : capture_formats()) {
-            known += (known.empty() ? "" : ", or ") + std::string(row.content);
-        }
-        throw core::Error(path, "is no capture in a known format", "must be " + known);
+    core::Capture capture;
+    int zero_bins = 0;
+    if (const auto source = find_layout_of(path, settings)) {
+        capture = read_layout_capture(*source, settings);
+        zero_bins = source->layout.bins.leading_unobserved;
+    } else if (const CaptureFormat* format = find_format(path)) {
+        capture = format->read(path, settings);
+        if (settings.frame) take_frame(*settings.frame, path, capture);
+    } else {
+        throw_unknown(path);
     }
-    core::Capture capture = format->read(path, settings);
-    const int zero_bins = format->default_zero_bins ? format->default_zero_bins(capture) : 0;
-    zero_leading_bins(settings.zero_bins.value_or(zero_bins), capture);
+    drop_leading_bins(settings.zero_bins.value_or(zero_bins), capture);
     capture.time_axis.opl_start_m += settings.opl_shift_m.value_or(0.0);
     validate(capture, path);
     return capture;
 }
 
-std::optional<std::string> capture_format(const std::string& path) {
-    const CaptureFormat* format = find_format(path);
-    if (format == nullptr) return std::nullopt;
-    return format->name;
+std::optional<std::string> capture_format(const std::string& path,
+                                          const CaptureReadSettings& settings) {
+    if (const auto source = find_layout_of(path, settings)) return source->layout.title;
+    if (const CaptureFormat* format = find_format(path)) return format->name;
+    return std::nullopt;
 }
 
-bool lacks_scale(const std::string& path) {
-    const CaptureFormat* format = find_format(path);
-    return format != nullptr && format->lacks_scale;
+std::vector<std::string> missing_settings(const std::string& path,
+                                          const CaptureReadSettings& settings) {
+    const auto source = find_layout_of(path, settings);
+    return source ? open_questions(source->layout, settings) : std::vector<std::string>{};
 }
 
 std::vector<std::string> write_capture(const std::string& path,
@@ -165,14 +241,6 @@ void check_capture_suffix(const std::string& path) {
 std::vector<std::string> describe_capture(const core::Capture& capture) {
     const core::Scan& scan = capture.scan;
     const core::TimeAxis& axis = capture.time_axis;
-    double sum = 0.0;
-    float low = capture.transient.values()[0];
-    float high = low;
-    for (const float value : capture.transient.values()) {
-        sum += value;
-        low = std::min(low, value);
-        high = std::max(high, value);
-    }
     std::vector<std::string> lines =
         scan.camera ? describe_camera(*scan.camera) : describe_points(scan);
     lines.push_back(
@@ -186,6 +254,7 @@ std::vector<std::string> describe_capture(const core::Capture& capture) {
             fmt::format("path lengths {} the legs to laser and detector",
                         scan.opl_origin == core::OplOrigin::Device ? "include" : "exclude"));
     }
+    if (capture.observed) lines.push_back(describe_observed(capture));
     if (capture.velocity) lines.push_back(describe_velocity(*capture.velocity));
     if (capture.sequence) {
         lines.push_back(
@@ -195,20 +264,17 @@ std::vector<std::string> describe_capture(const core::Capture& capture) {
                         capture.sequence->frame_s,
                         capture.sequence->gate_step_m));
     }
-    lines.push_back(fmt::format("histograms: {}, from {:.6g} to {:.6g}, sum {:.6g}",
-                                enum_name(capture.unit),
-                                low,
-                                high,
-                                sum));
+    lines.push_back(describe_values(capture));
     if (capture.counts_per_radiance) {
         lines.push_back(
             fmt::format("counts per unit of radiance: {:.6g}", *capture.counts_per_radiance));
     }
     if (scan.opl_origin == core::OplOrigin::RelayWall) {
         // Seen at right angles from a confocal point, depth is half the path length.
+        const core::BinRange hull = core::observed_hull(capture.observed, axis.num_bins);
         lines.push_back(fmt::format("depth range: {:.4g} to {:.4g} m",
-                                    0.5 * std::max(0.0, axis.opl_start_m),
-                                    0.5 * axis.opl_end_m()));
+                                    0.5 * std::max(0.0, axis.bin_begin_m(hull.begin)),
+                                    0.5 * axis.bin_begin_m(hull.end)));
     }
     lines.insert(lines.end(), capture.notes.begin(), capture.notes.end());
     return lines;

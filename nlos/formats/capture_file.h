@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "nlos/formats/capture_settings.h"
+#include "nlos/layouts/capture_settings.h"
 #include "renderer/core/capture.h"
 
 #include <optional>
@@ -10,18 +10,22 @@
 
 namespace nlos {
 
-/// Reads a capture in any known format, recognised by its content.
+/// Reads a capture: in one of the formats that the program also writes, or any file of named arrays
+/// of which a layout says what they mean (see nlos/layouts/layout.h), recognised by content. A
+/// folder is a capture when its files are the frames of one, or a layout keeps its arrays in files.
 ///
 /// returns   a valid capture (see core::validate) whose notes say what was converted or assumed
 /// throws    core::Error naming the file and what is wrong with it
 core::Capture read_capture(const std::string& path, const CaptureReadSettings& settings = {});
 
-/// The name of the format of a file that read_capture() reads, or nothing.
-std::optional<std::string> capture_format(const std::string& path);
+/// The name of the format or layout that read_capture() would read a file by, or nothing.
+std::optional<std::string> capture_format(const std::string& path,
+                                          const CaptureReadSettings& settings = {});
 
-/// Whether files of this format hold neither bin width nor distances, so that read_capture() must
-/// be told both.
-bool lacks_scale(const std::string& path);
+/// Settings that read_capture() must be given because the file does not hold them, each as
+/// `capture.key=... (typical values)`.
+std::vector<std::string> missing_settings(const std::string& path,
+                                          const CaptureReadSettings& settings);
 
 /// A capture in a few lines for people: wall, points, bins, depth range, unit.
 std::vector<std::string> describe_capture(const core::Capture& capture);

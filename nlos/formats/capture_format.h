@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "nlos/formats/capture_settings.h"
+#include "nlos/layouts/capture_settings.h"
 #include "renderer/core/capture.h"
 
 #include <array>
@@ -16,7 +16,8 @@ struct CaptureFormat {
     const char* name;     ///< for people
     const char* content;  ///< what its files hold, for the message about an unknown file
 
-    /// True when the file is of this format, be it damaged further on.
+    /// True when the file is of this format, be it damaged further on. Null for formats that only
+    /// write, whose files a layout reads.
     bool (*recognise)(const std::string& path);
     core::Capture (*read)(const std::string& path, const CaptureReadSettings& settings);
 
@@ -26,11 +27,6 @@ struct CaptureFormat {
     std::vector<std::string> (*write)(const std::string& path,
                                       const core::Capture& capture,
                                       const CaptureWriteSettings& settings) = nullptr;
-
-    /// Leading bins that the format's authors drop; null: none.
-    int (*default_zero_bins)(const core::Capture& capture) = nullptr;
-
-    bool lacks_scale = false;  ///< see lacks_scale()
 };
 
 /// All formats, in the order in which a file is tried.

@@ -7,11 +7,10 @@ namespace nlos {
 CaptureFormat ytal_format();
 CaptureFormat exr_format();
 CaptureFormat stanford_format();
-CaptureFormat point_list_format();
 
 const std::vector<CaptureFormat>& capture_formats() {
     static const std::vector<CaptureFormat> formats{
-        ytal_format(), exr_format(), stanford_format(), point_list_format()};
+        ytal_format(), exr_format(), stanford_format()};
     return formats;
 }
 

@@ -35,6 +35,8 @@ using core::WallPoints;
 //   nlosSensingGrid, nlosIlluminationGrid            2 floats: points along x and y; none: a list
 //   nlosSensingPointsM, nlosIlluminationPointsM      3 floats per point [m, world], x index first
 //   nlosSensingNormals, nlosIlluminationNormals      3 floats per point, unit
+//   nlosObservedBins                  2 floats per pair, where some bins were not observed: the
+//                                     first observed bin and the one after the last
 //   nlosSceneInfo                     text: JSON, where the capture came from
 //
 // A confocal scan holds its points once, as the sensing ones. Pairs are numbered as in core::Scan.
@@ -44,6 +46,7 @@ constexpr const char* kFormat = "capture 1";
 constexpr const char* kValues = "Y";
 constexpr const char* kVariance = "variance";
 constexpr const char* kOrder = "order.";
+constexpr const char* kObservedBins = "nlosObservedBins";
 
 void put_points(ExrTable& table, const std::string& device, const WallPoints& points) {
     table.lists["nlos" + device + "PointsM"] = to_floats(points.positions);
@@ -51,6 +54,14 @@ void put_points(ExrTable& table, const std::string& device, const WallPoints& po
     if (points.grid) {
         table.lists["nlos" + device + "Grid"] = {static_cast<float>((*points.grid)[0]),
                                                  static_cast<float>((*points.grid)[1])};
+    }
+}
+
+void put_observed_bins(ExrTable& table, const std::vector<core::BinRange>& observed) {
+    std::vector<float>& bins = table.lists[kObservedBins];
+    for (const core::BinRange& range : observed) {
+        bins.push_back(static_cast<float>(range.begin));
+        bins.push_back(static_cast<float>(range.end));
     }
 }
 
@@ -100,9 +111,7 @@ class Attributes {
         }
         const auto grid = table_.lists.find("nlos" + device + "Grid");
         if (grid == table_.lists.end()) return points;
-        const auto is_count = [](float value) {
-            return value >= 1.0F && value <= 1e7F && value == std::trunc(value);
-        };
+        const auto is_count = [](float value) { return value >= 1.0F && is_whole(value); };
         if (grid->second.size() != 2 || !std::ranges::all_of(grid->second, is_count)) {
             throw_missing(grid->first, "2 whole numbers");
         }
@@ -111,7 +120,24 @@ class Attributes {
         return points;
     }
 
+    core::ObservedBins observed_bins(std::size_t num_pairs) const {
+        const auto bins = table_.lists.find(kObservedBins);
+        if (bins == table_.lists.end()) return std::nullopt;
+        if (bins->second.size() != 2 * num_pairs || !std::ranges::all_of(bins->second, is_whole)) {
+            throw_missing(kObservedBins, "2 whole numbers per pair");
+        }
+        std::vector<core::BinRange> observed;
+        for (std::size_t i = 0; i < bins->second.size(); i += 2) {
+            observed.push_back(
+                {static_cast<int>(bins->second[i]), static_cast<int>(bins->second[i + 1])});
+        }
+        return observed;
+    }
+
  private:
+    static bool is_whole(float value) {
+        return value >= 0.0F && value <= 1e7F && value == std::trunc(value);
+    }
     [[noreturn]] void throw_missing(const std::string& name, const std::string& wanted) const {
         throw Error(path_ + ": " + name, "is missing or of another kind", "must be " + wanted);
     }
@@ -240,6 +266,7 @@ Capture read_exr(const std::string& path, const CaptureReadSettings& settings) {
         capture.orders.push_back(*order);
         capture.by_order.push_back(to_transient(channel, capture, is_wall));
     }
+    capture.observed = attributes.observed_bins(capture.scan.num_pairs());
     capture.scene_info = core::Json::parse(attributes.text("nlosSceneInfo"), nullptr, false);
     if (!capture.scene_info.is_object()) capture.scene_info = core::Json::object();
     return capture;
@@ -280,6 +307,7 @@ std::vector<std::string> write_exr(const std::string& path,
         put_points(table, "Illumination", scan.illumination);
     }
     table.channels[kValues] = to_channel(capture.transient, capture, is_wall);
+    if (capture.observed) put_observed_bins(table, *capture.observed);
     if (capture.variance) {
         table.channels[kVariance] = to_channel(*capture.variance, capture, is_wall);
     }

@@ -44,6 +44,10 @@ inline EnumMembers volume_format_members() {
 /// has no place for it.
 inline constexpr const char* kCameraKey = "camera";
 
+/// First and one past the last observed bin of every pair: int32, shape (2, then that of H without
+/// T). Other bins hold 0 and mean that nobody looked.
+inline constexpr const char* kObservedBins = "nlos/observed_bins";
+
 /// Attributes of /nlos/frames: how far gate and objects move on per frame.
 inline constexpr const char* kGateStep = "gate_step_m";
 inline constexpr const char* kFrameTime = "frame_s";

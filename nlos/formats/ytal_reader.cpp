@@ -89,6 +89,24 @@ void require_variances(const Hdf5Reader& file,
     }
 }
 
+/// The bins of each pair that were observed; validate() checks them against the axis and H.
+void read_observed_bins(const Hdf5Reader& file, Capture& capture) {
+    Shape wanted = file.shape("H");
+    wanted[0] = 2;
+    require_shape(file, kObservedBins, wanted);
+    const std::vector<double> bins = file.read_doubles(kObservedBins, wanted);
+    const std::size_t num_pairs = bins.size() / 2;
+    for (const double bin : bins) {
+        if (bin == std::trunc(bin) && std::abs(bin) <= std::numeric_limits<int>::max()) continue;
+        throw Error(file.where(kObservedBins), fmt::format("found {}", bin), "must be bin numbers");
+    }
+    std::vector<core::BinRange>& observed = capture.observed.emplace();
+    for (std::size_t pair = 0; pair < num_pairs; ++pair) {
+        observed.push_back(
+            {static_cast<int>(bins[pair]), static_cast<int>(bins[num_pairs + pair])});
+    }
+}
+
 /// The axis of /nlos/velocity, which has one dimension more than H when it resolves time too.
 core::VelocityAxis read_velocity_axis(const Hdf5Reader& file) {
     const std::string name = "nlos/velocity";
@@ -200,6 +218,7 @@ void read_own_group(const Hdf5Reader& file, Capture& capture) {
                     "is no positive number",
                     "must be one positive number");
     }
+    if (file.has(kObservedBins)) read_observed_bins(file, capture);
     if (file.has("nlos/H_by_order")) read_orders(file, capture);
     if (file.has("nlos/frames")) read_frames(file, capture);
     if (file.has("nlos/velocity")) read_velocity(file, capture);

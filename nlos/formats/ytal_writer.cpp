@@ -126,6 +126,18 @@ void write_stack(Hdf5Writer& file,
         });
 }
 
+/// First bins of all pairs, then the bins after their last ones.
+void write_observed_bins(Hdf5Writer& file,
+                         const Shape& h_shape,
+                         const std::vector<core::BinRange>& observed) {
+    Shape shape = h_shape;
+    shape[0] = 2;
+    std::vector<int> bins;
+    for (const core::BinRange& range : observed) bins.push_back(range.begin);
+    for (const core::BinRange& range : observed) bins.push_back(range.end);
+    file.write(kObservedBins, shape, bins);
+}
+
 /// What y-tal has no name for, if there is any and y-tal need not read the file.
 /// returns   whether there is any beside the unit
 bool write_own_group(Hdf5Writer& file,
@@ -133,14 +145,15 @@ bool write_own_group(Hdf5Writer& file,
                      const Capture& capture,
                      const CaptureWriteSettings& settings) {
     const bool radiance = capture.unit == core::TransientUnit::Radiance;
-    const bool has_own =
-        capture.variance || !capture.orders.empty() || capture.velocity || capture.sequence;
+    const bool has_own = capture.variance || !capture.orders.empty() || capture.velocity ||
+                         capture.sequence || capture.observed;
     if ((!has_own && radiance) || settings.for_ytal) return has_own;
     file.create_group("nlos");
     file.write_attribute("nlos", "unit", std::string(enum_name(capture.unit)));
     if (capture.counts_per_radiance) {
         file.write_attribute("nlos", "counts_per_radiance", {}, {&*capture.counts_per_radiance, 1});
     }
+    if (capture.observed) write_observed_bins(file, h_shape, *capture.observed);
     if (capture.variance) write_transient(file, "nlos/variance", h_shape, *capture.variance);
     if (!capture.orders.empty()) {
         write_stack(file, "nlos/H_by_order", h_shape, capture.by_order);
@@ -206,7 +219,9 @@ std::vector<std::string> write_ytal_capture(const std::string& path,
     const bool has_own = write_own_group(file, h_shape, capture, settings);
     file.finish();
     if (settings.for_ytal && has_own) {
-        return {"the group /nlos (variance, orders of bounces, velocities, frames) is left out"};
+        return {
+            "the group /nlos (variance, orders of bounces, velocities, frames, observed bins) "
+            "is left out"};
     }
     return {};
 }

@@ -48,6 +48,79 @@ void validate_histograms(const Capture& capture,
     }
 }
 
+/// Throws unless there is one range per pair, each within the axis.
+void validate_ranges(const Capture& capture,
+                     const std::vector<BinRange>& ranges,
+                     const std::string& where) {
+    require(ranges.size() == capture.scan.num_pairs(),
+            where,
+            fmt::format("{} ranges", ranges.size()),
+            fmt::format("one for each of {} pairs", capture.scan.num_pairs()));
+    const int num_bins = capture.time_axis.num_bins;
+    for (std::size_t pair = 0; pair < ranges.size(); ++pair) {
+        const auto [begin, end] = ranges[pair];
+        if (begin >= 0 && begin <= end && end <= num_bins) continue;
+        throw Error(where,
+                    fmt::format("pair {} has bins {} to {}", pair, begin, end),
+                    fmt::format("must begin at 0 or later, not end before that, and end at {} at "
+                                "the latest",
+                                num_bins));
+    }
+}
+
+/// Visits every histogram by path length of one kind: what it is called, its values, and how many
+/// axes follow one another in each.
+template <class AnyCapture, class Visit>
+void for_each_transient(AnyCapture& capture, Visit&& visit) {
+    visit("H", capture.transient, 1);
+    if (capture.variance) visit("variance", *capture.variance, 1);
+    for (auto& order : capture.by_order) visit("H_by_order", order, 1);
+    if (capture.sequence) {
+        for (auto& frame : capture.sequence->frames) visit("frames", frame, 1);
+    }
+    if (!capture.velocity || !capture.velocity->axis.with_time) return;
+    const int num_velocities = capture.velocity->axis.num_bins;
+    visit("velocity", capture.velocity->values, num_velocities);
+    if (capture.velocity->variance) {
+        visit("velocity_variance", *capture.velocity->variance, num_velocities);
+    }
+}
+
+/// Visits the values of a pair outside its range.
+template <class Values, class Visit>
+void for_each_unobserved(const Values& histogram,
+                         const BinRange& range,
+                         int num_axes,
+                         Visit&& visit) {
+    const std::size_t num_bins = histogram.size() / static_cast<std::size_t>(num_axes);
+    for (std::size_t i = 0; i < histogram.size(); ++i) {
+        if (!range.holds(static_cast<int>(i % num_bins))) visit(histogram[i]);
+    }
+}
+
+void validate_observed(const Capture& capture, const std::string& where) {
+    if (!capture.observed) return;
+    if (capture.scan.camera) {
+        throw Error(where + ": observed bins", "found for an image", "must be of a scan's pairs");
+    }
+    validate_ranges(capture, *capture.observed, where + ": observed bins");
+    for_each_transient(capture, [&](const char* name, const Transient& transient, int num_axes) {
+        for (std::size_t pair = 0; pair < transient.num_pairs(); ++pair) {
+            const BinRange& range = (*capture.observed)[pair];
+            for_each_unobserved(transient.histogram(pair), range, num_axes, [&](float value) {
+                if (value == 0.0F) return;
+                throw Error(fmt::format("{}: {}", where, name),
+                            fmt::format("pair {} holds {} beside its observed bins {} to {}",
+                                        pair,
+                                        value,
+                                        range.begin,
+                                        range.end),
+                            "must hold 0 where nothing was observed");
+            });
+        }
+    });
+}
+
 }  // namespace
 
 std::array<double, 2> device_leg_range_m(const Scan& scan) {
@@ -81,11 +154,34 @@ void validate(const Capture& capture, const std::string& where) {
         validate_histograms(
             capture, capture.velocity->values, axis.num_values(num_bins), where + ": velocity");
     }
-    if (!capture.sequence) return;
-    for (std::size_t i = 0; i < capture.sequence->frames.size(); ++i) {
+    for (std::size_t i = 0; capture.sequence && i < capture.sequence->frames.size(); ++i) {
         validate_histograms(
             capture, capture.sequence->frames[i], num_bins, fmt::format("{}: frame {}", where, i));
     }
+    validate_observed(capture, where);
+}
+
+void restrict_observed(Capture& capture, const BinRange& range) {
+    restrict_observed(capture, std::vector<BinRange>(capture.scan.num_pairs(), range));
+}
+
+void restrict_observed(Capture& capture, const std::vector<BinRange>& ranges) {
+    validate_ranges(capture, ranges, "observed bins");
+    for_each_transient(capture, [&](const char*, Transient& transient, int num_axes) {
+        for (std::size_t pair = 0; pair < transient.num_pairs(); ++pair) {
+            for_each_unobserved(
+                transient.histogram(pair), ranges[pair], num_axes, [](float& value) {
+                    value = 0.0F;
+                });
+        }
+    });
+    if (capture.scan.camera) return;
+    std::vector<BinRange> kept;
+    for (std::size_t pair = 0; pair < ranges.size(); ++pair) {
+        kept.push_back(intersection(ranges[pair], capture.observed_range(pair)));
+    }
+    capture.observed = std::move(kept);
+    simplify(capture.observed, capture.time_axis.num_bins);
 }
 
 }  // namespace core

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "renderer/core/observed_bins.h"
 #include "renderer/core/pinhole_camera.h"
 #include "renderer/core/settings.h"
 #include "renderer/core/time_axis.h"
@@ -10,6 +11,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -98,6 +100,7 @@ struct Capture {
     Scan scan;
     TimeAxis time_axis;
     Transient transient;                ///< (num_pairs, num_bins)
+    ObservedBins observed;              ///< of every frame and order; all bins hold 0 elsewhere
     std::optional<Transient> variance;  ///< of each value of `transient`, when known
     TransientUnit unit = TransientUnit::Radiance;
     std::optional<double> counts_per_radiance;  ///< when counts stem from known radiance
@@ -108,11 +111,33 @@ struct Capture {
 
     Json scene_info = Json::object();  ///< free dictionary: settings echo, version, seed, ...
     std::vector<std::string> notes;    ///< what the reader assumed or changed; shown by `nlos info`
+
+    /// The bins in which the detector could record this pair.
+    BinRange observed_range(std::size_t pair) const {
+        return core::observed_range(observed, pair, time_axis.num_bins);
+    }
+    /// What a pair's histogram holds in these bins.
+    std::span<const float> observed_values(std::size_t pair) const {
+        const BinRange range = observed_range(pair);
+        return transient.histogram(pair).subspan(static_cast<std::size_t>(range.begin),
+                                                 static_cast<std::size_t>(range.size()));
+    }
 };
 
-/// Throws Error unless points, pairs, bins and normals agree and every value is finite.
+/// Throws Error unless points, pairs, bins and normals agree, every value is finite, and bins that
+/// were not observed hold 0.
 ///
 /// where   prefix of messages, usually the file's name
 void validate(const Capture& capture, const std::string& where);
+
+/// Declares that bins outside a range were not observed: sets them to 0 in all histograms and
+/// intersects the range with what is said already. Histograms of velocity alone stay as they are.
+///
+/// Images keep no ranges: their bins outside hold 0, which is taken for darkness.
+///
+/// range    of all pairs, or one per pair, within the axis
+/// throws   Error for a range that is not
+void restrict_observed(Capture& capture, const BinRange& range);
+void restrict_observed(Capture& capture, const std::vector<BinRange>& ranges);
 
 }  // namespace core

@@ -98,18 +98,18 @@ TEST(StanfordCapture, UncompressedFilesReadTheSame) {
 
 TEST(StanfordCapture, WrongShapesAndWidthsAreNamed) {
     EXPECT_ERROR_WITH(StanfordFile({kSide, 2, 2}, {0.4}).read(),
-                      "rect_data: has shape (3, 2, 2); must have shape (N, N, T)");
-    EXPECT_ERROR_WITH(StanfordFile({4, 4}, {0.4}).read(), "rect_data: has shape (4, 4)");
-    EXPECT_ERROR_WITH(StanfordFile({3, 3, 9}, {0.4, 0.5}).read(), "width: has shape (2, 1)");
-    EXPECT_ERROR_WITH(StanfordFile({3, 3, 9}, {-1.0}).read(), "must be one positive number");
-    EXPECT_ERROR_WITH(StanfordFile({3, 3, 9}, {std::nan("")}).read(), "must be one positive");
+                      "no array rect_data with axes (x, y, t) and x as long as y");
+    EXPECT_ERROR_WITH(StanfordFile({4, 4}, {0.4}).read(), "rect_data has shape (4, 4)");
+    EXPECT_ERROR_WITH(StanfordFile({3, 3, 9}, {0.4, 0.5}).read(), "width has shape (2, 1)");
+    EXPECT_ERROR_WITH(StanfordFile({3, 3, 9}, {-1.0}).read(), "must be a positive number");
+    EXPECT_ERROR_WITH(StanfordFile({3, 3, 9}, {std::nan("")}).read(), "width: found nan");
 }
 
 TEST(StanfordCapture, AFileWithoutWidthIsNamed) {
     const TemporaryFolder folder;
     const auto data = example_data();
     write_mat(folder.file("a.mat"), {mat_variable("rect_data", {kSide, kSide, kFileBins}, data)});
-    EXPECT_ERROR_WITH(read_capture(folder.file("a.mat")), "a.mat: width: is missing");
+    EXPECT_ERROR_WITH(read_capture(folder.file("a.mat")), "stanford-2018: no array width");
     write_mat(folder.file("b.mat"), {mat_variable("other", {kSide, kSide, kFileBins}, data)});
     EXPECT_ERROR_WITH(read_capture(folder.file("b.mat")), "is no capture in a known format");
 }

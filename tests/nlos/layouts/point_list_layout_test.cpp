@@ -103,7 +103,7 @@ TEST(PointListCapture, SamePointsAreAConfocalScan) {
     const core::Capture capture = PointLists({{{3, 1}, {3, 1}}, {{1, 2}, {1, 2}}}).read();
     EXPECT_EQ(capture.scan.pattern, core::ScanPattern::Confocal);
     EXPECT_FALSE(capture.scan.sensing.grid);
-    EXPECT_EQ(capture.transient.histogram(0)[1], 11.0F);
+    EXPECT_EQ(capture.transient.histogram(1)[1], 11.0F);
 }
 
 TEST(PointListCapture, TheFolderAndTheSignalFileReadTheSame) {
@@ -117,7 +117,7 @@ TEST(PointListCapture, TheFolderAndTheSignalFileReadTheSame) {
 TEST(PointListCapture, AsksForTheSettingsItNeeds) {
     const PointLists lists(one_detector());
     CaptureReadSettings settings;
-    EXPECT_TRUE(lacks_scale(lists.path()));
+    EXPECT_EQ(missing_settings(lists.path(), settings).size(), 2U);
     EXPECT_ERROR_WITH(read_capture(lists.path(), settings), "--set capture.pitch_m=");
     settings.pitch_m = 0.01;
     EXPECT_ERROR_WITH(read_capture(lists.path(), settings), "--set capture.bin_width_m=");
@@ -127,20 +127,25 @@ TEST(PointListCapture, AsksForTheSettingsItNeeds) {
 
 TEST(PointListCapture, RefusesPairsThatAreNoScan) {
     EXPECT_ERROR_WITH(PointLists({{{1, 1}, {8, 8}}, {{2, 1}, {9, 8}}}).read(),
-                      "lists 2 pairs of 2 illumination and 2 detection points");
+                      "has 2 histograms for 4 pairs of points");
     EXPECT_ERROR_WITH(
         PointLists({{{1, 1}, {8, 8}}, {{1, 1}, {8, 8}}, {{2, 1}, {9, 8}}, {{2, 1}, {8, 8}}}).read(),
-        "row 1 repeats");
-    EXPECT_ERROR_WITH(PointLists(one_detector(), 3).read(), "row 0 has depth index 3");
+        "histogram 1 repeats");
+}
+
+TEST(PointListCapture, DepthIndicesAreAlongZ) {
+    const core::Capture capture = PointLists(one_detector(), 3).read();
+    EXPECT_NEAR(capture.scan.illumination.positions[0].z(), 0.03, 1e-12);
+    EXPECT_NEAR(capture.scan.sensing.positions[0].z(), 0.0, 1e-12);
 }
 
 TEST(PointListCapture, NamesTheFileThatIsMissingOrWrong) {
     const PointLists lists(one_detector());
     std::filesystem::remove(lists.file("C_d.mat"));
-    EXPECT_ERROR_WITH(lists.read(), "C_d.mat: is no MATLAB v5 file");
+    EXPECT_ERROR_WITH(lists.read(), "no array C_d.mat:C_d");
     const std::vector<std::uint8_t> few(6, 1);
     write_mat(lists.file("C_d.mat"), {mat_variable("C_d", {2, 3}, few)});
-    EXPECT_ERROR_WITH(lists.read(), "C_d: has shape (2, 3); must have shape (6, 3)");
+    EXPECT_ERROR_WITH(lists.read(), "C_d: has shape (2, 3); must hold three coordinates for each of 6 points");
 }
 
 }  // namespace

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/core/settings.h"
+
+#include <string>
+#include <vector>
+
+namespace nlos {
+
+/// What a file of named arrays holds, and what a layout for it could be.
+struct LayoutGuess {
+    std::vector<std::string> arrays;    ///< a line each: name, type, shape, range
+    std::vector<std::string> findings;  ///< what could be what, and what is still open
+    std::vector<std::string> nearest;   ///< layouts that come closest, and what the file lacks
+    core::Json layout;                  ///< a layout to be completed; null without histograms
+};
+
+/// Looks at every array of a file. The array with most values along axes that fit is taken for the
+/// histograms, and the axis along which its energy varies most for time.
+///
+/// throws   core::Error when the file is none of named arrays, or damaged
+LayoutGuess guess_layout(const std::string& path);
+
+/// The shipped layouts that come closest to a file of named arrays and what it lacks of each, a
+/// line each.
+std::vector<std::string> nearest_layouts(const std::string& path);
+
+}  // namespace nlos
