@@ -89,9 +89,11 @@ def write_nlos_dirac(capture: Capture, folder: Path) -> Written:
 
 
 def write_bonn_ti(capture: Capture, folder: Path, version: int) -> Written:
-    """Little endian; pixel u + uRes v, bins fastest. tMin is the centre of the first bin of TI04;
-    older versions state the ends of the axis and nothing of the wall, whose corner pixels the
-    user's wall size gives. The laser lights the middle of the wall there."""
+    """Little endian; pixel u + uRes v, bins fastest. A bin is known by the time of its centre, so
+    tMin is that of the first one. Older versions state tMax instead of the width, tMin + bins *
+    width, and nothing of the wall: the user's wall size gives its pixels, and the laser lights its
+    middle, as in the authors' scenes. The authors' conversion of TI00 takes its second number for
+    the bins."""
     require(capture.pattern == "single" and capture.sensing.ndim == 3, "bonn-ti",
             "a single-laser scan of a grid")
     values = np.moveaxis(capture.H, 0, 2)[:, ::-1].swapaxes(0, 1)  # (v down, u right, t)
@@ -100,18 +102,20 @@ def write_bonn_ti(capture: Capture, folder: Path, version: int) -> Written:
     corners = [capture.sensing[i, j] for i, j in ((0, -1), (-1, -1), (0, 0), (-1, 0))]
     block = struct.pack("<II", u_res, v_res) + np.array(
         [*corners, capture.illumination.reshape(3)], "<f4").tobytes()
+    first_m, last_m = np.float32(start_m + 0.5 * width_m), np.float32(start_m + bins * width_m)
     headers = {
-        4: b"TI04" + struct.pack("<IIIffI", 10, u_res * v_res, bins, start_m + 0.5 * width_m,
-                                 width_m, len(block)),
-        1: b"TI01" + struct.pack("<IIIff", bins, u_res, v_res, start_m, start_m + bins * width_m),
-        0: b"TI00" + struct.pack("<IIIff", v_res, bins, u_res, start_m, start_m + bins * width_m)}
+        4: b"TI04" + struct.pack("<IIIffI", 10, u_res * v_res, bins, first_m, width_m, len(block)),
+        1: b"TI01" + struct.pack("<IIIff", bins, u_res, v_res, first_m, last_m),
+        0: b"TI00" + struct.pack("<IIIff", v_res, bins, u_res, first_m, last_m)}
+    width_m = float(np.float32(width_m)) if version == 4 else (float(last_m) - float(first_m)) / bins
+    expected = replace(capture, bin_width_m=width_m, start_m=float(first_m) - 0.5 * width_m)
     path = folder / f"letter_{version:02}.ti"
     path.write_bytes(headers[version] + values.astype("<f4").tobytes() +
                      (block if version == 4 else b"") +
                      json.dumps({"Image": {"Source": "Simulation"}}).encode())
     x_m, y_m = extents_m(capture.sensing)
     settings = () if version == 4 else (f"capture.wall_size_m=[{x_m!r},{y_m!r}]",)
-    return Written(path, capture, settings)
+    return Written(path, expected, settings)
 
 
 def write_ytal_file(capture: Capture, folder: Path) -> Written:

@@ -56,7 +56,7 @@ def write_phasor_field_2019(capture: Capture, folder: Path) -> Written:
     move the laser, so a single-laser scan is written with lasers and cameras exchanged, which by
     reciprocity is the same measurement."""
     require(capture.opl_origin == "device", "phasor-field-2019", "lengths that include the legs")
-    listed = capture.as_list()
+    listed = capture.as_counts().as_list()
     single = capture.pattern == "single"
     data = np.moveaxis(listed.H, 0, -1)
     data = data[:, np.newaxis] if single else data
@@ -101,9 +101,10 @@ def write_conv_nlos(capture: Capture, folder: Path) -> Written:
     at z = target_dist and the object around the origin, so that depth runs against z. The authors
     interpolate between bins at lengths times(i), which are the bins' centres, and count the points
     of a confocal grid x slowest."""
-    listed = capture.as_list()
+    counted = capture.as_counts()
+    listed = counted.as_list()
     confocal = capture.pattern == "confocal"
-    transient = np.moveaxis(capture.H if confocal else listed.H, 0, -1)
+    transient = np.moveaxis(counted.H if confocal else listed.H, 0, -1)
     centres = capture.start_m + capture.bin_width_m * (np.arange(capture.num_bins) + 0.5)
     turned = np.array([1.0, 1.0, -1.0])
     wall = np.array([0.0, 0.0, CONV_WALL_M])
@@ -113,7 +114,7 @@ def write_conv_nlos(capture: Capture, folder: Path) -> Written:
         "l": listed.illumination * turned + wall, "s": listed.sensing * turned + wall,
         "times": centres, "delta": capture.bin_width_m, "is_confocal": confocal,
         "target_dist": CONV_WALL_M, "target_size": 0.6}})
-    return Written(path, capture if confocal else listed)
+    return Written(path, counted if confocal else listed)
 
 
 _PITCH_M = 0.05

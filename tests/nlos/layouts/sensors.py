@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +17,7 @@ KEYHOLE_BIN_PS = 16
 KEYHOLE_PEAK = 635
 ST_BIN_PS = 250
 TMF882X_BIN_PS = 88
+TMF882X_PEAK = 13
 TMF8829_BINS = 64
 
 
@@ -25,9 +27,10 @@ def _frames(capture: Capture, count: int = 3) -> np.ndarray:
 
 
 def write_keyhole_2020(capture: Capture, folder: Path) -> Written:
-    """data (bins, positions) seen from one wall point, its direct return in bin 635; beside it long
-    exposures without the object, to be subtracted. Every object position is a frame."""
-    counted = capture.as_counts()
+    """data (bins, positions) seen from one wall point, its direct return, of length 0, centred in
+    bin 635; beside it long exposures without the object, to be subtracted, which leaves no counts.
+    Every object position is a frame."""
+    counted = replace(capture.as_counts(), unit="radiance")
     histograms = counted.H.reshape(counted.num_bins, -1)
     background = np.zeros((KEYHOLE_PEAK + counted.num_bins, 1))
     background[KEYHOLE_PEAK] = 5000.0
@@ -40,10 +43,9 @@ def write_keyhole_2020(capture: Capture, folder: Path) -> Written:
     path = folder / "scan_10-15-19_21-12.mat"
     write_v73(path, {"data": data, "xpos": positions[:, 0], "zpos": positions[:, 2]})
     frames = np.moveaxis(data - background, 1, 0)[..., np.newaxis].astype(np.float32)
-    origin = np.zeros((1, 3))
-    expected = replace(counted.with_points(origin), H=frames[-1], frames=frames,
+    expected = replace(counted.with_points(np.zeros((1, 3))), H=frames[-1], frames=frames,
                        bin_width_m=picoseconds_m(KEYHOLE_BIN_PS),
-                       start_m=-KEYHOLE_PEAK * picoseconds_m(KEYHOLE_BIN_PS))
+                       start_m=-(KEYHOLE_PEAK + 0.5) * picoseconds_m(KEYHOLE_BIN_PS))
     return Written(path, expected)
 
 
@@ -91,17 +93,26 @@ def write_ams_tmf8829(capture: Capture, folder: Path) -> Written:
                    (_wall(capture), f"capture.bin_width_m={capture.bin_width_m!r}"))
 
 
-def write_ams_tmf882x(capture: Capture, folder: Path) -> Written:
-    """A list of frames with hists (zones, 128) of 3 by 3 zones, and the reference histogram."""
+def write_ams_tmf882x(capture: Capture, folder: Path, suffix: str) -> Written:
+    """A file per frame: histogram (x, y, bins) of 3 by 3 zones, and where their rays meet the wall,
+    point_cloud (zones, 3) [m], as the device sees it, which stands at the origin. Lengths start and
+    end at the device; the reflection inside it, of length 0, is centred in bin 13."""
     require_confocal_grid(capture, "ams-tmf882x")
-    expected = replace(capture.as_counts(), start_m=0.0, bin_width_m=picoseconds_m(TMF882X_BIN_PS))
+    width_m = picoseconds_m(TMF882X_BIN_PS)
+    expected = replace(capture.with_points(capture.sensing + [0.0, 0.0, 0.4]).as_counts(),
+                       start_m=-(TMF882X_PEAK + 0.5) * width_m, bin_width_m=width_m,
+                       opl_origin="device", laser_m=np.zeros(3), detector_m=np.zeros(3))
     frames = _frames(expected)
-    log = [{"hists": _rows_down(frame).reshape(-1, expected.num_bins).astype(int).tolist(),
-            "reference_hist": [0] * expected.num_bins, "depths_1": [500] * 9, "tick": number}
-           for number, frame in enumerate(frames)]
-    path = folder / "tmf882x.json"
-    path.write_text(json.dumps(log))
-    return Written(path, replace(expected, frames=frames), (_wall(capture),))
+    points = expected.sensing.reshape(-1, 3)
+    for number, frame in enumerate(frames):
+        arrays = {"histogram": np.moveaxis(frame, 0, -1).astype(np.float64), "point_cloud": points,
+                  "distance": np.full((3, 3), 400.0)}
+        path = folder / f"iter_{number}.{suffix}"
+        if suffix == "npz":
+            np.savez(path, **arrays)
+        else:
+            path.write_text(json.dumps({name: array.tolist() for name, array in arrays.items()}))
+    return Written(folder, replace(expected, frames=frames))
 
 
 CASES = [
@@ -111,6 +122,7 @@ CASES = [
          write_st_vl53l8),
     Case("ams-tmf8829", Source(points=(16, 16), num_bins=TMF8829_BINS, bin_width_m=0.04),
          write_ams_tmf8829),
-    Case("ams-tmf882x", Source(points=(3, 3), num_bins=128,
-                               bin_width_m=picoseconds_m(TMF882X_BIN_PS)), write_ams_tmf882x),
+    *(Case(f"ams-tmf882x as {suffix}",
+           Source(points=(3, 3), num_bins=128, bin_width_m=picoseconds_m(TMF882X_BIN_PS)),
+           partial(write_ams_tmf882x, suffix=suffix)) for suffix in ("npz", "json")),
 ]
