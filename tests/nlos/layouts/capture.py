@@ -59,8 +59,8 @@ class Capture:
         def flat(points: np.ndarray) -> np.ndarray:
             return points.reshape(-1, 3)
         num_lit = flat(self.illumination).shape[0]
-        shape = (self.num_bins, -1) if self.pattern != "exhaustive" else (self.num_bins, num_lit, -1)
-        return replace(self, H=self.H.reshape(shape),
+        lit = (num_lit,) if self.pattern == "exhaustive" else ()
+        return replace(self, H=self.H.reshape(self.num_bins, *lit, -1),
                        sensing=flat(self.sensing), sensing_normals=flat(self.sensing_normals),
                        illumination=flat(self.illumination),
                        illumination_normals=flat(self.illumination_normals))

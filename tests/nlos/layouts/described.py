@@ -30,6 +30,14 @@ def _in_parts(H: np.ndarray) -> np.ndarray:
     return parts
 
 
+def _in_zaragoza_order(parts: np.ndarray, pattern: str) -> np.ndarray:
+    """(y, x, bounce, t, colour) or (ly, lx, sy, sx, bounce, t, colour)."""
+    grids = parts[:, :, :, np.newaxis, np.newaxis] if pattern == "single" else parts
+    data = np.moveaxis(grids, (0, 1, 2), (-3, -1, -2))
+    x_before_y = range(data.ndim - 3)
+    return np.moveaxis(data, x_before_y, [axis ^ 1 for axis in x_before_y])
+
+
 def write_zaragoza(capture: Capture, folder: Path, reverse: bool, matlab: bool = False) -> Written:
     """data (y, x, bounce, t, colour), or with (y, x) of the laser and of the camera in front, or
     all of that in reverse; grids (y, x, 3) accordingly. The axis starts at t0 with bins of deltaT,
@@ -37,11 +45,7 @@ def write_zaragoza(capture: Capture, folder: Path, reverse: bool, matlab: bool =
     require(capture.opl_origin == "device" and capture.sensing.ndim == 3, "zaragoza",
             "grids, and lengths that include the legs")
     parts = _in_parts(capture.H)
-    confocal = capture.pattern == "confocal"
-    H = parts if confocal or capture.pattern == "exhaustive" else parts[:, :, :, None, None]
-    data = np.moveaxis(H, (0, 1, 2), (-3, -1, -2))
-    grid_axes = tuple(range(data.ndim - 3))
-    data = np.moveaxis(data, grid_axes, tuple(axis ^ 1 for axis in grid_axes))
+    data = _in_zaragoza_order(parts, capture.pattern)
 
     def stored(array: np.ndarray) -> np.ndarray:
         return array.T if reverse else array
@@ -59,7 +63,8 @@ def write_zaragoza(capture: Capture, folder: Path, reverse: bool, matlab: bool =
         fields[f"{device}GridPoints"] = np.array(turned[points].shape[:2], np.float64)
         fields[f"{device}GridSize"] = np.array(extents_m(getattr(capture, points)))
     scalars = {"deltaT": capture.bin_width_m, "t0": capture.start_m, "t": capture.num_bins,
-               "isConfocal": int(confocal), "hiddenVolumePosition": np.array([0.0, -0.7, 0.0]),
+               "isConfocal": int(capture.pattern == "confocal"),
+               "hiddenVolumePosition": np.array([0.0, -0.7, 0.0]),
                "hiddenVolumeRotation": np.zeros(3), "hiddenVolumeSize": np.full(3, 0.6)}
     path = folder / ("letter_conf.mat" if matlab else "letter_conf.hdf5")
     if matlab:
@@ -107,8 +112,10 @@ def write_bonn_ti(capture: Capture, folder: Path, version: int) -> Written:
         4: b"TI04" + struct.pack("<IIIffI", 10, u_res * v_res, bins, first_m, width_m, len(block)),
         1: b"TI01" + struct.pack("<IIIff", bins, u_res, v_res, first_m, last_m),
         0: b"TI00" + struct.pack("<IIIff", v_res, bins, u_res, first_m, last_m)}
-    width_m = float(np.float32(width_m)) if version == 4 else (float(last_m) - float(first_m)) / bins
-    expected = replace(capture, bin_width_m=width_m, start_m=float(first_m) - 0.5 * width_m)
+    stored_m = (float(last_m) - float(first_m)) / bins
+    if version == 4:
+        stored_m = float(np.float32(width_m))
+    expected = replace(capture, bin_width_m=stored_m, start_m=float(first_m) - 0.5 * stored_m)
     path = folder / f"letter_{version:02}.ti"
     path.write_bytes(headers[version] + values.astype("<f4").tobytes() +
                      (block if version == 4 else b"") +
@@ -137,15 +144,16 @@ def write_npz(capture: Capture, folder: Path) -> Written:
 
 
 _SINGLE = Source(pattern="single")
+_AWAY = {"legs": True, "num_bins": 384, "start_m": 0.5}
 _EXHAUSTIVE = Source(pattern="exhaustive", points=(5, 4), size_m=(0.6, 0.45))
 _LIST = Source(points=(40,))
-_WITH_LEGS = Source(legs=True, num_bins=384, start_m=0.5)
+_WITH_LEGS = Source(**_AWAY)
 
 CASES = [
     *(Case(f"zaragoza, {source.pattern}, {'reversed' if reverse else 'as written'}", source,
            partial(write_zaragoza, reverse=reverse))
       for source in (_WITH_LEGS, replace(_WITH_LEGS, pattern="single"),
-                     replace(_EXHAUSTIVE, legs=True, num_bins=384, start_m=0.5))
+                     replace(_EXHAUSTIVE, **_AWAY))
       for reverse in (False, True)),
     Case("zaragoza in v5", _WITH_LEGS, partial(write_zaragoza, reverse=False, matlab=True)),
     Case("nlos-dirac", Source(), write_nlos_dirac),
@@ -153,6 +161,6 @@ CASES = [
            partial(write_bonn_ti, version=version)) for version in (4, 1, 0)),
     *(Case(f"{name}, {kind}", source, write)
       for name, write in (("y-tal", write_ytal_file), ("npz", write_npz))
-      for kind, source in (("confocal", Source()), ("single", replace(_SINGLE, legs=True, num_bins=384, start_m=0.5)),
+      for kind, source in (("confocal", Source()), ("single", replace(_SINGLE, **_AWAY)),
                            ("exhaustive", _EXHAUSTIVE), ("list", _LIST))),
 ]

@@ -120,7 +120,7 @@ def write_conv_nlos(capture: Capture, folder: Path) -> Written:
 _PITCH_M = 0.05
 _ON_PITCH = Source(points=(12, 9), size_m=(11 * _PITCH_M, 8 * _PITCH_M))
 _EXHAUSTIVE = Source(pattern="exhaustive", points=(5, 4), size_m=(0.6, 0.45))
-_SINGLE_WITH_LEGS = Source(pattern="single", legs=True, num_bins=384, start_m=0.5)
+_AWAY = {"legs": True, "num_bins": 384, "start_m": 0.5}
 
 CASES = [
     *(Case(f"general-nlos, {pattern}", replace(_ON_PITCH, pattern=pattern, points=points),
@@ -132,8 +132,8 @@ CASES = [
          partial(write_general_nlos, pitch_m=_PITCH_M)),
     Case("surface-optimisation", Source(bin_width_m=SURFACE_BIN_M, num_bins=2048),
          write_surface_optimisation),
-    Case("phasor-field-2019, single", _SINGLE_WITH_LEGS, write_phasor_field_2019),
-    Case("phasor-field-2019, exhaustive", replace(_EXHAUSTIVE, legs=True, num_bins=384, start_m=0.5),
+    Case("phasor-field-2019, single", Source(pattern="single", **_AWAY), write_phasor_field_2019),
+    Case("phasor-field-2019, exhaustive", replace(_EXHAUSTIVE, **_AWAY),
          write_phasor_field_2019),
     Case("phasor-field-2020 in v5", Source(pattern="single", size_m=(0.77, 0.63)),
          partial(write_phasor_field_2020, v73=False)),
