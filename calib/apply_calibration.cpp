@@ -33,6 +33,22 @@ void drop_other_histograms(core::Capture& capture) {
     capture.sequence.reset();
 }
 
+// Bins of which both that light was split from were observed.
+void delay_observed(const std::vector<double>& delays_m, core::Capture& capture) {
+    if (!capture.observed) return;
+    const core::BinRange axis{0, capture.time_axis.num_bins};
+    std::vector<core::BinRange> ranges;
+    for (std::size_t pair = 0; pair < delays_m.size(); ++pair) {
+        const core::BinRange& range = (*capture.observed)[pair];
+        const double delay = delays_m[pair] / capture.time_axis.bin_width_m;
+        ranges.push_back(core::intersection({static_cast<int>(std::ceil(range.begin + delay)),
+                                             static_cast<int>(std::floor(range.end + delay))},
+                                            axis));
+    }
+    capture.observed.reset();
+    core::restrict_observed(capture, ranges);
+}
+
 }  // namespace
 
 std::vector<double> pair_offsets(const AppliedCalibration& calibration, const core::Scan& scan) {
@@ -75,6 +91,7 @@ core::Capture apply_calibration(const AppliedCalibration& calibration,
     for (double& delay : delays) delay = first - delay;
     result.time_axis.opl_start_m -= first;
     result.transient = delayed(capture.transient, capture.time_axis, delays);
+    delay_observed(delays, result);
     result.notes.push_back("points and path lengths are those of a calibration");
     return result;
 }

@@ -45,13 +45,20 @@ FitAgreement compare_with_data(const FitDriver& driver,
     FitAgreement result;
     result.axis = stage.data->axis;
     result.data = stage.data->values;
+    result.observed = stage.data->observed;
     result.residual = driver.is_poisson ? "poisson" : "least_squares";
     stage.model->update(state, renderer::Gradients::Without);
     double variance = 0.0;
     PairModel expected;
     for (std::size_t pair = 0; pair < stage.objective->num_pairs(); ++pair) {
         stage.model->evaluate(pair, expected);
-        for (double& value : expected.mean) {
+        const core::BinRange seen = stage.data->observed_range(pair);
+        for (int bin = 0; bin < result.axis.num_bins; ++bin) {
+            double& value = expected.mean[static_cast<std::size_t>(bin)];
+            if (!seen.holds(bin)) {
+                result.model.push_back(0.0);
+                continue;
+            }
             if (!driver.is_poisson) {
                 value = stage.objective->scale() * value + stage.objective->ambient();
             }
@@ -237,8 +244,8 @@ struct LeastSquaresNoise {
 // residual r that points along a parameter as a whole moves it by |r| sqrt((J^T J)^-1), n times the
 // variance of independent errors, and by no more; the correlation says how much of it is like that.
 LeastSquaresNoise noise_of(const FitAgreement& fit, Eigen::Index num_parameters) {
-    const double freedom =
-        std::max(1.0, static_cast<double>(fit.data.size()) - static_cast<double>(num_parameters));
+    const double freedom = std::max(
+        1.0, static_cast<double>(fit.num_observed()) - static_cast<double>(num_parameters));
     const double correlation = residual_correlation(fit);
     const double inflation = 1.0 - correlation + correlation * freedom;
     return {fit.deviance / freedom * inflation, inflation};
@@ -327,7 +334,8 @@ void widen_sigma(const FitDriver& driver,
     uncertainty.sigma = grown;
     double photons = 0.0;
     const double ambient = ambient_of(last, state);
-    for (const double value : result.model) photons += value - ambient;
+    for (const double value : result.model) photons += value;
+    photons -= ambient * static_cast<double>(result.num_observed());
     result.warnings.push_back(
         fmt::format("only {:.0f} photons: the stated errors are those of refits to simulated data, "
                     "and not normally distributed",

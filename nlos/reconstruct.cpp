@@ -32,12 +32,19 @@ constexpr std::size_t kMaxSlabs = 64;  // each repeats a part of the work
 
 /// As many bins as keep the range they cover within a quarter of the wall points' distance: finer
 /// depth than that no aperture of this sampling resolves, and noise and work shrink with the bins.
-int default_merge_bins(const core::TimeAxis& axis, const WallFrame& wall) {
-    if (!wall.grid) return 1;
-    const double limit_m = 0.25 * std::min(wall.grid->pitch_m[0], wall.grid->pitch_m[1]);
+/// A gate keeps some bins too.
+int default_merge_bins(const PreparedCapture& prepared) {
+    const core::TimeAxis& axis = prepared.time_axis;
+    if (!prepared.wall.grid) return 1;
+    const double limit_m =
+        0.25 * std::min(prepared.wall.grid->pitch_m[0], prepared.wall.grid->pitch_m[1]);
+    int num_bins = axis.num_bins;
+    for (std::size_t pair = 0; pair < prepared.scan.num_pairs(); ++pair) {
+        const int seen = core::observed_range(prepared.observed, pair, axis.num_bins).size();
+        if (seen > 0) num_bins = std::min(num_bins, seen);
+    }
     int merge = 1;
-    while (axis.num_bins / (2 * merge) >= kMinBins && merge * axis.bin_width_m <= limit_m)
-        merge *= 2;
+    while (num_bins / (2 * merge) >= kMinBins && merge * axis.bin_width_m <= limit_m) merge *= 2;
     return merge;
 }
 
@@ -59,8 +66,9 @@ PreparationPlan choose_preparation(const PreparedCapture& prepared, ReconstructS
     if (settings.ambient == Ambient::Auto) {
         settings.ambient = is_counts || settings.noise_floor ? Ambient::Subtract : Ambient::Keep;
     }
-    if (!settings.merge_bins) settings.merge_bins = default_merge_bins(axis, prepared.wall);
+    if (!settings.merge_bins) settings.merge_bins = default_merge_bins(prepared);
     PreparationPlan plan;
+    plan.observed = prepared.observed;
     plan.merge_bins = *settings.merge_bins;
     if (plan.merge_bins > axis.num_bins) {
         throw core::Error("merge_bins",
@@ -69,7 +77,7 @@ PreparationPlan choose_preparation(const PreparedCapture& prepared, ReconstructS
     }
     plan.num_bins = axis.num_bins / plan.merge_bins;
     if (settings.ambient == Ambient::Subtract) {
-        if (auto signal = find_signal(prepared.transient())) {
+        if (auto signal = find_signal(prepared.transient(), prepared.observed)) {
             plan.ambient_per_bin = std::move(signal->ambient_per_bin);
             const int end = (signal->end_bin + plan.merge_bins - 1) / plan.merge_bins;
             if (!settings.volume.z_range_m) {
@@ -216,6 +224,27 @@ std::size_t choose_slabs(const MethodInput& input,
     return 1;
 }
 
+/// What a method that works by transforms makes of bins that were not observed, for people.
+std::string transform_warning(const std::vector<core::BinRange>& observed,
+                              const ReconstructSettings& settings,
+                              int num_bins) {
+    const auto partial = std::ranges::count_if(
+        observed, [&](const core::BinRange& range) { return range.size() < num_bins; });
+    return fmt::format(
+        "{} of {} histograms have bins that were not observed, which {} takes for dark; bp, fbp "
+        "and "
+        "lct with prior=tv leave them out",
+        partial,
+        observed.size(),
+        core::enum_name(settings.method));
+}
+
+bool works_by_transforms(const ReconstructSettings& settings) {
+    return settings.method == Method::Dlct || settings.method == Method::Fk ||
+           settings.method == Method::Phasor ||
+           (settings.method == Method::Lct && settings.prior == Prior::None);
+}
+
 /// Says what will run and what it needs.
 void announce(const Reconstruction& result, std::size_t num_slabs, const core::Progress& progress) {
     if (!progress.announce) return;
@@ -266,6 +295,11 @@ Reconstruction reconstruct(const core::Capture& capture,
     const bool is_ready = plan.num_bins == prepared.time_axis.num_bins &&
                           plan.ambient_per_bin.empty() && !plan.deconvolution &&
                           !makes_up_for_falloff(prepared.scan, result.settings);
+    core::ObservedBins observed = prepared_observed(plan);
+    core::simplify(observed, axis.num_bins);
+    if (observed && works_by_transforms(result.settings)) {
+        result.warnings.push_back(transform_warning(*observed, result.settings, axis.num_bins));
+    }
     const auto input_with = [&](const core::Transient& transient) {
         return MethodInput{prepared.scan,
                            axis,
@@ -273,7 +307,8 @@ Reconstruction reconstruct(const core::Capture& capture,
                            prepared.wall,
                            axes,
                            *result.settings.volume.z_range_m,
-                           progress};
+                           progress,
+                           observed ? &*observed : nullptr};
     };
     const double prepared_bytes =
         is_ready ? 0.0 : 4.0 * static_cast<double>(prepared.scan.num_pairs()) * axis.num_bins;

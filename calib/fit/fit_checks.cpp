@@ -52,6 +52,10 @@ std::vector<Excess> pair_excesses(const FitResult& result, double min_mean) {
     const auto bins = static_cast<std::size_t>(result.axis.num_bins);
     std::vector<Excess> excesses(result.model.size() / bins);
     for (std::size_t i = 0; i < result.model.size(); ++i) {
+        const auto bin = static_cast<int>(i % bins);
+        if (!core::observed_range(result.observed, i / bins, result.axis.num_bins).holds(bin)) {
+            continue;
+        }
         const double mean = std::max(result.model[i], min_mean);
         const DevianceMoments moments = deviance_moments(mean);
         Excess& pair = excesses[i / bins];
@@ -114,9 +118,12 @@ void warn_of_deviance(const FitDriver& driver, double min_mean, FitResult& resul
 void check_for_light(double min_mean, FitResult& result) {
     double total = 0.0;
     for (const double value : result.data) total += value;
-    const double mean = std::max(total / static_cast<double>(result.data.size()), min_mean);
+    const double mean = std::max(total / static_cast<double>(result.num_observed()), min_mean);
     double dark = 0.0;
     for (const double value : result.data) dark += std::pow(signed_deviance(mean, value).value, 2);
+    // Bins that were not observed hold 0 and do not count.
+    const std::size_t unseen = result.data.size() - result.num_observed();
+    dark -= static_cast<double>(unseen) * std::pow(signed_deviance(mean, 0.0).value, 2);
     const double gain = dark - result.deviance;
     const double by_chance = 25.0 + 2.0 * static_cast<double>(result.parameters.size());
     if (gain > by_chance) return;
@@ -225,7 +232,7 @@ double residual_correlation(const FitAgreement& fit) {
     }
     if (!(squares > 0.0)) return 0.0;
     const double correlation = std::max(std::abs(along_bins), std::abs(along_pairs)) / squares;
-    const double chance = kSignificance / std::sqrt(static_cast<double>(fit.data.size()));
+    const double chance = kSignificance / std::sqrt(static_cast<double>(fit.num_observed()));
     return correlation > chance ? std::min(1.0, correlation) : 0.0;
 }
 

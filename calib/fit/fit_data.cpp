@@ -30,6 +30,23 @@ FitData bins_of(std::span<const Value> values, const core::TimeAxis& axis, int f
     return part;
 }
 
+// Observed bins on an axis that begins at `first` and has `count` bins.
+core::ObservedBins observed_part(const core::ObservedBins& observed, int first, int count) {
+    if (!observed) return std::nullopt;
+    std::vector<core::BinRange> part;
+    for (const core::BinRange& range : *observed) {
+        part.push_back(core::intersection({range.begin - first, range.end - first}, {0, count}));
+    }
+    return part;
+}
+
+// What blurring leaves of an observed range: less at ends beyond which the axis goes on.
+core::BinRange unspoilt(const core::BinRange& range, int num_bins, int reach) {
+    const core::BinRange left{range.begin > 0 ? range.begin + reach : 0,
+                              range.end < num_bins ? range.end - reach : num_bins};
+    return range.size() > 0 ? core::intersection(left, {0, num_bins}) : range;
+}
+
 }  // namespace
 
 FitData crop(const core::Capture& capture, const std::optional<std::array<double, 2>>& window_m) {
@@ -43,13 +60,23 @@ FitData crop(const core::Capture& capture, const std::optional<std::array<double
         first = static_cast<int>(std::ceil(bin_at((*window_m)[0])));
         last = static_cast<int>(std::floor(bin_at((*window_m)[1])));
     }
-    if (first >= last) {
-        throw core::Error(
-            "window_m",
-            fmt::format("found no bin in [{}, {}]", (*window_m)[0], (*window_m)[1]),
-            fmt::format("the data cover {} to {} m", axis.opl_start_m, axis.opl_end_m()));
+    const core::BinRange seen = core::observed_hull(capture.observed, axis.num_bins);
+    if (seen.size() == 0) {
+        throw core::Error("capture", "found no observed bin", "must have been observed somewhere");
     }
-    return bins_of<float>(capture.transient.values(), axis, first, last - first);
+    first = std::max(first, seen.begin);
+    last = std::min(last, seen.end);
+    if (first >= last) {
+        throw core::Error("window_m",
+                          fmt::format("found no bin in [{}, {}]", (*window_m)[0], (*window_m)[1]),
+                          fmt::format("the data cover {} to {} m",
+                                      axis.bin_begin_m(seen.begin),
+                                      axis.bin_begin_m(seen.end)));
+    }
+    FitData data = bins_of<float>(capture.transient.values(), axis, first, last - first);
+    data.observed = observed_part(capture.observed, first, last - first);
+    core::simplify(data.observed, data.axis.num_bins);
+    return data;
 }
 
 FitData coarsen(const FitData& data, double blur_m, int merged) {
@@ -60,6 +87,15 @@ FitData coarsen(const FitData& data, double blur_m, int merged) {
     const auto bins = static_cast<std::size_t>(data.axis.num_bins);
     const auto target_bins = static_cast<std::size_t>(result.axis.num_bins);
     const std::size_t pairs = data.values.size() / bins;
+    if (data.observed) {
+        const int reach = static_cast<int>(std::ceil(kBlurReach * blur_m / data.axis.bin_width_m));
+        std::vector<core::BinRange>& observed = result.observed.emplace();
+        for (const core::BinRange& range : *data.observed) {
+            observed.push_back(
+                core::intersection(core::merged(unspoilt(range, data.axis.num_bins, reach), merged),
+                                   {0, result.axis.num_bins}));
+        }
+    }
     result.values.assign(pairs * target_bins, 0.0);
     core::ResponseFilter filter{0, {1.0}};
     if (blur_m > 0.0) {
@@ -70,7 +106,9 @@ FitData coarsen(const FitData& data, double blur_m, int merged) {
         core::apply_filter<double, double>(
             filter, std::span(data.values).subspan(pair * bins, bins), smooth);
         for (std::size_t b = 0; b < target_bins * static_cast<std::size_t>(merged); ++b) {
-            result.values[pair * target_bins + b / static_cast<std::size_t>(merged)] += smooth[b];
+            const std::size_t target = b / static_cast<std::size_t>(merged);
+            if (!result.observed_range(pair).holds(static_cast<int>(target))) continue;
+            result.values[pair * target_bins + target] += smooth[b];
         }
     });
     return result;
@@ -82,6 +120,7 @@ FitData trim(const FitData& data, int front, int back) {
         bins_of<double>(data.values, data.axis, left > 0 ? front : 0, std::max(0, left));
     result.axis.opl_start_m = data.axis.bin_begin_m(front);
     result.min_mean = data.min_mean;
+    result.observed = observed_part(data.observed, front, result.axis.num_bins);
     return result;
 }
 
@@ -91,15 +130,24 @@ std::array<bool, 2> light_is_cut(const FitData& data, double ambient) {
     constexpr double kSignificance = 5.0;
     const auto bins = static_cast<std::size_t>(data.axis.num_bins);
     std::vector<double> sums(bins, 0.0);
-    for (std::size_t i = 0; i < data.values.size(); ++i) sums[i % bins] += data.values[i];
-    const double dark = ambient * static_cast<double>(data.values.size() / bins);
-    const double brightest = *std::max_element(sums.begin(), sums.end()) - dark;
+    std::vector<double> pairs(bins, 0.0);  // that observed a bin
+    for (std::size_t pair = 0; pair < data.num_pairs(); ++pair) {
+        const core::BinRange seen = data.observed_range(pair);
+        for (auto b = static_cast<std::size_t>(seen.begin); b < static_cast<std::size_t>(seen.end);
+             ++b) {
+            sums[b] += data.values[pair * bins + b];
+            pairs[b] += 1.0;
+        }
+    }
+    const auto light_in = [&](std::size_t b) { return sums[b] - ambient * pairs[b]; };
+    double brightest = light_in(0);
+    for (std::size_t b = 1; b < bins; ++b) brightest = std::max(brightest, light_in(b));
     const std::size_t width = std::min(kEdgeBins, bins);
     const auto stands_out = [&](std::size_t first) {
         double light = 0.0;
         double counted = 0.0;
         for (std::size_t b = first; b < first + width; ++b) {
-            light += sums[b] - dark;
+            light += light_in(b);
             counted += sums[b];
         }
         return light > kShareOfBrightest * static_cast<double>(width) * brightest &&
@@ -165,6 +213,9 @@ FitData select(const FitData& data, const std::vector<std::size_t>& pairs) {
         const auto begin = data.values.begin() + static_cast<std::ptrdiff_t>(pair) * bins;
         result.values.insert(result.values.end(), begin, begin + bins);
     }
+    if (!data.observed) return result;
+    result.observed.emplace();
+    for (const std::size_t pair : pairs) result.observed->push_back((*data.observed)[pair]);
     return result;
 }
 
@@ -181,13 +232,19 @@ double quietest_level(const FitData& data) {
     const std::size_t parts = std::min(kParts, bins);
     std::vector<double> sums(parts, 0.0);
     std::vector<double> counts(parts, 0.0);
-    for (std::size_t i = 0; i < data.values.size(); ++i) {
-        const std::size_t part = (i % bins) * parts / bins;
-        sums[part] += data.values[i];
-        counts[part] += 1.0;
+    for (std::size_t pair = 0; pair < data.num_pairs(); ++pair) {
+        const core::BinRange seen = data.observed_range(pair);
+        for (auto b = static_cast<std::size_t>(seen.begin); b < static_cast<std::size_t>(seen.end);
+             ++b) {
+            const std::size_t part = b * parts / bins;
+            sums[part] += data.values[pair * bins + b];
+            counts[part] += 1.0;
+        }
     }
     double least = std::numeric_limits<double>::infinity();
-    for (std::size_t p = 0; p < parts; ++p) least = std::min(least, sums[p] / counts[p]);
+    for (std::size_t p = 0; p < parts; ++p) {
+        if (counts[p] > 0.0) least = std::min(least, sums[p] / counts[p]);
+    }
     return std::max(0.0, least);
 }
 

@@ -9,20 +9,38 @@
 
 namespace calib {
 
+/// Standard deviations of blur within which what lies beyond an end of the data spoils them.
+inline constexpr double kBlurReach = 2.0;
+
 /// Data of a stage, as the residuals want it.
 struct FitData {
     std::vector<double> values;  ///< [pair][bin]
     core::TimeAxis axis;
-    double min_mean = 1e-12;  ///< expected counts are kept above it
+    double min_mean = 1e-12;                     ///< expected counts are kept above it
+    core::ObservedBins observed = std::nullopt;  ///< of `values`; the others are 0 and do not count
+
+    std::size_t num_pairs() const {
+        return axis.num_bins > 0 ? values.size() / static_cast<std::size_t>(axis.num_bins) : 0;
+    }
+    core::BinRange observed_range(std::size_t pair) const {
+        return core::observed_range(observed, pair, axis.num_bins);
+    }
+    std::size_t num_observed() const {
+        return core::observed_count(observed, num_pairs(), axis.num_bins);
+    }
 };
 
-/// The part of a capture's histograms whose bins lie in a window of path lengths.
+/// The part of a capture's histograms whose bins lie in a window of path lengths, without bins that
+/// no pair observed at either end.
 FitData crop(const core::Capture& capture, const std::optional<std::array<double, 2>>& window_m);
 
 /// Data blurred by a Gaussian and summed to wider bins.
 ///
 /// blur_m    standard deviation in path length; 0: none
 /// merged    bins that become one; a rest at the end is left out
+/// returns   bins count as observed where all of them were and no blur of more than a little
+/// reaches
+///           them from where nobody looked
 FitData coarsen(const FitData& data, double blur_m, int merged);
 
 /// Data without some bins at the ends of the axis.

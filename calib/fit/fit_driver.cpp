@@ -20,8 +20,7 @@ using core::Vec3;
 
 // Bins are merged while they stay this narrow against the response with its blur.
 constexpr double kBinPerSigma = 0.7;
-constexpr double kBlurReach = 2.0;  // standard deviations of blur that cut light spoils
-constexpr int kMinBins = 8;         // of a stage that is worth solving
+constexpr int kMinBins = 8;  // of a stage that is worth solving
 // Solves alternate with looking anew at what is seen until the cost, half the deviance, settles.
 constexpr int kMaxVisibilityRounds = 3;
 constexpr int kBlurredVisibilityRounds = 2;
@@ -129,7 +128,9 @@ double light_of(const FitDriver::Stage& stage, const SceneState& state) {
     core::parallel_for(sums.size(), [&](std::size_t pair) {
         PairModel model;
         stage.model->evaluate(pair, model);
-        sums[pair] = std::accumulate(model.mean.begin(), model.mean.end(), 0.0);
+        const core::BinRange seen = stage.data->observed_range(pair);
+        sums[pair] =
+            std::accumulate(model.mean.begin() + seen.begin, model.mean.begin() + seen.end, 0.0);
     });
     return std::accumulate(sums.begin(), sums.end(), 0.0);
 }
@@ -137,10 +138,11 @@ double light_of(const FitDriver::Stage& stage, const SceneState& state) {
 // The one factor that all light shares is set by the sums of data and model.
 void match_brightness(const FitDriver& driver, FitDriver::Stage& stage, SceneState& state) {
     const double light = light_of(stage, state);
-    const double total = std::accumulate(stage.data->values.begin(), stage.data->values.end(), 0.0);
+    const FitData& data = *stage.data;
+    const double total = std::accumulate(data.values.begin(), data.values.end(), 0.0);
     const double ambient =
         std::min(0.9 * total,
-                 driver.ambient_guess * static_cast<double>(stage.data->values.size()) *
+                 driver.ambient_guess * static_cast<double>(data.num_observed()) *
                      stage.model->settings().bins_per_ambient);
     if (!(light > 0.0)) return;
     const double change = std::log((total - ambient) / light);
@@ -172,7 +174,7 @@ FitDriver::FitDriver(const FitInput& fit_input, const core::Progress& progress)
     data = crop(input.capture, settings.window_m);
     const double total = std::accumulate(data.values.begin(), data.values.end(), 0.0);
     if (!(total > 0.0)) throw core::Error("capture", "found no light", "must hold some to fit");
-    data.min_mean = 1e-6 * total / static_cast<double>(data.values.size());
+    data.min_mean = 1e-6 * total / static_cast<double>(data.num_observed());
     offset_m = input.offset_m;
     for (std::size_t pair = 0; offset_m.size() < input.capture.scan.num_pairs(); ++pair) {
         offset_m.push_back(input.capture.scan.device_legs_m(pair));
@@ -256,7 +258,9 @@ FitDriver::Stage FitDriver::make_stage(const SceneModel& free_model,
 }
 
 bool FitDriver::is_usable(const Stage& stage) const {
-    return stage.data->axis.num_bins >= std::min(kMinBins, data.axis.num_bins);
+    const int num_bins =
+        core::observed_hull(stage.data->observed, stage.data->axis.num_bins).size();
+    return num_bins >= std::min(kMinBins, data.axis.num_bins);
 }
 
 void FitDriver::check_light(const Stage& stage, const SceneState& state) const {
@@ -295,7 +299,7 @@ std::vector<NamedState> FitDriver::starts() const {
 bool FitDriver::has_few_photons() const {
     constexpr double kManyPerParameter = 50.0;
     const double total = std::accumulate(data.values.begin(), data.values.end(), 0.0);
-    const double ambient = ambient_guess * static_cast<double>(data.values.size());
+    const double ambient = ambient_guess * static_cast<double>(data.num_observed());
     return is_poisson && total - ambient < kManyPerParameter * model->num_columns();
 }
 

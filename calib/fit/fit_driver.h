@@ -33,7 +33,8 @@ struct FitDriver {
     ///
     /// refinement   how many times as many elements as the tolerance asks for
     Stage make_stage(const SceneModel& free_model, double blur_m, double refinement = 1.0) const;
-    /// Whether blurred data are good for anything: light that the axis cuts off spoils its ends.
+    /// Whether blurred data are good for anything: light that the axis or a gate cuts off spoils
+    /// the ends.
     bool is_usable(const Stage& stage) const;
     /// Throws core::Error when none of a start's light falls on the axis.
     void check_light(const Stage& stage, const SceneState& state) const;

@@ -47,13 +47,13 @@ void FitObjective::evaluate(const SceneState& state, Gradients gradients) {
 
 // [J r]^T [J r] of the signed deviances.
 MatrixXd FitObjective::poisson_gram(std::size_t pair, const PairModel& expected) const {
-    const auto bins = static_cast<Eigen::Index>(expected.mean.size());
+    const core::BinRange seen = data_.observed_range(pair);
     const bool with_gradients = !expected.gradients.empty();
     const Eigen::Index columns = with_gradients ? num_columns_ : 0;
     thread_local RowMajor rows;
-    rows.resize(bins, columns + 1);
-    for (Eigen::Index b = 0; b < bins; ++b) {
-        const auto i = static_cast<std::size_t>(b);
+    rows.resize(seen.size(), columns + 1);
+    for (Eigen::Index b = 0; b < seen.size(); ++b) {
+        const auto i = static_cast<std::size_t>(seen.begin + b);
         const double mean = std::max(expected.mean[i], data_.min_mean);
         const double counted = data_.values[pair * expected.mean.size() + i];
         const Residual residual = signed_deviance(mean, counted);
@@ -68,13 +68,16 @@ MatrixXd FitObjective::poisson_gram(std::size_t pair, const PairModel& expected)
 
 // [dm m 1 y]^T [dm m 1 y]: all that elimination and projection need.
 MatrixXd FitObjective::linear_gram(std::size_t pair, const PairModel& expected) const {
-    const auto bins = static_cast<Eigen::Index>(expected.mean.size());
+    const core::BinRange seen = data_.observed_range(pair);
     const Eigen::Index columns = expected.gradients.empty() ? 0 : num_columns_;
     thread_local RowMajor rows;
-    rows.resize(bins, columns + 3);
-    if (columns > 0) rows.leftCols(columns) = Gradient(expected.gradients.data(), bins, columns);
-    for (Eigen::Index b = 0; b < bins; ++b) {
-        const auto i = static_cast<std::size_t>(b);
+    rows.resize(seen.size(), columns + 3);
+    if (columns > 0) {
+        const double* first = expected.gradients.data() + seen.begin * columns;
+        rows.leftCols(columns) = Gradient(first, seen.size(), columns);
+    }
+    for (Eigen::Index b = 0; b < seen.size(); ++b) {
+        const auto i = static_cast<std::size_t>(seen.begin + b);
         rows(b, columns) = expected.mean[i];
         rows(b, columns + 1) = 1.0;
         rows(b, columns + 2) = data_.values[pair * expected.mean.size() + i];
@@ -210,11 +213,13 @@ MatrixXd FitObjective::fisher(const SceneState& state, const std::vector<double>
     core::parallel_for(rows_.size(), [&](std::size_t pair) {
         thread_local PairModel expected;
         model_.evaluate(pair, expected);
-        const auto bins = static_cast<Eigen::Index>(expected.mean.size());
-        RowMajor rows = Gradient(expected.gradients.data(), bins, num_columns_);
-        for (Eigen::Index b = 0; b < bins; ++b) {
+        const core::BinRange seen = data_.observed_range(pair);
+        const double* first =
+            expected.gradients.data() + static_cast<std::ptrdiff_t>(seen.begin) * num_columns_;
+        RowMajor rows = Gradient(first, seen.size(), num_columns_);
+        for (Eigen::Index b = 0; b < seen.size(); ++b) {
             const double mean =
-                std::max(expected.mean[static_cast<std::size_t>(b)], data_.min_mean);
+                std::max(expected.mean[static_cast<std::size_t>(seen.begin + b)], data_.min_mean);
             rows.row(b) /= std::sqrt(mean);
         }
         parts[pair] = (weights.empty() ? 1.0 : weights[pair]) * (rows.transpose() * rows);

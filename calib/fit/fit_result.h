@@ -69,13 +69,19 @@ struct FittedValues {
 
 /// The fitted model beside the data.
 struct FitAgreement {
-    core::TimeAxis axis;       ///< of data and model
-    std::vector<double> data;  ///< [pair][bin]
-    std::vector<double> model;
-    std::string residual;  ///< poisson or least_squares
+    core::TimeAxis axis;          ///< of data and model
+    std::vector<double> data;     ///< [pair][bin]
+    std::vector<double> model;    ///< 0 where nothing was observed, as the data
+    core::ObservedBins observed;  ///< of both
+    std::string residual;         ///< poisson or least_squares
     double deviance = 0.0;
     double expected_deviance = 0.0;
     double expected_deviance_sigma = 0.0;
+
+    std::size_t num_observed() const {
+        return core::observed_count(
+            observed, data.size() / static_cast<std::size_t>(axis.num_bins), axis.num_bins);
+    }
 };
 
 /// How the solver got there.

@@ -34,7 +34,8 @@ struct MeanPath {
 MeanPath mean_path(const FitData& data, std::size_t pair, double ambient, double offset_m) {
     MeanPath mean;
     const auto values = histogram(data, pair);
-    for (int b = 0; b < data.axis.num_bins; ++b) {
+    const core::BinRange seen = data.observed_range(pair);
+    for (int b = seen.begin; b < seen.end; ++b) {
         // Excess below zero counts too: what ambient noise adds then cancels in the mean.
         const double excess = values[static_cast<std::size_t>(b)] - ambient;
         mean.weight += excess;

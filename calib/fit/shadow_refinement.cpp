@@ -40,7 +40,8 @@ Newton newton_at(const FitDriver& driver, FitDriver::Stage& stage, const SceneSt
         newton.information = objective.fisher(state, weights);
     } else {
         // Squares take their noise from the residual.
-        const double freedom = std::max(1.0, static_cast<double>(stage.data->values.size()) - size);
+        const double freedom =
+            std::max(1.0, static_cast<double>(stage.data->num_observed()) - size);
         const double per_variance = freedom / std::max(objective.sum_of_squares(), 1e-300);
         newton.information *= per_variance;
         score *= per_variance;

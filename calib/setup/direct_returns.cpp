@@ -73,10 +73,10 @@ struct PeakCost {
     }
 };
 
-Peak first_guess(std::span<const float> histogram,
-                 const core::TimeAxis& axis,
-                 std::size_t point,
-                 double sigma_m) {
+Peak first_guess(const core::Capture& capture, std::size_t point, double sigma_m) {
+    const auto histogram = capture.transient.histogram(point);
+    const core::TimeAxis& axis = capture.time_axis;
+    const auto [first_seen, end_seen] = capture.observed_range(point);
     const auto highest = std::max_element(histogram.begin(), histogram.end());
     if (!(*highest > 0.0F)) {
         throw core::Error(fmt::format("direct_returns: point {}", point),
@@ -86,8 +86,8 @@ Peak first_guess(std::span<const float> histogram,
     Peak peak;
     const int bin = static_cast<int>(highest - histogram.begin());
     const int reach = static_cast<int>(kWindow * sigma_m / axis.bin_width_m) + 2;
-    peak.first_bin = std::max(0, bin - reach);
-    peak.last_bin = std::min(axis.num_bins - 1, bin + reach);
+    peak.first_bin = std::max(first_seen, bin - reach);
+    peak.last_bin = std::min(end_seen - 1, bin + reach);
     double sum = 0.0;
     double moment = 0.0;
     const int core_reach = static_cast<int>(2.0 * sigma_m / axis.bin_width_m) + 1;
@@ -127,7 +127,8 @@ double mean_outside(const core::Capture& capture, const std::vector<Peak>& peaks
     double count = 0.0;
     for (std::size_t p = 0; p < peaks.size(); ++p) {
         const auto histogram = capture.transient.histogram(p);
-        for (int b = 0; b < capture.time_axis.num_bins; ++b) {
+        const core::BinRange observed = capture.observed_range(p);
+        for (int b = observed.begin; b < observed.end; ++b) {
             if (b >= peaks[p].first_bin && b <= peaks[p].last_bin) continue;
             sum += static_cast<double>(histogram[static_cast<std::size_t>(b)]);
             count += 1.0;
@@ -202,7 +203,7 @@ DirectReturns fit_direct_returns(const core::Capture& capture, ResponseShape sha
     const double width_m = rough_width(capture);
     std::vector<Peak> peaks;
     for (std::size_t p = 0; p < capture.transient.num_pairs(); ++p) {
-        peaks.push_back(first_guess(capture.transient.histogram(p), capture.time_axis, p, width_m));
+        peaks.push_back(first_guess(capture, p, width_m));
     }
     Shared shared{
         std::log(0.8 * width_m), std::log(width_m), std::log(mean_outside(capture, peaks))};

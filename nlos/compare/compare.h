@@ -54,11 +54,13 @@ Metrics compare_volumes(const Reconstruction& result,
 
 /// Relative differences of two captures; rel_l2 = |a-b|/|b|, rel_mse its square. Pairs are those of
 /// the same wall points, in whatever order they stand; where the points differ, those of one index.
+/// Only bins count that both observed.
 ///
 /// throws    core::Error when shapes, units or time axes differ
 Metrics compare_captures(const core::Capture& result, const core::Capture& reference);
 
-/// Why relative differences of two captures say little: scans that differ, captures without light.
+/// Why relative differences of two captures say little: scans that differ, bins that were not
+/// observed, captures without light.
 /// A sentence each, for people.
 std::vector<std::string> comparison_warnings(const core::Capture& result,
                                              const core::Capture& reference);

@@ -58,22 +58,30 @@ std::vector<std::size_t> counterparts(const std::vector<core::Vec3>& wanted,
     return all_are_there ? nearest.indices : indices;
 }
 
-/// The result's histograms in the order of the reference's pairs: formats run through the wall's
-/// points in different directions.
-core::Transient in_order_of(const core::Capture& reference, const core::Capture& result) {
+/// The result's pair for each of the reference's: formats run through the wall's points in
+/// different directions.
+std::vector<std::size_t> matching_pairs(const core::Capture& reference,
+                                        const core::Capture& result) {
     const core::Scan& scan = reference.scan;
-    if (scan.camera || scan.pattern != result.scan.pattern) return result.transient;
+    std::vector<std::size_t> pairs(scan.num_pairs());
+    std::iota(pairs.begin(), pairs.end(), std::size_t{0});
+    if (scan.camera || scan.pattern != result.scan.pattern) return pairs;
     const auto sensing = counterparts(scan.sensing.positions, result.scan.sensing.positions);
     const auto lit = counterparts(scan.illumination.positions, result.scan.illumination.positions);
-    core::Transient ordered = result.transient;
-    for (std::size_t pair = 0; pair < scan.num_pairs(); ++pair) {
+    for (std::size_t& pair : pairs) {
         std::size_t from = sensing[scan.sensing_index(pair)];
         if (scan.pattern == core::ScanPattern::Exhaustive) {
             from += lit[scan.illumination_index(pair)] * sensing.size();
         }
-        std::ranges::copy(result.transient.histogram(from), ordered.histogram(pair).begin());
+        pair = from;
     }
-    return ordered;
+    return pairs;
+}
+
+/// A histogram whose bins outside a range count as 0.
+void keep(const core::BinRange& range, std::span<float> histogram) {
+    std::fill(histogram.begin(), histogram.begin() + range.begin, 0.0F);
+    std::fill(histogram.begin() + range.end, histogram.end(), 0.0F);
 }
 
 }  // namespace
@@ -83,8 +91,17 @@ Metrics compare_captures(const core::Capture& result, const core::Capture& refer
     check_same_unit(result.unit, reference.unit);
     check_same_bins(result.time_axis, reference.time_axis);
     Metrics metrics;
-    const core::Transient ordered = in_order_of(reference, result);
-    metrics.rel_mse = relative_mse(ordered.values(), reference.transient.values());
+    const std::vector<std::size_t> pairs = matching_pairs(reference, result);
+    core::Transient found = result.transient;
+    core::Transient wanted = reference.transient;
+    for (std::size_t pair = 0; pair < pairs.size(); ++pair) {
+        std::ranges::copy(result.transient.histogram(pairs[pair]), found.histogram(pair).begin());
+        const core::BinRange both =
+            core::intersection(result.observed_range(pairs[pair]), reference.observed_range(pair));
+        keep(both, found.histogram(pair));
+        keep(both, wanted.histogram(pair));
+    }
+    metrics.rel_mse = relative_mse(found.values(), wanted.values());
     if (metrics.rel_mse) metrics.rel_l2 = std::sqrt(*metrics.rel_mse);
     return metrics;
 }
@@ -130,6 +147,9 @@ std::vector<std::string> comparison_warnings(const core::Capture& result,
             fmt::format("path lengths begin at the {} in one and the {} in the other",
                         core::enum_name(a.opl_origin),
                         core::enum_name(b.opl_origin)));
+    }
+    if (result.observed || reference.observed) {
+        warnings.emplace_back("bins that one of the two did not observe do not count");
     }
     if (result.transient.is_dark()) warnings.emplace_back("the result holds no light");
     if (reference.transient.is_dark()) warnings.emplace_back("the reference holds no light");

@@ -9,48 +9,26 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <limits>
-#include <type_traits>
+#include <set>
 #include <vector>
 
 namespace nlos {
-namespace {
 
 using core::Json;
+
+namespace {
 
 [[noreturn]] void throw_unreadable(const std::string& where) {
     throw core::Error(where, "cannot be read", "must be an undamaged, complete file");
 }
 
-Shape extents_of(const Hdf5Handle& space, const std::string& where) {
-    const int rank = H5Sget_simple_extent_ndims(space.id());
-    if (rank < 0) throw_unreadable(where);
-    std::vector<hsize_t> extents(static_cast<std::size_t>(rank));
-    if (rank > 0 && H5Sget_simple_extent_dims(space.id(), extents.data(), nullptr) < 0) {
-        throw_unreadable(where);
-    }
-    return {extents.begin(), extents.end()};
-}
-
-/// Number of values times `bytes` each; the largest number when that does not fit 64 bits.
-std::uint64_t total_bytes(const Shape& extents, std::uint64_t bytes) {
-    std::uint64_t total = bytes;
-    for (const std::size_t extent : extents) {
-        if (extent != 0 && total > std::numeric_limits<std::uint64_t>::max() / extent) {
-            return std::numeric_limits<std::uint64_t>::max();
-        }
-        total *= extent;
-    }
-    return total;
-}
-
-Hdf5Kind kind_of(const Hdf5Handle& type) {
+ElementKind kind_of(const Hdf5Handle& type) {
     constexpr std::size_t kWidestNumber = 16;
     const H5T_class_t type_class = H5Tget_class(type.id());
-    if (type_class == H5T_STRING) return Hdf5Kind::Text;
-    if (H5Tget_size(type.id()) > kWidestNumber) return Hdf5Kind::Other;
-    if (type_class == H5T_INTEGER || type_class == H5T_ENUM) return Hdf5Kind::Integer;
-    return type_class == H5T_FLOAT ? Hdf5Kind::Real : Hdf5Kind::Other;
+    if (type_class == H5T_STRING) return ElementKind::Text;
+    if (H5Tget_size(type.id()) > kWidestNumber) return ElementKind::Other;
+    if (type_class == H5T_INTEGER || type_class == H5T_ENUM) return ElementKind::Integer;
+    return type_class == H5T_FLOAT ? ElementKind::Real : ElementKind::Other;
 }
 
 /// The only text of a dataset or attribute of type `type`; `read` fetches it into a buffer.
@@ -81,13 +59,13 @@ Json attribute_value(const Hdf5Handle& attribute, const std::string& where) {
     const Hdf5Handle space(H5Aget_space(attribute.id()), H5Sclose);
     if (H5Sget_simple_extent_type(space.id()) == H5S_NULL) return nullptr;
     const std::uint64_t count = total_bytes(extents_of(space, where), 1);
-    const Hdf5Kind kind = kind_of(type);
-    if (kind == Hdf5Kind::Text && count == 1) {
+    const ElementKind kind = kind_of(type);
+    if (kind == ElementKind::Text && count == 1) {
         return fetch_text(type, where, [&](hid_t memory, void* target) {
             return H5Aread(attribute.id(), memory, target) >= 0;
         });
     }
-    if ((kind != Hdf5Kind::Integer && kind != Hdf5Kind::Real) || count > kMaxValues) {
+    if ((kind != ElementKind::Integer && kind != ElementKind::Real) || count > kMaxValues) {
         return nullptr;
     }
     std::vector<double> values(count);
@@ -106,23 +84,106 @@ Shape chunk_of(const Hdf5Handle& dataset, std::size_t rank) {
     return {chunk.begin(), chunk.end()};
 }
 
+/// Whole chunks, as many as make a read, so that none is decompressed twice.
 std::size_t rows_per_read(const Hdf5Handle& dataset, const Shape& shape) {
-    constexpr std::size_t kValuesPerRead = std::size_t{1} << 22;
-    const std::size_t row_values =
-        std::max<std::size_t>(1, total_bytes(Shape(shape.begin() + 1, shape.end()), 1));
-    const std::size_t rows = std::max<std::size_t>(1, kValuesPerRead / row_values);
-    // Whole chunks at a time, so that none is decompressed twice.
+    const std::size_t rows = rows_of_read(shape);
     const Shape chunk = chunk_of(dataset, shape.size());
     const std::size_t rows_of_chunk = chunk.empty() ? 1 : std::max<std::size_t>(1, chunk[0]);
     return (rows + rows_of_chunk - 1) / rows_of_chunk * rows_of_chunk;
 }
 
+std::string type_name(const Hdf5Handle& type) {
+    const std::size_t bits = 8 * H5Tget_size(type.id());
+    switch (H5Tget_class(type.id())) {
+        case H5T_INTEGER:
+            return fmt::format("{}int{}", H5Tget_sign(type.id()) == H5T_SGN_NONE ? "u" : "", bits);
+        case H5T_FLOAT:
+            return fmt::format("float{}", bits);
+        case H5T_STRING:
+            return "text";
+        case H5T_ENUM:
+            return "enumeration";
+        case H5T_REFERENCE:
+            return "reference";
+        case H5T_COMPOUND:
+            return "compound";
+        default:
+            return "other";
+    }
+}
+
+/// A walk over all groups of a file that notes the datasets.
+class GroupWalk {
+ public:
+    ArrayNames run(const Hdf5Handle& root) {
+        list_group(root, "", 0);
+        return std::move(found_);
+    }
+
+ private:
+    static constexpr std::size_t kDeepest = 32;
+    static constexpr std::size_t kMostObjects = 4 * ArrayNames::kMost;
+
+    void list_group(const Hdf5Handle& group, const std::string& prefix, std::size_t depth) {
+        if (depth > kDeepest) found_.is_complete = false;
+        for (const std::string& link : links_of(group)) {
+            if (found_.names.size() == ArrayNames::kMost || num_objects_++ == kMostObjects) {
+                found_.is_complete = false;
+            }
+            if (!found_.is_complete) return;
+            const Hdf5Handle object(H5Oopen(group.id(), link.c_str(), H5P_DEFAULT), H5Oclose);
+            if (object.is_valid()) list_object(object, prefix + link, depth);
+        }
+    }
+
+    void list_object(const Hdf5Handle& object, const std::string& name, std::size_t depth) {
+        const H5I_type_t type = H5Iget_type(object.id());
+        if (type == H5I_DATASET) found_.names.push_back(name);
+        H5O_info_t info{};
+        if (type != H5I_GROUP || H5Oget_info2(object.id(), &info, H5O_INFO_BASIC) < 0) return;
+        if (groups_.insert(info.addr).second) list_group(object, name + "/", depth + 1);
+    }
+
+    ArrayNames found_;
+    std::size_t num_objects_ = 0;
+    std::set<haddr_t> groups_;  ///< seen so far: links may form cycles
+};
+
+/// Throws for a dataset whose values are not in this file, before the library looks for them.
+void require_own_storage(const Hdf5Handle& dataset, const std::string& where) {
+    const Hdf5Handle plan(H5Dget_create_plist(dataset.id()), H5Pclose);
+    if (H5Pget_layout(plan.id()) == H5D_VIRTUAL || H5Pget_external_count(plan.id()) > 0) {
+        throw core::Error(where, "is kept in other files", "must be in this file");
+    }
+}
+
 }  // namespace
+
+Shape extents_of(const Hdf5Handle& space, const std::string& where) {
+    const int rank = H5Sget_simple_extent_ndims(space.id());
+    if (rank < 0) throw_unreadable(where);
+    std::vector<hsize_t> extents(static_cast<std::size_t>(rank));
+    if (rank > 0 && H5Sget_simple_extent_dims(space.id(), extents.data(), nullptr) < 0) {
+        throw_unreadable(where);
+    }
+    return {extents.begin(), extents.end()};
+}
+
+std::vector<std::string> links_of(const Hdf5Handle& group) {
+    std::vector<std::string> links;
+    const auto add = [](hid_t, const char* name, const H5L_info_t* info, void* list) {
+        auto& names = *static_cast<std::vector<std::string>*>(list);
+        if (info->type == H5L_TYPE_HARD || info->type == H5L_TYPE_SOFT) names.emplace_back(name);
+        return names.size() > ArrayNames::kMost ? 1 : 0;
+    };
+    H5Literate(group.id(), H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, add, &links);
+    return links;
+}
 
 Hdf5File::Hdf5File(std::string path) : path_(std::move(path)) {
     prepare_hdf5();
+    H5Lunregister(H5L_TYPE_EXTERNAL);  // no link leads out of the file
     file_bytes_ = std::filesystem::file_size(path_);
-    if (!is_hdf5_file(path_)) throw core::Error(path_, "is not HDF5", "must be an HDF5 file");
     file_ = Hdf5Handle(H5Fopen(path_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
     if (!file_.is_valid()) {
         throw core::Error(path_,
@@ -131,45 +192,77 @@ Hdf5File::Hdf5File(std::string path) : path_(std::move(path)) {
     }
 }
 
-Json Hdf5File::describe(const std::string& name) const {
-    if (!exists(name)) return nullptr;
-    const Hdf5Handle object(H5Oopen(file_.id(), name.c_str(), H5P_DEFAULT), H5Oclose);
-    if (!object.is_valid()) throw_unreadable(where(name));
-    Json description{{kAttributes, describe_attributes(object, name)}};
+Hdf5Handle Hdf5File::open_root() const {
+    Hdf5Handle root(H5Gopen2(file_.id(), "/", H5P_DEFAULT), H5Gclose);
+    if (!root.is_valid()) throw_unreadable(path_);
+    return root;
+}
+
+ArrayNames Hdf5File::names() const {
+    return GroupWalk().run(open_root());
+}
+
+std::optional<ArrayDescription> Hdf5File::describe(const std::string& name) const {
+    const Hdf5Handle object = open_object(name);
+    if (!object.is_valid()) return std::nullopt;
+    return describe_object(object, name);
+}
+
+ArrayDescription Hdf5File::describe_object(const Hdf5Handle& object,
+                                           const std::string& name) const {
+    ArrayDescription description;
+    description.attributes = describe_attributes(object, name);
+    description.type = "group";
     if (H5Iget_type(object.id()) != H5I_DATASET) return description;
+    require_own_storage(object, where(name));
+    const Hdf5Handle type(H5Dget_type(object.id()), H5Tclose);
+    description.type = type_name(type);
     const Hdf5Handle space(H5Dget_space(object.id()), H5Sclose);
     if (H5Sget_simple_extent_type(space.id()) == H5S_NULL) return description;
-    const Hdf5Handle type(H5Dget_type(object.id()), H5Tclose);
     const Shape shape = extents_of(space, where(name));
-    const Hdf5Kind kind = kind_of(type);
-    description[kShape] = shape;
-    description[kKind] = kind;
-    if (kind == Hdf5Kind::Text && (shape.empty() || shape == Shape{1})) {
-        description[kText] = fetch_text(type, where(name), [&](hid_t memory, void* target) {
+    description.shape = shape;
+    description.kind = kind_of(type);
+    if (description.kind == ElementKind::Text && (shape.empty() || shape == Shape{1})) {
+        description.text = fetch_text(type, where(name), [&](hid_t memory, void* target) {
             return H5Dread(object.id(), memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, target) >= 0;
         });
     }
-    if (!shape.empty()) description[kRowsPerRead] = rows_per_read(object, shape);
+    if (!shape.empty()) description.rows_per_read = rows_per_read(object, shape);
     return description;
 }
 
-bool Hdf5File::exists(const std::string& name) const {
-    if (name == "/") return true;
+Hdf5Handle Hdf5File::open_object(const std::string& name) const {
+    Hdf5Handle root = open_root();
+    return name == "/" ? std::move(root) : open_member(root, name);
+}
+
+Hdf5Handle Hdf5File::open_member(const Hdf5Handle& group, const std::string& path) const {
     // Every part of the path must be asked for, or the library reports an error.
-    for (std::size_t slash = name.find('/');; slash = name.find('/', slash + 1)) {
-        if (H5Lexists(file_.id(), name.substr(0, slash).c_str(), H5P_DEFAULT) <= 0) {
-            return false;
+    for (std::size_t slash = path.find('/');; slash = path.find('/', slash + 1)) {
+        const std::string part = path.substr(0, slash);
+        H5L_info_t link{};
+        if (H5Lexists(group.id(), part.c_str(), H5P_DEFAULT) <= 0 ||
+            H5Lget_info(group.id(), part.c_str(), &link, H5P_DEFAULT) < 0) {
+            return {};
+        }
+        if (link.type != H5L_TYPE_HARD && link.type != H5L_TYPE_SOFT) {
+            throw core::Error(where(path), "is kept in another file", "must be in this file");
         }
         if (slash == std::string::npos) break;
     }
-    return H5Oexists_by_name(file_.id(), name.c_str(), H5P_DEFAULT) > 0;
+    if (H5Oexists_by_name(group.id(), path.c_str(), H5P_DEFAULT) <= 0) return {};
+    Hdf5Handle object(H5Oopen(group.id(), path.c_str(), H5P_DEFAULT), H5Oclose);
+    if (!object.is_valid()) throw_unreadable(where(path));
+    return object;
 }
 
 Json Hdf5File::describe_attributes(const Hdf5Handle& object, const std::string& name) const {
     Json attributes = Json::object();
     const auto add = [](hid_t id, const char* attribute, const H5A_info_t*, void* list) {
-        (*static_cast<Json*>(list))[attribute] = nullptr;
-        return id < 0 ? -1 : 0;
+        constexpr std::size_t kMost = 1024;
+        auto& names = *static_cast<Json*>(list);
+        names[attribute] = nullptr;
+        return id < 0 ? -1 : names.size() == kMost ? 1 : 0;
     };
     if (H5Aiterate2(object.id(), H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, add, &attributes) < 0) {
         throw_unreadable(where(name));
@@ -182,17 +275,12 @@ Json Hdf5File::describe_attributes(const Hdf5Handle& object, const std::string& 
     return attributes;
 }
 
-/// Throws unless what a dataset claims to hold is stored in the file and fits in memory.
 void Hdf5File::check_size(const Hdf5Handle& dataset,
                           const Shape& shape,
                           const std::string& where) const {
     // Deflate, the strongest filter in use, shrinks by less than 1032 to 1.
     constexpr std::uint64_t kLargestRatio = 1100;
     const Hdf5Handle type(H5Dget_type(dataset.id()), H5Tclose);
-    const Hdf5Handle plan(H5Dget_create_plist(dataset.id()), H5Pclose);
-    if (H5Pget_layout(plan.id()) == H5D_VIRTUAL || H5Pget_external_count(plan.id()) > 0) {
-        throw core::Error(where, "is kept in other files", "must be in this file");
-    }
     const Shape chunk = chunk_of(dataset, shape.size());
     const std::uint64_t stored =
         std::min<std::uint64_t>(H5Dget_storage_size(dataset.id()), file_bytes_);
@@ -207,9 +295,11 @@ void Hdf5File::check_size(const Hdf5Handle& dataset,
     require_memory(std::max(total_bytes(shape, 2 * sizeof(double)), chunk_bytes), where);
 }
 
-template <class T>
-std::string Hdf5File::read(const std::string& name, std::size_t first, std::size_t count) const {
-    const Hdf5Handle dataset(H5Dopen2(file_.id(), name.c_str(), H5P_DEFAULT), H5Dclose);
+std::string Hdf5File::read(const std::string& name,
+                           std::size_t first,
+                           std::size_t count,
+                           Precision precision) const {
+    const Hdf5Handle dataset = open_object(name);
     const Hdf5Handle space(H5Dget_space(dataset.id()), H5Sclose);
     const Shape shape = extents_of(space, where(name));
     check_size(dataset, shape, where(name));
@@ -221,10 +311,12 @@ std::string Hdf5File::read(const std::string& name, std::size_t first, std::size
         H5Sselect_hyperslab(
             space.id(), H5S_SELECT_SET, start.data(), nullptr, size.data(), nullptr);
     }
-    std::string values(total_bytes({size.begin(), size.end()}, sizeof(T)), '\0');
+    const bool is_double = precision == Precision::Double;
+    const std::size_t value_bytes = is_double ? sizeof(double) : sizeof(float);
+    std::string values(total_bytes({size.begin(), size.end()}, value_bytes), '\0');
     const Hdf5Handle memory(H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr),
                             H5Sclose);
-    const hid_t type = std::is_same_v<T, double> ? H5T_NATIVE_DOUBLE : H5T_NATIVE_FLOAT;
+    const hid_t type = is_double ? H5T_NATIVE_DOUBLE : H5T_NATIVE_FLOAT;
     if (!values.empty() &&
         H5Dread(dataset.id(), type, memory.id(), space.id(), H5P_DEFAULT, values.data()) < 0) {
         throw_unreadable(where(name));
@@ -232,7 +324,14 @@ std::string Hdf5File::read(const std::string& name, std::size_t first, std::size
     return values;
 }
 
-template std::string Hdf5File::read<float>(const std::string&, std::size_t, std::size_t) const;
-template std::string Hdf5File::read<double>(const std::string&, std::size_t, std::size_t) const;
+Container hdf5_container() {
+    return {"HDF5 (MATLAB v7.3 too)",
+            is_hdf5_file,
+            [](const std::string& path) -> std::unique_ptr<ArrayFile> {
+                auto file = std::make_unique<Hdf5File>(path);
+                if (is_mat73_file(*file, path)) return open_mat73_file(path);
+                return file;
+            }};
+}
 
 }  // namespace nlos

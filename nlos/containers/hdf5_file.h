@@ -1,47 +1,63 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "nlos/containers/array_file.h"
 #include "nlos/containers/hdf5_handle.h"
-#include "renderer/core/settings.h"
 
 #include <cstdint>
+#include <memory>
 #include <string>
 
 namespace nlos {
 
-/// An HDF5 file as the library reads it, in this process; see Hdf5Reader.
-///
-/// Every failure is a core::Error that names file and dataset. Sizes are checked against the file's
-/// own size before anything is allocated; what would not fit in memory is a core::Failure.
-class Hdf5File {
+/// An HDF5 file as the library reads it. Nothing outside the file is ever opened: external links,
+/// external storage and virtual datasets are refused.
+class Hdf5File : public ArrayFile {
  public:
-    // Keys of describe().
-    static constexpr const char* kShape = "shape";  ///< of a dataset that is not null
-    static constexpr const char* kKind = "kind";    ///< an Hdf5Kind
-    static constexpr const char* kText = "text";    ///< the only text of a dataset
-    static constexpr const char* kRowsPerRead =
-        "rows_per_read";  ///< whole chunks, as many as fit a read
-    static constexpr const char* kAttributes = "attributes";  ///< texts, lists of numbers, or null
-
     explicit Hdf5File(std::string path);
 
-    /// What an object is ("/" is the file itself); null when there is none of this name.
-    core::Json describe(const std::string& name) const;
+    std::string container() const override { return "hdf5"; }
+    ArrayNames names() const override;
+    std::optional<ArrayDescription> describe(const std::string& name) const override;
+    std::string read(const std::string& name,
+                     std::size_t first,
+                     std::size_t count,
+                     Precision precision) const override;
 
-    /// The bytes of rows [first, first + count) of a numeric dataset as T, which is float or
-    /// double; of a scalar one, those of its only value.
-    template <class T>
-    std::string read(const std::string& name, std::size_t first, std::size_t count) const;
+    /// The file's root group.
+    Hdf5Handle open_root() const;
+
+ protected:
+    std::string where(const std::string& name) const { return path_ + ": " + name; }
+
+    /// The object of a name; not valid when there is none.
+    virtual Hdf5Handle open_object(const std::string& name) const;
+    Hdf5Handle open_member(const Hdf5Handle& group, const std::string& path) const;
+
+    ArrayDescription describe_object(const Hdf5Handle& object, const std::string& name) const;
+
+    /// Throws unless what a dataset claims to hold is stored in the file and fits in memory.
+    void check_size(const Hdf5Handle& dataset, const Shape& shape, const std::string& where) const;
 
  private:
-    std::string where(const std::string& name) const { return path_ + ": " + name; }
-    bool exists(const std::string& name) const;
     core::Json describe_attributes(const Hdf5Handle& object, const std::string& name) const;
-    void check_size(const Hdf5Handle& dataset, const Shape& shape, const std::string& where) const;
 
     std::string path_;
     std::uint64_t file_bytes_ = 0;
     Hdf5Handle file_;
 };
+
+/// The extents of a dataspace. Throws core::Error when it is damaged.
+Shape extents_of(const Hdf5Handle& space, const std::string& where);
+
+/// The names of a group's links that stay within the file, at most ArrayNames::kMost + 1 of them,
+/// in the order in which they are stored.
+std::vector<std::string> links_of(const Hdf5Handle& group);
+
+/// True when the file says of itself that MATLAB 7.3 wrote it, or its root's datasets do.
+bool is_mat73_file(const Hdf5File& file, const std::string& path);
+
+/// The same file with the names that MATLAB gives.
+std::unique_ptr<ArrayFile> open_mat73_file(const std::string& path);
 
 }  // namespace nlos

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/containers/hdf5_handle.h"
 
-#include <fmt/ranges.h>
 #include <hdf5.h>
 
 #include <array>
@@ -11,16 +10,16 @@ namespace nlos {
 
 static_assert(std::is_same_v<hid_t, std::int64_t>, "Hdf5Handle stores HDF5 identifiers");
 
-std::string shape_text(const Shape& shape) {
-    return shape.size() == 1 ? fmt::format("({},)", shape[0])
-                             : fmt::format("({})", fmt::join(shape, ", "));
-}
-
 bool is_hdf5_file(const std::string& path) {
     constexpr std::array<char, 8> kSignature{'\x89', 'H', 'D', 'F', '\r', '\n', '\x1a', '\n'};
+    constexpr std::streamoff kFirstUserBlock = 512;
     std::ifstream file(path, std::ios::binary);
-    std::array<char, 8> start{};
-    return file.read(start.data(), start.size()) && start == kSignature;
+    // A block for others may stand before the file proper: 512 bytes, 1024, 2048, ...
+    for (std::streamoff begin = 0;; begin = begin == 0 ? kFirstUserBlock : 2 * begin) {
+        std::array<char, 8> start{};
+        if (!file.seekg(begin).read(start.data(), start.size())) return false;
+        if (start == kSignature) return true;
+    }
 }
 
 void prepare_hdf5() {

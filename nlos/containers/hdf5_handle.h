@@ -4,18 +4,8 @@
 #include <cstdint>
 #include <string>
 #include <utility>
-#include <vector>
 
 namespace nlos {
-
-/// Extents of an array, slowest first; empty for a scalar.
-using Shape = std::vector<std::size_t>;
-
-/// Text of a shape for messages: (64, 64, 3).
-std::string shape_text(const Shape& shape);
-
-/// What the elements of a dataset are. Enumerations and truth values count as integers.
-enum class Hdf5Kind { Integer, Real, Text, Other };
 
 /// True when the file starts like an HDF5 file. Throws nothing.
 bool is_hdf5_file(const std::string& path);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "nlos/containers/hdf5_handle.h"
+#include "nlos/containers/shape.h"
 #include "renderer/core/output_file.h"
 
 #include <algorithm>

@@ -60,6 +60,14 @@ double sum_of(const core::Capture& capture) {
     return sum;
 }
 
+std::size_t num_observed_pairs(const core::Capture& capture) {
+    std::size_t count = 0;
+    for (std::size_t pair = 0; pair < capture.scan.num_pairs(); ++pair) {
+        if (capture.observed_range(pair).size() > 0) ++count;
+    }
+    return count;
+}
+
 /// Expected counts for one unit of the capture.
 double counts_per_value(const core::Capture& capture, const DetectorSettings& s) {
     const double sum = sum_of(capture);
@@ -68,7 +76,7 @@ double counts_per_value(const core::Capture& capture, const DetectorSettings& s)
             throw core::Error(
                 "capture", "found no light", "must hold light to scale to a number of photons");
         }
-        const auto pairs = static_cast<double>(capture.scan.num_pairs());
+        const auto pairs = static_cast<double>(num_observed_pairs(capture));
         return s.photons.value_or(s.photons_per_point.value_or(0.0) * pairs) / sum;
     }
     if (capture.unit != core::TransientUnit::Radiance) {
@@ -124,7 +132,9 @@ Detector make_detector(const core::Capture& capture, const DetectorSettings& s) 
                           s.exposure_s.value_or(1.0);  // time per bin over all pulses
     detector.background = s.ambient + s.dark_counts_hz * open_s;
     const double background =
-        detector.background * static_cast<double>(capture.transient.values().size());
+        detector.background *
+        static_cast<double>(core::observed_count(
+            capture.observed, capture.scan.num_pairs(), capture.time_axis.num_bins));
     require(
         background <= kMaxCounts, "ambient and dark_counts_hz", background, "at most 1e15 counts");
     detector.filter =
@@ -136,19 +146,27 @@ Detector make_detector(const core::Capture& capture, const DetectorSettings& s) 
     return detector;
 }
 
-/// Records one pair: radiance or counts in, counts out.
+/// Records one pair: radiance or counts in, counts out. A detector that does not look detects
+/// nothing, so that nothing blinds it either.
 void record(const Detector& detector,
             std::size_t pair,
+            const core::BinRange& observed,
             std::span<const float> input,
             std::span<float> output) {
+    const int num_bins = static_cast<int>(input.size());
     std::vector<double> means(input.size());
     core::apply_filter<float, double>(detector.filter, input, means);
-    for (double& mean : means) mean = mean * detector.counts_per_value + detector.background;
+    for (int bin = 0; bin < num_bins; ++bin) {
+        double& mean = means[static_cast<std::size_t>(bin)];
+        mean = observed.holds(bin) ? mean * detector.counts_per_value + detector.background : 0.0;
+    }
     core::Rng rng(detector.seed, pair, 0);
     if (detector.is_blind_at_times) {
         for (double& mean : means) mean /= static_cast<double>(detector.train.pulses);
+        PulseTrain train = detector.train;
+        if (observed.size() < num_bins) train.gap_rate = 0.0;
         const std::vector<double> counts =
-            count_with_dead_time(means, detector.train, detector.expected ? nullptr : &rng);
+            count_with_dead_time(means, train, detector.expected ? nullptr : &rng);
         std::transform(counts.begin(), counts.end(), output.begin(), [](double count) {
             return static_cast<float>(count);
         });
@@ -196,9 +214,14 @@ core::Capture detect(const core::Capture& capture, const DetectorSettings& setti
     if (detector.is_blind_at_times) result.scene_info["detector"]["pulses"] = detector.train.pulses;
     result.notes = capture.notes;
 
+    result.observed = capture.observed;
     result.transient = core::Transient(capture.scan.num_pairs(), capture.time_axis.num_bins);
     core::parallel_for(capture.scan.num_pairs(), [&](std::size_t pair) {
-        record(detector, pair, capture.transient.histogram(pair), result.transient.histogram(pair));
+        record(detector,
+               pair,
+               capture.observed_range(pair),
+               capture.transient.histogram(pair),
+               result.transient.histogram(pair));
     });
     return result;
 }

@@ -52,7 +52,9 @@ void for_each_field(DetectorSettings& s, Visitor&& visit) {
     visit("photons", s.photons, core::above(0, "expected signal photons in the whole capture"));
     visit("photons_per_point",
           s.photons_per_point,
-          core::above(0, "expected signal photons per prepared pair, on average over all pairs"));
+          core::above(0,
+                      "expected signal photons per prepared pair, on average over all pairs that "
+                      "were observed"));
     visit("exposure_s",
           s.exposure_s,
           core::above(0,
@@ -84,12 +86,13 @@ std::optional<std::string> coarse_bins_warning(const core::Capture& capture,
 /// and dark counts, thinned by pile-up and dead time, and drawn. With pile-up the detector is armed
 /// at the axis' start of every pulse and records one photon at most; with dead time alone it is
 /// always armed unless blind, between two pulses too, and carries its blindness into later pulses.
-/// A dead time is rounded to whole bins.
+/// A dead time is rounded to whole bins. Nothing is detected in bins that were not observed, nor
+/// between the pulses of a pair that has such bins: its detector is gated.
 ///
 /// capture    radiance, or counts to be scaled to another number of photons; not negative
-/// returns    the scan of `capture` with unit counts; `counts_per_radiance` and the settings are
-///            recorded; variance, orders of bounces and frames are dropped. The same for any number
-///            of threads.
+/// returns    scan and observed bins of `capture` with unit counts; `counts_per_radiance` and the
+///            settings are recorded; variance, orders of bounces and frames are dropped. The same
+///            for any number of threads.
 /// throws     core::Error for settings or captures that do not fit
 /// source     first photon of a pulse [Coates1968]
 core::Capture detect(const core::Capture& capture, const DetectorSettings& settings);

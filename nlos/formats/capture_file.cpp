@@ -109,10 +109,10 @@ std::string describe_observed(const core::Capture& capture) {
     const core::BinRange hull = core::observed_hull(capture.observed, capture.time_axis.num_bins);
     if (hull.size() == 0) return fmt::format("observed: no bin of {} pairs", observed.size());
     const std::size_t whole = static_cast<std::size_t>(std::ranges::count(observed, hull));
-    std::string text = fmt::format("observed: bins {} to {} of {} of {} pairs",
+    std::string text = fmt::format("observed: bins {} to {} of {} {} pairs",
                                    hull.begin,
                                    hull.end - 1,
-                                   whole == observed.size() ? "all" : std::to_string(whole),
+                                   whole == observed.size() ? "all" : fmt::format("{} of", whole),
                                    observed.size());
     const std::size_t partial = observed.size() - whole - blind;
     if (partial > 0) text += fmt::format("; fewer of {}", partial);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/containers/mat_file.h"
+#include "nlos/containers/mat5_writer.h"
 #include "nlos/formats/capture_format.h"
 #include "renderer/core/error.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/formats/volume_file.h"
 
-#include "nlos/containers/hdf5_reader.h"
+#include "nlos/containers/array_reader.h"
 #include "nlos/containers/hdf5_writer.h"
 #include "renderer/core/error.h"
 
@@ -38,7 +38,7 @@ void write_vectors(Hdf5Writer& file, const std::string& name, Shape shape, const
     file.write(name, shape, values);
 }
 
-std::vector<Vec3> read_vectors(const Hdf5Reader& file, const std::string& name, Shape shape) {
+std::vector<Vec3> read_vectors(const ArrayReader& file, const std::string& name, Shape shape) {
     shape.push_back(3);
     const std::vector<double> values = file.read_doubles(name, shape);
     std::vector<Vec3> vectors;
@@ -50,7 +50,7 @@ std::vector<Vec3> read_vectors(const Hdf5Reader& file, const std::string& name, 
 
 /// Throws unless every value is finite.
 template <class Values>
-void require_finite(const Hdf5Reader& file, const std::string& name, const Values& values) {
+void require_finite(const ArrayReader& file, const std::string& name, const Values& values) {
     for (const auto value : values) {
         if (!std::isfinite(value)) {
             throw Error(file.where(name), fmt::format("found {}", value), "must be finite numbers");
@@ -58,7 +58,7 @@ void require_finite(const Hdf5Reader& file, const std::string& name, const Value
     }
 }
 
-std::vector<double> read_axis(const Hdf5Reader& file, const std::string& name) {
+std::vector<double> read_axis(const ArrayReader& file, const std::string& name) {
     const Shape shape = file.shape(name);
     if (shape.size() != 1 || shape[0] == 0) {
         throw Error(file.where(name), "has shape " + shape_text(shape), "must have shape (N,)");
@@ -68,7 +68,7 @@ std::vector<double> read_axis(const Hdf5Reader& file, const std::string& name) {
     return centres_m;
 }
 
-Transform read_pose(const Hdf5Reader& file) {
+Transform read_pose(const ArrayReader& file) {
     const auto values = file.real_attribute("x_m", kPose);
     const std::string name = std::string("x_m attribute ") + kPose;
     if (!values || values->size() != 16) {
@@ -80,7 +80,7 @@ Transform read_pose(const Hdf5Reader& file) {
     return pose;
 }
 
-core::DepthMap read_depth(const Hdf5Reader& file, const VolumeAxes& axes) {
+core::DepthMap read_depth(const ArrayReader& file, const VolumeAxes& axes) {
     core::DepthMap depth(axes.x_m, axes.y_m);
     depth.world_from_wall = axes.world_from_wall;
     depth.depth_m = file.read_doubles("depth_m", {axes.x_m.size(), axes.y_m.size()});
@@ -92,7 +92,7 @@ core::DepthMap read_depth(const Hdf5Reader& file, const VolumeAxes& axes) {
     return depth;
 }
 
-core::PointCloud read_points(const Hdf5Reader& file) {
+core::PointCloud read_points(const ArrayReader& file) {
     core::PointCloud points;
     const Shape shape = file.shape("points");
     points.positions = read_vectors(file, "points", {shape.empty() ? 0 : shape[0]});
@@ -104,7 +104,7 @@ core::PointCloud read_points(const Hdf5Reader& file) {
     return points;
 }
 
-ReconstructSettings read_settings(const Hdf5Reader& file) {
+ReconstructSettings read_settings(const ArrayReader& file) {
     ReconstructSettings settings;
     const auto text = file.text_attribute("/", "settings");
     if (!text) return settings;
@@ -116,7 +116,7 @@ ReconstructSettings read_settings(const Hdf5Reader& file) {
 }
 
 /// A root attribute that holds one number; 0 when missing.
-double read_number(const Hdf5Reader& file, const std::string& name) {
+double read_number(const ArrayReader& file, const std::string& name) {
     const auto values = file.real_attribute("/", name);
     if (!values) return 0.0;
     if (values->size() != 1 || !std::isfinite((*values)[0]) || (*values)[0] < 0.0) {
@@ -158,7 +158,7 @@ void write_volume(const std::string& path, const Reconstruction& reconstruction)
 }
 
 Reconstruction read_volume(const std::string& path) {
-    const Hdf5Reader file(path);
+    const ArrayReader file(path);
     Reconstruction result;
     VolumeAxes& axes = result.volume.axes;
     axes.x_m = read_axis(file, "x_m");
@@ -187,7 +187,7 @@ Reconstruction read_volume(const std::string& path) {
 }
 
 bool is_volume_file(const std::string& path) {
-    return is_hdf5_file(path) && Hdf5Reader(path).has("volume");
+    return container_of(path) == "hdf5" && ArrayReader(path).has("volume");
 }
 
 }  // namespace nlos

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/containers/file_memory.h"
-#include "nlos/containers/hdf5_reader.h"
+#include "nlos/containers/array_reader.h"
 #include "nlos/formats/capture_format.h"
 #include "nlos/formats/ytal_layout.h"
 #include "nlos/formats/ytal_scan.h"
@@ -17,7 +17,7 @@ namespace {
 using core::Capture;
 using core::Error;
 
-void read_axis(const Hdf5Reader& file, const CaptureReadSettings& settings, Capture& capture) {
+void read_axis(const ArrayReader& file, const CaptureReadSettings& settings, Capture& capture) {
     const std::size_t bins = file.shape("H").at(0);
     if (bins > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
         throw Error(file.where("H"), fmt::format("has {} bins", bins), "must have fewer than 2^31");
@@ -50,7 +50,7 @@ void copy_bins(const float* rows,
     }
 }
 
-core::Transient make_transient(const Hdf5Reader& file,
+core::Transient make_transient(const ArrayReader& file,
                                const std::string& name,
                                const Capture& capture,
                                int num_bins) {
@@ -60,7 +60,7 @@ core::Transient make_transient(const Hdf5Reader& file,
 }
 
 /// Reads (T, pairs...) with time slowest into [pair][bin].
-core::Transient read_transient(const Hdf5Reader& file,
+core::Transient read_transient(const ArrayReader& file,
                                const std::string& name,
                                const Capture& capture) {
     core::Transient transient = make_transient(file, name, capture, capture.time_axis.num_bins);
@@ -70,14 +70,14 @@ core::Transient read_transient(const Hdf5Reader& file,
     return transient;
 }
 
-void require_shape(const Hdf5Reader& file, const std::string& name, const Shape& wanted) {
+void require_shape(const ArrayReader& file, const std::string& name, const Shape& wanted) {
     if (file.shape(name) == wanted) return;
     throw Error(file.where(name),
                 "has shape " + shape_text(file.shape(name)),
                 "must have shape " + shape_text(wanted) + ", as H");
 }
 
-void require_variances(const Hdf5Reader& file,
+void require_variances(const ArrayReader& file,
                        const std::string& name,
                        const core::Transient& variance) {
     for (const float value : variance.values()) {
@@ -90,7 +90,7 @@ void require_variances(const Hdf5Reader& file,
 }
 
 /// The bins of each pair that were observed; validate() checks them against the axis and H.
-void read_observed_bins(const Hdf5Reader& file, Capture& capture) {
+void read_observed_bins(const ArrayReader& file, Capture& capture) {
     Shape wanted = file.shape("H");
     wanted[0] = 2;
     require_shape(file, kObservedBins, wanted);
@@ -108,7 +108,7 @@ void read_observed_bins(const Hdf5Reader& file, Capture& capture) {
 }
 
 /// The axis of /nlos/velocity, which has one dimension more than H when it resolves time too.
-core::VelocityAxis read_velocity_axis(const Hdf5Reader& file) {
+core::VelocityAxis read_velocity_axis(const ArrayReader& file) {
     const std::string name = "nlos/velocity";
     const Shape shape = file.shape(name);
     Shape wanted = file.shape("H");
@@ -140,7 +140,7 @@ core::VelocityAxis read_velocity_axis(const Hdf5Reader& file) {
     return axis;
 }
 
-void read_velocity(const Hdf5Reader& file, Capture& capture) {
+void read_velocity(const ArrayReader& file, Capture& capture) {
     core::VelocityHistogram velocity;
     velocity.axis = read_velocity_axis(file);
     const int time_bins = capture.time_axis.num_bins;
@@ -165,7 +165,7 @@ void read_velocity(const Hdf5Reader& file, Capture& capture) {
 }
 
 /// Reads several transients stored as one array, each of them as H.
-std::vector<core::Transient> read_stack(const Hdf5Reader& file,
+std::vector<core::Transient> read_stack(const ArrayReader& file,
                                         const std::string& name,
                                         const Capture& capture) {
     const Shape shape = file.shape(name);
@@ -184,14 +184,14 @@ std::vector<core::Transient> read_stack(const Hdf5Reader& file,
     return stack;
 }
 
-void read_orders(const Hdf5Reader& file, Capture& capture) {
+void read_orders(const ArrayReader& file, Capture& capture) {
     capture.by_order = read_stack(file, "nlos/H_by_order", capture);
     for (const double order : file.read_doubles("nlos/orders", {capture.by_order.size()})) {
         capture.orders.push_back(static_cast<int>(order));
     }
 }
 
-void read_frames(const Hdf5Reader& file, Capture& capture) {
+void read_frames(const ArrayReader& file, Capture& capture) {
     core::FrameSequence sequence;
     const auto read_step = [&](const char* name, double& value) {
         const auto found = file.real_attribute("nlos/frames", name);
@@ -203,7 +203,7 @@ void read_frames(const Hdf5Reader& file, Capture& capture) {
     capture.sequence = std::move(sequence);
 }
 
-void read_own_group(const Hdf5Reader& file, Capture& capture) {
+void read_own_group(const ArrayReader& file, Capture& capture) {
     if (const auto unit = file.text_attribute("nlos", "unit")) {
         core::read_value(core::Json(*unit), file.where("nlos attribute unit"), capture.unit);
     } else if (capture.scene_info.contains(kUnitKey)) {
@@ -229,11 +229,11 @@ void read_own_group(const Hdf5Reader& file, Capture& capture) {
 }
 
 bool recognise_ytal(const std::string& path) {
-    return is_hdf5_file(path) && Hdf5Reader(path).has_object("H");
+    return container_of(path) == "hdf5" && ArrayReader(path).has_object("H");
 }
 
 Capture read_ytal(const std::string& path, const CaptureReadSettings& settings) {
-    const Hdf5Reader file(path);
+    const ArrayReader file(path);
     Capture capture;
     if (file.has("scene_info")) capture.scene_info = parse_scene_info(file.read_text("scene_info"));
     read_ytal_scan(file, capture);

@@ -25,12 +25,12 @@ std::vector<Vec3> to_points(const std::vector<double>& values) {
     return points;
 }
 
-Vec3 read_position(const Hdf5Reader& file, const std::string& name) {
+Vec3 read_position(const ArrayReader& file, const std::string& name) {
     return to_points(file.read_doubles(name, {3}))[0];
 }
 
 /// Positions of a grid (X, Y, 3) or list (N, 3), without normals.
-WallPoints read_positions(const Hdf5Reader& file, const std::string& name) {
+WallPoints read_positions(const ArrayReader& file, const std::string& name) {
     const Shape shape = file.shape(name);
     if ((shape.size() != 2 && shape.size() != 3) || shape.back() != 3) {
         throw Error(file.where(name),
@@ -53,7 +53,7 @@ WallPoints read_positions(const Hdf5Reader& file, const std::string& name) {
     return points;
 }
 
-std::vector<Vec3> read_normals(const Hdf5Reader& file,
+std::vector<Vec3> read_normals(const ArrayReader& file,
                                const std::string& name,
                                const Shape& shape) {
     std::vector<Vec3> normals = to_points(file.read_doubles(name, shape));
@@ -64,7 +64,7 @@ std::vector<Vec3> read_normals(const Hdf5Reader& file,
 }
 
 /// The normals that y-tal's convention gives a wall when a file has none: z = 0 looks along +z.
-std::vector<Vec3> assumed_normals(const Hdf5Reader& file,
+std::vector<Vec3> assumed_normals(const ArrayReader& file,
                                   const std::string& name,
                                   const WallPoints& points) {
     for (const Vec3& position : points.positions) {
@@ -77,7 +77,7 @@ std::vector<Vec3> assumed_normals(const Hdf5Reader& file,
     return std::vector<Vec3>(points.size(), Vec3::UnitZ());
 }
 
-void read_sensing_normals(const Hdf5Reader& file, WallPoints& points, Capture& capture) {
+void read_sensing_normals(const ArrayReader& file, WallPoints& points, Capture& capture) {
     const std::string name = "sensor_grid_normals";
     if (file.has(name)) {
         points.normals = read_normals(file, name, file.shape("sensor_grid_xyz"));
@@ -88,7 +88,7 @@ void read_sensing_normals(const Hdf5Reader& file, WallPoints& points, Capture& c
 }
 
 /// Normals at the laser points; y-tal's own single-laser files hold those of the sensor grid here.
-void read_illumination_normals(const Hdf5Reader& file,
+void read_illumination_normals(const ArrayReader& file,
                                const WallPoints& sensing,
                                WallPoints& points,
                                Capture& capture) {
@@ -126,7 +126,7 @@ bool are_same_points(const WallPoints& a, const WallPoints& b) {
     return true;
 }
 
-HFormat read_h_format(const Hdf5Reader& file, bool lists) {
+HFormat read_h_format(const ArrayReader& file, bool lists) {
     const std::size_t rank = file.shape("H").size();
     std::int64_t format = 0;
     if (file.has("H_format")) format = file.read_integer("H_format");
@@ -147,7 +147,7 @@ HFormat read_h_format(const Hdf5Reader& file, bool lists) {
 }
 
 /// The camera of an image: it stands in scene_info and both grids are null. False for scans.
-bool read_camera(const Hdf5Reader& file, Capture& capture) {
+bool read_camera(const ArrayReader& file, Capture& capture) {
     const bool has_points = file.has("sensor_grid_xyz") || file.has("laser_grid_xyz");
     if (has_points || !capture.scene_info.contains(kCameraKey)) return false;
     core::Scan& scan = capture.scan;
@@ -168,7 +168,7 @@ bool read_camera(const Hdf5Reader& file, Capture& capture) {
 }
 
 /// Finds out how points pair up and checks that H has one histogram per pair.
-void read_wall_scan(const Hdf5Reader& file, Capture& capture) {
+void read_wall_scan(const ArrayReader& file, Capture& capture) {
     core::Scan& scan = capture.scan;
     scan.sensing = read_positions(file, "sensor_grid_xyz");
     scan.illumination = read_positions(file, "laser_grid_xyz");
@@ -210,7 +210,7 @@ void read_wall_scan(const Hdf5Reader& file, Capture& capture) {
     }
 }
 
-void read_devices(const Hdf5Reader& file, Capture& capture) {
+void read_devices(const ArrayReader& file, Capture& capture) {
     const std::string flag = "t_accounts_first_and_last_bounces";
     if (!file.has(flag)) capture.notes.push_back(flag + " is missing: device legs not included");
     const bool device = file.has(flag) && file.read_integer(flag) != 0;
@@ -229,7 +229,7 @@ void read_devices(const Hdf5Reader& file, Capture& capture) {
 
 }  // namespace
 
-void read_ytal_scan(const Hdf5Reader& file, Capture& capture) {
+void read_ytal_scan(const ArrayReader& file, Capture& capture) {
     if (!read_camera(file, capture)) read_wall_scan(file, capture);
     read_devices(file, capture);
 }

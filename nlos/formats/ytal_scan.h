@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "nlos/containers/hdf5_reader.h"
+#include "nlos/containers/array_reader.h"
 #include "renderer/core/capture.h"
 
 namespace nlos {
@@ -11,6 +11,6 @@ namespace nlos {
 ///
 /// Throws core::Error when something needed is missing, not finite, or H does not have one
 /// histogram per pair.
-void read_ytal_scan(const Hdf5Reader& file, core::Capture& capture);
+void read_ytal_scan(const ArrayReader& file, core::Capture& capture);
 
 }  // namespace nlos

@@ -2,6 +2,7 @@
 #include "nlos/methods/backprojection.h"
 
 #include "nlos/methods/backprojection_rows.h"
+#include "nlos/methods/observed_share.h"
 #include "nlos/methods/slabs.h"
 
 namespace nlos {
@@ -65,6 +66,15 @@ void run_general(const MethodInput& input, Compensation compensation, std::span<
 Volume backproject(const MethodInput& input,
                    const ReconstructSettings& settings,
                    std::size_t num_slabs) {
+    if (input.observed) {
+        const core::Progress progress = input.progress.part(0.0, 1.0 / 3.0);
+        Volume volume =
+            backproject(with_histograms(input, input.time_axis, input.transient, progress),
+                        settings,
+                        num_slabs);
+        divide_by_observed_share(input, num_slabs, volume);
+        return volume;
+    }
     Volume volume{input.axes, std::vector<float>(input.axes.num_voxels(), 0.0F), {}};
     if (takes_fast_way(input)) {
         run_fast(input, settings.compensation, num_slabs, volume.values);
@@ -77,7 +87,8 @@ Volume backproject(const MethodInput& input,
 double backproject_bytes(const MethodInput& input,
                          const ReconstructSettings& /*settings*/,
                          std::size_t num_slabs) {
-    const double volume = 4.0 * static_cast<double>(input.axes.num_voxels());
+    const double volume =
+        4.0 * static_cast<double>(input.axes.num_voxels()) + observed_share_bytes(input);
     if (takes_fast_way(input)) {
         const auto bins = static_cast<double>(input.time_axis.num_bins);
         const WallGrid& grid = *input.wall.grid;

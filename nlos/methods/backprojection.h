@@ -11,13 +11,16 @@ namespace nlos {
 
 /// Backprojection: v(p) = sum over pairs (l, s) of H(l, s; |l - p| + |p - s|), linear in time
 /// between bin centres. Adjoint of a forward model without cosines, and without falloff unless each
-/// term is multiplied by what the light lost on its way.
+/// term is multiplied by what the light lost on its way. Where some bins were not observed, sums
+/// are divided by the share of their terms that was, see divide_by_observed_share().
 ///
-/// input          any scan; confocal grids whose y positions share a lattice with the voxels' take
-///                the fast way (shifted additions of whole rows), all others the general one
-/// settings       compensation, the factor of each term: none, r_l^2 r_s^2 (diffuse), r_l r_s
-/// (retro) num_slabs      the fast way copies this part of the wall's rows at a time returns sums
-/// in the histograms' unit throws         core::Failure when asked to stop source [Velten2012]
+/// input       any scan; confocal grids whose y positions share a lattice with the voxels' take the
+///             fast way (shifted additions of whole rows), all others the general one
+/// settings    compensation, the factor of each term: none, r_l^2 r_s^2 (diffuse), r_l r_s (retro)
+/// num_slabs   the fast way copies this part of the wall's rows at a time
+/// returns     sums in the histograms' unit
+/// throws      core::Failure when asked to stop
+/// source      [Velten2012]
 Volume backproject(const MethodInput& input,
                    const ReconstructSettings& settings,
                    std::size_t num_slabs = 1);

@@ -2,6 +2,7 @@
 #include "nlos/methods/filtered_backprojection.h"
 
 #include "nlos/methods/backprojection.h"
+#include "nlos/methods/observed_share.h"
 #include "nlos/methods/virtual_wave.h"
 
 #include <cmath>
@@ -72,14 +73,6 @@ void filter_column(const Volume& volume,
     }
 }
 
-/// The same measurement with other histograms.
-MethodInput with_histograms(const MethodInput& input,
-                            const core::TimeAxis& axis,
-                            const core::Transient& transient,
-                            const core::Progress& progress) {
-    return {input.scan, axis, transient, input.wall, input.axes, input.z_range_m, progress};
-}
-
 }  // namespace
 
 Volume laplacian_backprojection(const MethodInput& input,
@@ -103,7 +96,9 @@ Volume phasor_backprojection(const MethodInput& input,
     uncompensated.compensation = Compensation::None;
     const auto run = [&](WavePart part, double begin, double end) {
         const FilteredHistograms filtered = filter_histograms(input, settings.phasor, part);
-        const core::Progress progress = input.progress.part(begin, end);
+        const double all =
+            input.observed ? 1.0 / 3.0 : 1.0;  // of the work, the share comes after it
+        const core::Progress progress = input.progress.part(begin * all, end * all);
         return backproject(with_histograms(input, filtered.time_axis, filtered.transient, progress),
                            uncompensated,
                            num_slabs);
@@ -113,6 +108,7 @@ Volume phasor_backprojection(const MethodInput& input,
     for (std::size_t i = 0; i < volume.values.size(); ++i) {
         volume.values[i] = std::hypot(volume.values[i], imaginary.values[i]);
     }
+    if (input.observed) divide_by_observed_share(input, num_slabs, volume);
     return volume;
 }
 
@@ -128,6 +124,7 @@ double phasor_backprojection_bytes(const MethodInput& input,
                                    std::size_t num_slabs) {
     const core::TimeAxis axis = filtered_axis(input.time_axis, settings.phasor);
     return 4.0 * static_cast<double>(input.transient.num_pairs()) * axis.num_bins +
+           observed_share_bytes(input) +
            laplacian_backprojection_bytes(
                with_histograms(input, axis, input.transient, input.progress), settings, num_slabs);
 }

@@ -16,7 +16,8 @@ Volume laplacian_backprojection(const MethodInput& input,
                                 const ReconstructSettings& settings,
                                 std::size_t num_slabs = 1);
 
-/// Magnitude of the backprojection of histograms convolved with the phasor field's virtual wave.
+/// Magnitude of the backprojection of histograms convolved with the phasor field's virtual wave,
+/// and divided by the observed share as in backproject().
 ///
 /// settings    phasor; its wavelength_m must be set
 /// num_slabs   as backproject()

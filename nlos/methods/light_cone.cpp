@@ -3,6 +3,7 @@
 
 #include "nlos/fourier/padded_plane.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace nlos {
@@ -71,6 +72,27 @@ void ConeData::fill(std::size_t column, float* row) const {
     }
     path_length_to_squared_range(input_.time_axis, input_.scan.device_legs_m(pair), cone_, power_)
         .apply(histogram, row);
+}
+
+core::BinRange ConeData::observed(std::size_t column) const {
+    const int num_v = static_cast<int>(cone_.num_v());
+    if (!input_.observed) return {0, num_v};
+    const std::size_t pair = input_.wall.grid->point(column / cone_.ny, column % cone_.ny);
+    const core::BinRange& range = (*input_.observed)[pair];
+    const core::TimeAxis& axis = input_.time_axis;
+    // Where on the v axis a bin of the histogram begins; an end of the axis is an end of v.
+    const auto edge = [&](int bin) {
+        const double length_m = axis.bin_begin_m(bin) - input_.scan.device_legs_m(pair);
+        return std::pow(std::max(0.0, 0.5 * length_m), 2);
+    };
+    const auto index = [&](auto found) { return static_cast<int>(found - cone_.v_edges.begin()); };
+    const auto& edges = cone_.v_edges;
+    core::BinRange seen{0, num_v};
+    if (range.begin > 0) seen.begin = index(std::ranges::lower_bound(edges, edge(range.begin)));
+    if (range.end < axis.num_bins) {
+        seen.end = index(std::ranges::upper_bound(edges, edge(range.end))) - 1;
+    }
+    return range.size() > 0 ? core::intersection(seen, {0, num_v}) : core::BinRange{};
 }
 
 ConservativeResampling squared_range_to_depth(const MethodInput& input, const Cone& cone) {

@@ -47,6 +47,9 @@ class ConeData {
     /// Fills `row` with num_v() values of wall point (column / ny, column % ny).
     void fill(std::size_t column, float* row) const;
 
+    /// The bins of v of a wall point whose light was observed as a whole.
+    core::BinRange observed(std::size_t column) const;
+
  private:
     const MethodInput& input_;
     const Cone& cone_;

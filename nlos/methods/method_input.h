@@ -12,6 +12,7 @@
 #include <array>
 #include <cstddef>
 #include <functional>
+#include <vector>
 
 namespace nlos {
 
@@ -24,7 +25,18 @@ struct MethodInput {
     const VolumeAxes& axes;
     std::array<double, 2> z_range_m;  ///< the voxels along z divide it evenly
     const core::Progress& progress;
+    /// Per pair; null: all bins were observed. Histograms hold 0 in all others, which methods that
+    /// work by transforms take for darkness.
+    const std::vector<core::BinRange>* observed = nullptr;
 };
+
+/// The same measurement with other histograms, all of them observed.
+inline MethodInput with_histograms(const MethodInput& input,
+                                   const core::TimeAxis& axis,
+                                   const core::Transient& transient,
+                                   const core::Progress& progress) {
+    return {input.scan, axis, transient, input.wall, input.axes, input.z_range_m, progress};
+}
 
 /// Ends the work with core::Failure when the caller asked for it.
 inline void check_stop(const core::Progress& progress) {

@@ -55,7 +55,7 @@ std::array<double, 2> path_lengths(const MethodInput& input) {
 /// The wave and the bins that can reach a voxel.
 struct Band {
     VirtualWave wave;
-    BinRange bins;
+    core::BinRange bins;
 };
 
 Band make_band(const MethodInput& input, const PhasorSettings& settings) {
@@ -67,12 +67,12 @@ Band make_band(const MethodInput& input, const PhasorSettings& settings) {
     const auto [shortest, longest] = path_lengths(input);
     const auto bin_at = [&](double opl) {
         const double bin = std::floor((opl - axis.opl_start_m) / axis.bin_width_m);
-        return static_cast<std::size_t>(std::clamp(bin, 0.0, static_cast<double>(axis.num_bins)));
+        return static_cast<int>(std::clamp(bin, 0.0, static_cast<double>(axis.num_bins)));
     };
     Band band;
     band.bins = {bin_at(shortest + shortest_leg - reach), bin_at(longest + longest_leg + reach)};
-    const double begin = axis.bin_begin_m(static_cast<double>(band.bins.begin)) - longest_leg;
-    const double end = axis.bin_begin_m(static_cast<double>(band.bins.end)) - shortest_leg;
+    const double begin = axis.bin_begin_m(band.bins.begin) - longest_leg;
+    const double end = axis.bin_begin_m(band.bins.end) - shortest_leg;
     band.wave = make_virtual_wave(settings, std::max(longest - begin, end - shortest));
     return band;
 }
@@ -253,7 +253,7 @@ std::size_t illumination_per_chunk(const MethodInput& input,
 /// chunk   illumination points at a time
 void add_wave(const MethodInput& input,
               const VirtualWave& wave,
-              const BinRange& bins,
+              const core::BinRange& bins,
               std::size_t chunk,
               const core::Progress& progress,
               std::vector<ComplexF>& field) {

@@ -121,6 +121,7 @@ class Solver {
         data_.resize(cone_.num_columns() * cone_.num_v());
         for (std::size_t column = 0; column < cone_.num_columns(); ++column) {
             data.fill(column, data_.data() + column * cone_.num_v());
+            observed_.push_back(data.observed(column));
         }
         largest_ = std::max(0.0F, *std::max_element(data_.begin(), data_.end()));
         for (float& value : data_) value = largest_ > 0.0F ? value / largest_ : 0.0F;
@@ -136,18 +137,24 @@ class Solver {
     double noise() const {
         if (cone_.ny < 3) return 0.0;
         double sum = 0.0;
+        double count = 0.0;
         for (std::size_t ix = 0; ix < cone_.nx; ++ix) {
             for (std::size_t iy = 0; iy + 2 < cone_.ny; ++iy) {
-                const float* a = data_.data() + (ix * cone_.ny + iy) * cone_.num_v();
+                const std::size_t column = ix * cone_.ny + iy;
+                const float* a = data_.data() + column * cone_.num_v();
                 const float* b = a + cone_.num_v();
                 const float* c = b + cone_.num_v();
-                for (std::size_t v = 0; v < cone_.num_v(); ++v) {
+                const core::BinRange seen =
+                    core::intersection(core::intersection(observed_[column], observed_[column + 1]),
+                                       observed_[column + 2]);
+                for (int v = seen.begin; v < seen.end; ++v) {
                     const double difference = static_cast<double>(a[v] - 2.0F * b[v] + c[v]);
                     sum += difference * difference / 6.0;
                 }
+                count += seen.size();
             }
         }
-        return std::sqrt(sum / static_cast<double>(cone_.nx * (cone_.ny - 2) * cone_.num_v()));
+        return count > 0.0 ? std::sqrt(sum / count) : 0.0;
     }
 
     /// Updates c and p from K f in residual_, and leaves c - p there.
@@ -155,9 +162,12 @@ class Solver {
         core::parallel_for(cone_.num_columns(), [&](std::size_t column) {
             float* values = row(residual_.data(), column / cone_.ny, column % cone_.ny);
             const std::size_t first = column * cone_.num_v();
+            const auto [begin, end] = observed_[column];
             for (std::size_t v = 0; v < cone_.num_v(); ++v) {
                 const float e = values[v] + multiplier_[first + v];
-                const float c = 0.5F * (data_[first + v] + e);
+                // Where nobody looked, no datum pulls.
+                const bool is_seen = static_cast<int>(v) >= begin && static_cast<int>(v) < end;
+                const float c = is_seen ? 0.5F * (data_[first + v] + e) : e;
                 multiplier_[first + v] = e - c;
                 values[v] = 2.0F * c - e;
             }
@@ -248,7 +258,8 @@ class Solver {
     Fft transform_, inverse_;
     FftBuffer f_, residual_;
     std::vector<ComplexF> kernel_;
-    Field data_, multiplier_;  ///< g and p, inside the footprint only
+    Field data_, multiplier_;               ///< g and p, inside the footprint only
+    std::vector<core::BinRange> observed_;  ///< of g, per column
     Field q_, split_;
     std::array<Field, 3> u_, b_;
     std::array<std::vector<float>, 3> gradient_power_;

@@ -10,9 +10,9 @@ namespace nlos {
 ///
 ///     |K f - g|^2 / 2 + weight |grad f|_1 + sparsity |f|_1   over f >= 0,
 ///
-/// the first norm over the scan's points, f vanishing outside the wall's footprint, by the
-/// alternating direction method of multipliers. Data are scaled to a maximum of 1 and the kernel K
-/// to unit norm.
+/// the first norm over the observed bins of the scan's points, f vanishing outside the wall's
+/// footprint, by the alternating direction method of multipliers. Data are scaled to a maximum of 1
+/// and the kernel K to unit norm.
 ///
 /// input      as light_cone_transform()
 /// settings   falloff and tv

@@ -34,11 +34,13 @@ Matrix phases(const VirtualWave& wave, double first_m, double step_m, std::size_
 }
 
 /// phases() of bin centres, each frequency times its amplitude.
-Matrix analysis_basis(const VirtualWave& wave, const core::TimeAxis& axis, const BinRange& bins) {
+Matrix analysis_basis(const VirtualWave& wave,
+                      const core::TimeAxis& axis,
+                      const core::BinRange& bins) {
     Matrix basis = phases(wave,
-                          axis.bin_center_m(static_cast<double>(bins.begin)),
+                          axis.bin_center_m(bins.begin),
                           axis.bin_width_m,
-                          bins.end - bins.begin,
+                          static_cast<std::size_t>(bins.size()),
                           -1);
     for (std::size_t i = 0; i < wave.size(); ++i) {
         const auto amplitude = static_cast<float>(wave.amplitudes[i]);
@@ -51,9 +53,9 @@ Matrix analysis_basis(const VirtualWave& wave, const core::TimeAxis& axis, const
 Histograms histograms_of(const core::Transient& transient,
                          std::size_t first_pair,
                          std::size_t num_pairs,
-                         const BinRange& bins) {
+                         const core::BinRange& bins) {
     return {transient.histogram(first_pair).data() + bins.begin,
-            static_cast<Eigen::Index>(bins.end - bins.begin),
+            bins.size(),
             static_cast<Eigen::Index>(num_pairs),
             Eigen::OuterStride<>(static_cast<Eigen::Index>(transient.num_bins()))};
 }
@@ -109,7 +111,7 @@ VirtualWave VirtualWave::part(std::size_t begin, std::size_t end) const {
 
 std::vector<ComplexF> analyse(const MethodInput& input,
                               const VirtualWave& wave,
-                              const BinRange& bins,
+                              const core::BinRange& bins,
                               std::array<std::size_t, 2> pairs) {
     const std::size_t num_pairs = pairs[1] - pairs[0];
     const std::size_t n = wave.size();
@@ -149,7 +151,7 @@ FilteredHistograms filter_histograms(const MethodInput& input,
     const std::size_t num_pairs = input.transient.num_pairs();
     const VirtualWave wave =
         make_virtual_wave(settings, axis.bin_width_m * static_cast<double>(axis.num_bins));
-    const BinRange bins{0, input.transient.num_bins()};
+    const core::BinRange bins{0, input.time_axis.num_bins};
     const Matrix analysis = analysis_basis(wave, input.time_axis, bins);
     const Matrix synthesis = phases(wave,
                                     axis.bin_center_m(0.0),

@@ -46,12 +46,6 @@ double default_wavelength_m(const core::Scan& scan,
 /// source     [Liu2019]: sigma = cycles * wavelength / 6
 VirtualWave make_virtual_wave(const PhasorSettings& settings, double span_m);
 
-/// Bins [begin, end) of an axis.
-struct BinRange {
-    std::size_t begin = 0;
-    std::size_t end = 0;
-};
-
 /// Coefficients of histograms at the wave's frequencies, times the wave's amplitudes: sum over bins
 /// of H exp(-2 pi i f (bin centre - device legs)).
 ///
@@ -59,7 +53,7 @@ struct BinRange {
 /// returns   stored [frequency][pair - begin]
 std::vector<ComplexF> analyse(const MethodInput& input,
                               const VirtualWave& wave,
-                              const BinRange& bins,
+                              const core::BinRange& bins,
                               std::array<std::size_t, 2> pairs);
 
 enum class WavePart { Real, Imaginary };

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace nlos {
@@ -23,21 +24,27 @@ constexpr int kPreviewWidth = 640;      // [pixels] that small images are enlarg
 constexpr std::size_t kMaxFrames = 12;  // of a sequence, drawn one by one
 constexpr std::size_t kMaxGates = 4;    // of an image's histogram, drawn one by one
 
+constexpr float kBackground = std::numeric_limits<float>::quiet_NaN();  // what nobody observed
+
 using Range = std::array<double, 2>;
 
 std::string unit_of(const core::Capture& capture) {
     return capture.unit == core::TransientUnit::Counts ? "counts" : "radiance";
 }
 
-/// The mean histogram over all pairs.
+/// The mean histogram over all pairs that observed a bin; 0 where none did.
 std::vector<double> mean_transient(const core::Capture& capture) {
     const core::Transient& transient = capture.transient;
     std::vector<double> mean(transient.num_bins(), 0.0);
+    std::vector<double> seen(transient.num_bins(), 0.0);
     for (std::size_t pair = 0; pair < transient.num_pairs(); ++pair) {
-        const auto histogram = transient.histogram(pair);
-        for (std::size_t bin = 0; bin < mean.size(); ++bin) mean[bin] += histogram[bin];
+        auto bin = static_cast<std::size_t>(capture.observed_range(pair).begin);
+        for (const float value : capture.observed_values(pair)) {
+            mean[bin] += value;
+            ++seen[bin++];
+        }
     }
-    for (double& value : mean) value /= static_cast<double>(transient.num_pairs());
+    for (std::size_t bin = 0; bin < mean.size(); ++bin) mean[bin] /= std::max(1.0, seen[bin]);
     return mean;
 }
 
@@ -67,6 +74,8 @@ std::size_t pair_of(const core::Scan& scan, std::size_t sensing) {
 
 /// The range from 0 to all but a share of brightest values, so that a few cannot darken the rest.
 Range light_range(std::vector<float> values, double brightest_share) {
+    std::erase_if(values, [](float value) { return std::isnan(value); });
+    if (values.empty()) return {0.0, 0.0};
     const double share = 1.0 - brightest_share;
     const auto rank = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
     std::nth_element(values.begin(), values.begin() + rank, values.end());
@@ -117,17 +126,27 @@ ImagePanel streak_panel(const core::Capture& capture,
     panel.scale = AxisScale::Free;
     panel.value_range = light_range(panel.values, kBrightestShare);
     choose_scale(panel);
+    for (std::size_t i = 0; i < panel.values.size(); ++i) {
+        const std::size_t pair = pair_of(capture.scan, points[i % points.size()]);
+        const auto bin = static_cast<int>(bins[0] + i / points.size());
+        if (!capture.observed_range(pair).holds(bin)) panel.values[i] = kBackground;
+    }
     return panel;
 }
 
-/// All light of every sensing point, the wall seen like every front view.
+/// All light of every sensing point, the wall seen like every front view; nothing for dead points.
 ImagePanel light_panel(const core::Capture& capture,
                        const core::Transient& transient,
                        const WallGrid& grid) {
     std::vector<double> light(capture.scan.sensing.size(), 0.0);
+    std::vector<int> seen(light.size(), 0);  // bins
     for (std::size_t pair = 0; pair < capture.scan.num_pairs(); ++pair) {
         double& sum = light[capture.scan.sensing_index(pair)];
         for (const float value : transient.histogram(pair)) sum += value;
+        seen[capture.scan.sensing_index(pair)] += capture.observed_range(pair).size();
+    }
+    for (std::size_t i = 0; i < light.size(); ++i) {
+        if (seen[i] == 0) light[i] = kBackground;
     }
     ImagePanel panel = wall_panel(grid, {light.begin(), light.end()});
     panel.title = "Light over the wall, all bins";

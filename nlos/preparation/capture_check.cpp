@@ -33,7 +33,7 @@ const core::Vec3& sensing_point(const core::Scan& scan, std::size_t pair) {
 /// Constant background of each pair; 0 where it cannot be told.
 std::vector<double> ambient_of(const core::Capture& capture) {
     if (capture.unit == core::TransientUnit::Counts) {
-        if (auto signal = find_signal(capture.transient)) {
+        if (auto signal = find_signal(capture.transient, capture.observed)) {
             return std::move(signal->ambient_per_bin);
         }
     }
@@ -52,10 +52,12 @@ std::optional<std::string> early_light(const core::Capture& capture,
             (illumination_point(capture.scan, pair) - sensing_point(capture.scan, pair)).norm() +
             capture.scan.device_legs_m(pair);
         const auto histogram = capture.transient.histogram(pair);
-        for (std::size_t bin = 0; bin < histogram.size(); ++bin) {
-            const double light = static_cast<double>(histogram[bin]) - ambient[pair];
+        const core::BinRange observed = capture.observed_range(pair);
+        for (int bin = observed.begin; bin < observed.end; ++bin) {
+            const double light =
+                static_cast<double>(histogram[static_cast<std::size_t>(bin)]) - ambient[pair];
             total += light;
-            const double before = shortest - axis.bin_begin_m(static_cast<double>(bin) + 1.0);
+            const double before = shortest - axis.bin_begin_m(bin + 1.0);
             if (before < axis.bin_width_m) continue;
             early += light;
             if (light > 0.0) earliest_m = std::max(earliest_m, before);
@@ -157,6 +159,9 @@ std::vector<std::string> capture_warnings(const core::Capture& capture) {
         sequence && !std::all_of(sequence->frames.begin(),
                                  sequence->frames.end(),
                                  [](const core::Transient& frame) { return frame.is_dark(); });
+    if (core::observed_hull(capture.observed, capture.time_axis.num_bins).size() == 0) {
+        return {"no bin of any pair was observed"};
+    }
     if (capture.transient.is_dark() && !other_frames_are_lit) {
         return {"the capture holds no light: all its values are 0"};
     }

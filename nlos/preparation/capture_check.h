@@ -10,7 +10,7 @@ namespace nlos {
 
 /// What looks wrong about a capture, a sentence each, for people:
 ///
-/// - no light at all;
+/// - nothing observed, or no light at all;
 /// - light that arrives before the shortest possible path, |l - s| plus device legs: time zero is
 ///   late;
 /// - first light that moves along the wall faster than any path length can change (1 m per metre of
@@ -20,6 +20,8 @@ namespace nlos {
 ///   size is wrong, see bend_of_first_light().
 ///
 /// - a time axis that cuts most light off, where the capture's provenance knows how much there is.
+///
+/// Only bins that were observed count, and first light only where it came after they began.
 ///
 /// returns   empty when nothing does; nothing about timing for captures too small or dark to tell,
 ///           nor for images

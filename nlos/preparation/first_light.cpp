@@ -24,17 +24,20 @@ struct RangeMap {
     std::array<double, 2> pitch_m{};
     double bin_m = 0.0;                         ///< of range
     std::vector<std::optional<double>> ranges;  ///< [x][y]
+    std::vector<bool> may_be_missing;           ///< [x][y]: not all bins were observed
 };
 
 RangeMap make_range_map(const core::Capture& capture,
                         const WallGrid& grid,
                         const std::vector<double>& ambient) {
-    RangeMap map{grid.size, grid.pitch_m, 0.5 * capture.time_axis.bin_width_m, {}};
+    RangeMap map{grid.size, grid.pitch_m, 0.5 * capture.time_axis.bin_width_m, {}, {}};
     for (std::size_t ix = 0; ix < grid.size[0]; ++ix) {
         for (std::size_t iy = 0; iy < grid.size[1]; ++iy) {
             const std::size_t pair = grid.point(ix, iy);
             const std::optional<double> opl = first_light_m(capture, pair, ambient[pair]);
             map.ranges.push_back(opl ? std::optional(0.5 * *opl) : std::nullopt);
+            map.may_be_missing.push_back(capture.observed_range(pair).size() <
+                                         capture.time_axis.num_bins);
         }
     }
     return map;
@@ -49,11 +52,14 @@ std::optional<BendOfFirstLight> bend_in_window(const RangeMap& map,
     Terms rhs = Terms::Zero();
     double squares = 0.0;
     double mean_range_m = 0.0;
-    const auto count = static_cast<double>(size[0] * size[1]);
+    double count = 0.0;
     for (std::size_t ix = 0; ix < size[0]; ++ix) {
         for (std::size_t iy = 0; iy < size[1]; ++iy) {
-            const auto& range = map.ranges[(first[0] + ix) * map.size[1] + first[1] + iy];
+            const std::size_t at = (first[0] + ix) * map.size[1] + first[1] + iy;
+            const std::optional<double>& range = map.ranges[at];
+            if (!range && map.may_be_missing[at]) continue;
             if (!range) return std::nullopt;
+            ++count;
             const double x =
                 map.pitch_m[0] * (static_cast<double>(ix) - 0.5 * static_cast<double>(size[0] - 1));
             const double y =
@@ -63,9 +69,11 @@ std::optional<BendOfFirstLight> bend_in_window(const RangeMap& map,
             lhs += terms * terms.transpose();
             rhs += *range * *range * terms;
             squares += std::pow(*range, 4);
-            mean_range_m += *range / count;
+            mean_range_m += *range;
         }
     }
+    if (count < 0.5 * static_cast<double>(size[0] * size[1])) return std::nullopt;
+    mean_range_m /= count;
     const Eigen::Matrix<double, 6, 6> inverse = lhs.inverse();
     const Terms c = inverse * rhs;
     const double residual =
@@ -82,19 +90,19 @@ std::optional<BendOfFirstLight> bend_in_window(const RangeMap& map,
 std::optional<double> first_light_m(const core::Capture& capture,
                                     std::size_t pair,
                                     double ambient) {
-    const auto histogram = capture.transient.histogram(pair);
-    const auto excess = [&](std::size_t bin) {
-        return static_cast<double>(histogram[bin]) - ambient;
-    };
+    const auto seen = capture.observed_values(pair);
+    if (seen.empty()) return std::nullopt;
+    const int first_seen = capture.observed_range(pair).begin;
+    const auto excess = [&](std::size_t bin) { return static_cast<double>(seen[bin]) - ambient; };
     const double threshold =
-        kOnsetShare *
-        (static_cast<double>(*std::max_element(histogram.begin(), histogram.end())) - ambient);
+        kOnsetShare * (static_cast<double>(*std::max_element(seen.begin(), seen.end())) - ambient);
     if (!(threshold > 0.0)) return std::nullopt;
     std::size_t bin = 0;
     while (excess(bin) < threshold) ++bin;
+    if (bin == 0 && first_seen > 0) return std::nullopt;
     const double before = bin > 0 ? excess(bin - 1) : 0.0;
     const double late = (threshold - before) / (excess(bin) - before);
-    return capture.time_axis.bin_center_m(static_cast<double>(bin) - 1.0 + late) -
+    return capture.time_axis.bin_center_m(first_seen + static_cast<double>(bin) - 1.0 + late) -
            capture.scan.device_legs_m(pair);
 }
 

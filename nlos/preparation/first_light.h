@@ -12,7 +12,8 @@ namespace nlos {
 /// passes 0.3 of its maximum, between bins.
 ///
 /// ambient   background per bin, not counted
-/// returns   nothing for a dark histogram
+/// returns   nothing for a dark histogram, and where light was there when observation began late:
+///           the first of it may have come before
 std::optional<double> first_light_m(const core::Capture& capture, std::size_t pair, double ambient);
 
 /// By what factor the bins of a confocal capture look too wide for its wall, from how first light
@@ -27,7 +28,8 @@ std::optional<double> first_light_m(const core::Capture& capture, std::size_t pa
 /// Quadratics are fitted to r^2 in windows of a quarter of the wall's sides, every half window; k
 /// is the larger bend. Windows whose residual exceeds a bin, or whose bend is uncertain by more
 /// than 0.05, are left out: they see several surfaces, or noise. What nine in ten of the others
-/// stay below is s^2, as far as edges and tips are in view.
+/// stay below is s^2, as far as edges and tips are in view. A window does without up to half its
+/// points where these did not observe all bins.
 struct BendOfFirstLight {
     double k = 0.0;            ///< s^2
     double uncertainty = 0.0;  ///< one standard deviation of k in its window

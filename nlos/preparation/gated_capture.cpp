@@ -32,6 +32,21 @@ core::Transient sum_bins(const core::Transient& transient, const std::vector<dou
     return sums;
 }
 
+/// One bin per pair, observed where every bin that the gate covers was.
+core::ObservedBins observed_of(const core::Capture& capture, const std::vector<double>& shares) {
+    if (!capture.observed) return std::nullopt;
+    std::vector<core::BinRange> observed;
+    for (const core::BinRange& range : *capture.observed) {
+        bool is_seen = true;
+        for (int bin = 0; bin < capture.time_axis.num_bins; ++bin) {
+            const bool is_covered = shares[static_cast<std::size_t>(bin)] > 0.0;
+            is_seen = is_seen && (!is_covered || range.holds(bin));
+        }
+        observed.push_back({0, is_seen ? 1 : 0});
+    }
+    return observed;
+}
+
 }  // namespace
 
 core::Capture gated_capture(const core::Capture& capture,
@@ -50,6 +65,7 @@ core::Capture gated_capture(const core::Capture& capture,
                                       axis.opl_end_m()));
     }
     std::vector<double> shares = shares_of(axis, gate_start_m, end_m);
+    const core::ObservedBins observed = observed_of(capture, shares);
     core::Capture gated;
     gated.scan = capture.scan;
     gated.time_axis = {gate_start_m, gate_width_m, 1};
@@ -66,6 +82,7 @@ core::Capture gated_capture(const core::Capture& capture,
         for (double& share : shares) share *= share;
         gated.variance = sum_bins(*capture.variance, shares);
     }
+    if (observed) core::restrict_observed(gated, *observed);
     return gated;
 }
 

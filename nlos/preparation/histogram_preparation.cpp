@@ -6,27 +6,43 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace nlos {
 namespace {
 
 constexpr std::size_t kSegments = 32;
-constexpr std::size_t kDarkSegments = 8;
+constexpr std::size_t kDarkShare = 4;    // one in so many segments is taken for dark
 constexpr double kSignificance = 5.0;    // standard deviations
 constexpr double kSmallestShare = 0.01;  // of the strongest segment
 
-using SegmentSums = std::array<double, kSegments>;
+/// Light and the number of bins that it was observed in.
+struct SeenLight {
+    double sum = 0.0;
+    double bins = 0.0;
+
+    SeenLight& operator+=(const SeenLight& other) {
+        sum += other.sum;
+        bins += other.bins;
+        return *this;
+    }
+};
+
+using SegmentLight = std::array<SeenLight, kSegments>;
 
 /// Equal runs of bins from `begin` on.
 struct Segments {
-    std::size_t begin = 0;
-    std::size_t length = 0;
+    int begin = 0;
+    int length = 0;
 
-    double sum(std::span<const float> histogram, std::size_t segment) const {
-        const auto first =
-            histogram.begin() + static_cast<std::ptrdiff_t>(begin + segment * length);
-        return std::accumulate(first, first + static_cast<std::ptrdiff_t>(length), 0.0);
+    SeenLight light(std::span<const float> histogram,
+                    const core::BinRange& observed,
+                    std::size_t segment) const {
+        const int first = begin + static_cast<int>(segment) * length;
+        const core::BinRange seen = core::intersection(observed, {first, first + length});
+        const auto from = histogram.begin() + seen.begin;
+        return {std::accumulate(from, from + seen.size(), 0.0), 1.0 * seen.size()};
     }
 };
 
@@ -43,80 +59,140 @@ std::size_t first_filled_bin(const core::Transient& transient) {
     return first;
 }
 
-SegmentSums sums_over_pairs(const core::Transient& transient, const Segments& segments) {
-    SegmentSums sums{};
-    for (std::size_t pair = 0; pair < transient.num_pairs(); ++pair) {
-        for (std::size_t i = 0; i < kSegments; ++i) {
-            sums[i] += segments.sum(transient.histogram(pair), i);
-        }
-    }
-    return sums;
+Segments make_segments(const core::Transient& transient, const core::ObservedBins& observed) {
+    const core::BinRange hull =
+        core::observed_hull(observed, static_cast<int>(transient.num_bins()));
+    Segments segments;
+    segments.begin = observed ? hull.begin : static_cast<int>(first_filled_bin(transient));
+    segments.length = (hull.end - segments.begin) / static_cast<int>(kSegments);
+    return segments;
 }
+
+/// Histograms in segments, a part of the bins observed.
+class SegmentedTransient {
+ public:
+    SegmentedTransient(const core::Transient& transient,
+                       const core::ObservedBins& observed,
+                       const Segments& segments)
+        : transient_(transient), observed_(observed), segments_(segments) {
+        for (std::size_t pair = 0; pair < transient.num_pairs(); ++pair) {
+            for (std::size_t i = 0; i < kSegments; ++i) total_[i] += light(pair, i);
+        }
+        std::iota(darkest_first_.begin(), darkest_first_.end(), std::size_t{0});
+        std::ranges::stable_sort(darkest_first_, {}, [&](std::size_t i) {
+            return is_seen(i) ? sum(i) : std::numeric_limits<double>::infinity();
+        });
+    }
+
+    std::size_t num_seen() const {
+        return static_cast<std::size_t>(
+            std::ranges::count_if(total_, [](const SeenLight& light) { return light.bins > 0.0; }));
+    }
+    bool is_seen(std::size_t i) const { return total_[i].bins > 0.0; }
+
+    /// Light of all pairs, had all of them observed the segment, and its standard deviation.
+    double sum(std::size_t i) const { return total_[i].sum * full_sight(i); }
+    double deviation(std::size_t i) const { return std::sqrt(total_[i].sum) * full_sight(i); }
+    double strongest() const { return sum(darkest_first_[num_seen() - 1]); }
+
+    /// Light of one pair in the darkest segments.
+    SeenLight dark_light(std::size_t pair) const {
+        SeenLight dark;
+        for (std::size_t i = 0; i < num_dark(); ++i) dark += light(pair, darkest_first_[i]);
+        return dark;
+    }
+    std::size_t num_dark() const { return std::max<std::size_t>(1, num_seen() / kDarkShare); }
+
+ private:
+    SeenLight light(std::size_t pair, std::size_t segment) const {
+        const int num_bins = static_cast<int>(transient_.num_bins());
+        return segments_.light(
+            transient_.histogram(pair), core::observed_range(observed_, pair, num_bins), segment);
+    }
+    double full_sight(std::size_t i) const {
+        return static_cast<double>(transient_.num_pairs()) * segments_.length / total_[i].bins;
+    }
+
+    const core::Transient& transient_;
+    const core::ObservedBins& observed_;
+    const Segments& segments_;
+    SegmentLight total_{};
+    std::array<std::size_t, kSegments> darkest_first_{};
+};
 
 }  // namespace
 
-std::optional<SignalExtent> find_signal(const core::Transient& transient) {
-    Segments segments;
-    segments.begin = first_filled_bin(transient);
-    segments.length = (transient.num_bins() - segments.begin) / kSegments;
+std::optional<SignalExtent> find_signal(const core::Transient& transient,
+                                        const core::ObservedBins& observed) {
+    const Segments segments = make_segments(transient, observed);
     if (segments.length < 2) return std::nullopt;
-    const SegmentSums sums = sums_over_pairs(transient, segments);
+    const SegmentedTransient parts(transient, observed, segments);
 
-    std::array<std::size_t, kSegments> darkest_first;
-    std::iota(darkest_first.begin(), darkest_first.end(), std::size_t{0});
-    std::stable_sort(darkest_first.begin(), darkest_first.end(), [&](std::size_t a, std::size_t b) {
-        return sums[a] < sums[b];
-    });
-
+    std::vector<SeenLight> dark;
+    SeenLight all_dark;
+    for (std::size_t pair = 0; pair < transient.num_pairs(); ++pair) {
+        all_dark += dark.emplace_back(parts.dark_light(pair));
+    }
     SignalExtent extent;
     double ambient_sum = 0.0;
-    for (std::size_t pair = 0; pair < transient.num_pairs(); ++pair) {
-        double sum = 0.0;
-        for (std::size_t i = 0; i < kDarkSegments; ++i) {
-            sum += segments.sum(transient.histogram(pair), darkest_first[i]);
-        }
-        ambient_sum += sum / kDarkSegments;
-        extent.ambient_per_bin.push_back(sum /
-                                         static_cast<double>(kDarkSegments * segments.length));
+    for (const SeenLight& own : dark) {
+        const SeenLight& light = own.bins < segments.length ? all_dark : own;
+        extent.ambient_per_bin.push_back(light.sum / light.bins);
+        const double dark_bins = static_cast<double>(parts.num_dark()) * segments.length;
+        ambient_sum += light.sum * (dark_bins / light.bins) / static_cast<double>(parts.num_dark());
     }
 
-    const double strongest = sums[darkest_first.back()] - ambient_sum;
-    std::size_t end = 0;
+    const double strongest = parts.strongest() - ambient_sum;
+    int end = 0;
     for (std::size_t i = 0; i < kSegments; ++i) {
-        const double excess = sums[i] - ambient_sum;
-        if (excess > kSignificance * std::sqrt(sums[i]) && excess > kSmallestShare * strongest) {
-            end = i + 1;
+        if (!parts.is_seen(i)) continue;
+        const double excess = parts.sum(i) - ambient_sum;
+        if (excess > kSignificance * parts.deviation(i) && excess > kSmallestShare * strongest) {
+            end = static_cast<int>(i) + 1;
         }
     }
-    const bool reaches_the_end = end == kSegments || end == 0;
-    extent.end_bin = static_cast<int>(reaches_the_end ? transient.num_bins()
-                                                      : segments.begin + end * segments.length);
+    const bool reaches_the_end = end == static_cast<int>(kSegments) || end == 0;
+    extent.end_bin = reaches_the_end ? static_cast<int>(transient.num_bins())
+                                     : segments.begin + end * segments.length;
     return extent;
+}
+
+core::ObservedBins prepared_observed(const PreparationPlan& plan) {
+    if (!plan.observed) return std::nullopt;
+    std::vector<core::BinRange> ranges;
+    for (std::size_t pair = 0; pair < plan.observed->size(); ++pair) {
+        ranges.push_back(plan.prepared_range(pair));
+    }
+    return ranges;
 }
 
 core::Transient prepare_histograms(const core::Transient& transient, const PreparationPlan& plan) {
     core::Transient prepared(transient.num_pairs(), plan.num_bins);
-    const auto merge = static_cast<std::size_t>(plan.merge_bins);
+    const int merge = plan.merge_bins;
     core::parallel_for(prepared.num_pairs(), [&](std::size_t pair) {
         const auto input = transient.histogram(pair);
         const auto output = prepared.histogram(pair);
         std::vector<double> signal(input.begin(), input.end());
-        const auto first_filled =
-            std::find_if(signal.begin(), signal.end(), [](double value) { return value != 0.0; });
+        auto first = std::find_if(signal.begin(), signal.end(), [](double v) { return v != 0.0; });
+        auto end = signal.end();
+        if (plan.observed) {
+            first = signal.begin() + (*plan.observed)[pair].begin;
+            end = signal.begin() + (*plan.observed)[pair].end;
+        }
         if (!plan.ambient_per_bin.empty()) {
             // Bins zeroed at the start of the axis hold no ambient light either.
-            std::for_each(first_filled, signal.end(), [&](double& value) {
-                value -= plan.ambient_per_bin[pair];
-            });
+            std::for_each(first, end, [&](double& value) { value -= plan.ambient_per_bin[pair]; });
         }
         if (plan.deconvolution) {
             plan.deconvolution->apply(signal);
-            std::fill(signal.begin(), first_filled, 0.0);
+            std::fill(signal.begin(), first, 0.0);
+            std::fill(end, signal.end(), 0.0);
         }
-        for (std::size_t bin = 0; bin < output.size(); ++bin) {
-            const auto first = signal.begin() + static_cast<std::ptrdiff_t>(bin * merge);
-            output[bin] = static_cast<float>(
-                std::accumulate(first, first + static_cast<std::ptrdiff_t>(merge), 0.0));
+        const core::BinRange range = plan.prepared_range(pair);
+        for (int bin = range.begin; bin < range.end; ++bin) {
+            const auto from = signal.begin() + bin * merge;
+            output[static_cast<std::size_t>(bin)] =
+                static_cast<float>(std::accumulate(from, from + merge, 0.0));
         }
     });
     return prepared;

@@ -20,14 +20,18 @@ struct SignalExtent {
 
 /// Finds constant background light and the end of the signal in photon counts.
 ///
-/// Of 32 segments of the axis (zeroed bins at its start left out), the eight that are darkest over
-/// all pairs give each pair's ambient level. The signal ends with the last segment whose sum over
+/// Of 32 segments of the axis (zeroed bins at its start left out), the quarter that is darkest over
+/// all pairs gives each pair's ambient level. The signal ends with the last segment whose sum over
 /// all pairs exceeds the ambient light by 5 standard deviations and by 1 % of the strongest
 /// segment: noise behind it would be raised by range^4 and outshine the scene.
 ///
+/// Bins that were not observed count nowhere: the segments share the bins that were, sums are
+/// scaled to full sight, and a pair that saw less than one dark segment takes the others' level.
+///
 /// returns   nothing when the axis is too short to tell (fewer than 64 filled bins)
 /// throws    nothing
-std::optional<SignalExtent> find_signal(const core::Transient& transient);
+std::optional<SignalExtent> find_signal(const core::Transient& transient,
+                                        const core::ObservedBins& observed = std::nullopt);
 
 /// What to do to histograms before a method sees them.
 struct PreparationPlan {
@@ -36,11 +40,22 @@ struct PreparationPlan {
     std::vector<double> ambient_per_bin;  ///< per pair, before merging; empty: none
     /// Of histograms of the capture's length, null: none.
     std::shared_ptr<const ResponseDeconvolution> deconvolution = nullptr;
+    core::ObservedBins observed = std::nullopt;  ///< before merging
+
+    /// The bins of a prepared histogram that were observed, each of them as a whole.
+    core::BinRange prepared_range(std::size_t pair) const {
+        if (!observed) return {0, num_bins};
+        return core::intersection(core::merged((*observed)[pair], merge_bins), {0, num_bins});
+    }
 };
 
 /// Takes off ambient light, then the set-up's response, adds up neighbouring bins and drops those
-/// behind the plan's end. Bins zeroed at the start of a histogram stay 0.
+/// behind the plan's end. Bins zeroed at the start of a histogram stay 0, as do those not observed;
+/// what was observed of a bin that was not as a whole is dropped.
 core::Transient prepare_histograms(const core::Transient& transient, const PreparationPlan& plan);
+
+/// The observed bins of prepared histograms.
+core::ObservedBins prepared_observed(const PreparationPlan& plan);
 
 /// Multiplies every bin by range^power, range being half its path length without device legs; bins
 /// before the wall become 0. The power of the light's falloff makes equal scatterers equally bright

@@ -117,11 +117,44 @@ std::vector<double> moved_edges(const core::Scan& scan,
     return edges;
 }
 
+/// Turns sums over pairs into means over those that observed a bin.
+///
+/// seen      per bin, how many pairs observed it, the last ones in part
+/// returns   the longest run of bins seen well enough; all others become 0
+core::BinRange take_means(const std::vector<double>& seen, std::span<float> sums) {
+    constexpr double kSeenEnough = 0.5;  // of one pair's bin
+    core::BinRange best;
+    core::BinRange run;
+    for (int bin = 0; bin < static_cast<int>(sums.size()); ++bin) {
+        const auto at = static_cast<std::size_t>(bin);
+        if (seen[at] < kSeenEnough) continue;
+        run = run.end == bin ? core::BinRange{run.begin, bin + 1} : core::BinRange{bin, bin + 1};
+        if (run.size() > best.size()) best = run;
+        sums[at] = static_cast<float>(static_cast<double>(sums[at]) / seen[at]);
+    }
+    for (int bin = 0; bin < static_cast<int>(sums.size()); ++bin) {
+        if (!best.holds(bin)) sums[static_cast<std::size_t>(bin)] = 0.0F;
+    }
+    return best;
+}
+
+/// Adds the share of each bin that lies between two lengths.
+void add_shares(const std::vector<double>& edges,
+                double begin,
+                double end,
+                std::vector<double>& to) {
+    for (std::size_t bin = 0; bin < to.size(); ++bin) {
+        const double overlap = std::min(end, edges[bin + 1]) - std::max(begin, edges[bin]);
+        to[bin] += std::max(0.0, overlap) / (edges[bin + 1] - edges[bin]);
+    }
+}
+
 }  // namespace
 
 std::optional<ConfocalData> convert_to_confocal(const core::Scan& scan,
                                                 const core::TimeAxis& axis,
-                                                const core::Transient& transient) {
+                                                const core::Transient& transient,
+                                                const core::ObservedBins& observed) {
     const WallFrame wall = derive_wall_frame(scan);
     const std::optional<MidpointGrid> grid = find_midpoint_grid(scan, wall);
     if (!grid) return std::nullopt;
@@ -129,19 +162,29 @@ std::optional<ConfocalData> convert_to_confocal(const core::Scan& scan,
     confocal.points = wall_points(*grid, wall);
     confocal.time_axis = confocal_axis(scan, axis, grid->pairs.size());
     confocal.transient = core::Transient(grid->pairs.size(), confocal.time_axis.num_bins);
+    if (observed) confocal.observed.emplace(grid->pairs.size());
     const auto num_bins = static_cast<std::size_t>(confocal.time_axis.num_bins);
     const std::vector<double> edges = even_edges(0.0, confocal.time_axis.opl_end_m(), num_bins);
     core::parallel_for(grid->pairs.size(), [&](std::size_t point) {
         const auto sum = confocal.transient.histogram(point);
         const std::vector<std::size_t>& pairs = grid->pairs[point];
-        const std::vector<double> shares(transient.num_bins(),
-                                         1.0 / static_cast<double>(pairs.size()));
+        const double share = observed ? 1.0 : 1.0 / static_cast<double>(pairs.size());
+        const std::vector<double> shares(transient.num_bins(), share);
         std::vector<float> moved(num_bins);
+        std::vector<double> seen(num_bins);
         for (const std::size_t pair : pairs) {
-            ConservativeResampling(moved_edges(scan, axis, pair), edges, shares)
+            const std::vector<double> from = moved_edges(scan, axis, pair);
+            ConservativeResampling(from, edges, shares)
                 .apply(transient.histogram(pair).data(), moved.data());
             for (std::size_t bin = 0; bin < num_bins; ++bin) sum[bin] += moved[bin];
+            if (!observed) continue;
+            const core::BinRange& range = (*observed)[pair];
+            add_shares(edges,
+                       from[static_cast<std::size_t>(range.begin)],
+                       from[static_cast<std::size_t>(range.end)],
+                       seen);
         }
+        if (observed) (*confocal.observed)[point] = take_means(seen, sum);
     });
     return confocal;
 }

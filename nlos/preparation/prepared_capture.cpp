@@ -52,14 +52,37 @@ Selection select_points(const core::WallPoints& points,
     return selection;
 }
 
-/// Bins [begin, end) whose centres lie within the limits.
-std::array<int, 2> select_bins(const core::TimeAxis& axis, const Limits& limits) {
+/// Bins whose centres lie within the limits.
+core::BinRange select_bins(const core::TimeAxis& axis, const Limits& limits) {
     if (!limits) return {0, axis.num_bins};
     const auto bin_at = [&](double opl) {
         const double bin = std::ceil((opl - axis.opl_start_m) / axis.bin_width_m - 0.5);
         return static_cast<int>(std::clamp(bin, 0.0, static_cast<double>(axis.num_bins)));
     };
     return {bin_at((*limits)[0]), bin_at((*limits)[1])};
+}
+
+/// A part of an axis.
+core::TimeAxis axis_of(const core::TimeAxis& axis, const core::BinRange& bins) {
+    return {axis.bin_begin_m(bins.begin), axis.bin_width_m, bins.size()};
+}
+
+/// Observed bins on that part, which holds all of them.
+void move_observed(const core::BinRange& bins, core::ObservedBins& observed) {
+    if (!observed) return;
+    for (core::BinRange& range : *observed) {
+        if (range.size() > 0) range = {range.begin - bins.begin, range.end - bins.begin};
+    }
+    core::simplify(observed, bins.size());
+}
+
+/// The bins that some of the pairs observed.
+core::BinRange bins_seen(const core::ObservedBins& observed, int num_bins) {
+    const core::BinRange seen = core::observed_hull(observed, num_bins);
+    if (seen.size() > 0) return seen;
+    throw core::Error("capture",
+                      "found no observed bin of the points that are used",
+                      "must have been observed somewhere");
 }
 
 void crop_measurement(const core::Capture& capture,
@@ -71,33 +94,55 @@ void crop_measurement(const core::Capture& capture,
     const bool is_exhaustive = scan.pattern == core::ScanPattern::Exhaustive;
     const Selection lit =
         is_exhaustive ? select_points(scan.illumination, wall_from_world, crop) : Selection{};
-    const auto [first_bin, end_bin] = select_bins(capture.time_axis, crop.opl_range_m);
-    if (sensing.numbers.empty() || (is_exhaustive && lit.numbers.empty()) || first_bin >= end_bin) {
+    core::BinRange bins = select_bins(capture.time_axis, crop.opl_range_m);
+    if (sensing.numbers.empty() || (is_exhaustive && lit.numbers.empty()) || bins.size() <= 0) {
         throw core::Error("crop",
                           fmt::format("leaves {} sensing points and {} bins",
                                       sensing.numbers.size(),
-                                      std::max(0, end_bin - first_bin)),
+                                      std::max(0, bins.size())),
                           "must leave some of each; ranges are in the wall's frame, around the "
                           "centre of its points");
     }
     prepared.scan.sensing = sensing.points;
     if (scan.pattern == core::ScanPattern::Confocal) prepared.scan.illumination = sensing.points;
     if (is_exhaustive) prepared.scan.illumination = lit.points;
-    prepared.time_axis.opl_start_m = capture.time_axis.bin_begin_m(first_bin);
-    prepared.time_axis.num_bins = end_bin - first_bin;
-
-    require_memory(4.0 * static_cast<double>(prepared.scan.num_pairs()) *
-                   prepared.time_axis.num_bins);
-    prepared.own = core::Transient(prepared.scan.num_pairs(), prepared.time_axis.num_bins);
-    for (std::size_t pair = 0; pair < prepared.own.num_pairs(); ++pair) {
+    const auto source_of = [&](std::size_t pair) {
         const std::size_t s = sensing.numbers[pair % sensing.numbers.size()];
         const std::size_t l = is_exhaustive ? lit.numbers[pair / sensing.numbers.size()] : 0;
-        const auto from = capture.transient.histogram(l * scan.sensing.size() + s);
-        std::copy_n(from.begin() + first_bin,
-                    prepared.time_axis.num_bins,
-                    prepared.own.histogram(pair).begin());
+        return l * scan.sensing.size() + s;
+    };
+    prepared.observed.reset();
+    if (capture.observed) {
+        std::vector<core::BinRange>& observed = prepared.observed.emplace();
+        for (std::size_t pair = 0; pair < prepared.scan.num_pairs(); ++pair) {
+            observed.push_back(core::intersection((*capture.observed)[source_of(pair)], bins));
+        }
+        bins = bins_seen(prepared.observed, capture.time_axis.num_bins);
     }
+    prepared.time_axis = axis_of(capture.time_axis, bins);
+
+    require_memory(4.0 * static_cast<double>(prepared.scan.num_pairs()) * bins.size());
+    prepared.own = core::Transient(prepared.scan.num_pairs(), bins.size());
+    for (std::size_t pair = 0; pair < prepared.own.num_pairs(); ++pair) {
+        const auto from = capture.transient.histogram(source_of(pair));
+        std::copy_n(from.begin() + bins.begin, bins.size(), prepared.own.histogram(pair).begin());
+    }
+    move_observed(bins, prepared.observed);
     prepared.wall = derive_wall_frame(prepared.scan);
+}
+
+/// Drops bins that no pair observed at either end of the axis.
+void drop_unobserved_ends(PreparedCapture& prepared) {
+    const core::BinRange bins = bins_seen(prepared.observed, prepared.time_axis.num_bins);
+    core::Transient shorter(prepared.own.num_pairs(), bins.size());
+    for (std::size_t pair = 0; pair < shorter.num_pairs(); ++pair) {
+        std::copy_n(prepared.own.histogram(pair).begin() + bins.begin,
+                    bins.size(),
+                    shorter.histogram(pair).begin());
+    }
+    prepared.own = std::move(shorter);
+    prepared.time_axis = axis_of(prepared.time_axis, bins);
+    move_observed(bins, prepared.observed);
 }
 
 }  // namespace
@@ -108,8 +153,12 @@ PreparedCapture crop_capture(const core::Capture& capture, const CropSettings& c
     prepared.time_axis = capture.time_axis;
     prepared.unit = capture.unit;
     prepared.capture_transient = &capture.transient;
+    prepared.observed = capture.observed;
     prepared.wall = derive_wall_frame(capture.scan);
-    if (crop.x_range_m || crop.y_range_m || crop.opl_range_m) {
+    const bool has_blind_ends =
+        core::observed_hull(capture.observed, capture.time_axis.num_bins).size() <
+        capture.time_axis.num_bins;
+    if (crop.x_range_m || crop.y_range_m || crop.opl_range_m || has_blind_ends) {
         crop_measurement(capture, crop, prepared);
     }
     core::Scan& scan = prepared.scan;
@@ -123,7 +172,8 @@ PreparedCapture crop_capture(const core::Capture& capture, const CropSettings& c
 }
 
 bool convert_to_confocal(PreparedCapture& prepared) {
-    auto confocal = convert_to_confocal(prepared.scan, prepared.time_axis, prepared.transient());
+    auto confocal = convert_to_confocal(
+        prepared.scan, prepared.time_axis, prepared.transient(), prepared.observed);
     if (!confocal) return false;
     prepared.conversion = fmt::format(
         "{} scan converted to {} x {} confocal midpoints",
@@ -135,6 +185,8 @@ bool convert_to_confocal(PreparedCapture& prepared) {
     prepared.scan.illumination = std::move(confocal->points);
     prepared.time_axis = confocal->time_axis;
     prepared.own = std::move(confocal->transient);
+    prepared.observed = std::move(confocal->observed);
+    if (prepared.observed) drop_unobserved_ends(prepared);
     prepared.wall = derive_wall_frame(prepared.scan);
     return true;
 }

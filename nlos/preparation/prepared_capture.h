@@ -16,6 +16,7 @@ struct PreparedCapture {
     core::TransientUnit unit = core::TransientUnit::Radiance;
     core::Transient own;  ///< histograms that differ from the capture's; else empty
     const core::Transient* capture_transient = nullptr;
+    core::ObservedBins observed;  ///< of transient()
     WallFrame wall;
     std::string conversion;  ///< in words, when the scan was converted
 
@@ -23,11 +24,13 @@ struct PreparedCapture {
     const core::Transient& transient() const { return own.empty() ? *capture_transient : own; }
 };
 
-/// The part of a capture that `crop` leaves. A scan of many illumination points and one sensing
+/// The part of a capture that `crop` leaves, without bins that no pair observed at either end of
+/// the axis. A scan of many illumination points and one sensing
 /// point becomes the single-laser scan that it equals by reciprocity.
 ///
 /// capture   must outlive the result
-/// throws    core::Error when nothing is left; core::Failure when memory does not suffice
+/// throws    core::Error when nothing is left or observed; core::Failure when memory does not
+/// suffice
 PreparedCapture crop_capture(const core::Capture& capture, const CropSettings& crop);
 
 /// Converts a single or exhaustive measurement to the confocal one it resembles.

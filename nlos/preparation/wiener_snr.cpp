@@ -37,7 +37,8 @@ double wiener_snr(const core::Scan& scan,
         const double ambient = plan.ambient_per_bin.empty() ? 0.0 : plan.ambient_per_bin[pair];
         const auto histogram = counts.histogram(pair);
         Powers powers;
-        for (int bin = 0; bin < plan.num_bins; ++bin) {
+        const core::BinRange observed = plan.prepared_range(pair);
+        for (int bin = observed.begin; bin < observed.end; ++bin) {
             const double range = 0.5 * (axis.bin_begin_m((bin + 0.5) * merge) - legs_m);
             if (range <= 0.0) continue;
             double count = 0.0;

@@ -22,7 +22,8 @@ inline constexpr double kNoiselessSnr = 1.0;
 ///     1/snr = 1/kNoiselessSnr + sum w n / sum w ((n - b)^2 - n),    n counts, b of them ambient.
 ///
 /// scan, axis, counts   of a confocal measurement; not merged, ambient light included
-/// plan                 what is done to the histograms before the method sees them
+/// plan                 what is done to the histograms before the method sees them; bins that were
+///                      not observed count on neither side
 /// returns              positive; at least 0.001, where the counts hold no signal
 /// source               [Wiener1949]
 double wiener_snr(const core::Scan& scan,

@@ -6,13 +6,13 @@
 namespace core {
 
 BinRange intersection(const BinRange& a, const BinRange& b) {
-    const int begin = std::max(a.begin, b.begin);
-    return {begin, std::max(begin, std::min(a.end, b.end))};
+    const BinRange both{std::max(a.begin, b.begin), std::min(a.end, b.end)};
+    return both.size() > 0 ? both : BinRange{};
 }
 
 BinRange merged(const BinRange& range, int merge) {
-    const int begin = (range.begin + merge - 1) / merge;
-    return {begin, std::max(begin, range.end / merge)};
+    const BinRange whole{(range.begin + merge - 1) / merge, range.end / merge};
+    return whole.size() > 0 ? whole : BinRange{};
 }
 
 BinRange observed_hull(const ObservedBins& observed, int num_bins) {
@@ -22,7 +22,7 @@ BinRange observed_hull(const ObservedBins& observed, int num_bins) {
         if (range.size() == 0) continue;
         hull = {std::min(hull.begin, range.begin), std::max(hull.end, range.end)};
     }
-    return hull.end > hull.begin ? hull : BinRange{};
+    return hull.size() > 0 ? hull : BinRange{};
 }
 
 std::size_t observed_count(const ObservedBins& observed, std::size_t num_pairs, int num_bins) {

@@ -17,7 +17,7 @@ struct BinRange {
     bool operator==(const BinRange&) const = default;
 };
 
-/// The bins that two ranges share; a range of size 0 when there are none.
+/// The bins that two ranges share.
 BinRange intersection(const BinRange& a, const BinRange& b);
 
 /// The bins of an axis `merge` times as coarse that lie entirely within a range.
@@ -33,7 +33,7 @@ inline BinRange observed_range(const ObservedBins& observed, std::size_t pair, i
     return observed ? (*observed)[pair] : BinRange{0, num_bins};
 }
 
-/// The smallest range with all observed bins of all pairs; of size 0 when no bin was observed.
+/// The smallest range with all observed bins of all pairs.
 BinRange observed_hull(const ObservedBins& observed, int num_bins);
 
 /// How many bins of all pairs were observed.

@@ -386,6 +386,19 @@ TEST(Calibrate, ResultServesRenderReconstructAndFit) {
         const double bin = *rendered.time_axis.bin_of(kPath_m);
         EXPECT_NEAR(moment / sum, rendered.time_axis.bin_center_m(bin), 1e-4);
     }
+
+    // What was observed moves with the light.
+    core::restrict_observed(recorded, {40, 160});
+    const core::Capture gated = calib::apply_calibration(applied, recorded);
+    core::validate(gated, "gated");
+    for (const std::size_t p : {0U, 20U, 35U}) {
+        const core::BinRange range = gated.observed_range(p);
+        EXPECT_TRUE(range.size() == 119 || range.size() == 120) << range.size();
+        for (int b = range.begin; b < range.end; ++b) {
+            const auto i = static_cast<std::size_t>(b);
+            EXPECT_EQ(gated.transient.histogram(p)[i], undone.transient.histogram(p)[i]);
+        }
+    }
 }
 
 // Counts of a hidden rectangle as the true device records them.

@@ -69,6 +69,30 @@ TEST(Fit, FindsPoseAndAlbedoOfRadianceWithoutAmbientLight) {
     EXPECT_GT(fit.objects[0].albedo_sigma, 0.0);
 }
 
+// A gate that holds the light of the target but not all of it, for every pair another, and dead
+// points: what nobody saw is no darkness.
+TEST(Fit, LeavesOutBinsThatWereNotObserved) {
+    core::Capture capture = counted(expected_capture(truth(), confocal_grid(8), 1e6, 2.0), "Gates");
+    std::vector<core::BinRange> ranges;
+    for (int pair = 0; pair < 64; ++pair) {
+        const int begin = 22 + pair % 7;
+        ranges.push_back(pair % 5 == 0 ? core::BinRange{} : core::BinRange{begin, begin + 45});
+    }
+    core::restrict_observed(capture, ranges);
+    const auto error_of = [&](const core::Capture& data) {
+        const calib::FitResult fit = calib::fit_scene(fit_input(data, displaced()), {});
+        return std::pair(*calib::compare_fit(fit, fit.geometry, truth()).position_m, fit);
+    };
+    const auto [error_m, fit] = error_of(capture);
+    ASSERT_TRUE(fit.converged);
+    EXPECT_LT(error_m, 0.003);
+    EXPECT_NEAR(fit.ambient.value, 2.0, 5.0 * fit.ambient.sigma);
+    EXPECT_NEAR(fit.deviance, fit.expected_deviance, 5.0 * fit.expected_deviance_sigma);
+    EXPECT_LT(fit.num_observed(), 52U * 45U + 1U);
+    capture.observed.reset();
+    EXPECT_GT(error_of(capture).first, 2.0 * error_m);
+}
+
 TEST(Fit, FewerPairsCostAccuracyThatIsStated) {
     const auto capture = counted(expected_capture(truth(), confocal_grid(16), 1e5, 1.0), "Fewer");
     calib::FitInput input = fit_input(capture, displaced());

@@ -21,7 +21,10 @@ void write_captures(const std::string& folder) {
          {core::ScanPattern::Confocal, core::ScanPattern::Single, core::ScanPattern::Exhaustive}) {
         core::Capture capture = test_support::example_capture(pattern);
         if (number == 0) capture.variance = capture.transient;
-        if (number == 1) capture.unit = core::TransientUnit::Counts;
+        if (number == 1) {
+            capture.unit = core::TransientUnit::Counts;
+            core::restrict_observed(capture, {1, 4});
+        }
         if (number == 2) {
             capture.orders = {3};
             capture.by_order = {capture.transient};

@@ -270,6 +270,22 @@ TEST(Compare, CapturesDifferByTheirRelativeNorm) {
     EXPECT_TRUE(scored_names(compare_captures(result, reference)).empty());
 }
 
+TEST(Compare, OnlyBinsCountThatBothCapturesObserved) {
+    const core::Capture whole = test_support::example_capture(core::ScanPattern::Confocal);
+    core::Capture reference = whole;
+    core::Capture result = whole;
+    for (float& value : result.transient.values()) value *= 1.25F;
+    core::restrict_observed(reference, {1, 5});
+    core::restrict_observed(result, {{0, 0}, {0, 4}, {0, 5}, {0, 5}, {2, 3}, {0, 5}});
+    EXPECT_NEAR(compare_captures(result, reference).rel_l2.value(), 0.25, 1e-7);
+    EXPECT_NEAR(compare_captures(result, whole).rel_l2.value(), 0.25, 1e-7);
+    EXPECT_NEAR(compare_captures(whole, result).rel_l2.value(), 0.2, 1e-7);
+    ASSERT_EQ(comparison_warnings(result, reference).size(), 1U);
+    EXPECT_NE(comparison_warnings(result, reference)[0].find("did not observe"), std::string::npos);
+    core::restrict_observed(result, {0, 1});
+    EXPECT_FALSE(compare_captures(result, reference).rel_l2) << "nothing in common";
+}
+
 TEST(Compare, OrderOfWallPointsDoesNotMatter) {
     for (const auto pattern : {core::ScanPattern::Confocal, core::ScanPattern::Exhaustive}) {
         const core::Capture reference = test_support::example_capture(pattern);
@@ -283,6 +299,11 @@ TEST(Compare, OrderOfWallPointsDoesNotMatter) {
                               turned.transient.histogram(last - pair).begin());
         }
         EXPECT_EQ(compare_captures(turned, reference).rel_l2.value(), 0.0);
+        core::Capture gated = turned;
+        std::vector<core::BinRange> ranges(last + 1, {0, 5});
+        ranges[1] = {2, 3};
+        core::restrict_observed(gated, ranges);
+        EXPECT_EQ(compare_captures(gated, reference).rel_l2.value(), 0.0);
         for (core::Vec3& point : turned.scan.sensing.positions) point.x() += 0.01;
         EXPECT_GT(compare_captures(turned, reference).rel_l2.value(), 0.0);
     }

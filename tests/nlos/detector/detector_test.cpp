@@ -122,6 +122,34 @@ TEST(Detector, BackgroundIsAmbientPlusDarkCounts) {
     }
 }
 
+TEST(Detector, CountsNothingInBinsThatAreNotObserved) {
+    for (const double dead_time_ns : {0.0, 20.0}) {
+        core::Capture capture = repeated_capture(4, 100);
+        core::restrict_observed(capture, {{0, 100}, {20, 60}, {0, 0}, {20, 60}});
+        DetectorSettings settings = with_photons_per_point(500.0);
+        settings.ambient = 10.0;
+        settings.dark_counts_hz = 100.0;
+        settings.response.jitter_fwhm_ps = 100.0;
+        settings.dead_time_ns = dead_time_ns;
+        const core::Capture counts = detect(capture, settings);
+        EXPECT_EQ(counts.observed, capture.observed);
+        EXPECT_NO_THROW(core::validate(counts, "counts"));  // 0 where nothing was observed
+        double sum = 0.0;
+        for (const float value : counts.observed_values(1)) sum += value;
+        EXPECT_GT(sum, 40.0 * 10.0);
+    }
+}
+
+TEST(Detector, PhotonsPerPointAreThoseOfPointsThatWereObserved) {
+    core::Capture capture = repeated_capture(4, 100);
+    core::restrict_observed(capture, {{0, 100}, {0, 0}, {0, 100}, {0, 0}});
+    DetectorSettings settings = with_photons_per_point(500.0);
+    settings.expected = true;
+    const core::Capture counts = detect(capture, settings);
+    const auto values = counts.transient.values();
+    EXPECT_NEAR(std::accumulate(values.begin(), values.end(), 0.0), 1000.0, 0.1);
+}
+
 TEST(Detector, CountsHaveTheDispersionOfPoisson) {
     constexpr std::size_t kPairs = 2000;
     const core::Capture capture = repeated_capture(kPairs, 40);

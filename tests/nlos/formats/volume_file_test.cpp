@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/formats/volume_file.h"
 
-#include "nlos/containers/hdf5_reader.h"
+#include "nlos/containers/array_reader.h"
 #include "nlos/formats/capture_file.h"
 #include "tests/support/error_message.h"
 #include "tests/support/example_capture.h"
@@ -57,7 +57,7 @@ TEST(VolumeFile, AnEmptyResultSurvivesTheRoundTrip) {
 TEST(VolumeFile, DatasetsHaveTheNamesAndShapesOfTheContract) {
     const TemporaryFolder folder;
     write_volume(folder.file("v.h5"), example_reconstruction());
-    const Hdf5Reader file(folder.file("v.h5"));
+    const ArrayReader file(folder.file("v.h5"));
     EXPECT_EQ(file.shape("volume"), (Shape{3, 2, 4}));
     EXPECT_EQ(file.shape("depth_m"), (Shape{3, 2}));
     EXPECT_EQ(file.shape("max_projection"), (Shape{3, 2}));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/containers/hdf5_reader.h"
+#include "nlos/containers/array_reader.h"
 #include "nlos/formats/capture_file.h"
 #include "nlos/formats/ytal_layout.h"
 #include "tests/nlos/formats/ytal_capture_file.h"
@@ -83,7 +83,7 @@ TEST(YtalCapture, FramesSurviveTheRoundTrip) {
 
 TEST(YtalCapture, ImagesHaveNullGrids) {
     const CaptureFile file(test_support::example_image());
-    const Hdf5Reader reader(file.path());
+    const ArrayReader reader(file.path());
     EXPECT_EQ(reader.shape("H"), (Shape{5, 3, 2}));
     for (const char* name : {"sensor_grid_xyz", "laser_grid_normals"}) {
         EXPECT_TRUE(reader.has_object(name)) << name;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Velocities in captures of the HDF5 layout of y-tal.
-#include "nlos/containers/hdf5_reader.h"
+#include "nlos/containers/array_reader.h"
 #include "nlos/formats/capture_file.h"
 #include "tests/nlos/formats/ytal_capture_file.h"
 #include "tests/support/error_message.h"
@@ -50,7 +50,7 @@ TEST(YtalVelocity, VelocitiesSurviveTheRoundTrip) {
 TEST(YtalVelocity, VelocityIsSlowestBeforeTime) {
     const Capture capture = with_velocities(test_support::example_image(), true);
     const CaptureFile file(capture);
-    const Hdf5Reader reader(file.path());
+    const ArrayReader reader(file.path());
     ASSERT_EQ(reader.shape("nlos/velocity"), (Shape{4, 5, 3, 2}));
     const auto values = reader.read_floats("nlos/velocity", {4, 5, 3, 2});
     // Velocity 3, time 1, x 2, y 1 is pair 2 * 2 + 1 and bin 3 * 5 + 1.
@@ -58,7 +58,7 @@ TEST(YtalVelocity, VelocityIsSlowestBeforeTime) {
               capture.velocity->values.histogram(5)[3 * 5 + 1]);
     const Capture alone = with_velocities(test_support::example_image(), false);
     const CaptureFile other(alone);
-    EXPECT_EQ(Hdf5Reader(other.path()).shape("nlos/velocity"), (Shape{4, 3, 2}));
+    EXPECT_EQ(ArrayReader(other.path()).shape("nlos/velocity"), (Shape{4, 3, 2}));
 }
 
 TEST(YtalVelocity, VelocitiesWithoutAnAxisAreRefused) {

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+#include "nlos/containers/array_file.h"
+
+#include <algorithm>
+
+namespace nlos {
+
+// Each is defined in the .cpp of its kind.
+Container hdf5_container();
+Container mat5_container();
+
+const std::vector<Container>& containers() {
+    static const std::vector<Container> all{hdf5_container(), mat5_container()};
+    return all;
+}
+
+std::size_t rows_of_read(const Shape& shape) {
+    constexpr std::size_t kValuesPerRead = std::size_t{1} << 22;
+    if (shape.empty()) return 1;
+    const std::uint64_t values = total_bytes(Shape(shape.begin() + 1, shape.end()), 1);
+    return std::max<std::size_t>(1, kValuesPerRead / std::max<std::size_t>(1, values));
+}
+
+}  // namespace nlos

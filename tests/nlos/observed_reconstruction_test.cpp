@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: MIT
+// What every method makes of a gate that holds the object and of dead points.
+#include "nlos/detector/detector.h"
+#include "nlos/reconstruct.h"
+#include "tests/nlos/methods/confocal_scene.h"
+#include "tests/support/error_message.h"
+#include "tests/support/statistics.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace nlos {
+namespace {
+
+using core::BinRange;
+using core::ScanPattern;
+using core::Vec3;
+
+constexpr std::size_t kColumns = 24;
+constexpr double kPitch_m = 0.04;
+constexpr std::size_t kNumZ = 75;
+const Vec3 kPlace(0.06, -0.1, 0.55);
+const BinRange kGate{60, 132};  // half the bins, with all light of the object
+
+struct MaskCase {
+    std::string name;
+    ScanPattern pattern;
+    std::vector<std::string> overrides;
+    double ghosts;  ///< what dead points may add away from the object, of its brightness
+};
+
+class ObservedReconstruction : public testing::TestWithParam<MaskCase> {
+ protected:
+    static core::Capture whole_capture() {
+        core::Capture capture = nlos_test::confocal_capture(
+            nlos_test::wall_grid({kColumns, kColumns}, {kPitch_m, kPitch_m}), {0.0, 0.016, 144});
+        capture.scan.pattern = GetParam().pattern;
+        if (capture.scan.pattern == ScanPattern::Single) {
+            capture.scan.illumination = nlos_test::wall_grid({1, 1}, {1.0, 1.0});
+        }
+        if (capture.scan.pattern == ScanPattern::Exhaustive) {
+            capture.scan.illumination = nlos_test::wall_grid({3, 2}, {0.3, 0.4});
+        }
+        capture.transient = core::Transient(capture.scan.num_pairs(), 144);
+        nlos_test::add_scatterer(capture, kPlace, 4.0);
+        return capture;
+    }
+
+    /// The gate, and 30 % of the points dead: a fifth of the wall along one side, others anywhere.
+    static void mask(core::Capture& capture) {
+        std::mt19937_64 generator(test_support::seed_of("DeadPoints"));
+        std::bernoulli_distribution is_dead(0.125);
+        std::vector<BinRange> of_point;
+        for (std::size_t i = 0; i < capture.scan.sensing.size(); ++i) {
+            const bool is_aside = i / kColumns < kColumns / 5;
+            of_point.push_back(is_aside || is_dead(generator) ? BinRange{} : kGate);
+        }
+        std::vector<BinRange> ranges;
+        for (std::size_t pair = 0; pair < capture.scan.num_pairs(); ++pair) {
+            ranges.push_back(of_point[capture.scan.sensing_index(pair)]);
+        }
+        core::restrict_observed(capture, ranges);
+    }
+
+    static Reconstruction run(const core::Capture& capture) {
+        ReconstructSettings settings;
+        settings.volume = {std::array{24, 24, static_cast<int>(kNumZ)}, std::array{0.3, 0.9}};
+        for (const std::string& text : GetParam().overrides) core::apply_override(settings, text);
+        return reconstruct(capture, settings, {});
+    }
+
+    /// Brightness away from the object, of the brightest voxel's.
+    static double ghosts(const Volume& volume) {
+        constexpr double kReach_m = 0.12;
+        const double top = *std::ranges::max_element(volume.values);
+        double most = 0.0;
+        for (std::size_t ix = 0; ix < kColumns; ++ix) {
+            for (std::size_t iy = 0; iy < kColumns; ++iy) {
+                for (std::size_t iz = 0; iz < kNumZ; ++iz) {
+                    const Vec3 p(volume.axes.x_m[ix], volume.axes.y_m[iy], volume.axes.z_m[iz]);
+                    if ((p - kPlace).norm() < kReach_m) continue;
+                    most = std::max(most, double{volume.values[volume.index(ix, iy, iz)]});
+                }
+            }
+        }
+        return most / top;
+    }
+
+    /// Difference to the volume of the whole capture, each with the factor that fits best.
+    static double error(const Volume& volume, const Volume& whole) {
+        double product = 0.0, square = 0.0, other = 0.0;
+        for (std::size_t i = 0; i < whole.values.size(); ++i) {
+            const double a = volume.values[i], b = whole.values[i];
+            product += a * b;
+            square += a * a;
+            other += b * b;
+        }
+        return std::sqrt(std::max(0.0, 1.0 - product * product / (square * other)));
+    }
+
+    /// With and without saying what was not observed, each against the same with all points alive.
+    static void check(const core::Capture& whole, double tolerance_m) {
+        core::Capture gated = whole;
+        core::restrict_observed(gated, kGate);
+        core::Capture masked = whole;
+        mask(masked);
+        core::Capture dark = masked;
+        dark.observed.reset();
+
+        const Volume alive = run(gated).volume;
+        const Reconstruction seen = run(masked);
+        EXPECT_LT((nlos_test::brightest_point(seen) - kPlace).norm(), tolerance_m);
+        EXPECT_LT(ghosts(seen.volume), ghosts(alive) + GetParam().ghosts);
+        const double with_mask = error(seen.volume, alive);
+        const double without = error(run(dark).volume, run(whole).volume);
+        std::printf("%-20s ghosts %.3f (alive %.3f) error %.4f dark %.4f\n",
+                    GetParam().name.c_str(),
+                    ghosts(seen.volume),
+                    ghosts(alive),
+                    with_mask,
+                    without);
+        EXPECT_LE(with_mask, 1.02 * without);
+    }
+};
+
+TEST_P(ObservedReconstruction, ShowsTheObjectAndNothingElse) {
+    check(whole_capture(), 0.008);
+}
+
+TEST_P(ObservedReconstruction, ShowsTheObjectInCountsWithAmbientLight) {
+    DetectorSettings detector;
+    detector.photons_per_point = 2000.0;
+    detector.ambient = 5.0;
+    check(detect(whole_capture(), detector), 0.02);
+}
+
+TEST_P(ObservedReconstruction, AGateOfAllPointsIsAShorterAxis) {
+    core::Capture gated = whole_capture();
+    core::restrict_observed(gated, kGate);
+    core::Capture shorter = gated;
+    shorter.observed.reset();
+    shorter.time_axis.opl_start_m = shorter.time_axis.bin_begin_m(kGate.begin);
+    shorter.time_axis.num_bins = kGate.size();
+    shorter.transient = core::Transient(shorter.scan.num_pairs(), kGate.size());
+    for (std::size_t pair = 0; pair < shorter.scan.num_pairs(); ++pair) {
+        std::ranges::copy(gated.observed_values(pair), shorter.transient.histogram(pair).begin());
+    }
+    EXPECT_EQ(run(gated).volume.values, run(shorter).volume.values);
+}
+
+TEST_P(ObservedReconstruction, AnythingObservedGivesFiniteVolumes) {
+    core::Capture capture = whole_capture();
+    std::vector<BinRange> ranges(capture.scan.num_pairs());
+    for (std::size_t pair = 0; pair < ranges.size(); ++pair) {
+        const int begin = static_cast<int>(pair % 97);
+        ranges[pair] = {begin, begin + static_cast<int>(pair % 41)};
+    }
+    core::restrict_observed(capture, ranges);
+    for (const float value : run(capture).volume.values) ASSERT_TRUE(std::isfinite(value));
+    capture = whole_capture();
+    std::vector<BinRange> one(capture.scan.num_pairs());
+    one[5] = {70, 100};
+    core::restrict_observed(capture, one);
+    for (const float value : run(capture).volume.values) ASSERT_TRUE(std::isfinite(value));
+    core::restrict_observed(capture, {0, 0});
+    EXPECT_ERROR_WITH(run(capture), "found no observed bin");
+}
+
+std::vector<MaskCase> mask_cases() {
+    std::vector<MaskCase> cases{
+        {"LctConfocal", ScanPattern::Confocal, {"method=lct", "snr=10"}, 0.05},
+        {"TvConfocal", ScanPattern::Confocal, {"method=lct", "prior=tv", "tv.iterations=15"}, 0.05},
+        {"DlctConfocal", ScanPattern::Confocal, {"method=dlct", "snr=10"}, 0.05},
+        {"FkConfocal", ScanPattern::Confocal, {"method=fk"}, 0.05}};
+    const std::vector<std::pair<std::string, ScanPattern>> patterns{
+        {"Confocal", ScanPattern::Confocal},
+        {"Single", ScanPattern::Single},
+        {"Exhaustive", ScanPattern::Exhaustive}};
+    for (const auto& [name, pattern] : patterns) {
+        cases.push_back({"Bp" + name, pattern, {"method=bp"}, 0.05});
+        cases.push_back({"Fbp" + name, pattern, {"method=fbp"}, 0.05});
+        cases.push_back({"PhasorFbp" + name, pattern, {"method=fbp", "filter=phasor"}, 0.05});
+        cases.push_back({"Phasor" + name, pattern, {"method=phasor"}, 0.05});
+    }
+    return cases;
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods,
+                         ObservedReconstruction,
+                         testing::ValuesIn(mask_cases()),
+                         [](const auto& mask) { return mask.param.name; });
+
+TEST(DeadPoints, TransformsSayThatTheyTakeDeadPointsForDark) {
+    core::Capture capture =
+        nlos_test::confocal_capture(nlos_test::wall_grid({16, 16}, {0.05, 0.05}), {0.0, 0.02, 100});
+    nlos_test::add_scatterer(capture, kPlace, 4.0);
+    std::vector<BinRange> ranges(256, {20, 100});
+    core::restrict_observed(capture, ranges);
+    const auto says = [&](const char* method) {
+        ReconstructSettings settings;
+        core::apply_override(settings, method);
+        const auto warnings = reconstruct(capture, settings, {}).warnings;
+        return std::ranges::any_of(warnings, [](const std::string& text) {
+            return text.starts_with("1 of 256 histograms have bins that were not observed");
+        });
+    };
+    EXPECT_FALSE(says("method=lct")) << "a gate of all points is only a shorter axis";
+    ranges[7] = {0, 0};
+    core::restrict_observed(capture, ranges);
+    EXPECT_TRUE(says("method=lct"));
+    EXPECT_TRUE(says("method=phasor"));
+    EXPECT_FALSE(says("method=bp"));
+}
+
+}  // namespace
+}  // namespace nlos
