@@ -5,6 +5,7 @@
 #include "nlos/formats/capture_file.h"
 #include "nlos/formats/volume_file.h"
 #include "renderer/core/settings.h"
+#include "renderer/mesh_file/mesh_file.h"
 
 #include <filesystem>
 
@@ -31,14 +32,17 @@ FileKind kind_of_json(const std::string& path) {
 
 FileKind kind_of_file(const std::string& path) {
     if (!std::filesystem::exists(path)) {
-        throw core::Error(
-            path, "does not exist", "must be a capture, volume, fit, scene.json, glTF or PLY file");
+        throw core::Error(path,
+                          "does not exist",
+                          "must be a capture, volume, fit, scene.json, glTF, OBJ, PLY or STL file");
     }
     if (std::filesystem::is_directory(path)) return FileKind::Capture;
     const std::string suffix = std::filesystem::path(path).extension().string();
     if (suffix == ".json") return kind_of_json(path);
-    if (suffix == ".glb" || suffix == ".gltf") return FileKind::Geometry;
     if (suffix == ".ply") return FileKind::PointCloud;
+    if (suffix == ".glb" || suffix == ".gltf" || renderer::is_mesh_file(path)) {
+        return FileKind::Geometry;
+    }
     return nlos::is_volume_file(path) ? FileKind::Volume : FileKind::Capture;
 }
 

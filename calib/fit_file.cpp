@@ -130,15 +130,19 @@ FitResult read_fit(const std::string& path) {
 
 bool is_fit_file(const std::string& path) {
     std::ifstream file(path);
-    const Json json = Json::parse(file, nullptr, false);
-    return json.is_object() && json.contains("objects") && json.contains("sigma") &&
-           json.contains("expected_deviance");
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    const std::optional<Json> json = core::json_if_valid(text);
+    return json && json->is_object() && json->contains("objects") && json->contains("sigma") &&
+           json->contains("expected_deviance");
 }
 
 Json fitted_scene_json(const FitInput& input, const std::string& geometry_file) {
     renderer::SceneDescription scene = input.scene;
     const core::Capture& capture = input.capture;
-    scene.geometry = geometry_file;
+    scene.geometry = geometry_file;  // which is in metres and holds what objects were set to
+    scene.geometry_unit_m.reset();
+    scene.geometry_up.reset();
+    scene.objects.clear();
     scene.time_axis = {capture.time_axis};
     scene.scan.pattern = capture.scan.pattern;
     scene.scan.sensing_points_m = capture.scan.sensing.positions;

@@ -308,7 +308,8 @@ Reconstruction reconstruct(const core::Capture& capture,
                            axes,
                            *result.settings.volume.z_range_m,
                            progress,
-                           observed ? &*observed : nullptr};
+                           observed ? &*observed : nullptr,
+                           prepared.unobserved_before_m};
     };
     const double prepared_bytes =
         is_ready ? 0.0 : 4.0 * static_cast<double>(prepared.scan.num_pairs()) * axis.num_bins;

@@ -10,9 +10,9 @@ cmake_minimum_required(VERSION 3.25)
 set(floors_renderer
     "renderer/core"
     "renderer/settings|renderer/material|renderer/triangle"
-    "renderer/gltf|renderer/film"
+    "renderer/gltf|renderer/mesh_file|renderer/film"
     "renderer/scene"
-    "renderer/geometry|renderer/path"
+    "renderer/geometry|renderer/path|renderer/scene_import"
     "renderer/third_bounce|renderer/ellipsoidal|renderer/shift"
     "renderer/restir"
     "renderer")
@@ -46,8 +46,10 @@ set(anywhere
     "Eigen/|tbb/|nlohmann/|fmt/|sys/|unistd\\.h|fcntl\\.h|immintrin\\.h|experimental/simd")
 set(third_renderer/core "flann/|malloc\\.h")
 set(third_renderer/gltf "tiny_gltf")
+set(third_renderer/mesh_file "assimp/")
 set(third_renderer/scene "embree3/")
-set(third_nlos/containers "hdf5\\.h|matio\\.h|OpenEXR/")
+set(third_renderer/scene_import "pugixml\\.hpp|yaml-cpp/")
+set(third_nlos/containers "hdf5\\.h|matio\\.h|zip\\.h|OpenEXR/")
 set(third_nlos/fourier "fftw3\\.h")
 set(third_nlos/pictures "opencv2/")
 set(third_calib/setup "ceres/|opencv2/")

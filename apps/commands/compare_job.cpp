@@ -13,7 +13,7 @@
 #include "nlos/pictures/picture.h"
 #include "nlos/pictures/pictures.h"
 #include "renderer/core/output_file.h"
-#include "renderer/gltf/gltf.h"
+#include "renderer/scene/load_geometry.h"
 
 #include <filesystem>
 
@@ -30,7 +30,7 @@ core::PointCloud points_of_file(const std::string& path) {
         mesh = nlos::read_ply(path);
         if (mesh.triangles.empty()) return {mesh.vertices, mesh.normals};
     } else {
-        for (const renderer::Object& object : renderer::load_gltf(path).objects) {
+        for (const renderer::Object& object : renderer::load_geometry(path).objects) {
             const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
             for (const auto& vertex : object.mesh.vertices) mesh.vertices.push_back(vertex);
             for (const auto& [v0, v1, v2] : object.mesh.triangles) {
@@ -65,8 +65,8 @@ nlos::Metrics compare_fit_to_scene(const std::string& a,
         renderer::read_scene_description(is_fit ? with_suffix(b, ".scene.json") : b, {});
     const calib::FitErrors errors =
         calib::compare_fit(fit,
-                           renderer::load_gltf(with_suffix(a, ".glb")),
-                           renderer::load_gltf(scene.geometry),
+                           renderer::load_geometry(with_suffix(a, ".glb")),
+                           renderer::load_geometry(scene),
                            is_fit ? calib::read_fit(b).points : std::vector<calib::FittedPoint>());
     nlos::Metrics metrics;
     if (!errors.fitted_points.positions.empty()) {

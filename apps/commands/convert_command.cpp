@@ -5,9 +5,12 @@
 #include "nlos/formats/capture_file.h"
 #include "nlos/preparation/gated_capture.h"
 #include "renderer/core/output_file.h"
+#include "renderer/gltf/gltf.h"
+#include "renderer/scene_import/scene_import.h"
 
 #include <fmt/core.h>
 
+#include <filesystem>
 #include <memory>
 
 namespace apps {
@@ -22,8 +25,23 @@ struct ConvertArguments {
     std::vector<std::string> overrides;
 };
 
+/// Translates a scene of another program; the glTF file goes beside the scene.json.
+void convert_scene(const std::string& input, const std::string& output) {
+    const std::string geometry = with_suffix(output, ".glb");
+    core::check_targets({output, geometry}, {input});
+    const renderer::ImportedScene scene = renderer::import_scene(input);
+    const std::string name = std::filesystem::path(geometry).filename().string();
+    renderer::write_gltf(geometry, scene.geometry);
+    core::write_text_file(output, renderer::imported_scene_json(scene, name).dump(2) + "\n");
+    for (const std::string& text : scene.not_translated) fmt::print("not the same: {}\n", text);
+    fmt::print("wrote {} and {} ({} objects)\n", output, geometry, scene.geometry.objects.size());
+}
+
 void run(const ConvertArguments& arguments) {
-    nlos::check_capture_suffix(arguments.output);
+    if (std::filesystem::path(arguments.output).extension() == ".json") {
+        return convert_scene(arguments.input, arguments.output);
+    }
+    nlos::check_capture_suffix(arguments.output, arguments.write);
     core::check_targets({arguments.output}, {arguments.input});
     core::Capture capture =
         nlos::read_capture(arguments.input, capture_options(arguments.overrides).capture);
@@ -48,15 +66,28 @@ void run(const ConvertArguments& arguments) {
 }  // namespace
 
 void add_convert_command(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("convert", "Write a capture in another format");
+    CLI::App* command = app.add_subcommand(
+        "convert",
+        "Write a capture in another format, or a scene of Mitsuba or y-tal as one of ours");
     const auto arguments = std::make_shared<ConvertArguments>();
-    command->add_option("IN", arguments->input, "Capture in any readable format")->required();
+    command
+        ->add_option("IN",
+                     arguments->input,
+                     "Capture in any readable format; or a scene of Mitsuba 3 with mitransient "
+                     "(.xml, .json) or of "
+                     "y-tal (.yaml)")
+        ->required();
     command
         ->add_option("OUT",
                      arguments->output,
-                     "Capture to write: .h5 or .hdf5 (y-tal), .exr (a streak image), .mat "
-                     "(Stanford 2018)")
+                     "Capture to write: .h5 or .hdf5 (y-tal), .npz (NumPy), .exr (a streak image), "
+                     ".mat (stanford-2018, or what --out-layout says); or scene.json, with "
+                     "scene.glb beside it")
         ->required();
+    command->add_option("--out-layout",
+                        arguments->write.layout,
+                        "Layout of OUT where its suffix has several: of .mat stanford-2018 "
+                        "(MATLAB v5), stanford-fk-2019 (MATLAB v7.3) or conv-nlos (MATLAB v5)");
     CLI::Option* steady =
         command->add_flag("--steady", arguments->steady, "Sum over all bins: a steady-state image");
     command

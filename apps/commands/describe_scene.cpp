@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "apps/commands/describe_scene.h"
 
-#include "renderer/gltf/gltf.h"
 #include "renderer/light_range.h"
+#include "renderer/scene/load_geometry.h"
 
 #include <fmt/core.h>
 
@@ -39,6 +39,22 @@ void print_object(const renderer::Object& object) {
         object.velocity_m_per_s.norm() > 0.0
             ? fmt::format(", moves at {:.3g} m/s", object.velocity_m_per_s.norm())
             : "");
+}
+
+void print_size(const renderer::SceneGeometry& geometry) {
+    Eigen::AlignedBox3d box;
+    std::size_t triangles = 0;
+    for (const renderer::Object& object : geometry.objects) {
+        for (const core::Vec3& vertex : object.mesh.vertices) box.extend(vertex);
+        triangles += object.mesh.triangles.size();
+    }
+    const core::Vec3 size = box.sizes();
+    fmt::print("size: {} objects, {} triangles, {:.4g} x {:.4g} x {:.4g} m\n",
+               geometry.objects.size(),
+               triangles,
+               size.x(),
+               size.y(),
+               size.z());
 }
 
 void print_warnings(const std::vector<std::string>& warnings) {
@@ -98,8 +114,12 @@ void print_light(const renderer::Scene& scene,
 }  // namespace
 
 void describe_geometry(const std::string& path) {
-    const renderer::SceneGeometry geometry = renderer::load_gltf(path);
-    fmt::print("format: glTF 2.0\n");
+    const renderer::SceneGeometry geometry = renderer::load_geometry(path);
+    fmt::print("format: {}\n", renderer::geometry_format(path));
+    renderer::SceneDescription alone;
+    alone.geometry = path;
+    for (const std::string& line : renderer::describe_frame(alone)) fmt::print("{}\n", line);
+    print_size(geometry);
     for (const renderer::Object& object : geometry.objects) print_object(object);
     print_warnings(geometry.warnings);
 }
@@ -109,6 +129,7 @@ void describe_scene(const std::string& path) {
     const core::Scan scan = renderer::make_scan(description);
     const renderer::Scene scene = renderer::load_scene(description, scan);
     fmt::print("format: scene description\ngeometry: {}\n", description.geometry);
+    for (const std::string& line : renderer::describe_frame(description)) fmt::print("{}\n", line);
     for (const renderer::Object& object : scene.objects()) print_object(object);
     print_warnings(scene.warnings());
     print_measurement(description, scan);

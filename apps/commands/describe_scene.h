@@ -5,7 +5,8 @@
 
 namespace apps {
 
-/// Prints what the objects of a glTF file are to the renderer. Throws core::Error as load_gltf().
+/// Prints what the objects of a glTF or mesh file are to the renderer. Throws core::Error as
+/// renderer::load_geometry().
 void describe_geometry(const std::string& path);
 
 /// Prints a scene's objects, its scan, where its light lies on the time axis, and the settings that

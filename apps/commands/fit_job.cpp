@@ -12,6 +12,7 @@
 #include "nlos/formats/volume_file.h"
 #include "renderer/core/output_file.h"
 #include "renderer/gltf/gltf.h"
+#include "renderer/scene/load_geometry.h"
 
 #include <filesystem>
 
@@ -28,7 +29,7 @@ calib::FitInput make_input(const std::string& capture_path,
     input.settings = calib::read_fit_settings(model_path, overrides);
     input.capture = nlos::read_capture(capture_path, options.capture);
     input.scene = renderer::read_scene_description(input.settings.scene, {});
-    input.geometry = renderer::load_gltf(input.scene.geometry);
+    input.geometry = renderer::load_geometry(input.scene);
     if (input.capture.scan.camera || input.scene.camera) {
         throw core::Error(input.scene.camera ? input.settings.scene : capture_path,
                           "has a camera in place of a relay wall",

@@ -99,10 +99,10 @@ void describe_volume(const std::string& path) {
     print_provenance(volume.provenance);
 }
 
-void describe_point_cloud(const std::string& path) {
-    const core::TriangleMesh mesh = nlos::read_ply(path);
-    fmt::print(
-        "format: PLY\npoints: {}\ntriangles: {}\n", mesh.vertices.size(), mesh.triangles.size());
+void describe_ply(const std::string& path) {
+    const core::TriangleMesh points = nlos::read_ply(path);
+    if (!points.triangles.empty()) return describe_geometry(path);
+    fmt::print("format: PLY\npoints: {}\n", points.vertices.size());
 }
 
 /// A file in no known format or layout: what it holds and what that could mean.
@@ -209,7 +209,7 @@ void run(const InfoArguments& arguments) {
             describe_geometry(arguments.file);
             break;
         case FileKind::PointCloud:
-            describe_point_cloud(arguments.file);
+            describe_ply(arguments.file);
             break;
         case FileKind::Volume:
             describe_volume(arguments.file);
@@ -229,9 +229,10 @@ void add_info_command(CLI::App& app) {
     CLI::App* command = app.add_subcommand("info", "Say what a file is and what it holds");
     const auto arguments = std::make_shared<InfoArguments>();
     command
-        ->add_option("FILE",
-                     arguments->file,
-                     "Capture, volume, scene.json, glTF, PLY, fit, metrics or calibration")
+        ->add_option(
+            "FILE",
+            arguments->file,
+            "Capture, volume, scene.json, glTF, OBJ, PLY, STL, fit, metrics or calibration")
         ->required();
     command->add_option("--picture",
                         arguments->picture,

@@ -3,6 +3,7 @@
 
 #include "apps/report/bench_cards.h"
 #include "calib/fit_file.h"
+#include "nlos/formats/capture_file.h"
 #include "nlos/formats/volume_file.h"
 
 #include <algorithm>

@@ -8,9 +8,20 @@ namespace nlos {
 // Each is defined in the .cpp of its kind.
 Container hdf5_container();
 Container mat5_container();
+Container npy_container();
+Container npz_container();
+Container ti_container();
+Container json_container();
+Container csv_container();
 
 const std::vector<Container>& containers() {
-    static const std::vector<Container> all{hdf5_container(), mat5_container()};
+    static const std::vector<Container> all{hdf5_container(),
+                                            mat5_container(),
+                                            npy_container(),
+                                            npz_container(),
+                                            ti_container(),
+                                            json_container(),
+                                            csv_container()};
     return all;
 }
 

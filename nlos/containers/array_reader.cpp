@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/containers/array_reader.h"
 
-#include "nlos/containers/sandboxed_process.h"
+#include "renderer/core/sandboxed_process.h"
 #include "renderer/core/error.h"
 
 #include <fmt/core.h>
@@ -90,7 +90,7 @@ ArrayReader::ArrayReader(std::string path) : path_(std::move(path)) {
     // The file is opened in the child, at the first request.
     const auto file = std::make_shared<std::unique_ptr<ArrayFile>>();
     process_ =
-        std::make_unique<SandboxedProcess>(path_, [file, &kind, this](const std::string& request) {
+        std::make_unique<core::SandboxedProcess>(path_, [file, &kind, this](const std::string& request) {
             if (!*file) *file = kind.open(path_);
             return answer(**file, Json::from_cbor(request));
         });
@@ -171,7 +171,13 @@ std::vector<T> ArrayReader::read_values(const std::string& name,
     std::string request;
     Json::to_cbor(Json::array({"read", name, first, count, kPrecision}), request);
     const std::string bytes = process_->ask(request);
-    std::vector<T> values(bytes.size() / sizeof(T));
+    const Shape found = shape(name);
+    const std::uint64_t row =
+        found.empty() ? 1 : total_bytes(Shape(found.begin() + 1, found.end()), 1);
+    if (bytes.size() != count * row * sizeof(T)) {
+        throw core::Error(where(name), "cannot be read", "must be an undamaged file");
+    }
+    std::vector<T> values(count * row);
     if (!values.empty()) std::memcpy(values.data(), bytes.data(), values.size() * sizeof(T));
     return values;
 }

@@ -11,9 +11,11 @@
 #include <string>
 #include <vector>
 
-namespace nlos {
-
+namespace core {
 class SandboxedProcess;
+}
+
+namespace nlos {
 
 /// A file of named arrays open for reading, whatever its container.
 ///
@@ -22,11 +24,13 @@ class SandboxedProcess;
 /// failure is a core::Error that names file and array; what would not fit in memory is a
 /// core::Failure.
 ///
-/// Names are paths: members of HDF5 groups are "nlos/variance", fields of MATLAB structs
-/// "dataset.laserPos", of arrays of structs "dataset(0).laserPos", elements of cells "accum{0}".
+/// Names are paths: members of HDF5 groups are "nlos/variance"; fields of MATLAB structs
+/// "dataset.laserPos", of arrays of structs "dataset(0).laserPos", elements of cells "accum{0}";
+/// leaves of JSON "configuration.range" (see JsonLeaves). The array of a .npy file is "array", that
+/// of a .csv file "table", beside its columns by name.
 class ArrayReader {
  public:
-    /// Opens a regular file, whose container is recognised by its content.
+    /// Opens a regular file, whose container is recognised by its content (CSV by its suffix).
     explicit ArrayReader(std::string path);
     ~ArrayReader();
 
@@ -35,7 +39,7 @@ class ArrayReader {
     /// How messages name an array: `file: name`.
     std::string where(const std::string& name) const { return path_ + ": " + name; }
 
-    /// "hdf5", "matlab-v5", "matlab-v7.3".
+    /// "hdf5", "matlab-v5", "matlab-v7.3", "npy", "npz", "bonn-ti", "json" or "csv".
     const std::string& container() const { return container_; }
 
     /// True for MATLAB files, whose writers count axes in the reverse of shape(): shapes are always
@@ -101,7 +105,7 @@ class ArrayReader {
     std::string path_;
     std::string container_;
     bool first_index_fastest_ = false;
-    std::unique_ptr<SandboxedProcess> process_;
+    std::unique_ptr<core::SandboxedProcess> process_;
     mutable std::optional<ArrayNames> names_;
     /// Objects asked for so far.
     mutable std::map<std::string, std::optional<ArrayDescription>> described_;

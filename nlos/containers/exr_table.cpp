@@ -2,9 +2,9 @@
 #include "nlos/containers/exr_table.h"
 
 #include "nlos/containers/file_memory.h"
-#include "nlos/containers/sandboxed_process.h"
 #include "renderer/core/error.h"
 #include "renderer/core/output_file.h"
+#include "renderer/core/sandboxed_process.h"
 #include "renderer/core/settings.h"
 
 #include <OpenEXR/ImfChannelList.h>
@@ -151,7 +151,7 @@ bool is_exr_file(const std::string& path) {
 }
 
 ExrTable read_exr_table(const std::string& path) {
-    const std::string answer = run_sandboxed(path, [&] {
+    const std::string answer = core::run_sandboxed(path, [&] {
         try {
             std::string bytes;
             core::Json::to_cbor(to_json(read_with_library(path)), bytes);

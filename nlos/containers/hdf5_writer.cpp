@@ -7,6 +7,7 @@
 
 #include <cassert>
 #include <cstdint>
+#include <fstream>
 
 namespace nlos {
 namespace {
@@ -35,14 +36,18 @@ Hdf5Handle utf8_type() {
 
 }  // namespace
 
-Hdf5Writer::Hdf5Writer(std::string target) : target_(std::move(target)), output_(target_) {
+Hdf5Writer::Hdf5Writer(std::string target, std::string user_block)
+    : target_(std::move(target)), user_block_(std::move(user_block)), output_(target_) {
     prepare_hdf5();
+    const Hdf5Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+    check(H5Pset_userblock(creation.id(), user_block_.size()) >= 0);
     const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
     H5Pset_fclose_degree(access.id(), H5F_CLOSE_STRONG);
     // The format of HDF5 1.8 guards its headers by checksums, so that damage is noticed when read.
     H5Pset_libver_bounds(access.id(), H5F_LIBVER_V18, H5F_LIBVER_LATEST);
     file_ = Hdf5Handle(
-        H5Fcreate(output_.temporary().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()), H5Fclose);
+        H5Fcreate(output_.temporary().c_str(), H5F_ACC_TRUNC, creation.id(), access.id()),
+        H5Fclose);
     check(file_.is_valid());
 }
 
@@ -161,6 +166,14 @@ void Hdf5Writer::write_attribute(const std::string& object,
     write_attribute_values({object, name}, H5T_NATIVE_DOUBLE, shape, values.data());
 }
 
+void Hdf5Writer::write_ascii_attribute(const std::string& object,
+                                       const std::string& name,
+                                       const std::string& text) {
+    const Hdf5Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+    H5Tset_size(type.id(), text.size());
+    write_attribute_values({object, name}, type.id(), {}, text.data());
+}
+
 void Hdf5Writer::write_attribute_values(const AttributeName& name,
                                         std::int64_t type,
                                         const Shape& shape,
@@ -179,9 +192,17 @@ void Hdf5Writer::write_attribute_values(const AttributeName& name,
     check(H5Awrite(attribute.id(), type, values) >= 0);
 }
 
+void Hdf5Writer::write_user_block() {
+    std::fstream stream(output_.temporary(), std::ios::binary | std::ios::in | std::ios::out);
+    stream.write(user_block_.data(), static_cast<std::streamsize>(user_block_.size()));
+    stream.close();
+    check(stream.good());
+}
+
 void Hdf5Writer::finish() {
     check(H5Fflush(file_.id(), H5F_SCOPE_LOCAL) >= 0);
     check(file_.close());
+    if (!user_block_.empty()) write_user_block();
     output_.commit();
 }
 

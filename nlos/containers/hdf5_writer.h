@@ -19,8 +19,10 @@ namespace nlos {
 /// Writes that fail (disk full) throw core::Failure and leave an older file as it was.
 class Hdf5Writer {
  public:
-    /// Throws core::Error when the target's folder does not exist or cannot be written.
-    explicit Hdf5Writer(std::string target);
+    /// user_block   bytes in front of the HDF5 file that say to other programs what it is; their
+    ///              number is 0 or a power of two from 512 on
+    /// throws       core::Error when the target's folder does not exist or cannot be written
+    explicit Hdf5Writer(std::string target, std::string user_block = {});
 
     void create_group(const std::string& name);
     void write(const std::string& name, const Shape& shape, std::span<const float> values);
@@ -63,6 +65,10 @@ class Hdf5Writer {
                          const std::string& name,
                          const Shape& shape,
                          std::span<const double> values);
+    /// ASCII of fixed length, not empty, as MATLAB wants it.
+    void write_ascii_attribute(const std::string& object,
+                               const std::string& name,
+                               const std::string& text);
 
     /// Closes the file and moves it to its final name.
     void finish();
@@ -90,9 +96,11 @@ class Hdf5Writer {
                                 std::int64_t type,
                                 const Shape& shape,
                                 const void* values);
+    void write_user_block();
     void check(bool ok) const;
 
     std::string target_;
+    std::string user_block_;
     core::OutputFile output_;
     Hdf5Handle file_;
 };

@@ -19,7 +19,7 @@ namespace {
 const CaptureFormat* find_format(const std::string& path) {
     if (std::filesystem::is_directory(path)) return nullptr;
     for (const CaptureFormat& format : capture_formats()) {
-        if (format.recognise != nullptr && format.recognise(path)) return &format;
+        if (format.recognise(path)) return &format;
     }
     return nullptr;
 }
@@ -44,18 +44,43 @@ std::optional<LayoutSource> find_layout_of(const std::string& path,
                                   nearest_layouts(path).at(0)));
 }
 
-/// The format to write by the suffix of `path`.
-const CaptureFormat& format_to_write(const std::string& path) {
+/// `texts` without repetitions, separated by commas.
+std::string join(const std::vector<std::string>& texts) {
+    std::string joined;
+    for (auto text = texts.begin(); text != texts.end(); ++text) {
+        if (std::find(texts.begin(), text, *text) != text) continue;
+        joined += (joined.empty() ? "" : ", ") + *text;
+    }
+    return joined;
+}
+
+bool has_suffix(const CaptureWriter& writer, const std::string& suffix) {
+    return std::ranges::any_of(
+        writer.suffixes, [&](const char* known) { return known != nullptr && suffix == known; });
+}
+
+/// How to write by the suffix of `path` and the layout that is asked for.
+const CaptureWriter& find_writer(const std::string& path, const std::string& layout) {
     const std::string suffix = std::filesystem::path(path).extension().string();
-    std::string known;
-    for (const CaptureFormat& format : capture_formats()) {
-        for (const char* candidate : format.suffixes) {
-            if (candidate == nullptr) continue;
-            if (suffix == candidate) return format;
-            known += (known.empty() ? "" : ", ") + std::string(candidate);
+    std::vector<std::string> layouts;
+    std::vector<std::string> suffixes;
+    for (const CaptureWriter& writer : capture_writers()) {
+        layouts.emplace_back(writer.layout);
+        if (!layout.empty() && layout != writer.layout) continue;
+        if (has_suffix(writer, suffix)) return writer;
+        for (const char* known : writer.suffixes) {
+            if (known != nullptr) suffixes.emplace_back(known);
         }
     }
-    throw core::Error(path, "has the suffix '" + suffix + "'", "must be one of " + known);
+    if (suffixes.empty()) {
+        throw core::Error("layout",
+                          "'" + layout + "' is none that is written",
+                          "must be one of " + join(layouts));
+    }
+    throw core::Error(
+        path,
+        "has the suffix '" + suffix + "'",
+        "must be one of " + join(suffixes) + (layout.empty() ? "" : " for the layout " + layout));
 }
 
 void take_frame(int frame, const std::string& path, core::Capture& capture) {
@@ -229,13 +254,13 @@ std::vector<std::string> missing_settings(const std::string& path,
 std::vector<std::string> write_capture(const std::string& path,
                                        const core::Capture& capture,
                                        const CaptureWriteSettings& settings) {
-    const CaptureFormat& format = format_to_write(path);
+    const CaptureWriter& writer = find_writer(path, settings.layout);
     validate(capture, path);
-    return format.write(path, capture, settings);
+    return writer.write(path, capture, settings);
 }
 
-void check_capture_suffix(const std::string& path) {
-    format_to_write(path);
+void check_capture_suffix(const std::string& path, const CaptureWriteSettings& settings) {
+    find_writer(path, settings.layout);
 }
 
 std::vector<std::string> describe_capture(const core::Capture& capture) {

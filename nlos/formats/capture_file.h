@@ -30,21 +30,22 @@ std::vector<std::string> missing_settings(const std::string& path,
 /// A capture in a few lines for people: wall, points, bins, depth range, unit.
 std::vector<std::string> describe_capture(const core::Capture& capture);
 
-/// Writes a capture in the format that the suffix names; whole or not at all: .h5 and .hdf5 the
-/// y-tal layout, .exr a streak image, .mat the Stanford 2018 layout.
+/// Writes a capture in the layout that settings name or else the suffix; whole or not at all: .h5
+/// and .hdf5 as y-tal, .npz for NumPy, .exr a streak image, .mat as stanford-2018 and, where asked
+/// for, as stanford-fk-2019 (MATLAB v7.3) or conv-nlos.
 ///
 /// y-tal refuses files with any name of its root that it does not know, so the group /nlos (unit,
 /// variance, bounce orders, velocities, frames) is written only for captures that have one of these
 /// or another unit than radiance.
 ///
-/// returns   what the format does not keep, a sentence each
-/// throws    core::Error for a bad target, an unknown suffix or a capture that the format cannot
-///           hold, core::Failure when writing fails
+/// returns   what the layout does not keep, a sentence each
+/// throws    core::Error for a bad target, an unknown suffix or layout, or a capture that the
+///           layout cannot hold; core::Failure when writing fails
 std::vector<std::string> write_capture(const std::string& path,
                                        const core::Capture& capture,
                                        const CaptureWriteSettings& settings = {});
 
-/// Throws core::Error unless write_capture() knows the suffix of `path`.
-void check_capture_suffix(const std::string& path);
+/// Throws core::Error unless write_capture() knows the suffix of `path` and the layout.
+void check_capture_suffix(const std::string& path, const CaptureWriteSettings& settings = {});
 
 }  // namespace nlos

@@ -5,32 +5,44 @@
 #include "renderer/core/capture.h"
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace nlos {
 
-/// One known capture format. To add one: write a .cpp with a function that returns its row, and
-/// list that function in capture_formats.cpp.
+/// One capture format that is read other than by a layout. To add one: write a .cpp with a function that returns its row,
+/// and list that function in capture_formats.cpp.
 struct CaptureFormat {
-    const char* name;     ///< for people
-    const char* content;  ///< what its files hold, for the message about an unknown file
+    const char* name;  ///< for people
 
-    /// True when the file is of this format, be it damaged further on. Null for formats that only
-    /// write, whose files a layout reads.
+    /// True when the file is of this format, be it damaged further on.
     bool (*recognise)(const std::string& path);
     core::Capture (*read)(const std::string& path, const CaptureReadSettings& settings);
-
-    /// Suffixes of the files that `write` makes, with their dot; none: read only.
-    std::array<const char*, 2> suffixes{};
-    /// Writes a capture and says, a sentence each, what the format does not keep.
-    std::vector<std::string> (*write)(const std::string& path,
-                                      const core::Capture& capture,
-                                      const CaptureWriteSettings& settings) = nullptr;
 };
 
 /// All formats, in the order in which a file is tried.
 const std::vector<CaptureFormat>& capture_formats();
+
+/// One layout that is written. To add one: write a .cpp with its `write`, and list it in
+/// capture_formats.cpp.
+struct CaptureWriter {
+    const char* layout;                   ///< what CaptureWriteSettings::layout calls it
+    std::array<const char*, 2> suffixes;  ///< of its files, with their dot
+
+    /// Writes a capture and says, a sentence each, what the layout does not keep. Throws
+    /// core::Error for a capture that it cannot hold.
+    std::vector<std::string> (*write)(const std::string& path,
+                                      const core::Capture& capture,
+                                      const CaptureWriteSettings& settings);
+};
+
+/// All layouts that are written. The first one of a suffix is taken when none is asked for.
+const std::vector<CaptureWriter>& capture_writers();
+
+/// The sentence that names what a capture holds beside points, axis, unit and histograms, and that
+/// it is left out; nothing when there is no more.
+std::optional<std::string> extras_left_out(const core::Capture& capture);
 
 /// The coordinates of points, one point after the other, in the precision of the files.
 std::vector<float> to_floats(const std::vector<core::Vec3>& points);

@@ -267,10 +267,13 @@ Capture read_exr(const std::string& path, const CaptureReadSettings& settings) {
         capture.by_order.push_back(to_transient(channel, capture, is_wall));
     }
     capture.observed = attributes.observed_bins(capture.scan.num_pairs());
-    capture.scene_info = core::Json::parse(attributes.text("nlosSceneInfo"), nullptr, false);
+    capture.scene_info =
+        core::json_if_valid(attributes.text("nlosSceneInfo")).value_or(core::Json::object());
     if (!capture.scene_info.is_object()) capture.scene_info = core::Json::object();
     return capture;
 }
+
+}  // namespace
 
 std::vector<std::string> write_exr(const std::string& path,
                                    const Capture& capture,
@@ -321,15 +324,8 @@ std::vector<std::string> write_exr(const std::string& path,
     return {};
 }
 
-}  // namespace
-
 CaptureFormat exr_format() {
-    return {"OpenEXR",
-            "OpenEXR with the header attribute nlosFormat",
-            recognise_exr,
-            read_exr,
-            {".exr"},
-            write_exr};
+    return {"OpenEXR", recognise_exr, read_exr};
 }
 
 }  // namespace nlos

@@ -34,7 +34,7 @@ const typename Map::mapped_type& at(const std::string& path,
 }
 
 core::Json parse_object(const std::string& path, const ExrTable& table, const std::string& name) {
-    core::Json json = core::Json::parse(at(path, table.texts, name), nullptr, false);
+    core::Json json = core::parse_json(at(path, table.texts, name), path + ": " + name);
     if (!json.is_object()) throw Error(path + ": " + name, "is no JSON object", "must be one");
     return json;
 }

@@ -109,9 +109,7 @@ ReconstructSettings read_settings(const ArrayReader& file) {
     const auto text = file.text_attribute("/", "settings");
     if (!text) return settings;
     const std::string where = file.where("attribute settings");
-    const core::Json json = core::Json::parse(*text, nullptr, /*allow_exceptions=*/false);
-    if (json.is_discarded()) throw Error(where, "is not JSON", "must be a settings echo");
-    core::read_value(json, where, settings);
+    core::read_value(core::parse_json(*text, where), where, settings);
     return settings;
 }
 
@@ -179,7 +177,7 @@ Reconstruction read_volume(const std::string& path) {
     result.reason = file.text_attribute("/", "reason").value_or("");
     result.settings = read_settings(file);
     const std::string made = file.text_attribute("/", "provenance").value_or("");
-    if (core::Json::accept(made)) result.provenance = core::Json::parse(made);
+    if (auto provenance = core::json_if_valid(made)) result.provenance = std::move(*provenance);
     result.seconds = read_number(file, "seconds");
     result.peak_bytes =
         static_cast<std::uint64_t>(std::min(read_number(file, "peak_bytes"), 0x1p63));

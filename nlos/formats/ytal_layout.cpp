@@ -47,8 +47,8 @@ std::string scene_info_text(const core::Json& scene_info) {
 }
 
 core::Json parse_scene_info(const std::string& text) {
-    core::Json json = core::Json::parse(text, nullptr, /*allow_exceptions=*/false);
-    if (json.is_object()) return json;
+    const std::optional<core::Json> json = core::json_if_valid(text);
+    if (json && json->is_object()) return *json;
     return core::Json{{kYamlKey, text}};
 }
 

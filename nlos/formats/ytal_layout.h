@@ -44,10 +44,6 @@ inline EnumMembers volume_format_members() {
 /// has no place for it.
 inline constexpr const char* kCameraKey = "camera";
 
-/// First and one past the last observed bin of every pair: int32, shape (2, then that of H without
-/// T). Other bins hold 0 and mean that nobody looked.
-inline constexpr const char* kObservedBins = "nlos/observed_bins";
-
 /// Attributes of /nlos/frames: how far gate and objects move on per frame.
 inline constexpr const char* kGateStep = "gate_step_m";
 inline constexpr const char* kFrameTime = "frame_s";
@@ -59,11 +55,6 @@ inline constexpr const char* kVelocityCarrier = "carrier_hz";
 
 /// The key of scene_info that holds the unit where the group /nlos is left out.
 inline constexpr const char* kUnitKey = "nlos_unit";
-
-/// Writes a capture in this layout, see write_capture().
-std::vector<std::string> write_ytal_capture(const std::string& path,
-                                            const core::Capture& capture,
-                                            const CaptureWriteSettings& settings);
 
 /// A dictionary as text that both JSON and YAML 1.1 readers understand.
 ///

@@ -210,11 +210,24 @@ void read_wall_scan(const ArrayReader& file, Capture& capture) {
     }
 }
 
-void read_devices(const ArrayReader& file, Capture& capture) {
+/// Whether path lengths start and end at the devices: a flag of y-tal, a text in .npz files.
+core::OplOrigin read_opl_origin(const ArrayReader& file, Capture& capture) {
     const std::string flag = "t_accounts_first_and_last_bounces";
-    if (!file.has(flag)) capture.notes.push_back(flag + " is missing: device legs not included");
-    const bool device = file.has(flag) && file.read_integer(flag) != 0;
-    capture.scan.opl_origin = device ? core::OplOrigin::Device : core::OplOrigin::RelayWall;
+    core::OplOrigin origin = core::OplOrigin::RelayWall;
+    if (file.has("opl_origin")) {
+        core::read_value(
+            core::Json(file.read_text("opl_origin")), file.where("opl_origin"), origin);
+    } else if (!file.has(flag)) {
+        capture.notes.push_back(flag + " is missing: device legs not included");
+    } else if (file.read_integer(flag) != 0) {
+        origin = core::OplOrigin::Device;
+    }
+    return origin;
+}
+
+void read_devices(const ArrayReader& file, Capture& capture) {
+    capture.scan.opl_origin = read_opl_origin(file, capture);
+    const bool device = capture.scan.opl_origin == core::OplOrigin::Device;
     if (device || file.has("laser_xyz")) {
         capture.scan.laser_position = read_position(file, "laser_xyz");
     }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/containers/hdf5_writer.h"
+#include "nlos/formats/capture_arrays.h"
 #include "nlos/formats/capture_format.h"
 #include "nlos/formats/ytal_layout.h"
 
@@ -9,30 +10,9 @@ namespace {
 using core::Capture;
 using core::WallPoints;
 
-/// How the points of a capture stand in the file.
-struct Layout {
-    bool exhaustive;
-    bool grids;  ///< points as (X, Y, 3) and not as (N, 3), or an image
-
-    HFormat h_format() const {
-        if (exhaustive) return grids ? HFormat::TLxLySxSy : HFormat::TLiSi;
-        return grids ? HFormat::TSxSy : HFormat::TSi;
-    }
-};
-
-Layout layout_of(const core::Scan& scan) {
-    if (scan.camera) return {false, true};
-    const bool exhaustive = scan.pattern == core::ScanPattern::Exhaustive;
-    // A single illumination point is a grid of one by one as well.
-    const bool illumination_is_grid = scan.illumination.grid || scan.illumination.size() == 1;
-    return {exhaustive, scan.sensing.grid && (!exhaustive || illumination_is_grid)};
-}
-
-/// (X, Y) or (N,) of some points.
-Shape extents_of(const WallPoints& points, const Layout& layout) {
-    if (!layout.grids) return {points.size()};
-    const auto grid = points.grid.value_or(std::array<std::size_t, 2>{1, 1});
-    return {grid[0], grid[1]};
+HFormat h_format(const ArrayLayout& layout) {
+    if (layout.exhaustive) return layout.grids ? HFormat::TLxLySxSy : HFormat::TLiSi;
+    return layout.grids ? HFormat::TSxSy : HFormat::TSi;
 }
 
 void write_no_points(Hdf5Writer& file, const std::string& device) {
@@ -45,31 +25,14 @@ void write_no_points(Hdf5Writer& file, const std::string& device) {
 void write_points(Hdf5Writer& file,
                   const std::string& device,
                   const WallPoints& points,
-                  const Layout& layout) {
-    Shape shape = extents_of(points, layout);
+                  const ArrayLayout& layout) {
+    Shape shape = point_extents(points, layout);
     shape.push_back(3);
     file.write(device + "_grid_xyz", shape, to_floats(points.positions));
     file.write(device + "_grid_normals", shape, to_floats(points.normals));
     file.write_enum(device + "_grid_format",
                     grid_format_members(),
                     static_cast<int>(layout.grids ? GridFormat::XY3 : GridFormat::N3));
-}
-
-/// Copies bins [first, first + count) of [pair][bin] to rows with time slowest.
-void copy_rows(const core::Transient& transient,
-               std::size_t first,
-               std::size_t count,
-               float* rows) {
-    constexpr std::size_t kPairsAtOnce = 16;  // one cache line of every row at a time
-    const std::size_t pairs = transient.num_pairs();
-    for (std::size_t begin = 0; begin < pairs; begin += kPairsAtOnce) {
-        const std::size_t end = std::min(pairs, begin + kPairsAtOnce);
-        for (std::size_t row = 0; row < count; ++row) {
-            for (std::size_t pair = begin; pair < end; ++pair) {
-                rows[row * pairs + pair] = transient.histogram(pair)[first + row];
-            }
-        }
-    }
 }
 
 /// Not compressed: the noise of rendered and measured histograms leaves deflate little to save for
@@ -120,22 +83,16 @@ void write_stack(Hdf5Writer& file,
     shape.insert(shape.begin(), stack.size());
     file.write_rows(
         name, shape, [&](std::size_t first, std::size_t count, std::vector<float>& rows) {
-            for (std::size_t i = 0; i < count; ++i) {
-                copy_rows(stack[first + i], 0, h_shape[0], rows.data() + i * (rows.size() / count));
-            }
+            copy_stack(stack, first, count, rows.data());
         });
 }
 
-/// First bins of all pairs, then the bins after their last ones.
 void write_observed_bins(Hdf5Writer& file,
                          const Shape& h_shape,
                          const std::vector<core::BinRange>& observed) {
     Shape shape = h_shape;
     shape[0] = 2;
-    std::vector<int> bins;
-    for (const core::BinRange& range : observed) bins.push_back(range.begin);
-    for (const core::BinRange& range : observed) bins.push_back(range.end);
-    file.write(kObservedBins, shape, bins);
+    file.write("nlos/observed_bins", shape, observed_array(observed));
 }
 
 /// What y-tal has no name for, if there is any and y-tal need not read the file.
@@ -168,39 +125,21 @@ bool write_own_group(Hdf5Writer& file,
     return has_own;
 }
 
-/// (T, pairs...) of H.
-Shape h_shape_of(const Capture& capture, const Layout& layout) {
-    const core::Scan& scan = capture.scan;
-    Shape shape{static_cast<std::size_t>(capture.time_axis.num_bins)};
-    if (scan.camera) {
-        shape.push_back(scan.camera->width());
-        shape.push_back(scan.camera->height());
-        return shape;
-    }
-    const auto add_extents = [&](const WallPoints& points) {
-        const Shape extents = extents_of(points, layout);
-        shape.insert(shape.end(), extents.begin(), extents.end());
-    };
-    if (layout.exhaustive) add_extents(scan.illumination);
-    add_extents(scan.sensing);
-    return shape;
-}
-
 }  // namespace
 
-std::vector<std::string> write_ytal_capture(const std::string& path,
-                                            const Capture& capture,
-                                            const CaptureWriteSettings& settings) {
+std::vector<std::string> write_ytal(const std::string& path,
+                                    const Capture& capture,
+                                    const CaptureWriteSettings& settings) {
     const core::Scan& scan = capture.scan;
-    const Layout layout = layout_of(scan);
-    const Shape h_shape = h_shape_of(capture, layout);
+    const ArrayLayout layout = array_layout(scan);
+    const Shape h_shape = histogram_shape(capture);
     core::Json scene_info = capture.scene_info;
     if (scan.camera) scene_info[kCameraKey] = core::write_value(*scan.camera);
     if (settings.for_ytal) scene_info[kUnitKey] = enum_name(capture.unit);
 
     Hdf5Writer file(path);
     write_transient(file, "H", h_shape, capture.transient);
-    file.write_enum("H_format", h_format_members(), static_cast<int>(layout.h_format()));
+    file.write_enum("H_format", h_format_members(), static_cast<int>(h_format(layout)));
     file.write("sensor_xyz", {3}, to_floats({scan.detector_position}));
     file.write("laser_xyz", {3}, to_floats({scan.laser_position}));
     if (scan.camera) {

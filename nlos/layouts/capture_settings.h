@@ -50,6 +50,8 @@ struct CaptureWriteSettings {
     /// HDF5: leave out the group /nlos, with which y-tal refuses a file; the unit stands in
     /// scene_info then.
     bool for_ytal = false;
+    /// Layout to write, one of those whose files have the suffix; empty: the suffix's first.
+    std::string layout;
 };
 
 }  // namespace nlos

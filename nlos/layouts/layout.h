@@ -210,11 +210,12 @@ struct LayoutPoints {
     std::string array;                              ///< coordinates, along an axis of extent 3
     std::vector<std::string> axes;                  ///< of array, "xyz" for the coordinates
     std::vector<std::string> columns{"x", "y", "z"};  ///< which coordinate each is; "-x" negates
+    std::vector<std::string> list_order;  ///< how a list runs over a grid, slowest axis first
     std::string x;                                  ///< arrays of one coordinate each, z = 0
     std::string y;
     LayoutNumber pitch_m;   ///< given: the arrays hold indices, these times it are metres
     std::string normals;    ///< as array; without: those of a plane through the points
-    std::string index;      ///< the one sensing point with this pair of indices, counted from 1
+    std::string index;      ///< the sensing point with these indices from 1, in the axes' order
     LayoutNumber wall_z_m;  ///< z becomes this minus z, and the wall looks along +z
     std::vector<double> position_m;  ///< one point
     /// Arrays of the first point, the last along x, the last along y: a grid between them.
@@ -227,6 +228,7 @@ void for_each_field(LayoutPoints& p, Visitor&& visit) {
     visit("array", p.array, "or an array of points, coordinates along an axis of extent 3");
     visit("axes", p.axes, "its axes, xyz for the coordinates");
     visit("columns", p.columns, "which coordinate each column is; -x negates");
+    visit("list_order", p.list_order, "how a list runs over a grid, slowest axis first");
     visit("x", p.x, "or an array of x");
     visit("y", p.y, "and one of y");
     visit("pitch_m", p.pitch_m, "the arrays hold indices, distance of neighbours [m]");

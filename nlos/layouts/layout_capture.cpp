@@ -122,7 +122,10 @@ PairNumbers read_points(const LayoutFiles& files,
         scan.illumination = scan.sensing;
         numbers.illumination = numbers.sensing;
     } else if (!layout.illumination.index.empty()) {
-        const std::vector<double> index = files.read(layout.illumination.index);
+        std::vector<double> index = files.read(layout.illumination.index);
+        if (sensed.names.size() == 2 && sensed.names[0].back() == 'y') {
+            std::reverse(index.begin(), index.end());
+        }
         const auto grid = scan.sensing.grid.value_or(std::array<std::size_t, 2>{0, 0});
         const bool inside = index.size() == 2 && index[0] >= 1 && index[1] >= 1 &&
                             index[0] <= static_cast<double>(grid[0]) &&
@@ -242,7 +245,7 @@ Capture read_one(const std::string& path,
         read_histograms(files, *array, numbers, capture.scan.num_pairs(), settings.frame), capture);
     read_unit(files, layout.histogram, capture);
     describe(files, layout, capture);
-    if (layout.bins.zeros_are_unobserved) core::restrict_observed(capture, lit_bins(capture));
+    const core::BinRange lit = lit_bins(capture);
     const auto& background = layout.histogram.background;
     if (!background.empty() && std::all_of(background.begin(),
                                            background.end(),
@@ -255,6 +258,7 @@ Capture read_one(const std::string& path,
         }
         capture.notes.push_back(fmt::format("the mean of {} is subtracted", fmt::join(background, ", ")));
     }
+    if (layout.bins.zeros_are_unobserved) core::restrict_observed(capture, lit);
     const auto& shift = layout.bins.shift;
     if (shift && (shift->required || files.has(shift->array))) {
         take_off_delays(read_delays(files, *shift, *array, numbers), capture);

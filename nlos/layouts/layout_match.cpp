@@ -9,10 +9,14 @@
 namespace nlos {
 namespace {
 
-/// Extents as `rank` axes, by adding or leaving out extents of 1 (MATLAB drops trailing ones and
-/// knows no vectors); nothing when that does not do.
-std::optional<Shape> with_rank(Shape extents, std::size_t rank) {
-    while (extents.size() < rank) extents.push_back(1);
+/// Extents for the axes, by adding or leaving out extents of 1 (MATLAB drops trailing ones and knows
+/// no vectors); nothing when that does not do, or would add the axis of bins.
+std::optional<Shape> fitted_extents(Shape extents, const std::vector<std::string>& axes) {
+    const std::size_t rank = axes.size();
+    while (extents.size() < rank) {
+        if (axes[extents.size()] == "t") return std::nullopt;
+        extents.push_back(1);
+    }
     while (extents.size() > rank) {
         if (extents.back() == 1) {
             extents.pop_back();
@@ -76,7 +80,7 @@ std::optional<std::size_t> HistogramArray::extent(const std::string& axis) const
 std::optional<HistogramArray> find_histograms(const LayoutFiles& files, const Layout& layout) {
     for (const std::string& name : layout.histogram.array) {
         if (!files.has(name)) continue;
-        const auto extents = with_rank(files.shape(name), layout.histogram.axes.size());
+        const auto extents = fitted_extents(files.shape(name), layout.histogram.axes);
         if (!extents) continue;
         HistogramArray array{name, layout.histogram.axes, *extents, false};
         array.reversed =

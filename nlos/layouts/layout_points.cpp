@@ -186,7 +186,10 @@ CoordinateArray read_coordinates(const LayoutFiles& files,
 }
 
 /// Where the coordinates of an entry begin in an array of coordinates.
-std::size_t offset_of(const CoordinateArray& array, const PointAxes& axes, std::size_t entry) {
+std::size_t offset_of(const CoordinateArray& array,
+                      const PointAxes& axes,
+                      const std::vector<std::string>& list_order,
+                      std::size_t entry) {
     if (array.shape.size() == 1) return 0;
     if (array.shape.size() == 2 && !is_grid(axes)) {
         const std::size_t along = 1 - array.axis(kCoordinates);
@@ -199,9 +202,10 @@ std::size_t offset_of(const CoordinateArray& array, const PointAxes& axes, std::
         const std::size_t along = 1 - array.axis(kCoordinates);
         const std::array<std::size_t, 2> place{index[x_axis == 0 ? 0 : 1],
                                                index[x_axis == 0 ? 1 : 0]};
-        const std::size_t number = axes.first_index_fastest
-                                       ? place[0] + axes.extents[0] * place[1]
-                                       : place[0] * axes.extents[1] + place[1];
+        const bool first_fastest =
+            list_order.empty() ? axes.first_index_fastest : list_order.back() == axes.names[0];
+        const std::size_t number = first_fastest ? place[0] + axes.extents[0] * place[1]
+                                                 : place[0] * axes.extents[1] + place[1];
         return number * array.strides[along];
     }
     return index[0] * array.strides[array.axis(axes.names[x_axis])] +
@@ -216,7 +220,7 @@ std::vector<Vec3> read_vectors(const LayoutFiles& files,
     const std::size_t stride = read.strides[read.axis(kCoordinates)];
     std::vector<Vec3> vectors(axes.count(), Vec3::Zero());
     for (std::size_t entry = 0; entry < vectors.size(); ++entry) {
-        const std::size_t begin = offset_of(read, axes, entry);
+        const std::size_t begin = offset_of(read, axes, layout.list_order, entry);
         for (std::size_t c = 0; c < 3; ++c) {
             const std::string& column = layout.columns[c];
             const double sign = column.front() == '-' ? -1.0 : 1.0;

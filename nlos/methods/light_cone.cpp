@@ -47,13 +47,20 @@ Cone make_cone(const MethodInput& input, std::size_t bins_per_bin) {
                           "lct was given a time axis with fewer than 4 bins of positive range",
                           "method=bp works for any axis");
     }
-    cone.v_edges =
-        even_edges(begin * begin, end * end, bins_per_bin * static_cast<std::size_t>(num_bins));
+    // Had nobody cut off what nobody observed, the axis would begin here: the transform's period
+    // and bins stay what they were, on which the background that it leaves depends.
+    const double first = std::max(0.0, begin - 0.5 * input.unobserved_before_m);
+    const double all_bins =
+        first < begin ? std::ceil((end - first) / (0.5 * axis.bin_width_m) - 1e-6) : num_bins;
+    cone.period_v = bins_per_bin * static_cast<std::size_t>(all_bins);
+    cone.v_edges = even_edges(first * first, end * end, cone.period_v);
+    const auto cut = std::ranges::upper_bound(cone.v_edges, begin * begin) - 1;
+    cone.v_edges.erase(cone.v_edges.begin(), cut);
     cone.nx = input.wall.grid->size[0];
     cone.ny = input.wall.grid->size[1];
     cone.px = 2 * good_fft_size(cone.nx);
     cone.py = 2 * good_fft_size(cone.ny);
-    cone.length = 2 * good_fft_size(cone.num_v());
+    cone.length = 2 * good_fft_size(cone.period_v);
     return cone;
 }
 
@@ -110,7 +117,7 @@ ConeKernel::ConeKernel(const Cone& cone, const WallGrid& grid)
             const double dx = static_cast<double>(ix) * grid.pitch_m[0];
             const double dy = static_cast<double>(iy) * grid.pitch_m[1];
             const double shift = (dx * dx + dy * dy) / cone.v_width();
-            const bool is_inside = shift < static_cast<double>(cone.num_v() - 1);
+            const bool is_inside = shift < static_cast<double>(cone.period_v - 1);
             const double whole = std::floor(is_inside ? shift : 0.0);
             const double next = is_inside ? shift - whole : 0.0;
             const double here = is_inside ? 1.0 - next : 0.0;

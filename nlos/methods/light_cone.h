@@ -23,7 +23,8 @@ struct Cone {
     std::vector<double> v_edges;  ///< squared range [m^2]
     std::size_t nx = 0, ny = 0;   ///< wall points
     std::size_t px = 0, py = 0;   ///< padded to at least twice
-    std::size_t length = 0;       ///< padded number of v bins
+    std::size_t period_v = 0;     ///< v bins, and those before them that nobody observed
+    std::size_t length = 0;       ///< period_v, padded
     bool is_same_for_all = true;  ///< device legs are the same for every pair
     double min_leg_m = 0.0;       ///< the shortest device legs
 

@@ -28,6 +28,7 @@ struct MethodInput {
     /// Per pair; null: all bins were observed. Histograms hold 0 in all others, which methods that
     /// work by transforms take for darkness.
     const std::vector<core::BinRange>* observed = nullptr;
+    double unobserved_before_m = 0.0;  ///< path length cut off before the axis: nobody looked there
 };
 
 /// The same measurement with other histograms, all of them observed.

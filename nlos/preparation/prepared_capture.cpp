@@ -117,7 +117,9 @@ void crop_measurement(const core::Capture& capture,
         for (std::size_t pair = 0; pair < prepared.scan.num_pairs(); ++pair) {
             observed.push_back(core::intersection((*capture.observed)[source_of(pair)], bins));
         }
+        const core::BinRange all = bins;
         bins = bins_seen(prepared.observed, capture.time_axis.num_bins);
+        prepared.unobserved_before_m = (bins.begin - all.begin) * capture.time_axis.bin_width_m;
     }
     prepared.time_axis = axis_of(capture.time_axis, bins);
 
@@ -141,6 +143,7 @@ void drop_unobserved_ends(PreparedCapture& prepared) {
                     shorter.histogram(pair).begin());
     }
     prepared.own = std::move(shorter);
+    prepared.unobserved_before_m = bins.begin * prepared.time_axis.bin_width_m;
     prepared.time_axis = axis_of(prepared.time_axis, bins);
     move_observed(bins, prepared.observed);
 }

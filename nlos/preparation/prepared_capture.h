@@ -16,7 +16,8 @@ struct PreparedCapture {
     core::TransientUnit unit = core::TransientUnit::Radiance;
     core::Transient own;  ///< histograms that differ from the capture's; else empty
     const core::Transient* capture_transient = nullptr;
-    core::ObservedBins observed;  ///< of transient()
+    core::ObservedBins observed;       ///< of transient()
+    double unobserved_before_m = 0.0;  ///< path length cut off before the axis: nobody looked there
     WallFrame wall;
     std::string conversion;  ///< in words, when the scan was converted
 

@@ -3,24 +3,29 @@
 
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 namespace core {
 
+/// Text on one line that any terminal shows: characters of UTF-8 stay, control characters and what
+/// is no UTF-8 become '?'.
+std::string printable(std::string_view text);
+
 /// Wrong input, file or setting: the caller can mend it. Programs exit with status 2.
 ///
-/// what() is one line: `where: what was found; what is allowed`.
+/// what() is one printable line: `where: what was found; what is allowed`.
 class Error : public std::runtime_error {
  public:
     Error(const std::string& where, const std::string& found, const std::string& allowed)
-        : std::runtime_error(where + ": " + found + "; " + allowed) {}
+        : std::runtime_error(printable(where + ": " + found + "; " + allowed)) {}
 };
 
 /// The input is fine and the work still cannot be done (too little memory, disk full, interrupted).
-/// Programs exit with status 1. what() is one line: `where: reason`.
+/// Programs exit with status 1. what() is one printable line: `where: reason`.
 class Failure : public std::runtime_error {
  public:
     Failure(const std::string& where, const std::string& reason)
-        : std::runtime_error(where + ": " + reason) {}
+        : std::runtime_error(printable(where + ": " + reason)) {}
 };
 
 }  // namespace core

@@ -5,7 +5,15 @@
 #include "renderer/core/random.h"
 #include "renderer/core/sampling.h"
 
+#include <algorithm>
+
 namespace core {
+
+bool has_area(const Vec3& ab, const Vec3& ac) {
+    constexpr double kSmallestAspect = 1e-12;  // far above rounding, far below any real sliver
+    const double longest = std::max({ab.norm(), ac.norm(), (ac - ab).norm()});
+    return longest > 0.0 && (ab / longest).cross(ac / longest).norm() > kSmallestAspect;
+}
 
 PointCloud sample_surface(const TriangleMesh& mesh, std::size_t count, std::uint64_t seed) {
     std::vector<Vec3> area_vectors;

@@ -21,6 +21,10 @@ inline Vec3 triangle_area_vector(const Vec3& a, const Vec3& b, const Vec3& c) {
     return 0.5 * (b - a).cross(c - a);
 }
 
+/// False for triangles, given by two edges from one corner, that are points or lines up to
+/// rounding.
+bool has_area(const Vec3& ab, const Vec3& ac);
+
 /// Points with normals, in no order.
 struct PointCloud {
     std::vector<Vec3> positions;  ///< [m, world]

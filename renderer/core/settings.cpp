@@ -120,8 +120,7 @@ Json parse_override(const std::string& text) {
         throw Error("--set", "found '" + text + "'", "must be key.path=value");
     }
     const std::string value_text = text.substr(equals + 1);
-    Json value = Json::parse(value_text, nullptr, /*allow_exceptions=*/false);
-    if (value.is_discarded()) value = value_text;
+    Json value = json_if_valid(value_text).value_or(value_text);
 
     std::string path = text.substr(0, equals);
     while (true) {
@@ -133,26 +132,6 @@ Json parse_override(const std::string& text) {
         value = std::move(outer);
         if (dot == std::string::npos) return value;
         path.resize(dot);
-    }
-}
-
-Json read_json_file(const std::string& path) {
-    if (std::filesystem::is_directory(path)) {
-        throw Error(path, "is a folder", "must be a readable JSON file");
-    }
-    std::ifstream file(path);
-    if (!file) throw Error(path, "cannot be opened", "must be a readable JSON file");
-    try {
-        return Json::parse(file);
-    } catch (const Json::exception& error) {
-        std::string message = error.what();  // may quote bytes of a file that is no text at all
-        std::replace_if(
-            message.begin(), message.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-        const std::size_t start = message.find("] ");
-        throw Error(path,
-                    "is not valid JSON (" +
-                        (start == std::string::npos ? message : message.substr(start + 2)) + ")",
-                    "must be one JSON object");
     }
 }
 

@@ -297,7 +297,16 @@ std::vector<SettingHelp> settings_help(S defaults, const std::string& prefix = "
     return lines;
 }
 
-/// Reads a whole JSON file. Throws Error when it is missing or not JSON.
+/// Parses JSON text, which may come from anywhere.
+///
+/// where    names the text in messages
+/// throws   Error when it is not JSON, is nested deeper than 100, or has a key twice in an object
+Json parse_json(std::string_view text, const std::string& where);
+
+/// The same; nothing when the text is no such JSON.
+std::optional<Json> json_if_valid(std::string_view text);
+
+/// Reads a whole JSON file. Throws Error when it is missing or parse_json() refuses it.
 Json read_json_file(const std::string& path);
 
 }  // namespace core

@@ -199,19 +199,13 @@ class SceneReader {
             // Edges are transformed on their own: differences of far world points lose digits.
             const core::Vec3 ab = linear * (primitive.positions[b] - primitive.positions[a]);
             const core::Vec3 ac = linear * (primitive.positions[c] - primitive.positions[a]);
-            if (!has_area(ab, ac)) continue;
+            if (!core::has_area(ab, ac)) continue;
             mesh.triangles.push_back(mirrored ? Triangle{a, c, b} : Triangle{a, b, c});
         }
         if (mesh.triangles.empty()) {
             throw core::Error(where, "its mesh has no triangle with an area", "must have one");
         }
         return mesh;
-    }
-
-    static bool has_area(const core::Vec3& ab, const core::Vec3& ac) {
-        constexpr double kSmallestAspect = 1e-12;  // far above rounding, far below any real sliver
-        const double longest = std::max({ab.norm(), ac.norm(), (ac - ab).norm()});
-        return longest > 0.0 && (ab / longest).cross(ac / longest).norm() > kSmallestAspect;
     }
 
     void add_camera(const Visit& visit, int camera_index) {

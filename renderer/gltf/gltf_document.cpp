@@ -82,27 +82,6 @@ std::string_view find_json_chunk(std::string_view bytes, const std::string& path
     return json;
 }
 
-/// Parses with a bound on the nesting, since tinygltf recurses into extras and extensions.
-core::Json parse_json(std::string_view text, const std::string& path) {
-    constexpr int kDeepestNesting = 64;
-    const auto check_depth = [&](int depth, core::Json::parse_event_t, core::Json&) {
-        if (depth > kDeepestNesting) {
-            throw core::Error(path,
-                              "its JSON is nested deeper than " + std::to_string(kDeepestNesting),
-                              "must be nested less");
-        }
-        return true;
-    };
-    try {
-        return core::Json::parse(text, check_depth);
-    } catch (const core::Json::parse_error& error) {
-        throw core::Error(
-            path, "is not valid JSON near byte " + std::to_string(error.byte), kAllowed);
-    } catch (const core::Json::exception&) {
-        throw core::Error(path, "has a number that is out of range", kAllowed);
-    }
-}
-
 /// Keeps an image as the bytes it came in; only textures that are used get decoded.
 bool keep_image_bytes(tinygltf::Image* image,
                       const int /*index*/,
@@ -164,7 +143,8 @@ GltfDocument read_gltf_document(const std::string& path) {
     const std::string bytes = read_bytes(path);
     GltfDocument document;
     document.path = path;
-    document.json = parse_json(is_binary_gltf(bytes) ? find_json_chunk(bytes, path) : bytes, path);
+    document.json =
+        core::parse_json(is_binary_gltf(bytes) ? find_json_chunk(bytes, path) : bytes, path);
     check_gltf_json(document.json, path);
     document.model = load_model(bytes, path);
     return document;

@@ -134,8 +134,7 @@ LoadedMaterial read_material(const GltfDocument& document, int index) {
     LoadedMaterial loaded;
     loaded.material.name = source.name;
     loaded.material.model = pbr.metallicFactor > 0.0 ? SurfaceModel::Ggx : SurfaceModel::Lambertian;
-    // The mean, written so that equal components keep their value to the last bit.
-    loaded.material.albedo = factor[0] + ((factor[1] - factor[0]) + (factor[2] - factor[0])) / 3.0;
+    loaded.material.albedo = mean_albedo(factor);
     loaded.material.roughness = pbr.roughnessFactor;
     loaded.warnings = material_warnings(source, index);
     const core::Json& json = document.json["materials"][static_cast<std::size_t>(index)];

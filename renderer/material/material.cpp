@@ -12,4 +12,8 @@ bool is_integrable(const Material& material) {
            material.roughness * material.roughness >= kSmallestGlossyAlpha;
 }
 
+double mean_albedo(const std::array<double, 3>& linear) {
+    return linear[0] + ((linear[1] - linear[0]) + (linear[2] - linear[0])) / 3.0;
+}
+
 }  // namespace renderer

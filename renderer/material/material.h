@@ -4,6 +4,7 @@
 #include "renderer/core/settings.h"
 #include "renderer/material/texture.h"
 
+#include <array>
 #include <memory>
 #include <string>
 
@@ -23,6 +24,10 @@ struct Material {
 /// True for surfaces whose third bounce the deterministic integrator takes: Lambertian and
 /// retroreflective ones, and conductors with GGX lobes wide enough to be smooth over an element.
 bool is_integrable(const Material& material);
+
+/// What a linear colour counts as: its mean over red, green and blue; equal components keep their
+/// value to the last bit.
+double mean_albedo(const std::array<double, 3>& linear);
 
 }  // namespace renderer
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/scene/scene.h"
 
-#include "renderer/gltf/gltf.h"
+#include "renderer/scene/load_geometry.h"
 
 #include <algorithm>
 #include <cmath>
@@ -178,7 +178,7 @@ std::optional<SurfacePoint> Scene::first_hit(const Vec3& from,
 }
 
 Scene load_scene(const SceneDescription& description, const core::Scan& scan) {
-    SceneGeometry geometry = load_gltf(description.geometry);
+    SceneGeometry geometry = load_geometry(description);
     for (Object& object : geometry.objects) {
         if (!description.render.dielectric_specular) break;
         Material& material = object.material;

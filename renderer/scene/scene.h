@@ -84,7 +84,7 @@ class Scene {
     RayCaster rays_;
 };
 
-/// Loads the description's glTF and sets the scene up for its scan.
+/// Loads the description's geometry and sets the scene up for its scan.
 ///
 /// throws   core::Error for a bad file, when all hidden geometry lies behind the scan's points, or
 ///          when a grid of points does not lie on the mesh that is the relay wall

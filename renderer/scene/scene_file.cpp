@@ -17,6 +17,25 @@ using core::Error;
 using core::require;
 using core::Vec3;
 
+void validate_geometry(const SceneDescription& scene, const std::string& where) {
+    const auto refuse = [&](const char* key) {
+        throw Error(
+            where + key,
+            "found together with " + std::filesystem::path(scene.geometry).filename().string(),
+            "must be left out: glTF is in metres, with y up");
+    };
+    if (!is_mesh_file(scene.geometry)) {
+        if (scene.geometry_unit_m) refuse("geometry_unit_m");
+        if (scene.geometry_up) refuse("geometry_up");
+    }
+    if (scene.geometry_unit_m) {
+        core::check_range(*scene.geometry_unit_m, {.low = 0.0}, where + "geometry_unit_m");
+    }
+    for (const auto& [name, object] : scene.objects) {
+        core::check_ranges(object, where + "objects." + name);
+    }
+}
+
 void validate_wall(const RelayWall& wall, const std::string& where) {
     require(wall.normal.norm() > 1e-9, where + ".normal length", wall.normal.norm(), "above 0");
     require(wall.up.cross(wall.normal.normalized()).norm() > 1e-9 * (1.0 + wall.up.norm()),
@@ -149,6 +168,10 @@ core::Scan image_of(const core::PinholeCamera& camera) {
 
 // Takes pose and angle of view from the glTF camera of the given name.
 void look_up_camera(const std::string& geometry, const std::string& where, CameraSettings& camera) {
+    if (is_mesh_file(geometry)) {
+        throw Error(
+            where, "found \"" + camera.name + "\"", "must be an object: the geometry is no glTF");
+    }
     std::string known;
     for (const Camera& candidate : load_gltf(geometry).cameras) {
         known += (known.empty() ? "" : ", ") + candidate.name;
@@ -191,6 +214,19 @@ core::Json write_value(const SceneTimeAxis& axis) {
     return axis.automatic ? core::Json("auto") : core::write_value<SceneTimeAxis>(axis);
 }
 
+void read_value(const core::Json& json, const std::string& where, ObjectTable& objects) {
+    if (!json.is_object()) core::throw_wrong_type(where, json, "an object with names of objects");
+    for (const auto& [name, settings] : json.items()) {
+        core::read_value(settings, core::join_key(where, name), objects[name]);
+    }
+}
+
+core::Json write_value(const ObjectTable& objects) {
+    core::Json json = core::Json::object();
+    for (const auto& [name, settings] : objects) json[name] = core::write_value(settings);
+    return json;
+}
+
 void read_value(const core::Json& json, const std::string& where, CameraSettings& camera) {
     if (json.is_string()) {
         camera.name = json.get<std::string>();
@@ -221,7 +257,9 @@ SceneDescription read_scene_description(const std::string& path,
     }
     refuse_two_setups(keys, path + ": ");
     if (scene.geometry.empty()) {
-        throw Error(path + ": geometry", "found nothing", "must name a .glb or .gltf file");
+        throw Error(path + ": geometry",
+                    "found nothing",
+                    "must name a .glb, .gltf, .obj, .ply or .stl file");
     }
     scene.geometry = (std::filesystem::path(path).parent_path() / scene.geometry).string();
     if (scene.camera && !scene.camera->name.empty()) {
@@ -232,6 +270,7 @@ SceneDescription read_scene_description(const std::string& path,
 }
 
 void validate(const SceneDescription& scene, const std::string& where) {
+    validate_geometry(scene, where);
     if (scene.camera) {
         core::validate(*scene.camera, where + "camera");
         require(!scene.camera->light_spot_m || scene.render.max_bounces >= 2,

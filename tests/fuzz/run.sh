@@ -8,7 +8,7 @@ bin=build/fuzz/tests/fuzz
 mkdir -p build/fuzz/findings
 [ -d build/fuzz/seeds ] || "$bin/write_fuzz_seeds" build/fuzz/seeds
 status=0
-for name in ${2:-capture volume point_list ply glb gltf scene response}; do
+for name in ${2:-capture volume point_list ply glb gltf scene response obj stl mesh_ply mitsuba mitsuba_json ytal}; do
     mkdir -p "build/fuzz/corpus/$name"
     # What happens in a child that runs a library is contained: its reports go to a folder.
     ASAN_OPTIONS=log_path=build/fuzz/findings/asan:detect_leaks=0 \

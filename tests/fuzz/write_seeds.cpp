@@ -5,6 +5,8 @@
 #include "nlos/formats/volume_file.h"
 #include "tests/nlos/formats/mat_writing.h"
 #include "tests/nlos/formats/old_hdf5_file.h"
+#include "tests/renderer/mesh_file/mesh_texts.h"
+#include "tests/renderer/scene_import/foreign_scenes.h"
 #include "tests/support/example_capture.h"
 #include "tests/support/example_reconstruction.h"
 #include "tests/support/file_bytes.h"
@@ -29,7 +31,7 @@ void write_captures(const std::string& folder) {
             capture.orders = {3};
             capture.by_order = {capture.transient};
         }
-        for (const std::string suffix : {".h5", ".exr"}) {
+        for (const std::string suffix : {".h5", ".npz", ".exr"}) {
             nlos::write_capture(folder + "/" + std::to_string(number) + suffix, capture);
         }
         nlos::write_old_hdf5(folder + "/old" + std::to_string(number) + ".h5", capture);
@@ -67,6 +69,26 @@ void write_meshes(const std::string& folder) {
         "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
 }
 
+void write_mesh_files(const std::string& folder) {
+    const core::TriangleMesh mesh = mesh_file_test::example_mesh();
+    for (const bool is_binary : {false, true}) {
+        const std::string name = is_binary ? "/binary" : "/text";
+        test_support::write_file_bytes(folder + "/mesh_ply" + name + ".ply",
+                                       mesh_file_test::ply_bytes(mesh, is_binary));
+        test_support::write_file_bytes(folder + "/stl" + name + ".stl",
+                                       mesh_file_test::stl_bytes(mesh, is_binary));
+    }
+    test_support::write_file_bytes(folder + "/obj/a.obj",
+                                   "o a\nusemtl b\n" + mesh_file_test::obj_text(mesh));
+}
+
+void write_foreign_scenes(const std::string& folder) {
+    test_support::write_file_bytes(folder + "/mitsuba/a.xml", scene_import_test::example_xml());
+    test_support::write_file_bytes(folder + "/mitsuba_json/a.json",
+                                   scene_import_test::example_json());
+    test_support::write_file_bytes(folder + "/ytal/a.yaml", scene_import_test::example_yaml());
+}
+
 void write_scenes(const std::string& folder) {
     for (const auto& scene : fs::directory_iterator(NLOS_SOURCE_DIR "/scenes")) {
         const std::string name = "/" + scene.path().filename().string();
@@ -93,8 +115,20 @@ void write_scenes(const std::string& folder) {
 int main(int argc, char** argv) {
     if (argc != 2) return 2;
     const std::string folder = argv[1];
-    for (const char* name :
-         {"capture", "volume", "point_list", "ply", "glb", "gltf", "scene", "response"}) {
+    for (const char* name : {"capture",
+                             "volume",
+                             "point_list",
+                             "ply",
+                             "glb",
+                             "gltf",
+                             "scene",
+                             "response",
+                             "obj",
+                             "stl",
+                             "mesh_ply",
+                             "mitsuba",
+                             "mitsuba_json",
+                             "ytal"}) {
         fs::create_directories(folder + "/" + name);
     }
     write_captures(folder + "/capture");
@@ -102,6 +136,8 @@ int main(int argc, char** argv) {
     write_mats(folder, MAT_COMPRESSION_ZLIB);
     nlos::write_volume(folder + "/volume/volume.h5", test_support::example_reconstruction());
     write_meshes(folder + "/ply");
+    write_mesh_files(folder);
+    write_foreign_scenes(folder);
     write_scenes(folder);
     test_support::write_file_bytes(folder + "/response/curve.txt",
                                    "# ps weight\n-10 1\n0 6.5\n2e1 3\n");

@@ -30,6 +30,7 @@ struct MaskCase {
     ScanPattern pattern;
     std::vector<std::string> overrides;
     double ghosts;  ///< what dead points may add away from the object, of its brightness
+    bool is_light_cone = false;
 };
 
 class ObservedReconstruction : public testing::TestWithParam<MaskCase> {
@@ -116,12 +117,6 @@ class ObservedReconstruction : public testing::TestWithParam<MaskCase> {
         EXPECT_LT(ghosts(seen.volume), ghosts(alive) + GetParam().ghosts);
         const double with_mask = error(seen.volume, alive);
         const double without = error(run(dark).volume, run(whole).volume);
-        std::printf("%-20s ghosts %.3f (alive %.3f) error %.4f dark %.4f\n",
-                    GetParam().name.c_str(),
-                    ghosts(seen.volume),
-                    ghosts(alive),
-                    with_mask,
-                    without);
         EXPECT_LE(with_mask, 1.02 * without);
     }
 };
@@ -138,17 +133,24 @@ TEST_P(ObservedReconstruction, ShowsTheObjectInCountsWithAmbientLight) {
 }
 
 TEST_P(ObservedReconstruction, AGateOfAllPointsIsAShorterAxis) {
+    const BinRange gate{60, 144};
     core::Capture gated = whole_capture();
-    core::restrict_observed(gated, kGate);
-    core::Capture shorter = gated;
-    shorter.observed.reset();
-    shorter.time_axis.opl_start_m = shorter.time_axis.bin_begin_m(kGate.begin);
-    shorter.time_axis.num_bins = kGate.size();
-    shorter.transient = core::Transient(shorter.scan.num_pairs(), kGate.size());
+    core::restrict_observed(gated, gate);
+    core::Capture dark = gated;
+    dark.observed.reset();
+    core::Capture shorter = dark;
+    shorter.time_axis.opl_start_m = shorter.time_axis.bin_begin_m(gate.begin);
+    shorter.time_axis.num_bins = gate.size();
+    shorter.transient = core::Transient(shorter.scan.num_pairs(), gate.size());
     for (std::size_t pair = 0; pair < shorter.scan.num_pairs(); ++pair) {
         std::ranges::copy(gated.observed_values(pair), shorter.transient.histogram(pair).begin());
     }
-    EXPECT_EQ(run(gated).volume.values, run(shorter).volume.values);
+    const std::vector<float> found = run(gated).volume.values;
+    if (GetParam().is_light_cone) {  // and its transform keeps bins and period of the whole
+        EXPECT_LT(test_support::relative_l2(found, run(dark).volume.values), 0.01);
+    } else {
+        EXPECT_EQ(found, run(shorter).volume.values);
+    }
 }
 
 TEST_P(ObservedReconstruction, AnythingObservedGivesFiniteVolumes) {
@@ -171,9 +173,13 @@ TEST_P(ObservedReconstruction, AnythingObservedGivesFiniteVolumes) {
 
 std::vector<MaskCase> mask_cases() {
     std::vector<MaskCase> cases{
-        {"LctConfocal", ScanPattern::Confocal, {"method=lct", "snr=10"}, 0.05},
-        {"TvConfocal", ScanPattern::Confocal, {"method=lct", "prior=tv", "tv.iterations=15"}, 0.05},
-        {"DlctConfocal", ScanPattern::Confocal, {"method=dlct", "snr=10"}, 0.05},
+        {"LctConfocal", ScanPattern::Confocal, {"method=lct", "snr=10"}, 0.05, true},
+        {"TvConfocal",
+         ScanPattern::Confocal,
+         {"method=lct", "prior=tv", "tv.iterations=15"},
+         0.05,
+         true},
+        {"DlctConfocal", ScanPattern::Confocal, {"method=dlct", "snr=10"}, 0.05, true},
         {"FkConfocal", ScanPattern::Confocal, {"method=fk"}, 0.05}};
     const std::vector<std::pair<std::string, ScanPattern>> patterns{
         {"Confocal", ScanPattern::Confocal},

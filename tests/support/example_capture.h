@@ -42,6 +42,25 @@ inline core::Capture example_capture(core::ScanPattern pattern) {
     return capture;
 }
 
+/// A confocal square around the origin, y upwards as our scans have it: 3 x 3 points and 4 bins of
+/// whole numbers.
+inline core::Capture example_square() {
+    core::Capture capture;
+    core::WallPoints points;
+    points.grid = {3, 3};
+    for (int i = 0; i < 9; ++i) {
+        points.positions.emplace_back(0.2 * (i / 3 - 1), 0.2 * (i % 3 - 1), 0.0);
+    }
+    points.normals.assign(9, core::Vec3::UnitZ());
+    capture.scan.sensing = points;
+    capture.scan.illumination = points;
+    capture.time_axis = {0.125, 0.0047, 4};
+    capture.transient = core::Transient(9, 4);
+    float next = 0.0F;
+    for (float& value : capture.transient.values()) value = next += 3.0F;
+    return capture;
+}
+
 /// The image of a camera of 3 x 2 pixels, every value different.
 inline core::Capture example_image() {
     core::Capture capture = example_capture(core::ScanPattern::Single);

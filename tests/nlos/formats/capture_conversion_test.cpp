@@ -122,27 +122,10 @@ TEST(CaptureConversion, GateSumsWhatItCovers) {
     EXPECT_ERROR_WITH(gated_capture(capture, 0.25, 0.0), "gate");
 }
 
-/// A confocal square around the origin, y upwards as our scans have it.
-Capture square_capture() {
-    Capture capture;
-    core::WallPoints points;
-    points.grid = {3, 3};
-    for (int i = 0; i < 9; ++i)
-        points.positions.emplace_back(0.2 * (i / 3 - 1), 0.2 * (i % 3 - 1), 0.0);
-    points.normals.assign(9, core::Vec3::UnitZ());
-    capture.scan.sensing = points;
-    capture.scan.illumination = points;
-    capture.time_axis = {0.125, 0.0047, 4};
-    capture.transient = core::Transient(9, 4);
-    float next = 0.0F;
-    for (float& value : capture.transient.values()) value = next += 3.0F;
-    return capture;
-}
-
 TEST(CaptureConversion, StanfordFilesKeepASquareScan) {
     const TemporaryFolder folder;
     for (const bool whole : {true, false}) {
-        Capture capture = square_capture();
+        Capture capture = test_support::example_square();
         if (whole) {
             capture.unit = core::TransientUnit::Counts;
             capture.counts_per_radiance = 77.5;
@@ -178,13 +161,13 @@ TEST(CaptureConversion, StanfordFilesRefuseOtherScans) {
     };
     expect(example_capture(ScanPattern::Exhaustive), "exhaustive");
     expect(example_capture(ScanPattern::Confocal), "square");
-    Capture capture = square_capture();
+    Capture capture = test_support::example_square();
     capture.scan.opl_origin = core::OplOrigin::Device;
     expect(capture, "device legs");
-    capture = square_capture();
+    capture = test_support::example_square();
     capture.scan.sensing.positions[4].z() = 0.01;
     expect(capture, "point 4");
-    capture = square_capture();
+    capture = test_support::example_square();
     for (core::Vec3& position : capture.scan.sensing.positions) position.y() += 0.1;
     expect(capture, "where it is");
 }
@@ -207,7 +190,7 @@ TEST(CaptureConversion, FilesForYtalKeepTheirUnit) {
 TEST(CaptureConversion, UnknownSuffixesNameTheKnownOnes) {
     const TemporaryFolder folder;
     EXPECT_ERROR_WITH(write_capture(folder.file("a.png"), example_capture(ScanPattern::Single)),
-                      ".h5, .hdf5, .exr, .mat");
+                      ".h5, .hdf5, .npz, .exr, .mat");
 }
 
 TEST(CaptureConversion, OtherImagesAreRefused) {

@@ -79,6 +79,7 @@ TEST(ObservedStatistics, SignalToNoiseRatioIsThatOfAnAxisOfObservedBins) {
     core::Capture shorter = capture;
     shorter.time_axis = {1.2, 0.01, 80};
     shorter.transient = core::Transient(3, 80);
+    shorter.observed.reset();
     for (std::size_t pair = 0; pair < 3; ++pair) {
         std::ranges::copy(capture.observed_values(pair), shorter.transient.histogram(pair).begin());
     }

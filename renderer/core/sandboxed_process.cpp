@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/containers/sandboxed_process.h"
+#include "renderer/core/sandboxed_process.h"
 
 #include "renderer/core/error.h"
 #include "renderer/core/process.h"
@@ -20,7 +20,7 @@
 #include <new>
 #include <optional>
 
-namespace nlos {
+namespace core {
 namespace {
 
 // The address sanitizer reserves more addresses than any limit would allow.
@@ -106,7 +106,7 @@ void bound_resources(std::uint64_t file_bytes) {
     limit(RLIMIT_CORE, 0);
     limit(RLIMIT_CPU, kSeconds + file_bytes / kBytesPerSecond);
     if (!kReservesAddresses) {
-        limit(RLIMIT_AS, used_address_space() + core::available_memory_bytes());
+        limit(RLIMIT_AS, used_address_space() + available_memory_bytes());
     }
 }
 
@@ -133,9 +133,9 @@ void isolate() {
         bool is_sent = false;
         try {
             is_sent = send_message(socket, Kind::Bytes, serve(request->bytes));
-        } catch (const core::Error& error) {
+        } catch (const Error& error) {
             is_sent = send_message(socket, Kind::Error, error.what());
-        } catch (const core::Failure& failure) {
+        } catch (const Failure& failure) {
             is_sent = send_message(socket, Kind::Failure, failure.what());
         } catch (const std::bad_alloc&) {
             is_sent = send_message(socket, Kind::OutOfMemory, "");
@@ -152,17 +152,16 @@ void isolate() {
     const std::size_t where_end = line.find(": ");
     const std::size_t found_end = line.rfind("; ");
     if (where_end == std::string::npos || found_end == std::string::npos || found_end < where_end) {
-        throw core::Error(line, "was found", "must be mended");
+        throw Error(line, "was found", "must be mended");
     }
-    throw core::Error(line.substr(0, where_end),
-                      line.substr(where_end + 2, found_end - where_end - 2),
-                      line.substr(found_end + 2));
+    throw Error(line.substr(0, where_end),
+                line.substr(where_end + 2, found_end - where_end - 2),
+                line.substr(found_end + 2));
 }
 
 [[noreturn]] void throw_failure(const std::string& line) {
     const std::size_t where_end = std::min(line.find(": "), line.size());
-    throw core::Failure(line.substr(0, where_end),
-                        line.substr(std::min(where_end + 2, line.size())));
+    throw Failure(line.substr(0, where_end), line.substr(std::min(where_end + 2, line.size())));
 }
 
 std::uint64_t file_bytes_of(const std::string& path) {
@@ -177,7 +176,7 @@ SandboxedProcess::SandboxedProcess(std::string path, const Serve& serve) : path_
     const std::uint64_t file_bytes = file_bytes_of(path_);
     std::array<int, 2> sockets{};
     if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, sockets.data()) != 0) {
-        throw core::Failure(path_, "cannot be read: no socket for a child process");
+        throw Failure(path_, "cannot be read: no socket for a child process");
     }
     // No child may inherit the other end of a sibling's socket, or its end would go unnoticed.
     static std::mutex starting;
@@ -191,7 +190,7 @@ SandboxedProcess::SandboxedProcess(std::string path, const Serve& serve) : path_
     socket_ = sockets[0];
     if (process_ < 0) {
         ::close(socket_);
-        throw core::Failure(path_, "cannot be read: no child process can be started");
+        throw Failure(path_, "cannot be read: no child process can be started");
     }
 }
 
@@ -207,10 +206,10 @@ void SandboxedProcess::throw_ended() {
     if (process_ >= 0) ::waitpid(process_, &status, 0);
     process_ = -1;
     const bool took_too_long = WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU;
-    throw core::Error(path_,
-                      took_too_long ? "is damaged: reading it does not end"
-                                    : "is damaged: reading it crashes the library for its format",
-                      "must be an undamaged, complete file");
+    throw Error(path_,
+                took_too_long ? "is damaged: reading it does not end"
+                              : "is damaged: reading it crashes the library for its format",
+                "must be an undamaged, complete file");
 }
 
 std::string SandboxedProcess::ask(const std::string& request) {
@@ -224,7 +223,7 @@ std::string SandboxedProcess::ask(const std::string& request) {
         case Kind::Failure:
             throw_failure(answer->bytes);
         case Kind::OutOfMemory:
-            throw core::Failure(path_, "needs more memory than is free");
+            throw Failure(path_, "needs more memory than is free");
         case Kind::Error:
             break;
     }
@@ -235,4 +234,4 @@ std::string run_sandboxed(const std::string& path, const std::function<std::stri
     return SandboxedProcess(path, [&](const std::string&) { return work(); }).ask("");
 }
 
-}  // namespace nlos
+}  // namespace core

@@ -6,7 +6,7 @@
 #include <mutex>
 #include <string>
 
-namespace nlos {
+namespace core {
 
 /// A child of this process that runs a library on a file which may be damaged.
 ///
@@ -22,7 +22,7 @@ class SandboxedProcess {
     /// Starts the child.
     ///
     /// path     names the file in messages; its size bounds the child's time
-    /// throws   core::Failure when no process can be started
+    /// throws   Failure when no process can be started
     SandboxedProcess(std::string path, const Serve& serve);
     ~SandboxedProcess();
     SandboxedProcess(const SandboxedProcess&) = delete;
@@ -30,7 +30,7 @@ class SandboxedProcess {
 
     /// Sends a request and waits for the answer.
     ///
-    /// throws   core::Error or core::Failure as the child does; core::Error when the child crashed
+    /// throws   Error or Failure as the child does; Error when the child crashed
     ///          or did not end in time
     std::string ask(const std::string& request);
 
@@ -46,4 +46,4 @@ class SandboxedProcess {
 /// Runs `work` once in a SandboxedProcess and returns its answer.
 std::string run_sandboxed(const std::string& path, const std::function<std::string()>& work);
 
-}  // namespace nlos
+}  // namespace core

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/containers/sandboxed_process.h"
+#include "renderer/core/sandboxed_process.h"
 
 #include "renderer/core/error.h"
 #include "tests/support/error_message.h"
@@ -9,7 +9,7 @@
 #include <csignal>
 #include <new>
 
-namespace nlos {
+namespace core {
 namespace {
 
 TEST(SandboxedProcess, AnswersAndKeepsItsState) {
@@ -26,8 +26,8 @@ TEST(SandboxedProcess, AnswersAndKeepsItsState) {
 
 TEST(SandboxedProcess, ErrorsOfTheChildAreThrownHere) {
     SandboxedProcess process("some file", [](const std::string& request) -> std::string {
-        if (request == "error") throw core::Error("a: H", "holds x: y; z", "must be: w");
-        if (request == "failure") throw core::Failure("a", "needs 3 GiB: too many");
+        if (request == "error") throw Error("a: H", "holds x: y; z", "must be: w");
+        if (request == "failure") throw Failure("a", "needs 3 GiB: too many");
         throw std::bad_alloc();
     });
     EXPECT_EQ(test_support::error_message([&] { process.ask("error"); }),
@@ -35,10 +35,10 @@ TEST(SandboxedProcess, ErrorsOfTheChildAreThrownHere) {
     try {
         process.ask("failure");
         ADD_FAILURE();
-    } catch (const core::Failure& failure) {
+    } catch (const Failure& failure) {
         EXPECT_STREQ(failure.what(), "a: needs 3 GiB: too many");
     }
-    EXPECT_THROW(process.ask("memory"), core::Failure);
+    EXPECT_THROW(process.ask("memory"), Failure);
 }
 
 TEST(SandboxedProcess, ACrashIsAnErrorOfTheFile) {
@@ -76,4 +76,4 @@ TEST(SandboxedProcess, SeveralLiveSideBySide) {
 }
 
 }  // namespace
-}  // namespace nlos
+}  // namespace core

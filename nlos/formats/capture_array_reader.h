@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "nlos/containers/array_reader.h"
+#include "nlos/layouts/capture_settings.h"
+#include "renderer/core/capture.h"
+
+namespace nlos {
+
+// The arrays of capture_arrays.h, read. All throw core::Error that names file and array for what is
+// missing or wrong, and core::Failure for what does not fit in memory.
+
+/// Reads delta_t and t_start, and the number of bins from H.
+void read_axis(const ArrayReader& file,
+               const CaptureReadSettings& settings,
+               core::Capture& capture);
+
+/// Copies rows with time slowest to bins [first, first + count) of [pair][bin].
+void copy_bins(const float* rows, std::size_t first, std::size_t count, core::Transient& transient);
+
+/// An empty transient for the pairs of `capture`, if there is memory for it.
+core::Transient make_transient(const ArrayReader& file,
+                               const std::string& name,
+                               const core::Capture& capture,
+                               int num_bins);
+
+/// Reads (T, pairs...) with time slowest into [pair][bin].
+core::Transient read_transient(const ArrayReader& file,
+                               const std::string& name,
+                               const core::Capture& capture);
+
+/// Reads what a capture may hold beside H where the file has it: observed_bins, H_by_order with
+/// orders, frames (not their steps) and variance.
+///
+/// prefix   before these names
+void read_optional_arrays(const ArrayReader& file,
+                          const std::string& prefix,
+                          core::Capture& capture);
+
+void require_shape(const ArrayReader& file, const std::string& name, const Shape& wanted);
+
+/// Throws unless all values are finite and not negative.
+void require_variances(const ArrayReader& file,
+                       const std::string& name,
+                       const core::Transient& variance);
+
+}  // namespace nlos

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+#include "nlos/formats/capture_arrays.h"
+
+namespace nlos {
+
+using core::WallPoints;
+
+ArrayLayout array_layout(const core::Scan& scan) {
+    if (scan.camera) return {false, true};
+    const bool exhaustive = scan.pattern == core::ScanPattern::Exhaustive;
+    // A single illumination point is a grid of one by one as well.
+    const bool illumination_is_grid = scan.illumination.grid || scan.illumination.size() == 1;
+    return {exhaustive, scan.sensing.grid && (!exhaustive || illumination_is_grid)};
+}
+
+Shape point_extents(const WallPoints& points, const ArrayLayout& layout) {
+    if (!layout.grids) return {points.size()};
+    const auto grid = points.grid.value_or(std::array<std::size_t, 2>{1, 1});
+    return {grid[0], grid[1]};
+}
+
+Shape histogram_shape(const core::Capture& capture) {
+    const core::Scan& scan = capture.scan;
+    Shape shape{static_cast<std::size_t>(capture.time_axis.num_bins)};
+    if (scan.camera) {
+        shape.push_back(scan.camera->width());
+        shape.push_back(scan.camera->height());
+        return shape;
+    }
+    const ArrayLayout layout = array_layout(scan);
+    const auto add_extents = [&](const WallPoints& points) {
+        const Shape extents = point_extents(points, layout);
+        shape.insert(shape.end(), extents.begin(), extents.end());
+    };
+    if (layout.exhaustive) add_extents(scan.illumination);
+    add_extents(scan.sensing);
+    return shape;
+}
+
+std::vector<int> observed_array(const std::vector<core::BinRange>& observed) {
+    std::vector<int> bins;
+    for (const core::BinRange& range : observed) bins.push_back(range.begin);
+    for (const core::BinRange& range : observed) bins.push_back(range.end);
+    return bins;
+}
+
+void copy_rows(const core::Transient& transient,
+               std::size_t first,
+               std::size_t count,
+               float* rows) {
+    constexpr std::size_t kPairsAtOnce = 16;  // one cache line of every row at a time
+    const std::size_t pairs = transient.num_pairs();
+    for (std::size_t begin = 0; begin < pairs; begin += kPairsAtOnce) {
+        const std::size_t end = std::min(pairs, begin + kPairsAtOnce);
+        for (std::size_t row = 0; row < count; ++row) {
+            for (std::size_t pair = begin; pair < end; ++pair) {
+                rows[row * pairs + pair] = transient.histogram(pair)[first + row];
+            }
+        }
+    }
+}
+
+void copy_stack(const std::vector<core::Transient>& stack,
+                std::size_t first,
+                std::size_t count,
+                float* rows) {
+    for (std::size_t i = first; i < first + count; ++i) {
+        copy_rows(stack[i], 0, stack[i].num_bins(), rows);
+        rows += stack[i].values().size();
+    }
+}
+
+}  // namespace nlos

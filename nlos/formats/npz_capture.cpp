@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: MIT
+#include "nlos/containers/npz_writer.h"
+#include "nlos/formats/capture_array_reader.h"
+#include "nlos/formats/capture_arrays.h"
+#include "nlos/formats/capture_format.h"
+#include "nlos/formats/ytal_layout.h"
+#include "nlos/formats/ytal_scan.h"
+#include "renderer/core/error.h"
+
+#include <cmath>
+
+namespace nlos {
+namespace {
+
+using core::Capture;
+using core::Transient;
+using core::WallPoints;
+
+// A capture as a NumPy .npz file, for which numpy alone is needed. Names and shapes are y-tal's:
+//
+//   H                                        float32, time slowest, see histogram_shape()
+//   sensor_grid_xyz, laser_grid_xyz          float64 (X, Y, 3) or (N, 3) [m, world]; none: an image
+//   sensor_grid_normals, laser_grid_normals  as these
+//   sensor_xyz, laser_xyz                    float64 (3,) [m, world]
+//   t_start, delta_t                         float64 () [m of path length]
+//   pattern, opl_origin, unit                text: confocal | single | exhaustive,
+//                                            relay_wall | device, radiance | counts
+//   scene_info                               text: JSON, where the capture came from
+//   counts_per_radiance                      float64 (), when known
+//   variance                                 as H, when known
+//   orders, H_by_order                       int32 (K,) and float32 (K, as H), when resolved
+//   observed_bins                            int32 (2, as H without T): first observed bin and the
+//                                            one after the last, where some were not observed
+//   frames, gate_step_m, frame_s             float32 (F, as H) and float64 (), of a sequence
+
+void write_points(NpzWriter& file,
+                  const std::string& device,
+                  const WallPoints& points,
+                  const ArrayLayout& layout) {
+    Shape shape = point_extents(points, layout);
+    shape.push_back(3);
+    const auto write = [&](const std::string& name, const std::vector<core::Vec3>& vectors) {
+        std::vector<double> values;
+        values.reserve(3 * vectors.size());
+        for (const core::Vec3& vector : vectors) {
+            values.insert(values.end(), vector.begin(), vector.end());
+        }
+        file.write(name, shape, values);
+    };
+    write(device + "_grid_xyz", points.positions);
+    write(device + "_grid_normals", points.normals);
+}
+
+void write_scan(NpzWriter& file, const core::Scan& scan) {
+    const ArrayLayout layout = array_layout(scan);
+    if (!scan.camera) {
+        write_points(file, "sensor", scan.sensing, layout);
+        write_points(file, "laser", scan.illumination, layout);
+    }
+    file.write("sensor_xyz", {3}, std::span<const double>(scan.detector_position.data(), 3));
+    file.write("laser_xyz", {3}, std::span<const double>(scan.laser_position.data(), 3));
+    file.write_text("pattern", std::string(enum_name(scan.pattern)));
+    file.write_text("opl_origin", std::string(enum_name(scan.opl_origin)));
+}
+
+void write_transient(NpzWriter& file,
+                     const std::string& name,
+                     const Shape& shape,
+                     const Transient& transient) {
+    file.write_rows(
+        name, shape, [&transient](std::size_t first, std::size_t count, std::vector<float>& rows) {
+            copy_rows(transient, first, count, rows.data());
+        });
+}
+
+/// Several transients as one array, each of them as H.
+void write_stack(NpzWriter& file,
+                 const std::string& name,
+                 Shape shape,
+                 const std::vector<Transient>& stack) {
+    shape.insert(shape.begin(), stack.size());
+    file.write_rows(
+        name, shape, [&stack](std::size_t first, std::size_t count, std::vector<float>& rows) {
+            copy_stack(stack, first, count, rows.data());
+        });
+}
+
+bool recognise_npz(const std::string& path) {
+    return container_of(path) == "npz" && ArrayReader(path).has_object("H");
+}
+
+Capture read_npz(const std::string& path, const CaptureReadSettings& settings) {
+    const ArrayReader file(path);
+    Capture capture;
+    if (file.has("scene_info")) capture.scene_info = parse_scene_info(file.read_text("scene_info"));
+    read_ytal_scan(file, capture);
+    read_axis(file, settings, capture);
+    capture.transient = read_transient(file, "H", capture);
+    if (file.has("unit")) {
+        core::read_value(core::Json(file.read_text("unit")), file.where("unit"), capture.unit);
+    } else {
+        capture.notes.emplace_back("unit is missing: radiance assumed");
+    }
+    if (file.has("counts_per_radiance")) {
+        capture.counts_per_radiance = file.read_real("counts_per_radiance");
+        if (!std::isfinite(*capture.counts_per_radiance) || *capture.counts_per_radiance <= 0.0) {
+            throw core::Error(file.where("counts_per_radiance"),
+                              "is no positive number",
+                              "must be one positive number");
+        }
+    }
+    read_optional_arrays(file, "", capture);
+    if (capture.sequence && file.has("gate_step_m")) {
+        capture.sequence->gate_step_m = file.read_real("gate_step_m");
+    }
+    if (capture.sequence && file.has("frame_s")) {
+        capture.sequence->frame_s = file.read_real("frame_s");
+    }
+    return capture;
+}
+
+}  // namespace
+
+CaptureFormat npz_format() {
+    return {"NumPy .npz", recognise_npz, read_npz};
+}
+
+std::vector<std::string> write_npz(const std::string& path,
+                                   const Capture& capture,
+                                   const CaptureWriteSettings&) {
+    const Shape shape = histogram_shape(capture);
+    core::Json scene_info = capture.scene_info;
+    if (capture.scan.camera) scene_info[kCameraKey] = core::write_value(*capture.scan.camera);
+
+    NpzWriter file(path);
+    write_transient(file, "H", shape, capture.transient);
+    write_scan(file, capture.scan);
+    file.write_real("t_start", capture.time_axis.opl_start_m);
+    file.write_real("delta_t", capture.time_axis.bin_width_m);
+    file.write_text("unit", std::string(enum_name(capture.unit)));
+    file.write_text("scene_info",
+                    scene_info.dump(-1, ' ', false, core::Json::error_handler_t::replace));
+    if (capture.counts_per_radiance) {
+        file.write_real("counts_per_radiance", *capture.counts_per_radiance);
+    }
+    if (capture.observed) {
+        Shape bins = shape;
+        bins[0] = 2;
+        file.write("observed_bins", bins, observed_array(*capture.observed));
+    }
+    if (capture.variance) write_transient(file, "variance", shape, *capture.variance);
+    if (!capture.orders.empty()) {
+        file.write("orders", {capture.orders.size()}, std::span<const int>(capture.orders));
+        write_stack(file, "H_by_order", shape, capture.by_order);
+    }
+    if (capture.sequence) {
+        write_stack(file, "frames", shape, capture.sequence->frames);
+        file.write_real("gate_step_m", capture.sequence->gate_step_m);
+        file.write_real("frame_s", capture.sequence->frame_s);
+    }
+    file.finish();
+    if (capture.velocity) return {"velocities are left out"};
+    return {};
+}
+
+}  // namespace nlos
