@@ -223,6 +223,7 @@ ArrayDescription Hdf5File::describe_object(const Hdf5Handle& object,
     description.shape = shape;
     description.kind = kind_of(type);
     if (description.kind == ElementKind::Text && (shape.empty() || shape == Shape{1})) {
+        if (!chunk_of(object, shape.size()).empty()) check_size(object, shape, where(name));
         description.text = fetch_text(type, where(name), [&](hid_t memory, void* target) {
             return H5Dread(object.id(), memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, target) >= 0;
         });
@@ -285,13 +286,14 @@ void Hdf5File::check_size(const Hdf5Handle& dataset,
     const std::uint64_t stored =
         std::min<std::uint64_t>(H5Dget_storage_size(dataset.id()), file_bytes_);
     const std::uint64_t value_bytes = H5Tget_size(type.id());
-    if (total_bytes(shape, value_bytes) > stored * (chunk.empty() ? 1 : kLargestRatio)) {
+    const std::uint64_t chunk_bytes = chunk.empty() ? 0 : total_bytes(chunk, value_bytes);
+    const std::uint64_t most = stored * (chunk.empty() ? 1 : kLargestRatio);
+    if (std::max(total_bytes(shape, value_bytes), chunk_bytes) > most) {
         throw core::Error(
             where,
             fmt::format("claims shape {} but only {} bytes are stored", shape_text(shape), stored),
             "must be complete");
     }
-    const std::uint64_t chunk_bytes = chunk.empty() ? 0 : total_bytes(chunk, value_bytes);
     require_memory(std::max(total_bytes(shape, 2 * sizeof(double)), chunk_bytes), where);
 }
 

@@ -37,7 +37,9 @@ std::string indexed_path(const std::string& path, const Shape& shape, std::size_
 /// of one kind have their keys in the same order.
 const Json* find(const Json& object, const std::string& key, std::size_t place) {
     const auto& members = object.get_ref<const Json::object_t&>();
-    if (place < members.size() && members[place].first == key) return &members[place].second;
+    const auto guess =
+        members.begin() + static_cast<std::ptrdiff_t>(std::min(place, members.size()));
+    if (guess != members.end() && guess->first == key) return &guess->second;
     const auto found = members.find(key);
     return found == members.end() ? nullptr : &found->second;
 }
@@ -46,11 +48,12 @@ const Json* find(const Json& object, const std::string& key, std::size_t place) 
 std::vector<std::string> keys_of(const std::vector<const Json*>& objects) {
     std::vector<std::string> keys;
     for (const Json* object : objects) {
-        const auto& members = object->get_ref<const Json::object_t&>();
-        for (std::size_t k = 0; k < members.size(); ++k) {
-            const std::string& key = members[k].first;
-            if (k < keys.size() && keys[k] == key) continue;
-            if (std::ranges::find(keys, key) == keys.end()) keys.push_back(key);
+        std::size_t k = 0;
+        for (const auto& [key, value] : object->get_ref<const Json::object_t&>()) {
+            const bool is_known =
+                (k < keys.size() && keys[k] == key) || std::ranges::find(keys, key) != keys.end();
+            if (!is_known) keys.push_back(key);
+            ++k;
         }
     }
     return keys;
