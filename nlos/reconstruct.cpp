@@ -224,27 +224,6 @@ std::size_t choose_slabs(const MethodInput& input,
     return 1;
 }
 
-/// What a method that works by transforms makes of bins that were not observed, for people.
-std::string transform_warning(const std::vector<core::BinRange>& observed,
-                              const ReconstructSettings& settings,
-                              int num_bins) {
-    const auto partial = std::ranges::count_if(
-        observed, [&](const core::BinRange& range) { return range.size() < num_bins; });
-    return fmt::format(
-        "{} of {} histograms have bins that were not observed, which {} takes for dark; bp, fbp "
-        "and "
-        "lct with prior=tv leave them out",
-        partial,
-        observed.size(),
-        core::enum_name(settings.method));
-}
-
-bool works_by_transforms(const ReconstructSettings& settings) {
-    return settings.method == Method::Dlct || settings.method == Method::Fk ||
-           settings.method == Method::Phasor ||
-           (settings.method == Method::Lct && settings.prior == Prior::None);
-}
-
 /// Says what will run and what it needs.
 void announce(const Reconstruction& result, std::size_t num_slabs, const core::Progress& progress) {
     if (!progress.announce) return;
@@ -297,8 +276,8 @@ Reconstruction reconstruct(const core::Capture& capture,
                           !makes_up_for_falloff(prepared.scan, result.settings);
     core::ObservedBins observed = prepared_observed(plan);
     core::simplify(observed, axis.num_bins);
-    if (observed && works_by_transforms(result.settings)) {
-        result.warnings.push_back(transform_warning(*observed, result.settings, axis.num_bins));
+    if (auto warning = unobserved_warning(result.settings, observed, axis.num_bins)) {
+        result.warnings.push_back(std::move(*warning));
     }
     const auto input_with = [&](const core::Transient& transient) {
         return MethodInput{prepared.scan,

@@ -116,6 +116,7 @@ std::string type_name(const Hdf5Handle& type) {
 class GroupWalk {
  public:
     ArrayNames run(const Hdf5Handle& root) {
+        is_new(root);
         list_group(root, "", 0);
         return std::move(found_);
     }
@@ -139,14 +140,19 @@ class GroupWalk {
     void list_object(const Hdf5Handle& object, const std::string& name, std::size_t depth) {
         const H5I_type_t type = H5Iget_type(object.id());
         if (type == H5I_DATASET) found_.names.push_back(name);
+        if (type == H5I_GROUP && is_new(object)) list_group(object, name + "/", depth + 1);
+    }
+
+    /// Whether a group was not seen before: links may form cycles.
+    bool is_new(const Hdf5Handle& group) {
         H5O_info_t info{};
-        if (type != H5I_GROUP || H5Oget_info2(object.id(), &info, H5O_INFO_BASIC) < 0) return;
-        if (groups_.insert(info.addr).second) list_group(object, name + "/", depth + 1);
+        return H5Oget_info2(group.id(), &info, H5O_INFO_BASIC) >= 0 &&
+               groups_.insert(info.addr).second;
     }
 
     ArrayNames found_;
     std::size_t num_objects_ = 0;
-    std::set<haddr_t> groups_;  ///< seen so far: links may form cycles
+    std::set<haddr_t> groups_;  ///< seen so far
 };
 
 /// Throws for a dataset whose values are not in this file, before the library looks for them.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/formats/capture_file.h"
 
+#include "nlos/formats/capture_adjustment.h"
 #include "nlos/formats/capture_format.h"
 #include "nlos/layouts/layout_capture.h"
 #include "nlos/layouts/layout_guess.h"
@@ -17,7 +18,8 @@ namespace nlos {
 namespace {
 
 const CaptureFormat* find_format(const std::string& path) {
-    if (std::filesystem::is_directory(path)) return nullptr;
+    // Folders are the layouts' business; whoever opens a pipe or a device may wait for ever.
+    if (!std::filesystem::is_regular_file(path)) return nullptr;
     for (const CaptureFormat& format : capture_formats()) {
         if (format.recognise(path)) return &format;
     }
@@ -233,7 +235,8 @@ core::Capture read_capture(const std::string& path, const CaptureReadSettings& s
         throw_unknown(path);
     }
     drop_leading_bins(settings.zero_bins.value_or(zero_bins), capture);
-    capture.time_axis.opl_start_m += settings.opl_shift_m.value_or(0.0);
+    validate(capture, path);
+    capture = adjust_capture(std::move(capture), settings, path);
     validate(capture, path);
     return capture;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "renderer/core/capture.h"
 #include "renderer/core/settings.h"
 
 #include <array>
@@ -15,9 +16,18 @@ struct CaptureReadSettings {
     std::optional<double> bin_width_m;  ///< replaces the file's bin width [m of path]
     std::optional<double> pitch_m;  ///< distance of grid neighbours, where only indices are stored
     std::optional<double> opl_shift_m;  ///< added to the axis start (time zero)
-    std::optional<std::array<double, 2>> wall_size_m;  ///< scanned extents along x and y [m]
     std::optional<int> frame;  ///< the only frame to read of a sequence
     std::string layout;        ///< name or JSON file of a layout; empty: recognised by content
+
+    // What replaces the file's word, in captures of any format; see adjust_capture().
+    std::optional<std::array<double, 2>> wall_size_m;  ///< extents of the scanned points [m]
+    std::optional<core::OplOrigin> opl_origin;         ///< where path lengths start and end
+    std::optional<core::TransientUnit> unit;           ///< what the numbers are
+    bool swap_xy = false;  ///< histograms were stored with the grid's axes exchanged
+    bool flip_x = false;   ///< ... with x running the other way
+    bool flip_y = false;   ///< ... with y running the other way
+    bool flip_t = false;   ///< ... with time running backwards
+    std::optional<std::array<int, 2>> observed_bins;  ///< [begin, end): only these were observed
 };
 
 template <class Visitor>
@@ -38,7 +48,21 @@ void for_each_field(CaptureReadSettings& s, Visitor&& visit) {
           core::Ranged{"added to the start of the axis (time zero) [m]", {}});
     visit("wall_size_m",
           s.wall_size_m,
-          core::above(0, "extents of the scanned points along x and y, first to last [m]"));
+          core::above(0,
+                      "replaces the extents of the scanned points along x and y, first to last "
+                      "[m]"));
+    visit("opl_origin",
+          s.opl_origin,
+          "whether path lengths start and end at the wall, or include the legs to laser and "
+          "detector (relay_wall|device); null: as the file says");
+    visit("unit", s.unit, "what the histograms hold (radiance|counts); null: as the file says");
+    visit("swap_xy", s.swap_xy, "exchange the grid's axes: histograms move, points stay");
+    visit("flip_x", s.flip_x, "reverse the grid's x axis: histograms move, points stay");
+    visit("flip_y", s.flip_y, "reverse the grid's y axis: histograms move, points stay");
+    visit("flip_t", s.flip_t, "reverse histograms in time: the axis stays");
+    visit("observed_bins",
+          s.observed_bins,
+          core::at_least(0, "first bin and end of the bins that were observed; null: all"));
     visit("frame", s.frame, core::at_least(0, "the only frame to read of a sequence, from 0"));
     visit("layout",
           s.layout,

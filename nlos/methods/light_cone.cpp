@@ -39,7 +39,10 @@ Cone make_cone(const MethodInput& input, std::size_t bins_per_bin) {
     cone.min_leg_m = shortest_leg;
     const core::TimeAxis& axis = input.time_axis;
     cone.is_same_for_all = longest_leg - shortest_leg < 1e-6 * axis.bin_width_m;
-    const double begin = std::max(0.0, 0.5 * (axis.opl_start_m - longest_leg));
+    // With what was cut off because nobody looked there: on the transform's period and bins depends
+    // the background that it leaves, and on where it begins what can be told before the gate.
+    const double start_m = axis.opl_start_m - input.unobserved_before_m;
+    const double begin = std::max(0.0, 0.5 * (start_m - longest_leg));
     const double end = 0.5 * (axis.opl_end_m() - shortest_leg);
     const double num_bins = std::ceil((end - begin) / (0.5 * axis.bin_width_m) - 1e-6);
     if (!(num_bins >= 4.0)) {
@@ -47,20 +50,13 @@ Cone make_cone(const MethodInput& input, std::size_t bins_per_bin) {
                           "lct was given a time axis with fewer than 4 bins of positive range",
                           "method=bp works for any axis");
     }
-    // Had nobody cut off what nobody observed, the axis would begin here: the transform's period
-    // and bins stay what they were, on which the background that it leaves depends.
-    const double first = std::max(0.0, begin - 0.5 * input.unobserved_before_m);
-    const double all_bins =
-        first < begin ? std::ceil((end - first) / (0.5 * axis.bin_width_m) - 1e-6) : num_bins;
-    cone.period_v = bins_per_bin * static_cast<std::size_t>(all_bins);
-    cone.v_edges = even_edges(first * first, end * end, cone.period_v);
-    const auto cut = std::ranges::upper_bound(cone.v_edges, begin * begin) - 1;
-    cone.v_edges.erase(cone.v_edges.begin(), cut);
+    cone.v_edges =
+        even_edges(begin * begin, end * end, bins_per_bin * static_cast<std::size_t>(num_bins));
     cone.nx = input.wall.grid->size[0];
     cone.ny = input.wall.grid->size[1];
     cone.px = 2 * good_fft_size(cone.nx);
     cone.py = 2 * good_fft_size(cone.ny);
-    cone.length = 2 * good_fft_size(cone.period_v);
+    cone.length = 2 * good_fft_size(cone.num_v());
     return cone;
 }
 
@@ -83,11 +79,13 @@ void ConeData::fill(std::size_t column, float* row) const {
 
 core::BinRange ConeData::observed(std::size_t column) const {
     const int num_v = static_cast<int>(cone_.num_v());
-    if (!input_.observed) return {0, num_v};
-    const std::size_t pair = input_.wall.grid->point(column / cone_.ny, column % cone_.ny);
-    const core::BinRange& range = (*input_.observed)[pair];
     const core::TimeAxis& axis = input_.time_axis;
-    // Where on the v axis a bin of the histogram begins; an end of the axis is an end of v.
+    const std::size_t pair = input_.wall.grid->point(column / cone_.ny, column % cone_.ny);
+    const core::BinRange range =
+        input_.observed ? (*input_.observed)[pair] : core::BinRange{0, axis.num_bins};
+    const bool begins_late = range.begin > 0 || input_.unobserved_before_m > 0.0;
+    // Where on the v axis a bin of the histogram begins; an end of what was measured is an end of
+    // v.
     const auto edge = [&](int bin) {
         const double length_m = axis.bin_begin_m(bin) - input_.scan.device_legs_m(pair);
         return std::pow(std::max(0.0, 0.5 * length_m), 2);
@@ -95,7 +93,7 @@ core::BinRange ConeData::observed(std::size_t column) const {
     const auto index = [&](auto found) { return static_cast<int>(found - cone_.v_edges.begin()); };
     const auto& edges = cone_.v_edges;
     core::BinRange seen{0, num_v};
-    if (range.begin > 0) seen.begin = index(std::ranges::lower_bound(edges, edge(range.begin)));
+    if (begins_late) seen.begin = index(std::ranges::lower_bound(edges, edge(range.begin)));
     if (range.end < axis.num_bins) {
         seen.end = index(std::ranges::upper_bound(edges, edge(range.end))) - 1;
     }
@@ -117,7 +115,7 @@ ConeKernel::ConeKernel(const Cone& cone, const WallGrid& grid)
             const double dx = static_cast<double>(ix) * grid.pitch_m[0];
             const double dy = static_cast<double>(iy) * grid.pitch_m[1];
             const double shift = (dx * dx + dy * dy) / cone.v_width();
-            const bool is_inside = shift < static_cast<double>(cone.period_v - 1);
+            const bool is_inside = shift < static_cast<double>(cone.num_v() - 1);
             const double whole = std::floor(is_inside ? shift : 0.0);
             const double next = is_inside ? shift - whole : 0.0;
             const double here = is_inside ? 1.0 - next : 0.0;

@@ -18,13 +18,13 @@ inline constexpr std::size_t kSlabsPerBlock = 8;
 inline constexpr std::size_t kSquaredRangeBinsPerBin = 2;
 
 /// The light cone: with v = (path length / 2)^2 and u = z^2, light from (x, y, u) reaches a wall
-/// point (dx, dy) away at v = u + dx^2 + dy^2. Even bins of v, and the padded sizes of transforms.
+/// point (dx, dy) away at v = u + dx^2 + dy^2. Even bins of v, and the padded sizes of transforms;
+/// they begin before what nobody observed.
 struct Cone {
     std::vector<double> v_edges;  ///< squared range [m^2]
     std::size_t nx = 0, ny = 0;   ///< wall points
     std::size_t px = 0, py = 0;   ///< padded to at least twice
-    std::size_t period_v = 0;     ///< v bins, and those before them that nobody observed
-    std::size_t length = 0;       ///< period_v, padded
+    std::size_t length = 0;       ///< padded number of v bins
     bool is_same_for_all = true;  ///< device legs are the same for every pair
     double min_leg_m = 0.0;       ///< the shortest device legs
 

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace nlos {
 namespace {
 
@@ -107,6 +109,25 @@ MethodChoice choose_method(const ReconstructSettings& settings, PreparedCapture&
     }
     return {settings.method,
             prepared.conversion.empty() ? "as set" : "as set; " + prepared.conversion};
+}
+
+std::optional<std::string> unobserved_warning(const ReconstructSettings& settings,
+                                              const core::ObservedBins& observed,
+                                              int num_bins) {
+    const bool works_by_transforms =
+        settings.method == Method::Phasor ||
+        (is_confocal_method(settings.method) &&
+         !(settings.method == Method::Lct && settings.prior == Prior::Tv));
+    if (!observed || !works_by_transforms) return std::nullopt;
+    const auto partial = std::ranges::count_if(
+        *observed, [&](const core::BinRange& range) { return range.size() < num_bins; });
+    return fmt::format(
+        "{} of {} histograms have bins that were not observed, which {} takes for dark; bp, fbp "
+        "and "
+        "lct with prior=tv leave them out",
+        partial,
+        observed->size(),
+        core::enum_name(settings.method));
 }
 
 }  // namespace nlos

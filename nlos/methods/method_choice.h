@@ -4,6 +4,7 @@
 #include "nlos/preparation/prepared_capture.h"
 #include "nlos/reconstruction/reconstruct_settings.h"
 
+#include <optional>
 #include <string>
 
 namespace nlos {
@@ -19,6 +20,15 @@ struct MethodChoice {
 ///
 /// throws   core::Error when the method set cannot serve; names one that can
 MethodChoice choose_method(const ReconstructSettings& settings, PreparedCapture& prepared);
+
+/// What a method that works by transforms makes of bins that were not observed, for people; nothing
+/// for other methods, which leave them out.
+///
+/// settings   whose method is chosen
+/// num_bins   of a histogram
+std::optional<std::string> unobserved_warning(const ReconstructSettings& settings,
+                                              const core::ObservedBins& observed,
+                                              int num_bins);
 
 /// Fewest bins from which frequency-domain methods make sense.
 inline constexpr int kMinBins = 8;

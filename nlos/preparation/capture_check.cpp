@@ -3,6 +3,7 @@
 
 #include "nlos/preparation/first_light.h"
 #include "nlos/preparation/histogram_preparation.h"
+#include "nlos/preparation/slip_recognition.h"
 
 #include <fmt/format.h>
 
@@ -21,6 +22,8 @@ constexpr double kStrongestBend = 1.15;     // of first light: 1 is what a path 
 constexpr double kWeakestBend = 0.7;        // edges and tips reach 1
 constexpr double kBendOfAPlane = 0.1;       // says nothing
 constexpr double kCheckSignificance = 3.0;  // standard deviations
+constexpr double kFactorTolerance = 0.15;   // of what first light says of lengths
+constexpr std::size_t kMinLitValues = 16;   // fewer may be whole numbers by chance
 
 const core::Vec3& illumination_point(const core::Scan& scan, std::size_t pair) {
     return scan.illumination.positions[scan.illumination_index(pair)];
@@ -109,8 +112,7 @@ std::optional<std::string> fast_onset(const core::Capture& capture,
 
 /// First light that bends over the wall otherwise than that of points, edges and tips does.
 std::optional<std::string> bent_onset(const core::Capture& capture,
-                                      const std::vector<double>& ambient) {
-    const auto bend = bend_of_first_light(capture, ambient);
+                                      const std::optional<BendOfFirstLight>& bend) {
     if (!bend || bend->k < kBendOfAPlane) return std::nullopt;
     const double fitting_m = capture.time_axis.bin_width_m / std::sqrt(bend->k);
     if (bend->k - kCheckSignificance * bend->uncertainty > kStrongestBend) {
@@ -132,6 +134,50 @@ std::optional<std::string> bent_onset(const core::Capture& capture,
             capture.time_axis.bin_width_m,
             fitting_m,
             std::sqrt(bend->k));
+    }
+    return std::nullopt;
+}
+
+/// Whether first light clearly bends by another factor than a correction of lengths makes up for.
+bool disagrees(const BendOfFirstLight& bend, const CaptureCorrection& correction) {
+    return correction.length_factor != 1.0 &&
+           std::abs(std::sqrt(bend.k) * correction.length_factor - 1.0) > kFactorTolerance;
+}
+
+/// What slips in describing a capture would explain it, unless first light knows better.
+std::optional<std::string> slips(const core::Capture& capture,
+                                 const std::vector<double>& ambient,
+                                 const std::optional<BendOfFirstLight>& bend) {
+    const auto evidence = slip_evidence(capture, ambient);
+    if (!evidence) return std::nullopt;
+    std::string text;
+    for (const CaptureCorrection& correction : recognise_slips(*evidence)) {
+        if (bend && bent_onset(capture, bend) && disagrees(*bend, correction)) continue;
+        text += (text.empty() ? "" : "; or ") + describe_slip(capture, correction);
+    }
+    if (text.empty()) return std::nullopt;
+    return text;
+}
+
+/// Counts that are called radiance, and radiance that is called counts.
+std::optional<std::string> wrong_unit(const core::Capture& capture) {
+    std::size_t lit = 0;
+    std::size_t whole = 0;
+    float most = 0.0F;
+    for (const float value : capture.transient.values()) {
+        if (value == 0.0F) continue;
+        ++lit;
+        if (value > 0.0F && value == std::trunc(value)) ++whole;
+        most = std::max(most, value);
+    }
+    if (capture.unit == core::TransientUnit::Radiance && whole == lit && lit >= kMinLitValues &&
+        most >= 2.0F) {
+        return "radiance that is whole numbers throughout looks like counts: --set "
+               "capture.unit=counts";
+    }
+    if (capture.unit == core::TransientUnit::Counts && 2 * whole < lit) {
+        return "counts that are no whole numbers look like radiance: --set "
+               "capture.unit=radiance";
     }
     return std::nullopt;
 }
@@ -167,12 +213,18 @@ std::vector<std::string> capture_warnings(const core::Capture& capture) {
     }
     std::vector<std::string> warnings;
     if (auto warning = cut_light(capture)) warnings.push_back(*warning);
+    if (auto warning = wrong_unit(capture)) warnings.push_back(*warning);
     if (capture.scan.camera) return warnings;
     const std::vector<double> ambient = ambient_of(capture);
+    const auto bend = bend_of_first_light(capture, ambient);
+    if (auto warning = slips(capture, ambient, bend)) {
+        warnings.push_back(*warning);
+        return warnings;
+    }
     if (auto warning = early_light(capture, ambient)) warnings.push_back(*warning);
     if (auto warning = fast_onset(capture, ambient)) {
         warnings.push_back(*warning);
-    } else if (auto other = bent_onset(capture, ambient)) {
+    } else if (auto other = bent_onset(capture, bend)) {
         warnings.push_back(*other);
     }
     return warnings;

@@ -85,6 +85,31 @@ core::BinRange bins_seen(const core::ObservedBins& observed, int num_bins) {
                       "must have been observed somewhere");
 }
 
+/// Copies a part of some histograms, without bins that none of them observed at either end.
+void take_histograms(const core::Capture& capture,
+                     const std::vector<std::size_t>& pairs,
+                     core::BinRange bins,
+                     PreparedCapture& prepared) {
+    prepared.observed.reset();
+    if (capture.observed) {
+        std::vector<core::BinRange>& observed = prepared.observed.emplace();
+        for (const std::size_t pair : pairs) {
+            observed.push_back(core::intersection((*capture.observed)[pair], bins));
+        }
+        const int first = bins.begin;
+        bins = bins_seen(prepared.observed, capture.time_axis.num_bins);
+        prepared.unobserved_before_m = (bins.begin - first) * capture.time_axis.bin_width_m;
+        move_observed(bins, prepared.observed);
+    }
+    prepared.time_axis = axis_of(capture.time_axis, bins);
+    require_memory(4.0 * static_cast<double>(pairs.size()) * bins.size());
+    prepared.own = core::Transient(pairs.size(), bins.size());
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        const auto from = capture.transient.histogram(pairs[i]);
+        std::copy_n(from.begin() + bins.begin, bins.size(), prepared.own.histogram(i).begin());
+    }
+}
+
 void crop_measurement(const core::Capture& capture,
                       const CropSettings& crop,
                       PreparedCapture& prepared) {
@@ -106,30 +131,13 @@ void crop_measurement(const core::Capture& capture,
     prepared.scan.sensing = sensing.points;
     if (scan.pattern == core::ScanPattern::Confocal) prepared.scan.illumination = sensing.points;
     if (is_exhaustive) prepared.scan.illumination = lit.points;
-    const auto source_of = [&](std::size_t pair) {
+    std::vector<std::size_t> pairs;  // of the capture
+    for (std::size_t pair = 0; pair < prepared.scan.num_pairs(); ++pair) {
         const std::size_t s = sensing.numbers[pair % sensing.numbers.size()];
         const std::size_t l = is_exhaustive ? lit.numbers[pair / sensing.numbers.size()] : 0;
-        return l * scan.sensing.size() + s;
-    };
-    prepared.observed.reset();
-    if (capture.observed) {
-        std::vector<core::BinRange>& observed = prepared.observed.emplace();
-        for (std::size_t pair = 0; pair < prepared.scan.num_pairs(); ++pair) {
-            observed.push_back(core::intersection((*capture.observed)[source_of(pair)], bins));
-        }
-        const core::BinRange all = bins;
-        bins = bins_seen(prepared.observed, capture.time_axis.num_bins);
-        prepared.unobserved_before_m = (bins.begin - all.begin) * capture.time_axis.bin_width_m;
+        pairs.push_back(l * scan.sensing.size() + s);
     }
-    prepared.time_axis = axis_of(capture.time_axis, bins);
-
-    require_memory(4.0 * static_cast<double>(prepared.scan.num_pairs()) * bins.size());
-    prepared.own = core::Transient(prepared.scan.num_pairs(), bins.size());
-    for (std::size_t pair = 0; pair < prepared.own.num_pairs(); ++pair) {
-        const auto from = capture.transient.histogram(source_of(pair));
-        std::copy_n(from.begin() + bins.begin, bins.size(), prepared.own.histogram(pair).begin());
-    }
-    move_observed(bins, prepared.observed);
+    take_histograms(capture, pairs, bins, prepared);
     prepared.wall = derive_wall_frame(prepared.scan);
 }
 

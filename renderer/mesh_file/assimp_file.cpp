@@ -25,10 +25,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kAllowed = "must be a complete OBJ, PLY or STL file";
+constexpr const char* kCompleteFile = "must be a complete OBJ, PLY or STL file";
 
 /// Assimp's message, which may hold anything, as a part of one line.
-std::string one_line(std::string text) {
+std::string part_of_a_line(std::string text) {
     constexpr std::size_t kLongest = 120;
     std::replace_if(
         text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
@@ -82,7 +82,7 @@ class MaterialFiles : public Assimp::DefaultIOSystem {
     /// Assimp goes on to try other names, which nobody gave.
     void note_missing(const std::string& path) {
         if (!warnings_.empty()) return;
-        warnings_.push_back(one_line(fs::path(path).filename().string()) +
+        warnings_.push_back(part_of_a_line(fs::path(path).filename().string()) +
                             " is not beside it: materials that it would define are white");
     }
 
@@ -175,7 +175,7 @@ void require_ply_header(const std::string& path) {
     file.read(start.data(), static_cast<std::streamsize>(start.size()));
     start.resize(static_cast<std::size_t>(file.gcount()));
     if (start.starts_with("ply") && start.find("end_header") != std::string::npos) return;
-    throw core::Error(path, "is damaged: its PLY header is not complete", kAllowed);
+    throw core::Error(path, "is damaged: its PLY header is not complete", kCompleteFile);
 }
 
 AssimpFile read_with_library(const std::string& path, const std::string& suffix) {
@@ -188,7 +188,7 @@ AssimpFile read_with_library(const std::string& path, const std::string& suffix)
     const aiScene* scene = importer.ReadFile(path, aiProcess_Triangulate);
     if (scene == nullptr || scene->mRootNode == nullptr) {
         throw core::Error(
-            path, "is damaged (" + one_line(importer.GetErrorString()) + ")", kAllowed);
+            path, "is damaged (" + part_of_a_line(importer.GetErrorString()) + ")", kCompleteFile);
     }
     AssimpFile file;
     for (unsigned i = 0; i < scene->mNumMaterials; ++i) {
@@ -266,7 +266,8 @@ AssimpFile read_with_assimp(const std::string& path, const std::string& suffix) 
         } catch (const std::bad_alloc&) {
             throw;
         } catch (const std::exception& error) {  // the library's own, and names that are not UTF-8
-            throw core::Error(path, "is damaged (" + one_line(error.what()) + ")", kAllowed);
+            throw core::Error(
+                path, "is damaged (" + part_of_a_line(error.what()) + ")", kCompleteFile);
         }
     });
     return from_json(core::Json::from_cbor(answer));

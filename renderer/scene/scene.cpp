@@ -196,9 +196,13 @@ Scene load_scene(const SceneDescription& description, const core::Scan& scan) {
         return false;
     };
     if (!scan.camera && std::none_of(geometry.objects.begin(), geometry.objects.end(), in_front)) {
-        throw core::Error(description.geometry,
-                          "found no hidden surface in front of the relay wall",
-                          "must have one on the side that the wall's normal points to");
+        throw core::Error(
+            description.geometry,
+            "found no hidden surface in front of the relay wall",
+            std::string("must have one on the side that the wall's normal points to") +
+                (is_mesh_file(description.geometry)
+                     ? " (geometry_unit_m and geometry_up place a mesh file)"
+                     : ""));
     }
     const bool has_wall_mesh = relay_wall_mesh(geometry) != nullptr;
     Scene scene(std::move(geometry), scan, description.relay_wall);

@@ -19,7 +19,7 @@ namespace {
 
 using core::Json;
 
-constexpr int kDeepest = 8;  // of BSDFs in BSDFs; references may form cycles
+constexpr int kDeepestBsdf = 8;  // of BSDFs in BSDFs; references may form cycles
 
 constexpr std::array<const char*, 18> kBsdfs{"diffuse",
                                              "twosided",
@@ -56,7 +56,7 @@ class MaterialImport {
         : scene_(scene), notes_(notes) {}
 
     Material read(const Json& bsdf, const std::string& where, int depth = 0) {
-        if (depth > kDeepest) {
+        if (depth > kDeepestBsdf) {
             throw core::Error(where, "nests BSDFs without end", "must be a plain material");
         }
         if (type_of(bsdf) == "ref") {
@@ -102,7 +102,7 @@ class MaterialImport {
 
     Material inner(KeyReader& keys, const Json& bsdf, int depth) {
         for (const auto& [key, value] : bsdf.items()) {
-            if (!is_bsdf(value) && type_of(value) != "ref") continue;
+            if (!leads_to_bsdf(value, scene_)) continue;
             keys.find(key);
             return read(value, keys.where(key), depth + 1);
         }
@@ -201,6 +201,15 @@ class MaterialImport {
 bool is_bsdf(const core::Json& plugin) {
     return plugin.is_object() &&
            std::find(kBsdfs.begin(), kBsdfs.end(), type_of(plugin)) != kBsdfs.end();
+}
+
+bool leads_to_bsdf(const core::Json& plugin, const core::Json& scene) {
+    if (type_of(plugin) != "ref") return is_bsdf(plugin);
+    const std::string id = text_of(plugin, "id");
+    for (const auto& [key, value] : scene.items()) {
+        if (key == id || text_of(value, "id") == id) return is_bsdf(value);
+    }
+    return true;  // to be named as missing
 }
 
 Material mitsuba_material(const core::Json& bsdf,

@@ -12,6 +12,9 @@ namespace renderer {
 /// True for a plugin that is a BSDF, by its type.
 bool is_bsdf(const core::Json& plugin);
 
+/// True for a BSDF, and for a reference unless it names something else of the scene.
+bool leads_to_bsdf(const core::Json& plugin, const core::Json& scene);
+
 /// The material that a BSDF of Mitsuba stands for.
 ///
 /// bsdf             an object with a known type, or a reference to one of `scene`

@@ -5,6 +5,7 @@
 #include "renderer/scene_import/imported_shapes.h"
 #include "renderer/scene_import/key_reader.h"
 #include "renderer/scene_import/mitsuba_material.h"
+#include "renderer/scene_import/mitsuba_shape.h"
 #include "renderer/scene_import/mitsuba_transform.h"
 
 #include <fmt/core.h>
@@ -25,11 +26,6 @@ constexpr std::array<const char*, 6> kLasers{
     "projector", "spot", "point", "directional", "collimated", "angulararea"};
 constexpr std::array<const char*, 3> kIntegrators{
     "transient_nlos_path", "transientnlospath", "transientpath"};
-constexpr std::array<const char*, 20> kShapes{
-    "rectangle",    "cube",        "sphere",   "disk",       "cylinder",       "obj",    "ply",
-    "stl",          "serialized",  "instance", "shapegroup", "linearcurve",    "hair",   "sdfgrid",
-    "bsplinecurve", "heightfield", "merge",    "ellipsoids", "ellipsoidsmesh", "blender"};
-
 template <class List>
 bool is_one_of(const List& names, const std::string& name) {
     return std::find(names.begin(), names.end(), name) != names.end();
@@ -49,7 +45,7 @@ class MitsubaImport {
 
     ImportedScene read() {
         for (const auto& [key, value] : root_.items()) {
-            if (is_shape(value) && child_of_type(value, kSensor).second != nullptr) {
+            if (is_mitsuba_shape(value) && child_of_type(value, kSensor).second != nullptr) {
                 read_wall(key, value);
             }
         }
@@ -64,8 +60,6 @@ class MitsubaImport {
     }
 
  private:
-    static bool is_shape(const Json& value) { return is_one_of(kShapes, type_of(value)); }
-
     std::string where(const std::string& key) const { return path_ + ": " + key; }
 
     void note(const std::string& key, const std::string& text) {
@@ -81,7 +75,7 @@ class MitsubaImport {
     void read_child(const std::string& key, const Json& value) {
         const std::string type = type_of(value);
         if (key == "type" || key == "id" || key == wall_key_ || is_bsdf(value)) return;
-        if (is_shape(value)) {
+        if (is_mitsuba_shape(value)) {
             read_shape(key, value);
         } else if (is_one_of(kIntegrators, type)) {
             read_integrator(key, value);
@@ -93,41 +87,10 @@ class MitsubaImport {
         }
     }
 
-    ForeignShape shape_of(KeyReader& keys, const std::string& key) {
-        ForeignShape shape;
-        shape.type = keys.get<std::string>("type", "");
-        shape.name = keys.get<std::string>("id", key);
-        shape.filename = keys.get<std::string>("filename", "");
-        if (const Json* matrix = keys.find("to_world")) {
-            shape.to_world = read_transform(*matrix, keys.where("to_world"));
-        }
-        if (shape.type == "sphere") {
-            const Vec3 center = keys.get("center", Vec3(Vec3::Zero()));
-            shape.to_world.translate(center).scale(keys.get("radius", 1.0));
-        }
-        if (shape.type == "cylinder") stretch_cylinder(keys, shape.to_world);
-        keys.ignore({"flip_normals", "face_normals", "flip_tex_coords"});
-        return shape;
-    }
-
-    /// From the unit cylinder to one from p0 to p1.
-    static void stretch_cylinder(KeyReader& keys, core::Transform& to_world) {
-        const Vec3 p0 = keys.get("p0", Vec3(Vec3::Zero()));
-        const Vec3 axis = keys.get("p1", Vec3(Vec3::UnitZ())) - p0;
-        const double radius = keys.get("radius", 1.0);
-        if (!(axis.norm() > 0.0)) {
-            throw core::Error(keys.where("p1"), "is p0", "must be another point");
-        }
-        const Vec3 hint = std::abs(axis.normalized().x()) < 0.9 ? Vec3::UnitX() : Vec3::UnitY();
-        to_world.translate(p0);
-        to_world.rotate(core::frame_from_normal(axis.normalized(), hint));
-        to_world.scale(Vec3(radius, radius, axis.norm()));
-    }
-
     /// The BSDF of a shape; Mitsuba's own where it has none.
     Material material_of(KeyReader& keys, const Json& value) {
         for (const auto& [key, child] : value.items()) {
-            if (!is_bsdf(child) && type_of(child) != "ref") continue;
+            if (!leads_to_bsdf(child, root_)) continue;
             keys.find(key);
             return mitsuba_material(
                 child, root_, keys.where(key).substr(path_.size() + 2), scene_.not_translated);
@@ -139,7 +102,7 @@ class MitsubaImport {
 
     void read_shape(const std::string& key, const Json& value) {
         KeyReader keys(value, where(key));
-        ForeignShape shape = shape_of(keys, key);
+        ForeignShape shape = mitsuba_shape(keys, key);
         shape.material = material_of(keys, value);
         add_shape(shape, path_, where(key), scene_);
         note_unread(keys, key);
@@ -150,7 +113,7 @@ class MitsubaImport {
             throw core::Error(where(key), "is a second relay wall", "must be the only one");
         }
         KeyReader keys(value, where(key));
-        const ForeignShape shape = shape_of(keys, key);
+        const ForeignShape shape = mitsuba_shape(keys, key);
         if (shape.type != "rectangle") {
             throw core::Error(where(key),
                               "is a relay wall of type " + shape.type,
@@ -265,7 +228,9 @@ class MitsubaImport {
         laser_key_ = key;
         scene_.description.scan.laser_m = laser_->translation();
         if (keys.find("irradiance") != nullptr || keys.find("intensity") != nullptr) {
-            note(key, "its power is not translated: each spot is lit by 1 W");
+            note(key,
+                 "its power is not translated: each spot gets 1 W here, there the less the farther "
+                 "it is");
         }
         keys.ignore({"type", "id", "fov", "cutoff_angle", "beam_width"});
         note_unread(keys, key);

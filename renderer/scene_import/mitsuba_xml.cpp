@@ -18,7 +18,7 @@ namespace {
 
 using core::Json;
 
-constexpr int kDeepest = 32;  // of a scene: shape, bsdf, bsdf, texture, transform
+constexpr int kDeepestElement = 32;  // of a scene: shape, bsdf, bsdf, texture, transform
 constexpr std::size_t kMostElements = 1'000'000;
 
 /// Walks a parsed document.
@@ -178,8 +178,9 @@ class XmlReader {
     }
 
     Json plugin(const pugi::xml_node& node, int depth) {
-        if (depth > kDeepest) {
-            fail(fmt::format("nests deeper than {} elements", kDeepest), "must be a plain scene");
+        if (depth > kDeepestElement) {
+            fail(fmt::format("nests deeper than {} elements", kDeepestElement),
+                 "must be a plain scene");
         }
         Json object = Json::object();
         object["type"] = node.attribute("type") ? attribute(node, "type") : node.name();

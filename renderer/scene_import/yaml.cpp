@@ -16,7 +16,7 @@ namespace {
 
 using core::Json;
 
-constexpr int kDeepest = 32;
+constexpr int kDeepestNode = 32;
 constexpr std::size_t kMostNodes = 100'000;
 
 /// The number that a plain scalar is, with underscores between digits as YAML 1.1 allows them.
@@ -52,11 +52,11 @@ class YamlReader {
     explicit YamlReader(std::string path) : path_(std::move(path)) {}
 
     Json read(const YAML::Node& node, int depth = 0) {
-        if (depth > kDeepest || ++num_nodes_ > kMostNodes) {
+        if (depth > kDeepestNode || ++num_nodes_ > kMostNodes) {
             throw core::Error(
                 path_,
                 fmt::format("nests deeper than {} levels or holds more than {} values",
-                            kDeepest,
+                            kDeepestNode,
                             kMostNodes),
                 "must be a plain scene");
         }

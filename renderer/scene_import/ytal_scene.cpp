@@ -41,7 +41,9 @@ class YtalImport {
                     scene_);
         keys_.ignore({"name", "mitsuba_variant", "description", "histogram_mode"});
         if (keys_.find("laser_emission") != nullptr) {
-            note("laser_emission", "its power is not translated: each spot is lit by 1 W");
+            note("laser_emission",
+                 "its power is not translated: each spot gets 1 W here, there the less the farther "
+                 "it is");
         }
         for (const std::string& key : keys_.unread()) note(key, "is not translated");
         return std::move(scene_);

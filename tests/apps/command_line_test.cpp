@@ -116,6 +116,51 @@ TEST_F(CommandLine, SceneToScoredReconstruction) {
     }
 }
 
+TEST_F(CommandLine, MeshFilesAreDescribedComparedAndRendered) {
+    const std::string mesh = file("roof.obj");
+    write_file_bytes(mesh,
+                     "o roof\nv -200 -100 700\nv 200 -100 700\nv 200 100 700\nv -200 100 800\n"
+                     "f 1 2 3 4\n");
+    const Outcome info = run("info " + mesh);
+    EXPECT_EQ(info.status, 0) << info.err;
+    EXPECT_NE(info.out.find("format: OBJ\nunit: 1 m (assumed"), std::string::npos) << info.out;
+    EXPECT_NE(info.out.find("size: 1 objects, 2 triangles, 400 x 200 x 100 m"), std::string::npos)
+        << info.out;
+    EXPECT_EQ(run("compare " + mesh + " " + mesh).status, 0);
+
+    const core::Json stated = {{"geometry", "roof.obj"},
+                               {"geometry_unit_m", 0.001},
+                               {"scan", {{"sensing_points", {4, 4}}}}};
+    const std::string scene = make_scene("scene.json", stated);
+    const Outcome render = run("render " + scene + " -o " + file("roof.h5"));
+    EXPECT_EQ(render.status, 0) << render.err;
+    EXPECT_EQ(render.err, "");
+    const Outcome assumed = run("info " + make_scene("metres.json", {{"geometry", "roof.obj"}}));
+    EXPECT_NE(assumed.out.find("geometry_unit_m states another"), std::string::npos)
+        << assumed.out << assumed.err;
+    expect_bad_input("info " + file("gone.stl"), "does not exist");
+}
+
+TEST_F(CommandLine, ScenesOfMitsubaAndYtalAreTranslatedAndRender) {
+    write_file_bytes(file("shape.obj"), "v 0 0 0\nv 0.3 0 0\nv 0 0.3 0\nf 1 2 3\n");
+    write_file_bytes(file("theirs.yaml"),
+                     "num_bins: 100\nbin_width_opl: 0.02\nstart_opl: 1\nsensor_width: 4\n"
+                     "sensor_height: 3\nintegrator_max_depth: 3\ngeometry:\n- name: Z\n  mesh:\n"
+                     "    type: obj\n    filename: shape.obj\n  displacement_z: 0.8\n  material:\n"
+                     "    id: white\n- name: relay_wall\n  mesh:\n    type: rectangle\n");
+    const Outcome convert = run("convert " + file("theirs.yaml") + " " + file("ours.json"));
+    EXPECT_EQ(convert.status, 0) << convert.err;
+    EXPECT_NE(convert.out.find("not the same: "), std::string::npos) << convert.out;
+    EXPECT_NE(convert.out.find("wrote " + file("ours.json")), std::string::npos) << convert.out;
+    const Outcome render = run("render " + file("ours.json") + " -o " + file("ours.h5"));
+    EXPECT_EQ(render.status, 0) << render.err;
+    EXPECT_NE(render.out.find("12 pairs x 100 bins, single"), std::string::npos) << render.out;
+    write_file_bytes(file("no.xml"), "<scene version='3.0.0'/>");
+    expect_bad_input("convert " + file("no.xml") + " " + file("kept.json"),
+                     "nlos_capture_meter",
+                     file("kept.json"));
+}
+
 TEST_F(CommandLine, DarknessIsNamedFromRenderToFit) {
     const std::string scene = make_scene("scene.json", {{"scan", {{"sensing_points", {4, 4}}}}});
     const std::string dark = file("dark.h5");

@@ -146,7 +146,7 @@ TEST_P(ObservedReconstruction, AGateOfAllPointsIsAShorterAxis) {
         std::ranges::copy(gated.observed_values(pair), shorter.transient.histogram(pair).begin());
     }
     const std::vector<float> found = run(gated).volume.values;
-    if (GetParam().is_light_cone) {  // and its transform keeps bins and period of the whole
+    if (GetParam().is_light_cone) {  // whose transform covers all of the axis
         EXPECT_LT(test_support::relative_l2(found, run(dark).volume.values), 0.01);
     } else {
         EXPECT_EQ(found, run(shorter).volume.values);

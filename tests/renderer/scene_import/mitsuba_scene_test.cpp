@@ -173,6 +173,9 @@ TEST(MitsubaScene, ReferencesNameMaterialsOfTheScene) {
     EXPECT_NEAR(scene.geometry.objects.at(0).material.albedo, 0.2, 1e-12);
     EXPECT_EQ(scene.geometry.objects.at(0).material.name, "grey");
     EXPECT_ERROR_WITH(import_xml({{"@@shape", R"(<ref id="gone"/>)"}}), "refers to 'gone'");
+    EXPECT_TRUE(lists(import_xml({{"@@root", R"(<medium type="homogeneous" id="fog"/>)"},
+                                  {"@@shape", R"(<ref name="interior" id="fog"/>)"}}),
+                      "hidden.interior: is not translated"));
     EXPECT_ERROR_WITH(
         import_xml({{"@@root", R"(<bsdf type="twosided" id="loop"><ref id="loop"/></bsdf>)"},
                     {"@@shape", R"(<ref id="loop"/>)"}}),

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: MIT
+#include "nlos/formats/capture_adjustment.h"
+
+#include "renderer/core/error.h"
+#include "renderer/core/scan_extent.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <functional>
+#include <numeric>
+
+namespace nlos {
+namespace {
+
+using core::Capture;
+using core::WallPoints;
+
+void set_wall_size(const std::array<double, 2>& size_m, Capture& capture) {
+    const core::ScanExtent extent = core::scan_extent(capture.scan);
+    for (WallPoints* points : {&capture.scan.sensing, &capture.scan.illumination}) {
+        if (points->size() < 2) continue;
+        for (int i = 0; i < 2; ++i) {
+            if (!(extent.size_m[i] > 0.0)) continue;
+            const double growth = size_m[i] / extent.size_m[i] - 1.0;
+            for (core::Vec3& position : points->positions) {
+                const double offset = extent.axes[i].dot(position) - extent.middle_m[i];
+                position += growth * offset * extent.axes[i];
+            }
+        }
+    }
+    capture.notes.push_back(
+        fmt::format("the scanned points extend over {} x {} m, as told", size_m[0], size_m[1]));
+}
+
+/// Visits every array of histograms of a capture; those of velocities with and without time.
+void for_each_transient(Capture& capture, const std::function<void(core::Transient&)>& visit) {
+    visit(capture.transient);
+    if (capture.variance) visit(*capture.variance);
+    for (core::Transient& order : capture.by_order) visit(order);
+    if (capture.sequence) {
+        for (core::Transient& frame : capture.sequence->frames) visit(frame);
+    }
+    if (!capture.velocity) return;
+    visit(capture.velocity->values);
+    if (capture.velocity->variance) visit(*capture.velocity->variance);
+}
+
+/// Where the histogram of each point stands in the file.
+std::vector<std::size_t> stored_order(const WallPoints& points,
+                                      const CaptureReadSettings& settings,
+                                      const std::string& where) {
+    std::vector<std::size_t> order(points.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    if (points.size() < 2) return order;
+    if (!points.grid) {
+        throw core::Error(
+            where,
+            "has a list of wall points",
+            "must have a grid for capture.swap_xy, capture.flip_x and capture.flip_y");
+    }
+    const auto [nx, ny] = *points.grid;
+    for (std::size_t ix = 0; ix < nx; ++ix) {
+        for (std::size_t iy = 0; iy < ny; ++iy) {
+            const std::size_t x = settings.flip_x ? nx - 1 - ix : ix;
+            const std::size_t y = settings.flip_y ? ny - 1 - iy : iy;
+            order[ix * ny + iy] = settings.swap_xy ? y * nx + x : x * ny + y;
+        }
+    }
+    return order;
+}
+
+void move_histograms(const CaptureReadSettings& settings,
+                     const std::string& where,
+                     Capture& capture) {
+    const core::Scan& scan = capture.scan;
+    const std::vector<std::size_t> sensed = stored_order(scan.sensing, settings, where);
+    std::vector<std::size_t> lit{0};
+    if (scan.pattern == core::ScanPattern::Exhaustive) {
+        lit = stored_order(scan.illumination, settings, where);
+    }
+    const auto stored_pair = [&](std::size_t pair) {
+        return lit[pair / sensed.size()] * sensed.size() + sensed[pair % sensed.size()];
+    };
+    for_each_transient(capture, [&](core::Transient& transient) {
+        const core::Transient stored = transient;
+        for (std::size_t pair = 0; pair < stored.num_pairs(); ++pair) {
+            std::ranges::copy(stored.histogram(stored_pair(pair)),
+                              transient.histogram(pair).begin());
+        }
+    });
+    if (capture.observed) {
+        const std::vector<core::BinRange> stored = *capture.observed;
+        for (std::size_t pair = 0; pair < stored.size(); ++pair) {
+            (*capture.observed)[pair] = stored[stored_pair(pair)];
+        }
+    }
+    std::string told;
+    for (const auto& [is_set, name] : {std::pair(settings.swap_xy, "capture.swap_xy"),
+                                       std::pair(settings.flip_x, "capture.flip_x"),
+                                       std::pair(settings.flip_y, "capture.flip_y")}) {
+        if (is_set) told += (told.empty() ? "" : ", ") + std::string(name);
+    }
+    capture.notes.push_back("histograms are moved between wall points by " + told);
+}
+
+void reverse_time(Capture& capture) {
+    const auto bins = static_cast<std::size_t>(capture.time_axis.num_bins);
+    const core::Transient* without_time = nullptr;
+    const core::Transient* its_variance = nullptr;
+    if (capture.velocity && !capture.velocity->axis.with_time) {
+        without_time = &capture.velocity->values;
+        if (capture.velocity->variance) its_variance = &*capture.velocity->variance;
+    }
+    for_each_transient(capture, [&](core::Transient& transient) {
+        if (&transient == without_time || &transient == its_variance) return;
+        const auto values = transient.values();
+        for (std::size_t begin = 0; begin < values.size(); begin += bins) {
+            std::ranges::reverse(values.subspan(begin, bins));
+        }
+    });
+    if (capture.observed) {
+        const int num_bins = capture.time_axis.num_bins;
+        for (core::BinRange& range : *capture.observed) {
+            range = {num_bins - range.end, num_bins - range.begin};
+        }
+    }
+    capture.notes.emplace_back("histograms are reversed in time by capture.flip_t");
+}
+
+void set_origin(core::OplOrigin origin, Capture& capture) {
+    capture.scan.opl_origin = origin;
+    capture.notes.push_back(fmt::format("path lengths {} the legs to laser and detector, as told",
+                                        origin == core::OplOrigin::Device ? "include" : "exclude"));
+}
+
+void set_unit(core::TransientUnit unit, Capture& capture) {
+    if (unit == core::TransientUnit::Radiance) capture.counts_per_radiance.reset();
+    capture.unit = unit;
+    capture.notes.push_back(fmt::format("histograms hold {}, as told", core::enum_name(unit)));
+}
+
+}  // namespace
+
+Capture adjust_capture(Capture capture,
+                       const CaptureReadSettings& settings,
+                       const std::string& where) {
+    const bool moves = settings.swap_xy || settings.flip_x || settings.flip_y;
+    if (capture.scan.camera && (moves || settings.wall_size_m || settings.opl_origin)) {
+        throw core::Error(where,
+                          "is the image of a camera",
+                          "must be a scan of a relay wall for capture.wall_size_m, opl_origin, "
+                          "swap_xy, flip_x and flip_y");
+    }
+    if (settings.wall_size_m) set_wall_size(*settings.wall_size_m, capture);
+    if (settings.opl_origin) set_origin(*settings.opl_origin, capture);
+    if (settings.unit) set_unit(*settings.unit, capture);
+    if (moves) move_histograms(settings, where, capture);
+    if (settings.flip_t) reverse_time(capture);
+    if (settings.opl_shift_m) {
+        capture.time_axis.opl_start_m += *settings.opl_shift_m;
+        capture.notes.push_back(
+            fmt::format("path lengths are moved by {} m, as told", *settings.opl_shift_m));
+    }
+    if (settings.observed_bins) {
+        const auto [begin, end] = *settings.observed_bins;
+        core::restrict_observed(capture, core::BinRange{begin, end});
+        capture.notes.push_back(
+            fmt::format("bins {} to {} count as observed, as told", begin, end - 1));
+    }
+    return capture;
+}
+
+}  // namespace nlos

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "nlos/preparation/scatter_fit.h"
+#include "renderer/core/capture.h"
+
+#include <optional>
+#include <vector>
+
+namespace nlos {
+
+/// The pairs that a sample holds: at most 100, spread over the scanned points.
+std::vector<std::size_t> sampled_pairs(const core::Scan& scan);
+
+/// Light that came from the lit point of the wall to the sensing point with nothing in between.
+struct DirectReturn {
+    double offset_m = 0.0;              ///< by which it is later than the geometry has it
+    std::vector<std::size_t> end_bins;  ///< of the sampled pairs: from here on it has faded
+};
+
+/// A capture's direct return, known by what nothing hidden does: in nearly every histogram the
+/// brightest bin is equally late against |l - s| plus device legs, far brighter than all that
+/// follows, and most of the other light follows.
+///
+/// ambient   background per bin of every pair
+/// returns   nothing when there is none
+std::optional<DirectReturn> find_direct_return(const core::Capture& capture,
+                                               const std::vector<double>& ambient);
+
+/// Histograms of the sampled pairs, in at most 48 bins that hold nearly all of their light. Bins of
+/// a direct return and those before it count as not observed. Radiance is scaled to a mean of 20
+/// per bin.
+///
+/// returns   nothing for fewer than 9 pairs or 8 bins, and in the dark
+std::optional<HistogramSample> sample_histograms(const core::Capture& capture,
+                                                 const std::vector<double>& ambient,
+                                                 const std::optional<DirectReturn>& direct);
+
+}  // namespace nlos

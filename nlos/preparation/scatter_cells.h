@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "nlos/preparation/scatter_fit.h"
+
+#include <vector>
+
+namespace nlos {
+
+/// Cells of the space before the wall, in polar coordinates around the middle of its points.
+struct ScatterCells {
+    /// Range [m] and the first two components of the direction, in the wall's frame.
+    using Cell = Eigen::Vector3d;
+
+    std::vector<Cell> centers;
+    Cell size = Cell::Zero();
+    std::vector<double> light;  ///< of each; empty: not fitted yet
+    std::vector<float> reach;   ///< what each sends to the sample for unit light
+};
+
+/// Cells of all directions between two ranges.
+ScatterCells coarse_cells(double low_m, double high_m);
+
+/// The eighths of those cells that send nearly all light to the sample.
+ScatterCells halved_cells(const ScatterCells& cells);
+
+/// Sums over all bins that cells reach.
+struct CellReach {
+    std::vector<float> plain;
+    std::vector<float> rated;  ///< every bin times a ratio
+};
+
+/// How light of cells reaches the bins of a sample: a weight and a position between two bins for
+/// each pair and cell. Light falls with the squares of both legs and with the cosines at the wall.
+class ScatterTransport {
+ public:
+    ScatterTransport(const HistogramSample& sample,
+                     const PathGeometry& geometry,
+                     const ScatterCells& cells);
+
+    /// Histograms of the cells' light, [pair][bin]; 0 in bins that were not observed.
+    std::vector<float> forward(const std::vector<double>& light) const;
+
+    /// What each cell sends to observed bins for unit light, each pair times its gain, and the same
+    /// with every bin times `ratio` [pair][bin].
+    CellReach backward(const std::vector<float>& ratio, const std::vector<double>& gain) const;
+
+ private:
+    void fill(std::size_t pair,
+              const PathGeometry& geometry,
+              const std::vector<core::Vec3>& positions);
+
+    std::size_t num_pairs_;
+    std::size_t num_bins_;
+    std::size_t num_cells_;
+    std::vector<float> observed_;  ///< [pair][bin], 1 or 0
+    std::vector<float> position_;  ///< [pair][cell], in bins
+    std::vector<float> weight_;    ///< [pair][cell]; 0 outside the sample's bins
+};
+
+}  // namespace nlos

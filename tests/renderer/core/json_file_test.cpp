@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/core/settings.h"
+#include "tests/support/error_message.h"
+#include "tests/support/temporary_folder.h"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+namespace core {
+namespace {
+
+TEST(JsonText, NestingIsBounded) {
+    const auto nested = [](std::size_t depth) {
+        return std::string(depth, '[') + std::string(depth, ']');
+    };
+    EXPECT_NO_THROW(parse_json(nested(100), "text"));
+    EXPECT_ERROR_WITH(parse_json(nested(102), "text"), "text: its JSON is nested deeper than 100");
+    EXPECT_ERROR_WITH(parse_json(nested(200'000), "text"), "must be nested less");
+    EXPECT_ERROR_WITH(parse_json(std::string(200'000, '['), "text"), "must be nested less");
+    EXPECT_EQ(json_if_valid(nested(200'000)), std::nullopt);
+    EXPECT_EQ(json_if_valid("[1]"), Json::array({1}));
+}
+
+TEST(JsonText, KeysThatComeTwiceAreNamed) {
+    EXPECT_ERROR_WITH(parse_json(R"({"a": {"b": 1}, "c": [{"b": 2, "b": 3}]})", "text"),
+                      "text: its JSON has the key 'b' twice; must have it once");
+    EXPECT_NO_THROW(parse_json(R"({"a": {"b": 1}, "b": [{"b": 2}, {"b": 3}]})", "text"));
+}
+
+TEST(JsonText, MessagesShowCharactersAsPeopleWriteThem) {
+    EXPECT_ERROR_WITH(parse_json("{\"größe\": [1\n, é]}", "text"), "line 2, column 3");
+    EXPECT_ERROR_WITH(parse_json("[\"größe", "text"), "last read: '\"größe'");
+    EXPECT_ERROR_WITH(parse_json("[\"a\tb\"]", "text"), "last read: '\"a\\t'");
+    EXPECT_ERROR_WITH(parse_json("[\"\xff\"]", "text"), "'\"?'");
+    const std::string message =
+        test_support::error_message([] { parse_json("[\"" + std::string(10'000, 'a'), "text"); });
+    EXPECT_LT(message.size(), 250U) << message;
+}
+
+TEST(JsonText, NumbersBeyondDoubleAreReported) {
+    EXPECT_ERROR_WITH(parse_json("[1e999]", "text"), "text: is not valid JSON (number overflow");
+}
+
+TEST(JsonText, OnlyRegularFilesAreRead) {
+    const test_support::TemporaryFolder folder;
+    ASSERT_EQ(::mkfifo(folder.file("pipe.json").c_str(), 0600), 0);
+    EXPECT_ERROR_WITH(read_json_file(folder.file("pipe.json")), "pipe.json: is no regular file");
+    EXPECT_ERROR_WITH(read_json_file(folder.file("none.json")), "none.json: cannot be opened");
+}
+
+TEST(Error, WhatIsOnePrintableLine) {
+    EXPECT_EQ(printable("a\nb\x1b\x7f"), "a?b??");
+    EXPECT_EQ(printable("größer €😀"), "größer €😀");
+    EXPECT_EQ(printable("\xc3(\xc2\x85\xe2\x82\xed\xa0\x80\xf8"),
+              "?(?"
+              "??"
+              "???"
+              "?");
+    EXPECT_STREQ(Error("a", "b\nc", "d").what(), "a: b?c; d");
+    EXPECT_STREQ(Failure("a\r", "b").what(), "a?: b");
+}
+
+}  // namespace
+}  // namespace core
