@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs what the project builds with. Debian 12: by apt-get, asking nothing. Elsewhere: prints
-# the list and stops. Does nothing when all is there.
+# Installs what the project builds with, and packages given as arguments. Debian 12: by apt-get,
+# asking nothing. Elsewhere: prints the list and stops. Does nothing when all is there.
 set -euo pipefail
 
 packages=(
@@ -9,6 +9,7 @@ packages=(
     libeigen3-dev libfftw3-dev libhdf5-dev libmatio-dev libopenexr-dev libflann-dev liblz4-dev libopencv-dev
     libceres-dev libzip-dev libassimp-dev libpugixml-dev libyaml-cpp-dev
     libgtest-dev gnuplot-nox
+    "$@"
 )
 
 missing=()
