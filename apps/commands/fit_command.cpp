@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "apps/arguments.h"
+#include "apps/capture_options.h"
 #include "apps/commands.h"
 #include "apps/commands/fit_job.h"
 #include "apps/estimate_text.h"
@@ -8,6 +9,8 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <iterator>
 #include <memory>
 
 namespace apps {
@@ -94,9 +97,10 @@ void add_fit_command(CLI::App& app) {
         "--calibration", arguments->calibration, "Calibration of the set-up (.json)");
     add_threads_option(*command, arguments->threads);
     add_set_option(*command, arguments->overrides);
+    std::vector<core::SettingHelp> settings = core::settings_help(calib::FitSettings{});
+    std::ranges::move(core::settings_help(CaptureOptions{}), std::back_inserter(settings));
     command->footer(
-        settings_footer(core::settings_help(calib::FitSettings{}),
-                        "nlos fit data/letter.h5 scenes/letter/model.json -o fit.json"));
+        settings_footer(settings, "nlos fit data/letter.h5 scenes/letter/model.json -o fit.json"));
     command->callback([arguments] { run(*arguments); });
 }
 

@@ -2,13 +2,14 @@
 #include "apps/commands/fit_job.h"
 
 #include "apps/arguments.h"
+#include "apps/capture_options.h"
 #include "apps/commands/fit_pictures.h"
 #include "apps/terminal.h"
 #include "apps/version.h"
 #include "calib/calibrate.h"
 #include "calib/fit_file.h"
-#include "nlos/formats/capture_file.h"
 #include "nlos/formats/volume_file.h"
+#include "nlos/preparation/capture_check.h"
 #include "renderer/core/output_file.h"
 #include "renderer/gltf/gltf.h"
 
@@ -19,12 +20,27 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Overrides of the model, and those of `capture.`, which are of how the capture is read.
+struct FitOverrides {
+    std::vector<std::string> model;
+    std::vector<std::string> capture;
+};
+
+FitOverrides sorted_overrides(const std::vector<std::string>& overrides) {
+    FitOverrides sorted;
+    for (const std::string& text : overrides) {
+        (text.starts_with("capture.") ? sorted.capture : sorted.model).push_back(text);
+    }
+    return sorted;
+}
+
 calib::FitInput make_input(const std::string& capture_path,
                            const std::string& model_path,
                            const std::vector<std::string>& overrides) {
+    const FitOverrides sorted = sorted_overrides(overrides);
     calib::FitInput input;
-    input.settings = calib::read_fit_settings(model_path, overrides);
-    input.capture = nlos::read_capture(capture_path);
+    input.settings = calib::read_fit_settings(model_path, sorted.model);
+    input.capture = nlos::read_capture(capture_path, capture_options(sorted.capture).capture);
     input.scene = renderer::read_scene_description(input.settings.scene, {});
     input.geometry = renderer::load_gltf(input.scene.geometry);
     if (input.capture.scan.camera || input.scene.camera) {
@@ -88,6 +104,9 @@ calib::FitResult fit_to_file(const std::string& capture_path,
     if (!calibration.empty()) use_calibration(calib::read_calibration(calibration), input);
     ProgressBar bar("fit");
     calib::FitResult result = calib::fit_scene(input, bar.progress());
+    for (std::string& text : nlos::capture_warnings(input.capture)) {
+        result.warnings.push_back(std::move(text));
+    }
     write_results(input, result, fit_path);
     return result;
 }
