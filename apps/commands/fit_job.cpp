@@ -8,8 +8,8 @@
 #include "apps/version.h"
 #include "calib/calibrate.h"
 #include "calib/fit_file.h"
-#include "nlos/formats/capture_file.h"
 #include "nlos/formats/volume_file.h"
+#include "nlos/preparation/capture_check.h"
 #include "renderer/core/output_file.h"
 #include "renderer/gltf/gltf.h"
 #include "renderer/scene/load_geometry.h"
@@ -91,6 +91,9 @@ calib::FitResult fit_to_file(const std::string& capture_path,
     if (!calibration.empty()) use_calibration(calib::read_calibration(calibration), input);
     ProgressBar bar("fit");
     calib::FitResult result = calib::fit_scene(input, bar.progress());
+    for (std::string& text : nlos::capture_warnings(input.capture)) {
+        result.warnings.push_back(std::move(text));
+    }
     write_results(input, result, fit_path);
     return result;
 }

@@ -10,10 +10,10 @@ namespace apps {
 
 /// Fits a model file to a capture file.
 ///
-/// overrides        `key.path=value` texts for MODEL.json
-/// calibration      CALIBRATION.json to apply to the capture; empty: none
-/// fit_path         FIT.json; FIT.scene.json, FIT.glb and FIT.png go beside it
-/// throws           core::Error, core::Failure as fit_scene() does; a fit that did not converge is
+/// overrides        `key.path=value` texts for MODEL.json, and `capture.` for how the capture is
+/// read calibration      CALIBRATION.json to apply to the capture; empty: none fit_path FIT.json;
+/// FIT.scene.json, FIT.glb and FIT.png go beside it throws           core::Error, core::Failure as
+/// fit_scene() does; a fit that did not converge is
 ///                  written and returned
 calib::FitResult fit_to_file(const std::string& capture_path,
                              const std::string& model_path,

@@ -76,12 +76,6 @@ bool knows_devices(const core::Scan& scan) {
            !scan.detector_position.isZero();
 }
 
-/// Whether a wrong wall and wrong lengths are the same but for the size of everything.
-bool is_scale_free(const core::Scan& scan) {
-    return scan.opl_origin == core::OplOrigin::RelayWall &&
-           scan.pattern == core::ScanPattern::Confocal;
-}
-
 void add_lengths(const core::Capture& capture,
                  const HistogramSample& sample,
                  std::vector<CaptureCorrection>& list) {
@@ -104,6 +98,11 @@ void add_lengths(const core::Capture& capture,
 }
 
 }  // namespace
+
+bool is_scale_free(const core::Scan& scan) {
+    return scan.opl_origin == core::OplOrigin::RelayWall &&
+           scan.pattern != core::ScanPattern::Single;
+}
 
 PathGeometry corrected_geometry(const core::Capture& capture,
                                 const HistogramSample& sample,

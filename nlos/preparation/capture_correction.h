@@ -36,6 +36,10 @@ bool is_mirror_image(const core::Capture& capture,
                      const HistogramSample& sample,
                      const CaptureCorrection& correction);
 
+/// Whether wrong lengths and a wrong wall are one and the same but for the size of everything: path
+/// lengths from and to the wall, and all points on it stretched together.
+bool is_scale_free(const core::Scan& scan);
+
 /// The single slips that could have been made, but for those of time zero, that this capture could
 /// show: factors of lengths (units, one way and round trip), the wall's size, device legs, exchange
 /// and reversal of axes. Factors of 1000 and those of the speed of light are listed when they bring

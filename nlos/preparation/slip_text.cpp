@@ -54,7 +54,7 @@ std::string text_of_lengths(const core::Capture& capture, const CaptureCorrectio
     if (!correction.keeps_start && std::abs(start_moves_m) > factor * axis.bin_width_m) {
         text += fmt::format(" capture.opl_shift_m={:.6g}", start_moves_m);
     }
-    if (capture.scan.opl_origin == core::OplOrigin::Device) return text;
+    if (!is_scale_free(capture.scan)) return text;
     return text + fmt::format("; or the wall looks {:.4g} times too {}{}: --set {}",
                               std::max(factor, 1.0 / factor),
                               factor < 1.0 ? "small" : "large",

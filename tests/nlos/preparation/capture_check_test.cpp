@@ -40,7 +40,8 @@ TEST(CaptureCheck, WarnsOfBinsThatAreStatedTooWide) {
     capture.time_axis.bin_width_m *= 2.0;
     const auto warnings = capture_warnings(capture);
     ASSERT_EQ(warnings.size(), 1U);
-    EXPECT_NE(warnings[0].find("narrower"), std::string::npos) << warnings[0];
+    EXPECT_NE(warnings[0].find("lengths look 2 times too long"), std::string::npos) << warnings[0];
+    EXPECT_NE(warnings[0].find("--set capture.bin_width_m=0.01"), std::string::npos) << warnings[0];
 }
 
 /// A bent bar of points before the middle of the wall, with counts if asked for.
@@ -64,7 +65,7 @@ TEST(CaptureCheck, WarnsOfBinsStatedTooWideOrTooNarrow) {
     for (const auto unit : {core::TransientUnit::Radiance, core::TransientUnit::Counts}) {
         const core::Capture right = bar_capture(unit);
         EXPECT_TRUE(capture_warnings(right).empty());
-        for (const double factor : {0.5, 0.75, 1.25, 1.7}) {
+        for (const double factor : {0.75, 1.25, 1.6}) {
             core::Capture wrong = right;
             wrong.time_axis.bin_width_m *= factor;
             const auto warnings = capture_warnings(wrong);
@@ -74,6 +75,17 @@ TEST(CaptureCheck, WarnsOfBinsStatedTooWideOrTooNarrow) {
                 << warnings[0];
         }
     }
+}
+
+TEST(CaptureCheck, NamesUnitsThatValuesContradict) {
+    core::Capture counts = bar_capture(core::TransientUnit::Counts);
+    counts.unit = core::TransientUnit::Radiance;
+    ASSERT_EQ(capture_warnings(counts).size(), 1U);
+    EXPECT_NE(capture_warnings(counts)[0].find("--set capture.unit=counts"), std::string::npos);
+    core::Capture radiance = bar_capture(core::TransientUnit::Radiance);
+    radiance.unit = core::TransientUnit::Counts;
+    ASSERT_EQ(capture_warnings(radiance).size(), 1U);
+    EXPECT_NE(capture_warnings(radiance)[0].find("--set capture.unit=radiance"), std::string::npos);
 }
 
 TEST(CaptureCheck, TellsTheFactorOfWrongBinsAndOfAWrongWall) {
