@@ -13,7 +13,7 @@ namespace {
 
 using core::Json;
 
-constexpr const char* kBlanks = " \t\r\n";
+constexpr const char* kJsonBlanks = " \t\r\n";
 
 /// Takes the first line off `text`.
 std::string_view take_line(std::string_view& text) {
@@ -24,7 +24,7 @@ std::string_view take_line(std::string_view& text) {
 }
 
 bool is_blank(std::string_view text) {
-    return text.find_first_not_of(kBlanks) == std::string_view::npos;
+    return text.find_first_not_of(kJsonBlanks) == std::string_view::npos;
 }
 
 /// One value, or a list of those that stand one per line, as in a log.
@@ -59,7 +59,7 @@ bool is_json_file(const std::string& path) {
     std::string_view start(bytes.data(), static_cast<std::size_t>(file.gcount()));
     constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
     if (start.starts_with(kByteOrderMark)) start.remove_prefix(kByteOrderMark.size());
-    const std::size_t begin = start.find_first_not_of(kBlanks);
+    const std::size_t begin = start.find_first_not_of(kJsonBlanks);
     return begin != std::string_view::npos && (start[begin] == '{' || start[begin] == '[') &&
            start.find('\0') == std::string_view::npos;
 }

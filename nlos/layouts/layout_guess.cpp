@@ -20,6 +20,7 @@ namespace {
 using core::Json;
 
 constexpr std::size_t kMostListed = 200;
+constexpr std::size_t kFewestTimeBins = 16;
 constexpr std::size_t kMostRead = std::size_t{1} << 22;  // values, for a range in the list
 
 std::size_t count_of(const Shape& shape) {
@@ -249,10 +250,9 @@ void guess_points(const LayoutFiles& files, std::size_t pairs, bool is_list, Lay
 
 /// Histograms have two axes or more, and a list of points has three columns.
 bool could_be_histograms(const Shape& shape) {
-    constexpr std::size_t kFewestBins = 16;
     const auto wide = std::count_if(shape.begin(), shape.end(), [](auto e) { return e > 1; });
     const bool has_bins =
-        std::any_of(shape.begin(), shape.end(), [](auto e) { return e >= kFewestBins; });
+        std::any_of(shape.begin(), shape.end(), [](auto e) { return e >= kFewestTimeBins; });
     const bool is_list_of_points = shape.size() == 2 && (shape.front() == 3 || shape.back() == 3);
     return wide >= 2 && has_bins && !is_list_of_points;
 }

@@ -28,7 +28,6 @@ namespace nlos {
 ///   than that of points, edges and tips: bins are narrower or wider than stated, or the wall's
 ///   size is wrong, see bend_of_first_light().
 ///
-///
 /// Only bins that were observed count, and first light only where it came after they began.
 ///
 /// costs     a look at all values, and for slips at most 100 histograms: one fit of 40 ms on one
