@@ -16,8 +16,8 @@ struct CaptureReadSettings {
     std::optional<double> bin_width_m;  ///< replaces the file's bin width [m of path]
     std::optional<double> pitch_m;  ///< distance of grid neighbours, where only indices are stored
     std::optional<double> opl_shift_m;  ///< added to the axis start (time zero)
-    std::optional<int> frame;  ///< the only frame to read of a sequence
-    std::string layout;        ///< name or JSON file of a layout; empty: recognised by content
+    std::optional<int> frame;           ///< the only frame to read of a sequence
+    std::string layout;  ///< name or JSON file of a layout; empty: recognised by content
 
     // What replaces the file's word, in captures of any format; see adjust_capture().
     std::optional<std::array<double, 2>> wall_size_m;  ///< extents of the scanned points [m]

@@ -65,12 +65,11 @@ void require_lengths(const std::vector<double>& list, std::size_t count, const s
 }
 
 void check_points(const LayoutPoints& points, const std::string& where) {
-    const int ways = static_cast<int>(points.grid.has_value()) +
-                     static_cast<int>(!points.array.empty()) +
-                     static_cast<int>(!points.x.empty() && !points.y.empty()) +
-                     static_cast<int>(!points.index.empty()) +
-                     static_cast<int>(!points.position_m.empty()) +
-                     static_cast<int>(!points.corners.empty());
+    const int ways =
+        static_cast<int>(points.grid.has_value()) + static_cast<int>(!points.array.empty()) +
+        static_cast<int>(!points.x.empty() && !points.y.empty()) +
+        static_cast<int>(!points.index.empty()) + static_cast<int>(!points.position_m.empty()) +
+        static_cast<int>(!points.corners.empty());
     core::require(ways == 1,
                   where,
                   fmt::format("{} ways to say where the points are", ways),
@@ -124,11 +123,11 @@ void validate(const Layout& layout, const std::string& where) {
                       "every axis once");
     }
     if (layout.histogram.split) {
-        core::require(layout.histogram.split->into.size() == 2 &&
-                          layout.histogram.split->extents.size() == 2,
-                      key("histogram.split"),
-                      "other numbers of names or extents",
-                      "two of each");
+        core::require(
+            layout.histogram.split->into.size() == 2 && layout.histogram.split->extents.size() == 2,
+            key("histogram.split"),
+            "other numbers of names or extents",
+            "two of each");
     }
     core::require(layout.bins.width_m.is_given() != layout.bins.width_s.is_given(),
                   key("bins"),

@@ -100,12 +100,13 @@ struct LayoutHistogram {
     std::vector<std::string> array;  ///< the first of these that the file holds
     std::vector<std::string> axes;   ///< see kHistogramAxes; any other name is summed over
     std::optional<LayoutSplit> split;
-    bool also_reversed = false;      ///< the same axes from last to first are as good
-    bool square = false;             ///< x and y have one extent, which tells axes apart
+    bool also_reversed = false;  ///< the same axes from last to first are as good
+    bool square = false;         ///< x and y have one extent, which tells axes apart
     core::TransientUnit unit = core::TransientUnit::Counts;
     LayoutNumber is_counts;            ///< instead of unit: 0 says radiance
     LayoutNumber counts_per_radiance;  ///< 0: unknown
-    std::vector<std::string> background;  ///< histograms without the object; their mean is subtracted
+    std::vector<std::string>
+        background;  ///< histograms without the object; their mean is subtracted
 };
 
 template <class Visitor>
@@ -207,11 +208,11 @@ void for_each_field(LayoutGrid& g, Visitor&& visit) {
 /// Wall points: one of grid, array, or x and y.
 struct LayoutPoints {
     std::optional<LayoutGrid> grid;
-    std::string array;                              ///< coordinates, along an axis of extent 3
-    std::vector<std::string> axes;                  ///< of array, "xyz" for the coordinates
+    std::string array;                                ///< coordinates, along an axis of extent 3
+    std::vector<std::string> axes;                    ///< of array, "xyz" for the coordinates
     std::vector<std::string> columns{"x", "y", "z"};  ///< which coordinate each is; "-x" negates
     std::vector<std::string> list_order;  ///< how a list runs over a grid, slowest axis first
-    std::string x;                                  ///< arrays of one coordinate each, z = 0
+    std::string x;                        ///< arrays of one coordinate each, z = 0
     std::string y;
     LayoutNumber pitch_m;   ///< given: the arrays hold indices, these times it are metres
     std::string normals;    ///< as array; without: those of a plane through the points
@@ -245,14 +246,14 @@ enum class LayoutPattern { Single, Confocal, Exhaustive, ByPoints };
 
 template <>
 struct core::EnumNames<nlos::LayoutPattern> {
-    static constexpr auto value = core::names_from_zero<nlos::LayoutPattern>(
-        "single", "confocal", "exhaustive", "by_points");
+    static constexpr auto value =
+        core::names_from_zero<nlos::LayoutPattern>("single", "confocal", "exhaustive", "by_points");
 };
 
 namespace nlos {
 
 struct LayoutDevices {
-    std::string laser;     ///< array of 3 values, world [m]
+    std::string laser;  ///< array of 3 values, world [m]
     std::string detector;
     std::vector<double> position_m;  ///< of both
     bool legs_included = false;      ///< whether path lengths start and end there
@@ -280,8 +281,8 @@ struct Layout {
     LayoutPoints sensing;
     LayoutPoints illumination;  ///< confocal: none, they are the sensing points
     LayoutDevices devices;
-    bool files_are_frames = false;  ///< several such files, or a folder of them, are a sequence
-    LayoutNumber response_fwhm_s;   ///< of the detector, goes to the provenance
+    bool files_are_frames = false;   ///< several such files, or a folder of them, are a sequence
+    LayoutNumber response_fwhm_s;    ///< of the detector, goes to the provenance
     std::vector<std::string> keep;   ///< short arrays that go to the provenance
     std::vector<std::string> notes;  ///< what a user should know, shown by `nlos info`
 };

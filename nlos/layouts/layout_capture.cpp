@@ -71,7 +71,8 @@ core::ScanPattern pattern_of(const Layout& layout,
 void require_every_pair_once(const LayoutFiles& files,
                              const PairNumbers& numbers,
                              std::size_t num_pairs) {
-    const std::size_t lit = numbers.listed ? 1 : std::max<std::size_t>(numbers.illumination.size(), 1);
+    const std::size_t lit =
+        numbers.listed ? 1 : std::max<std::size_t>(numbers.illumination.size(), 1);
     const bool exhaustive = numbers.pattern == core::ScanPattern::Exhaustive;
     std::vector<bool> seen(num_pairs, false);
     std::size_t entries = 0;
@@ -131,11 +132,11 @@ PairNumbers read_points(const LayoutFiles& files,
                             index[0] <= static_cast<double>(grid[0]) &&
                             index[1] <= static_cast<double>(grid[1]);
         if (!inside) {
-            throw Error(files.where(layout.illumination.index),
-                        fmt::format("found ({})", fmt::join(index, ", ")),
-                        fmt::format("must be a point of the {} x {} grid, counted from 1",
-                                    grid[0],
-                                    grid[1]));
+            throw Error(
+                files.where(layout.illumination.index),
+                fmt::format("found ({})", fmt::join(index, ", ")),
+                fmt::format(
+                    "must be a point of the {} x {} grid, counted from 1", grid[0], grid[1]));
         }
         const auto number = (static_cast<std::size_t>(index[0]) - 1) * grid[1] +
                             static_cast<std::size_t>(index[1]) - 1;
@@ -231,18 +232,18 @@ Capture read_one(const std::string& path,
     const LayoutFiles files(path);
     const auto array = find_histograms(files, layout);
     if (!array) {
-        throw Error(path,
-                    fmt::format("is not of layout {}: {}",
-                                layout.name,
-                                fmt::join(mismatches(files, layout), ", ")),
-                    "must hold what the layout says");
+        throw Error(
+            path,
+            fmt::format(
+                "is not of layout {}: {}", layout.name, fmt::join(mismatches(files, layout), ", ")),
+            "must hold what the layout says");
     }
     Capture capture;
     read_devices(files, layout, capture);
     const PairNumbers numbers = read_points(files, layout, *array, settings, capture.scan);
     capture.time_axis = read_axis(files, layout.bins, *array->extent("t"), settings);
-    keep_frames(
-        read_histograms(files, *array, numbers, capture.scan.num_pairs(), settings.frame), capture);
+    keep_frames(read_histograms(files, *array, numbers, capture.scan.num_pairs(), settings.frame),
+                capture);
     read_unit(files, layout.histogram, capture);
     describe(files, layout, capture);
     const core::BinRange lit = lit_bins(capture);
@@ -256,7 +257,8 @@ Capture read_one(const std::string& path,
                 subtract_background(files, background, frame);
             }
         }
-        capture.notes.push_back(fmt::format("the mean of {} is subtracted", fmt::join(background, ", ")));
+        capture.notes.push_back(
+            fmt::format("the mean of {} is subtracted", fmt::join(background, ", ")));
     }
     if (layout.bins.zeros_are_unobserved) core::restrict_observed(capture, lit);
     const auto& shift = layout.bins.shift;
@@ -311,7 +313,8 @@ LayoutSource layout_source(const std::string& path, const Layout& layout) {
         if (!layout.files_are_frames) return source;
     }
     if (source.files.empty()) {
-        throw Error(path, "holds no file of layout " + layout.name, "must be such a file or folder");
+        throw Error(
+            path, "holds no file of layout " + layout.name, "must be such a file or folder");
     }
     return source;
 }
@@ -324,13 +327,13 @@ Capture read_layout_capture(const LayoutSource& source, const CaptureReadSetting
         Capture frame = read_one(file, source.layout, settings);
         if (!frames.empty() && (frame.scan.num_pairs() != frames[0].num_pairs() ||
                                 frame.transient.num_bins() != frames[0].num_bins())) {
-            throw Error(file,
-                        fmt::format("has {} pairs of {} bins",
-                                    frame.scan.num_pairs(),
-                                    frame.transient.num_bins()),
-                        fmt::format("must have {} pairs of {} bins, as the frames before",
-                                    frames[0].num_pairs(),
-                                    frames[0].num_bins()));
+            throw Error(
+                file,
+                fmt::format(
+                    "has {} pairs of {} bins", frame.scan.num_pairs(), frame.transient.num_bins()),
+                fmt::format("must have {} pairs of {} bins, as the frames before",
+                            frames[0].num_pairs(),
+                            frames[0].num_bins()));
         }
         frames.push_back(frame.transient);
         capture = std::move(frame);
@@ -345,8 +348,8 @@ Capture read_layout_capture(const LayoutSource& source, const CaptureReadSetting
         return read_one(source.files[wanted], source.layout, settings);
     }
     keep_frames(std::move(frames), capture);
-    capture.notes.push_back(fmt::format("{} files are frames; the wall points are those of the last",
-                                        source.files.size()));
+    capture.notes.push_back(fmt::format(
+        "{} files are frames; the wall points are those of the last", source.files.size()));
     return capture;
 }
 

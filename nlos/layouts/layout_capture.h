@@ -16,8 +16,8 @@ struct LayoutSource {
     std::vector<std::string> files;
 };
 
-/// The shipped layout that a file is of, or a folder: of the frames that it holds, or of the file in
-/// it that the layout needs. Nothing when there is none.
+/// The shipped layout that a file is of, or a folder: of the frames that it holds, or of the file
+/// in it that the layout needs. Nothing when there is none.
 std::optional<LayoutSource> find_layout_source(const std::string& path);
 
 /// The files that make up a capture at `path` when its layout is known.

@@ -23,7 +23,8 @@ std::optional<LayoutFiles::Source> LayoutFiles::find_source(const std::string& a
     if (colon == std::string::npos) return std::nullopt;
     const std::string name = array.substr(colon + 1);
     if (main_->has(name)) return Source{main_.get(), name};
-    const fs::path file = fs::path(path_).parent_path() / fs::path(array.substr(0, colon)).filename();
+    const fs::path file =
+        fs::path(path_).parent_path() / fs::path(array.substr(0, colon)).filename();
     auto& reader = beside_[file.string()];
     if (!reader) {
         if (!fs::is_regular_file(file)) return std::nullopt;
@@ -89,7 +90,8 @@ std::optional<double> LayoutFiles::number(const LayoutNumber& number,
     if (!number.peak_of.empty()) {
         const std::vector<double> values = read(number.peak_of);
         const auto peak = std::max_element(values.begin(), values.end());
-        if (peak == values.end()) throw Error(where(number.peak_of), "is empty", "must hold values");
+        if (peak == values.end())
+            throw Error(where(number.peak_of), "is empty", "must hold values");
         return static_cast<double>(peak - values.begin()) * number.factor + number.offset;
     }
     if (number.ask.empty()) return std::nullopt;

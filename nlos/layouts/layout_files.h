@@ -47,11 +47,11 @@ class LayoutFiles {
             take(done, values);
             return;
         }
-        source.reader->read_rows(
-            source.name, [&](std::size_t, std::size_t, const std::vector<float>& values) {
-                take(done, values);
-                done += values.size();
-            });
+        source.reader->read_rows(source.name,
+                                 [&](std::size_t, std::size_t, const std::vector<float>& values) {
+                                     take(done, values);
+                                     done += values.size();
+                                 });
     }
 
     /// A number as the layout says; nothing when the layout leaves it out.

@@ -40,7 +40,8 @@ std::string shown(const std::string& text) {
 std::string describe_array(const LayoutFiles& files, const std::string& name) {
     const ArrayReader& file = files.main();
     std::string line = fmt::format("{}: {}", name, file.type(name));
-    if (file.kind(name) == ElementKind::Text) return line + " \"" + shown(file.read_text(name)) + "\"";
+    if (file.kind(name) == ElementKind::Text)
+        return line + " \"" + shown(file.read_text(name)) + "\"";
     const Shape shape = files.shape(name);
     line += " " + shape_text(shape);
     if (!is_numeric(file, name) || count_of(shape) == 0 || count_of(shape) > kMostRead) return line;
@@ -48,6 +49,34 @@ std::string describe_array(const LayoutFiles& files, const std::string& name) {
     const auto [low, high] = std::minmax_element(values.begin(), values.end());
     return values.size() == 1 ? fmt::format("{}: {:.6g}", line, *low)
                               : fmt::format("{}, {:.6g} to {:.6g}", line, *low, *high);
+}
+
+/// A line for each array; of cells one stands for all.
+std::vector<std::string> list_arrays(const LayoutFiles& files) {
+    std::vector<std::string> lines;
+    std::string last_cell;
+    std::size_t alike = 0;
+    const auto count_alike = [&] {
+        if (alike > 0) lines.back() += fmt::format("; and {} more such cells", alike);
+        alike = 0;
+    };
+    for (const std::string& name : files.main().names()) {
+        const std::size_t brace = name.find('{');
+        const std::string cell = brace == std::string::npos ? "" : name.substr(0, brace);
+        if (!cell.empty() && cell == last_cell) {
+            ++alike;
+            continue;
+        }
+        count_alike();
+        last_cell = cell;
+        if (lines.size() == kMostListed) {
+            lines.emplace_back("...");
+            break;
+        }
+        if (files.main().has(name)) lines.push_back(describe_array(files, name));
+    }
+    count_alike();
+    return lines;
 }
 
 /// Names of numeric arrays, the largest first.
@@ -127,8 +156,8 @@ std::optional<NamedScalar> find_scalar(const LayoutFiles& files,
 
 /// Names for the axes beside time, by how many there are.
 std::vector<std::string> other_axes(const Shape& extents, bool is_matlab) {
-    const std::vector<std::string> xy = is_matlab ? std::vector<std::string>{"y", "x"}
-                                                  : std::vector<std::string>{"x", "y"};
+    const std::vector<std::string> xy =
+        is_matlab ? std::vector<std::string>{"y", "x"} : std::vector<std::string>{"x", "y"};
     switch (extents.size()) {
         case 0:
             return {};
@@ -205,10 +234,10 @@ void guess_points(const LayoutFiles& files, std::size_t pairs, bool is_list, Lay
     Json grid = Json::object();
     if (const auto size = find_scalar(files, {"size", "width", "wall", "aperture"}, is_size)) {
         grid["size_m"] = Json::array({{{"array", size->name}}});
-        guess.findings.push_back(fmt::format(
-            "{} = {:.4g} could be the scanned width in metres; half of it: half_size_m",
-            size->name,
-            size->value));
+        guess.findings.push_back(
+            fmt::format("{} = {:.4g} could be the scanned width in metres; half of it: half_size_m",
+                        size->name,
+                        size->value));
     } else {
         grid["size_m"] = Json::array({{{"ask", "[2,2] for a wall of 2 m"}}});
         guess.findings.push_back("open: the scanned extents, --set capture.wall_size_m=[..,..]");
@@ -218,13 +247,22 @@ void guess_points(const LayoutFiles& files, std::size_t pairs, bool is_list, Lay
     guess.layout["sensing"] = {{"grid", grid}};
 }
 
+/// Histograms have two axes or more, and a list of points has three columns.
+bool could_be_histograms(const Shape& shape) {
+    constexpr std::size_t kFewestBins = 16;
+    const auto wide = std::count_if(shape.begin(), shape.end(), [](auto e) { return e > 1; });
+    const bool has_bins =
+        std::any_of(shape.begin(), shape.end(), [](auto e) { return e >= kFewestBins; });
+    const bool is_list_of_points = shape.size() == 2 && (shape.front() == 3 || shape.back() == 3);
+    return wide >= 2 && has_bins && !is_list_of_points;
+}
+
 /// A layout around the array `name`.
 void guess_around(const LayoutFiles& files, const std::string& name, LayoutGuess& guess) {
     const Shape shape = files.shape(name);
     const std::vector<double> variation = variation_along_axes(files, name);
-    const auto time =
-        static_cast<std::size_t>(std::max_element(variation.begin(), variation.end()) -
-                                 variation.begin());
+    const auto time = static_cast<std::size_t>(
+        std::max_element(variation.begin(), variation.end()) - variation.begin());
     Shape others = shape;
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(time));
     std::vector<std::string> axes = other_axes(others, files.first_index_fastest(name));
@@ -235,17 +273,18 @@ void guess_around(const LayoutFiles& files, const std::string& name, LayoutGuess
                                          name,
                                          shape_text(shape),
                                          fmt::join(axes, ", ")));
-    guess.findings.push_back(fmt::format(
-        "axis {} is taken for time: energy varies most along it ({:.2f} of its mean; others {:.2f})",
-        time,
-        variation[time],
-        [&] {
-            double next = 0.0;
-            for (std::size_t i = 0; i < variation.size(); ++i) {
-                if (i != time) next = std::max(next, variation[i]);
-            }
-            return next;
-        }()));
+    guess.findings.push_back(
+        fmt::format("axis {} is taken for time: energy varies most along it ({:.2f} of its mean; "
+                    "others {:.2f})",
+                    time,
+                    variation[time],
+                    [&] {
+                        double next = 0.0;
+                        for (std::size_t i = 0; i < variation.size(); ++i) {
+                            if (i != time) next = std::max(next, variation[i]);
+                        }
+                        return next;
+                    }()));
     if (axes.size() == 3) {
         guess.findings.push_back("open: which of the other axes is x, and how each runs");
     }
@@ -257,10 +296,10 @@ void guess_around(const LayoutFiles& files, const std::string& name, LayoutGuess
     guess.layout["histogram"] = {{"array", {name}}, {"axes", axes}, {"unit", "counts"}};
     guess_bins(files, guess);
     guess.layout["pattern"] = has_lights ? "exhaustive" : "confocal";
-    guess.findings.push_back(has_lights
-                                 ? "four axes of points: taken for an exhaustive scan"
-                                 : "open: whether each point is lit and seen (confocal) or one spot "
-                                   "is lit (single, with illumination.position_m)");
+    guess.findings.push_back(
+        has_lights ? "four axes of points: taken for an exhaustive scan"
+                   : "open: whether each point is lit and seen (confocal) or one spot "
+                     "is lit (single, with illumination.position_m)");
     std::size_t pairs = 1;
     for (std::size_t i = 0; i < shape.size(); ++i) {
         const bool counts = axes[i] == "x" || axes[i] == "y" || axes[i] == "s";
@@ -275,18 +314,9 @@ void guess_around(const LayoutFiles& files, const std::string& name, LayoutGuess
 LayoutGuess guess_layout(const std::string& path) {
     const LayoutFiles files(path);
     LayoutGuess guess;
-    const auto& names = files.main().names();
-    for (std::size_t i = 0; i < std::min(names.size(), kMostListed); ++i) {
-        if (files.main().has(names[i])) guess.arrays.push_back(describe_array(files, names[i]));
-    }
-    if (names.size() > kMostListed) {
-        guess.arrays.push_back(fmt::format("... and {} more", names.size() - kMostListed));
-    }
+    guess.arrays = list_arrays(files);
     for (const std::string& name : numeric_arrays(files)) {
-        constexpr std::size_t kFewestValues = 64;
-        const Shape shape = files.shape(name);
-        const auto wide = std::count_if(shape.begin(), shape.end(), [](auto e) { return e > 1; });
-        if (wide < 2 || count_of(shape) < kFewestValues) continue;
+        if (!could_be_histograms(files.shape(name))) continue;
         guess_around(files, name, guess);
         break;
     }
@@ -302,8 +332,7 @@ std::vector<std::string> nearest_layouts(const std::string& path) {
     std::vector<std::pair<std::size_t, std::string>> rows;
     for (const Layout& layout : shipped_layouts()) {
         const std::vector<std::string> lacks = mismatches(files, layout);
-        rows.emplace_back(lacks.size(),
-                          fmt::format("{}: {}", layout.name, fmt::join(lacks, ", ")));
+        rows.emplace_back(lacks.size(), fmt::format("{}: {}", layout.name, fmt::join(lacks, ", ")));
     }
     std::stable_sort(
         rows.begin(), rows.end(), [](const auto& a, const auto& b) { return a.first < b.first; });

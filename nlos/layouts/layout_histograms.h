@@ -16,7 +16,7 @@ struct PairNumbers {
     std::size_t num_sensing = 0;
     std::vector<std::size_t> sensing;       ///< point of each sensing entry
     std::vector<std::size_t> illumination;  ///< of each illumination entry, likewise
-    bool listed = false;  ///< entries are pairs: both lists run along one axis
+    bool listed = false;                    ///< entries are pairs: both lists run along one axis
 
     std::size_t pair(std::size_t illumination_entry, std::size_t sensing_entry) const {
         if (pattern != core::ScanPattern::Exhaustive) return sensing[sensing_entry];

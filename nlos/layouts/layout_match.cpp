@@ -9,8 +9,8 @@
 namespace nlos {
 namespace {
 
-/// Extents for the axes, by adding or leaving out extents of 1 (MATLAB drops trailing ones and knows
-/// no vectors); nothing when that does not do, or would add the axis of bins.
+/// Extents for the axes, by adding or leaving out extents of 1 (MATLAB drops trailing ones and
+/// knows no vectors); nothing when that does not do, or would add the axis of bins.
 std::optional<Shape> fitted_extents(Shape extents, const std::vector<std::string>& axes) {
     const std::size_t rank = axes.size();
     while (extents.size() < rank) {
@@ -112,7 +112,8 @@ std::vector<std::string> mismatches(const LayoutFiles& files, const Layout& layo
         }
     }
     for (const auto& [name, value] : wanted.values.of) {
-        if (!has_value(files, name, value)) lacks.push_back(fmt::format("{} is not {}", name, value));
+        if (!has_value(files, name, value))
+            lacks.push_back(fmt::format("{} is not {}", name, value));
     }
     for (const std::string& name : wanted.absent) {
         if (files.has(name)) lacks.push_back(fmt::format("there is an array {}", name));

@@ -5,7 +5,6 @@
 #include "renderer/core/nearest_neighbours.h"
 
 #include <Eigen/Eigenvalues>
-
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -58,9 +57,9 @@ GridSize grid_size(const LayoutFiles& files,
         return {extent_m, extent_m / steps};
     }
     if (!grid.pitch_m.empty()) {
-        const double pitch_m =
-            settings.pitch_m ? *settings.pitch_m
-                             : *element_of(files, grid.pitch_m, axis, "capture.pitch_m");
+        const double pitch_m = settings.pitch_m
+                                   ? *settings.pitch_m
+                                   : *element_of(files, grid.pitch_m, axis, "capture.pitch_m");
         return {pitch_m * steps, pitch_m};
     }
     const double size_m =
@@ -333,8 +332,8 @@ Vec3 plane_normal(const std::vector<Vec3>& points, double* off_plane_m) {
     Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
     for (const Vec3& p : points) scatter += (p - mean) * (p - mean).transpose();
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(scatter);
-    const double rms = std::sqrt(std::max(0.0, solver.eigenvalues()[0]) /
-                                 static_cast<double>(points.size()));
+    const double rms =
+        std::sqrt(std::max(0.0, solver.eigenvalues()[0]) / static_cast<double>(points.size()));
     if (off_plane_m != nullptr) *off_plane_m = rms;
     // Points on a line, or one point, have no plane.
     if (solver.eigenvalues()[1] <= 1e-12 * std::max(solver.eigenvalues()[2], 1e-12)) {

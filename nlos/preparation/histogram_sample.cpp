@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kSide = 10;  // pairs along each axis of a grid
 constexpr std::size_t kMostPairs = kSide * kSide;
-constexpr std::size_t kFewestPairs = 9;
+constexpr std::size_t kFewestPairs = 25;  // a few zones can be explained by anything
 constexpr std::size_t kMostBins = 48;
 constexpr std::size_t kFewestBins = 8;
 constexpr double kFirstLight = 0.01;  // share of all light before the sample

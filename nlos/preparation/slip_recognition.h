@@ -23,7 +23,7 @@ struct SlipEvidence {
 /// Compares what a capture says of itself with single slips in saying it.
 ///
 /// ambient   background per bin of every pair
-/// returns   nothing for captures that cannot tell: fewer than 9 pairs, no light, histograms that
+/// returns   nothing for captures that cannot tell: fewer than 25 pairs, no light, histograms that
 ///           are alike
 /// throws    nothing
 std::optional<SlipEvidence> slip_evidence(const core::Capture& capture,

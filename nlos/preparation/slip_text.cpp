@@ -10,29 +10,28 @@
 namespace nlos {
 namespace {
 
-constexpr double kC = core::kSpeedOfLight;
-
 /// What may have happened when lengths must be multiplied by a factor.
 struct FactorStory {
     double factor;
     const char* text;
 };
-constexpr FactorStory kFactorStories[] = {{2.0, "as if half of each round trip had been stated"},
-                                          {0.5, "as if round trips had been doubled once more"},
-                                          {kC * 1e-9, "as if ns had been taken for metres"},
-                                          {1e9 / kC, "as if metres had been taken for ns"},
-                                          {1e-3, "as if ps had been taken for ns"},
-                                          {1e3, "as if ns had been taken for ps"},
-                                          {1e-6, "as if ps had been taken for us"},
-                                          {1e6, "as if us had been taken for ps"},
-                                          {1e-9, "as if ns had been taken for s"},
-                                          {1e9, "as if s had been taken for ns"},
-                                          {1e-12, "as if ps had been taken for s"},
-                                          {1e12, "as if s had been taken for ps"},
-                                          {kC, "as if s had been taken for metres"},
-                                          {1.0 / kC, "as if metres had been taken for s"},
-                                          {kC * 1e-12, "as if ps had been taken for metres"},
-                                          {1e12 / kC, "as if metres had been taken for ps"}};
+constexpr FactorStory kFactorStories[] = {
+    {2.0, "as if half of each round trip had been stated"},
+    {0.5, "as if round trips had been doubled once more"},
+    {core::kSpeedOfLight * 1e-9, "as if ns had been taken for metres"},
+    {1e9 / core::kSpeedOfLight, "as if metres had been taken for ns"},
+    {1e-3, "as if ps had been taken for ns"},
+    {1e3, "as if ns had been taken for ps"},
+    {1e-6, "as if ps had been taken for us"},
+    {1e6, "as if us had been taken for ps"},
+    {1e-9, "as if ns had been taken for s"},
+    {1e9, "as if s had been taken for ns"},
+    {1e-12, "as if ps had been taken for s"},
+    {1e12, "as if s had been taken for ps"},
+    {core::kSpeedOfLight, "as if s had been taken for metres"},
+    {1.0 / core::kSpeedOfLight, "as if metres had been taken for s"},
+    {core::kSpeedOfLight * 1e-12, "as if ps had been taken for metres"},
+    {1e12 / core::kSpeedOfLight, "as if metres had been taken for ps"}};
 
 std::string setting_of_wall(const core::Capture& capture, double factor) {
     const core::ScanExtent extent = core::scan_extent(capture.scan);

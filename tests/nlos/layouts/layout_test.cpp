@@ -29,7 +29,8 @@ double value_at(std::size_t x, std::size_t y, std::size_t t) {
 }
 
 /// H with its axes in the order of `axes`, the first fastest as in MATLAB.
-std::vector<double> histograms(const std::vector<std::string>& axes, std::vector<std::size_t>& shape) {
+std::vector<double> histograms(const std::vector<std::string>& axes,
+                               std::vector<std::size_t>& shape) {
     const auto extent = [](const std::string& axis) {
         return axis == "x" ? kColumns : axis == "y" ? kRows : kBins;
     };
@@ -106,9 +107,8 @@ TEST(Layouts, AxesMayStandInAnyOrder) {
                 for (std::size_t t = 0; t < kBins; ++t) {
                     EXPECT_EQ(capture.transient.histogram(pair)[t], value_at(x, y, t));
                 }
-                const core::Vec3 place(-0.5 + static_cast<double>(x),
-                                       1.0 - static_cast<double>(y),
-                                       0.0);
+                const core::Vec3 place(
+                    -0.5 + static_cast<double>(x), 1.0 - static_cast<double>(y), 0.0);
                 EXPECT_LT((capture.scan.sensing.positions[pair] - place).norm(), 1e-12);
             }
         }
@@ -192,8 +192,9 @@ TEST(Layouts, NumbersComeFromArraysStepsAndPeaks) {
               {mat_variable("cube", {kColumns, kRows, kBins}, example.cube),
                mat_variable("times", {5, 1}, times),
                mat_variable("direct", {5, 1}, direct)});
-    example.layout["bins"] = {{"width_m", {{"step_of", "times"}, {"factor", 0.01}}},
-                              {"start_bins", {{"peak_of", "direct"}, {"factor", -1}, {"offset", -0.5}}}};
+    example.layout["bins"] = {
+        {"width_m", {{"step_of", "times"}, {"factor", 0.01}}},
+        {"start_bins", {{"peak_of", "direct"}, {"factor", -1}, {"offset", -0.5}}}};
     const core::Capture capture = example.read();
     EXPECT_NEAR(capture.time_axis.bin_width_m, 0.02, 1e-15);
     EXPECT_NEAR(capture.time_axis.bin_center_m(2), 0.0, 1e-15);
@@ -225,7 +226,8 @@ TEST(Layouts, MistakesInALayoutAreNamed) {
     EXPECT_ERROR_WITH(read(with("/bins/width_s", 1e-12)), "bins: found no or two widths");
     EXPECT_ERROR_WITH(read(with("/histogram/axes", Json{"x", "y", "z"})), "0 axes named t");
     EXPECT_ERROR_WITH(read(with("/histogram/array", Json{"other"})), "no array other");
-    EXPECT_ERROR_WITH(read(with("/sensing/grid/size_m", Json{{{"array", "gone"}}})), "gone: is missing");
+    EXPECT_ERROR_WITH(read(with("/sensing/grid/size_m", Json{{{"array", "gone"}}})),
+                      "gone: is missing");
     EXPECT_ERROR_WITH(read(with("/sensing/array", "a")), "2 ways to say where the points are");
     EXPECT_ERROR_WITH(read(with("/pattern", "spiral")), "single|confocal|exhaustive|by_points");
     CaptureReadSettings unknown;
