@@ -26,6 +26,7 @@ class Capture:
     opl_origin    "relay_wall", or "device" where lengths include the legs to laser and detector
     frames        (F, as H) of a sequence, whose last frame is H
     by_order      (K, as H), which sum to H, with their bounce orders in `orders`
+    observed      (2, as H without T): first bin that could be recorded, and the one past the last
     """
 
     H: np.ndarray
@@ -43,6 +44,7 @@ class Capture:
     frames: np.ndarray | None = None
     by_order: np.ndarray | None = None
     orders: list[int] | None = None
+    observed: np.ndarray | None = None
 
     @property
     def num_bins(self) -> int:
@@ -110,7 +112,8 @@ def read_ytal(path: str) -> Capture:
             detector_m=file["sensor_xyz"][()].astype(np.float64),
             frames=own["frames"][()] if "frames" in own else None,
             by_order=own["H_by_order"][()] if "H_by_order" in own else None,
-            orders=own["orders"][()].tolist() if "orders" in own else None)
+            orders=own["orders"][()].tolist() if "orders" in own else None,
+            observed=own["observed_bins"][()] if "observed_bins" in own else None)
 
 
 def write_ytal(path: str, capture: Capture) -> None:
@@ -138,7 +141,8 @@ def write_ytal(path: str, capture: Capture) -> None:
 
 def _write_own_group(file: h5py.File, capture: Capture) -> None:
     """What y-tal has no name for, and refuses: only where there is some."""
-    if capture.unit == "radiance" and capture.frames is None and capture.by_order is None:
+    own_arrays = (capture.frames, capture.by_order, capture.observed)
+    if capture.unit == "radiance" and all(array is None for array in own_arrays):
         return
     own = file.create_group("nlos")
     own.attrs["unit"] = capture.unit
@@ -147,3 +151,5 @@ def _write_own_group(file: h5py.File, capture: Capture) -> None:
     if capture.by_order is not None:
         own["H_by_order"] = capture.by_order.astype(np.float32)
         own["orders"] = np.asarray(capture.orders, np.int32)
+    if capture.observed is not None:
+        own["observed_bins"] = np.asarray(capture.observed, np.int32)

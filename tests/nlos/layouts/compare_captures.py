@@ -12,6 +12,7 @@ from capture import Capture, pairs_of
 
 POINT_TOLERANCE_M = 1e-6
 AXIS_TOLERANCE = 1e-9
+NORMAL_TOLERANCE = 1e-6
 VOLUME_TOLERANCE = 1e-4
 
 
@@ -46,6 +47,26 @@ def _exchanged(capture: Capture) -> Capture:
                    bin_width_m=listed.bin_width_m, pattern="exhaustive", unit=listed.unit,
                    opl_origin=listed.opl_origin, laser_m=listed.detector_m,
                    detector_m=listed.laser_m)
+
+
+def _angle_differences(expected: Capture, found: Capture, order: np.ndarray) -> list[str]:
+    """Normals of the sensing points of every pair."""
+    def of_pairs(capture: Capture) -> np.ndarray:
+        normals = np.reshape(capture.sensing_normals, (-1, 3))
+        return np.resize(normals, (len(order), 3))  # pairs repeat the sensing points
+    worst = np.abs(of_pairs(expected) - of_pairs(found)[order]).max()
+    return [f"normals are off by {worst:.3g}"] if worst > NORMAL_TOLERANCE else []
+
+
+def _observed_differences(expected: Capture, found: Capture, order: np.ndarray) -> list[str]:
+    """Bins that were observed, where the expectation says so."""
+    if expected.observed is None:
+        return []
+    if found.observed is None:
+        return ["nothing says which bins were observed"]
+    wanted, got = (c.observed.reshape(2, -1) for c in (expected, found))
+    same = np.array_equal(wanted, got[:, order])
+    return [] if same else ["other bins count as observed"]
 
 
 def _histogram_differences(expected: Capture, found: Capture, order: np.ndarray) -> list[str]:
@@ -86,7 +107,9 @@ def capture_differences(expected: Capture, found: Capture) -> list[str]:
         return [*differences, "two points of the file became one"]
     if found.sensing.ndim == 3 and np.ptp(found.sensing[..., 0], axis=1).max() > POINT_TOLERANCE_M:
         differences.append("the first index of the grid is not x")
-    return differences + _histogram_differences(expected, found, order)
+    for compare in (_angle_differences, _observed_differences, _histogram_differences):
+        differences += compare(expected, found, order)
+    return differences
 
 
 def volume_difference(expected: Path, found: Path) -> str | None:

@@ -19,6 +19,7 @@ from case import (Case, Source, Written, extents_m, path_length_m, picoseconds_m
 from matlab_files import write_v5, write_v73
 
 STANFORD_2018_BIN_PS = 4
+DIRECT_RETURN_BINS = 600
 FK_BIN_PS = 32
 FK_WALL_M = 2.0
 CDT_BIN_PS = 16
@@ -32,6 +33,11 @@ def _x_y_t(H: np.ndarray) -> np.ndarray:
 
 def _y_x_t(H: np.ndarray) -> np.ndarray:
     return _x_y_t(H).swapaxes(0, 1)
+
+
+def _observed(H: np.ndarray, begin: int, end: int) -> np.ndarray:
+    """The same bins of every histogram, from the first that was observed to one past the last."""
+    return np.stack([np.full(H.shape[1:], begin), np.full(H.shape[1:], end)])
 
 
 def _counted(capture: Capture, layout: str, bin_width_m: float) -> Capture:
@@ -53,10 +59,11 @@ def write_stanford_2018(capture: Capture, folder: Path) -> Written:
     rect_data = _x_y_t(expected.H).astype(np.uint16)
     rect_data[:, :, 3] = 7  # the direct return, which the reader must not take for the object
     H = expected.H.copy()
-    H[:600] = 0.0
+    H[:DIRECT_RETURN_BINS] = 0.0
     path = folder / "data_letter.mat"
     write_v5(path, {"rect_data": rect_data, "width": extents_m(capture.sensing)[0] / 2})
-    return Written(path, replace(expected, H=H))
+    observed = _observed(H, DIRECT_RETURN_BINS, expected.num_bins)
+    return Written(path, replace(expected, H=H, observed=observed))
 
 
 def write_stanford_fk_2019(capture: Capture, folder: Path, variable: str = "meas",
@@ -69,6 +76,8 @@ def write_stanford_fk_2019(capture: Capture, folder: Path, variable: str = "meas
         delays = np.arange(cube.shape[0] * cube.shape[1]).reshape(cube.shape[:2]) * 7 % 60
         write_v73(folder / "tof.mat", {"tofgrid": delays * FK_BIN_PS + delays % FK_BIN_PS + 0.5})
         cube, expected.H = _delayed(cube, expected.H, delays)
+        ends = expected.num_bins - delays[::-1].T
+        expected.observed = np.stack([np.zeros_like(ends), ends])
     path = folder / ("meas_10min.mat" if variable == "meas" else f"{variable}.mat")
     write_v73(path, {variable: cube})
     size = extents_m(capture.sensing)
@@ -80,7 +89,7 @@ def _delayed(cube: np.ndarray, H: np.ndarray, delays: np.ndarray) -> tuple[np.nd
     """(y, x, t) with every histogram later by its delay in bins, on a longer axis.
 
     What was counted before light reached the wall is no light of the scene. The authors rotate it
-    to the end, and cut that off; a reader drops it, so the expected end is empty.
+    to the end, and cut that off; a reader drops it, and knows that nothing was observed there.
     """
     longest = int(delays.max())
     raw = np.zeros((*cube.shape[:2], cube.shape[2] + longest), np.float32)
@@ -113,13 +122,15 @@ def write_stanford_cdt_2020(capture: Capture, folder: Path) -> Written:
 
 
 def write_ustc_long_range(capture: Capture, folder: Path) -> Written:
-    """`sig_in` (x, y, t) with bin width [s], pulse [ps], half width [m] and spot radius [m]."""
+    """`sig_in` (x, y, t) with bin width [s], pulse [ps], half width [m] and spot radius [m]. The
+    detector was gated: bins that are empty everywhere were not observed."""
     expected = _counted(capture, "ustc-long-range", capture.bin_width_m)
     path = folder / "long_range.mat"
     write_v5(path, {"sig_in": _x_y_t(expected.H).astype(np.float64),
                     "timeRes": expected.bin_width_m / path_length_m(1.0), "pulsewidth": 500.0,
                     "width": extents_m(capture.sensing)[0] / 2, "radius": 0.03})
-    return Written(path, expected)
+    lit = np.flatnonzero(expected.H.sum(axis=(1, 2)))
+    return Written(path, replace(expected, observed=_observed(expected.H, lit[0], lit[-1] + 1)))
 
 
 def write_hybrid_18m(capture: Capture, folder: Path) -> Written:

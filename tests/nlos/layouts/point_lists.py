@@ -56,7 +56,8 @@ def write_phasor_field_2019(capture: Capture, folder: Path) -> Written:
     move the laser, so a single-laser scan is written with lasers and cameras exchanged, which by
     reciprocity is the same measurement."""
     require(capture.opl_origin == "device", "phasor-field-2019", "lengths that include the legs")
-    listed = capture.as_counts().as_list()
+    counted = capture.as_counts()
+    listed = counted.as_list()
     single = capture.pattern == "single"
     data = np.moveaxis(listed.H, 0, -1)
     data = data[:, np.newaxis] if single else data
@@ -73,7 +74,7 @@ def write_phasor_field_2019(capture: Capture, folder: Path) -> Written:
             "cameraPos": camera[0], "cameraNorm": camera[1], "cameraOrigin": camera[2]},
         "minimalpos": np.array([-0.5, -0.5, 0.4]), "maximalpos": np.array([0.5, 0.5, 1.0]),
         "sampling_grid_spacing": 0.02})
-    return Written(path, listed)
+    return Written(path, counted)
 
 
 def write_phasor_field_2020(capture: Capture, folder: Path, v73: bool) -> Written:
@@ -114,7 +115,7 @@ def write_conv_nlos(capture: Capture, folder: Path) -> Written:
         "l": listed.illumination * turned + wall, "s": listed.sensing * turned + wall,
         "times": centres, "delta": capture.bin_width_m, "is_confocal": confocal,
         "target_dist": CONV_WALL_M, "target_size": 0.6}})
-    return Written(path, counted if confocal else listed)
+    return Written(path, counted)
 
 
 _PITCH_M = 0.05

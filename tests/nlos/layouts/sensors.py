@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from capture import Capture
-from case import Case, Source, Written, extents_m, picoseconds_m, require_confocal_grid
+from case import Case, Source, Written, extents_m, picoseconds_m, require, require_confocal_grid
 from matlab_files import write_v73
 
 KEYHOLE_BIN_PS = 16
@@ -18,6 +18,7 @@ KEYHOLE_PEAK = 635
 ST_BIN_PS = 250
 TMF882X_BIN_PS = 88
 TMF882X_PEAK = 13
+TMF882X_START_M = -(TMF882X_PEAK + 0.5) * picoseconds_m(TMF882X_BIN_PS)
 TMF8829_BINS = 64
 
 
@@ -52,14 +53,13 @@ def write_keyhole_2020(capture: Capture, folder: Path) -> Written:
 def write_st_vl53l8(capture: Capture, folder: Path) -> Written:
     """A folder with a file per frame: hists (zones, bins) and where the zones' rays meet the wall,
     pt_cloud (zones, 3) [m]. Each zone sees the point that it lights."""
-    expected = replace(capture.as_counts(), start_m=0.0,
-                       bin_width_m=picoseconds_m(ST_BIN_PS)).as_list()
-    grid = replace(capture.as_counts(), start_m=0.0)
-    frames = _frames(grid).reshape(3, grid.num_bins, -1)
+    expected = replace(capture.as_counts(), start_m=0.0, bin_width_m=picoseconds_m(ST_BIN_PS))
+    frames = _frames(expected)
     for number, frame in enumerate(frames):
-        np.savez(folder / f"volume_{number:06}.npz", hists=frame.T.astype(np.float64),
-                 pt_cloud=expected.sensing, particles=np.zeros((5, 3), np.float32))
-    return Written(folder, replace(expected, H=frames[-1], frames=frames))
+        np.savez(folder / f"volume_{number:06}.npz",
+                 hists=frame.reshape(expected.num_bins, -1).T.astype(np.float64),
+                 pt_cloud=expected.sensing.reshape(-1, 3), particles=np.zeros((5, 3), np.float32))
+    return Written(folder, replace(expected, frames=frames))
 
 
 def _rows_down(H: np.ndarray) -> np.ndarray:
@@ -95,12 +95,17 @@ def write_ams_tmf8829(capture: Capture, folder: Path) -> Written:
 
 def write_ams_tmf882x(capture: Capture, folder: Path, suffix: str) -> Written:
     """A file per frame: histogram (x, y, bins) of 3 by 3 zones, and where their rays meet the wall,
-    point_cloud (zones, 3) [m], as the device sees it, which stands at the origin. Lengths start and
-    end at the device; the reflection inside it, of length 0, is centred in bin 13."""
+    point_cloud (zones, 3) [m], as the device sees it, which stands at the origin and looks along z.
+    Lengths start and end at the device; the reflection inside it, of length 0, is centred in bin
+    13."""
     require_confocal_grid(capture, "ams-tmf882x")
-    width_m = picoseconds_m(TMF882X_BIN_PS)
-    expected = replace(capture.with_points(capture.sensing + [0.0, 0.0, 0.4]).as_counts(),
-                       start_m=-(TMF882X_PEAK + 0.5) * width_m, bin_width_m=width_m,
+    require(capture.opl_origin == "device", "ams-tmf882x", "lengths that include the legs")
+    seen_from_device = [-1.0, 1.0, -1.0]
+    turned = capture.with_points((capture.sensing - capture.laser_m) * seen_from_device)
+    towards_device = -turned.sensing_normals
+    expected = replace(turned.as_counts(), sensing_normals=towards_device,
+                       illumination_normals=towards_device,
+                       start_m=TMF882X_START_M, bin_width_m=picoseconds_m(TMF882X_BIN_PS),
                        opl_origin="device", laser_m=np.zeros(3), detector_m=np.zeros(3))
     frames = _frames(expected)
     points = expected.sensing.reshape(-1, 3)
@@ -123,6 +128,7 @@ CASES = [
     Case("ams-tmf8829", Source(points=(16, 16), num_bins=TMF8829_BINS, bin_width_m=0.04),
          write_ams_tmf8829),
     *(Case(f"ams-tmf882x as {suffix}",
-           Source(points=(3, 3), num_bins=128, bin_width_m=picoseconds_m(TMF882X_BIN_PS)),
+           Source(points=(3, 3), num_bins=128, bin_width_m=picoseconds_m(TMF882X_BIN_PS),
+                  start_m=TMF882X_START_M, legs=True, device_m=0.4),
            partial(write_ams_tmf882x, suffix=suffix)) for suffix in ("npz", "json")),
 ]
