@@ -2,6 +2,7 @@
 #include "renderer/mesh_file/assimp_file.h"
 
 #include "renderer/core/error.h"
+#include "renderer/core/one_line.h"
 #include "renderer/core/sandboxed_process.h"
 #include "renderer/core/settings.h"
 
@@ -28,15 +29,13 @@ namespace fs = std::filesystem;
 constexpr const char* kCompleteFile = "must be a complete OBJ, PLY or STL file";
 
 /// Assimp's message, which may hold anything, as a part of one line.
-std::string part_of_a_line(std::string text) {
+std::string part_of_a_line(const std::string& text) {
     constexpr std::size_t kLongest = 120;
-    std::replace_if(
-        text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-    return text.substr(0, kLongest);
+    return core::one_line(text.substr(0, kLongest));
 }
 
-/// The files that assimp may open: the mesh file, and material files (MTL) beside it; and what
-/// these define, of which assimp itself keeps no record.
+/// The files that assimp may open: the mesh file, and material files (MTL) beside it; and which
+/// materials have a colour in these, of which assimp itself keeps no record.
 ///
 /// Pipes, devices and files elsewhere, which a mesh file could name, do not exist for it.
 class MaterialFiles : public Assimp::DefaultIOSystem {
@@ -93,7 +92,8 @@ class MaterialFiles : public Assimp::DefaultIOSystem {
 
 FileMaterial read_material(const aiMaterial& source, const MaterialFiles& files) {
     FileMaterial material;
-    material.name = source.GetName().C_Str();
+    const std::string name = source.GetName().C_Str();
+    material.name = core::one_line(name);
     const auto number = [&](const char* key, unsigned type, unsigned index, double otherwise) {
         ai_real value = 0;
         return source.Get(key, type, index, value) == aiReturn_SUCCESS ? static_cast<double>(value)
@@ -101,7 +101,7 @@ FileMaterial read_material(const aiMaterial& source, const MaterialFiles& files)
     };
     aiColor3D colour(1, 1, 1);
     source.Get(AI_MATKEY_COLOR_DIFFUSE, colour);
-    if (files.states_colour(material.name)) {  // else the library makes up a grey
+    if (files.states_colour(name)) {  // else the library makes up a grey
         material.colour = {colour.r, colour.g, colour.b};
     }
     material.metallic = number(AI_MATKEY_METALLIC_FACTOR, 0.0);
@@ -148,7 +148,7 @@ FileMesh read_mesh(const aiMesh& source, const std::string& name) {
 void read_node(const aiScene& scene, const aiNode& node, AssimpFile& file) {
     for (unsigned i = 0; i < node.mNumMeshes; ++i) {
         const aiMesh& source = *scene.mMeshes[node.mMeshes[i]];
-        FileMesh mesh = read_mesh(source, node.mName.C_Str());
+        FileMesh mesh = read_mesh(source, core::one_line(node.mName.C_Str()));
         if (!mesh.triangles.empty()) file.meshes.push_back(std::move(mesh));
         if (!source.HasVertexColors(0)) continue;
         const std::string text = "the colours of its vertices are not modelled";

@@ -2,6 +2,7 @@
 #include "renderer/scene_import/scene_import.h"
 
 #include "renderer/core/error.h"
+#include "renderer/core/one_line.h"
 #include "renderer/scene_import/foreign_file.h"
 #include "renderer/scene_import/key_reader.h"
 #include "renderer/scene_import/mitsuba_scene.h"
@@ -25,17 +26,11 @@ bool is_yaml(const std::string& path) {
     return has_suffix(path, {".yaml", ".yml"});
 }
 
-std::string one_line(std::string text) {
-    std::replace_if(
-        text.begin(), text.end(), [](unsigned char c) { return c < ' ' || c == 127; }, ' ');
-    return text;
-}
-
-/// The same with texts and keys of one line each, as messages need them.
+/// The same with texts and keys of one line each, as messages and names need them.
 core::Json one_lined(const core::Json& json, const std::string& path, int depth = 0) {
     constexpr int kDeepest = 64;
     if (depth > kDeepest) throw core::Error(path, "nests too deep", "must be a plain scene");
-    if (json.is_string()) return one_line(json.get<std::string>());
+    if (json.is_string()) return core::one_line(json.get<std::string>());
     if (!json.is_structured()) return json;
     core::Json result = json.is_array() ? core::Json::array() : core::Json::object();
     for (const auto& [key, value] : json.items()) {
@@ -43,7 +38,7 @@ core::Json one_lined(const core::Json& json, const std::string& path, int depth 
         if (json.is_array()) {
             result.push_back(std::move(item));
         } else {
-            result[one_line(key)] = std::move(item);
+            result[core::one_line(key)] = std::move(item);
         }
     }
     return result;

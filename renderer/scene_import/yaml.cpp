@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/core/error.h"
+#include "renderer/core/one_line.h"
 #include "renderer/core/sandboxed_process.h"
 #include "renderer/scene_import/foreign_file.h"
 
@@ -97,11 +98,10 @@ core::Json read_yaml(const std::string& path) {
         } catch (const std::bad_alloc&) {
             throw;
         } catch (const std::exception& error) {  // the library's own, and texts that are not UTF-8
-            std::string text = error.what();
-            std::replace_if(
-                text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
             throw core::Error(
-                path, "is no valid YAML (" + text.substr(0, 120) + ")", "must be a scene of y-tal");
+                path,
+                "is no valid YAML (" + core::one_line(error.what()).substr(0, 120) + ")",
+                "must be a scene of y-tal");
         }
     }));
 }
