@@ -136,13 +136,15 @@ std::string describe_observed(const core::Capture& capture) {
     const core::BinRange hull = core::observed_hull(capture.observed, capture.time_axis.num_bins);
     if (hull.size() == 0) return fmt::format("observed: no bin of {} pairs", observed.size());
     const std::size_t whole = static_cast<std::size_t>(std::ranges::count(observed, hull));
-    std::string text = fmt::format("observed: bins {} to {} of {} {} pairs",
+    const std::size_t partial = observed.size() - whole - blind;
+    const std::size_t most = whole > 0 ? whole : partial;
+    std::string text = fmt::format("observed: {}bins {} to {} of {} {} pairs",
+                                   whole > 0 ? "" : "parts of ",
                                    hull.begin,
                                    hull.end - 1,
-                                   whole == observed.size() ? "all" : fmt::format("{} of", whole),
+                                   most == observed.size() ? "all" : fmt::format("{} of", most),
                                    observed.size());
-    const std::size_t partial = observed.size() - whole - blind;
-    if (partial > 0) text += fmt::format("; fewer of {}", partial);
+    if (whole > 0 && partial > 0) text += fmt::format("; fewer of {}", partial);
     if (blind > 0) text += fmt::format("; {} not at all", blind);
     return text;
 }

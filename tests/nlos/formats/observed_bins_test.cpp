@@ -116,6 +116,8 @@ TEST(ObservedBinsInFiles, InfoSaysWhichBinsOfHowManyPairs) {
     EXPECT_EQ(line(capture), "observed: bins 1 to 3 of all 6 pairs");
     core::restrict_observed(capture, {{0, 5}, {0, 0}, {0, 2}, {0, 5}, {0, 5}, {0, 5}});
     EXPECT_EQ(line(capture), "observed: bins 1 to 3 of 4 of 6 pairs; fewer of 1; 1 not at all");
+    core::restrict_observed(capture, {{0, 2}, {0, 0}, {0, 2}, {2, 5}, {2, 5}, {0, 0}});
+    EXPECT_EQ(line(capture), "observed: parts of bins 1 to 3 of 4 of 6 pairs; 2 not at all");
     core::restrict_observed(capture, {0, 0});
     EXPECT_EQ(line(capture), "observed: no bin of 6 pairs");
 }
