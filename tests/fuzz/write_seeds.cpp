@@ -3,6 +3,9 @@
 #include "nlos/formats/capture_file.h"
 #include "nlos/formats/ply_file.h"
 #include "nlos/formats/volume_file.h"
+#include "tests/nlos/containers/example_bytes.h"
+#include "tests/nlos/containers/example_mat5.h"
+#include "tests/nlos/containers/example_mat73.h"
 #include "tests/nlos/formats/mat_writing.h"
 #include "tests/nlos/formats/old_hdf5_file.h"
 #include "tests/renderer/mesh_file/mesh_texts.h"
@@ -55,6 +58,29 @@ void write_mats(const std::string& folder, matio_compression compression) {
                      nlos::mat_variable("C_i", {3, 3}, lit),
                      nlos::mat_variable("C_d", {3, 3}, seen)},
                     compression);
+}
+
+void write_arrays(const std::string& folder) {
+    nlos::write_example_mat5(folder + "/mat5/plain.mat", MAT_COMPRESSION_NONE);
+    nlos::write_example_mat5(folder + "/mat5/zlib.mat", MAT_COMPRESSION_ZLIB);
+    nlos::write_example_mat73(folder + "/mat73/example.mat");
+    const std::string values(24, '\1');
+    const auto write = [&](const char* name, const std::string& bytes) {
+        test_support::write_file_bytes(folder + name, bytes);
+    };
+    write("/npy/floats.npy", nlos::npy_bytes("'<f4'", "(2, 3)", values));
+    write("/npy/fortran.npy", nlos::npy_bytes("'>i2'", "(2, 3, 2)", values, "True"));
+    write("/npy/halves.npy", nlos::npy_bytes("'<f2'", "(12,)", values));
+    write("/npy/text.npy", nlos::npy_bytes("'<U6'", "()", values));
+    nlos::write_example_npz(folder + "/npz/stored.npz", ZIP_CM_STORE);
+    nlos::write_example_npz(folder + "/npz/deflated.npz", ZIP_CM_DEFLATE);
+    write("/ti/version_4.ti", nlos::example_ti_bytes());
+    write("/ti/version_1.ti", nlos::example_old_ti_bytes("TI01", {4, 3, 2}));
+    write("/ti/version_0.ti", nlos::example_old_ti_bytes("TI00", {2, 4, 3}));
+    write("/json/log.json", nlos::kExampleJson);
+    write("/json/lines.log", "{\"h\": [1, 2]}\n{\"h\": [3, 4]}\n");
+    write("/csv/table.csv", nlos::kExampleCsv);
+    write("/csv/blanks.csv", "1 2.5\n3 -4e5\n");
 }
 
 void write_meshes(const std::string& folder) {
@@ -118,6 +144,13 @@ int main(int argc, char** argv) {
     for (const char* name : {"capture",
                              "volume",
                              "point_list",
+                             "mat5",
+                             "mat73",
+                             "npy",
+                             "npz",
+                             "ti",
+                             "json",
+                             "csv",
                              "ply",
                              "glb",
                              "gltf",
@@ -134,6 +167,7 @@ int main(int argc, char** argv) {
     write_captures(folder + "/capture");
     write_mats(folder, MAT_COMPRESSION_NONE);
     write_mats(folder, MAT_COMPRESSION_ZLIB);
+    write_arrays(folder);
     nlos::write_volume(folder + "/volume/volume.h5", test_support::example_reconstruction());
     write_meshes(folder + "/ply");
     write_mesh_files(folder);

@@ -66,6 +66,13 @@ inline std::string example_ti_bytes(std::uint32_t num_pixels = 6) {
            bytes_of_values(points) + R"({"exposure_s": 2.5, "laser": {"name": "green"}})";
 }
 
+/// A .ti file of an older version with 24 values: its counts in the order of the version.
+inline std::string example_old_ti_bytes(const std::string& version,
+                                        const std::vector<std::uint32_t>& counts) {
+    return version + bytes_of_values(counts) + bytes_of_values<float>({0.5F, 1.5F}) +
+           bytes_of_values(std::vector<float>(24, 1.5F)) + "hand-held";
+}
+
 /// A log as sensors write it: frames of one kind, and what was set.
 inline constexpr const char* kExampleJson = R"({"Result_Set": [
     {"info": {"frame": 0}, "mp_histo": [[{"bin": [1, 2]}, {"bin": [3, 4]}]], "found": []},

@@ -73,6 +73,10 @@ class Mat73Writer {
                         const std::vector<std::string>& targets) {
         std::vector<hobj_ref_t> references(targets.size());
         for (std::size_t i = 0; i < targets.size(); ++i) {
+            if (i > 0 && targets[i] == targets[i - 1]) {
+                references[i] = references[i - 1];
+                continue;
+            }
             H5Rcreate(&references[i], file_, targets[i].c_str(), H5R_OBJECT, -1);
         }
         const hid_t set = add(name, H5T_STD_REF_OBJ, {references.size(), 1}, references.data());

@@ -142,14 +142,8 @@ TEST(TiFile, VersionFourHoldsItsPlaneAndProperties) {
 }
 
 TEST(TiFile, OlderVersionsHoldTheirResolution) {
-    const std::string data = bytes_of_values(std::vector<float>(24, 1.5F));
-    const std::string times = bytes_of_values<float>({0.5F, 1.5F});
-    const ArrayReader one =
-        FileOf("a.ti", "TI01" + bytes_of_values<std::uint32_t>({4, 3, 2}) + times + data).open();
-    const ArrayReader zero =
-        FileOf("a.ti",
-               "TI00" + bytes_of_values<std::uint32_t>({2, 4, 3}) + times + data + "hand-held")
-            .open();
+    const ArrayReader one = FileOf("a.ti", example_old_ti_bytes("TI01", {4, 3, 2})).open();
+    const ArrayReader zero = FileOf("a.ti", example_old_ti_bytes("TI00", {2, 4, 3})).open();
     for (const ArrayReader* file : {&one, &zero}) {
         EXPECT_EQ(file->read_integer("numBins"), 4);
         EXPECT_EQ(file->read_integer("uRes"), 3);

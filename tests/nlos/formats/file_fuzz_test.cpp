@@ -5,6 +5,10 @@
 #include "renderer/core/error.h"
 #include "renderer/core/instrument_response.h"
 #include "renderer/core/random.h"
+#include "tests/nlos/containers/example_bytes.h"
+#include "tests/nlos/containers/example_mat5.h"
+#include "tests/nlos/containers/example_mat73.h"
+#include "tests/nlos/containers/read_everything.h"
 #include "tests/nlos/formats/mat_writing.h"
 #include "tests/nlos/formats/old_hdf5_file.h"
 #include "tests/support/example_capture.h"
@@ -144,6 +148,35 @@ TEST(FileFuzz, MutatedPointListsAreReadOrRefused) {
     settings.pitch_m = 0.01;
     settings.bin_width_m = 0.0048;
     fuzz(folder.file("C_d.mat"), [&] { read_capture(folder.path().string(), settings); });
+}
+
+TEST(FileFuzz, MutatedFilesOfArraysAreReadOrRefused) {
+    const TemporaryFolder folder;
+    write_example_mat5(folder.file("plain.mat"), MAT_COMPRESSION_NONE);
+    write_example_mat5(folder.file("zlib.mat"), MAT_COMPRESSION_ZLIB);
+    write_example_mat73(folder.file("v73.mat"));
+    write_example_npz(folder.file("stored.npz"), ZIP_CM_STORE);
+    write_example_npz(folder.file("deflated.npz"), ZIP_CM_DEFLATE);
+    const auto write = [&](const char* name, const std::string& bytes) {
+        test_support::write_file_bytes(folder.file(name), bytes);
+    };
+    write("a.npy", npy_bytes("'<f4'", "(2, 3)", std::string(24, '\1')));
+    write("b.npy", npy_bytes("'>i2'", "(2, 3, 2)", std::string(24, '\1'), "True"));
+    write("a.ti", example_ti_bytes());
+    write("a.json", kExampleJson);
+    write("a.csv", kExampleCsv);
+    for (const char* name : {"plain.mat",
+                             "zlib.mat",
+                             "v73.mat",
+                             "stored.npz",
+                             "deflated.npz",
+                             "a.npy",
+                             "b.npy",
+                             "a.ti",
+                             "a.json",
+                             "a.csv"}) {
+        fuzz(folder.file(name), [&] { read_everything(folder.file(name)); });
+    }
 }
 
 TEST(FileFuzz, MutatedPlyFilesAreReadOrRefused) {
