@@ -127,7 +127,8 @@ class GroupWalk {
 
     void list_group(const Hdf5Handle& group, const std::string& prefix, std::size_t depth) {
         if (depth > kDeepest) found_.is_complete = false;
-        for (const std::string& link : links_of(group)) {
+        const ArrayNames links = links_of(group);
+        for (const std::string& link : links.names) {
             if (found_.names.size() == ArrayNames::kMost || num_objects_++ == kMostObjects) {
                 found_.is_complete = false;
             }
@@ -135,6 +136,7 @@ class GroupWalk {
             const Hdf5Handle object(H5Oopen(group.id(), link.c_str(), H5P_DEFAULT), H5Oclose);
             if (object.is_valid()) list_object(object, prefix + link, depth);
         }
+        if (!links.is_complete) found_.is_complete = false;
     }
 
     void list_object(const Hdf5Handle& object, const std::string& name, std::size_t depth) {
@@ -175,12 +177,16 @@ Shape extents_of(const Hdf5Handle& space, const std::string& where) {
     return {extents.begin(), extents.end()};
 }
 
-std::vector<std::string> links_of(const Hdf5Handle& group) {
-    std::vector<std::string> links;
-    const auto add = [](hid_t, const char* name, const H5L_info_t* info, void* list) {
-        auto& names = *static_cast<std::vector<std::string>*>(list);
-        if (info->type == H5L_TYPE_HARD || info->type == H5L_TYPE_SOFT) names.emplace_back(name);
-        return names.size() > ArrayNames::kMost ? 1 : 0;
+ArrayNames links_of(const Hdf5Handle& group) {
+    ArrayNames links;
+    const auto add = [](hid_t, const char* name, const H5L_info_t* info, void* found) {
+        auto& list = *static_cast<ArrayNames*>(found);
+        list.is_complete = list.names.size() < ArrayNames::kMost;
+        if (!list.is_complete) return 1;
+        if (info->type == H5L_TYPE_HARD || info->type == H5L_TYPE_SOFT) {
+            list.names.emplace_back(name);
+        }
+        return 0;
     };
     H5Literate(group.id(), H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, add, &links);
     return links;

@@ -50,9 +50,8 @@ class Hdf5File : public ArrayFile {
 /// The extents of a dataspace. Throws core::Error when it is damaged.
 Shape extents_of(const Hdf5Handle& space, const std::string& where);
 
-/// The names of a group's links that stay within the file, at most ArrayNames::kMost + 1 of them,
-/// in the order in which they are stored.
-std::vector<std::string> links_of(const Hdf5Handle& group);
+/// The names of a group's links that stay within the file, in the order in which they are stored.
+ArrayNames links_of(const Hdf5Handle& group);
 
 /// True when the file says of itself that MATLAB 7.3 wrote it, or its root's datasets do.
 bool is_mat73_file(const Hdf5File& file, const std::string& path);

@@ -98,9 +98,11 @@ class VariableWalk {
     explicit VariableWalk(const Mat73File& file) : file_(file) {}
 
     ArrayNames run(const Hdf5Handle& root) {
-        for (const std::string& link : links_of(root)) {
+        const ArrayNames links = links_of(root);
+        for (const std::string& link : links.names) {
             if (!link.starts_with('#')) list_member(root, link, link, 0);
         }
+        if (!links.is_complete) found_.is_complete = false;
         return std::move(found_);
     }
 
@@ -142,7 +144,8 @@ class VariableWalk {
     }
 
     void list_struct(const Hdf5Handle& group, const std::string& name, std::size_t depth) {
-        for (const std::string& field : links_of(group)) {
+        const ArrayNames fields = links_of(group);
+        for (const std::string& field : fields.names) {
             if (!found_.is_complete) return;
             const Hdf5Handle member(H5Oopen(group.id(), field.c_str(), H5P_DEFAULT), H5Oclose);
             if (member.is_valid() && is_element_list(member)) {
@@ -153,6 +156,7 @@ class VariableWalk {
                 list_object(member, name + "." + field, depth + 1);
             }
         }
+        if (!fields.is_complete) found_.is_complete = false;
     }
 
     const Mat73File& file_;
@@ -295,7 +299,7 @@ bool is_mat73_file(const Hdf5File& file, const std::string& path) {
         return true;
     }
     const Hdf5Handle root = file.open_root();
-    std::vector<std::string> links = links_of(root);
+    std::vector<std::string> links = links_of(root).names;
     links.resize(std::min(links.size(), kMostAsked));
     return std::any_of(links.begin(), links.end(), [&](const std::string& link) {
         return H5Aexists_by_name(root.id(), link.c_str(), kClass, H5P_DEFAULT) > 0;

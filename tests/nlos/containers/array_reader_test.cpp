@@ -125,21 +125,26 @@ TEST(Hdf5File, ValuesThatAreKeptElsewhereOrNowhereAreRefused) {
                       "claims: claims shape (1099511627776,) but only 0 bytes are stored");
 }
 
-TEST(Hdf5File, GroupsWithoutEndAreListedUpToABound) {
+TEST(Hdf5File, ArraysAndGroupsWithoutEndAreListedUpToABound) {
+    constexpr int kCount = 5000;
     const TemporaryFolder folder;
-    const std::string path = folder.file("a.h5");
-    const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
-    H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18);
-    const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access);
-    for (int i = 0; i < 5000; ++i) {
-        add_dataset(file, ("x" + std::to_string(i)).c_str(), 1, H5P_DEFAULT);
+    for (const bool is_group : {false, true}) {
+        const std::string path = folder.file("a.h5");
+        const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+        for (int i = 0; i < kCount; ++i) {
+            const std::string name = "x" + std::to_string(i);
+            if (is_group) {
+                H5Gclose(H5Gcreate2(file, name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+            } else {
+                add_dataset(file, name.c_str(), 1, H5P_DEFAULT);
+            }
+        }
+        H5Fclose(file);
+        const ArrayReader reader(path);
+        EXPECT_EQ(reader.names().size(), is_group ? 0 : ArrayNames::kMost);
+        EXPECT_FALSE(reader.names_are_complete());
+        EXPECT_TRUE(reader.has_object("x4999"));
     }
-    H5Fclose(file);
-    H5Pclose(access);
-    const ArrayReader reader(path);
-    EXPECT_EQ(reader.names().size(), ArrayNames::kMost);
-    EXPECT_FALSE(reader.names_are_complete());
-    EXPECT_TRUE(reader.has("x4999"));
 }
 
 }  // namespace
