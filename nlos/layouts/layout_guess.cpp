@@ -92,9 +92,15 @@ std::vector<std::string> numeric_arrays(const LayoutFiles& files) {
     return names;
 }
 
-/// How much the energy of an array varies along each axis: standard deviation over mean of the sum
-/// of absolute values at each index, in the writer's order of axes.
-std::vector<double> variation_along_axes(const LayoutFiles& files, const std::string& name) {
+struct ArrayStatistics {
+    /// How much the energy varies along each axis: standard deviation over mean of the sum of
+    /// absolute values at each index, in the writer's order of axes.
+    std::vector<double> variation;
+    bool are_whole_numbers = true;
+};
+
+ArrayStatistics statistics_of(const LayoutFiles& files, const std::string& name) {
+    ArrayStatistics statistics;
     const Shape shape = files.shape(name);
     std::vector<std::vector<double>> energy;
     for (const std::size_t extent : shape) energy.emplace_back(extent, 0.0);
@@ -104,6 +110,7 @@ std::vector<double> variation_along_axes(const LayoutFiles& files, const std::st
     std::vector<std::size_t> index(shape.size(), 0);
     files.read_runs(name, [&](std::size_t, const std::vector<float>& values) {
         for (const float value : values) {
+            if (value != std::trunc(value)) statistics.are_whole_numbers = false;
             if (std::isfinite(value)) {
                 for (std::size_t axis = 0; axis < shape.size(); ++axis) {
                     energy[axis][index[axis]] += std::abs(value);
@@ -115,15 +122,14 @@ std::vector<double> variation_along_axes(const LayoutFiles& files, const std::st
             }
         }
     });
-    std::vector<double> variation;
     for (const auto& sums : energy) {
         const double n = static_cast<double>(sums.size());
         const double mean = std::accumulate(sums.begin(), sums.end(), 0.0) / n;
         double variance = 0.0;
         for (const double sum : sums) variance += (sum - mean) * (sum - mean) / n;
-        variation.push_back(mean > 0.0 ? std::sqrt(variance) / mean : 0.0);
+        statistics.variation.push_back(mean > 0.0 ? std::sqrt(variance) / mean : 0.0);
     }
-    return variation;
+    return statistics;
 }
 
 std::string lower_case(std::string text) {
@@ -257,10 +263,16 @@ bool could_be_histograms(const Shape& shape) {
     return wide >= 2 && has_bins && !is_list_of_points;
 }
 
+double second_largest(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    return values.size() > 1 ? values[values.size() - 2] : 0.0;
+}
+
 /// A layout around the array `name`.
 void guess_around(const LayoutFiles& files, const std::string& name, LayoutGuess& guess) {
     const Shape shape = files.shape(name);
-    const std::vector<double> variation = variation_along_axes(files, name);
+    const ArrayStatistics statistics = statistics_of(files, name);
+    const std::vector<double>& variation = statistics.variation;
     const auto time = static_cast<std::size_t>(
         std::max_element(variation.begin(), variation.end()) - variation.begin());
     Shape others = shape;
@@ -278,13 +290,7 @@ void guess_around(const LayoutFiles& files, const std::string& name, LayoutGuess
                     "others {:.2f})",
                     time,
                     variation[time],
-                    [&] {
-                        double next = 0.0;
-                        for (std::size_t i = 0; i < variation.size(); ++i) {
-                            if (i != time) next = std::max(next, variation[i]);
-                        }
-                        return next;
-                    }()));
+                    second_largest(variation)));
     if (axes.size() == 3) {
         guess.findings.push_back("open: which of the other axes is x, and how each runs");
     }
@@ -293,7 +299,8 @@ void guess_around(const LayoutFiles& files, const std::string& name, LayoutGuess
     guess.layout["title"] = "";
     guess.layout["recognise"]["containers"] = {files.main().container()};
     guess.layout["recognise"]["arrays"][name] = shape.size();
-    guess.layout["histogram"] = {{"array", {name}}, {"axes", axes}, {"unit", "counts"}};
+    guess.layout["histogram"] = {{"array", {name}}, {"axes", axes}};
+    guess.layout["histogram"]["unit"] = statistics.are_whole_numbers ? "counts" : "radiance";
     guess_bins(files, guess);
     guess.layout["pattern"] = has_lights ? "exhaustive" : "confocal";
     guess.findings.push_back(
