@@ -71,6 +71,7 @@ struct LayoutRecognition {
     LayoutValues values;                  ///< that some of them have
     std::vector<std::string> absent;      ///< arrays that such files do not hold
     std::vector<std::string> beside;      ///< files in the same folder
+    bool alone = false;                   ///< the histograms are all that such files hold
 };
 
 template <class Visitor>
@@ -80,6 +81,7 @@ void for_each_field(LayoutRecognition& r, Visitor&& visit) {
     visit("values", r.values, "values that some of these have");
     visit("absent", r.absent, "arrays that they do not hold");
     visit("beside", r.beside, "files that lie beside them");
+    visit("alone", r.alone, "they hold nothing but the histograms");
 }
 
 /// One axis of an array that stands for two, as lists of the points of a grid do.

@@ -321,6 +321,17 @@ LayoutSource layout_source(const std::string& path, const Layout& layout) {
 
 Capture read_layout_capture(const LayoutSource& source, const CaptureReadSettings& settings) {
     if (source.files.size() == 1) return read_one(source.files[0], source.layout, settings);
+    if (settings.frame) {
+        const auto wanted = static_cast<std::size_t>(*settings.frame);
+        if (wanted >= source.files.size()) {
+            throw Error("capture.frame",
+                        fmt::format("found {}", *settings.frame),
+                        fmt::format("must be less than the {} frames", source.files.size()));
+        }
+        CaptureReadSettings of_file = settings;
+        of_file.frame.reset();
+        return read_one(source.files[wanted], source.layout, of_file);
+    }
     std::vector<core::Transient> frames;
     Capture capture;
     for (const std::string& file : source.files) {
@@ -337,15 +348,6 @@ Capture read_layout_capture(const LayoutSource& source, const CaptureReadSetting
         }
         frames.push_back(frame.transient);
         capture = std::move(frame);
-    }
-    if (settings.frame) {
-        const auto wanted = static_cast<std::size_t>(*settings.frame);
-        if (wanted >= source.files.size()) {
-            throw Error("capture.frame",
-                        fmt::format("found {}", *settings.frame),
-                        fmt::format("must be less than the {} frames", source.files.size()));
-        }
-        return read_one(source.files[wanted], source.layout, settings);
     }
     keep_frames(std::move(frames), capture);
     capture.notes.push_back(fmt::format(

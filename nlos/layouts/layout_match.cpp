@@ -124,6 +124,9 @@ std::vector<std::string> mismatches(const LayoutFiles& files, const Layout& layo
             lacks.push_back(fmt::format("no file {} beside it", name));
         }
     }
+    if (wanted.alone && files.main().names().size() > 1) {
+        lacks.push_back(fmt::format("it holds {} arrays", files.main().names().size()));
+    }
     if (!find_histograms(files, layout)) {
         lacks.push_back(fmt::format("no array {} with axes ({}){}",
                                     fmt::join(layout.histogram.array, " or "),
