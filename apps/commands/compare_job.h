@@ -2,6 +2,7 @@
 #pragma once
 
 #include "nlos/compare/compare.h"
+#include "nlos/layouts/capture_settings.h"
 
 #include <optional>
 #include <string>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What files keep of which bins were observed.
-#include "nlos/containers/hdf5_reader.h"
+#include "nlos/containers/array_reader.h"
 #include "nlos/formats/capture_file.h"
 #include "tests/nlos/formats/ytal_capture_file.h"
 #include "tests/support/error_message.h"
@@ -45,7 +45,7 @@ TEST(ObservedBinsInFiles, Hdf5AndOpenExrKeepThem) {
 
 TEST(ObservedBinsInFiles, Hdf5HoldsBeginsAndEndsAsPairsStandInH) {
     const CaptureFile file(gated_example(ScanPattern::Exhaustive));
-    const Hdf5Reader reader(file.path());
+    const ArrayReader reader(file.path());
     EXPECT_EQ(reader.shape("nlos/observed_bins"), (Shape{2, 2, 2, 3, 2}));
     const std::vector<double> bins = reader.read_doubles("nlos/observed_bins", {2, 2, 2, 3, 2});
     EXPECT_EQ(bins[2], 2.0);

@@ -20,11 +20,11 @@ namespace {
 using core::Json;
 using test_support::TemporaryFolder;
 
-constexpr std::size_t kColumns = 2;
-constexpr std::size_t kRows = 3;
-constexpr std::size_t kBins = 5;
+constexpr std::size_t kCubeColumns = 2;
+constexpr std::size_t kCubeRows = 3;
+constexpr std::size_t kCubeBins = 5;
 
-double value_at(std::size_t x, std::size_t y, std::size_t t) {
+double cube_value(std::size_t x, std::size_t y, std::size_t t) {
     return 1.0 + static_cast<double>(100 * x + 10 * y + t);
 }
 
@@ -32,7 +32,7 @@ double value_at(std::size_t x, std::size_t y, std::size_t t) {
 std::vector<double> histograms(const std::vector<std::string>& axes,
                                std::vector<std::size_t>& shape) {
     const auto extent = [](const std::string& axis) {
-        return axis == "x" ? kColumns : axis == "y" ? kRows : kBins;
+        return axis == "x" ? kCubeColumns : axis == "y" ? kCubeRows : kCubeBins;
     };
     shape.clear();
     for (const std::string& axis : axes) shape.push_back(extent(axis));
@@ -45,7 +45,7 @@ std::vector<double> histograms(const std::vector<std::string>& axes,
                 for (std::size_t i = 0; i < 3; ++i) {
                     xyt[axes[i] == "x" ? 0 : axes[i] == "y" ? 1 : 2] = index[i];
                 }
-                values.push_back(value_at(xyt[0], xyt[1], xyt[2]));
+                values.push_back(cube_value(xyt[0], xyt[1], xyt[2]));
             }
         }
     }
@@ -100,12 +100,12 @@ TEST(Layouts, AxesMayStandInAnyOrder) {
     do {
         const LaidOut example(axes);
         const core::Capture capture = example.read();
-        EXPECT_EQ(capture.scan.sensing.grid, (std::array<std::size_t, 2>{kColumns, kRows}));
-        for (std::size_t x = 0; x < kColumns; ++x) {
-            for (std::size_t y = 0; y < kRows; ++y) {
-                const std::size_t pair = x * kRows + y;
-                for (std::size_t t = 0; t < kBins; ++t) {
-                    EXPECT_EQ(capture.transient.histogram(pair)[t], value_at(x, y, t));
+        EXPECT_EQ(capture.scan.sensing.grid, (std::array<std::size_t, 2>{kCubeColumns, kCubeRows}));
+        for (std::size_t x = 0; x < kCubeColumns; ++x) {
+            for (std::size_t y = 0; y < kCubeRows; ++y) {
+                const std::size_t pair = x * kCubeRows + y;
+                for (std::size_t t = 0; t < kCubeBins; ++t) {
+                    EXPECT_EQ(capture.transient.histogram(pair)[t], cube_value(x, y, t));
                 }
                 const core::Vec3 place(
                     -0.5 + static_cast<double>(x), 1.0 - static_cast<double>(y), 0.0);
@@ -121,26 +121,27 @@ TEST(Layouts, AxesThatAreNotNamedAreSummed) {
     example.layout["sensing"] = {{"x", "px"}, {"y", "px"}};
     const std::vector<double> px{0.0, 1.0};
     write_mat(example.file(),
-              {mat_variable("cube", {kColumns, kRows, kBins}, example.cube),
+              {mat_variable("cube", {kCubeColumns, kCubeRows, kCubeBins}, example.cube),
                mat_variable("px", {2, 1}, px)});
     example.layout["histogram"]["axes"] = {"s", "colour", "t"};
     const core::Capture capture = example.read();
-    ASSERT_EQ(capture.scan.num_pairs(), kColumns);
+    ASSERT_EQ(capture.scan.num_pairs(), kCubeColumns);
     EXPECT_EQ(capture.transient.histogram(1)[2],
-              value_at(1, 0, 2) + value_at(1, 1, 2) + value_at(1, 2, 2));
+              cube_value(1, 0, 2) + cube_value(1, 1, 2) + cube_value(1, 2, 2));
 }
 
 TEST(Layouts, DelaysAreTakenOffAndLeaveBinsUnobserved) {
     LaidOut example({"y", "x", "t"});
     const std::vector<double> delays_ps{0.0, 33.0, 64.0, -1.0, 0.0, 0.0};  // y fastest
-    write_mat(example.beside("tof.mat"), {mat_variable("grid", {kRows, kColumns}, delays_ps)});
+    write_mat(example.beside("tof.mat"),
+              {mat_variable("grid", {kCubeRows, kCubeColumns}, delays_ps)});
     example.layout["bins"]["shift"] = {
         {"array", "tof.mat:grid"}, {"axes", {"y", "x"}}, {"bins_per_unit", 1.0 / 32.0}};
     const core::Capture capture = example.read();
-    EXPECT_EQ(capture.transient.histogram(0)[0], value_at(0, 0, 0));
-    EXPECT_EQ(capture.transient.histogram(1)[0], value_at(0, 1, 1));
-    EXPECT_EQ(capture.transient.histogram(2)[0], value_at(0, 2, 2));
-    EXPECT_EQ(capture.transient.histogram(3)[1], value_at(1, 0, 0));  // rounded down to -1 bin
+    EXPECT_EQ(capture.transient.histogram(0)[0], cube_value(0, 0, 0));
+    EXPECT_EQ(capture.transient.histogram(1)[0], cube_value(0, 1, 1));
+    EXPECT_EQ(capture.transient.histogram(2)[0], cube_value(0, 2, 2));
+    EXPECT_EQ(capture.transient.histogram(3)[1], cube_value(1, 0, 0));  // rounded down to -1 bin
     const auto range = [&](std::size_t pair) {
         const core::BinRange r = capture.observed_range(pair);
         return std::array{r.begin, r.end};
@@ -153,8 +154,9 @@ TEST(Layouts, DelaysAreTakenOffAndLeaveBinsUnobserved) {
 
 TEST(Layouts, AGateOfZerosIsUnobserved) {
     LaidOut example({"x", "y", "t"});
-    for (std::size_t i = 0; i < kColumns * kRows; ++i) example.cube[i] = 0.0;  // bin 0
-    write_mat(example.file(), {mat_variable("cube", {kColumns, kRows, kBins}, example.cube)});
+    for (std::size_t i = 0; i < kCubeColumns * kCubeRows; ++i) example.cube[i] = 0.0;  // bin 0
+    write_mat(example.file(),
+              {mat_variable("cube", {kCubeColumns, kCubeRows, kCubeBins}, example.cube)});
     example.layout["bins"]["zeros_are_unobserved"] = true;
     const core::Capture capture = example.read();
     EXPECT_EQ(capture.observed_range(4).begin, 1);
@@ -168,18 +170,18 @@ TEST(Layouts, FramesAreKeptOrChosen) {
     example.layout["sensing"] = {{"x", "px"}, {"y", "px"}};
     const std::vector<double> px{0.0, 1.0, 2.0};
     write_mat(example.file(),
-              {mat_variable("cube", {kColumns, kRows, kBins}, example.cube),
+              {mat_variable("cube", {kCubeColumns, kCubeRows, kCubeBins}, example.cube),
                mat_variable("px", {3, 1}, px)});
     const core::Capture capture = example.read();
     ASSERT_TRUE(capture.sequence);
-    ASSERT_EQ(capture.sequence->frames.size(), kColumns);
-    EXPECT_EQ(capture.sequence->frames[0].histogram(2)[3], value_at(0, 2, 3));
-    EXPECT_EQ(capture.transient.histogram(2)[3], value_at(1, 2, 3));
+    ASSERT_EQ(capture.sequence->frames.size(), kCubeColumns);
+    EXPECT_EQ(capture.sequence->frames[0].histogram(2)[3], cube_value(0, 2, 3));
+    EXPECT_EQ(capture.transient.histogram(2)[3], cube_value(1, 2, 3));
     CaptureReadSettings settings = example.settings();
     settings.frame = 0;
     const core::Capture first = read_capture(example.file(), settings);
     EXPECT_FALSE(first.sequence);
-    EXPECT_EQ(first.transient.histogram(2)[3], value_at(0, 2, 3));
+    EXPECT_EQ(first.transient.histogram(2)[3], cube_value(0, 2, 3));
     settings.frame = 2;
     EXPECT_ERROR_WITH(read_capture(example.file(), settings), "capture.frame: found 2");
 }
@@ -189,7 +191,7 @@ TEST(Layouts, NumbersComeFromArraysStepsAndPeaks) {
     const std::vector<double> times{3.0, 5.0, 7.0, 9.0, 11.0};
     const std::vector<double> direct{0.0, 4.0, 9.0, 1.0, 0.0};
     write_mat(example.file(),
-              {mat_variable("cube", {kColumns, kRows, kBins}, example.cube),
+              {mat_variable("cube", {kCubeColumns, kCubeRows, kCubeBins}, example.cube),
                mat_variable("times", {5, 1}, times),
                mat_variable("direct", {5, 1}, direct)});
     example.layout["bins"] = {

@@ -17,7 +17,7 @@ struct Row {
     Index seen;
 };
 
-constexpr std::size_t kBins = 4;
+constexpr std::size_t kListBins = 4;
 
 /// Point lists in three files; histogram m holds 10 m + bin.
 class PointLists {
@@ -25,7 +25,7 @@ class PointLists {
     explicit PointLists(const std::vector<Row>& rows, std::uint8_t depth = 0) {
         const std::size_t count = rows.size();
         std::vector<std::uint16_t> signal;
-        for (std::size_t bin = 0; bin < kBins; ++bin) {
+        for (std::size_t bin = 0; bin < kListBins; ++bin) {
             for (std::size_t m = 0; m < count; ++m) {
                 signal.push_back(static_cast<std::uint16_t>(10 * m + bin));
             }
@@ -36,7 +36,8 @@ class PointLists {
             for (const Row& row : rows) lit.push_back(row.lit[axis]);
             for (const Row& row : rows) seen.push_back(row.seen[axis]);
         }
-        write_mat(folder_.file("sub_Sig.mat"), {mat_variable("sub_Sig", {count, kBins}, signal)});
+        write_mat(folder_.file("sub_Sig.mat"),
+                  {mat_variable("sub_Sig", {count, kListBins}, signal)});
         write_mat(folder_.file("C_i.mat"), {mat_variable("C_i", {count, 3}, lit)});
         write_mat(folder_.file("C_d.mat"), {mat_variable("C_d", {count, 3}, seen)});
     }
@@ -145,7 +146,8 @@ TEST(PointListCapture, NamesTheFileThatIsMissingOrWrong) {
     EXPECT_ERROR_WITH(lists.read(), "no array C_d.mat:C_d");
     const std::vector<std::uint8_t> few(6, 1);
     write_mat(lists.file("C_d.mat"), {mat_variable("C_d", {2, 3}, few)});
-    EXPECT_ERROR_WITH(lists.read(), "C_d: has shape (2, 3); must hold three coordinates for each of 6 points");
+    EXPECT_ERROR_WITH(lists.read(),
+                      "C_d: has shape (2, 3); must hold three coordinates for each of 6 points");
 }
 
 }  // namespace

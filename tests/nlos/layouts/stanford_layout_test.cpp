@@ -16,7 +16,7 @@ constexpr std::size_t kSide = 3;
 constexpr std::size_t kFileBins = 700;
 
 /// rect_data(i, j, t) of the files made here.
-std::uint16_t value_at(std::size_t i, std::size_t j, std::size_t bin) {
+std::uint16_t stanford_value(std::size_t i, std::size_t j, std::size_t bin) {
     return static_cast<std::uint16_t>(1000 * i + 10000 * j + bin);
 }
 
@@ -24,7 +24,7 @@ std::vector<std::uint16_t> example_data() {
     std::vector<std::uint16_t> data;
     for (std::size_t bin = 0; bin < kFileBins; ++bin) {
         for (std::size_t j = 0; j < kSide; ++j) {
-            for (std::size_t i = 0; i < kSide; ++i) data.push_back(value_at(i, j, bin));
+            for (std::size_t i = 0; i < kSide; ++i) data.push_back(stanford_value(i, j, bin));
         }
     }
     return data;
@@ -77,8 +77,8 @@ TEST(StanfordCapture, TheTailOfTheDirectReturnIsZeroedUnlessAskedOtherwise) {
     const core::Capture capture = file.read();
     const auto histogram = capture.transient.histogram(1 * kSide + 2);
     EXPECT_EQ(histogram[599], 0.0F);
-    EXPECT_EQ(histogram[600], static_cast<float>(value_at(1, 2, 600)));
-    EXPECT_EQ(histogram[699], static_cast<float>(value_at(1, 2, 699)));
+    EXPECT_EQ(histogram[600], static_cast<float>(stanford_value(1, 2, 600)));
+    EXPECT_EQ(histogram[699], static_cast<float>(stanford_value(1, 2, 699)));
     std::string notes;
     for (const auto& note : capture.notes) notes += note;
     EXPECT_NE(notes.find("first 600 bins"), std::string::npos);
@@ -86,7 +86,7 @@ TEST(StanfordCapture, TheTailOfTheDirectReturnIsZeroedUnlessAskedOtherwise) {
     CaptureReadSettings settings;
     settings.zero_bins = 0;
     const core::Capture whole = read_capture(file.path(), settings);
-    EXPECT_EQ(whole.transient.histogram(7)[5], static_cast<float>(value_at(2, 1, 5)));
+    EXPECT_EQ(whole.transient.histogram(7)[5], static_cast<float>(stanford_value(2, 1, 5)));
 }
 
 TEST(StanfordCapture, UncompressedFilesReadTheSame) {

@@ -4,6 +4,7 @@
 #include "nlos/preparation/slip_recognition.h"
 
 #include "nlos/preparation/histogram_sample.h"
+#include "renderer/core/parallel.h"
 #include "tests/nlos/methods/confocal_scene.h"
 
 #include <gtest/gtest.h>
