@@ -16,7 +16,7 @@ struct CaptureCorrection {
     bool keeps_start = false;    ///< the axis start stays
     double shift_m = 0.0;        ///< added to all lengths
     double wall_factor = 1.0;    ///< of the wall's extents
-    std::optional<core::OplOrigin> origin;
+    std::optional<core::OplOrigin> origin = std::nullopt;
     bool swap_xy = false;
     bool flip_x = false;
     bool flip_y = false;
