@@ -144,15 +144,13 @@ std::vector<std::size_t> sampled_pairs(const core::Scan& scan) {
     const std::vector<std::size_t> sensed = some_points(scan.sensing);
     if (scan.pattern != core::ScanPattern::Exhaustive) return sensed;
     const std::vector<std::size_t> lit = some_points(scan.illumination);
-    constexpr std::size_t kStride = 37;  // prime: pairs of all kinds, none twice
+    constexpr std::size_t kStride = 37;  // neighbours in one list are far apart in the other
     std::vector<std::size_t> pairs;
     for (std::size_t i = 0; i < std::min(kMostPairs, sensed.size() * lit.size()); ++i) {
-        const std::size_t s = sensed[i % sensed.size()];
-        const std::size_t l = lit[(kStride * i + i / sensed.size()) % lit.size()];
-        pairs.push_back(l * scan.sensing.size() + s);
+        const std::size_t s = i % sensed.size();
+        const std::size_t l = (i / sensed.size() + kStride * s) % lit.size();
+        pairs.push_back(lit[l] * scan.sensing.size() + sensed[s]);
     }
-    std::ranges::sort(pairs);
-    pairs.erase(std::ranges::unique(pairs).begin(), pairs.end());
     return pairs;
 }
 
