@@ -14,6 +14,7 @@ namespace {
 using core::Vec3;
 
 constexpr double kMirrorTolerance = 1e-3;  // of the wall's extent
+constexpr double kFlatTolerance = 0.01;    // of the wall's extent
 constexpr double kMostWalls = 30.0;        // away, and the inverse
 constexpr double kLeastBin_m = 3e-5;       // 0.1 ps: nothing that counts photons is faster
 constexpr double kMostBin_m = 1.0;
@@ -100,8 +101,19 @@ void add_lengths(const core::Capture& capture,
 }  // namespace
 
 bool is_scale_free(const core::Scan& scan) {
-    return scan.opl_origin == core::OplOrigin::RelayWall &&
-           scan.pattern != core::ScanPattern::Single;
+    if (scan.opl_origin == core::OplOrigin::Device || scan.pattern == core::ScanPattern::Single) {
+        return false;
+    }
+    const core::ScanExtent extent = core::scan_extent(scan);
+    const Vec3 normal = extent.axes[0].cross(extent.axes[1]);
+    const double tolerance = kFlatTolerance * std::max(extent.size_m[0], extent.size_m[1]);
+    const double first = normal.dot(scan.sensing.positions.front());
+    for (const core::WallPoints* points : {&scan.sensing, &scan.illumination}) {
+        for (const Vec3& position : points->positions) {
+            if (std::abs(normal.dot(position) - first) > tolerance) return false;
+        }
+    }
+    return true;
 }
 
 PathGeometry corrected_geometry(const core::Capture& capture,

@@ -37,7 +37,7 @@ bool is_mirror_image(const core::Capture& capture,
                      const CaptureCorrection& correction);
 
 /// Whether wrong lengths and a wrong wall are one and the same but for the size of everything: path
-/// lengths from and to the wall, and all points on it stretched together.
+/// lengths from and to the wall, and all points on a flat one stretched together.
 bool is_scale_free(const core::Scan& scan);
 
 /// The single slips that could have been made, but for those of time zero, that this capture could

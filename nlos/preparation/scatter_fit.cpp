@@ -15,7 +15,6 @@ using core::Vec3;
 constexpr int kStages = 3;
 constexpr int kIterations = 6;      // of expectation maximisation per stage
 constexpr double kNearest = 0.02;   // of the farthest range; nearer cells see one point alone
-constexpr double kHopeless = 2.0;   // share that no further stage mends
 constexpr double kStray = 1e-3;     // of the mean value, everywhere: no bin is impossible
 constexpr float kFaintest = 1e-6F;  // reach of a cell, of the best one's
 
@@ -157,14 +156,16 @@ bool has_structure(const HistogramSample& sample) {
     return FitData(sample).misfit_of_mean() > kSignificance * noise;
 }
 
-double unexplained_share(const HistogramSample& sample, const PathGeometry& geometry) {
+double unexplained_share(const HistogramSample& sample,
+                         const PathGeometry& geometry,
+                         double hopeless) {
     const auto [low_m, high_m] = range_limits(sample, geometry);
     if (!(high_m > low_m)) return 1.0;
     const FitData data(sample);
     ScatterCells cells = coarse_cells(low_m, high_m);
     const double structure = std::max(data.misfit_of_mean(), 1e-30);
-    double share = 1.0;
-    for (int stage = 0; stage < kStages && share < kHopeless; ++stage) {
+    double share = 0.0;
+    for (int stage = 0; stage < kStages && !(share > hopeless); ++stage) {
         if (stage > 0) cells = halved_cells(cells);
         if (cells.centers.empty()) return 1.0;
         const ScatterTransport transport(sample, geometry, cells);

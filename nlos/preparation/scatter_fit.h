@@ -4,6 +4,7 @@
 #include "renderer/core/types.h"
 
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace nlos {
@@ -41,10 +42,13 @@ struct PathGeometry {
 /// histogram, scaled to each pair, leaves: 0 is a perfect explanation, and above 1 the geometry
 /// explains less than no geometry does.
 ///
-/// costs     100 pairs of 48 bins: 3e7 terms, some 50 ms on one core
-/// returns   1 where all lengths would lie behind the wall
-/// throws    nothing
-double unexplained_share(const HistogramSample& sample, const PathGeometry& geometry);
+/// hopeless   a share after which the fit is not refined any more: coarse cells often leave more
+/// costs      100 pairs of 48 bins: 3e7 terms, some 50 ms on one core
+/// returns    1 where all lengths would lie behind the wall
+/// throws     nothing
+double unexplained_share(const HistogramSample& sample,
+                         const PathGeometry& geometry,
+                         double hopeless = std::numeric_limits<double>::infinity());
 
 /// Whether histograms differ from each other beyond noise; else all geometries explain them alike.
 bool has_structure(const HistogramSample& sample);

@@ -13,6 +13,7 @@ namespace {
 constexpr double kWellExplained = 0.1;     // no questions are asked
 constexpr double kDecisive = 1.35;         // by which the description must explain less
 constexpr double kMostUnexplained = 0.55;  // by a slip that is named
+constexpr double kHopeless = 2.0;          // share of a slip that is tried no further
 constexpr double kTie = 1.25;              // slips that explain so much alike are all named
 constexpr std::size_t kMostNamed = 2;
 
@@ -30,8 +31,8 @@ class Trial {
         : capture_(capture), sample_(sample) {}
 
     CorrectionShare operator()(const CaptureCorrection& correction) const {
-        return {correction,
-                unexplained_share(sample_, corrected_geometry(capture_, sample_, correction))};
+        const PathGeometry geometry = corrected_geometry(capture_, sample_, correction);
+        return {correction, unexplained_share(sample_, geometry, kHopeless)};
     }
 
     CorrectionShare shifted(double shift_m) const {
@@ -96,7 +97,9 @@ std::optional<SlipEvidence> slip_evidence(const core::Capture& capture,
 
     const Trial trial(capture, *sample);
     SlipEvidence evidence;
-    if (is_in_proportion(capture, *sample, {})) evidence.given = trial({}).unexplained;
+    if (is_in_proportion(capture, *sample, {})) {
+        evidence.given = unexplained_share(*sample, corrected_geometry(capture, *sample, {}));
+    }
     if (evidence.given < kWellExplained) return evidence;
     for (const CaptureCorrection& correction : possible_corrections(capture, *sample)) {
         evidence.corrections.push_back(trial(correction));
