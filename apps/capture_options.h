@@ -30,8 +30,8 @@ inline constexpr std::array kCaptureShorthands{
 
 /// Declares `--layout` and `--set`; both go to `overrides`.
 inline void add_capture_options(CLI::App& command, std::vector<std::string>& overrides) {
+    add_set_option(command, overrides);  // first: it replaces what the texts hold
     add_shorthands(command, kCaptureShorthands, overrides);
-    add_set_option(command, overrides);
 }
 
 /// Moves the texts that begin with `capture.` out of `overrides`, for commands whose own settings

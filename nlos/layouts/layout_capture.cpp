@@ -222,6 +222,13 @@ void read_unit(const LayoutFiles& files, const LayoutHistogram& layout, Capture&
         capture.unit =
             *is_counts == 0.0 ? core::TransientUnit::Radiance : core::TransientUnit::Counts;
     }
+    const auto is_whole = [](float value) { return value == std::trunc(value); };
+    if (capture.unit == core::TransientUnit::Counts &&
+        !std::ranges::all_of(capture.transient.values(), is_whole)) {
+        capture.unit = core::TransientUnit::Radiance;
+        capture.notes.emplace_back(
+            "counts that are no whole numbers, such as averages, are taken for radiance");
+    }
     const auto scale = files.number(layout.counts_per_radiance, "counts_per_radiance");
     if (scale && *scale > 0.0) capture.counts_per_radiance = *scale;
 }

@@ -245,6 +245,61 @@ TEST(ConvNlosWriter, RefusesWhatIsNotOnTheWallAtZero) {
     expect(capture, "point 2");
 }
 
+/// Expects the same histograms at the same points, in whatever order.
+void expect_same_pairs(const Capture& read, const Capture& written) {
+    ASSERT_EQ(read.scan.pattern, written.scan.pattern);
+    ASSERT_EQ(read.scan.num_pairs(), written.scan.num_pairs());
+    EXPECT_EQ(read.scan.opl_origin, core::OplOrigin::RelayWall);
+    const auto distance = [](const core::WallPoints& a, std::size_t i, const core::Vec3& b) {
+        return (a.positions[i] - b).norm();
+    };
+    for (std::size_t pair = 0; pair < written.scan.num_pairs(); ++pair) {
+        const core::Scan& scan = written.scan;
+        const core::Vec3& lit = scan.illumination.positions[scan.illumination_index(pair)];
+        const core::Vec3& seen = scan.sensing.positions[scan.sensing_index(pair)];
+        std::size_t same = 0;
+        while (same < scan.num_pairs() &&
+               (distance(read.scan.illumination, read.scan.illumination_index(same), lit) > 1e-6 ||
+                distance(read.scan.sensing, read.scan.sensing_index(same), seen) > 1e-6)) {
+            ++same;
+        }
+        ASSERT_LT(same, scan.num_pairs()) << "pair " << pair << " is missing";
+        EXPECT_TRUE(
+            std::ranges::equal(read.transient.histogram(same), written.transient.histogram(pair)));
+        EXPECT_EQ(read.scan.sensing.normals[read.scan.sensing_index(same)], core::Vec3::UnitZ());
+    }
+}
+
+TEST(StanfordFkWriter, FilesAreReadAsTheyWere) {
+    const TemporaryFolder folder;
+    for (const auto unit : {core::TransientUnit::Radiance, core::TransientUnit::Counts}) {
+        Capture capture = example_square();
+        capture.unit = unit;
+        capture.transient.values()[5] = 0.3F;
+        write_as("stanford-fk-2019", folder.file("a.mat"), capture);
+        const Capture read = read_capture(folder.file("a.mat"));
+        expect_same_pairs(read, capture);
+        EXPECT_EQ(read.unit, unit);
+        EXPECT_EQ(read.time_axis.opl_start_m, capture.time_axis.opl_start_m);
+        EXPECT_EQ(read.time_axis.bin_width_m, capture.time_axis.bin_width_m);
+        write_as("stanford-fk-2019", folder.file("b.mat"), read);
+        expect_same_pairs(read_capture(folder.file("b.mat")), capture);
+    }
+}
+
+TEST(ConvNlosWriter, FilesAreReadAsTheyWere) {
+    const TemporaryFolder folder;
+    for (const auto pattern :
+         {ScanPattern::Confocal, ScanPattern::Single, ScanPattern::Exhaustive}) {
+        const Capture capture = example_capture(pattern);
+        write_as("conv-nlos", folder.file("a.mat"), capture);
+        const Capture read = read_capture(folder.file("a.mat"));
+        expect_same_pairs(read, capture);
+        EXPECT_NEAR(read.time_axis.opl_start_m, capture.time_axis.opl_start_m, 1e-12);
+        EXPECT_EQ(read.time_axis.bin_width_m, capture.time_axis.bin_width_m);
+    }
+}
+
 TEST(CaptureWriters, LayoutsAreNamedAndFitTheSuffix) {
     const TemporaryFolder folder;
     const Capture capture = example_square();

@@ -25,7 +25,7 @@ Capture write_and_read(const Capture& capture) {
 }
 
 /// A capture with all that a file holds, at points that single precision does not have.
-Capture full_capture(ScanPattern pattern) {
+Capture capture_with_extras(ScanPattern pattern) {
     Capture capture = example_capture(pattern);
     for (core::WallPoints* points : {&capture.scan.sensing, &capture.scan.illumination}) {
         for (core::Vec3& position : points->positions) position *= 1.0 / 3.0;
@@ -54,7 +54,7 @@ void expect_bit_for_bit(const core::WallPoints& a, const core::WallPoints& b) {
     EXPECT_EQ(a.normals, b.normals);
 }
 
-void expect_all_the_same(const Capture& a, const Capture& b) {
+void expect_same_from_npz(const Capture& a, const Capture& b) {
     expect_same(a, b);
     expect_bit_for_bit(a.scan.sensing, b.scan.sensing);
     expect_bit_for_bit(a.scan.illumination, b.scan.illumination);
@@ -77,13 +77,13 @@ void expect_all_the_same(const Capture& a, const Capture& b) {
 TEST(NpzCapture, EverythingSurvivesTheRoundTripBitForBit) {
     for (const auto pattern :
          {ScanPattern::Confocal, ScanPattern::Single, ScanPattern::Exhaustive}) {
-        Capture capture = full_capture(pattern);
+        Capture capture = capture_with_extras(pattern);
         const Capture read = write_and_read(capture);
         EXPECT_TRUE(read.notes.empty());
-        expect_all_the_same(read, capture);
+        expect_same_from_npz(read, capture);
         capture.scan.sensing = test_support::as_list(capture.scan.sensing);
         capture.scan.illumination = test_support::as_list(capture.scan.illumination);
-        expect_all_the_same(write_and_read(capture), capture);
+        expect_same_from_npz(write_and_read(capture), capture);
     }
 }
 

@@ -53,7 +53,7 @@ Member parse_npy(const std::string& file) {
     return member;
 }
 
-std::map<std::string, Member> read_npz(const std::string& path) {
+std::map<std::string, Member> unzip_npz(const std::string& path) {
     std::map<std::string, Member> members;
     zip_t* archive = zip_open(path.c_str(), ZIP_RDONLY | ZIP_CHECKCONS, nullptr);
     if (archive == nullptr) {
@@ -77,10 +77,10 @@ std::map<std::string, Member> read_npz(const std::string& path) {
     return members;
 }
 
-std::map<std::string, Member> write_and_read(const Capture& capture) {
+std::map<std::string, Member> write_and_unzip(const Capture& capture) {
     const TemporaryFolder folder;
     EXPECT_TRUE(write_capture(folder.file("a.npz"), capture).empty());
-    return read_npz(folder.file("a.npz"));
+    return unzip_npz(folder.file("a.npz"));
 }
 
 std::string dictionary(const std::string& type, const std::string& shape) {
@@ -107,13 +107,13 @@ TEST(NpzWriter, HistogramsStandWithTimeSlowest) {
                                                    {ScanPattern::Exhaustive, "(5,4,6,)"}};
     for (const auto& [pattern, shape] : grids) {
         Capture capture = example_capture(pattern);
-        auto members = write_and_read(capture);
+        auto members = write_and_unzip(capture);
         EXPECT_EQ(members["H"].dictionary, dictionary("<f4", shape));
         EXPECT_EQ(members["H"].values<float>(), time_slowest(capture.transient));
         EXPECT_EQ(members["pattern"].text(), enum_name(pattern));
         capture.scan.sensing = test_support::as_list(capture.scan.sensing);
         capture.scan.illumination = test_support::as_list(capture.scan.illumination);
-        members = write_and_read(capture);
+        members = write_and_unzip(capture);
         EXPECT_EQ(members["H"].dictionary, dictionary("<f4", lists.at(pattern)));
         EXPECT_EQ(members["H"].values<float>(), time_slowest(capture.transient));
     }
@@ -126,7 +126,7 @@ TEST(NpzWriter, PointsAndAxisKeepEveryBit) {
     capture.scan.opl_origin = core::OplOrigin::Device;
     capture.time_axis.opl_start_m = -0.1234567890123;
     capture.time_axis.bin_width_m = 0.00799446554;
-    const auto members = write_and_read(capture);
+    const auto members = write_and_unzip(capture);
     EXPECT_EQ(members.at("sensor_grid_xyz").dictionary, dictionary("<f8", "(3,2,3,)"));
     EXPECT_EQ(members.at("laser_grid_xyz").dictionary, dictionary("<f8", "(1,1,3,)"));
     const auto points = members.at("sensor_grid_xyz").values<double>();
@@ -149,7 +149,7 @@ TEST(NpzWriter, TextsAreUnicodeOfFourBytesPerCharacter) {
     Capture capture = example_capture(ScanPattern::Confocal);
     capture.unit = core::TransientUnit::Counts;
     capture.scene_info = {{"a", "\xc3\xbc \xe2\x82\xac \xf0\x9f\x98\x80"}};  // 2, 3 and 4 bytes
-    const auto members = write_and_read(capture);
+    const auto members = write_and_unzip(capture);
     EXPECT_EQ(members.at("unit").dictionary, dictionary("<U6", "()"));
     EXPECT_EQ(members.at("unit").text(), "counts");
     const std::u32string wanted = U"{\"a\":\"\u00fc \u20ac \U0001f600\"}";
@@ -160,7 +160,7 @@ TEST(NpzWriter, TextsAreUnicodeOfFourBytesPerCharacter) {
 
 TEST(NpzWriter, WhatElseACaptureHoldsIsThere) {
     Capture capture = example_capture(ScanPattern::Exhaustive);
-    EXPECT_FALSE(write_and_read(capture).contains("variance"));
+    EXPECT_FALSE(write_and_unzip(capture).contains("variance"));
     capture.observed.emplace(24, core::BinRange{0, 5});
     (*capture.observed)[7] = {1, 4};
     capture.transient.histogram(7)[0] = capture.transient.histogram(7)[4] = 0.0F;
@@ -173,7 +173,7 @@ TEST(NpzWriter, WhatElseACaptureHoldsIsThere) {
     std::vector<float> stack = time_slowest(capture.by_order[0]);
     const std::vector<float> second = time_slowest(capture.by_order[1]);
     stack.insert(stack.end(), second.begin(), second.end());
-    const auto members = write_and_read(capture);
+    const auto members = write_and_unzip(capture);
     EXPECT_EQ(members.at("counts_per_radiance").values<double>(), std::vector<double>{77.5});
     std::vector<int> bins(24, 0);
     bins.resize(48, 5);
@@ -193,7 +193,7 @@ TEST(NpzWriter, WhatElseACaptureHoldsIsThere) {
 
 TEST(NpzWriter, ImagesHaveNoGridsAndTheirCameraInSceneInfo) {
     const Capture image = test_support::example_image();
-    const auto members = write_and_read(image);
+    const auto members = write_and_unzip(image);
     EXPECT_EQ(members.at("H").dictionary, dictionary("<f4", "(5,3,2,)"));
     EXPECT_FALSE(members.contains("sensor_grid_xyz"));
     EXPECT_NE(members.at("scene_info").text().find("\"camera\":"), std::string::npos);
@@ -206,7 +206,7 @@ TEST(NpzWriter, LargeArraysAreWrittenInPieces) {
     capture.transient = core::Transient(1200, 1000);
     float next = 0.0F;
     for (float& value : capture.transient.values()) value = next += 1.0F;
-    EXPECT_EQ(write_and_read(capture).at("H").values<float>(), time_slowest(capture.transient));
+    EXPECT_EQ(write_and_unzip(capture).at("H").values<float>(), time_slowest(capture.transient));
 }
 
 TEST(NpzWriter, TheSameCaptureGivesTheSameBytes) {
