@@ -182,16 +182,16 @@ std::vector<CaptureCorrection> possible_corrections(const core::Capture& capture
     const core::Scan& scan = capture.scan;
     std::vector<CaptureCorrection> list;
     add_lengths(capture, sample, list);
+    if (knows_devices(scan)) {
+        list.emplace_back().origin = scan.opl_origin == core::OplOrigin::Device
+                                         ? core::OplOrigin::RelayWall
+                                         : core::OplOrigin::Device;
+    }
     if (!is_in_proportion(capture, sample, {})) return list;
     if (!is_scale_free(scan)) {
         for (const double factor : {2.0, 0.5}) {
             list.emplace_back().wall_factor = factor;
         }
-    }
-    if (knows_devices(scan)) {
-        list.emplace_back().origin = scan.opl_origin == core::OplOrigin::Device
-                                         ? core::OplOrigin::RelayWall
-                                         : core::OplOrigin::Device;
     }
     list.emplace_back().flip_t = true;
     if (!scan.sensing.grid) return list;

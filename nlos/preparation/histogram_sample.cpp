@@ -80,14 +80,15 @@ bool choose_bins(const std::vector<double>& light, HistogramSample& sample) {
     return sample.num_bins >= kFewestBins;
 }
 
-/// Copies the chosen bins of one pair.
+/// Copies the chosen bins of one pair, of which those in `range` were observed.
 void append_histogram(std::span<const float> histogram,
-                      std::size_t first_bin,
+                      const core::BinRange& range,
                       HistogramSample& sample) {
     const auto merged = static_cast<std::size_t>(sample.merged_bins);
     for (std::size_t i = 0; i < sample.num_bins; ++i) {
         const std::size_t begin = static_cast<std::size_t>(sample.first_bin) + i * merged;
-        const bool is_observed = begin >= first_bin;
+        const bool is_observed = begin >= static_cast<std::size_t>(range.begin) &&
+                                 begin + merged <= static_cast<std::size_t>(range.end);
         const auto bins = histogram.subspan(begin, merged);
         sample.observed.push_back(is_observed ? 1.0F : 0.0F);
         sample.values.push_back(is_observed ? std::accumulate(bins.begin(), bins.end(), 0.0F)
@@ -143,15 +144,13 @@ std::vector<std::size_t> sampled_pairs(const core::Scan& scan) {
     const std::vector<std::size_t> sensed = some_points(scan.sensing);
     if (scan.pattern != core::ScanPattern::Exhaustive) return sensed;
     const std::vector<std::size_t> lit = some_points(scan.illumination);
-    constexpr std::size_t kStride = 37;  // prime: pairs of all kinds, none twice
+    constexpr std::size_t kStride = 37;  // neighbours in one list are far apart in the other
     std::vector<std::size_t> pairs;
     for (std::size_t i = 0; i < std::min(kMostPairs, sensed.size() * lit.size()); ++i) {
-        const std::size_t s = sensed[i % sensed.size()];
-        const std::size_t l = lit[(kStride * i + i / sensed.size()) % lit.size()];
-        pairs.push_back(l * scan.sensing.size() + s);
+        const std::size_t s = i % sensed.size();
+        const std::size_t l = (i / sensed.size() + kStride * s) % lit.size();
+        pairs.push_back(lit[l] * scan.sensing.size() + sensed[s]);
     }
-    std::ranges::sort(pairs);
-    pairs.erase(std::ranges::unique(pairs).begin(), pairs.end());
     return pairs;
 }
 
@@ -195,7 +194,9 @@ std::optional<HistogramSample> sample_histograms(const core::Capture& capture,
     }
     for (std::size_t i = 0; i < sample.pairs.size(); ++i) {
         const std::size_t pair = sample.pairs[i];
-        append_histogram(capture.transient.histogram(pair), first_bins[i], sample);
+        core::BinRange range = capture.observed_range(pair);
+        range.begin = std::max(range.begin, static_cast<int>(first_bins[i]));
+        append_histogram(capture.transient.histogram(pair), range, sample);
         sample.ambient.push_back(static_cast<float>(ambient[pair] * sample.merged_bins));
     }
     sample.has_poisson_noise = capture.unit == core::TransientUnit::Counts;
