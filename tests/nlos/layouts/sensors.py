@@ -54,8 +54,9 @@ def write_st_vl53l8(capture: Capture, folder: Path) -> Written:
     """A folder with a file per frame: hists (zones, bins) and where the zones' rays meet the wall,
     pt_cloud (zones, 3) [m]. Each zone sees the point that it lights. The published numbers are
     not whole, and so no counts."""
-    expected = replace(capture.as_counts(), start_m=0.0, bin_width_m=picoseconds_m(ST_BIN_PS),
-                       unit="radiance")
+    counted = capture.as_counts()
+    expected = replace(counted, H=counted.H / 4, start_m=0.0, unit="radiance",
+                       bin_width_m=picoseconds_m(ST_BIN_PS))
     frames = _frames(expected)
     for number, frame in enumerate(frames):
         np.savez(folder / f"volume_{number:06}.npz",
