@@ -99,14 +99,35 @@ def _delayed(cube: np.ndarray, H: np.ndarray, delays: np.ndarray) -> tuple[np.nd
     return raw, np.concatenate([H, np.zeros((longest, *H.shape[1:]), np.float32)])
 
 
-def write_stanford_fk_interactive(capture: Capture, folder: Path) -> Written:
-    """`meas` (frame, y, x, t) with one `tof_32.mat` for all frames."""
+def write_stanford_fk_interactive(capture: Capture, folder: Path,
+                                  only: int | None = None) -> Written:
+    """`meas` (frame, y, x, t) with one `tof_32.mat` for all frames; a user may want one of them."""
     expected = _counted(capture, "stanford-fk-2019", picoseconds_m(FK_BIN_PS))
     frames = np.stack([np.roll(expected.H, shift, axis=1) for shift in (2, 1, 0)])
     write_v73(folder / "tof_32.mat", {"tofgrid": np.zeros(expected.H.shape[1:]).T})
     path = folder / "meas_32.mat"
     write_v73(path, {"meas": np.stack([_y_x_t(frame) for frame in frames])})
+    if only is not None:
+        return Written(path, replace(expected, H=frames[only]), (f"capture.frame={only}",))
     return Written(path, replace(expected, frames=frames))
+
+
+def write_stanford_fk_nonplanar(capture: Capture, folder: Path) -> Written:
+    """`meas` (y, x, t), and beside the delays of tof.mat the points `pos` (y, x, 3) of a wall that
+    is no square around the origin. Normals follow from the points; a tilted plane's are known."""
+    angle = np.radians(20.0)
+    tilt = np.array([[np.cos(angle), 0.0, np.sin(angle)], [0.0, 1.0, 0.0],
+                     [-np.sin(angle), 0.0, np.cos(angle)]])
+    points = capture.sensing @ tilt.T + [0.3, -0.1, 0.2]
+    normals = np.broadcast_to(tilt @ [0.0, 0.0, 1.0], points.shape)
+    expected = replace(_counted(capture, "stanford-fk-2019", picoseconds_m(FK_BIN_PS)),
+                       sensing=points, illumination=points, sensing_normals=normals,
+                       illumination_normals=normals)
+    path = folder / "meas_150sec.mat"
+    write_v73(path, {"meas": _y_x_t(expected.H)})
+    write_v73(folder / "tof.mat", {"tofgrid": np.zeros(points.shape[:2]).T,
+                                   "pos": points[:, ::-1].swapaxes(0, 1)})
+    return Written(path, expected)
 
 
 def write_stanford_cdt_2020(capture: Capture, folder: Path) -> Written:
@@ -155,6 +176,9 @@ CASES = [
                                                                variable=name))
       for name in ("measlr", "final_meas", "data", "sig")),
     Case("stanford-fk-2019 interactive", _FK, write_stanford_fk_interactive),
+    Case("stanford-fk-2019 interactive, one frame", _FK,
+         partial(write_stanford_fk_interactive, only=1)),
+    Case("stanford-fk-2019 nonplanar", _FK, write_stanford_fk_nonplanar),
     Case("stanford-cdt-2020", replace(_SQUARE, bin_width_m=picoseconds_m(CDT_BIN_PS),
                                       num_bins=512), write_stanford_cdt_2020),
     Case("ustc-long-range", replace(_SQUARE, bin_width_m=path_length_m(32e-12)),

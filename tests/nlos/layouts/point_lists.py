@@ -42,8 +42,10 @@ def write_surface_optimisation(capture: Capture, folder: Path) -> Written:
     require(capture.pattern == "confocal", "surface-optimisation", "a confocal scan")
     require_axis(capture, "surface-optimisation", SURFACE_BIN_M)
     expected = replace(capture.as_counts(), start_m=0.0, bin_width_m=SURFACE_BIN_M)
-    x_fastest = replace(expected, H=expected.H.swapaxes(1, 2),
-                        sensing=expected.sensing.swapaxes(0, 1))
+    x_fastest = expected
+    if expected.sensing.ndim == 3:
+        x_fastest = replace(expected, H=expected.H.swapaxes(1, 2),
+                            sensing=expected.sensing.swapaxes(0, 1))
     _, points, histograms = pairs_of(x_fastest)
     path = folder / "transient.mat"
     write_v5(path, {"transient": histograms.astype(np.float64), "lighting": points})
@@ -131,8 +133,9 @@ CASES = [
                                              size_m=(12 * _PITCH_M, 10 * _PITCH_M),
                                              lit_points=(2, 3)),
          partial(write_general_nlos, pitch_m=_PITCH_M)),
-    Case("surface-optimisation", Source(bin_width_m=SURFACE_BIN_M, num_bins=2048),
-         write_surface_optimisation),
+    *(Case(f"surface-optimisation, {kind}",
+           Source(points=points, bin_width_m=SURFACE_BIN_M, num_bins=2048),
+           write_surface_optimisation) for kind, points in (("grid", (12, 10)), ("list", (40,)))),
     Case("phasor-field-2019, single", Source(pattern="single", **_AWAY), write_phasor_field_2019),
     Case("phasor-field-2019, exhaustive", replace(_EXHAUSTIVE, **_AWAY),
          write_phasor_field_2019),

@@ -52,8 +52,11 @@ def write_keyhole_2020(capture: Capture, folder: Path) -> Written:
 
 def write_st_vl53l8(capture: Capture, folder: Path) -> Written:
     """A folder with a file per frame: hists (zones, bins) and where the zones' rays meet the wall,
-    pt_cloud (zones, 3) [m]. Each zone sees the point that it lights."""
-    expected = replace(capture.as_counts(), start_m=0.0, bin_width_m=picoseconds_m(ST_BIN_PS))
+    pt_cloud (zones, 3) [m]. Each zone sees the point that it lights. The published numbers are
+    not whole, and so no counts."""
+    counted = capture.as_counts()
+    expected = replace(counted, H=counted.H / 4, start_m=0.0, unit="radiance",
+                       bin_width_m=picoseconds_m(ST_BIN_PS))
     frames = _frames(expected)
     for number, frame in enumerate(frames):
         np.savez(folder / f"volume_{number:06}.npz",
