@@ -143,7 +143,10 @@ void describe_capture_file(const std::string& path, nlos::CaptureReadSettings se
         settings.bin_width_m = settings.bin_width_m.value_or(1.0);
         settings.wall_size_m = settings.wall_size_m.value_or(std::array{1.0, 1.0});
     }
-    const core::Capture capture = nlos::read_capture(path, settings);
+    core::Capture capture = nlos::read_capture(path, settings);
+    if (!missing.empty()) {
+        std::erase_if(capture.notes, [](const auto& note) { return note.ends_with(", as told"); });
+    }
     fmt::print("format: {}\n", format.value_or("unknown"));
     for (const std::string& line : nlos::describe_capture(capture)) fmt::print("{}\n", line);
     print_provenance(capture.scene_info);

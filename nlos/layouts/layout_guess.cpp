@@ -296,7 +296,7 @@ void guess_around(const LayoutFiles& files, const std::string& name, LayoutGuess
     }
     guess.layout = Json::object();
     guess.layout["name"] = std::filesystem::path(files.path()).stem().string();
-    guess.layout["title"] = "";
+    guess.layout["title"] = guess.layout["name"];
     guess.layout["recognise"]["containers"] = {files.main().container()};
     guess.layout["recognise"]["arrays"][name] = shape.size();
     guess.layout["histogram"] = {{"array", {name}}, {"axes", axes}};
