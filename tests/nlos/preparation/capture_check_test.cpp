@@ -103,7 +103,7 @@ TEST(CaptureCheck, TellsTheFactorOfWrongBinsAndOfAWrongWall) {
     }
 }
 
-TEST(CaptureCheck, APlaneSaysNothingOfBins) {
+TEST(CaptureCheck, APlaneSaysNothingWrongOfBins) {
     core::Capture capture = nlos_test::confocal_capture(
         nlos_test::wall_grid({24, 24}, {0.04, 0.04}), {0.0, 0.016, 200});
     for (int ix = -40; ix <= 40; ++ix) {
@@ -111,10 +111,13 @@ TEST(CaptureCheck, APlaneSaysNothingOfBins) {
             nlos_test::add_scatterer(capture, Vec3(0.02 * ix, 0.02 * iy, 0.5), 4.0);
         }
     }
-    for (const double factor : {0.5, 1.0, 2.0}) {
+    EXPECT_TRUE(capture_warnings(capture).empty());
+    for (const double factor : {0.5, 2.0}) {
         core::Capture scaled = capture;
         scaled.time_axis.bin_width_m *= factor;
-        EXPECT_TRUE(capture_warnings(scaled).empty()) << factor;
+        for (const std::string& warning : capture_warnings(scaled)) {  // its edges may tell
+            EXPECT_NE(warning.find("capture.bin_width_m=0.016"), std::string::npos) << warning;
+        }
     }
 }
 
