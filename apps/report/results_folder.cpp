@@ -3,7 +3,6 @@
 
 #include "apps/report/bench_cards.h"
 #include "calib/fit_file.h"
-#include "nlos/formats/capture_file.h"
 #include "nlos/formats/volume_file.h"
 
 #include <algorithm>
@@ -69,7 +68,7 @@ void read_file(const fs::path& path, ResultsFolder& results) {
     if (is_measurement(suffix)) {
         if (nlos::is_volume_file(path.string())) {
             results.volumes.push_back(volume_card(path.string()));
-        } else if (nlos::capture_format(path.string())) {
+        } else {
             results.captures.push_back(capture_card(path.string()));
         }
     } else if (suffix == ".json") {

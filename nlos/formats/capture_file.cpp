@@ -33,8 +33,18 @@ std::optional<LayoutSource> find_layout_of(const std::string& path,
     return find_format(path) == nullptr ? find_layout_source(path) : std::nullopt;
 }
 
+/// The file itself, or the first file of named arrays in a folder.
+std::string first_container(const std::string& path) {
+    if (!std::filesystem::is_directory(path)) return path;
+    for (const auto& entry : std::filesystem::directory_iterator(path)) {
+        if (container_of(entry.path().string())) return entry.path().string();
+    }
+    return path;
+}
+
 [[noreturn]] void throw_unknown(const std::string& path) {
-    if (!container_of(path)) {
+    const std::string file = first_container(path);
+    if (!container_of(file)) {
         throw core::Error(path,
                           "is no capture in a known format",
                           "must be HDF5, MATLAB, NumPy, OpenEXR, .ti, JSON or CSV");
@@ -42,8 +52,8 @@ std::optional<LayoutSource> find_layout_of(const std::string& path,
     throw core::Error(path,
                       "is no capture in a known format or layout",
                       fmt::format("`nlos info {}` lists its arrays; the nearest layout is {}",
-                                  path,
-                                  nearest_layouts(path).at(0)));
+                                  file,
+                                  nearest_layouts(file).at(0)));
 }
 
 /// `texts` without repetitions, separated by commas.

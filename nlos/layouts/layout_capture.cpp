@@ -223,7 +223,7 @@ void read_unit(const LayoutFiles& files, const LayoutHistogram& layout, Capture&
             *is_counts == 0.0 ? core::TransientUnit::Radiance : core::TransientUnit::Counts;
     }
     const auto is_whole = [](float value) { return value == std::trunc(value); };
-    if (capture.unit == core::TransientUnit::Counts &&
+    if (!layout.is_counts.is_given() && capture.unit == core::TransientUnit::Counts &&
         !std::ranges::all_of(capture.transient.values(), is_whole)) {
         capture.unit = core::TransientUnit::Radiance;
         capture.notes.emplace_back(

@@ -216,12 +216,17 @@ std::vector<std::string> capture_warnings(const core::Capture& capture) {
     if (auto warning = wrong_unit(capture)) warnings.push_back(*warning);
     if (capture.scan.camera) return warnings;
     const std::vector<double> ambient = ambient_of(capture);
+    const auto early = early_light(capture, ambient);
+    if (early && capture.time_axis.opl_start_m < -capture.time_axis.bin_width_m) {
+        warnings.push_back(*early);
+        return warnings;  // no scale makes negative lengths positive
+    }
     const auto bend = bend_of_first_light(capture, ambient);
     if (auto warning = slips(capture, ambient, bend)) {
         warnings.push_back(*warning);
         return warnings;
     }
-    if (auto warning = early_light(capture, ambient)) warnings.push_back(*warning);
+    if (early) warnings.push_back(*early);
     if (auto warning = fast_onset(capture, ambient)) {
         warnings.push_back(*warning);
     } else if (auto other = bent_onset(capture, bend)) {

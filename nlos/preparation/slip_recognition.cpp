@@ -10,20 +10,12 @@
 namespace nlos {
 namespace {
 
-constexpr double kWellExplained = 0.1;     // no questions are asked
-constexpr double kDecisive = 1.35;         // by which the description must explain less
-constexpr double kMostUnexplained = 0.55;  // by a slip that is named
-constexpr double kHopeless = 2.0;          // share of a slip that is tried no further
-constexpr double kTie = 1.25;              // slips that explain so much alike are all named
+constexpr double kWellExplained = 0.1;    // no questions are asked
+constexpr double kDecisive = 1.35;        // by which the description must explain less
+constexpr double kMostUnexplained = 0.7;  // by a slip that is named
+constexpr double kHopeless = 2.0;         // share of a slip that is tried no further
+constexpr double kTie = 1.25;             // slips that explain so much alike are all named
 constexpr std::size_t kMostNamed = 2;
-
-// A free time zero explains nearly everything a little better.
-constexpr double kGuessedZero = 1.5;
-constexpr double kZeroIsAsked = 0.2;
-
-/// First lengths of light, as shares of the wall's extent, to which time zero may have to move.
-constexpr std::array kFirstLengths{0.3, 0.5, 0.8, 1.2, 1.8, 2.6, 4.0};
-constexpr int kShiftRefinements = 3;
 
 class Trial {
  public:
@@ -41,19 +33,6 @@ class Trial {
         return (*this)(correction);
     }
 
-    /// The best time zero near `start`, between its neighbours `step_m` away.
-    CorrectionShare refined(CorrectionShare start, double step_m) const {
-        for (int i = 0; i < kShiftRefinements; ++i) {
-            step_m *= 0.5;
-            const double middle_m = start.correction.shift_m;
-            for (const double shift_m : {middle_m - step_m, middle_m + step_m}) {
-                const CorrectionShare other = shifted(shift_m);
-                if (other.unexplained < start.unexplained) start = other;
-            }
-        }
-        return start;
-    }
-
  private:
     const core::Capture& capture_;
     const HistogramSample& sample_;
@@ -62,28 +41,6 @@ class Trial {
 double extent_m(const core::Capture& capture) {
     const core::ScanExtent extent = core::scan_extent(capture.scan);
     return std::hypot(extent.size_m[0], extent.size_m[1]);
-}
-
-/// The best guess of time zero, whatever the slip that moved it.
-CorrectionShare best_shift(const core::Capture& capture,
-                           const HistogramSample& sample,
-                           const Trial& trial) {
-    const PathGeometry geometry = corrected_geometry(capture, sample, {});
-    const double first_m =
-        geometry.opl_start_m - *std::min_element(geometry.legs_m.begin(), geometry.legs_m.end());
-    const double wall_m = extent_m(capture);
-    CorrectionShare best;
-    double step_m = 0.0;
-    double before_m = 0.0;
-    for (const double share : kFirstLengths) {
-        const CorrectionShare next = trial.shifted(share * wall_m - first_m);
-        if (next.unexplained < best.unexplained) {
-            best = next;
-            step_m = share * wall_m - before_m;
-        }
-        before_m = share * wall_m;
-    }
-    return step_m > 0.0 ? trial.refined(best, step_m) : best;
 }
 
 }  // namespace
@@ -106,10 +63,6 @@ std::optional<SlipEvidence> slip_evidence(const core::Capture& capture,
     }
     if (direct && std::abs(direct->offset_m) > 2.0 * capture.time_axis.bin_width_m) {
         evidence.corrections.push_back(trial.shifted(-direct->offset_m));
-    } else if (!direct && evidence.given > kZeroIsAsked && is_in_proportion(capture, *sample, {})) {
-        CorrectionShare shift = best_shift(capture, *sample, trial);
-        shift.unexplained *= kGuessedZero;
-        evidence.corrections.push_back(shift);
     }
     return evidence;
 }

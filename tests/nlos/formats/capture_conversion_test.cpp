@@ -309,7 +309,7 @@ TEST(CaptureConversion, DamagedExrImagesAreNamed) {
         EXPECT_ERROR_WITH(read_capture(folder.file("bad.exr")), part);
     };
     refused([](ExrTable& t) { t.texts.erase("nlosCamera"); }, "nlosCamera");
-    refused([](ExrTable& t) { t.texts["nlosCamera"] = "{"; }, "nlosCamera: is no JSON");
+    refused([](ExrTable& t) { t.texts["nlosCamera"] = "{"; }, "nlosCamera: is not valid JSON");
     refused([](ExrTable& t) { t.numbers.erase("nlosBinWidthM"); }, "nlosBinWidthM");
     refused([](ExrTable& t) { t.texts["nlosUnit"] = "joule"; }, "nlosUnit");
     refused(

@@ -143,7 +143,8 @@ TEST(PointListCapture, DepthIndicesAreAlongZ) {
 TEST(PointListCapture, NamesTheFileThatIsMissingOrWrong) {
     const PointLists lists(one_detector());
     std::filesystem::remove(lists.file("C_d.mat"));
-    EXPECT_ERROR_WITH(lists.read(), "no array C_d.mat:C_d");
+    EXPECT_ERROR_WITH(read_capture(lists.file("sub_Sig.mat"), PointLists::settings()),
+                      "no array C_d.mat:C_d");
     const std::vector<std::uint8_t> few(6, 1);
     write_mat(lists.file("C_d.mat"), {mat_variable("C_d", {2, 3}, few)});
     EXPECT_ERROR_WITH(lists.read(),
