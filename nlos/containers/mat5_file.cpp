@@ -27,9 +27,6 @@ using MatPointer = std::unique_ptr<matvar_t, void (*)(matvar_t*)>;
 constexpr std::uint64_t kMatHeaderBytes = 128;
 constexpr std::uint64_t kTagBytes = 8;
 
-// Deflate shrinks by less than 1032 to 1.
-constexpr std::uint64_t kLargestRatio = 1100;
-
 [[noreturn]] void throw_damaged_mat(const std::string& path) {
     throw core::Error(path, "is damaged or cut short", "must be a complete MATLAB v5 file");
 }
@@ -204,7 +201,7 @@ Mat5File::Mat5File(const std::string& path)
     check_elements(path_);
     // The library clears whatever room a file claims for the names of fields.
     constexpr std::uint64_t kRoomOfParts = std::uint64_t{1} << 30;
-    core::bound_memory(kRoomOfParts + file_bytes_ * kLargestRatio);
+    core::bound_memory(kRoomOfParts + file_bytes_ * kLargestDeflateRatio);
     file_.reset(Mat_Open(path_.c_str(), MAT_ACC_RDONLY));
     if (!file_) throw_damaged_mat(path_);
     while (true) {
@@ -252,7 +249,7 @@ Shape Mat5File::checked_shape(const matvar_t& variable, const std::string& name)
     }
     Shape shape(variable.dims, variable.dims + variable.rank);
     std::reverse(shape.begin(), shape.end());
-    if (total_bytes(shape, 1) > file_bytes_ * kLargestRatio) {
+    if (total_bytes(shape, 1) > file_bytes_ * kLargestDeflateRatio) {
         throw core::Error(path_ + ": " + name,
                           "claims shape " + shape_text(shape) + ", more than the file holds",
                           "must be complete");
