@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/containers/array_reader.h"
 
-#include "renderer/core/sandboxed_process.h"
 #include "renderer/core/error.h"
+#include "renderer/core/sandboxed_process.h"
 
 #include <fmt/core.h>
 
@@ -89,8 +89,8 @@ ArrayReader::ArrayReader(std::string path) : path_(std::move(path)) {
     const Container& kind = known_container(path_);
     // The file is opened in the child, at the first request.
     const auto file = std::make_shared<std::unique_ptr<ArrayFile>>();
-    process_ =
-        std::make_unique<core::SandboxedProcess>(path_, [file, &kind, this](const std::string& request) {
+    process_ = std::make_unique<core::SandboxedProcess>(
+        path_, [file, &kind, this](const std::string& request) {
             if (!*file) *file = kind.open(path_);
             return answer(**file, Json::from_cbor(request));
         });
@@ -232,10 +232,11 @@ std::string ArrayReader::read_text(const std::string& name) const {
     return *describe(name)->text;
 }
 
+/// How many rows there are to read: none of an array without values, however many it claims.
 std::size_t ArrayReader::row_count(const std::string& name) const {
     const Shape found = shape(name);
     if (found.empty()) throw core::Error(where(name), "is one number", "must be an array");
-    return found[0];
+    return total_bytes(found, 1) == 0 ? 0 : found[0];
 }
 
 std::size_t ArrayReader::rows_per_read(const std::string& name) const {

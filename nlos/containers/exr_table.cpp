@@ -36,8 +36,6 @@ constexpr std::uint64_t kMaxChannels = 1 << 16;
 
 /// Throws unless the file is a single image of scan lines, no larger than its bytes can hold.
 void check_kind_and_size(const std::string& path) {
-    // The strongest compression, deflate, shrinks by less than 1032 to 1.
-    constexpr std::uint64_t kLargestRatio = 1100;
     bool tiled = false;
     bool deep = false;
     bool multi_part = false;
@@ -51,7 +49,7 @@ void check_kind_and_size(const std::string& path) {
                           "must be a single image of scan lines");
     }
     // The library allocates by what the header claims, within these bounds.
-    const std::uint64_t most_pixels = std::filesystem::file_size(path) * kLargestRatio;
+    const std::uint64_t most_pixels = std::filesystem::file_size(path) * kLargestDeflateRatio;
     const int most = static_cast<int>(std::min<std::uint64_t>(most_pixels, INT32_MAX));
     Imf::Header::setMaxImageSize(most, most);
     const Imath::Box2i window = Imf::InputFile(path.c_str(), 0).header().dataWindow();

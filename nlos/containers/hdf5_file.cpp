@@ -291,15 +291,13 @@ Json Hdf5File::describe_attributes(const Hdf5Handle& object, const std::string& 
 void Hdf5File::check_size(const Hdf5Handle& dataset,
                           const Shape& shape,
                           const std::string& where) const {
-    // Deflate, the strongest filter in use, shrinks by less than 1032 to 1.
-    constexpr std::uint64_t kLargestRatio = 1100;
     const Hdf5Handle type(H5Dget_type(dataset.id()), H5Tclose);
     const Shape chunk = chunk_of(dataset, shape.size());
     const std::uint64_t stored =
         std::min<std::uint64_t>(H5Dget_storage_size(dataset.id()), file_bytes_);
     const std::uint64_t value_bytes = H5Tget_size(type.id());
     const std::uint64_t chunk_bytes = chunk.empty() ? 0 : total_bytes(chunk, value_bytes);
-    const std::uint64_t most = stored * (chunk.empty() ? 1 : kLargestRatio);
+    const std::uint64_t most = stored * (chunk.empty() ? 1 : kLargestDeflateRatio);
     if (std::max(total_bytes(shape, value_bytes), chunk_bytes) > most) {
         throw core::Error(
             where,

@@ -5,6 +5,8 @@
 #include "nlos/containers/stored_number.h"
 #include "nlos/containers/unicode_text.h"
 #include "renderer/core/error.h"
+#include "renderer/core/process.h"
+#include "renderer/core/sandboxed_process.h"
 
 #include <fmt/core.h>
 #include <matio.h>
@@ -197,6 +199,9 @@ class Mat5File : public ArrayFile {
 Mat5File::Mat5File(const std::string& path)
     : path_(path), file_bytes_(std::filesystem::file_size(path)) {
     check_elements(path_);
+    // The library clears whatever room a file claims for the names of fields.
+    constexpr std::uint64_t kRoomOfParts = std::uint64_t{1} << 30;
+    core::bound_memory(kRoomOfParts + file_bytes_ * kLargestDeflateRatio);
     file_.reset(Mat_Open(path_.c_str(), MAT_ACC_RDONLY));
     if (!file_) throw_damaged_mat(path_);
     while (true) {
@@ -204,6 +209,7 @@ Mat5File::Mat5File(const std::string& path)
         if (!variable) break;
         if (variable->name != nullptr) variables_.push_back(std::move(variable));
     }
+    core::bound_memory(core::available_memory_bytes());
 }
 
 ArrayNames Mat5File::names() const {
@@ -237,15 +243,13 @@ matvar_t* Mat5File::find(const std::string& name) const {
 
 /// Extents of an array, slowest first, after checking them against the file's size.
 Shape Mat5File::checked_shape(const matvar_t& variable, const std::string& name) const {
-    // Deflate shrinks by less than 1032 to 1.
-    constexpr std::uint64_t kLargestRatio = 1100;
     constexpr int kHighestRank = 8;
     if (variable.rank < 2 || variable.rank > kHighestRank || variable.dims == nullptr) {
         throw_damaged_mat(path_);
     }
     Shape shape(variable.dims, variable.dims + variable.rank);
     std::reverse(shape.begin(), shape.end());
-    if (total_bytes(shape, 1) > file_bytes_ * kLargestRatio) {
+    if (total_bytes(shape, 1) > file_bytes_ * kLargestDeflateRatio) {
         throw core::Error(path_ + ": " + name,
                           "claims shape " + shape_text(shape) + ", more than the file holds",
                           "must be complete");

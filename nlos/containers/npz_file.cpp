@@ -77,8 +77,6 @@ ArrayNames NpzFile::names() const {
 
 /// What the archive says of a member, after checking it against the file's size.
 zip_stat_t NpzFile::checked_stat(zip_uint64_t index, const std::string& name) const {
-    // Deflate shrinks by less than 1032 to 1.
-    constexpr std::uint64_t kLargestRatio = 1100;
     constexpr std::uint64_t kTebibyte = std::uint64_t{1} << 40;
     zip_stat_t stat{};
     constexpr zip_uint64_t kNeeded = ZIP_STAT_SIZE | ZIP_STAT_COMP_SIZE | ZIP_STAT_COMP_METHOD;
@@ -91,7 +89,7 @@ zip_stat_t NpzFile::checked_stat(zip_uint64_t index, const std::string& name) co
                           "must be stored or deflated, as np.savez and np.savez_compressed do");
     }
     const std::uint64_t stored = std::min<std::uint64_t>(stat.comp_size, file_bytes_);
-    if (stat.size > stored * (stat.comp_method == ZIP_CM_STORE ? 1 : kLargestRatio)) {
+    if (stat.size > stored * (stat.comp_method == ZIP_CM_STORE ? 1 : kLargestDeflateRatio)) {
         throw core::Error(where(name),
                           fmt::format("claims {} bytes but only {} are stored", stat.size, stored),
                           "must be complete");

@@ -54,6 +54,7 @@ std::string read_stored(const StoredArray& array,
                         std::size_t first,
                         std::size_t count,
                         Precision precision) {
+    if (total_bytes(array.shape, 1) == 0) return {};
     const std::size_t row = row_values(array);
     if (array.first_axis_fastest && array.shape.size() > 1) {
         const std::string rows = gather_rows(array, first, count);

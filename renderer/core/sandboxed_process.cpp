@@ -105,9 +105,7 @@ void bound_resources(std::uint64_t file_bytes) {
     constexpr std::uint64_t kBytesPerSecond = 250'000;  // slower than to inflate a file of zeros
     limit(RLIMIT_CORE, 0);
     limit(RLIMIT_CPU, kSeconds + file_bytes / kBytesPerSecond);
-    if (!kReservesAddresses) {
-        limit(RLIMIT_AS, used_address_space() + available_memory_bytes());
-    }
+    bound_memory(available_memory_bytes());
 }
 
 /// A crash is silent and ends the child; Ctrl-C is left to the parent.
@@ -228,6 +226,10 @@ std::string SandboxedProcess::ask(const std::string& request) {
             break;
     }
     throw_error(answer->bytes);
+}
+
+void bound_memory(std::uint64_t bytes) {
+    if (!kReservesAddresses) limit(RLIMIT_AS, used_address_space() + bytes);
 }
 
 std::string run_sandboxed(const std::string& path, const std::function<std::string()>& work) {

@@ -43,6 +43,9 @@ class SandboxedProcess {
     int socket_ = -1;
 };
 
+/// Bounds what the calling process may allocate from now on [bytes]; for children, which end soon.
+void bound_memory(std::uint64_t bytes);
+
 /// Runs `work` once in a SandboxedProcess and returns its answer.
 std::string run_sandboxed(const std::string& path, const std::function<std::string()>& work);
 

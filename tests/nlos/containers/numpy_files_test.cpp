@@ -99,6 +99,17 @@ TEST(NpyFile, ArraysInTheOrderOfFortranHaveTheSameShapeAndValues) {
     EXPECT_EQ(std::vector<double>(rows.begin(), rows.end()), wanted);
 }
 
+TEST(NpyFile, ArraysWithoutValuesHaveNoRowsHoweverManyTheyClaim) {
+    for (const char* fortran_order : {"False", "True"}) {
+        const NpyOf rows(npy_bytes("'<i2'", "(4611686018427387904, 0)", "", fortran_order));
+        rows.open().read_rows("array",
+                              [](std::size_t, std::size_t, const std::vector<float>&) { FAIL(); });
+        EXPECT_TRUE(rows.read({std::size_t{1} << 62, 0}).empty());
+        const NpyOf columns(npy_bytes("'<i2'", "(0, 4611686018427387904)", "", fortran_order));
+        EXPECT_TRUE(columns.read({0, std::size_t{1} << 62}).empty());
+    }
+}
+
 TEST(NpyFile, TextsAreReadAndOtherContentIsRefused) {
     EXPECT_EQ(NpyOf(npy_bytes("'>U2'", "()", swapped<std::uint32_t>({0x1f600, 'x'})))
                   .open()
