@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kWellExplained = 0.1;    // no questions are asked
 constexpr double kDecisive = 1.35;        // by which the description must explain less
-constexpr double kMostUnexplained = 0.7;  // by a slip that is named
+constexpr double kMostUnexplained = 0.6;  // by a slip that is named
 constexpr double kHopeless = 2.0;         // share of a slip that is tried no further
 constexpr double kTie = 1.25;             // slips that explain so much alike are all named
 constexpr std::size_t kMostNamed = 2;
