@@ -8,7 +8,6 @@
 #include "nlos/methods/light_cone_transform.h"
 #include "nlos/methods/method_choice.h"
 #include "nlos/methods/phasor_field.h"
-#include "nlos/methods/total_variation.h"
 #include "nlos/methods/virtual_wave.h"
 #include "nlos/preparation/capture_check.h"
 #include "nlos/preparation/histogram_preparation.h"
@@ -16,6 +15,7 @@
 #include "nlos/preparation/prepared_capture.h"
 #include "nlos/preparation/wiener_snr.h"
 #include "nlos/reconstruction/surface.h"
+#include "nlos/solver/confocal_solver.h"
 #include "renderer/core/process.h"
 #include "renderer/core/recorded_detector.h"
 #include "renderer/core/stopwatch.h"
@@ -23,6 +23,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
 
 namespace nlos {
 namespace {
@@ -88,9 +89,8 @@ PreparationPlan choose_preparation(const PreparedCapture& prepared, ReconstructS
             plan.ambient_per_bin.assign(prepared.scan.num_pairs(), *settings.noise_floor);
         }
     }
-    plan.deconvolution = deconvolution_of(settings, axis);
-    const bool has_filter = settings.method == Method::Dlct ||
-                            (settings.method == Method::Lct && settings.prior == Prior::None);
+    if (settings.method != Method::Solver) plan.deconvolution = deconvolution_of(settings, axis);
+    const bool has_filter = settings.method == Method::Dlct || settings.method == Method::Lct;
     if (has_filter && !settings.snr) {
         settings.snr =
             is_counts
@@ -98,6 +98,25 @@ PreparationPlan choose_preparation(const PreparedCapture& prepared, ReconstructS
                 : kNoiselessSnr;
     }
     return plan;
+}
+
+/// What the solver explains of the histograms instead of having it taken off: moves the plan's
+/// ambient light here.
+///
+/// axis   of the prepared histograms
+Measurement take_measurement(const PreparedCapture& prepared,
+                             const ReconstructSettings& settings,
+                             const core::TimeAxis& axis,
+                             PreparationPlan& plan) {
+    Measurement measurement;
+    measurement.is_counts = prepared.unit == core::TransientUnit::Counts;
+    measurement.background_per_bin = std::exchange(plan.ambient_per_bin, {});
+    for (double& value : measurement.background_per_bin) value *= plan.merge_bins;
+    if (core::is_stated(settings.response)) {
+        measurement.response = core::sample_response(
+            core::make_response(settings.response, "response"), axis.bin_width_m);
+    }
+    return measurement;
 }
 
 bool uses_wave(const ReconstructSettings& settings) {
@@ -189,10 +208,9 @@ struct MethodFunctions {
 
 MethodFunctions functions_of(const ReconstructSettings& settings) {
     switch (settings.method) {
+        case Method::Solver:
+            return {solve_confocal, solve_confocal_bytes};
         case Method::Lct:
-            if (settings.prior == Prior::Tv) {
-                return {total_variation_light_cone_transform, total_variation_bytes};
-            }
             return {light_cone_transform, light_cone_transform_bytes};
         case Method::Dlct:
             return {directional_light_cone_transform, directional_light_cone_transform_bytes};
@@ -249,21 +267,27 @@ Reconstruction reconstruct(const core::Capture& capture,
 
     Reconstruction result;
     result.settings = settings;
+    const bool takes_lct = settings.method == Method::Auto || settings.method == Method::Lct;
+    if (settings.prior == Prior::Tv && takes_lct) result.settings.method = Method::Solver;
     result.settings.response = core::resolve_response(settings.response, capture, "response");
     result.warnings = capture_warnings(capture);
     for (std::string& text : core::detector_warnings(capture, result.settings.response)) {
         result.warnings.push_back(std::move(text));
     }
     PreparedCapture prepared = crop_capture(capture, settings.crop);
-    const MethodChoice choice = choose_method(settings, prepared);
+    const MethodChoice choice = choose_method(result.settings, prepared);
     result.settings.method = choice.method;
     result.method = core::enum_name(choice.method);
     result.reason = choice.reason;
 
-    const PreparationPlan plan = choose_preparation(prepared, result.settings);
+    PreparationPlan plan = choose_preparation(prepared, result.settings);
     core::TimeAxis axis = prepared.time_axis;
     axis.bin_width_m *= plan.merge_bins;
     axis.num_bins = plan.num_bins;
+    Measurement measurement;
+    if (choice.method == Method::Solver) {
+        measurement = take_measurement(prepared, result.settings, axis, plan);
+    }
     if (uses_wave(result.settings) && !result.settings.phasor.wavelength_m) {
         result.settings.phasor.wavelength_m =
             default_wavelength_m(prepared.scan, prepared.wall, axis);
@@ -288,7 +312,8 @@ Reconstruction reconstruct(const core::Capture& capture,
                            *result.settings.volume.z_range_m,
                            progress,
                            observed ? &*observed : nullptr,
-                           prepared.unobserved_before_m};
+                           prepared.unobserved_before_m,
+                           measurement};
     };
     const double prepared_bytes =
         is_ready ? 0.0 : 4.0 * static_cast<double>(prepared.scan.num_pairs()) * axis.num_bins;

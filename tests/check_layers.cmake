@@ -21,6 +21,7 @@ set(floors_nlos
     "nlos/layouts"
     "nlos/formats|nlos/compare|nlos/preparation"
     "nlos/methods|nlos/pictures"
+    "nlos/solver"
     "nlos")
 set(floors_calib
     "calib/statistics|calib/model"

@@ -132,7 +132,7 @@ double reconstruction_limit_seconds(const core::Capture& capture,
                                   progress};
     switch (settings.method) {
         case nlos::Method::Lct:
-            return settings.prior == nlos::Prior::None ? light_cone_fft_seconds(input, 1) : 0.0;
+            return light_cone_fft_seconds(input, 1);
         case nlos::Method::Dlct:
             return light_cone_fft_seconds(input, 3);
         case nlos::Method::Fk:
@@ -144,6 +144,7 @@ double reconstruction_limit_seconds(const core::Capture& capture,
             return multiply_add_seconds(static_cast<double>(capture.scan.num_pairs()) *
                                         static_cast<double>(input.axes.num_voxels()));
         case nlos::Method::Auto:
+        case nlos::Method::Solver:
             break;
     }
     return 0.0;

@@ -13,7 +13,8 @@ namespace {
 constexpr std::size_t kMinPhasorPoints = 4;
 
 bool is_confocal_method(Method method) {
-    return method == Method::Lct || method == Method::Fk || method == Method::Dlct;
+    return method == Method::Lct || method == Method::Fk || method == Method::Dlct ||
+           method == Method::Solver;
 }
 
 std::string name_of(core::ScanPattern pattern) {
@@ -116,15 +117,13 @@ std::optional<std::string> unobserved_warning(const ReconstructSettings& setting
                                               int num_bins) {
     const bool works_by_transforms =
         settings.method == Method::Phasor ||
-        (is_confocal_method(settings.method) &&
-         !(settings.method == Method::Lct && settings.prior == Prior::Tv));
+        (is_confocal_method(settings.method) && settings.method != Method::Solver);
     if (!observed || !works_by_transforms) return std::nullopt;
     const auto partial = std::ranges::count_if(
         *observed, [&](const core::BinRange& range) { return range.size() < num_bins; });
     return fmt::format(
-        "{} of {} histograms have bins that were not observed, which {} takes for dark; bp, fbp "
-        "and "
-        "lct with prior=tv leave them out",
+        "{} of {} histograms have bins that were not observed, which {} takes for dark; solver, bp "
+        "and fbp leave them out",
         partial,
         observed->size(),
         core::enum_name(settings.method));

@@ -5,6 +5,7 @@
 #include "nlos/reconstruction/volume.h"
 #include "renderer/core/capture.h"
 #include "renderer/core/error.h"
+#include "renderer/core/instrument_response.h"
 #include "renderer/core/parallel.h"
 #include "renderer/core/progress.h"
 
@@ -15,6 +16,17 @@
 #include <vector>
 
 namespace nlos {
+
+/// What histograms hold beside the light of the scene, for methods that explain it.
+struct Measurement {
+    bool is_counts = false;
+    std::vector<double> background_per_bin;  ///< per pair; empty: none
+    core::ResponseFilter response;           ///< on the histograms' bins; no weights: none
+
+    double background(std::size_t pair) const {
+        return background_per_bin.empty() ? 0.0 : background_per_bin[pair];
+    }
+};
 
 /// What every reconstruction method gets: measurements, where they were taken, what to fill.
 struct MethodInput {
@@ -29,6 +41,7 @@ struct MethodInput {
     /// work by transforms take for darkness.
     const std::vector<core::BinRange>* observed = nullptr;
     double unobserved_before_m = 0.0;  ///< path length cut off before the axis: nobody looked there
+    Measurement measurement = {};      ///< for Method::Solver; all others get it taken off
 };
 
 /// The same measurement with other histograms, all of them observed.

@@ -11,7 +11,7 @@ void validate(const ReconstructSettings& settings) {
     core::check_ranges(settings, "");
     core::check_ranges(settings.volume, "volume");
     core::check_ranges(settings.phasor, "phasor");
-    core::check_ranges(settings.tv, "tv");
+    core::check_ranges(settings.solver, "solver");
     if (settings.noise_floor) {
         core::require(settings.ambient != Ambient::Keep,
                       "noise_floor",

@@ -11,7 +11,7 @@ namespace nlos {
 
 inline constexpr int kMaxVoxelsPerAxis = 65536;
 
-enum class Method { Auto, Lct, Bp, Fbp, Fk, Phasor, Dlct };
+enum class Method { Auto, Lct, Bp, Fbp, Fk, Phasor, Dlct, Solver };
 
 /// How hidden surfaces reflect: diffuse light falls off with r^4, retroreflected light with r^2.
 enum class Falloff { Diffuse, Retro };
@@ -30,8 +30,12 @@ enum class FbpFilter { Laplacian, Phasor };
 /// What happens to constant background light.
 enum class Ambient { Auto, Keep, Subtract };
 
-/// What a reconstruction assumes about the hidden scene beyond the data.
+/// What a reconstruction assumes about the hidden scene beyond the data. Tv: the solver, by the
+/// name of its prior.
 enum class Prior { None, Tv };
+
+/// What is known of the noise of histograms.
+enum class Likelihood { Auto, Poisson, Gaussian };
 
 /// Where to reconstruct. Empty fields are chosen from the capture.
 struct VolumeSettings {
@@ -52,12 +56,15 @@ struct PhasorSettings {
     double cycles = 5.0;                 ///< in the envelope: sigma = cycles * wavelength / 6
 };
 
-/// The prior of few edges and few bright places, on data of maximum 1.
-struct TvSettings {
-    std::optional<double> weight;    ///< of total variation; empty: the data's noise
-    std::optional<double> sparsity;  ///< of the sum; empty: a tenth of `weight`
-    double penalty = 0.3;            ///< of the splitting: changes speed, not the result
-    int iterations = 60;
+/// The statistical solver: noise, and priors of few edges and few bright places, both as multiples
+/// of what the noise of the data makes of a voxel.
+struct SolverSettings {
+    Likelihood likelihood = Likelihood::Auto;
+    std::optional<double> tv;        ///< weight of total variation; empty: by the likelihood
+    std::optional<double> sparsity;  ///< weight of the sum; empty: a tenth of `tv`
+    double spot_m = 0.0;             ///< full width at half maximum of the spot on the wall
+    double tolerance = 0.01;
+    int max_iterations = 200;
 };
 
 /// How to reconstruct. To add a method: a name in Method, a row in functions_of() of
@@ -70,7 +77,7 @@ struct ReconstructSettings {
     Compensation compensation = Compensation::None;
     FbpFilter filter = FbpFilter::Laplacian;
     PhasorSettings phasor;
-    TvSettings tv;
+    SolverSettings solver;
     CropSettings crop;
     std::optional<double> snr;        ///< Wiener filter of lct, dlct; empty: see wiener_snr()
     core::ResponseSettings response;  ///< of the set-up, to take off; all 0: none
@@ -112,15 +119,25 @@ void for_each_field(PhasorSettings& s, Visitor&& visit) {
 }
 
 template <class Visitor>
-void for_each_field(TvSettings& s, Visitor&& visit) {
-    visit("weight",
-          s.weight,
-          core::at_least(0, "weight of total variation; null: standard deviation of the data"));
+void for_each_field(SolverSettings& s, Visitor&& visit) {
+    visit("likelihood",
+          s.likelihood,
+          "noise of the histograms; auto: poisson for counts, gaussian for radiance");
+    visit("tv",
+          s.tv,
+          core::at_least(0,
+                         "weight of total variation, in standard deviations of a voxel's noise; "
+                         "null: 1 for counts, 4 for radiance"));
     visit("sparsity",
           s.sparsity,
-          core::at_least(0, "weight of the sum of all voxels; null: a tenth of tv.weight"));
-    visit("penalty", s.penalty, core::above(0, "of the splitting: changes speed, not the result"));
-    visit("iterations", s.iterations, core::at_least(1, "how many"));
+          core::at_least(0, "weight of the sum of all voxels, likewise; null: a tenth of solver.tv"));
+    visit("spot_m",
+          s.spot_m,
+          core::at_least(0, "full width at half maximum of the spot on the wall [m]"));
+    visit("tolerance",
+          s.tolerance,
+          core::strictly_between(0, 1, "relative change of the result at which iterations stop"));
+    visit("max_iterations", s.max_iterations, core::at_least(1, "iterations at most"));
 }
 
 template <class Visitor>
@@ -130,8 +147,8 @@ void for_each_field(ReconstructSettings& s, Visitor&& visit) {
     visit("falloff",
           s.falloff,
           "how the hidden surface reflects (lct, dlct, fk, phasor, fbp by phasor)");
-    visit("prior", s.prior, "assumption about the hidden scene (lct)");
-    visit("tv", s.tv, "the prior tv");
+    visit("prior", s.prior, "assumption about the hidden scene (lct); tv: as method solver");
+    visit("solver", s.solver, "the statistical solver");
     visit("compensation",
           s.compensation,
           "falloff that each term is multiplied by (bp, and fbp by laplacian)");
@@ -188,7 +205,8 @@ void validate(const ReconstructSettings& settings);
 template <>
 struct core::EnumNames<nlos::Method> {
     static constexpr auto value =
-        names_from_zero<nlos::Method>("auto", "lct", "bp", "fbp", "fk", "phasor", "dlct");
+        names_from_zero<nlos::Method>(
+        "auto", "lct", "bp", "fbp", "fk", "phasor", "dlct", "solver");
 };
 template <>
 struct core::EnumNames<nlos::Compensation> {
@@ -209,4 +227,9 @@ struct core::EnumNames<nlos::Ambient> {
 template <>
 struct core::EnumNames<nlos::Prior> {
     static constexpr auto value = names_from_zero<nlos::Prior>("none", "tv");
+};
+template <>
+struct core::EnumNames<nlos::Likelihood> {
+    static constexpr auto value =
+        names_from_zero<nlos::Likelihood>("auto", "poisson", "gaussian");
 };

@@ -176,7 +176,7 @@ std::vector<MaskCase> mask_cases() {
         {"LctConfocal", ScanPattern::Confocal, {"method=lct", "snr=10"}, 0.05, true},
         {"TvConfocal",
          ScanPattern::Confocal,
-         {"method=lct", "prior=tv", "tv.iterations=15"},
+         {"method=lct", "prior=tv", "solver.max_iterations=15"},
          0.05,
          true},
         {"DlctConfocal", ScanPattern::Confocal, {"method=dlct", "snr=10"}, 0.05, true},

@@ -274,7 +274,7 @@ TEST(Reconstruct, TakesNoMoreMemoryThanItStates) {
         in_slabs.push_back(fmt::format("memory_gb={}", 0.8e-9 * stated_bytes(overrides)));
         stated_bytes(in_slabs);
     }
-    stated_bytes({"method=lct", "prior=tv", "tv.iterations=2"});
+    stated_bytes({"method=lct", "prior=tv", "solver.max_iterations=2"});
 }
 
 TEST(Reconstruct, EndsWhenAskedToStop) {

@@ -318,7 +318,7 @@ std::vector<LawCase> law_cases() {
         {"LctConfocal", ScanPattern::Confocal, {"method=lct", "snr=10"}, true, true},
         {"TvConfocal",
          ScanPattern::Confocal,
-         {"method=lct", "prior=tv", "tv.iterations=15"},
+         {"method=lct", "prior=tv", "solver.max_iterations=15"},
          true,
          false,
          3,

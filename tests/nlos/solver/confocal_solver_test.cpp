@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/methods/total_variation.h"
+#include "nlos/solver/confocal_solver.h"
 
 #include "nlos/reconstruct.h"
 #include "tests/nlos/methods/confocal_scene.h"
@@ -47,7 +47,7 @@ double error(const Reconstruction& result) {
     return std::sqrt(sum / static_cast<double>(image.size()));
 }
 
-TEST(TotalVariation, SharpensANoisyPlateMoreThanTheWienerFilter) {
+TEST(ConfocalSolver, SharpensANoisyPlateMoreThanTheWienerFilter) {
     core::Capture capture = plate_capture();
     const auto values = capture.transient.values();
     const float largest = *std::max_element(values.begin(), values.end());
@@ -59,7 +59,7 @@ TEST(TotalVariation, SharpensANoisyPlateMoreThanTheWienerFilter) {
     EXPECT_LT(with_prior, 0.8 * error(run(capture, {"snr=0.1"})));
 }
 
-TEST(TotalVariation, FindsTheDepthOfThePlate) {
+TEST(ConfocalSolver, FindsTheDepthOfThePlate) {
     const Reconstruction result = run(plate_capture(), {"prior=tv"});
     for (std::size_t ix = 8; ix < 16; ++ix) {
         for (std::size_t iy = 8; iy < 16; ++iy) {
@@ -68,11 +68,11 @@ TEST(TotalVariation, FindsTheDepthOfThePlate) {
     }
 }
 
-TEST(TotalVariation, IsZeroForDarkDataAndHasTheSameBitsForAnyNumberOfThreads) {
+TEST(ConfocalSolver, IsZeroForDarkDataAndHasTheSameBitsForAnyNumberOfThreads) {
     core::Capture capture = plate_capture();
     const auto values = [&](int threads) {
         const core::ThreadLimit limit(threads);
-        return run(capture, {"prior=tv", "tv.iterations=5"}).volume.values;
+        return run(capture, {"prior=tv", "solver.max_iterations=5"}).volume.values;
     };
     EXPECT_EQ(values(1), values(7));
     std::fill(capture.transient.values().begin(), capture.transient.values().end(), 0.0F);

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "nlos/methods/light_cone.h"
+#include "nlos/reconstruction/reconstruct_settings.h"
+#include "nlos/solver/time_operator.h"
+
+#include <vector>
+
+namespace nlos {
+
+/// Histograms of a confocal grid as the solver takes them, cut to the bins that hold light, and
+/// what is known of their noise.
+struct ConfocalData {
+    Cone cone;                              ///< of these bins' ranges
+    core::TimeAxis axis;                    ///< from and to the wall
+    std::vector<float> values;              ///< [x][bin][y]
+    std::vector<core::BinRange> observed;   ///< per column
+    std::vector<float> background_per_bin;  ///< per column
+    Likelihood likelihood;                  ///< not Auto
+    std::vector<double> precision;          ///< per bin: about 1 / variance of its light
+    TimeOperator time;  ///< of light in a unit in which its standard deviation is about 1
+    double unit = 1.0;  ///< that unit, as content of a bin of v times range^power
+};
+
+/// Cuts the bins with light out of a capture, takes device legs off and weighs what is left.
+///
+/// Where device legs differ by no whole number of bins, a bin is split between two.
+///
+/// throws     core::Error when the axis has no positive range
+ConfocalData make_confocal_data(const MethodInput& input, const ReconstructSettings& settings);
+
+}  // namespace nlos
