@@ -10,6 +10,7 @@
 #include "nlos/methods/phasor_field.h"
 #include "nlos/methods/virtual_wave.h"
 #include "nlos/preparation/capture_check.h"
+#include "nlos/preparation/capture_survey.h"
 #include "nlos/preparation/histogram_preparation.h"
 #include "nlos/preparation/memory_limit.h"
 #include "nlos/preparation/prepared_capture.h"
@@ -242,6 +243,11 @@ std::size_t choose_slabs(const MethodInput& input,
     return 1;
 }
 
+void announce_findings(const std::vector<std::string>& findings, const core::Progress& progress) {
+    if (!progress.announce) return;
+    for (const std::string& finding : findings) progress.announce("found: " + finding);
+}
+
 /// Says what will run and what it needs.
 void announce(const Reconstruction& result, std::size_t num_slabs, const core::Progress& progress) {
     if (!progress.announce) return;
@@ -250,6 +256,34 @@ void announce(const Reconstruction& result, std::size_t num_slabs, const core::P
                                   result.reason,
                                   1e-9 * result.stated_bytes,
                                   num_slabs > 1 ? fmt::format(" in {} slabs", num_slabs) : ""));
+}
+
+/// Chooses the method and enters it and what it takes from the capture's provenance: `auto` lets the
+/// solver explain a recorded response.
+MethodChoice choose(const core::Capture& capture,
+                    ReconstructSettings& settings,
+                    PreparedCapture& prepared) {
+    ReconstructSettings with_response = settings;
+    if (settings.method == Method::Auto && !core::is_stated(settings.response)) {
+        with_response.response = core::recorded_response(capture).value_or(settings.response);
+    }
+    MethodChoice choice = choose_method(with_response, prepared);
+    if (choice.method == Method::Solver) settings.response = with_response.response;
+    settings.method = choice.method;
+    return choice;
+}
+
+/// Enters how light falls off: as counts say where `auto` took the solver, else diffuse.
+void choose_falloff_of(const MethodInput& input,
+                       bool is_auto,
+                       ReconstructSettings& settings,
+                       std::vector<std::string>& findings) {
+    if (settings.falloff != Falloff::Auto) return;
+    settings.falloff = Falloff::Diffuse;
+    if (!is_auto || settings.method != Method::Solver) return;
+    FalloffChoice choice = choose_falloff(input, settings);
+    settings.falloff = choice.falloff;
+    findings.push_back(std::move(choice.reason));
 }
 
 }  // namespace
@@ -270,13 +304,12 @@ Reconstruction reconstruct(const core::Capture& capture,
     const bool takes_lct = settings.method == Method::Auto || settings.method == Method::Lct;
     if (settings.prior == Prior::Tv && takes_lct) result.settings.method = Method::Solver;
     result.settings.response = core::resolve_response(settings.response, capture, "response");
+    PreparedCapture prepared = crop_capture(capture, settings.crop);
+    const MethodChoice choice = choose(capture, result.settings, prepared);
     result.warnings = capture_warnings(capture);
     for (std::string& text : core::detector_warnings(capture, result.settings.response)) {
         result.warnings.push_back(std::move(text));
     }
-    PreparedCapture prepared = crop_capture(capture, settings.crop);
-    const MethodChoice choice = choose_method(result.settings, prepared);
-    result.settings.method = choice.method;
     result.method = core::enum_name(choice.method);
     result.reason = choice.reason;
 
@@ -284,6 +317,8 @@ Reconstruction reconstruct(const core::Capture& capture,
     core::TimeAxis axis = prepared.time_axis;
     axis.bin_width_m *= plan.merge_bins;
     axis.num_bins = plan.num_bins;
+    const bool is_auto = settings.method == Method::Auto;
+    if (is_auto) result.findings = survey_capture(prepared, plan, result.settings);
     Measurement measurement;
     if (choice.method == Method::Solver) {
         measurement = take_measurement(prepared, result.settings, axis, plan);
@@ -330,8 +365,10 @@ Reconstruction reconstruct(const core::Capture& capture,
     if (makes_up_for_falloff(prepared.scan, result.settings)) {
         multiply_by_range(prepared.scan, axis, falloff_power(settings.falloff), histograms);
     }
-    result.volume = method.run(
-        input_with(is_ready ? prepared.transient() : histograms), result.settings, num_slabs);
+    const MethodInput input = input_with(is_ready ? prepared.transient() : histograms);
+    choose_falloff_of(input, is_auto, result.settings, result.findings);
+    announce_findings(result.findings, progress);
+    result.volume = method.run(input, result.settings, num_slabs);
 
     result.depth = extract_depth_map(result.volume, settings.mask_threshold);
     take_normals(result.volume, result.depth);

@@ -66,10 +66,21 @@ Method best_method(const PreparedCapture& prepared, const VolumeSettings& volume
     return why_no_phasor(prepared).empty() ? Method::Phasor : Method::Bp;
 }
 
+/// What a method that explains its data does better with than a direct inversion; empty: nothing.
+std::string why_statistical(const ReconstructSettings& settings, const PreparedCapture& prepared) {
+    if (prepared.unit == core::TransientUnit::Counts) return "photon counts";
+    if (prepared.observed) return "bins that were not observed";
+    return core::is_stated(settings.response) ? "a response" : "";
+}
+
 MethodChoice choose_automatically(const ReconstructSettings& settings,
                                   const PreparedCapture& prepared) {
     const Method method = best_method(prepared, settings.volume);
-    if (method == Method::Lct) return {method, "confocal scan on an even planar grid"};
+    if (method == Method::Lct) {
+        const std::string noise = why_statistical(settings, prepared);
+        if (!noise.empty()) return {Method::Solver, "confocal scan on an even planar grid, " + noise};
+        return {method, "confocal scan on an even planar grid"};
+    }
     const std::string no_lct = why_no_confocal_method(prepared, settings.volume);
     if (method == Method::Phasor) return {method, no_lct};
     const std::string no_phasor = why_no_phasor(prepared);

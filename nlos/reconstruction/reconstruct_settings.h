@@ -14,11 +14,12 @@ inline constexpr int kMaxVoxelsPerAxis = 65536;
 enum class Method { Auto, Lct, Bp, Fbp, Fk, Phasor, Dlct, Solver };
 
 /// How hidden surfaces reflect: diffuse light falls off with r^4, retroreflected light with r^2.
-enum class Falloff { Diffuse, Retro };
+/// Auto: as the data say where method=auto takes the solver for counts, else diffuse.
+enum class Falloff { Diffuse, Retro, Auto };
 
 /// The power of range by which light falls off on its way there and back.
 constexpr double falloff_power(Falloff falloff) {
-    return falloff == Falloff::Diffuse ? 4.0 : 2.0;
+    return falloff == Falloff::Retro ? 2.0 : 4.0;
 }
 
 /// What backprojection multiplies each term by, to make up for the light lost on its way.
@@ -72,7 +73,7 @@ struct SolverSettings {
 struct ReconstructSettings {
     Method method = Method::Auto;
     VolumeSettings volume;
-    Falloff falloff = Falloff::Diffuse;
+    Falloff falloff = Falloff::Auto;
     Prior prior = Prior::None;
     Compensation compensation = Compensation::None;
     FbpFilter filter = FbpFilter::Laplacian;
@@ -146,7 +147,8 @@ void for_each_field(ReconstructSettings& s, Visitor&& visit) {
     visit("volume", s.volume, "where to reconstruct");
     visit("falloff",
           s.falloff,
-          "how the hidden surface reflects (lct, dlct, fk, phasor, fbp by phasor)");
+          "how the hidden surface reflects (lct, dlct, fk, phasor, fbp by phasor, solver); auto: as "
+          "counts say where method=auto takes the solver, else diffuse");
     visit("prior", s.prior, "assumption about the hidden scene (lct); tv: as method solver");
     visit("solver", s.solver, "the statistical solver");
     visit("compensation",
@@ -218,7 +220,7 @@ struct core::EnumNames<nlos::FbpFilter> {
 };
 template <>
 struct core::EnumNames<nlos::Falloff> {
-    static constexpr auto value = names_from_zero<nlos::Falloff>("diffuse", "retro");
+    static constexpr auto value = names_from_zero<nlos::Falloff>("diffuse", "retro", "auto");
 };
 template <>
 struct core::EnumNames<nlos::Ambient> {

@@ -19,6 +19,7 @@ struct Reconstruction {
     core::PointCloud points;  ///< foreground of `depth` in world coordinates, normals to the wall
     std::string method;       ///< the one that ran
     std::string reason;       ///< why `auto` took it
+    std::vector<std::string> findings;  ///< what `auto` found looking at the capture, a line each
     ReconstructSettings settings;       ///< with every choice filled in
     std::vector<std::string> warnings;  ///< what looks wrong about the capture
     core::Json provenance;              ///< who made it from what, as the caller says

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numeric>
 
 // Splits c = K f, h = B c, d = grad f and w = f, with scaled multipliers p, r, u and q and the
 // penalties 1, P (the data's precision, per bin), mu and nu. Given the others, f and h are
@@ -65,10 +66,9 @@ class ConfocalSolver {
     ConfocalSolver(const MethodInput& input,
                    const ConfocalData& data,
                    const SolverSettings& settings)
-        : input_(input),
-          data_(data),
+        : data_(data),
           cone_(data.cone),
-          settings_(settings),
+          tolerance_(settings.tolerance),
           time_(data.time),
           convolution_(cone_, *input.wall.grid, settings.spot_m, kGradientPenalty, kAlbedoPenalty),
           num_bins_(static_cast<std::size_t>(data.axis.num_bins)),
@@ -92,23 +92,45 @@ class ConfocalSolver {
     }
 
     /// Returns the number of iterations.
-    int run() {
+    int run(const core::Progress& progress, int max_iterations) {
         split_data(true);
-        for (int i = 1; i <= settings_.max_iterations; ++i) {
-            check_stop(input_.progress);
+        for (int i = 1; i <= max_iterations; ++i) {
+            check_stop(progress);
             convolution_.solve(light_, right_);
             split_data(false);
             const Change change = split_field();
             const double share = std::max(
-                static_cast<double>(i) / settings_.max_iterations,
-                std::min(1.0, std::log(change.relative()) / std::log(settings_.tolerance)));
-            input_.progress.update(0.95 * share, "solver");
-            if (change.relative() <= settings_.tolerance) return i;
+                static_cast<double>(i) / max_iterations,
+                std::min(1.0, std::log(change.relative()) / std::log(tolerance_)));
+            progress.update(0.95 * share, "solver");
+            if (change.relative() <= tolerance_) return i;
         }
-        return settings_.max_iterations;
+        return max_iterations;
     }
 
     const ConeField& albedo() const { return w_; }
+
+    /// Twice how much less likely the observed bins are than under their own values (the
+    /// deviance), all scatterers included.
+    double misfit() const {
+        std::vector<double> rows(cone_.nx, 0.0);
+        core::parallel_for(cone_.nx, [&](std::size_t ix) {
+            const std::size_t lanes = cone_.ny;
+            std::vector<float> time(num_bins_ * lanes);
+            time_.apply(c_.data() + ix * cone_.num_v() * lanes, time.data(), lanes);
+            for (std::size_t i = 0; i < time.size(); ++i) {
+                const std::size_t column = ix * lanes + i % lanes;
+                const std::size_t t = i / lanes;
+                if (!data_.observed[column].holds(static_cast<int>(t))) continue;
+                const double y = static_cast<double>(data_.values[ix * num_bins_ * lanes + i]);
+                const double m = static_cast<double>(time[i] + data_.background_per_bin[column]);
+                rows[ix] += data_.likelihood == Likelihood::Poisson
+                                ? poisson_deviance(y, m)
+                                : data_.precision[t] * (y - m) * (y - m);
+            }
+        });
+        return std::accumulate(rows.begin(), rows.end(), 0.0);
+    }
 
  private:
     /// Squares that say how far the iterations have come.
@@ -261,10 +283,9 @@ class ConfocalSolver {
         return change;
     }
 
-    const MethodInput& input_;
     const ConfocalData& data_;
     const Cone& cone_;
-    const SolverSettings& settings_;
+    double tolerance_;
     TimeOperator time_;
     ConeConvolution convolution_;
     std::size_t num_bins_;
@@ -274,6 +295,22 @@ class ConfocalSolver {
     std::vector<float> r_;              ///< [x][bin][y]
     std::vector<float> tv_, sparsity_;  ///< thresholds, per bin of v
 };
+
+// Of the choice between falloffs.
+constexpr int kTrialIterations = 20;
+constexpr double kFewCounts = 5.0;       // in the bins that hold most of the light
+constexpr double kClearlyBetter = 0.95;  // share of the misfit
+
+/// The mean of counts, weighted by themselves.
+double mean_intensity(const ConfocalData& data) {
+    double sum = 0.0;
+    double squares = 0.0;
+    for (const float value : data.values) {
+        sum += static_cast<double>(value);
+        squares += static_cast<double>(value) * static_cast<double>(value);
+    }
+    return sum > 0.0 ? squares / sum : 0.0;
+}
 
 /// Fields over the footprint that a solver holds, those of time included.
 constexpr double kNumFields = 14.0;
@@ -286,7 +323,7 @@ Volume solve_confocal(const MethodInput& input,
     const ConfocalData data = make_confocal_data(input, settings);
     const Cone& cone = data.cone;
     ConfocalSolver solver(input, data, settings.solver);
-    const int iterations = solver.run();
+    const int iterations = solver.run(input.progress, settings.solver.max_iterations);
     if (input.progress.announce) {
         input.progress.announce(fmt::format("solver: {} iterations", iterations));
     }
@@ -305,6 +342,27 @@ Volume solve_confocal(const MethodInput& input,
     });
     input.progress.update(1.0, "to depth");
     return volume;
+}
+
+FalloffChoice choose_falloff(const MethodInput& input, ReconstructSettings settings) {
+    const core::Progress silent = input.progress.part(0.0, 0.0);
+    std::array<double, 2> misfits{};
+    for (const Falloff falloff : {Falloff::Diffuse, Falloff::Retro}) {
+        settings.falloff = falloff;
+        const ConfocalData data = make_confocal_data(input, settings);
+        if (data.likelihood != Likelihood::Poisson || mean_intensity(data) < kFewCounts) {
+            return {Falloff::Diffuse, "falloff: taken for diffuse, too few counts tell"};
+        }
+        ConfocalSolver solver(input, data, settings.solver);
+        solver.run(silent, kTrialIterations);
+        misfits[static_cast<std::size_t>(falloff)] = solver.misfit();
+    }
+    const double ratio = misfits[1] / misfits[0];
+    const bool is_retro = ratio < kClearlyBetter;
+    return {is_retro ? Falloff::Retro : Falloff::Diffuse,
+            fmt::format("falloff: {}, misfit of retroreflective over diffuse light {:.2f}",
+                        is_retro ? "retroreflective" : "diffuse",
+                        ratio)};
 }
 
 double solve_confocal_bytes(const MethodInput& input,

@@ -4,6 +4,8 @@
 #include "nlos/methods/method_input.h"
 #include "nlos/reconstruction/reconstruct_settings.h"
 
+#include <string>
+
 namespace nlos {
 
 /// Statistical reconstruction of a confocal grid: the albedo f >= 0 that minimises
@@ -23,6 +25,19 @@ namespace nlos {
 Volume solve_confocal(const MethodInput& input,
                       const ReconstructSettings& settings,
                       std::size_t num_slabs);
+
+/// How light falls off with range, and why, for people.
+struct FalloffChoice {
+    Falloff falloff = Falloff::Diffuse;
+    std::string reason;
+};
+
+/// Finds how light falls off in confocal counts: retroreflective where a few iterations of the
+/// solver explain them clearly better that way, else, and where counts are few, diffuse.
+///
+/// settings   falloff is not used
+/// throws     core::Failure when asked to stop
+FalloffChoice choose_falloff(const MethodInput& input, ReconstructSettings settings);
 
 /// Memory that solve_confocal() takes on top of its input [bytes].
 double solve_confocal_bytes(const MethodInput& input,
