@@ -17,6 +17,7 @@
 #include "nlos/preparation/wiener_snr.h"
 #include "nlos/reconstruction/surface.h"
 #include "nlos/solver/confocal_solver.h"
+#include "nlos/solver/solver.h"
 #include "renderer/core/process.h"
 #include "renderer/core/recorded_detector.h"
 #include "renderer/core/stopwatch.h"
@@ -210,7 +211,7 @@ struct MethodFunctions {
 MethodFunctions functions_of(const ReconstructSettings& settings) {
     switch (settings.method) {
         case Method::Solver:
-            return {solve_confocal, solve_confocal_bytes};
+            return {solve, solve_bytes};
         case Method::Lct:
             return {light_cone_transform, light_cone_transform_bytes};
         case Method::Dlct:
@@ -280,7 +281,7 @@ void choose_falloff_of(const MethodInput& input,
                        std::vector<std::string>& findings) {
     if (settings.falloff != Falloff::Auto) return;
     settings.falloff = Falloff::Diffuse;
-    if (!is_auto || settings.method != Method::Solver) return;
+    if (!is_auto || settings.method != Method::Solver || !is_confocal_grid(input)) return;
     FalloffChoice choice = choose_falloff(input, settings);
     settings.falloff = choice.falloff;
     findings.push_back(std::move(choice.reason));

@@ -13,8 +13,7 @@ namespace {
 constexpr std::size_t kMinPhasorPoints = 4;
 
 bool is_confocal_method(Method method) {
-    return method == Method::Lct || method == Method::Fk || method == Method::Dlct ||
-           method == Method::Solver;
+    return method == Method::Lct || method == Method::Fk || method == Method::Dlct;
 }
 
 std::string name_of(core::ScanPattern pattern) {
@@ -128,7 +127,7 @@ std::optional<std::string> unobserved_warning(const ReconstructSettings& setting
                                               int num_bins) {
     const bool works_by_transforms =
         settings.method == Method::Phasor ||
-        (is_confocal_method(settings.method) && settings.method != Method::Solver);
+        is_confocal_method(settings.method);
     if (!observed || !works_by_transforms) return std::nullopt;
     const auto partial = std::ranges::count_if(
         *observed, [&](const core::BinRange& range) { return range.size() < num_bins; });

@@ -44,6 +44,14 @@ struct MethodInput {
     Measurement measurement = {};      ///< for Method::Solver; all others get it taken off
 };
 
+/// Whether a method for confocal grids can serve: an even planar grid with a voxel column at each
+/// of its points.
+inline bool is_confocal_grid(const MethodInput& input) {
+    return input.scan.pattern == core::ScanPattern::Confocal && input.wall.grid &&
+           input.axes.x_m.size() == input.wall.grid->size[0] &&
+           input.axes.y_m.size() == input.wall.grid->size[1];
+}
+
 /// The same measurement with other histograms, all of them observed.
 inline MethodInput with_histograms(const MethodInput& input,
                                    const core::TimeAxis& axis,

@@ -1,0 +1,361 @@
+// SPDX-License-Identifier: MIT
+#include "nlos/solver/pair_solver.h"
+
+#include "nlos/solver/pair_operator.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace nlos {
+namespace {
+
+constexpr double kRadianceCounts = 400.0;     // in the brightest bin
+constexpr std::size_t kPairsPerSubset = 64;   // at least
+constexpr std::size_t kMaxSubsets = 16;       // at first
+constexpr int kPassesPerDoubling = 3;         // of the subsets' size
+constexpr std::size_t kFirstPairs = 256;      // that choose voxels
+constexpr double kFirstShare = 0.1;           // of the voxels to start with, the brightest
+constexpr double kSmallestPairLight = 1e-3;        // of the brightest bin
+constexpr float kNothing = 2e-3F;             // of the brightest voxel
+constexpr int kTotalVariationSteps = 8;       // after each pass
+constexpr double kSparsityOfPairs = 0.1;        // of the weight of total variation, unless set
+constexpr double kWeight = 1.0;               // of total variation, unless set
+constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+
+/// Voxels that may hold something: where they are, what they hold, who their neighbours are.
+struct ActiveVoxels {
+    std::vector<std::size_t> indices;  ///< in the volume, ascending
+    std::vector<float> albedo;
+    std::array<std::vector<float>, 3> duals;           ///< of total variation
+    std::array<std::vector<std::size_t>, 3> next;      ///< along x, y, z; kNone: holds nothing
+    std::array<std::vector<std::size_t>, 3> previous;
+
+    std::size_t size() const { return indices.size(); }
+};
+
+class PairSolver {
+ public:
+    PairSolver(const MethodInput& input, const ReconstructSettings& settings)
+        : input_(input),
+          settings_(settings.solver),
+          light_(input, settings.falloff),
+          size_{input.axes.x_m.size(), input.axes.y_m.size(), input.axes.z_m.size()} {
+        const bool is_counts = settings.solver.likelihood != Likelihood::Gaussian &&
+                               input.measurement.is_counts;
+        const auto values = input.transient.values();
+        const float largest = *std::ranges::max_element(values);
+        scale_ = is_counts || !(largest > 0.0F)
+                     ? 1.0F
+                     : static_cast<float>(kRadianceCounts) / largest;
+        for (std::size_t pair = 0; pair < input.scan.num_pairs(); ++pair) {
+            if (light_.observed()[pair].size() > 0) seen_pairs_.push_back(pair);
+        }
+        double sum = 0.0;
+        double squares = 0.0;
+        for (const float value : values) {
+            sum += static_cast<double>(value);
+            squares += static_cast<double>(value) * static_cast<double>(value);
+        }
+        if (sum > 0.0) intensity_ = std::max(1.0F, scale_ * static_cast<float>(squares / sum));
+    }
+
+    Volume run() {
+        choose_first_voxels();
+        const std::size_t most = std::clamp<std::size_t>(
+            seen_pairs_.size() / kPairsPerSubset, 1, kMaxSubsets);
+        if(std::getenv("DBG")) std::fprintf(stderr,"first %zu\n",voxels_.size());
+        int pass = 0;
+        for (; pass < settings_.max_iterations && voxels_.size() > 0; ++pass) {
+            check_stop(input_.progress);
+            const std::size_t num_subsets = std::max<std::size_t>(
+                1, most >> std::min<int>(pass / kPassesPerDoubling, 16));
+            const std::vector<float> before = voxels_.albedo;
+            for (std::size_t subset = 0; subset < num_subsets; ++subset) {
+                maximise_expectation(subset, num_subsets);
+            }
+            smooth();
+            const double change = relative_change(before);
+            if(std::getenv("DBG")) std::fprintf(stderr,"pass %d subsets %zu change %.4f voxels %zu\n",pass,num_subsets,change,voxels_.size());
+            input_.progress.update(
+                0.95 * std::min(1.0, std::log(change) / std::log(settings_.tolerance)), "solver");
+            if (num_subsets == 1 && change <= settings_.tolerance) break;
+            leave_out_empty();
+        }
+        if (input_.progress.announce) {
+            input_.progress.announce(
+                fmt::format("solver: {} passes, {} voxels left", pass, voxels_.size()));
+        }
+        Volume volume{input_.axes, std::vector<float>(input_.axes.num_voxels(), 0.0F), {}};
+        for (std::size_t i = 0; i < voxels_.size(); ++i) {
+            volume.values[voxels_.indices[i]] = voxels_.albedo[i] / scale_;
+        }
+        return volume;
+    }
+
+ private:
+    std::vector<std::size_t> pairs_of(std::size_t subset, std::size_t num_subsets) const {
+        std::vector<std::size_t> pairs;
+        for (std::size_t i = subset; i < seen_pairs_.size(); i += num_subsets) {
+            pairs.push_back(seen_pairs_[i]);
+        }
+        return pairs;
+    }
+
+    /// Counts, or what is taken for them, of some pairs.
+    std::vector<float> counts_of(const std::vector<std::size_t>& pairs) const {
+        std::vector<float> counts(pairs.size() * light_.num_bins());
+        for (std::size_t i = 0; i < pairs.size(); ++i) {
+            const auto histogram = input_.transient.histogram(pairs[i]);
+            for (std::size_t bin = 0; bin < histogram.size(); ++bin) {
+                counts[i * light_.num_bins() + bin] = std::max(0.0F, scale_ * histogram[bin]);
+            }
+        }
+        return counts;
+    }
+
+    /// Starts with the voxels that the first step of expectation maximisation makes brightest.
+    void choose_first_voxels() {
+        const std::size_t stride = std::max<std::size_t>(1, seen_pairs_.size() / kFirstPairs);
+        const std::vector<std::size_t> pairs = pairs_of(0, stride);
+        const std::vector<std::size_t> all = reachable_voxels();
+        place(all);
+        std::vector<float> counts = counts_of(pairs);
+        for (std::size_t i = 0; i < counts.size(); ++i) {
+            const double background =
+                input_.measurement.background(pairs[i / light_.num_bins()]);
+            counts[i] = std::max(0.0F, counts[i] - scale_ * static_cast<float>(background));
+        }
+        std::vector<float> bright(all.size());
+        std::vector<float> seen(all.size());
+        light_.adjoint(counts, pairs, bright);
+        light_.adjoint(std::vector<float>(counts.size(), 1.0F), pairs, seen);
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            bright[i] = seen[i] > 0.0F ? bright[i] / seen[i] : 0.0F;
+        }
+        std::vector<float> sorted = bright;
+        const auto keep = static_cast<std::ptrdiff_t>(
+            kFirstShare * static_cast<double>(all.size()));
+        std::ranges::nth_element(sorted, sorted.end() - keep - 1);
+        const float least = *(sorted.end() - keep - 1);
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            if (bright[i] <= least || !(bright[i] > 0.0F)) continue;
+            voxels_.indices.push_back(all[i]);
+            voxels_.albedo.push_back(bright[i]);
+        }
+        for (auto& dual : voxels_.duals) dual.assign(voxels_.size(), 0.0F);
+        place(voxels_.indices);
+        link_neighbours();
+    }
+
+    /// Voxels no farther from the wall than light can have come from.
+    std::vector<std::size_t> reachable_voxels() const {
+        std::vector<double> light(light_.num_bins(), 0.0);
+        for (const std::size_t pair : seen_pairs_) {
+            const auto histogram = input_.transient.histogram(pair);
+            const double background = input_.measurement.background(pair);
+            for (std::size_t bin = 0; bin < light.size(); ++bin) {
+                light[bin] += static_cast<double>(histogram[bin]) - background;
+            }
+        }
+        const double least = kSmallestPairLight * *std::ranges::max_element(light);
+        double end = static_cast<double>(light.size());
+        while (end > 1.0 && light[static_cast<std::size_t>(end) - 1] <= least) end -= 1.0;
+        const double farthest = 0.5 * (input_.time_axis.bin_begin_m(end) -
+                                       core::device_leg_range_m(input_.scan)[0]);
+        std::vector<std::size_t> voxels;
+        for (std::size_t i = 0; i < input_.axes.num_voxels(); ++i) {
+            if (input_.axes.z_m[i % size_[2]] <= farthest) voxels.push_back(i);
+        }
+        return voxels;
+    }
+
+    void place(const std::vector<std::size_t>& indices) {
+        std::vector<Eigen::Vector3f> positions;
+        positions.reserve(indices.size());
+        for (const std::size_t i : indices) {
+            positions.push_back(Eigen::Vector3d(input_.axes.x_m[i / (size_[1] * size_[2])],
+                                                input_.axes.y_m[i / size_[2] % size_[1]],
+                                                input_.axes.z_m[i % size_[2]])
+                                    .cast<float>());
+        }
+        light_.set_voxels(std::move(positions));
+    }
+
+    void link_neighbours() {
+        std::vector<std::size_t> where(input_.axes.num_voxels(), kNone);
+        for (std::size_t i = 0; i < voxels_.size(); ++i) where[voxels_.indices[i]] = i;
+        const std::array<std::size_t, 3> strides{size_[1] * size_[2], size_[2], 1};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            voxels_.next[axis].assign(voxels_.size(), kNone);
+            voxels_.previous[axis].assign(voxels_.size(), kNone);
+            for (std::size_t i = 0; i < voxels_.size(); ++i) {
+                const std::size_t at = voxels_.indices[i] / strides[axis] % size_[axis];
+                if (at + 1 == size_[axis]) continue;
+                const std::size_t neighbour = where[voxels_.indices[i] + strides[axis]];
+                voxels_.next[axis][i] = neighbour;
+                if (neighbour != kNone) voxels_.previous[axis][neighbour] = i;
+            }
+        }
+        sensitivity_.clear();
+    }
+
+    /// What a subset sees of each voxel: A' 1 over its observed bins.
+    const std::vector<float>& sensitivity(std::size_t subset,
+                                          std::size_t num_subsets,
+                                          const std::vector<std::size_t>& pairs) {
+        if (sensitivity_.size() != num_subsets) sensitivity_.assign(num_subsets, {});
+        std::vector<float>& own = sensitivity_[subset];
+        if (own.empty()) {
+            own.resize(voxels_.size());
+            light_.adjoint(
+                std::vector<float>(pairs.size() * light_.num_bins(), 1.0F), pairs, own);
+        }
+        return own;
+    }
+
+    /// f <- f A'(counts / (A f + background)) / (A' 1 + sparsity) over one subset of the pairs.
+    void maximise_expectation(std::size_t subset, std::size_t num_subsets) {
+        const std::vector<std::size_t> pairs = pairs_of(subset, num_subsets);
+        const std::vector<float>& seen = sensitivity(subset, num_subsets, pairs);
+        const std::vector<float> counts = counts_of(pairs);
+        std::vector<float> expected(counts.size());
+        light_.forward(voxels_.albedo, pairs, expected);
+        for (std::size_t i = 0; i < counts.size(); ++i) {
+            const auto background = static_cast<float>(
+                input_.measurement.background(pairs[i / light_.num_bins()]));
+            const float m = expected[i] + scale_ * background;
+            expected[i] = m > 1e-6F ? counts[i] / m : 0.0F;
+        }
+        std::vector<float> gain(voxels_.size());
+        light_.adjoint(expected, pairs, gain);
+        const auto share = 1.0F / static_cast<float>(num_subsets);
+        for (std::size_t i = 0; i < gain.size(); ++i) {
+            const float cost = seen[i] + share * sparsity_weight(i);
+            voxels_.albedo[i] *= cost > 0.0F ? gain[i] / cost : 0.0F;
+        }
+    }
+
+    /// The standard deviation that noise gives the likelihood's slope at a voxel, the root of the
+    /// sum of A^2 / counts: as if all pairs saw it alike, in bins of the mean intensity.
+    float slope_noise(std::size_t i) const {
+        return total_seen_.empty()
+                   ? 0.0F
+                   : total_seen_[i] /
+                         std::sqrt(intensity_ * static_cast<float>(seen_pairs_.size()));
+    }
+    float sparsity_weight(std::size_t i) const {
+        const double tv = settings_.tv.value_or(kWeight);
+        return static_cast<float>(settings_.sparsity.value_or(kSparsityOfPairs * tv)) *
+               slope_noise(i);
+    }
+
+    /// argmin over u of sum of seen (u - f)^2 / (2 f) + tv |grad u|, by projected gradients of the
+    /// dual, started from the last pass's.
+    void smooth() {
+        total_seen_.assign(voxels_.size(), 0.0F);
+        for (const std::vector<float>& own : sensitivity_) {
+            for (std::size_t i = 0; i < own.size(); ++i) total_seen_[i] += own[i];
+        }
+        const auto tv = static_cast<float>(settings_.tv.value_or(kWeight));
+        if (!(tv > 0.0F)) return;
+        const std::size_t count = voxels_.size();
+        std::vector<float> step(count);  // f / seen: how far a voxel gives
+        for (std::size_t i = 0; i < count; ++i) {
+            step[i] = total_seen_[i] > 0.0F ? voxels_.albedo[i] / total_seen_[i] : 0.0F;
+        }
+        std::vector<float> u(count);
+        for (int k = 0; k <= kTotalVariationSteps; ++k) {
+            for (std::size_t i = 0; i < count; ++i) {
+                float divergence = 0.0F;
+                for (std::size_t axis = 0; axis < 3; ++axis) {
+                    const std::size_t before = voxels_.previous[axis][i];
+                    divergence += voxels_.duals[axis][i];
+                    if (before != kNone) divergence -= voxels_.duals[axis][before];
+                }
+                u[i] = std::max(0.0F, voxels_.albedo[i] + step[i] * divergence);
+            }
+            if (k == kTotalVariationSteps) break;
+            for (std::size_t i = 0; i < count; ++i) move_dual(i, tv * slope_noise(i), step, u);
+        }
+        voxels_.albedo = std::move(u);
+    }
+
+    void move_dual(std::size_t i,
+                   float weight,
+                   const std::vector<float>& step,
+                   const std::vector<float>& u) {
+        std::array<float, 3> moved{};
+        float norm = 0.0F;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const std::size_t next = voxels_.next[axis][i];
+            const float other = next != kNone ? u[next] : 0.0F;
+            const float most = std::max(step[i], next != kNone ? step[next] : 0.0F);
+            const float rate = most > 0.0F ? 1.0F / (12.0F * most) : 0.0F;
+            moved[axis] = voxels_.duals[axis][i] + rate * (other - u[i]);
+            norm += moved[axis] * moved[axis];
+        }
+        const float shrink = std::sqrt(norm) > weight ? weight / std::sqrt(norm) : 1.0F;
+        for (std::size_t axis = 0; axis < 3; ++axis) voxels_.duals[axis][i] = shrink * moved[axis];
+    }
+
+    double relative_change(const std::vector<float>& before) const {
+        double change = 0.0;
+        double norm = 0.0;
+        for (std::size_t i = 0; i < before.size(); ++i) {
+            change += std::pow(static_cast<double>(voxels_.albedo[i] - before[i]), 2);
+            norm += std::pow(static_cast<double>(voxels_.albedo[i]), 2);
+        }
+        return norm > 0.0 ? std::sqrt(change / norm) : 0.0;
+    }
+
+    void leave_out_empty() {
+        const float least =
+            kNothing * (voxels_.size() > 0 ? *std::ranges::max_element(voxels_.albedo) : 0.0F);
+        ActiveVoxels kept;
+        for (std::size_t i = 0; i < voxels_.size(); ++i) {
+            if (!(voxels_.albedo[i] > least)) continue;
+            kept.indices.push_back(voxels_.indices[i]);
+            kept.albedo.push_back(voxels_.albedo[i]);
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                kept.duals[axis].push_back(voxels_.duals[axis][i]);
+            }
+        }
+        if (10 * kept.size() > 9 * voxels_.size()) return;
+        voxels_ = std::move(kept);
+        place(voxels_.indices);
+        link_neighbours();
+        total_seen_.clear();
+    }
+
+    const MethodInput& input_;
+    const SolverSettings& settings_;
+    PairOperator light_;
+    std::array<std::size_t, 3> size_;
+    float scale_ = 1.0F;      ///< from the histograms' unit to counts
+    float intensity_ = 1.0F;  ///< the mean of counts, weighted by themselves
+    std::vector<std::size_t> seen_pairs_;
+    ActiveVoxels voxels_;
+    std::vector<std::vector<float>> sensitivity_;  ///< per subset
+    std::vector<float> total_seen_;                ///< of the last pass's subsets
+};
+
+}  // namespace
+
+Volume solve_pairs(const MethodInput& input,
+                   const ReconstructSettings& settings,
+                   std::size_t /*num_slabs*/) {
+    return PairSolver(input, settings).run();
+}
+
+double solve_pairs_bytes(const MethodInput& input,
+                         const ReconstructSettings& /*settings*/,
+                         std::size_t /*num_slabs*/) {
+    const auto voxels = static_cast<double>(input.axes.num_voxels());
+    const double histograms = 4.0 * static_cast<double>(input.transient.values().size());
+    return (4.0 * 8.0 + kFirstShare * (4.0 * kMaxSubsets + 100.0)) * voxels + 4.0 * histograms;
+}
+
+}  // namespace nlos
