@@ -2,7 +2,7 @@
 #include "nlos/solver/confocal_solver.h"
 
 #include "nlos/solver/cone_convolution.h"
-#include "nlos/solver/confocal_data.h"
+#include "nlos/solver/confocal_problem.h"
 #include "nlos/solver/proximal.h"
 
 #include <fmt/format.h>
@@ -36,7 +36,7 @@ constexpr double kSparsityShare = 0.1;  // of the weight of total variation, unl
 
 /// What the noise of light at v makes of a voxel at u, in units of its standard deviation: the
 /// root of its mean square over the wall points that see the voxel.
-std::vector<double> voxel_noise(const ConfocalData& data, const WallGrid& grid) {
+std::vector<double> voxel_noise(const ConfocalProblem& data, const WallGrid& grid) {
     const ConeKernel kernel(data.cone, grid);
     const std::size_t num_v = data.cone.num_v();
     std::vector<double> share(num_v + 1, 0.0);  // of K's square, per shift from u to v
@@ -64,7 +64,7 @@ std::vector<double> voxel_noise(const ConfocalData& data, const WallGrid& grid) 
 class ConfocalSolver {
  public:
     ConfocalSolver(const MethodInput& input,
-                   const ConfocalData& data,
+                   const ConfocalProblem& data,
                    const SolverSettings& settings)
         : data_(data),
           cone_(data.cone),
@@ -283,7 +283,7 @@ class ConfocalSolver {
         return change;
     }
 
-    const ConfocalData& data_;
+    const ConfocalProblem& data_;
     const Cone& cone_;
     double tolerance_;
     TimeOperator time_;
@@ -302,7 +302,7 @@ constexpr double kFewCounts = 5.0;       // in the bins that hold most of the li
 constexpr double kClearlyBetter = 0.95;  // share of the misfit
 
 /// The mean of counts, weighted by themselves.
-double mean_intensity(const ConfocalData& data) {
+double mean_intensity(const ConfocalProblem& data) {
     double sum = 0.0;
     double squares = 0.0;
     for (const float value : data.values) {
@@ -320,7 +320,7 @@ constexpr double kNumFields = 14.0;
 Volume solve_confocal(const MethodInput& input,
                       const ReconstructSettings& settings,
                       std::size_t /*num_slabs*/) {
-    const ConfocalData data = make_confocal_data(input, settings);
+    const ConfocalProblem data = make_confocal_problem(input, settings);
     const Cone& cone = data.cone;
     ConfocalSolver solver(input, data, settings.solver);
     const int iterations = solver.run(input.progress, settings.solver.max_iterations);
@@ -349,9 +349,9 @@ FalloffChoice choose_falloff(const MethodInput& input, ReconstructSettings setti
     std::array<double, 2> misfits{};
     for (const Falloff falloff : {Falloff::Diffuse, Falloff::Retro}) {
         settings.falloff = falloff;
-        const ConfocalData data = make_confocal_data(input, settings);
+        const ConfocalProblem data = make_confocal_problem(input, settings);
         if (data.likelihood != Likelihood::Poisson || mean_intensity(data) < kFewCounts) {
-            return {Falloff::Diffuse, "falloff: taken for diffuse, too few counts tell"};
+            return {Falloff::Diffuse, "falloff: taken for diffuse, which only many counts tell"};
         }
         ConfocalSolver solver(input, data, settings.solver);
         solver.run(silent, kTrialIterations);

@@ -66,7 +66,6 @@ class PairSolver {
         choose_first_voxels();
         const std::size_t most = std::clamp<std::size_t>(
             seen_pairs_.size() / kPairsPerSubset, 1, kMaxSubsets);
-        if(std::getenv("DBG")) std::fprintf(stderr,"first %zu\n",voxels_.size());
         int pass = 0;
         for (; pass < settings_.max_iterations && voxels_.size() > 0; ++pass) {
             check_stop(input_.progress);
@@ -78,7 +77,6 @@ class PairSolver {
             }
             smooth();
             const double change = relative_change(before);
-            if(std::getenv("DBG")) std::fprintf(stderr,"pass %d subsets %zu change %.4f voxels %zu\n",pass,num_subsets,change,voxels_.size());
             input_.progress.update(
                 0.95 * std::min(1.0, std::log(change) / std::log(settings_.tolerance)), "solver");
             if (num_subsets == 1 && change <= settings_.tolerance) break;

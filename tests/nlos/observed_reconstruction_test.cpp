@@ -174,9 +174,9 @@ TEST_P(ObservedReconstruction, AnythingObservedGivesFiniteVolumes) {
 std::vector<MaskCase> mask_cases() {
     std::vector<MaskCase> cases{
         {"LctConfocal", ScanPattern::Confocal, {"method=lct", "snr=10"}, 0.05, true},
-        {"TvConfocal",
+        {"SolverConfocal",
          ScanPattern::Confocal,
-         {"method=lct", "prior=tv", "solver.max_iterations=15"},
+         {"method=solver"},
          0.05,
          true},
         {"DlctConfocal", ScanPattern::Confocal, {"method=dlct", "snr=10"}, 0.05, true},
@@ -187,6 +187,9 @@ std::vector<MaskCase> mask_cases() {
         {"Exhaustive", ScanPattern::Exhaustive}};
     for (const auto& [name, pattern] : patterns) {
         cases.push_back({"Bp" + name, pattern, {"method=bp"}, 0.05});
+        if (pattern != ScanPattern::Confocal) {
+            cases.push_back({"Solver" + name, pattern, {"method=solver"}, 0.05, true});
+        }
         cases.push_back({"Fbp" + name, pattern, {"method=fbp"}, 0.05});
         cases.push_back({"PhasorFbp" + name, pattern, {"method=fbp", "filter=phasor"}, 0.05});
         cases.push_back({"Phasor" + name, pattern, {"method=phasor"}, 0.05});

@@ -152,7 +152,7 @@ INSTANTIATE_TEST_SUITE_P(
     HardCapture,
     testing::Values(HardCase{"Lct", {"method=lct", "snr=10"}, true, true, true},
                     HardCase{
-                        "LctTv", {"method=lct", "prior=tv", "solver.max_iterations=20"}, true, true, true},
+                        "Solver", {"method=solver"}, true, true, true},
                     HardCase{"Dlct", {"method=dlct", "snr=10"}, true, true, true},
                     HardCase{"Fk", {"method=fk"}, true, true, true},
                     HardCase{"Phasor", {"method=phasor"}, false, true, true},

@@ -316,9 +316,9 @@ TEST_P(ReconstructionLaw, BitsAreTheSameForAnyNumberOfThreads) {
 std::vector<LawCase> law_cases() {
     std::vector<LawCase> cases{
         {"LctConfocal", ScanPattern::Confocal, {"method=lct", "snr=10"}, true, true},
-        {"TvConfocal",
+        {"SolverConfocal",
          ScanPattern::Confocal,
-         {"method=lct", "prior=tv", "solver.max_iterations=15"},
+         {"method=solver", "solver.max_iterations=60"},
          true,
          false,
          3,
@@ -331,6 +331,9 @@ std::vector<LawCase> law_cases() {
         {"Exhaustive", ScanPattern::Exhaustive}};
     for (const auto& [name, pattern] : patterns) {
         cases.push_back({"Bp" + name, pattern, {"method=bp"}, true, true});
+        if (pattern != ScanPattern::Confocal) {
+            cases.push_back({"Solver" + name, pattern, {"method=solver"}, true, false, 3, true});
+        }
         cases.push_back({"Fbp" + name, pattern, {"method=fbp"}, false, true});
         cases.push_back(
             {"PhasorFbp" + name, pattern, {"method=fbp", "filter=phasor"}, true, false});

@@ -27,7 +27,7 @@ struct Contender {
 
 std::vector<Contender> contenders() {
     return {{"lct", {"method=lct"}},
-            {"lct, prior tv", {"method=lct", "prior=tv"}},
+            {"solver", {"method=solver"}},
             {"dlct", {"method=dlct"}},
             {"fk", {"method=fk"}},
             {"phasor", {"method=phasor"}},

@@ -109,7 +109,7 @@ struct AccuracyCase {
 std::vector<AccuracyCase> accuracy_cases(const ReconstructBenchSettings& settings) {
     const std::string folder = settings.scenes_folder;
     const Candidate lct{"lct", {"method=lct"}, {}};
-    const Candidate tv{"lct, prior tv", {"method=lct", "prior=tv"}, {}};
+    const Candidate tv{"solver", {"method=solver"}, {}};
     const Candidate dlct{"dlct", {"method=dlct"}, {}};
     const Candidate fk{"fk", {"method=fk"}, {}};
     const Candidate phasor{"phasor", {"method=phasor"}, {}};

@@ -60,7 +60,7 @@ std::vector<CostCase> cost_cases(const std::string& folder) {
     return {
         {"lct " + size, letter, {}, {"method=lct"}, false, {2.0, 0.4e9, 0.0}},
         {"lct 128x128x512", letter, wide, {"method=lct"}, false, {2.0, 1.6e9, 0.0}},
-        {"lct, prior tv " + size, letter, {}, {"method=lct", "prior=tv"}, false, {}},
+        {"solver " + size, letter, {}, {"method=solver"}, false, {}},
         {"dlct " + size, letter, {}, {"method=dlct"}, false, {}},
         {"fk " + size, letter, {}, {"method=fk"}, false, {0.0, 0.6e9, 0.0}},
         {"fk 128x128x512", letter, wide, {"method=fk"}, false, {}},

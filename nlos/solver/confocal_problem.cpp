@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/solver/confocal_data.h"
+#include "nlos/solver/confocal_problem.h"
 
 #include <algorithm>
 #include <cmath>
@@ -152,7 +152,7 @@ std::vector<double> poisson_precision(const TotalLight& total, const core::BinRa
 
 /// Standard deviation of light times range^power, from second differences between neighbouring
 /// points along y: what light leaves that no smooth scene explains.
-double difference_noise(const ConfocalData& data, double power) {
+double difference_noise(const ConfocalProblem& data, double power) {
     const std::size_t ny = data.cone.ny;
     const auto num_bins = static_cast<std::size_t>(data.axis.num_bins);
     double sum = 0.0;
@@ -182,7 +182,7 @@ double difference_noise(const ConfocalData& data, double power) {
     return std::max(count > 0.0 ? std::sqrt(sum / count) : 0.0, least > 0.0 ? least : 1.0);
 }
 
-std::vector<double> gaussian_precision(const ConfocalData& data, double power) {
+std::vector<double> gaussian_precision(const ConfocalProblem& data, double power) {
     const double noise = difference_noise(data, power);
     std::vector<double> precision;
     for (int bin = 0; bin < data.axis.num_bins; ++bin) {
@@ -193,7 +193,7 @@ std::vector<double> gaussian_precision(const ConfocalData& data, double power) {
 }
 
 /// Where light of all points is, 1 / sqrt of what the precision makes of a unit of it.
-double light_unit(const ConfocalData& data) {
+double light_unit(const ConfocalProblem& data) {
     std::vector<float> total(static_cast<std::size_t>(data.axis.num_bins), 0.0F);
     for (std::size_t i = 0; i < data.values.size(); ++i) {
         total[i / data.cone.ny % total.size()] += std::max(0.0F, data.values[i]);
@@ -217,7 +217,7 @@ bool holds_counts(const MethodInput& input) {
 
 }  // namespace
 
-ConfocalData make_confocal_data(const MethodInput& input, const ReconstructSettings& settings) {
+ConfocalProblem make_confocal_problem(const MethodInput& input, const ReconstructSettings& settings) {
     const WallHistograms histograms(input);
     const double power = falloff_power(settings.falloff);
     Likelihood likelihood = settings.solver.likelihood;
@@ -233,7 +233,7 @@ ConfocalData make_confocal_data(const MethodInput& input, const ReconstructSetti
 
     Cone cone = make_window_cone(input, axis);
     TimeOperator time(axis, cone.v_edges, power, input.measurement.response);
-    ConfocalData data{std::move(cone), axis, {}, {}, {}, likelihood, {}, std::move(time)};
+    ConfocalProblem data{std::move(cone), axis, {}, {}, {}, likelihood, {}, std::move(time)};
     const std::size_t ny = data.cone.ny;
     const auto num_bins = static_cast<std::size_t>(axis.num_bins);
     data.values.assign(data.cone.num_columns() * num_bins, 0.0F);

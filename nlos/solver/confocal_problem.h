@@ -11,7 +11,7 @@ namespace nlos {
 
 /// Histograms of a confocal grid as the solver takes them, cut to the bins that hold light, and
 /// what is known of their noise.
-struct ConfocalData {
+struct ConfocalProblem {
     Cone cone;                              ///< of these bins' ranges
     core::TimeAxis axis;                    ///< from and to the wall
     std::vector<float> values;              ///< [x][bin][y]
@@ -28,6 +28,6 @@ struct ConfocalData {
 /// Where device legs differ by no whole number of bins, a bin is split between two.
 ///
 /// throws     core::Error when the axis has no positive range
-ConfocalData make_confocal_data(const MethodInput& input, const ReconstructSettings& settings);
+ConfocalProblem make_confocal_problem(const MethodInput& input, const ReconstructSettings& settings);
 
 }  // namespace nlos
