@@ -14,6 +14,7 @@
 #include "nlos/preparation/histogram_preparation.h"
 #include "nlos/preparation/memory_limit.h"
 #include "nlos/preparation/prepared_capture.h"
+#include "nlos/preparation/second_capture.h"
 #include "nlos/preparation/wiener_snr.h"
 #include "nlos/reconstruction/surface.h"
 #include "renderer/core/process.h"
@@ -178,6 +179,21 @@ void take_normals(const Volume& volume, core::DepthMap& depth) {
     }
 }
 
+/// Takes depths, what is known of them and points from the volume and, where the noise is known,
+/// that of the scene measured again.
+void take_surface(const Volume* again, Reconstruction& result) {
+    const bool is_power = uses_wave(result.settings) || result.settings.method == Method::Fk;
+    Surface surface = find_surface(result.volume,
+                                   again,
+                                   is_power ? VolumeScale::Power : VolumeScale::Amplitude,
+                                   result.settings.mask_threshold);
+    result.depth = std::move(surface.depth);
+    result.surface_probability = std::move(surface.probability);
+    result.depth_sigma_m = std::move(surface.depth_sigma_m);
+    take_normals(result.volume, result.depth);
+    result.points = surface_points(result.depth);
+}
+
 /// A reconstruction method: what it computes, and the memory that takes on top of its input
 /// [bytes], both with as many slabs of work one after another.
 struct MethodFunctions {
@@ -279,38 +295,56 @@ Reconstruction reconstruct(const core::Capture& capture,
     if (auto warning = unobserved_warning(result.settings, observed, axis.num_bins)) {
         result.warnings.push_back(std::move(*warning));
     }
-    const auto input_with = [&](const core::Transient& transient) {
+    const bool has_noise = knows_its_noise(capture);
+    const core::Progress first_run = progress.part(0.0, has_noise ? 0.5 : 1.0);
+    const core::Progress second_run = progress.part(0.5, 1.0);
+    const auto input_with = [&](const core::Transient& transient, const core::Progress& part) {
         return MethodInput{prepared.scan,
                            axis,
                            transient,
                            prepared.wall,
                            axes,
                            *result.settings.volume.z_range_m,
-                           progress,
+                           part,
                            observed ? &*observed : nullptr,
                            prepared.unobserved_before_m};
     };
-    const double prepared_bytes =
-        is_ready ? 0.0 : 4.0 * static_cast<double>(prepared.scan.num_pairs()) * axis.num_bins;
+    double prepared_bytes =
+        is_ready && !has_noise
+            ? 0.0
+            : 4.0 * static_cast<double>(prepared.scan.num_pairs()) * axis.num_bins;
+    if (has_noise) {  // the scene measured again, and its volume
+        prepared_bytes += 4.0 * static_cast<double>(capture.transient.values().size()) +
+                          prepared.own_bytes() + 4.0 * static_cast<double>(axes.num_voxels());
+    }
     const MethodFunctions method = functions_of(result.settings);
-    const MethodInput unprepared = input_with(prepared.transient());
+    const MethodInput unprepared = input_with(prepared.transient(), first_run);
     const std::size_t num_slabs = choose_slabs(unprepared, result.settings, prepared_bytes);
     const double work_bytes = prepared_bytes + method.bytes(unprepared, result.settings, num_slabs);
     require_memory(work_bytes, settings.memory_gb);
     result.stated_bytes = work_bytes + prepared.own_bytes();
     announce(result, num_slabs, progress);
     check_stop(progress);
+    const auto prepare = [&](const core::Transient& transient) {
+        core::Transient histograms = prepare_histograms(transient, plan);
+        if (makes_up_for_falloff(prepared.scan, result.settings)) {
+            multiply_by_range(prepared.scan, axis, falloff_power(settings.falloff), histograms);
+        }
+        return histograms;
+    };
     core::Transient histograms;
-    if (!is_ready) histograms = prepare_histograms(prepared.transient(), plan);
-    if (makes_up_for_falloff(prepared.scan, result.settings)) {
-        multiply_by_range(prepared.scan, axis, falloff_power(settings.falloff), histograms);
+    if (!is_ready) histograms = prepare(prepared.transient());
+    result.volume = method.run(input_with(is_ready ? prepared.transient() : histograms, first_run),
+                               result.settings,
+                               num_slabs);
+    std::optional<Volume> again;
+    if (const auto second = measure_again(capture)) {
+        PreparedCapture prepared_again = crop_capture(*second, settings.crop);
+        if (!prepared.conversion.empty()) convert_to_confocal(prepared_again);
+        histograms = prepare(prepared_again.transient());
+        again = method.run(input_with(histograms, second_run), result.settings, num_slabs);
     }
-    result.volume = method.run(
-        input_with(is_ready ? prepared.transient() : histograms), result.settings, num_slabs);
-
-    result.depth = extract_depth_map(result.volume, settings.mask_threshold);
-    take_normals(result.volume, result.depth);
-    result.points = surface_points(result.depth);
+    take_surface(again ? &*again : nullptr, result);
     result.seconds = watch.seconds();
     result.peak_bytes = core::peak_rss_bytes();
     return result;
