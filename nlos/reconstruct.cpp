@@ -179,14 +179,19 @@ void take_normals(const Volume& volume, core::DepthMap& depth) {
     }
 }
 
+/// Waves and f-k migration give squares. The deviations of depth are those that simulated surfaces
+/// showed without noise, see nlos/README.md.
+VolumeErrors volume_errors(const ReconstructSettings& settings) {
+    if (uses_wave(settings)) return {VolumeScale::Power, 0.6};
+    if (settings.method == Method::Fk) return {VolumeScale::Power, 0.28};
+    return {VolumeScale::Amplitude, 0.14};
+}
+
 /// Takes depths, what is known of them and points from the volume and, where the noise is known,
 /// that of the scene measured again.
 void take_surface(const Volume* again, Reconstruction& result) {
-    const bool is_power = uses_wave(result.settings) || result.settings.method == Method::Fk;
-    Surface surface = find_surface(result.volume,
-                                   again,
-                                   is_power ? VolumeScale::Power : VolumeScale::Amplitude,
-                                   result.settings.mask_threshold);
+    Surface surface = find_surface(
+        result.volume, again, volume_errors(result.settings), result.settings.mask_threshold);
     result.depth = std::move(surface.depth);
     result.surface_probability = std::move(surface.probability);
     result.depth_sigma_m = std::move(surface.depth_sigma_m);

@@ -1,25 +1,32 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/reconstruction/depth_sigma.h"
 
+#include "renderer/core/types.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 namespace nlos {
 namespace {
 
-constexpr double kModelError = 0.35;      // voxels
+constexpr double kSureFactor = 0.7;   // what simulated surfaces ask of a sure surface's deviation,
+constexpr double kDoubtFactor = 14.0;  // and of one in doubt: times odds against it to that power
+constexpr double kDoubtPower = 1.25;
+constexpr std::size_t kSearched = 6;      // voxels on either side
 constexpr std::size_t kPooledColumns = 4;         // columns
 constexpr double kPriorColumns = 16.0;    // of the whole map, beside those within reach
 
-/// Squares of slopes of noise, and of how many columns.
+/// Sizes of slopes of noise, and of how many columns. Few peaks that jump to another one must not
+/// speak for all: the deviation is told from the mean size.
 struct SlopePool {
     double sum = 0.0;
     double count = 0.0;
 
-    void add(double square) {
-        if (std::isnan(square)) return;
-        sum += square;
+    void add(double size) {
+        if (std::isnan(size)) return;
+        sum += size;
         count += 1.0;
     }
     double mean() const { return count > 0.0 ? sum / count : 0.0; }
@@ -37,7 +44,31 @@ double firmness(const Volume& volume,
            noise.significance(amplitude_of(value, scale), peak.voxel);
 }
 
-double pooled_square(const std::vector<double>& squares,
+/// By how far noise of the measurement's own deviation moves a peak [voxels]: half the distance of
+/// the peaks that half of all photons and the other half show, a value of which is as far below the
+/// measurement's as that of the other is above. A single half's distance from the measurement would
+/// be too small where noise is strong: the peak is already at the noise's.
+double movement(std::span<const float> column,
+                std::span<const float> again,
+                std::size_t voxel,
+                VolumeScale scale) {
+    const std::size_t begin = voxel - std::min(voxel, kSearched);
+    const std::size_t end = std::min(column.size(), voxel + kSearched + 1);
+    std::vector<float> half(end - begin);
+    std::vector<float> other(end - begin);
+    for (std::size_t i = 0; i < half.size(); ++i) {
+        const double here = amplitude_of(again[begin + i], scale);
+        half[i] = static_cast<float>(here);
+        other[i] = static_cast<float>(2.0 * amplitude_of(column[begin + i], scale) - here);
+    }
+    const auto position = [](const std::vector<float>& values) {
+        const auto highest = std::ranges::max_element(values) - values.begin();
+        return find_peak(values, static_cast<std::size_t>(highest)).position;
+    };
+    return 0.5 * (position(half) - position(other));
+}
+
+double pooled_size(const std::vector<double>& sizes,
                      const core::DepthMap& depth,
                      std::size_t ix,
                      std::size_t iy,
@@ -49,7 +80,7 @@ double pooled_square(const std::vector<double>& squares,
         for (std::size_t jy = iy - std::min(iy, kPooledColumns);
              jy < std::min(depth.y_m.size(), iy + kPooledColumns + 1);
              ++jy) {
-            near.add(squares[depth.index(jx, jy)]);
+            near.add(sizes[depth.index(jx, jy)]);
         }
     }
     return (near.sum + kPriorColumns * prior) / (near.count + kPriorColumns);
@@ -59,21 +90,25 @@ double pooled_square(const std::vector<double>& squares,
 
 std::vector<double> depth_sigmas(const Volume& volume,
                                  const std::vector<ColumnPeak>& peaks,
-                                 const core::DepthMap& depth,
+                                 const Surface& surface,
                                  const Volume& again,
-                                 VolumeScale scale,
+                                 const VolumeErrors& errors,
                                  const VolumeNoise& noise) {
+    const core::DepthMap& depth = surface.depth;
     constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
     const std::size_t nz = volume.axes.z_m.size();
     std::vector<double> firm(peaks.size(), kNone);
-    std::vector<double> squares(peaks.size(), kNone);
+    std::vector<double> sizes(peaks.size(), kNone);
     SlopePool all;
     for (std::size_t i = 0; i < peaks.size(); ++i) {
         if (!depth.is_foreground(i)) continue;
-        firm[i] = firmness(volume, i, peaks[i], scale, noise);
-        const ColumnPeak moved = find_peak({again.values.data() + i * nz, nz}, peaks[i].voxel);
-        squares[i] = std::pow((moved.position - peaks[i].position) * firm[i], 2);
-        all.add(squares[i]);
+        firm[i] = firmness(volume, i, peaks[i], errors.scale, noise);
+        const double moved = movement({volume.values.data() + i * nz, nz},
+                                      {again.values.data() + i * nz, nz},
+                                      peaks[i].voxel,
+                                      errors.scale);
+        sizes[i] = std::abs(moved) * firm[i];
+        all.add(sizes[i]);
     }
     const double step_m =
         nz > 1 ? (volume.axes.z_m.back() - volume.axes.z_m.front()) / static_cast<double>(nz - 1)
@@ -83,8 +118,12 @@ std::vector<double> depth_sigmas(const Volume& volume,
         for (std::size_t iy = 0; iy < depth.y_m.size(); ++iy) {
             const std::size_t i = depth.index(ix, iy);
             if (!depth.is_foreground(i)) continue;
-            const double slope = std::sqrt(pooled_square(squares, depth, ix, iy, all.mean()));
-            sigmas[i] = step_m * std::hypot(firm[i] > 0.0 ? slope / firm[i] : 0.0, kModelError);
+            const double slope =
+                std::sqrt(0.5 * core::kPi) * pooled_size(sizes, depth, ix, iy, all.mean());
+            const double odds_against = 1.0 / surface.probability[i] - 1.0;
+            const double factor = kSureFactor + kDoubtFactor * std::pow(odds_against, kDoubtPower);
+            const double moved = firm[i] > 0.0 ? slope / firm[i] : 0.0;
+            sigmas[i] = step_m * factor * std::hypot(moved, errors.model_voxels);
         }
     }
     return sigmas;

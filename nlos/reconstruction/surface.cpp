@@ -142,7 +142,7 @@ void fit_normals(core::DepthMap& depth) {
 
 Surface find_surface(const Volume& volume,
                      const Volume* again,
-                     VolumeScale scale,
+                     const VolumeErrors& errors,
                      double mask_threshold) {
     const VolumeAxes& axes = volume.axes;
     Surface surface;
@@ -152,16 +152,16 @@ Surface find_surface(const Volume& volume,
     if (volume.values.empty()) return surface;
 
     std::optional<VolumeNoise> noise;
-    if (again) noise.emplace(volume, *again, scale);
-    const std::vector<ColumnPeak> peaks = find_peaks(volume, scale, noise);
-    surface.probability = surface_probabilities(volume, peaks, scale, noise);
+    if (again) noise.emplace(volume, *again, errors.scale);
+    const std::vector<ColumnPeak> peaks = find_peaks(volume, errors.scale, noise);
+    surface.probability = surface_probabilities(volume, peaks, errors.scale, noise);
     for (std::size_t i = 0; i < peaks.size(); ++i) {
         if (!(surface.probability[i] >= mask_threshold)) continue;
         surface.depth.depth_m[i] = depth_at(axes.z_m, peaks[i].position);
     }
     fit_normals(surface.depth);
     if (noise) {
-        surface.depth_sigma_m = depth_sigmas(volume, peaks, surface.depth, *again, scale, *noise);
+        surface.depth_sigma_m = depth_sigmas(volume, peaks, surface, *again, errors, *noise);
     }
     return surface;
 }

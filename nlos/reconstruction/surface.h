@@ -16,6 +16,12 @@ struct Surface {
     std::vector<double> depth_sigma_m;  ///< NaN = background; empty: the noise is not known
 };
 
+/// What a method's volume says of noise and depth.
+struct VolumeErrors {
+    VolumeScale scale = VolumeScale::Amplitude;
+    double model_voxels = 0.0;  ///< deviation of depths without noise, inside surfaces
+};
+
 /// Finds each column's peak, how likely it is a surface, and how well its depth is known.
 ///
 /// Without knowledge of noise the peak is the brightest voxel, and the probability is that of
@@ -29,7 +35,7 @@ struct Surface {
 /// throws           nothing
 Surface find_surface(const Volume& volume,
                      const Volume* again,
-                     VolumeScale scale,
+                     const VolumeErrors& errors,
                      double mask_threshold);
 
 }  // namespace nlos

@@ -8,8 +8,8 @@
 namespace nlos {
 namespace {
 
-constexpr double kEdgeShare = 0.45;  // of the surfaces' mean brightness
-constexpr double kOddsPower = 3.0;
+constexpr double kEdgeShare = 0.5;  // of the surfaces' mean brightness
+constexpr double kOddsPower = 4.0;
 
 /// A stretch of p-values of one density.
 struct Stretch {
