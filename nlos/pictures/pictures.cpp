@@ -159,7 +159,8 @@ ImagePanel depth_panel(const core::DepthMap& map,
 }
 
 ImagePanel probability_panel(const core::DepthMap& map, const std::vector<double>& probability) {
-    ImagePanel panel = front_view_of(map.x_m, map.y_m, [&](std::size_t i) { return probability[i]; });
+    ImagePanel panel =
+        front_view_of(map.x_m, map.y_m, [&](std::size_t i) { return probability[i]; });
     panel.title = "Probability of a surface";
     panel.value_label = "probability";
     panel.colour_map = ColourMap::Grey;

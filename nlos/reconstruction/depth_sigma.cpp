@@ -11,12 +11,12 @@
 namespace nlos {
 namespace {
 
-constexpr double kSureFactor = 0.7;   // what simulated surfaces ask of a sure surface's deviation,
+constexpr double kSureFactor = 0.7;    // what simulated surfaces ask of a sure surface's deviation,
 constexpr double kDoubtFactor = 14.0;  // and of one in doubt: times odds against it to that power
 constexpr double kDoubtPower = 1.25;
-constexpr std::size_t kSearched = 6;      // voxels on either side
-constexpr std::size_t kPooledColumns = 4;         // columns
-constexpr double kPriorColumns = 16.0;    // of the whole map, beside those within reach
+constexpr std::size_t kSearched = 6;       // voxels on either side
+constexpr std::size_t kPooledColumns = 4;  // columns
+constexpr double kPriorColumns = 16.0;     // of the whole map, beside those within reach
 
 /// Sizes of slopes of noise, and of how many columns. Few peaks that jump to another one must not
 /// speak for all: the deviation is told from the mean size.
@@ -69,10 +69,10 @@ double movement(std::span<const float> column,
 }
 
 double pooled_size(const std::vector<double>& sizes,
-                     const core::DepthMap& depth,
-                     std::size_t ix,
-                     std::size_t iy,
-                     double prior) {
+                   const core::DepthMap& depth,
+                   std::size_t ix,
+                   std::size_t iy,
+                   double prior) {
     SlopePool near;
     for (std::size_t jx = ix - std::min(ix, kPooledColumns);
          jx < std::min(depth.x_m.size(), ix + kPooledColumns + 1);

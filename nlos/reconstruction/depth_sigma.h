@@ -14,9 +14,9 @@ namespace nlos {
 /// A peak of brightness v and curvature v'' moves by n'/v'' under noise of slope n'. That slope's
 /// deviation is told from how far peaks move between volumes of the same scene, pooled over
 /// foreground columns nearby; it stands relative to the noise's deviation at that depth, which
-/// falloff raises. What the method leaves of its own is added in squares. Where a column may be none
-/// of the surface's, depths are worse than either says: the sum is multiplied by a factor of the
-/// odds that simulated surfaces ask for (`nlos bench coverage` says how well it does).
+/// falloff raises. What the method leaves of its own is added in squares. Where a column may be
+/// none of the surface's, depths are worse than either says: the sum is multiplied by a factor of
+/// the odds that simulated surfaces ask for (`nlos bench coverage` says how well it does).
 ///
 /// peaks     of the volume, per column
 /// surface   with depths and probabilities of the same columns

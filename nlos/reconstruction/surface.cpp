@@ -92,9 +92,9 @@ std::vector<ColumnPeak> find_peaks(const Volume& volume,
     std::vector<ColumnPeak> peaks;
     for (std::size_t i = 0; i * nz < volume.values.size(); ++i) {
         const std::span<const float> column(volume.values.data() + i * nz, nz);
-        peaks.push_back(find_peak(column,
-                                  noise ? surface_voxel(column, scale, *noise, significant)
-                                        : brightest_voxel(column)));
+        peaks.push_back(find_peak(
+            column,
+            noise ? surface_voxel(column, scale, *noise, significant) : brightest_voxel(column)));
     }
     return peaks;
 }
@@ -112,8 +112,7 @@ std::vector<double> surface_probabilities(const Volume& volume,
         brightness.push_back(value);
         if (!noise) continue;
         const double amplitude = amplitude_of(value, scale);
-        chances.push_back(
-            noise->chance_in_column(noise->significance(amplitude, peaks[i].voxel)));
+        chances.push_back(noise->chance_in_column(noise->significance(amplitude, peaks[i].voxel)));
     }
     std::vector<double> probabilities(peaks.size(), 1.0);
     if (noise) {

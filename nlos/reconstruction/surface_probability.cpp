@@ -39,8 +39,7 @@ std::vector<Stretch> falling_density(const std::vector<double>& rising_p_values)
 }
 
 double weighted_mean(const std::vector<double>& values, const std::vector<double>& weights) {
-    const double sum =
-        std::inner_product(values.begin(), values.end(), weights.begin(), 0.0);
+    const double sum = std::inner_product(values.begin(), values.end(), weights.begin(), 0.0);
     const double weight = std::accumulate(weights.begin(), weights.end(), 0.0);
     return weight > 0.0 ? sum / weight : 0.0;
 }
@@ -56,8 +55,7 @@ std::vector<double> false_discovery_rates(const std::vector<double>& p_values) {
 
     const auto count = static_cast<double>(p_values.size());
     const auto num_large = std::ranges::count_if(p_values, [](double p) { return p > 0.5; });
-    const double null_share =
-        std::min(1.0, 2.0 * static_cast<double>(num_large + 1) / count);
+    const double null_share = std::min(1.0, 2.0 * static_cast<double>(num_large + 1) / count);
     std::vector<double> rates(p_values.size());
     std::size_t next = 0;
     for (const Stretch& stretch : falling_density(rising)) {

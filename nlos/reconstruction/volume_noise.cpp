@@ -8,7 +8,7 @@ namespace nlos {
 namespace {
 
 constexpr std::size_t kSharedDepths = 2;  // depths on either side that share a deviation
-constexpr double kSafety = 2.0;    // more independent values than were found
+constexpr double kSafety = 2.0;           // more independent values than were found
 
 /// Chance that one value exceeds `t` deviations by noise alone.
 double chance_of_one(double t, VolumeScale scale) {
@@ -69,7 +69,9 @@ VolumeNoise::VolumeNoise(const Volume& volume, const Volume& again, VolumeScale 
     for (std::size_t iz = 0; iz < nz; ++iz) {
         double sum = 0.0;
         double count = 0.0;
-        for (std::size_t jz = iz - std::min(iz, kSharedDepths); jz < std::min(nz, iz + kSharedDepths + 1); ++jz) {
+        for (std::size_t jz = iz - std::min(iz, kSharedDepths);
+             jz < std::min(nz, iz + kSharedDepths + 1);
+             ++jz) {
             sum += squares.sum[jz];
             count += squares.count[jz];
         }
