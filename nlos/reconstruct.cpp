@@ -182,9 +182,17 @@ void take_normals(const Volume& volume, core::DepthMap& depth) {
 /// Waves and f-k migration give squares. The deviations of depth are those that simulated surfaces
 /// showed without noise, see nlos/README.md.
 VolumeErrors volume_errors(const ReconstructSettings& settings) {
-    if (uses_wave(settings)) return {VolumeScale::Power, 0.6};
-    if (settings.method == Method::Fk) return {VolumeScale::Power, 0.28};
-    return {VolumeScale::Amplitude, 0.14};
+    if (uses_wave(settings)) return {VolumeScale::Power, 0.5};
+    switch (settings.method) {
+        case Method::Fk:
+            return {VolumeScale::Power, 0.28};
+        case Method::Fbp:
+            return {VolumeScale::Amplitude, 0.2};
+        case Method::Bp:
+            return {VolumeScale::Amplitude, 0.5};
+        default:
+            return {VolumeScale::Amplitude, 0.14};
+    }
 }
 
 /// Takes depths, what is known of them and points from the volume and, where the noise is known,

@@ -8,7 +8,7 @@
 namespace nlos {
 namespace {
 
-constexpr double kEdgeShare = 0.5;  // of the surfaces' mean brightness
+constexpr double kEdgeShare = 0.45;  // of the surfaces' mean brightness
 constexpr double kOddsPower = 4.0;
 
 /// A stretch of p-values of one density.
@@ -38,10 +38,19 @@ std::vector<Stretch> falling_density(const std::vector<double>& rising_p_values)
     return stretches;
 }
 
-double weighted_mean(const std::vector<double>& values, const std::vector<double>& weights) {
-    const double sum = std::inner_product(values.begin(), values.end(), weights.begin(), 0.0);
-    const double weight = std::accumulate(weights.begin(), weights.end(), 0.0);
-    return weight > 0.0 ? sum / weight : 0.0;
+/// Mean peak of surfaces: weighted by brightness and squared probability, so that much haze does
+/// not outweigh few surfaces.
+double surface_brightness(const std::vector<double>& peaks,
+                          const std::vector<double>& probabilities,
+                          const std::vector<double>& weights) {
+    double sum = 0.0;
+    double weight_sum = 0.0;
+    for (std::size_t i = 0; i < peaks.size(); ++i) {
+        const double weight = weights[i] * probabilities[i] * probabilities[i] * peaks[i];
+        sum += weight * peaks[i];
+        weight_sum += weight;
+    }
+    return weight_sum > 0.0 ? sum / weight_sum : 0.0;
 }
 
 }  // namespace
@@ -70,19 +79,15 @@ std::vector<double> plateau_probabilities(const std::vector<double>& peaks,
                                           const std::vector<double>& weights) {
     constexpr int kMaxIterations = 100;
     constexpr double kTolerance = 1e-6;
-    std::vector<double> shares(peaks.size());
-    const auto multiply = [](double a, double b) { return a * b; };
     // From above: the mean of what is bright, then of what that calls a surface.
-    std::ranges::transform(peaks, weights, shares.begin(), multiply);
-    double mean = weighted_mean(peaks, shares);
-    std::vector<double> probabilities(peaks.size(), 0.0);
-    for (int i = 0; i < kMaxIterations && mean > 0.0; ++i) {
+    std::vector<double> probabilities(peaks.size(), 1.0);
+    double mean = surface_brightness(peaks, probabilities, weights);
+    for (int i = 0; i < kMaxIterations; ++i) {
         std::ranges::transform(peaks, probabilities.begin(), [&](double peak) {
             return peak > 0.0 ? 1.0 / (1.0 + std::pow(kEdgeShare * mean / peak, kOddsPower)) : 0.0;
         });
-        std::ranges::transform(probabilities, weights, shares.begin(), multiply);
         const double last = mean;
-        mean = weighted_mean(peaks, shares);
+        mean = surface_brightness(peaks, probabilities, weights);
         if (std::abs(mean - last) <= kTolerance * last) break;
     }
     return probabilities;

@@ -17,9 +17,10 @@ std::vector<double> false_discovery_rates(const std::vector<double>& p_values);
 
 /// The probability that columns hold a surface and not what a method smears around one.
 ///
-/// A blurred edge crosses half of the surface's brightness where the surface ends. So the odds are
-/// the ratio of the peak to half of the surfaces' mean brightness, to the power of 4, which fits
-/// simulated scenes; the mean is weighted by this very probability.
+/// A blurred edge crosses about half of the surface's brightness where the surface ends. So the
+/// odds are the ratio of the peak to 0.45 of the surfaces' mean brightness, to the power of 4; both
+/// numbers fit simulated scenes. The mean is weighted by brightness and the square of this very
+/// probability.
 ///
 /// peaks     brightest value of each column, not negative
 /// weights   in [0, 1]: the probability that it is more than noise

@@ -28,15 +28,15 @@ TEST(FalseDiscoveryRates, TellFewDiscoveriesFromMuchNoise) {
               20);
 }
 
-TEST(PlateauProbabilities, CrossOneHalfAtHalfTheSurfacesBrightness) {
+TEST(PlateauProbabilities, CrossOneHalfAtAShareOfTheSurfacesBrightness) {
     std::vector<double> peaks(100, 2.0);
-    peaks.insert(peaks.end(), {1.0, 0.2, 0.0});
+    peaks.insert(peaks.end(), {0.9, 0.2, 0.0});
     std::vector<double> weights(peaks.size(), 1.0);
     weights[100] = weights[101] = 0.0;  // so that the mean is that of the plateau
     const std::vector<double> probabilities = plateau_probabilities(peaks, weights);
-    EXPECT_NEAR(probabilities[0], 16.0 / 17.0, 1e-6);
+    EXPECT_GT(probabilities[0], 0.95);
     EXPECT_NEAR(probabilities[100], 0.5, 1e-6);
-    EXPECT_LT(probabilities[101], 2e-3);
+    EXPECT_LT(probabilities[101], 3e-3);
     EXPECT_EQ(probabilities[102], 0.0);
 }
 
