@@ -11,8 +11,8 @@
 namespace nlos {
 namespace {
 
-constexpr double kSureFactor = 0.7;    // what simulated surfaces ask of a sure surface's deviation,
-constexpr double kDoubtFactor = 14.0;  // and of one in doubt: times odds against it to that power
+constexpr double kSureFactor = 0.85;    // what simulated surfaces ask of a sure surface's deviation,
+constexpr double kDoubtFactor = 8.0;  // and of one in doubt: times odds against it to that power
 constexpr double kDoubtPower = 1.25;
 constexpr std::size_t kSearched = 6;       // voxels on either side
 constexpr std::size_t kPooledColumns = 4;  // columns
