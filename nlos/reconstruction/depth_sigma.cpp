@@ -11,8 +11,7 @@
 namespace nlos {
 namespace {
 
-constexpr double kSureFactor = 0.85;    // what simulated surfaces ask of a sure surface's deviation,
-constexpr double kDoubtFactor = 8.0;  // and of one in doubt: times odds against it to that power
+constexpr double kDoubtFactor = 5.0;  // on simulated surfaces, of odds against one to this power
 constexpr double kDoubtPower = 1.25;
 constexpr std::size_t kSearched = 6;       // voxels on either side
 constexpr std::size_t kPooledColumns = 4;  // columns
@@ -121,7 +120,7 @@ std::vector<double> depth_sigmas(const Volume& volume,
             const double slope =
                 std::sqrt(0.5 * core::kPi) * pooled_size(sizes, depth, ix, iy, all.mean());
             const double odds_against = 1.0 / surface.probability[i] - 1.0;
-            const double factor = kSureFactor + kDoubtFactor * std::pow(odds_against, kDoubtPower);
+            const double factor = 1.0 + kDoubtFactor * std::pow(odds_against, kDoubtPower);
             const double moved = firm[i] > 0.0 ? slope / firm[i] : 0.0;
             sigmas[i] = step_m * factor * std::hypot(moved, errors.model_voxels);
         }
