@@ -191,7 +191,7 @@ VolumeErrors volume_errors(const ReconstructSettings& settings) {
         case Method::Bp:
             return {VolumeScale::Amplitude, 0.5};
         default:
-            return {VolumeScale::Amplitude, 0.14};
+            return {VolumeScale::Amplitude, 0.12};
     }
 }
 
