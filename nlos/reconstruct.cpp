@@ -6,7 +6,6 @@
 #include "nlos/methods/filtered_backprojection.h"
 #include "nlos/methods/fk_migration.h"
 #include "nlos/methods/light_cone_transform.h"
-#include "nlos/methods/method_choice.h"
 #include "nlos/methods/phasor_field.h"
 #include "nlos/methods/virtual_wave.h"
 #include "nlos/preparation/capture_check.h"
@@ -14,7 +13,8 @@
 #include "nlos/preparation/histogram_preparation.h"
 #include "nlos/preparation/memory_limit.h"
 #include "nlos/preparation/prepared_capture.h"
-#include "nlos/preparation/wiener_snr.h"
+#include "nlos/preparation/second_capture.h"
+#include "nlos/reconstruct_choices.h"
 #include "nlos/reconstruction/surface.h"
 #include "nlos/solver/confocal_solver.h"
 #include "nlos/solver/solver.h"
@@ -24,172 +24,12 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <utility>
 
 namespace nlos {
 namespace {
 
-constexpr std::size_t kDefaultColumns = 64;
 constexpr std::size_t kMaxSlabs = 64;  // each repeats a part of the work
-
-/// As many bins as keep the range they cover within a quarter of the wall points' distance: finer
-/// depth than that no aperture of this sampling resolves, and noise and work shrink with the bins.
-/// A gate keeps some bins too.
-int default_merge_bins(const PreparedCapture& prepared) {
-    const core::TimeAxis& axis = prepared.time_axis;
-    if (!prepared.wall.grid) return 1;
-    const double limit_m =
-        0.25 * std::min(prepared.wall.grid->pitch_m[0], prepared.wall.grid->pitch_m[1]);
-    int num_bins = axis.num_bins;
-    for (std::size_t pair = 0; pair < prepared.scan.num_pairs(); ++pair) {
-        const int seen = core::observed_range(prepared.observed, pair, axis.num_bins).size();
-        if (seen > 0) num_bins = std::min(num_bins, seen);
-    }
-    int merge = 1;
-    while (num_bins / (2 * merge) >= kMinBins && merge * axis.bin_width_m <= limit_m) merge *= 2;
-    return merge;
-}
-
-/// What takes the stated response off histograms; null when none is stated.
-std::shared_ptr<const ResponseDeconvolution> deconvolution_of(const ReconstructSettings& settings,
-                                                              const core::TimeAxis& axis) {
-    if (!core::is_stated(settings.response)) return {};
-    const core::ResponseFilter filter =
-        core::sample_response(core::make_response(settings.response, "response"), axis.bin_width_m);
-    return std::make_shared<const ResponseDeconvolution>(
-        filter, static_cast<std::size_t>(axis.num_bins), settings.response_floor);
-}
-
-/// Fills in merge_bins, ambient and, where a method has it, snr, and says what becomes of the
-/// histograms.
-PreparationPlan choose_preparation(const PreparedCapture& prepared, ReconstructSettings& settings) {
-    const core::TimeAxis& axis = prepared.time_axis;
-    const bool is_counts = prepared.unit == core::TransientUnit::Counts;
-    if (settings.ambient == Ambient::Auto) {
-        settings.ambient = is_counts || settings.noise_floor ? Ambient::Subtract : Ambient::Keep;
-    }
-    if (!settings.merge_bins) settings.merge_bins = default_merge_bins(prepared);
-    PreparationPlan plan;
-    plan.observed = prepared.observed;
-    plan.merge_bins = *settings.merge_bins;
-    if (plan.merge_bins > axis.num_bins) {
-        throw core::Error("merge_bins",
-                          fmt::format("found {}", plan.merge_bins),
-                          fmt::format("must not exceed the capture's {} bins", axis.num_bins));
-    }
-    plan.num_bins = axis.num_bins / plan.merge_bins;
-    if (settings.ambient == Ambient::Subtract) {
-        if (auto signal = find_signal(prepared.transient(), prepared.observed)) {
-            plan.ambient_per_bin = std::move(signal->ambient_per_bin);
-            const int end = (signal->end_bin + plan.merge_bins - 1) / plan.merge_bins;
-            if (!settings.volume.z_range_m) {
-                plan.num_bins = std::clamp(end, std::min(kMinBins, plan.num_bins), plan.num_bins);
-            }
-        }
-        if (settings.noise_floor) {
-            plan.ambient_per_bin.assign(prepared.scan.num_pairs(), *settings.noise_floor);
-        }
-    }
-    if (settings.method != Method::Solver) plan.deconvolution = deconvolution_of(settings, axis);
-    const bool has_filter = settings.method == Method::Dlct || settings.method == Method::Lct;
-    if (has_filter && !settings.snr) {
-        settings.snr =
-            is_counts
-                ? wiener_snr(prepared.scan, axis, prepared.transient(), plan, settings.falloff)
-                : kNoiselessSnr;
-    }
-    return plan;
-}
-
-/// What the solver explains of the histograms instead of having it taken off: moves the plan's
-/// ambient light here.
-///
-/// axis   of the prepared histograms
-Measurement take_measurement(const PreparedCapture& prepared,
-                             const ReconstructSettings& settings,
-                             const core::TimeAxis& axis,
-                             PreparationPlan& plan) {
-    Measurement measurement;
-    measurement.is_counts = prepared.unit == core::TransientUnit::Counts;
-    measurement.background_per_bin = std::exchange(plan.ambient_per_bin, {});
-    for (double& value : measurement.background_per_bin) value *= plan.merge_bins;
-    if (core::is_stated(settings.response)) {
-        measurement.response = core::sample_response(
-            core::make_response(settings.response, "response"), axis.bin_width_m);
-    }
-    return measurement;
-}
-
-bool uses_wave(const ReconstructSettings& settings) {
-    return settings.method == Method::Phasor ||
-           (settings.method == Method::Fbp && settings.filter == FbpFilter::Phasor);
-}
-
-/// Whether histograms are multiplied by range^power against the falloff of light. A confocal scan
-/// lights every voxel from all over the wall; there the factor would only let far wall points
-/// outvote near ones.
-bool makes_up_for_falloff(const core::Scan& scan, const ReconstructSettings& settings) {
-    return uses_wave(settings) && scan.pattern != core::ScanPattern::Confocal;
-}
-
-/// Distance of voxels along z unless set: a bin's range, or what the virtual wave resolves.
-double default_depth_step_m(const core::TimeAxis& axis, const ReconstructSettings& settings) {
-    const double bin = 0.5 * axis.bin_width_m;
-    return uses_wave(settings) ? std::max(bin, *settings.phasor.wavelength_m / 8.0) : bin;
-}
-
-/// Half the path lengths that the axis covers once device legs are taken off.
-std::array<double, 2> default_z_range(const core::Scan& scan, const core::TimeAxis& axis) {
-    const auto [shortest_leg, longest_leg] = core::device_leg_range_m(scan);
-    const double begin = std::max(0.0, 0.5 * (axis.opl_start_m - longest_leg));
-    const double end = 0.5 * (axis.opl_end_m() - shortest_leg);
-    if (!(end > begin)) {
-        throw core::Error("capture",
-                          fmt::format("the time axis ends at a range of {:.4g} m", end),
-                          "it must reach beyond the wall");
-    }
-    return {begin, end};
-}
-
-/// Columns at the scan's points or evenly over its footprint, depths at the bins' ranges.
-void choose_axes(const core::Scan& scan,
-                 const core::TimeAxis& axis,
-                 const WallFrame& wall,
-                 ReconstructSettings& settings,
-                 VolumeAxes& axes) {
-    VolumeSettings& volume = settings.volume;
-    if (!volume.z_range_m) volume.z_range_m = default_z_range(scan, axis);
-    const double depth = (*volume.z_range_m)[1] - (*volume.z_range_m)[0];
-    std::array<double, 2> low = wall.min_m;
-    std::array<double, 2> high = wall.max_m;
-    for (int i = 0; i < 2 && wall.grid; ++i) {  // other points may lie outside the grid
-        low[i] = wall.grid->first_m[i] - 0.5 * wall.grid->pitch_m[i];
-        high[i] = low[i] + static_cast<double>(wall.grid->size[i]) * wall.grid->pitch_m[i];
-    }
-    const double size = std::max(high[0] - low[0], high[1] - low[1]);
-    for (int i = 0; i < 2; ++i) {  // points on a line, or one point: a square, or as wide as deep
-        if (high[i] - low[i] > 1e-3 * size && size > 0.0) continue;
-        const double center = 0.5 * (low[i] + high[i]);
-        low[i] = center - 0.5 * (size > 0.0 ? size : depth);
-        high[i] = center + 0.5 * (size > 0.0 ? size : depth);
-    }
-    if (!volume.voxels) {
-        const std::array<std::size_t, 2> columns =
-            wall.grid ? wall.grid->size : std::array{kDefaultColumns, kDefaultColumns};
-        const double step = default_depth_step_m(axis, settings);
-        volume.voxels = {
-            static_cast<int>(columns[0]),
-            static_cast<int>(columns[1]),
-            static_cast<int>(std::clamp(std::round(depth / step), 1.0, double{kMaxVoxelsPerAxis}))};
-    }
-    const auto [nx, ny, nz] = *volume.voxels;
-    axes.x_m = cell_centers(low[0], high[0], static_cast<std::size_t>(nx));
-    axes.y_m = cell_centers(low[1], high[1], static_cast<std::size_t>(ny));
-    axes.z_m =
-        cell_centers((*volume.z_range_m)[0], (*volume.z_range_m)[1], static_cast<std::size_t>(nz));
-    axes.world_from_wall = wall.world_from_wall;
-}
 
 /// A method that knows normals knows them better than a plane through neighbouring columns does.
 void take_normals(const Volume& volume, core::DepthMap& depth) {
@@ -197,6 +37,34 @@ void take_normals(const Volume& volume, core::DepthMap& depth) {
         if (!depth.is_foreground(i)) continue;
         depth.normals[i] = depth.world_from_wall.linear() * volume.normals[i].cast<double>();
     }
+}
+
+/// Waves and f-k migration give squares. The deviations of depth are those that simulated surfaces
+/// showed without noise, see nlos/README.md.
+VolumeErrors volume_errors(const ReconstructSettings& settings) {
+    if (uses_wave(settings)) return {VolumeScale::Power, 0.5};
+    switch (settings.method) {
+        case Method::Fk:
+            return {VolumeScale::Power, 0.28};
+        case Method::Fbp:
+            return {VolumeScale::Amplitude, 0.2};
+        case Method::Bp:
+            return {VolumeScale::Amplitude, 0.5};
+        default:
+            return {VolumeScale::Amplitude, 0.12};
+    }
+}
+
+/// Takes depths, what is known of them and points from the volume and, where the noise is known,
+/// that of the scene measured again.
+void take_surface(const Volume* again, Reconstruction& result) {
+    Surface surface = find_surface(
+        result.volume, again, volume_errors(result.settings), result.settings.mask_threshold);
+    result.depth = std::move(surface.depth);
+    result.surface_probability = std::move(surface.probability);
+    result.depth_sigma_m = std::move(surface.depth_sigma_m);
+    take_normals(result.volume, result.depth);
+    result.points = surface_points(result.depth);
 }
 
 /// A reconstruction method: what it computes, and the memory that takes on top of its input
@@ -244,11 +112,6 @@ std::size_t choose_slabs(const MethodInput& input,
     return 1;
 }
 
-void announce_findings(const std::vector<std::string>& findings, const core::Progress& progress) {
-    if (!progress.announce) return;
-    for (const std::string& finding : findings) progress.announce("found: " + finding);
-}
-
 /// Says what will run and what it needs.
 void announce(const Reconstruction& result, std::size_t num_slabs, const core::Progress& progress) {
     if (!progress.announce) return;
@@ -259,33 +122,153 @@ void announce(const Reconstruction& result, std::size_t num_slabs, const core::P
                                   num_slabs > 1 ? fmt::format(" in {} slabs", num_slabs) : ""));
 }
 
-/// Chooses the method and enters it and what it takes from the capture's provenance: `auto` lets the
-/// solver explain a recorded response.
-MethodChoice choose(const core::Capture& capture,
-                    ReconstructSettings& settings,
-                    PreparedCapture& prepared) {
-    ReconstructSettings with_response = settings;
-    if (settings.method == Method::Auto && !core::is_stated(settings.response)) {
-        with_response.response = core::recorded_response(capture).value_or(settings.response);
+/// One reconstruction: what was chosen, and the steps that use it.
+class Job {
+ public:
+    Job(const core::Capture& capture,
+        const ReconstructSettings& settings,
+        const core::Progress& progress)
+        : capture_(capture),
+          progress_(progress),
+          is_auto_(settings.method == Method::Auto && settings.prior == Prior::None),
+          has_noise_(knows_its_noise(capture)),
+          first_run_(progress.part(0.0, has_noise_ ? 0.5 : 1.0)),
+          second_run_(progress.part(0.5, 1.0)) {
+        result_.settings = settings;
+        const bool takes_lct = settings.method == Method::Auto || settings.method == Method::Lct;
+        if (settings.prior == Prior::Tv && takes_lct) result_.settings.method = Method::Solver;
     }
-    MethodChoice choice = choose_method(with_response, prepared);
-    if (choice.method == Method::Solver) settings.response = with_response.response;
-    settings.method = choice.method;
-    return choice;
-}
 
-/// Enters how light falls off: as counts say where `auto` took the solver, else diffuse.
-void choose_falloff_of(const MethodInput& input,
-                       bool is_auto,
-                       ReconstructSettings& settings,
-                       std::vector<std::string>& findings) {
-    if (settings.falloff != Falloff::Auto) return;
-    settings.falloff = Falloff::Diffuse;
-    if (!is_auto || settings.method != Method::Solver || !is_confocal_grid(input)) return;
-    FalloffChoice choice = choose_falloff(input, settings);
-    settings.falloff = choice.falloff;
-    findings.push_back(std::move(choice.reason));
-}
+    Reconstruction run() {
+        choose();
+        const std::size_t num_slabs = claim_memory();
+        core::Transient histograms;
+        if (!is_ready()) histograms = prepare(prepared_.transient());
+        const MethodInput input =
+            input_with(is_ready() ? prepared_.transient() : histograms, first_run_);
+        choose_falloff_of(input);
+        if (progress_.announce) {
+            for (const std::string& found : result_.findings) progress_.announce("found: " + found);
+        }
+        const ReconstructSettings& settings = result_.settings;
+        result_.volume = functions_of(settings).run(input, settings, num_slabs);
+        std::optional<Volume> again;
+        if (const auto second = measure_again(capture_)) {
+            PreparedCapture prepared = crop_capture(*second, settings.crop);
+            if (!prepared_.conversion.empty()) convert_to_confocal(prepared);
+            histograms = prepare(prepared.transient());
+            again = functions_of(settings).run(
+                input_with(histograms, second_run_), settings, num_slabs);
+        }
+        take_surface(again ? &*again : nullptr, result_);
+        return std::move(result_);
+    }
+
+ private:
+    /// Fills in whatever the settings leave open.
+    void choose() {
+        ReconstructSettings& settings = result_.settings;
+        settings.response = core::resolve_response(settings.response, capture_, "response");
+        prepared_ = crop_capture(capture_, settings.crop);
+        const MethodChoice choice = choose_and_enter_method(capture_, settings, prepared_);
+        result_.method = core::enum_name(choice.method);
+        result_.reason = choice.reason;
+        result_.warnings = capture_warnings(capture_);
+        for (std::string& text : core::detector_warnings(capture_, settings.response)) {
+            result_.warnings.push_back(std::move(text));
+        }
+        plan_ = choose_preparation(prepared_, settings);
+        axis_ = prepared_.time_axis;
+        axis_.bin_width_m *= plan_.merge_bins;
+        axis_.num_bins = plan_.num_bins;
+        if (is_auto_) result_.findings = survey_capture(prepared_, plan_, settings);
+        if (choice.method == Method::Solver) {
+            measurement_ = take_measurement(prepared_, settings, axis_, plan_);
+        }
+        if (uses_wave(settings) && !settings.phasor.wavelength_m) {
+            settings.phasor.wavelength_m =
+                default_wavelength_m(prepared_.scan, prepared_.wall, axis_);
+        }
+        choose_axes(prepared_.scan, axis_, prepared_.wall, settings, axes_);
+        observed_ = prepared_observed(plan_);
+        core::simplify(observed_, axis_.num_bins);
+        if (auto warning = unobserved_warning(settings, observed_, axis_.num_bins)) {
+            result_.warnings.push_back(std::move(*warning));
+        }
+    }
+
+    /// Whether the capture's own histograms are what the method gets.
+    bool is_ready() const {
+        return plan_.num_bins == prepared_.time_axis.num_bins && plan_.ambient_per_bin.empty() &&
+               !plan_.deconvolution && !makes_up_for_falloff(prepared_.scan, result_.settings);
+    }
+
+    /// Says what will run and what it needs. Returns the number of slabs.
+    std::size_t claim_memory() {
+        const ReconstructSettings& settings = result_.settings;
+        double other_bytes =
+            is_ready() && !has_noise_
+                ? 0.0
+                : 4.0 * static_cast<double>(prepared_.scan.num_pairs()) * axis_.num_bins;
+        if (has_noise_) {  // the scene measured again, and its volume
+            other_bytes += 4.0 * static_cast<double>(capture_.transient.values().size()) +
+                           prepared_.own_bytes() + 4.0 * static_cast<double>(axes_.num_voxels());
+        }
+        const MethodInput input = input_with(prepared_.transient(), first_run_);
+        const std::size_t num_slabs = choose_slabs(input, settings, other_bytes);
+        const double bytes = other_bytes + functions_of(settings).bytes(input, settings, num_slabs);
+        require_memory(bytes, settings.memory_gb);
+        result_.stated_bytes = bytes + prepared_.own_bytes();
+        announce(result_, num_slabs, progress_);
+        check_stop(progress_);
+        return num_slabs;
+    }
+
+    core::Transient prepare(const core::Transient& transient) const {
+        core::Transient histograms = prepare_histograms(transient, plan_);
+        if (makes_up_for_falloff(prepared_.scan, result_.settings)) {
+            multiply_by_range(
+                prepared_.scan, axis_, falloff_power(result_.settings.falloff), histograms);
+        }
+        return histograms;
+    }
+
+    MethodInput input_with(const core::Transient& transient, const core::Progress& part) const {
+        return {prepared_.scan,
+                axis_,
+                transient,
+                prepared_.wall,
+                axes_,
+                *result_.settings.volume.z_range_m,
+                part,
+                observed_ ? &*observed_ : nullptr,
+                prepared_.unobserved_before_m,
+                measurement_};
+    }
+
+    /// Enters how light falls off: as counts say where `auto` took the solver, else diffuse.
+    void choose_falloff_of(const MethodInput& input) {
+        ReconstructSettings& settings = result_.settings;
+        if (settings.falloff != Falloff::Auto) return;
+        settings.falloff = Falloff::Diffuse;
+        if (!is_auto_ || settings.method != Method::Solver || !is_confocal_grid(input)) return;
+        FalloffChoice choice = choose_falloff(input, settings);
+        settings.falloff = choice.falloff;
+        result_.findings.push_back(std::move(choice.reason));
+    }
+
+    const core::Capture& capture_;
+    const core::Progress& progress_;
+    bool is_auto_, has_noise_;
+    core::Progress first_run_, second_run_;
+    Reconstruction result_;
+    PreparedCapture prepared_;
+    PreparationPlan plan_;
+    core::TimeAxis axis_;  ///< of prepared histograms
+    core::ObservedBins observed_;
+    Measurement measurement_;
+    VolumeAxes axes_;
+};
 
 }  // namespace
 
@@ -299,81 +282,7 @@ Reconstruction reconstruct(const core::Capture& capture,
         throw core::Error(
             "capture", "found the image of a camera", "must be a scan of points on a relay wall");
     }
-
-    Reconstruction result;
-    result.settings = settings;
-    const bool takes_lct = settings.method == Method::Auto || settings.method == Method::Lct;
-    if (settings.prior == Prior::Tv && takes_lct) result.settings.method = Method::Solver;
-    result.settings.response = core::resolve_response(settings.response, capture, "response");
-    PreparedCapture prepared = crop_capture(capture, settings.crop);
-    const MethodChoice choice = choose(capture, result.settings, prepared);
-    result.warnings = capture_warnings(capture);
-    for (std::string& text : core::detector_warnings(capture, result.settings.response)) {
-        result.warnings.push_back(std::move(text));
-    }
-    result.method = core::enum_name(choice.method);
-    result.reason = choice.reason;
-
-    PreparationPlan plan = choose_preparation(prepared, result.settings);
-    core::TimeAxis axis = prepared.time_axis;
-    axis.bin_width_m *= plan.merge_bins;
-    axis.num_bins = plan.num_bins;
-    const bool is_auto = settings.method == Method::Auto;
-    if (is_auto) result.findings = survey_capture(prepared, plan, result.settings);
-    Measurement measurement;
-    if (choice.method == Method::Solver) {
-        measurement = take_measurement(prepared, result.settings, axis, plan);
-    }
-    if (uses_wave(result.settings) && !result.settings.phasor.wavelength_m) {
-        result.settings.phasor.wavelength_m =
-            default_wavelength_m(prepared.scan, prepared.wall, axis);
-    }
-    VolumeAxes axes;
-    choose_axes(prepared.scan, axis, prepared.wall, result.settings, axes);
-
-    const bool is_ready = plan.num_bins == prepared.time_axis.num_bins &&
-                          plan.ambient_per_bin.empty() && !plan.deconvolution &&
-                          !makes_up_for_falloff(prepared.scan, result.settings);
-    core::ObservedBins observed = prepared_observed(plan);
-    core::simplify(observed, axis.num_bins);
-    if (auto warning = unobserved_warning(result.settings, observed, axis.num_bins)) {
-        result.warnings.push_back(std::move(*warning));
-    }
-    const auto input_with = [&](const core::Transient& transient) {
-        return MethodInput{prepared.scan,
-                           axis,
-                           transient,
-                           prepared.wall,
-                           axes,
-                           *result.settings.volume.z_range_m,
-                           progress,
-                           observed ? &*observed : nullptr,
-                           prepared.unobserved_before_m,
-                           measurement};
-    };
-    const double prepared_bytes =
-        is_ready ? 0.0 : 4.0 * static_cast<double>(prepared.scan.num_pairs()) * axis.num_bins;
-    const MethodFunctions method = functions_of(result.settings);
-    const MethodInput unprepared = input_with(prepared.transient());
-    const std::size_t num_slabs = choose_slabs(unprepared, result.settings, prepared_bytes);
-    const double work_bytes = prepared_bytes + method.bytes(unprepared, result.settings, num_slabs);
-    require_memory(work_bytes, settings.memory_gb);
-    result.stated_bytes = work_bytes + prepared.own_bytes();
-    announce(result, num_slabs, progress);
-    check_stop(progress);
-    core::Transient histograms;
-    if (!is_ready) histograms = prepare_histograms(prepared.transient(), plan);
-    if (makes_up_for_falloff(prepared.scan, result.settings)) {
-        multiply_by_range(prepared.scan, axis, falloff_power(settings.falloff), histograms);
-    }
-    const MethodInput input = input_with(is_ready ? prepared.transient() : histograms);
-    choose_falloff_of(input, is_auto, result.settings, result.findings);
-    announce_findings(result.findings, progress);
-    result.volume = method.run(input, result.settings, num_slabs);
-
-    result.depth = extract_depth_map(result.volume, settings.mask_threshold);
-    take_normals(result.volume, result.depth);
-    result.points = surface_points(result.depth);
+    Reconstruction result = Job(capture, settings, progress).run();
     result.seconds = watch.seconds();
     result.peak_bytes = core::peak_rss_bytes();
     return result;

@@ -92,6 +92,38 @@ core::DepthMap read_depth(const ArrayReader& file, const VolumeAxes& axes) {
     return depth;
 }
 
+/// What is stated of every column; nothing in files without.
+std::vector<double> read_column_values(const ArrayReader& file,
+                                       const std::string& name,
+                                       const Shape& columns) {
+    if (!file.has(name)) return {};
+    return file.read_doubles(name, columns);
+}
+
+std::vector<double> read_probabilities(const ArrayReader& file, const Shape& columns) {
+    std::vector<double> values = read_column_values(file, "surface_probability", columns);
+    for (const double value : values) {
+        if (value >= 0.0 && value <= 1.0) continue;
+        throw Error(file.where("surface_probability"),
+                    fmt::format("found {}", value),
+                    "must be within [0, 1]");
+    }
+    return values;
+}
+
+std::vector<double> read_sigmas(const ArrayReader& file, const core::DepthMap& depth) {
+    std::vector<double> values =
+        read_column_values(file, "depth_sigma_m", {depth.x_m.size(), depth.y_m.size()});
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const bool is_sigma = std::isfinite(values[i]) && values[i] >= 0.0;
+        if (depth.is_foreground(i) ? is_sigma : std::isnan(values[i])) continue;
+        throw Error(file.where("depth_sigma_m"),
+                    fmt::format("found {} at column {}", values[i], i),
+                    "must be 0 or more where depth_m is a depth, NaN elsewhere");
+    }
+    return values;
+}
+
 core::PointCloud read_points(const ArrayReader& file) {
     core::PointCloud points;
     const Shape shape = file.shape("points");
@@ -138,6 +170,12 @@ void write_volume(const std::string& path, const Reconstruction& reconstruction)
     write_axis(file, "y_m", axes.y_m, pose);
     write_axis(file, "z_m", axes.z_m, pose);
     file.write("depth_m", columns, reconstruction.depth.depth_m);
+    if (!reconstruction.depth_sigma_m.empty()) {
+        file.write("depth_sigma_m", columns, reconstruction.depth_sigma_m);
+    }
+    if (!reconstruction.surface_probability.empty()) {
+        file.write("surface_probability", columns, reconstruction.surface_probability);
+    }
     file.write("max_projection", columns, max_projection(volume));
     if (!volume.normals.empty()) write_vectors(file, "normals", columns, volume.normals);
     const core::PointCloud& points = reconstruction.points;
@@ -172,6 +210,8 @@ Reconstruction read_volume(const std::string& path) {
         }
     }
     result.depth = read_depth(file, axes);
+    result.depth_sigma_m = read_sigmas(file, result.depth);
+    result.surface_probability = read_probabilities(file, columns);
     result.points = read_points(file);
     result.method = file.text_attribute("/", "method").value_or("");
     result.reason = file.text_attribute("/", "reason").value_or("");

@@ -158,6 +158,27 @@ ImagePanel depth_panel(const core::DepthMap& map,
     return panel;
 }
 
+ImagePanel probability_panel(const core::DepthMap& map, const std::vector<double>& probability) {
+    ImagePanel panel =
+        front_view_of(map.x_m, map.y_m, [&](std::size_t i) { return probability[i]; });
+    panel.title = "Probability of a surface";
+    panel.value_label = "probability";
+    panel.colour_map = ColourMap::Grey;
+    panel.value_range = Range{0.0, 1.0};
+    return panel;
+}
+
+ImagePanel sigma_panel(const core::DepthMap& map, const std::vector<double>& sigma_m) {
+    ImagePanel panel =
+        front_view_of(map.x_m, map.y_m, [&](std::size_t i) { return 1000.0 * sigma_m[i]; });
+    panel.title = "Standard deviation of depth";
+    panel.value_label = "sigma [mm]";
+    panel.colour_map = ColourMap::Viridis;
+    const double high = 1000.0 * percentile(sigma_m, 0.99);
+    if (high > 0.0) panel.value_range = Range{0.0, high};
+    return panel;
+}
+
 }  // namespace
 
 std::vector<Panel> volume_panels(const Reconstruction& reconstruction) {
@@ -165,8 +186,13 @@ std::vector<Panel> volume_panels(const Reconstruction& reconstruction) {
     label_projections(reconstruction.volume.axes, views);
     std::vector<Panel> panels{views.front, views.side, views.top};
     const core::DepthMap& depth = reconstruction.depth;
-    if (!depth.depth_m.empty()) {
-        panels.emplace_back(depth_panel(depth, "Depth map", depth_range(depth.depth_m)));
+    if (depth.depth_m.empty()) return panels;
+    panels.emplace_back(depth_panel(depth, "Depth map", depth_range(depth.depth_m)));
+    if (reconstruction.surface_probability.size() == depth.depth_m.size()) {
+        panels.emplace_back(probability_panel(depth, reconstruction.surface_probability));
+    }
+    if (reconstruction.depth_sigma_m.size() == depth.depth_m.size()) {
+        panels.emplace_back(sigma_panel(depth, reconstruction.depth_sigma_m));
     }
     return panels;
 }

@@ -87,7 +87,7 @@ struct ReconstructSettings {
     std::optional<double>
         noise_floor;                  ///< background per bin; empty: each pair's, see find_signal()
     std::optional<int> merge_bins;    ///< neighbouring bins added up first; empty: from the pitch
-    double mask_threshold = 0.2;      ///< of the maximum: foreground of depth map and points
+    double mask_threshold = 0.5;      ///< probability of a surface: foreground of depth and points
     std::optional<double> memory_gb;  ///< to take at most; empty: what the machine has
 };
 
@@ -189,7 +189,8 @@ void for_each_field(ReconstructSettings& s, Visitor&& visit) {
                          "of the distance of scan points"));
     visit("mask_threshold",
           s.mask_threshold,
-          core::strictly_between(0, 1, "share of the maximum that counts as foreground"));
+          core::strictly_between(
+              0, 1, "probability of a surface from which on a column has a depth and a point"));
     visit(
         "memory_gb",
         s.memory_gb,

@@ -15,7 +15,9 @@ namespace nlos {
 /// What reconstruct() found, and what it took.
 struct Reconstruction {
     Volume volume;
-    core::DepthMap depth;     ///< sub-bin depth of the brightest voxel per column; NaN = background
+    core::DepthMap depth;  ///< sub-bin depth of each column's peak; NaN = background
+    std::vector<double> surface_probability;  ///< per column [x][y]; empty: not stated
+    std::vector<double> depth_sigma_m;  ///< of `depth`, NaN = background; empty: noise not known
     core::PointCloud points;  ///< foreground of `depth` in world coordinates, normals to the wall
     std::string method;       ///< the one that ran
     std::string reason;       ///< why `auto` took it

@@ -1,31 +1,22 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/reconstruction/surface.h"
 
+#include "nlos/reconstruction/column_peak.h"
+#include "nlos/reconstruction/depth_sigma.h"
+#include "nlos/reconstruction/surface_probability.h"
+
 #include <Eigen/Cholesky>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <functional>
+#include <optional>
+#include <span>
 
 namespace nlos {
 namespace {
 
 using core::Vec3;
-
-/// Position of the maximum in voxels: vertex of the parabola through the logarithms of the highest
-/// three values, right for a Gaussian of any width where a parabola through the values themselves
-/// leans towards the highest voxel by up to a tenth; through the values where one is not positive.
-double peak_position(const float* values, std::size_t count, std::size_t highest) {
-    const auto center = static_cast<double>(highest);
-    if (highest == 0 || highest + 1 == count) return center;
-    std::array<double, 3> three{values[highest - 1], values[highest], values[highest + 1]};
-    if (three[0] > 0.0 && three[2] > 0.0) {
-        for (double& value : three) value = std::log(value);
-    }
-    const double curvature = three[0] - 2.0 * three[1] + three[2];
-    if (!(curvature < 0.0)) return center;
-    return center + std::clamp(0.5 * (three[0] - three[2]) / curvature, -0.5, 0.5);
-}
 
 /// Depth at a position between evenly spaced voxel centres.
 double depth_at(const std::vector<double>& z_m, double position) {
@@ -65,34 +56,113 @@ Vec3 fitted_normal(const core::DepthMap& depth, std::size_t ix, std::size_t iy) 
     return Vec3(plane.x(), plane.y(), -1.0).normalized();
 }
 
-}  // namespace
-
-core::DepthMap extract_depth_map(const Volume& volume, double mask_threshold) {
-    const VolumeAxes& axes = volume.axes;
-    core::DepthMap depth(axes.x_m, axes.y_m);
-    depth.world_from_wall = axes.world_from_wall;
-    depth.normals.assign(depth.depth_m.size(), Vec3::Zero());
-    if (volume.values.empty()) return depth;
-    const float maximum = *std::max_element(volume.values.begin(), volume.values.end());
-    const double threshold = mask_threshold * static_cast<double>(maximum);
-    if (!(maximum > 0.0F)) return depth;
-
-    const std::size_t nz = axes.z_m.size();
-    for (std::size_t column = 0; column < depth.depth_m.size(); ++column) {
-        const float* values = volume.values.data() + column * nz;
-        const auto highest =
-            static_cast<std::size_t>(std::max_element(values, values + nz) - values);
-        if (static_cast<double>(values[highest]) < threshold) continue;
-        depth.depth_m[column] = depth_at(axes.z_m, peak_position(values, nz, highest));
+/// What noise cannot explain of a column: its brightest voxel that noise alone would exceed in a
+/// thousandth of all columns; where there is none, the one that noise explains least. Far noise
+/// that falloff has raised may be brighter.
+std::size_t surface_voxel(std::span<const float> column,
+                          VolumeScale scale,
+                          const VolumeNoise& noise,
+                          double significant) {
+    std::size_t brightest = column.size();
+    std::size_t least_explained = 0;
+    double largest = 0.0;
+    for (std::size_t iz = 0; iz < column.size(); ++iz) {
+        const double significance = noise.significance(amplitude_of(column[iz], scale), iz);
+        if (significance > largest) {
+            largest = significance;
+            least_explained = iz;
+        }
+        if (significance < significant) continue;
+        if (brightest == column.size() || column[iz] > column[brightest]) brightest = iz;
     }
-    for (std::size_t ix = 0; ix < axes.x_m.size(); ++ix) {
-        for (std::size_t iy = 0; iy < axes.y_m.size(); ++iy) {
+    return brightest < column.size() ? brightest : least_explained;
+}
+
+std::size_t brightest_voxel(std::span<const float> column) {
+    return static_cast<std::size_t>(std::ranges::max_element(column) - column.begin());
+}
+
+/// The peak of every column.
+std::vector<ColumnPeak> find_peaks(const Volume& volume,
+                                   VolumeScale scale,
+                                   const std::optional<VolumeNoise>& noise) {
+    constexpr double kChance = 1e-3;
+    const std::size_t nz = volume.axes.z_m.size();
+    const double significant = noise ? noise->significance_of_chance(kChance) : 0.0;
+    std::vector<ColumnPeak> peaks;
+    for (std::size_t i = 0; i * nz < volume.values.size(); ++i) {
+        const std::span<const float> column(volume.values.data() + i * nz, nz);
+        peaks.push_back(find_peak(
+            column,
+            noise ? surface_voxel(column, scale, *noise, significant) : brightest_voxel(column)));
+    }
+    return peaks;
+}
+
+/// The probability that every column's peak is no noise, and that it is a surface.
+std::vector<double> surface_probabilities(const Volume& volume,
+                                          const std::vector<ColumnPeak>& peaks,
+                                          VolumeScale scale,
+                                          const std::optional<VolumeNoise>& noise) {
+    const std::size_t nz = volume.axes.z_m.size();
+    std::vector<double> brightness;
+    std::vector<double> chances;
+    for (std::size_t i = 0; i < peaks.size(); ++i) {
+        const float value = std::max(0.0F, volume.values[i * nz + peaks[i].voxel]);
+        brightness.push_back(value);
+        if (!noise) continue;
+        const double amplitude = amplitude_of(value, scale);
+        chances.push_back(noise->chance_in_column(noise->significance(amplitude, peaks[i].voxel)));
+    }
+    std::vector<double> probabilities(peaks.size(), 1.0);
+    if (noise) {
+        std::ranges::transform(false_discovery_rates(chances),
+                               probabilities.begin(),
+                               [](double rate) { return 1.0 - rate; });
+    }
+    std::ranges::transform(probabilities,
+                           plateau_probabilities(brightness, probabilities),
+                           probabilities.begin(),
+                           std::multiplies<>());
+    return probabilities;
+}
+
+void fit_normals(core::DepthMap& depth) {
+    for (std::size_t ix = 0; ix < depth.x_m.size(); ++ix) {
+        for (std::size_t iy = 0; iy < depth.y_m.size(); ++iy) {
             const std::size_t i = depth.index(ix, iy);
             if (!depth.is_foreground(i)) continue;
-            depth.normals[i] = axes.world_from_wall.linear() * fitted_normal(depth, ix, iy);
+            depth.normals[i] = depth.world_from_wall.linear() * fitted_normal(depth, ix, iy);
         }
     }
-    return depth;
+}
+
+}  // namespace
+
+Surface find_surface(const Volume& volume,
+                     const Volume* again,
+                     const VolumeErrors& errors,
+                     double mask_threshold) {
+    const VolumeAxes& axes = volume.axes;
+    Surface surface;
+    surface.depth = core::DepthMap(axes.x_m, axes.y_m);
+    surface.depth.world_from_wall = axes.world_from_wall;
+    surface.depth.normals.assign(surface.depth.depth_m.size(), Vec3::Zero());
+    if (volume.values.empty()) return surface;
+
+    std::optional<VolumeNoise> noise;
+    if (again) noise.emplace(volume, *again, errors.scale);
+    const std::vector<ColumnPeak> peaks = find_peaks(volume, errors.scale, noise);
+    surface.probability = surface_probabilities(volume, peaks, errors.scale, noise);
+    for (std::size_t i = 0; i < peaks.size(); ++i) {
+        if (!(surface.probability[i] >= mask_threshold)) continue;
+        surface.depth.depth_m[i] = depth_at(axes.z_m, peaks[i].position);
+    }
+    fit_normals(surface.depth);
+    if (noise) {
+        surface.depth_sigma_m = depth_sigmas(volume, peaks, surface, *again, errors, *noise);
+    }
+    return surface;
 }
 
 }  // namespace nlos

@@ -2,21 +2,40 @@
 #pragma once
 
 #include "nlos/reconstruction/volume.h"
+#include "nlos/reconstruction/volume_noise.h"
 #include "renderer/core/depth_map.h"
-#include "renderer/core/mesh.h"
+
+#include <vector>
 
 namespace nlos {
 
-/// The surface that a volume shows from the wall: where each column is brightest.
+/// The surface that a volume shows from the wall, and how sure that is.
+struct Surface {
+    core::DepthMap depth;               ///< NaN = background; normals in world, zero there
+    std::vector<double> probability;    ///< per column, that it holds a surface
+    std::vector<double> depth_sigma_m;  ///< NaN = background; empty: the noise is not known
+};
+
+/// What a method's volume says of noise and depth.
+struct VolumeErrors {
+    VolumeScale scale = VolumeScale::Amplitude;
+    double model_voxels = 0.0;  ///< deviation of depths without noise, inside surfaces
+};
+
+/// Finds each column's peak, how likely it is a surface, and how well its depth is known.
 ///
-/// The depth between voxels is the vertex of a parabola through the logarithms of the brightest
-/// voxel and its two neighbours. Normals are those of planes fitted to neighbouring foreground
-/// columns.
+/// Without knowledge of noise the peak is the brightest voxel, and the probability is that of
+/// plateau_probabilities(). With it, the peak is the brightest of what noise cannot explain, and
+/// the probability that it is no noise (one minus false_discovery_rates()) is a factor. Normals are
+/// those of planes fitted to neighbouring foreground columns.
 ///
-/// mask_threshold   share of the volume's maximum from which on a column is foreground, in (0, 1)
-/// returns          depth in the wall's frame, NaN = background; normals in world, zero where
-///                  background; nothing is foreground in a volume without positive values
+/// again            the volume of measure_again(), null: the noise is not known
+/// mask_threshold   the probability from which on a column has a depth, in (0, 1)
+/// returns          nothing is foreground in a volume without positive values
 /// throws           nothing
-core::DepthMap extract_depth_map(const Volume& volume, double mask_threshold);
+Surface find_surface(const Volume& volume,
+                     const Volume* again,
+                     const VolumeErrors& errors,
+                     double mask_threshold);
 
 }  // namespace nlos

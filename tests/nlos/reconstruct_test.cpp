@@ -132,11 +132,29 @@ TEST(Reconstruct, TakesAmbientLightOffCountsAndStopsWhereTheSignalEnds) {
     core::Capture capture = example();
     capture.unit = core::TransientUnit::Counts;
     for (float& value : capture.transient.values()) value = std::round(50.0F * value) + 2.0F;
-    const Reconstruction result = reconstruct(capture, with({"mask_threshold=0.9"}), {});
+    const Reconstruction result = reconstruct(capture, {}, {});
     EXPECT_EQ(result.settings.ambient, Ambient::Subtract);
     EXPECT_LT((*result.settings.volume.z_range_m)[1], 1.0);
-    ASSERT_EQ(result.points.positions.size(), 1U);
-    EXPECT_LT((result.points.positions[0] - Vec3(0.075, -0.125, 0.5)).norm(), 0.01);
+    EXPECT_LT((nlos_test::brightest_point(result) - Vec3(0.075, -0.125, 0.5)).norm(), 0.01);
+}
+
+TEST(Reconstruct, StatesDeviationsOfDepthWhereTheNoiseIsKnown) {
+    const auto num_stated = [](const core::Capture& capture) {
+        const Reconstruction result = reconstruct(capture, {}, {});
+        EXPECT_EQ(result.surface_probability.size(), result.depth.depth_m.size());
+        return std::ranges::count_if(result.depth_sigma_m,
+                                     [](double sigma) { return sigma > 0.0; });
+    };
+    core::Capture capture = example();
+    EXPECT_EQ(num_stated(capture), 0);
+    capture.variance = core::Transient(capture.transient.num_pairs(), capture.time_axis.num_bins);
+    EXPECT_EQ(num_stated(capture), 0);
+    std::ranges::fill(capture.variance->values(), 1e-4F);
+    EXPECT_GT(num_stated(capture), 0);
+    capture.variance.reset();
+    capture.unit = core::TransientUnit::Counts;
+    for (float& value : capture.transient.values()) value = std::round(50.0F * value);
+    EXPECT_GT(num_stated(capture), 0);
 }
 
 TEST(Reconstruct, TakesANoiseFloorOffWhateverTheUnit) {

@@ -4,6 +4,7 @@
 #include "nlos/reconstruct.h"
 
 #include <cmath>
+#include <limits>
 
 namespace test_support {
 
@@ -23,6 +24,9 @@ inline nlos::Reconstruction example_reconstruction() {
     result.depth = core::DepthMap(axes.x_m, axes.y_m);
     result.depth.world_from_wall = axes.world_from_wall;
     result.depth.depth_m[2] = 0.6125;
+    result.depth_sigma_m.assign(6, std::numeric_limits<double>::quiet_NaN());
+    result.depth_sigma_m[2] = 0.0015;
+    result.surface_probability = {0.0, 0.1, 0.9, 0.2, 0.3, 0.4};
     result.points.positions = {result.depth.point_world(1, 0)};
     result.points.normals = {core::Vec3(0.0, 0.0, -1.0)};
     result.method = "lct";

@@ -33,6 +33,9 @@ TEST(VolumeFile, EverythingSurvivesTheRoundTrip) {
               written.volume.axes.world_from_wall.matrix());
     EXPECT_EQ(read.depth.depth_m[2], 0.6125);
     EXPECT_FALSE(read.depth.is_foreground(3));
+    EXPECT_EQ(read.surface_probability, written.surface_probability);
+    EXPECT_EQ(read.depth_sigma_m[2], 0.0015);
+    EXPECT_TRUE(std::isnan(read.depth_sigma_m[3]));
     EXPECT_EQ(read.depth.point_world(1, 0), written.points.positions[0]);
     EXPECT_EQ(read.points.positions, written.points.positions);
     EXPECT_EQ(read.points.normals, written.points.normals);
@@ -48,10 +51,27 @@ TEST(VolumeFile, AnEmptyResultSurvivesTheRoundTrip) {
     Reconstruction written = example_reconstruction();
     written.points = {};
     written.volume.normals.clear();
+    written.depth_sigma_m.clear();
+    written.surface_probability.clear();
     write_volume(folder.file("v.h5"), written);
     const Reconstruction read = read_volume(folder.file("v.h5"));
     EXPECT_TRUE(read.points.positions.empty());
     EXPECT_TRUE(read.volume.normals.empty());
+    EXPECT_TRUE(read.depth_sigma_m.empty());
+    EXPECT_TRUE(read.surface_probability.empty());
+}
+
+TEST(VolumeFile, UncertaintiesThatCannotBeAreRefused) {
+    const TemporaryFolder folder;
+    const std::string path = folder.file("v.h5");
+    Reconstruction bad = example_reconstruction();
+    bad.surface_probability[1] = 1.5;
+    write_volume(path, bad);
+    EXPECT_ERROR_WITH(read_volume(path), "surface_probability");
+    bad = example_reconstruction();
+    bad.depth_sigma_m[0] = 0.001;  // of no depth
+    write_volume(path, bad);
+    EXPECT_ERROR_WITH(read_volume(path), "depth_sigma_m");
 }
 
 TEST(VolumeFile, DatasetsHaveTheNamesAndShapesOfTheContract) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "nlos/reconstruct.h"
+#include "nlos/reconstruction/surface.h"
 
 #include <algorithm>
 #include <array>
@@ -58,12 +59,16 @@ inline void add_scatterer(core::Capture& capture, const core::Vec3& position, do
 }
 
 /// The surface point of the brightest column.
-inline core::Vec3 brightest_point(const nlos::Reconstruction& result) {
-    const std::vector<float> projection = nlos::max_projection(result.volume);
+inline core::Vec3 brightest_point(const nlos::Volume& volume) {
+    const core::DepthMap depth = nlos::find_surface(volume, nullptr, {}, 0.5).depth;
+    const std::vector<float> projection = nlos::max_projection(volume);
     const auto column = static_cast<std::size_t>(
         std::max_element(projection.begin(), projection.end()) - projection.begin());
-    const std::size_t ny = result.volume.axes.y_m.size();
-    return result.depth.point_world(column / ny, column % ny);
+    const std::size_t ny = volume.axes.y_m.size();
+    return depth.point_world(column / ny, column % ny);
+}
+inline core::Vec3 brightest_point(const nlos::Reconstruction& result) {
+    return brightest_point(result.volume);
 }
 
 }  // namespace nlos_test

@@ -39,9 +39,7 @@ TEST(FkMigration, FindsAPointOnOblongGridsWithUnequalPitch) {
         core::Capture capture = nlos_test::confocal_capture(points, {0.3, 0.016, 100});
         nlos_test::add_scatterer(capture, scatterer, falloff == Falloff::Diffuse ? 4.0 : 2.0);
         const Volume volume = migrate(capture, {0.3, 0.9}, 75, falloff);
-        const core::PointCloud found = surface_points(extract_depth_map(volume, 0.99));
-        ASSERT_EQ(found.positions.size(), 1U);
-        EXPECT_LT((found.positions[0] - scatterer).norm(), 0.0016);
+        EXPECT_LT((nlos_test::brightest_point(volume) - scatterer).norm(), 0.0016);
     }
 }
 

@@ -76,7 +76,7 @@ TEST(LightConeTransform, PlacesAPlaneWithinAQuarterOfABin) {
             nlos_test::add_scatterer(capture, Vec3(0.02 * ix, 0.02 * iy, 0.6), 4.0);
         }
     }
-    const core::DepthMap depth = extract_depth_map(transform(capture, {0.3, 0.9}, 75), 0.2);
+    const core::DepthMap depth = find_surface(transform(capture, {0.3, 0.9}, 75), nullptr, {}, 0.2).depth;
     double sum = 0.0;
     for (std::size_t ix = 8; ix < 16; ++ix) {
         for (std::size_t iy = 8; iy < 16; ++iy) {

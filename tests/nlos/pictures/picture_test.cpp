@@ -192,6 +192,19 @@ TEST(Pictures, FrontViewShowsWhatAnEyeAtTheWallSees) {
     EXPECT_FALSE(encode_panels_png(panels, 2).empty());
 }
 
+TEST(Pictures, ProbabilityAndDeviationOfDepthStandBesideIt) {
+    Reconstruction result = test_support::column_volume({1.0F, 0.5F}, {0.7, kBackground});
+    result.surface_probability = {0.9, 0.25};
+    EXPECT_EQ(volume_panels(result).size(), 5U);
+    result.depth_sigma_m = {0.002, kBackground};
+    const std::vector<Panel> panels = volume_panels(result);
+    ASSERT_EQ(panels.size(), 6U);
+    EXPECT_EQ(image(panels[4]).values, (std::vector<float>{0.9F, 0.25F}));
+    EXPECT_FLOAT_EQ(image(panels[5]).values[0], 2.0F);  // mm
+    EXPECT_TRUE(std::isnan(image(panels[5]).values[1]));
+    EXPECT_FALSE(encode_panels_png(panels, 2).empty());
+}
+
 TEST(Pictures, DarkVolumesAndEmptyMapsCanBeDrawn) {
     const Reconstruction dark = test_support::column_volume({0.0F, 0.0F}, {});
     EXPECT_FALSE(encode_panels_png(volume_panels(dark), 2).empty());

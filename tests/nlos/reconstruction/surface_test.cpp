@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/reconstruction/surface.h"
 
+#include "renderer/core/random.h"
+#include "renderer/core/types.h"
+
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace nlos {
@@ -27,9 +31,82 @@ Volume sloped_plane(double slope) {
     return volume;
 }
 
+core::DepthMap depth_of(const Volume& volume) {
+    return find_surface(volume, nullptr, {}, 0.5).depth;
+}
+
+double normal_deviate(core::Rng& rng) {
+    return std::sqrt(-2.0 * std::log(1.0 - rng.uniform())) *
+           std::cos(2.0 * core::kPi * rng.uniform());
+}
+
+/// 40 x 40 columns of 30 voxels. Noise grows with depth to the power of 4 and negative values are
+/// cut off, as by light_cone_transform; the first 10 rows of columns hold a plane at voxel 10.3.
+struct NoisyVolumes {
+    Volume volume;
+    Volume again;
+
+    explicit NoisyVolumes(double brightness) {
+        volume.axes.x_m = cell_centers(-0.5, 0.5, 40);
+        volume.axes.y_m = volume.axes.x_m;
+        volume.axes.z_m = cell_centers(0.0, 1.0, 30);
+        core::Rng rng(1, 2, 3);
+        for (std::size_t i = 0; i < 1600 * 30; ++i) {
+            const double z = static_cast<double>(i % 30);
+            const double steps = (z - 10.3) / 1.5;
+            const double plane = i / 30 < 400 ? brightness * std::exp(-0.5 * steps * steps) : 0.0;
+            const double sigma = std::pow((z + 1.0) / 11.3, 4);
+            const double value = plane + sigma * normal_deviate(rng);
+            volume.values.push_back(static_cast<float>(std::max(0.0, value)));
+            again.values.push_back(
+                static_cast<float>(std::max(0.0, value + sigma * normal_deviate(rng))));
+        }
+        again.axes = volume.axes;
+    }
+    double true_depth_m() const { return (10.3 + 0.5) / 30.0; }
+};
+
+TEST(Surface, FarNoiseThatFalloffRaisedHidesNoSurface) {
+    const NoisyVolumes noisy(15.0);  // the farthest noise has a deviation of 50
+    const Surface surface = find_surface(noisy.volume, &noisy.again, {}, 0.5);
+    int num_wrong = 0;
+    for (std::size_t i = 0; i < 1600; ++i) {
+        if (i < 400) {
+            EXPECT_NEAR(surface.depth.depth_m[i], noisy.true_depth_m(), 0.03) << i;
+        } else {
+            num_wrong += surface.depth.is_foreground(i) ? 1 : 0;
+        }
+    }
+    EXPECT_LE(num_wrong, 12);  // 1 %
+}
+
+TEST(Surface, OfNoiseAloneIsHardlyAny) {
+    const NoisyVolumes noisy(0.0);
+    const Surface surface = find_surface(noisy.volume, &noisy.again, {}, 0.5);
+    EXPECT_LE(surface_points(surface.depth).positions.size(), 16U);  // 1 %
+}
+
+TEST(Surface, StatedDeviationsOfDepthAreThoseOfTheErrors) {
+    const NoisyVolumes noisy(25.0);
+    const Surface surface = find_surface(noisy.volume, &noisy.again, {}, 0.5);
+    double squares = 0.0;
+    for (std::size_t i = 0; i < 400; ++i) {
+        const double error = surface.depth.depth_m[i] - noisy.true_depth_m();
+        squares += std::pow(error / surface.depth_sigma_m[i], 2) / 400.0;
+    }
+    EXPECT_GT(squares, 0.6);
+    EXPECT_LT(squares, 1.4);
+}
+
+TEST(Surface, DeviationsOfDepthAreNotInvented) {
+    const Surface surface = find_surface(sloped_plane(0.3), nullptr, {}, 0.5);
+    EXPECT_TRUE(surface.depth_sigma_m.empty());
+    EXPECT_EQ(surface.probability.size(), 80U);
+}
+
 TEST(Surface, FindsDepthsBetweenVoxels) {
     const Volume volume = sloped_plane(0.3);
-    const core::DepthMap depth = extract_depth_map(volume, 0.2);
+    const core::DepthMap depth = depth_of(volume);
     for (std::size_t ix = 0; ix < 10; ++ix) {
         EXPECT_TRUE(std::isnan(depth.depth_m[depth.index(ix, 0)]));
         for (std::size_t iy = 1; iy < 8; ++iy) {
@@ -46,13 +123,13 @@ TEST(Surface, FindsDepthsBetweenVoxelsBesideDarkness) {
         volume.values[20 * column + 8] = 1.0F;
     }
     // The parabola through 0.5, 1 and 0.
-    for (const double z : extract_depth_map(volume, 0.2).depth_m) {
+    for (const double z : depth_of(volume).depth_m) {
         EXPECT_NEAR(z, volume.axes.z_m[8] - 0.01 / 6.0, 1e-9);
     }
 }
 
 TEST(Surface, PointsLieInTheWorldWithNormalsTowardsTheWall) {
-    const core::PointCloud points = surface_points(extract_depth_map(sloped_plane(0.3), 0.2));
+    const core::PointCloud points = surface_points(depth_of(sloped_plane(0.3)));
     ASSERT_EQ(points.positions.size(), 70U);
     const core::Vec3 expected = core::Vec3(0.3, 0.0, -1.0).normalized();
     for (std::size_t i = 0; i < points.positions.size(); ++i) {
@@ -65,7 +142,7 @@ TEST(Surface, PointsLieInTheWorldWithNormalsTowardsTheWall) {
 TEST(Surface, AnEmptyVolumeHasNoForeground) {
     Volume volume = sloped_plane(0.0);
     volume.values.assign(volume.values.size(), 0.0F);
-    EXPECT_TRUE(surface_points(extract_depth_map(volume, 0.2)).positions.empty());
+    EXPECT_TRUE(surface_points(depth_of(volume)).positions.empty());
 }
 
 TEST(Volume, MaxProjectionIsTheBrightestValueOfEachColumn) {

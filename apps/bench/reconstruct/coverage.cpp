@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: MIT
+#include "apps/bench/reconstruct/coverage.h"
+
+#include "apps/bench/reconstruct/random_capture.h"
+#include "nlos/reconstruct.h"
+#include "renderer/scene/ground_truth.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace apps {
+namespace {
+
+constexpr std::size_t kTenths = 10;
+
+/// What surrounds a column of the truth.
+enum class Surroundings { Surface, Both, Background };
+
+Surroundings surroundings(const core::DepthMap& truth, std::size_t ix, std::size_t iy) {
+    bool any_surface = false;
+    bool any_background = false;
+    for (std::size_t jx = ix - std::min<std::size_t>(ix, 1);
+         jx < std::min(truth.x_m.size(), ix + 2);
+         ++jx) {
+        for (std::size_t jy = iy - std::min<std::size_t>(iy, 1);
+             jy < std::min(truth.y_m.size(), iy + 2);
+             ++jy) {
+            const bool is_surface = truth.is_foreground(truth.index(jx, jy));
+            any_surface = any_surface || is_surface;
+            any_background = any_background || !is_surface;
+        }
+    }
+    if (any_surface && any_background) return Surroundings::Both;
+    return any_surface ? Surroundings::Surface : Surroundings::Background;
+}
+
+/// A share of many, counted.
+struct Share {
+    std::size_t hits = 0;
+    std::size_t count = 0;
+
+    void add(bool is_hit) {
+        hits += is_hit ? 1 : 0;
+        ++count;
+    }
+    double value() const {
+        return count > 0 ? static_cast<double>(hits) / static_cast<double>(count) : 0.0;
+    }
+};
+
+/// Columns of one method at one signal level.
+struct DepthTally {
+    Share within_68, within_95, inside_68, inside_95, found, wrong, wrong_apart;
+    std::vector<double> sigmas_m, errors_m;
+
+    void add_found(double error_m, double sigma_m, Surroundings around) {
+        const bool in_68 = error_m <= sigma_m;
+        const bool in_95 = error_m <= 1.96 * sigma_m;
+        within_68.add(in_68);
+        within_95.add(in_95);
+        if (around == Surroundings::Surface) {
+            inside_68.add(in_68);
+            inside_95.add(in_95);
+        }
+        sigmas_m.push_back(sigma_m);
+        errors_m.push_back(error_m);
+    }
+};
+
+double median(std::vector<double> values) {
+    if (values.empty()) return 0.0;
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+/// Columns of one method by tenths of their probability.
+struct ProbabilityTally {
+    std::array<Share, kTenths> surface;
+    std::array<double, kTenths> sum{};
+
+    void add(double probability, bool is_surface) {
+        const std::size_t tenth =
+            std::min(kTenths - 1, static_cast<std::size_t>(probability * kTenths));
+        surface[tenth].add(is_surface);
+        sum[tenth] += probability;
+    }
+};
+
+void tally(const nlos::Reconstruction& result,
+           const core::DepthMap& truth,
+           DepthTally& depths,
+           ProbabilityTally& probabilities) {
+    for (std::size_t ix = 0; ix < truth.x_m.size(); ++ix) {
+        for (std::size_t iy = 0; iy < truth.y_m.size(); ++iy) {
+            const std::size_t i = truth.index(ix, iy);
+            const Surroundings around = surroundings(truth, ix, iy);
+            const bool has_depth = result.depth.is_foreground(i);
+            probabilities.add(result.surface_probability[i], truth.is_foreground(i));
+            if (!truth.is_foreground(i)) {
+                depths.wrong.add(has_depth);
+                if (around == Surroundings::Background) depths.wrong_apart.add(has_depth);
+                continue;
+            }
+            depths.found.add(has_depth);
+            if (!has_depth) continue;
+            depths.add_found(std::abs(result.depth.depth_m[i] - truth.depth_m[i]),
+                             result.depth_sigma_m[i],
+                             around);
+        }
+    }
+}
+
+DepthCoverage row_of(const std::string& method,
+                     double peak_counts,
+                     int captures,
+                     const DepthTally& tally) {
+    DepthCoverage row;
+    row.method = method;
+    row.peak_counts = peak_counts;
+    row.captures = captures;
+    row.columns = tally.errors_m.size();
+    row.within_68 = tally.within_68.value();
+    row.within_95 = tally.within_95.value();
+    row.inside_68 = tally.inside_68.value();
+    row.inside_95 = tally.inside_95.value();
+    row.median_sigma_m = median(tally.sigmas_m);
+    row.median_error_m = median(tally.errors_m);
+    row.found = tally.found.value();
+    row.wrong = tally.wrong.value();
+    row.wrong_apart = tally.wrong_apart.value();
+    return row;
+}
+
+void add_rows(const std::string& method,
+              const ProbabilityTally& tally,
+              std::vector<ProbabilityReliability>& rows) {
+    for (std::size_t tenth = 0; tenth < kTenths; ++tenth) {
+        const Share& surface = tally.surface[tenth];
+        if (surface.count == 0) continue;
+        rows.push_back({method,
+                        static_cast<double>(tenth) / kTenths,
+                        surface.count,
+                        tally.sum[tenth] / static_cast<double>(surface.count),
+                        surface.value()});
+    }
+}
+
+}  // namespace
+
+CoverageBench cover(const CoverageBenchSettings& settings, const core::Progress& progress) {
+    const std::size_t num_peaks = settings.peaks.size();
+    std::vector<DepthTally> depths(settings.methods.size() * num_peaks);
+    std::vector<ProbabilityTally> probabilities(settings.methods.size());
+    for (int number = 0; number < settings.surfaces; ++number) {
+        if (progress.should_stop()) throw core::Failure("bench", "interrupted");
+        progress.update(static_cast<double>(number) / settings.surfaces, "surfaces");
+        const RandomCapture random = make_random_capture(settings.first + number);
+        for (std::size_t peak = 0; peak < num_peaks; ++peak) {
+            const core::Capture counts =
+                random_counts(random.capture, settings.peaks[peak], number);
+            for (std::size_t m = 0; m < settings.methods.size(); ++m) {
+                nlos::ReconstructSettings choice;
+                core::apply_override(choice, "method=" + settings.methods[m]);
+                const nlos::Reconstruction result = nlos::reconstruct(counts, choice, {});
+                const nlos::VolumeAxes& axes = result.volume.axes;
+                const core::DepthMap truth = renderer::trace_depth_map(
+                    random.scene, axes.world_from_wall, axes.x_m, axes.y_m);
+                tally(result, truth, depths[m * num_peaks + peak], probabilities[m]);
+            }
+        }
+    }
+    CoverageBench bench;
+    for (std::size_t m = 0; m < settings.methods.size(); ++m) {
+        for (std::size_t peak = 0; peak < num_peaks; ++peak) {
+            bench.depths.push_back(row_of(settings.methods[m],
+                                          settings.peaks[peak],
+                                          settings.surfaces,
+                                          depths[m * num_peaks + peak]));
+        }
+        add_rows(settings.methods[m], probabilities[m], bench.probabilities);
+    }
+    return bench;
+}
+
+BenchResult measure_coverage(const CoverageBenchSettings& settings,
+                             const core::Progress& progress) {
+    const CoverageBench bench = cover(settings, progress);
+    return {core::write_value(bench)};
+}
+
+}  // namespace apps
