@@ -44,6 +44,8 @@ void take_normals(const Volume& volume, core::DepthMap& depth) {
 VolumeErrors volume_errors(const ReconstructSettings& settings) {
     if (uses_wave(settings)) return {VolumeScale::Power, 0.5};
     switch (settings.method) {
+        case Method::Solver:
+            return {VolumeScale::Amplitude, 0.2, 0.25};
         case Method::Fk:
             return {VolumeScale::Power, 0.28};
         case Method::Fbp:
@@ -134,6 +136,7 @@ class Job {
           has_noise_(knows_its_noise(capture)),
           first_run_(progress.part(0.0, has_noise_ ? 0.5 : 1.0)),
           second_run_(progress.part(0.5, 1.0)) {
+        second_run_.announce = {};
         result_.settings = settings;
         const bool takes_lct = settings.method == Method::Auto || settings.method == Method::Lct;
         if (settings.prior == Prior::Tv && takes_lct) result_.settings.method = Method::Solver;

@@ -102,7 +102,7 @@ std::vector<ColumnPeak> find_peaks(const Volume& volume,
 /// The probability that every column's peak is no noise, and that it is a surface.
 std::vector<double> surface_probabilities(const Volume& volume,
                                           const std::vector<ColumnPeak>& peaks,
-                                          VolumeScale scale,
+                                          const VolumeErrors& errors,
                                           const std::optional<VolumeNoise>& noise) {
     const std::size_t nz = volume.axes.z_m.size();
     std::vector<double> brightness;
@@ -111,7 +111,7 @@ std::vector<double> surface_probabilities(const Volume& volume,
         const float value = std::max(0.0F, volume.values[i * nz + peaks[i].voxel]);
         brightness.push_back(value);
         if (!noise) continue;
-        const double amplitude = amplitude_of(value, scale);
+        const double amplitude = amplitude_of(value, errors.scale);
         chances.push_back(noise->chance_in_column(noise->significance(amplitude, peaks[i].voxel)));
     }
     std::vector<double> probabilities(peaks.size(), 1.0);
@@ -121,7 +121,7 @@ std::vector<double> surface_probabilities(const Volume& volume,
                                [](double rate) { return 1.0 - rate; });
     }
     std::ranges::transform(probabilities,
-                           plateau_probabilities(brightness, probabilities),
+                           plateau_probabilities(brightness, probabilities, errors.edge_share),
                            probabilities.begin(),
                            std::multiplies<>());
     return probabilities;
@@ -153,7 +153,7 @@ Surface find_surface(const Volume& volume,
     std::optional<VolumeNoise> noise;
     if (again) noise.emplace(volume, *again, errors.scale);
     const std::vector<ColumnPeak> peaks = find_peaks(volume, errors.scale, noise);
-    surface.probability = surface_probabilities(volume, peaks, errors.scale, noise);
+    surface.probability = surface_probabilities(volume, peaks, errors, noise);
     for (std::size_t i = 0; i < peaks.size(); ++i) {
         if (!(surface.probability[i] >= mask_threshold)) continue;
         surface.depth.depth_m[i] = depth_at(axes.z_m, peaks[i].position);

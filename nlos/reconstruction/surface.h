@@ -20,6 +20,7 @@ struct Surface {
 struct VolumeErrors {
     VolumeScale scale = VolumeScale::Amplitude;
     double model_voxels = 0.0;  ///< deviation of depths without noise, inside surfaces
+    double edge_share = 0.45;   ///< see plateau_probabilities()
 };
 
 /// Finds each column's peak, how likely it is a surface, and how well its depth is known.

@@ -8,7 +8,6 @@
 namespace nlos {
 namespace {
 
-constexpr double kEdgeShare = 0.45;  // of the surfaces' mean brightness
 constexpr double kOddsPower = 4.0;
 
 /// A stretch of p-values of one density.
@@ -76,7 +75,8 @@ std::vector<double> false_discovery_rates(const std::vector<double>& p_values) {
 }
 
 std::vector<double> plateau_probabilities(const std::vector<double>& peaks,
-                                          const std::vector<double>& weights) {
+                                          const std::vector<double>& weights,
+                                          double edge_share) {
     constexpr int kMaxIterations = 100;
     constexpr double kTolerance = 1e-6;
     // From above: the mean of what is bright, then of what that calls a surface.
@@ -84,7 +84,7 @@ std::vector<double> plateau_probabilities(const std::vector<double>& peaks,
     double mean = surface_brightness(peaks, probabilities, weights);
     for (int i = 0; i < kMaxIterations; ++i) {
         std::ranges::transform(peaks, probabilities.begin(), [&](double peak) {
-            return peak > 0.0 ? 1.0 / (1.0 + std::pow(kEdgeShare * mean / peak, kOddsPower)) : 0.0;
+            return peak > 0.0 ? 1.0 / (1.0 + std::pow(edge_share * mean / peak, kOddsPower)) : 0.0;
         });
         const double last = mean;
         mean = surface_brightness(peaks, probabilities, weights);

@@ -33,7 +33,7 @@ TEST(PlateauProbabilities, CrossOneHalfAtAShareOfTheSurfacesBrightness) {
     peaks.insert(peaks.end(), {0.9, 0.2, 0.0});
     std::vector<double> weights(peaks.size(), 1.0);
     weights[100] = weights[101] = 0.0;  // so that the mean is that of the plateau
-    const std::vector<double> probabilities = plateau_probabilities(peaks, weights);
+    const std::vector<double> probabilities = plateau_probabilities(peaks, weights, 0.45);
     EXPECT_GT(probabilities[0], 0.95);
     EXPECT_NEAR(probabilities[100], 0.5, 1e-6);
     EXPECT_LT(probabilities[101], 3e-3);
@@ -41,7 +41,7 @@ TEST(PlateauProbabilities, CrossOneHalfAtAShareOfTheSurfacesBrightness) {
 }
 
 TEST(PlateauProbabilities, OfDarknessAreZero) {
-    EXPECT_EQ(plateau_probabilities({0.0, 0.0}, {1.0, 1.0}), (std::vector<double>{0.0, 0.0}));
+    EXPECT_EQ(plateau_probabilities({0.0, 0.0}, {1.0, 1.0}, 0.45), (std::vector<double>{0.0, 0.0}));
 }
 
 }  // namespace
