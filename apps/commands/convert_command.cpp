@@ -17,7 +17,7 @@ namespace apps {
 namespace {
 
 struct ConvertArguments {
-    std::string input;
+    std::vector<std::string> inputs;
     std::string output;
     bool steady = false;
     std::vector<double> gate_m;
@@ -39,12 +39,15 @@ void convert_scene(const std::string& input, const std::string& output) {
 
 void run(const ConvertArguments& arguments) {
     if (std::filesystem::path(arguments.output).extension() == ".json") {
-        return convert_scene(arguments.input, arguments.output);
+        if (arguments.inputs.size() > 1) {
+            throw core::Error(arguments.inputs[1], "is a second input", "must be one scene");
+        }
+        return convert_scene(arguments.inputs.front(), arguments.output);
     }
     nlos::check_capture_suffix(arguments.output, arguments.write);
-    core::check_targets({arguments.output}, {arguments.input});
+    core::check_targets({arguments.output}, arguments.inputs);
     core::Capture capture =
-        nlos::read_capture(arguments.input, capture_options(arguments.overrides).capture);
+        nlos::read_capture(arguments.inputs, capture_options(arguments.overrides).capture);
     const core::TimeAxis axis = capture.time_axis;
     if (arguments.steady) {
         capture = nlos::gated_capture(capture, axis.opl_start_m, axis.num_bins * axis.bin_width_m);
@@ -72,10 +75,9 @@ void add_convert_command(CLI::App& app) {
     const auto arguments = std::make_shared<ConvertArguments>();
     command
         ->add_option("IN",
-                     arguments->input,
-                     "Capture in any readable format; or a scene of Mitsuba 3 with mitransient "
-                     "(.xml, .json) or of "
-                     "y-tal (.yaml)")
+                     arguments->inputs,
+                     "Capture in any readable format, several files: the frames of a sequence; or "
+                     "a scene of Mitsuba 3 with mitransient (.xml, .json) or of y-tal (.yaml)")
         ->required();
     command
         ->add_option("OUT",

@@ -9,7 +9,7 @@
 
 namespace nlos {
 
-/// The pairs that a sample holds: at most 100, spread over the scanned points.
+/// The pairs that a sample holds: at most 196, spread over the scanned points.
 std::vector<std::size_t> sampled_pairs(const core::Scan& scan);
 
 /// Light that came from the lit point of the wall to the sensing point with nothing in between.
