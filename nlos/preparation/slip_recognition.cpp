@@ -10,7 +10,8 @@
 namespace nlos {
 namespace {
 
-constexpr double kWellExplained = 0.03;   // no questions are asked
+constexpr double kWellExplained = 0.1;    // no questions are asked
+constexpr double kFullyExplained = 0.03;  // nor about axes, which change lengths little
 constexpr double kDecisive = 1.3;         // by which the description must explain less
 constexpr double kOverwhelming = 4.0;     // the same for a slip that leaves much itself
 constexpr double kMostUnexplained = 0.6;  // by a slip that is named
@@ -64,8 +65,10 @@ std::optional<SlipEvidence> slip_evidence(const core::Capture& capture,
     if (direct && std::abs(direct->offset_m) > 2.0 * capture.time_axis.bin_width_m) {
         evidence.corrections.push_back(trial.shifted(direct->offset_m));
     }
-    if (evidence.given < kWellExplained) return evidence;
+    if (evidence.given < kFullyExplained) return evidence;
     for (const CaptureCorrection& correction : possible_corrections(capture, *sample)) {
+        const bool moves_axes = correction.swap_xy || correction.flip_x || correction.flip_y;
+        if (evidence.given < kWellExplained && !moves_axes) continue;
         evidence.corrections.push_back(trial(correction));
     }
     return evidence;
@@ -79,12 +82,12 @@ std::vector<CaptureCorrection> recognise_slips(const SlipEvidence& evidence) {
         const bool fits = candidate.unexplained < std::max(kMostUnexplained, evidence.given);
         if (candidate.is_seen && fits) named.push_back(candidate.correction);
     }
-    if (best.empty() || evidence.given < kWellExplained) return named;
+    if (best.empty() || evidence.given < kFullyExplained) return named;
     const double least = best.front().unexplained;
     const double decisive = least < kMostUnexplained ? kDecisive : kOverwhelming;
     if (least > 1.0 || evidence.given < decisive * least) return named;
     for (const CorrectionShare& candidate : best) {
-        if (candidate.unexplained > std::max(kTie * least, kWellExplained)) break;
+        if (candidate.unexplained > std::max(kTie * least, kFullyExplained)) break;
         if (!candidate.is_seen && named.size() < kMostNamed) named.push_back(candidate.correction);
     }
     return named;
