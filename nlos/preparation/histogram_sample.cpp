@@ -162,6 +162,7 @@ std::optional<DirectReturn> find_direct_return(const core::Capture& capture,
                                                const std::vector<double>& ambient) {
     const std::vector<std::size_t> pairs = sampled_pairs(capture.scan);
     std::vector<double> late_m;
+    std::vector<double> fading_m;
     DirectReturn found;
     std::size_t standing_out = 0;
     double before = 0.0;
@@ -177,6 +178,7 @@ std::optional<DirectReturn> find_direct_return(const core::Capture& capture,
         const double top = static_cast<double>(histogram[peak]) - ambient[pair];
         standing_out += top > kDirectContrast * other.brightest_after ? 1 : 0;
         found.end_bins.push_back(end);
+        fading_m.push_back(capture.time_axis.bin_width_m * static_cast<double>(end - peak));
         late_m.push_back(capture.time_axis.bin_center_m(static_cast<double>(peak)) -
                          shortest_m(capture.scan, pair));
     }
@@ -184,7 +186,9 @@ std::optional<DirectReturn> find_direct_return(const core::Capture& capture,
     if (static_cast<double>(standing_out) < kDirectShare * count) return std::nullopt;
     if (!(after > 0.0) || before > kMostBefore * after) return std::nullopt;
     std::ranges::sort(late_m);
+    std::ranges::sort(fading_m);
     found.offset_m = late_m[late_m.size() / 2];
+    found.fading_m = fading_m[fading_m.size() / 2];
     const auto equally_late = std::ranges::count_if(late_m, [&](double late) {
         return std::abs(late - found.offset_m) < kDirectBins * capture.time_axis.bin_width_m;
     });

@@ -15,6 +15,7 @@ constexpr double kFullyExplained = 0.03;  // nor about axes, which change length
 constexpr double kDecisive = 1.3;         // by which the description must explain less
 constexpr double kOverwhelming = 4.0;     // the same for a slip that leaves much itself
 constexpr double kMostUnexplained = 0.6;  // by a slip that is named
+constexpr double kBrief = 0.25;           // of how late it is, for a direct return to fade in
 constexpr double kHopeless = 2.0;         // share of a slip that is tried no further
 constexpr double kTie = 1.25;             // slips that explain so much alike are all named
 constexpr std::size_t kMostNamed = 2;
@@ -29,12 +30,13 @@ class Trial {
         return {correction, unexplained_share(sample_, geometry, kHopeless)};
     }
 
-    /// With the direct return, which is late by `offset_m`, where it belongs.
-    CorrectionShare shifted(double offset_m) const {
+    /// With the direct return where it belongs. The light of a plane that faces the wall is equally
+    /// late everywhere, too, but takes as long to fade as the plane is far.
+    CorrectionShare shifted(const DirectReturn& direct) const {
         CaptureCorrection correction;
-        correction.shift_m = -offset_m;
+        correction.shift_m = -direct.offset_m;
         CorrectionShare share = (*this)(correction);
-        share.is_seen = true;
+        share.is_seen = direct.fading_m < kBrief * std::abs(direct.offset_m);
         return share;
     }
 
@@ -63,7 +65,7 @@ std::optional<SlipEvidence> slip_evidence(const core::Capture& capture,
         evidence.given = unexplained_share(*sample, corrected_geometry(capture, *sample, {}));
     }
     if (direct && std::abs(direct->offset_m) > 2.0 * capture.time_axis.bin_width_m) {
-        evidence.corrections.push_back(trial.shifted(direct->offset_m));
+        evidence.corrections.push_back(trial.shifted(*direct));
     }
     if (evidence.given < kFullyExplained) return evidence;
     for (const CaptureCorrection& correction : possible_corrections(capture, *sample)) {

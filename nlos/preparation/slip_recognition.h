@@ -12,7 +12,7 @@ namespace nlos {
 struct CorrectionShare {
     CaptureCorrection correction;
     double unexplained = 1.0;  ///< see unexplained_share()
-    bool is_seen = false;      ///< a direct return out of place shows it
+    bool is_seen = false;      ///< a brief direct return out of place shows it
 };
 
 /// A capture as it is described, and the best of all that may have been meant.
