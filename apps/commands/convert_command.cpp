@@ -16,9 +16,10 @@
 namespace apps {
 namespace {
 
+constexpr int kMostFiles = 1000000;
+
 struct ConvertArguments {
-    std::string input;
-    std::string output;
+    std::vector<std::string> files;  ///< inputs, then the output
     bool steady = false;
     std::vector<double> gate_m;
     nlos::CaptureWriteSettings write;
@@ -38,13 +39,17 @@ void convert_scene(const std::string& input, const std::string& output) {
 }
 
 void run(const ConvertArguments& arguments) {
-    if (std::filesystem::path(arguments.output).extension() == ".json") {
-        return convert_scene(arguments.input, arguments.output);
+    const std::vector<std::string> inputs(arguments.files.begin(), arguments.files.end() - 1);
+    const std::string& output = arguments.files.back();
+    if (std::filesystem::path(output).extension() == ".json") {
+        if (inputs.size() > 1)
+            throw core::Error(inputs[1], "is a second input", "must be one scene");
+        return convert_scene(inputs.front(), output);
     }
-    nlos::check_capture_suffix(arguments.output, arguments.write);
-    core::check_targets({arguments.output}, {arguments.input});
+    nlos::check_capture_suffix(output, arguments.write);
+    core::check_targets({output}, inputs);
     core::Capture capture =
-        nlos::read_capture(arguments.input, capture_options(arguments.overrides).capture);
+        nlos::read_capture(inputs, capture_options(arguments.overrides).capture);
     const core::TimeAxis axis = capture.time_axis;
     if (arguments.steady) {
         capture = nlos::gated_capture(capture, axis.opl_start_m, axis.num_bins * axis.bin_width_m);
@@ -52,12 +57,11 @@ void run(const ConvertArguments& arguments) {
         capture = nlos::gated_capture(capture, arguments.gate_m[0], arguments.gate_m[1]);
     }
     for (const std::string& note : capture.notes) fmt::print("read: {}\n", note);
-    for (const std::string& loss :
-         nlos::write_capture(arguments.output, capture, arguments.write)) {
+    for (const std::string& loss : nlos::write_capture(output, capture, arguments.write)) {
         fmt::print("not kept: {}\n", loss);
     }
     fmt::print("wrote {} ({} pairs x {} bins, {})\n",
-               arguments.output,
+               output,
                capture.transient.num_pairs(),
                capture.transient.num_bins(),
                core::enum_name(capture.unit));
@@ -71,18 +75,15 @@ void add_convert_command(CLI::App& app) {
         "Write a capture in another format, or a scene of Mitsuba or y-tal as one of ours");
     const auto arguments = std::make_shared<ConvertArguments>();
     command
-        ->add_option("IN",
-                     arguments->input,
-                     "Capture in any readable format; or a scene of Mitsuba 3 with mitransient "
-                     "(.xml, .json) or of "
-                     "y-tal (.yaml)")
-        ->required();
-    command
-        ->add_option("OUT",
-                     arguments->output,
-                     "Capture to write: .h5 or .hdf5 (y-tal), .npz (NumPy), .exr (a streak image), "
+        ->add_option("FILES",
+                     arguments->files,
+                     "IN: capture in any readable format, several files: the frames of a sequence; "
+                     "or a scene of Mitsuba 3 with mitransient (.xml, .json) or of y-tal (.yaml). "
+                     "OUT, the last: .h5 or .hdf5 (y-tal), .npz (NumPy), .exr (a streak image), "
                      ".mat (stanford-2018, or what --out-layout says); or scene.json, with "
                      "scene.glb beside it")
+        ->type_name("IN... OUT")
+        ->expected(2, kMostFiles)
         ->required();
     command->add_option("--out-layout",
                         arguments->write.layout,

@@ -49,14 +49,14 @@ void run(const DemoArguments& arguments) {
 
     const std::string scene = letter_scene();
     fmt::print("scene        {}\n", scene);
-    write_picture(scene, file("ground_truth.png"));
+    write_picture({scene}, file("ground_truth.png"));
     const renderer::RenderResult render = render_to_file(scene, {}, file("capture.h5"));
     fmt::print("capture      {} ({:.2f} s)\n", file("capture.h5"), render.seconds);
     for (const std::string method : {"lct", "bp"}) {
         stop_if_interrupted();
         const std::string volume = file("volume_" + method + ".h5");
         const auto result =
-            reconstruct_to_file(file("capture.h5"), {"method=" + method}, volume, "");
+            reconstruct_to_file({file("capture.h5")}, {"method=" + method}, volume, "");
         const nlos::Metrics metrics =
             compare_files(volume, scene, file("metrics_" + method + ".json"), kMatch_m).metrics;
         fmt::print("{:<12} {} ({:.2f} s, depth error {:.2f} mm over {:.0f} % of the letter)\n",

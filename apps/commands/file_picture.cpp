@@ -12,11 +12,12 @@
 
 namespace apps {
 
-void write_picture(const std::string& path,
+void write_picture(const std::vector<std::string>& paths,
                    const std::string& png_path,
                    const nlos::CaptureReadSettings& settings) {
     require_suffix(png_path, {".png"});
-    core::check_targets({png_path}, {path});
+    core::check_targets({png_path}, paths);
+    const std::string& path = paths.front();
     switch (kind_of_file(path)) {
         case FileKind::Scene:
             nlos::write_panels_png(png_path, nlos::truth_panels(SceneTruth(path).depth_map()), 3);
@@ -26,7 +27,7 @@ void write_picture(const std::string& path,
             return;
         case FileKind::Capture:
             nlos::write_panels_png(
-                png_path, nlos::capture_panels(nlos::read_capture(path, settings)), 3);
+                png_path, nlos::capture_panels(nlos::read_capture(paths, settings)), 3);
             return;
         case FileKind::Fit:
         case FileKind::Metrics:

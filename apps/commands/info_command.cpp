@@ -23,7 +23,7 @@ namespace apps {
 namespace {
 
 struct InfoArguments {
-    std::string file;
+    std::vector<std::string> files;
     std::string picture;
     std::string write_layout;
     std::vector<std::string> overrides;
@@ -131,9 +131,11 @@ void write_layout(const std::string& path, const std::string& layout_path) {
     fmt::print("wrote {}\n", layout_path);
 }
 
-void describe_capture_file(const std::string& path, nlos::CaptureReadSettings settings) {
+void describe_capture_files(const std::vector<std::string>& paths,
+                            nlos::CaptureReadSettings settings) {
+    const std::string& path = paths.front();
     const auto format = nlos::capture_format(path, settings);
-    if (!format && nlos::container_of(path)) {
+    if (paths.size() == 1 && !format && nlos::container_of(path)) {
         describe_unknown(path);
         return;
     }
@@ -143,7 +145,7 @@ void describe_capture_file(const std::string& path, nlos::CaptureReadSettings se
         settings.bin_width_m = settings.bin_width_m.value_or(1.0);
         settings.wall_size_m = settings.wall_size_m.value_or(std::array{1.0, 1.0});
     }
-    core::Capture capture = nlos::read_capture(path, settings);
+    core::Capture capture = nlos::read_capture(paths, settings);
     if (!missing.empty()) {
         std::erase_if(capture.notes, [](const auto& note) { return note.ends_with(", as told"); });
     }
@@ -183,46 +185,58 @@ void describe_fit(const std::string& path) {
     fmt::print("{} point scatterers\n", fit.points.size());
 }
 
+void describe_file(const std::string& path, const nlos::CaptureReadSettings& settings) {
+    switch (kind_of_file(path)) {
+        case FileKind::Scene:
+            describe_scene(path);
+            break;
+        case FileKind::Fit:
+            describe_fit(path);
+            break;
+        case FileKind::Metrics:
+            describe_json(path, "metrics");
+            break;
+        case FileKind::Model:
+            describe_json(path, "model of a fit");
+            break;
+        case FileKind::Setup:
+            describe_json(path, "set-up to calibrate");
+            break;
+        case FileKind::Calibration:
+            describe_json(path, "calibration");
+            break;
+        case FileKind::Geometry:
+            describe_geometry(path);
+            break;
+        case FileKind::PointCloud:
+            describe_ply(path);
+            break;
+        case FileKind::Volume:
+            describe_volume(path);
+            break;
+        case FileKind::Capture:
+            describe_capture_files({path}, settings);
+            break;
+    }
+}
+
 void run(const InfoArguments& arguments) {
+    const std::vector<std::string>& files = arguments.files;
     if (!arguments.write_layout.empty()) {
-        write_layout(arguments.file, arguments.write_layout);
+        if (files.size() > 1) {
+            throw core::Error(files[1], "is a second file", "must be one to write a layout for");
+        }
+        write_layout(files.front(), arguments.write_layout);
         return;
     }
     const nlos::CaptureReadSettings settings = capture_options(arguments.overrides).capture;
-    switch (kind_of_file(arguments.file)) {
-        case FileKind::Scene:
-            describe_scene(arguments.file);
-            break;
-        case FileKind::Fit:
-            describe_fit(arguments.file);
-            break;
-        case FileKind::Metrics:
-            describe_json(arguments.file, "metrics");
-            break;
-        case FileKind::Model:
-            describe_json(arguments.file, "model of a fit");
-            break;
-        case FileKind::Setup:
-            describe_json(arguments.file, "set-up to calibrate");
-            break;
-        case FileKind::Calibration:
-            describe_json(arguments.file, "calibration");
-            break;
-        case FileKind::Geometry:
-            describe_geometry(arguments.file);
-            break;
-        case FileKind::PointCloud:
-            describe_ply(arguments.file);
-            break;
-        case FileKind::Volume:
-            describe_volume(arguments.file);
-            break;
-        case FileKind::Capture:
-            describe_capture_file(arguments.file, settings);
-            break;
+    if (files.size() > 1) {
+        describe_capture_files(files, settings);
+    } else {
+        describe_file(files.front(), settings);
     }
     if (arguments.picture.empty()) return;
-    write_picture(arguments.file, arguments.picture, settings);
+    write_picture(files, arguments.picture, settings);
     fmt::print("wrote {}\n", arguments.picture);
 }
 
@@ -234,8 +248,9 @@ void add_info_command(CLI::App& app) {
     command
         ->add_option(
             "FILE",
-            arguments->file,
-            "Capture, volume, scene.json, glTF, OBJ, PLY, STL, fit, metrics or calibration")
+            arguments->files,
+            "Capture, volume, scene.json, glTF, OBJ, PLY, STL, fit, metrics or calibration; "
+            "several files: the frames of a sequence")
         ->required();
     command->add_option("--picture",
                         arguments->picture,

@@ -13,7 +13,7 @@ namespace apps {
 namespace {
 
 struct ReconstructArguments {
-    std::string capture;
+    std::vector<std::string> captures;
     std::string output;
     std::string method;
     std::string ply;
@@ -27,7 +27,7 @@ void run(const ReconstructArguments& arguments) {
     const core::ThreadLimit threads(arguments.threads);
     std::vector<std::string> overrides = arguments.overrides;
     if (!arguments.method.empty()) overrides.push_back("method=" + arguments.method);
-    const nlos::Reconstruction result = reconstruct_to_file(arguments.capture,
+    const nlos::Reconstruction result = reconstruct_to_file(arguments.captures,
                                                             overrides,
                                                             arguments.output,
                                                             arguments.ply,
@@ -56,7 +56,10 @@ void add_reconstruct_command(CLI::App& app) {
     CLI::App* command =
         app.add_subcommand("reconstruct", "Reconstruct the hidden scene from a capture");
     const auto arguments = std::make_shared<ReconstructArguments>();
-    command->add_option("CAPTURE", arguments->capture, "Capture in any readable format")
+    command
+        ->add_option("CAPTURE",
+                     arguments->captures,
+                     "Capture in any readable format; several files: the frames of a sequence")
         ->required();
     command
         ->add_option(

@@ -13,6 +13,8 @@
 #include "renderer/core/output_file.h"
 #include "renderer/gltf/gltf.h"
 
+#include <fmt/ranges.h>
+
 namespace apps {
 namespace {
 
@@ -27,7 +29,7 @@ void write_surface(const std::string& glb_path, core::TriangleMesh mesh) {
 
 }  // namespace
 
-nlos::Reconstruction reconstruct_to_file(const std::string& capture_path,
+nlos::Reconstruction reconstruct_to_file(const std::vector<std::string>& capture_paths,
                                          const std::vector<std::string>& overrides,
                                          const std::string& volume_path,
                                          const std::string& ply_path,
@@ -36,19 +38,22 @@ nlos::Reconstruction reconstruct_to_file(const std::string& capture_path,
     require_suffix(volume_path, {".h5", ".hdf5"});
     require_suffix(ply_path, {".ply"});
     require_suffix(glb_path, {".glb"});
+    std::vector<std::string> inputs = capture_paths;
+    inputs.push_back(calibration_path);
     core::check_targets({volume_path, with_suffix(volume_path, ".png"), ply_path, glb_path},
-                        {capture_path, calibration_path});
+                        inputs);
     ReconstructOptions options;
     for (const std::string& text : overrides) core::apply_override(options, text);
-    core::Capture capture = nlos::read_capture(capture_path, options.capture);
+    core::Capture capture = nlos::read_capture(capture_paths, options.capture);
     if (!calibration_path.empty()) {
         capture = calib::apply_calibration(calib::read_calibration(calibration_path), capture);
     }
 
     ProgressBar bar("reconstruct");
     nlos::Reconstruction result = nlos::reconstruct(capture, options.reconstruct, bar.progress());
-    result.provenance = {
-        {"program", version_text()}, {"command", command_line()}, {"capture", capture_path}};
+    result.provenance = {{"program", version_text()},
+                         {"command", command_line()},
+                         {"capture", fmt::format("{}", fmt::join(capture_paths, " "))}};
     nlos::write_volume(volume_path, result);
     nlos::write_panels_png(with_suffix(volume_path, ".png"), nlos::volume_panels(result), 2);
     if (!ply_path.empty()) nlos::write_ply(ply_path, result.points);

@@ -2,6 +2,8 @@
 #include "nlos/formats/capture_array_reader.h"
 
 #include "nlos/containers/file_memory.h"
+#include "nlos/formats/ytal_layout.h"
+#include "nlos/formats/ytal_scan.h"
 #include "renderer/core/error.h"
 
 #include <fmt/core.h>
@@ -13,22 +15,6 @@ namespace nlos {
 
 using core::Capture;
 using core::Error;
-
-void read_axis(const ArrayReader& file, const CaptureReadSettings& settings, Capture& capture) {
-    const std::size_t bins = file.shape("H").at(0);
-    if (bins > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
-        throw Error(file.where("H"), fmt::format("has {} bins", bins), "must have fewer than 2^31");
-    }
-    capture.time_axis.num_bins = static_cast<int>(bins);
-    capture.time_axis.bin_width_m =
-        settings.bin_width_m ? *settings.bin_width_m : file.read_real("delta_t");
-    if (file.has("t_start")) {
-        capture.time_axis.opl_start_m = file.read_real("t_start");
-    } else {
-        capture.notes.emplace_back("t_start is missing: 0 assumed");
-    }
-    validate(capture.time_axis, file.path() + ": time axis");
-}
 
 void copy_bins(const float* rows,
                std::size_t first,
@@ -55,16 +41,6 @@ core::Transient make_transient(const ArrayReader& file,
     return {pairs, num_bins};
 }
 
-core::Transient read_transient(const ArrayReader& file,
-                               const std::string& name,
-                               const Capture& capture) {
-    core::Transient transient = make_transient(file, name, capture, capture.time_axis.num_bins);
-    file.read_rows(name, [&](std::size_t first, std::size_t count, const std::vector<float>& rows) {
-        copy_bins(rows.data(), first, count, transient);
-    });
-    return transient;
-}
-
 void require_shape(const ArrayReader& file, const std::string& name, const Shape& wanted) {
     if (file.shape(name) == wanted) return;
     throw Error(file.where(name),
@@ -85,6 +61,36 @@ void require_variances(const ArrayReader& file,
 }
 
 namespace {
+
+/// Reads delta_t and t_start, and the number of bins from H.
+void read_time_axis(const ArrayReader& file,
+                    const CaptureReadSettings& settings,
+                    Capture& capture) {
+    const std::size_t bins = file.shape("H").at(0);
+    if (bins > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
+        throw Error(file.where("H"), fmt::format("has {} bins", bins), "must have fewer than 2^31");
+    }
+    capture.time_axis.num_bins = static_cast<int>(bins);
+    capture.time_axis.bin_width_m =
+        settings.bin_width_m ? *settings.bin_width_m : file.read_real("delta_t");
+    if (file.has("t_start")) {
+        capture.time_axis.opl_start_m = file.read_real("t_start");
+    } else {
+        capture.notes.emplace_back("t_start is missing: 0 assumed");
+    }
+    validate(capture.time_axis, file.path() + ": time axis");
+}
+
+/// Reads (T, pairs...) with time slowest into [pair][bin].
+core::Transient read_transient(const ArrayReader& file,
+                               const std::string& name,
+                               const Capture& capture) {
+    core::Transient transient = make_transient(file, name, capture, capture.time_axis.num_bins);
+    file.read_rows(name, [&](std::size_t first, std::size_t count, const std::vector<float>& rows) {
+        copy_bins(rows.data(), first, count, transient);
+    });
+    return transient;
+}
 
 /// The bins of each pair that were observed; validate() checks them against the axis and H.
 void read_observed_bins(const ArrayReader& file, const std::string& name, Capture& capture) {
@@ -132,6 +138,20 @@ void read_orders(const ArrayReader& file, const std::string& prefix, Capture& ca
 }
 
 }  // namespace
+
+Capture read_histograms(const ArrayReader& file, const CaptureReadSettings& settings) {
+    Capture capture;
+    if (file.has("scene_info")) capture.scene_info = parse_scene_info(file.read_text("scene_info"));
+    read_ytal_scan(file, capture);
+    read_time_axis(file, settings, capture);
+    capture.transient = read_transient(file, "H", capture);
+    return capture;
+}
+
+double checked_scale(double counts_per_radiance, const std::string& where) {
+    if (std::isfinite(counts_per_radiance) && counts_per_radiance > 0.0) return counts_per_radiance;
+    throw Error(where, "is no positive number", "must be one positive number");
+}
 
 void read_optional_arrays(const ArrayReader& file, const std::string& prefix, Capture& capture) {
     const auto name = [&](const char* array) { return prefix + array; };

@@ -10,10 +10,12 @@ namespace nlos {
 // The arrays of capture_arrays.h, read. All throw core::Error that names file and array for what is
 // missing or wrong, and core::Failure for what does not fit in memory.
 
-/// Reads delta_t and t_start, and the number of bins from H.
-void read_axis(const ArrayReader& file,
-               const CaptureReadSettings& settings,
-               core::Capture& capture);
+/// Reads scene_info, camera or points, the axis and H.
+core::Capture read_histograms(const ArrayReader& file, const CaptureReadSettings& settings);
+
+/// The counts that a unit of radiance gives, found at `where`; throws unless they are a positive
+/// number.
+double checked_scale(double counts_per_radiance, const std::string& where);
 
 /// Copies rows with time slowest to bins [first, first + count) of [pair][bin].
 void copy_bins(const float* rows, std::size_t first, std::size_t count, core::Transient& transient);
@@ -23,11 +25,6 @@ core::Transient make_transient(const ArrayReader& file,
                                const std::string& name,
                                const core::Capture& capture,
                                int num_bins);
-
-/// Reads (T, pairs...) with time slowest into [pair][bin].
-core::Transient read_transient(const ArrayReader& file,
-                               const std::string& name,
-                               const core::Capture& capture);
 
 /// Reads what a capture may hold beside H where the file has it: observed_bins, H_by_order with
 /// orders, frames (not their steps) and variance.

@@ -33,6 +33,23 @@ std::optional<LayoutSource> find_layout_of(const std::string& path,
     return find_format(path) == nullptr ? find_layout_source(path) : std::nullopt;
 }
 
+/// The same for several files, which must be the frames of a sequence.
+std::optional<LayoutSource> find_layout_of(const std::vector<std::string>& paths,
+                                           const CaptureReadSettings& settings) {
+    for (const std::string& path : paths) {
+        if (std::filesystem::exists(path)) continue;
+        throw core::Error(path, "does not exist", "must be a capture file");
+    }
+    auto source = find_layout_of(paths.front(), settings);
+    if (paths.size() == 1) return source;
+    if (!source) {
+        throw core::Error(paths.front(),
+                          fmt::format("is the first of {} files and of no layout", paths.size()),
+                          "must be of a layout whose files are frames, or stand alone");
+    }
+    return sequence_source(paths, source->layout);
+}
+
 /// The file itself, or the first file of named arrays in a folder.
 std::string first_container(const std::string& path) {
     if (!std::filesystem::is_directory(path)) return path;
@@ -231,13 +248,16 @@ std::string describe_velocity(const core::VelocityHistogram& velocity) {
 }  // namespace
 
 core::Capture read_capture(const std::string& path, const CaptureReadSettings& settings) {
+    return read_capture(std::vector{path}, settings);
+}
+
+core::Capture read_capture(const std::vector<std::string>& paths,
+                           const CaptureReadSettings& settings) {
     core::check_ranges(settings, "capture");
-    if (!std::filesystem::exists(path)) {
-        throw core::Error(path, "does not exist", "must be a capture file");
-    }
+    const std::string& path = paths.front();
     core::Capture capture;
     int zero_bins = 0;
-    if (const auto source = find_layout_of(path, settings)) {
+    if (const auto source = find_layout_of(paths, settings)) {
         capture = read_layout_capture(*source, settings);
         zero_bins = source->layout.bins.leading_unobserved;
     } else if (const CaptureFormat* format = find_format(path)) {

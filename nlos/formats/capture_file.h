@@ -18,6 +18,11 @@ namespace nlos {
 /// throws    core::Error naming the file and what is wrong with it
 core::Capture read_capture(const std::string& path, const CaptureReadSettings& settings = {});
 
+/// The same from several files, at least one: the frames of a sequence in this order, where their
+/// layout says that files are frames.
+core::Capture read_capture(const std::vector<std::string>& paths,
+                           const CaptureReadSettings& settings = {});
+
 /// The name of the format or layout that read_capture() would read a file by, or nothing.
 std::optional<std::string> capture_format(const std::string& path,
                                           const CaptureReadSettings& settings = {});

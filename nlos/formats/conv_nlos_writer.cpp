@@ -26,9 +26,8 @@ using core::WallPoints;
 //   target_dist   distance of the wall from the middle of the hidden scene [m]
 //
 // The origin is the middle of the hidden scene and the wall stands at z = target_dist. A capture
-// does not tell where the scene's middle is: the middle of the axis stands for it. x and y are kept
-// and z becomes target_dist - z, so that theirs is the mirror image of our world: in the authors'
-// front view, x to the right, left and right are exchanged.
+// does not tell where the scene's middle is: the middle of the axis stands for it. Their world is
+// ours after half a turn about the vertical axis: x becomes -x, and z target_dist - z.
 
 /// What NLOSDATA can hold: points on z = 0, with path lengths from and to the wall.
 void check_scan(const std::string& path, const core::Scan& scan) {
@@ -56,9 +55,8 @@ MatVariable points_variable(const std::string& name,
                             const WallPoints& points,
                             double target_distance_m) {
     std::vector<double> values;
-    for (const int axis : {0, 1}) {
-        for (const core::Vec3& position : points.positions) values.push_back(position[axis]);
-    }
+    for (const core::Vec3& position : points.positions) values.push_back(-position.x());
+    for (const core::Vec3& position : points.positions) values.push_back(position.y());
     for (const core::Vec3& position : points.positions) {
         values.push_back(target_distance_m - position.z());
     }
@@ -87,9 +85,7 @@ MatVariable transient_variable(const Capture& capture) {
 }
 
 std::vector<std::string> losses(const Capture& capture) {
-    std::vector<std::string> sentences{
-        "the unit is left out",
-        "the wall's z runs the other way: the authors' programs show left and right exchanged"};
+    std::vector<std::string> sentences{"the unit is left out"};
     const bool has_grid = capture.scan.sensing.grid || capture.scan.illumination.grid;
     if (capture.scan.pattern != core::ScanPattern::Confocal && has_grid) {
         sentences.emplace_back("grids become lists of points");

@@ -4,10 +4,6 @@
 #include "nlos/formats/capture_arrays.h"
 #include "nlos/formats/capture_format.h"
 #include "nlos/formats/ytal_layout.h"
-#include "nlos/formats/ytal_scan.h"
-#include "renderer/core/error.h"
-
-#include <cmath>
 
 namespace nlos {
 namespace {
@@ -91,23 +87,15 @@ bool recognise_npz(const std::string& path) {
 
 Capture read_npz(const std::string& path, const CaptureReadSettings& settings) {
     const ArrayReader file(path);
-    Capture capture;
-    if (file.has("scene_info")) capture.scene_info = parse_scene_info(file.read_text("scene_info"));
-    read_ytal_scan(file, capture);
-    read_axis(file, settings, capture);
-    capture.transient = read_transient(file, "H", capture);
+    Capture capture = read_histograms(file, settings);
     if (file.has("unit")) {
         core::read_value(core::Json(file.read_text("unit")), file.where("unit"), capture.unit);
     } else {
         capture.notes.emplace_back("unit is missing: radiance assumed");
     }
     if (file.has("counts_per_radiance")) {
-        capture.counts_per_radiance = file.read_real("counts_per_radiance");
-        if (!std::isfinite(*capture.counts_per_radiance) || *capture.counts_per_radiance <= 0.0) {
-            throw core::Error(file.where("counts_per_radiance"),
-                              "is no positive number",
-                              "must be one positive number");
-        }
+        capture.counts_per_radiance =
+            checked_scale(file.read_real("counts_per_radiance"), file.where("counts_per_radiance"));
     }
     read_optional_arrays(file, "", capture);
     if (capture.sequence && file.has("gate_step_m")) {

@@ -2,12 +2,10 @@
 #include "nlos/formats/capture_array_reader.h"
 #include "nlos/formats/capture_format.h"
 #include "nlos/formats/ytal_layout.h"
-#include "nlos/formats/ytal_scan.h"
 #include "renderer/core/error.h"
 
 #include <fmt/core.h>
 
-#include <cmath>
 #include <limits>
 
 namespace nlos {
@@ -89,13 +87,10 @@ void read_own_group(const ArrayReader& file, Capture& capture) {
         core::read_value(
             capture.scene_info[kUnitKey], file.where("scene_info: unit"), capture.unit);
     }
-    const auto scale = file.real_attribute("nlos", "counts_per_radiance");
-    if (scale && scale->size() == 1 && std::isfinite((*scale)[0]) && (*scale)[0] > 0.0) {
-        capture.counts_per_radiance = (*scale)[0];
-    } else if (scale) {
-        throw Error(file.where("nlos attribute counts_per_radiance"),
-                    "is no positive number",
-                    "must be one positive number");
+    if (const auto scale = file.real_attribute("nlos", "counts_per_radiance")) {
+        capture.counts_per_radiance =
+            checked_scale(scale->size() == 1 ? scale->front() : 0.0,
+                          file.where("nlos attribute counts_per_radiance"));
     }
     read_optional_arrays(file, "nlos/", capture);
     if (capture.sequence) read_frame_steps(file, *capture.sequence);
@@ -108,11 +103,7 @@ bool recognise_ytal(const std::string& path) {
 
 Capture read_ytal(const std::string& path, const CaptureReadSettings& settings) {
     const ArrayReader file(path);
-    Capture capture;
-    if (file.has("scene_info")) capture.scene_info = parse_scene_info(file.read_text("scene_info"));
-    read_ytal_scan(file, capture);
-    read_axis(file, settings, capture);
-    capture.transient = read_transient(file, "H", capture);
+    Capture capture = read_histograms(file, settings);
     read_own_group(file, capture);
     return capture;
 }

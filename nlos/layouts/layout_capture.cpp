@@ -326,6 +326,19 @@ LayoutSource layout_source(const std::string& path, const Layout& layout) {
     return source;
 }
 
+LayoutSource sequence_source(const std::vector<std::string>& files, const Layout& layout) {
+    if (!layout.files_are_frames) {
+        throw Error(files.front(),
+                    fmt::format("is the first of {} files of layout {}", files.size(), layout.name),
+                    "must stand alone: files of this layout are no frames of a sequence");
+    }
+    for (const std::string& file : files) {
+        if (is_of(file, layout)) continue;
+        throw Error(file, "is not of layout " + layout.name, "must be, as the frames before");
+    }
+    return {layout, files};
+}
+
 Capture read_layout_capture(const LayoutSource& source, const CaptureReadSettings& settings) {
     if (source.files.size() == 1) return read_one(source.files[0], source.layout, settings);
     if (settings.frame) {

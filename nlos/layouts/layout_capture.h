@@ -24,6 +24,10 @@ std::optional<LayoutSource> find_layout_source(const std::string& path);
 /// Throws core::Error when there is none that is of this layout, naming what the first one lacks.
 LayoutSource layout_source(const std::string& path, const Layout& layout);
 
+/// Files that are the frames of one sequence, in this order.
+/// Throws core::Error unless all are of the layout and its files are frames.
+LayoutSource sequence_source(const std::vector<std::string>& files, const Layout& layout);
+
 /// Reads a capture.
 ///
 /// returns   a capture whose notes say what the layout stated and assumed

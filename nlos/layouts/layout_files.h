@@ -37,21 +37,17 @@ class LayoutFiles {
     /// All values, in storage order.
     std::vector<double> read(const std::string& array) const;
 
-    /// Calls take(first, values) for consecutive runs of values in storage order.
+    /// Calls take(values) for consecutive runs of values in storage order.
     template <class Take>
     void read_runs(const std::string& array, Take&& take) const {
         const Source source = find(array);
-        std::size_t done = 0;
         if (source.reader->shape(source.name).empty()) {
-            const auto values = source.reader->read_floats(source.name, {});
-            take(done, values);
+            take(source.reader->read_floats(source.name, {}));
             return;
         }
-        source.reader->read_rows(source.name,
-                                 [&](std::size_t, std::size_t, const std::vector<float>& values) {
-                                     take(done, values);
-                                     done += values.size();
-                                 });
+        source.reader->read_rows(
+            source.name,
+            [&](std::size_t, std::size_t, const std::vector<float>& values) { take(values); });
     }
 
     /// A number as the layout says; nothing when the layout leaves it out.

@@ -108,7 +108,7 @@ ArrayStatistics statistics_of(const LayoutFiles& files, const std::string& name)
     std::iota(fastest.begin(), fastest.end(), std::size_t{0});
     if (!files.first_index_fastest(name)) std::reverse(fastest.begin(), fastest.end());
     std::vector<std::size_t> index(shape.size(), 0);
-    files.read_runs(name, [&](std::size_t, const std::vector<float>& values) {
+    files.read_runs(name, [&](const std::vector<float>& values) {
         for (const float value : values) {
             if (value != std::trunc(value)) statistics.are_whole_numbers = false;
             if (std::isfinite(value)) {

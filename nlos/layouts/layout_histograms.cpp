@@ -102,7 +102,7 @@ std::vector<core::Transient> read_histograms(const LayoutFiles& files,
     require_memory(sizeof(float) * num_pairs * bins * (kept + (kept > 1 ? 1 : 0)), where);
     std::vector<core::Transient> transients(kept, {num_pairs, static_cast<int>(bins)});
     Walk walk(steps_of(array, files.first_index_fastest(array.name)));
-    files.read_runs(array.name, [&](std::size_t, const std::vector<float>& values) {
+    files.read_runs(array.name, [&](const std::vector<float>& values) {
         for (const float value : values) {
             const AxisStep& place = walk.place();
             if (!frame || place.frame == static_cast<std::size_t>(*frame)) {

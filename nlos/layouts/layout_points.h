@@ -2,23 +2,12 @@
 #pragma once
 
 #include "nlos/layouts/capture_settings.h"
-#include "nlos/layouts/layout_files.h"
+#include "nlos/layouts/point_arrays.h"
 
 #include <string>
 #include <vector>
 
 namespace nlos {
-
-/// Axes of a histogram array along which points change: x and y (a grid) or one (a list), in the
-/// writer's order.
-struct PointAxes {
-    std::vector<std::string> names;  ///< "x" and "y", or one that is anything else
-    Shape extents;
-    bool reversed = false;             ///< whether the layout's axes stand in reverse
-    bool first_index_fastest = false;  ///< how a list that stands for a grid runs
-
-    std::size_t count() const;
-};
 
 /// Wall points as a layout places them.
 struct PlacedPoints {

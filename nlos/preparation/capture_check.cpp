@@ -14,8 +14,9 @@
 namespace nlos {
 namespace {
 
-constexpr double kEarlyShare = 0.01;    // of all light; less may be noise
-constexpr double kFastestOnset = 1.25;  // of what is possible, for half of all neighbours
+constexpr double kEarlyShare = 0.01;      // of all light
+constexpr double kNoiseDeviations = 5.0;  // of counts: less may be noise
+constexpr double kFastestOnset = 1.25;    // of what is possible, for half of all neighbours
 constexpr std::size_t kMinCheckedPoints = 16;
 constexpr std::size_t kSteps = 8;  // neighbours are so many to a side: noise moves onsets little
 constexpr double kStrongestBend = 1.15;     // of first light: 1 is what a path allows
@@ -49,6 +50,7 @@ std::optional<std::string> early_light(const core::Capture& capture,
     const core::TimeAxis& axis = capture.time_axis;
     double early = 0.0;
     double total = 0.0;
+    double early_counts = 0.0;
     double earliest_m = 0.0;
     for (std::size_t pair = 0; pair < capture.scan.num_pairs(); ++pair) {
         const double shortest =
@@ -63,15 +65,30 @@ std::optional<std::string> early_light(const core::Capture& capture,
             const double before = shortest - axis.bin_begin_m(bin + 1.0);
             if (before < axis.bin_width_m) continue;
             early += light;
+            early_counts += static_cast<double>(histogram[static_cast<std::size_t>(bin)]);
             if (light > 0.0) earliest_m = std::max(earliest_m, before);
         }
     }
     if (!(total > 0.0) || early < kEarlyShare * total) return std::nullopt;
+    if (capture.unit == core::TransientUnit::Counts &&
+        early < kNoiseDeviations * std::sqrt(early_counts)) {
+        return std::nullopt;
+    }
     return fmt::format(
         "{:.1f} % of the light arrives before the shortest possible path, up to "
         "{:.3g} m early; time zero looks late (capture.opl_shift_m moves it)",
         100.0 * early / total,
         earliest_m);
+}
+
+/// Whether a histogram's peak stands so far above its background that first light, a share of it,
+/// is no noise.
+bool has_clear_onset(const core::Capture& capture, std::size_t pair, double ambient) {
+    if (capture.unit != core::TransientUnit::Counts) return true;
+    const auto histogram = capture.transient.histogram(pair);
+    const auto peak = static_cast<double>(*std::max_element(histogram.begin(), histogram.end()));
+    return kFirstLightShare * (peak - ambient) >
+           kNoiseDeviations * std::sqrt(std::max(1.0, ambient));
 }
 
 /// First light that moves along the wall faster than path lengths can.
@@ -83,7 +100,9 @@ std::optional<std::string> fast_onset(const core::Capture& capture,
     if (nx < kMinCheckedPoints || ny < kMinCheckedPoints) return std::nullopt;
     std::vector<std::optional<double>> onsets(nx * ny);
     for (std::size_t i = 0; i < onsets.size(); ++i) {
-        onsets[i] = first_light_m(capture, i, ambient[i]);
+        if (has_clear_onset(capture, i, ambient[i])) {
+            onsets[i] = first_light_m(capture, i, ambient[i]);
+        }
     }
     const double most = scan.pattern == core::ScanPattern::Confocal ? 2.0 : 1.0;
     std::vector<double> speeds;
@@ -99,7 +118,7 @@ std::optional<std::string> fast_onset(const core::Capture& capture,
             if (iy + ny / kSteps < ny) compare(ix * ny + iy, ix * ny + iy + ny / kSteps);
         }
     }
-    if (speeds.empty()) return std::nullopt;
+    if (speeds.size() < nx * ny / 2) return std::nullopt;
     const auto middle = speeds.begin() + static_cast<std::ptrdiff_t>(speeds.size() / 2);
     std::nth_element(speeds.begin(), middle, speeds.end());
     if (*middle < kFastestOnset) return std::nullopt;

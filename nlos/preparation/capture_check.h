@@ -30,7 +30,7 @@ namespace nlos {
 ///
 /// Only bins that were observed count, and first light only where it came after they began.
 ///
-/// costs     a look at all values, and for slips at most 100 histograms: one fit of 40 ms on one
+/// costs     a look at all values, and for slips at most 196 histograms: one fit of 60 ms on one
 ///           core where the description explains the data well, else some 10 to 25 of them
 /// returns   empty when nothing does; nothing about timing for captures too small or dark to tell,
 ///           nor for images

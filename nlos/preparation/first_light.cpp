@@ -11,7 +11,6 @@
 namespace nlos {
 namespace {
 
-constexpr double kOnsetShare = 0.3;  // of a histogram's maximum
 constexpr std::size_t kMinPoints = 16;
 constexpr std::size_t kWindowsPerSide = 4;
 constexpr double kLargestResidual_bins = 1.0;
@@ -95,7 +94,8 @@ std::optional<double> first_light_m(const core::Capture& capture,
     const int first_seen = capture.observed_range(pair).begin;
     const auto excess = [&](std::size_t bin) { return static_cast<double>(seen[bin]) - ambient; };
     const double threshold =
-        kOnsetShare * (static_cast<double>(*std::max_element(seen.begin(), seen.end())) - ambient);
+        kFirstLightShare *
+        (static_cast<double>(*std::max_element(seen.begin(), seen.end())) - ambient);
     if (!(threshold > 0.0)) return std::nullopt;
     std::size_t bin = 0;
     while (excess(bin) < threshold) ++bin;

@@ -8,8 +8,10 @@
 
 namespace nlos {
 
-/// Path length, from and to the wall, at which a pair's first light arrives: where its histogram
-/// passes 0.3 of its maximum, between bins.
+/// First light arrives where a histogram passes this share of its maximum.
+inline constexpr double kFirstLightShare = 0.3;
+
+/// Path length, from and to the wall, at which a pair's first light arrives, between bins.
 ///
 /// ambient   background per bin, not counted
 /// returns   nothing for a dark histogram, and where light was there when observation began late:

@@ -8,7 +8,7 @@
 namespace nlos {
 namespace {
 
-constexpr std::size_t kSide = 10;  // pairs along each axis of a grid
+constexpr std::size_t kSide = 14;  // pairs along each axis of a grid
 constexpr std::size_t kMostPairs = kSide * kSide;
 constexpr std::size_t kFewestPairs = 25;  // a few zones can be explained by anything
 constexpr std::size_t kMostBins = 48;
@@ -20,6 +20,7 @@ constexpr double kMeanRadiance = 20.0;  // per bin, in place of counts
 constexpr double kDirectBins = 1.5;      // to which a direct return is equally late
 constexpr double kDirectShare = 0.9;     // of the pairs
 constexpr double kDirectContrast = 5.0;  // against what follows
+constexpr double kMostBefore = 0.1;      // of what follows
 constexpr double kFaded = 0.03;          // of the direct return's peak
 
 /// `count` of `size` things, evenly spread.
@@ -111,23 +112,26 @@ double shortest_m(const core::Scan& scan, std::size_t pair) {
                                           .norm();
 }
 
-/// Whether light at bins around `peak` outshines all that follows, and most other light follows.
-bool stands_out(const std::span<const float>& histogram,
-                std::size_t peak,
-                std::size_t end,
-                double ambient) {
+/// Light of a histogram without its peak, which reaches from as far before it as it fades behind.
+struct OtherLight {
     double before = 0.0;
     double after = 0.0;
     double brightest_after = 0.0;
+};
+
+OtherLight light_beside(const std::span<const float>& histogram,
+                        std::size_t peak,
+                        std::size_t end,
+                        double ambient) {
+    OtherLight other;
     for (std::size_t bin = 0; bin < histogram.size(); ++bin) {
         const double light = static_cast<double>(histogram[bin]) - ambient;
-        if (bin < 2 * peak - std::min(2 * peak, end)) before += light;
+        if (bin < 2 * peak - std::min(2 * peak, end)) other.before += light;
         if (bin < end) continue;
-        after += light;
-        brightest_after = std::max(brightest_after, light);
+        other.after += light;
+        other.brightest_after = std::max(other.brightest_after, light);
     }
-    const double top = static_cast<double>(histogram[peak]) - ambient;
-    return after > 0.0 && before < 0.1 * after && top > kDirectContrast * brightest_after;
+    return other;
 }
 
 /// The first bin behind `peak` where a histogram has fallen to a small share of it.
@@ -158,22 +162,33 @@ std::optional<DirectReturn> find_direct_return(const core::Capture& capture,
                                                const std::vector<double>& ambient) {
     const std::vector<std::size_t> pairs = sampled_pairs(capture.scan);
     std::vector<double> late_m;
+    std::vector<double> fading_m;
     DirectReturn found;
     std::size_t standing_out = 0;
+    double before = 0.0;
+    double after = 0.0;
     for (const std::size_t pair : pairs) {
         const auto histogram = capture.transient.histogram(pair);
         const auto peak = static_cast<std::size_t>(
             std::max_element(histogram.begin(), histogram.end()) - histogram.begin());
         const std::size_t end = fading_end(histogram, peak, ambient[pair]);
-        standing_out += stands_out(histogram, peak, end, ambient[pair]) ? 1 : 0;
+        const OtherLight other = light_beside(histogram, peak, end, ambient[pair]);
+        before += other.before;
+        after += other.after;
+        const double top = static_cast<double>(histogram[peak]) - ambient[pair];
+        standing_out += top > kDirectContrast * other.brightest_after ? 1 : 0;
         found.end_bins.push_back(end);
+        fading_m.push_back(capture.time_axis.bin_width_m * static_cast<double>(end - peak));
         late_m.push_back(capture.time_axis.bin_center_m(static_cast<double>(peak)) -
                          shortest_m(capture.scan, pair));
     }
     const auto count = static_cast<double>(pairs.size());
     if (static_cast<double>(standing_out) < kDirectShare * count) return std::nullopt;
+    if (!(after > 0.0) || before > kMostBefore * after) return std::nullopt;
     std::ranges::sort(late_m);
+    std::ranges::sort(fading_m);
     found.offset_m = late_m[late_m.size() / 2];
+    found.fading_m = fading_m[fading_m.size() / 2];
     const auto equally_late = std::ranges::count_if(late_m, [&](double late) {
         return std::abs(late - found.offset_m) < kDirectBins * capture.time_axis.bin_width_m;
     });

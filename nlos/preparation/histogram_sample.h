@@ -9,12 +9,13 @@
 
 namespace nlos {
 
-/// The pairs that a sample holds: at most 100, spread over the scanned points.
+/// The pairs that a sample holds: at most 196, spread over the scanned points.
 std::vector<std::size_t> sampled_pairs(const core::Scan& scan);
 
 /// Light that came from the lit point of the wall to the sensing point with nothing in between.
 struct DirectReturn {
     double offset_m = 0.0;              ///< by which it is later than the geometry has it
+    double fading_m = 0.0;              ///< length over which it fades
     std::vector<std::size_t> end_bins;  ///< of the sampled pairs: from here on it has faded
 };
 

@@ -16,7 +16,7 @@ using Cell = ScatterCells::Cell;
 constexpr std::size_t kRanges = 16;      // cells to begin with
 constexpr std::size_t kDirections = 16;  // per side of the square around the hemisphere
 constexpr double kKeptLight = 0.98;      // of all, in cells that are halved
-constexpr std::size_t kMostKept = 1200;
+constexpr std::size_t kMostKept = 600;
 constexpr std::size_t kBlock = 256;  // cells at once
 
 Vec3 position_of(const Cell& cell, const core::Transform& world_from_wall) {

@@ -13,10 +13,11 @@ namespace {
 using core::Vec3;
 
 constexpr int kStages = 3;
-constexpr int kIterations = 6;      // of expectation maximisation per stage
-constexpr double kNearest = 0.02;   // of the farthest range; nearer cells see one point alone
-constexpr double kStray = 1e-3;     // of the mean value, everywhere: no bin is impossible
-constexpr float kFaintest = 1e-6F;  // reach of a cell, of the best one's
+constexpr int kIterations = 8;       // of expectation maximisation per stage
+constexpr double kModelError = 0.1;  // of a value: cells are coarse, angles and shadows left out
+constexpr double kNearest = 0.02;    // of the farthest range; nearer cells see one point alone
+constexpr double kStray = 1e-3;      // of the mean value, everywhere: no bin is impossible
+constexpr float kFaintest = 1e-6F;   // reach of a cell, of the best one's
 
 /// A sample with what a fit needs of it at every step.
 class FitData {
@@ -53,7 +54,7 @@ class FitData {
         return ratio;
     }
 
-    /// Squared differences in units of the model's Poisson variance, without those of mere noise.
+    /// Squared differences in units of the model's variance, without those of mere noise.
     double misfit(const std::vector<float>& model) const {
         const std::vector<double> gain = gains(model);
         double sum = 0.0;
@@ -61,8 +62,9 @@ class FitData {
             if (sample_.observed[i] == 0.0F) continue;
             const double mean = expected(model, gain, i);
             const double difference = static_cast<double>(sample_.values[i]) - mean;
-            sum += difference * difference / (mean + 1.0);
-            if (sample_.has_poisson_noise) sum -= mean / (mean + 1.0);
+            const double variance = mean + 1.0 + std::pow(kModelError * mean, 2);
+            sum += difference * difference / variance;
+            if (sample_.has_poisson_noise) sum -= mean / variance;
         }
         return sum;
     }

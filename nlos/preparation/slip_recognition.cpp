@@ -11,8 +11,11 @@ namespace nlos {
 namespace {
 
 constexpr double kWellExplained = 0.1;    // no questions are asked
-constexpr double kDecisive = 1.35;        // by which the description must explain less
+constexpr double kFullyExplained = 0.03;  // nor about axes, which change lengths little
+constexpr double kDecisive = 1.3;         // by which the description must explain less
+constexpr double kOverwhelming = 4.0;     // the same for a slip that leaves much itself
 constexpr double kMostUnexplained = 0.6;  // by a slip that is named
+constexpr double kBrief = 0.25;           // of how late it is, for a direct return to fade in
 constexpr double kHopeless = 2.0;         // share of a slip that is tried no further
 constexpr double kTie = 1.25;             // slips that explain so much alike are all named
 constexpr std::size_t kMostNamed = 2;
@@ -27,10 +30,14 @@ class Trial {
         return {correction, unexplained_share(sample_, geometry, kHopeless)};
     }
 
-    CorrectionShare shifted(double shift_m) const {
+    /// With the direct return where it belongs. The light of a plane that faces the wall is equally
+    /// late everywhere, too, but takes as long to fade as the plane is far.
+    CorrectionShare shifted(const DirectReturn& direct) const {
         CaptureCorrection correction;
-        correction.shift_m = shift_m;
-        return (*this)(correction);
+        correction.shift_m = -direct.offset_m;
+        CorrectionShare share = (*this)(correction);
+        share.is_seen = direct.fading_m < kBrief * std::abs(direct.offset_m);
+        return share;
     }
 
  private:
@@ -57,12 +64,14 @@ std::optional<SlipEvidence> slip_evidence(const core::Capture& capture,
     if (is_in_proportion(capture, *sample, {})) {
         evidence.given = unexplained_share(*sample, corrected_geometry(capture, *sample, {}));
     }
-    if (evidence.given < kWellExplained) return evidence;
-    for (const CaptureCorrection& correction : possible_corrections(capture, *sample)) {
-        evidence.corrections.push_back(trial(correction));
-    }
     if (direct && std::abs(direct->offset_m) > 2.0 * capture.time_axis.bin_width_m) {
-        evidence.corrections.push_back(trial.shifted(-direct->offset_m));
+        evidence.corrections.push_back(trial.shifted(*direct));
+    }
+    if (evidence.given < kFullyExplained) return evidence;
+    for (const CaptureCorrection& correction : possible_corrections(capture, *sample)) {
+        const bool moves_axes = correction.swap_xy || correction.flip_x || correction.flip_y;
+        if (evidence.given < kWellExplained && !moves_axes) continue;
+        evidence.corrections.push_back(trial(correction));
     }
     return evidence;
 }
@@ -70,15 +79,18 @@ std::optional<SlipEvidence> slip_evidence(const core::Capture& capture,
 std::vector<CaptureCorrection> recognise_slips(const SlipEvidence& evidence) {
     std::vector<CorrectionShare> best = evidence.corrections;
     std::ranges::stable_sort(best, {}, &CorrectionShare::unexplained);
-    if (best.empty() || evidence.given < kWellExplained ||
-        best.front().unexplained > kMostUnexplained ||
-        evidence.given < kDecisive * best.front().unexplained) {
-        return {};
-    }
     std::vector<CaptureCorrection> named;
     for (const CorrectionShare& candidate : best) {
-        if (candidate.unexplained > kTie * best.front().unexplained) break;
-        if (named.size() < kMostNamed) named.push_back(candidate.correction);
+        const bool fits = candidate.unexplained < std::max(kMostUnexplained, evidence.given);
+        if (candidate.is_seen && fits) named.push_back(candidate.correction);
+    }
+    if (best.empty() || evidence.given < kFullyExplained) return named;
+    const double least = best.front().unexplained;
+    const double decisive = least < kMostUnexplained ? kDecisive : kOverwhelming;
+    if (least > 1.0 || evidence.given < decisive * least) return named;
+    for (const CorrectionShare& candidate : best) {
+        if (candidate.unexplained > std::max(kTie * least, kFullyExplained)) break;
+        if (!candidate.is_seen && named.size() < kMostNamed) named.push_back(candidate.correction);
     }
     return named;
 }

@@ -12,6 +12,7 @@ namespace nlos {
 struct CorrectionShare {
     CaptureCorrection correction;
     double unexplained = 1.0;  ///< see unexplained_share()
+    bool is_seen = false;      ///< a brief direct return out of place shows it
 };
 
 /// A capture as it is described, and the best of all that may have been meant.
@@ -29,8 +30,9 @@ struct SlipEvidence {
 std::optional<SlipEvidence> slip_evidence(const core::Capture& capture,
                                           const std::vector<double>& ambient);
 
-/// The slips that explain a capture decisively better than its description, which explains it
-/// badly: one, or two that explain it alike, the better one first; empty when there is none.
+/// The slip that a direct return shows, unless the rest of the light speaks against it; and those
+/// that explain a capture decisively better than its description, which explains it badly. At most
+/// two, the better one first; empty when there is none.
 std::vector<CaptureCorrection> recognise_slips(const SlipEvidence& evidence);
 
 }  // namespace nlos

@@ -2,7 +2,6 @@
 #include "renderer/mesh_file/assimp_file.h"
 
 #include "renderer/core/error.h"
-#include "renderer/core/one_line.h"
 #include "renderer/core/sandboxed_process.h"
 #include "renderer/core/settings.h"
 
@@ -31,7 +30,7 @@ constexpr const char* kCompleteFile = "must be a complete OBJ, PLY or STL file";
 /// Assimp's message, which may hold anything, as a part of one line.
 std::string part_of_a_line(const std::string& text) {
     constexpr std::size_t kLongest = 120;
-    return core::one_line(text.substr(0, kLongest));
+    return core::printable(text.substr(0, kLongest));
 }
 
 /// The files that assimp may open: the mesh file, and material files (MTL) beside it; and which
@@ -93,7 +92,7 @@ class MaterialFiles : public Assimp::DefaultIOSystem {
 FileMaterial read_material(const aiMaterial& source, const MaterialFiles& files) {
     FileMaterial material;
     const std::string name = source.GetName().C_Str();
-    material.name = core::one_line(name);
+    material.name = core::printable(name);
     const auto number = [&](const char* key, unsigned type, unsigned index, double otherwise) {
         ai_real value = 0;
         return source.Get(key, type, index, value) == aiReturn_SUCCESS ? static_cast<double>(value)
@@ -148,7 +147,7 @@ FileMesh read_mesh(const aiMesh& source, const std::string& name) {
 void read_node(const aiScene& scene, const aiNode& node, AssimpFile& file) {
     for (unsigned i = 0; i < node.mNumMeshes; ++i) {
         const aiMesh& source = *scene.mMeshes[node.mMeshes[i]];
-        FileMesh mesh = read_mesh(source, core::one_line(node.mName.C_Str()));
+        FileMesh mesh = read_mesh(source, core::printable(node.mName.C_Str()));
         if (!mesh.triangles.empty()) file.meshes.push_back(std::move(mesh));
         if (!source.HasVertexColors(0)) continue;
         const std::string text = "the colours of its vertices are not modelled";

@@ -2,7 +2,6 @@
 #include "renderer/scene_import/scene_import.h"
 
 #include "renderer/core/error.h"
-#include "renderer/core/one_line.h"
 #include "renderer/scene_import/foreign_file.h"
 #include "renderer/scene_import/key_reader.h"
 #include "renderer/scene_import/mitsuba_scene.h"
@@ -27,31 +26,31 @@ bool is_yaml(const std::string& path) {
 }
 
 /// The same with texts and keys of one line each, as messages and names need them.
-core::Json one_lined(const core::Json& json, const std::string& path, int depth = 0) {
+core::Json printable_texts(const core::Json& json, const std::string& path, int depth = 0) {
     constexpr int kDeepest = 64;
     if (depth > kDeepest) throw core::Error(path, "nests too deep", "must be a plain scene");
-    if (json.is_string()) return core::one_line(json.get<std::string>());
+    if (json.is_string()) return core::printable(json.get<std::string>());
     if (!json.is_structured()) return json;
     core::Json result = json.is_array() ? core::Json::array() : core::Json::object();
     for (const auto& [key, value] : json.items()) {
-        core::Json item = one_lined(value, path, depth + 1);
+        core::Json item = printable_texts(value, path, depth + 1);
         if (json.is_array()) {
             result.push_back(std::move(item));
         } else {
-            result[core::one_line(key)] = std::move(item);
+            result[core::printable(key)] = std::move(item);
         }
     }
     return result;
 }
 
 ImportedScene import_by_kind(const std::string& path) {
-    if (is_yaml(path)) return import_ytal(one_lined(read_yaml(path), path), path);
+    if (is_yaml(path)) return import_ytal(printable_texts(read_yaml(path), path), path);
     const core::Json scene =
         has_suffix(path, {".xml"}) ? read_mitsuba_xml(path) : core::read_json_file(path);
     if (type_of(scene) != "scene") {
         throw core::Error(path, "is no scene of Mitsuba", "must have the type scene at its root");
     }
-    return import_mitsuba(one_lined(scene, path), path);
+    return import_mitsuba(printable_texts(scene, path), path);
 }
 
 /// Without what is null or an empty list.

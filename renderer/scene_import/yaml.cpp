@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/core/error.h"
-#include "renderer/core/one_line.h"
 #include "renderer/core/sandboxed_process.h"
 #include "renderer/scene_import/foreign_file.h"
 
@@ -98,10 +97,9 @@ core::Json read_yaml(const std::string& path) {
         } catch (const std::bad_alloc&) {
             throw;
         } catch (const std::exception& error) {  // the library's own, and texts that are not UTF-8
-            throw core::Error(
-                path,
-                "is no valid YAML (" + core::one_line(error.what()).substr(0, 120) + ")",
-                "must be a scene of y-tal");
+            throw core::Error(path,
+                              "is no valid YAML (" + std::string(error.what()).substr(0, 120) + ")",
+                              "must be a scene of y-tal");
         }
     }));
 }

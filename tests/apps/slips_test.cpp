@@ -3,14 +3,15 @@
 // are none? Prints the table of slips and scenes.
 #include "apps/bench/scene.h"
 #include "nlos/preparation/capture_check.h"
-#include "renderer/core/random.h"
 #include "renderer/core/scan_extent.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <functional>
 #include <map>
 #include <random>
@@ -20,41 +21,99 @@ namespace {
 
 using core::Capture;
 
-const std::vector<std::string> kScenes{"letter", "animal", "bars", "corner", "curved"};
+/// A hidden scene before a wall of some size and middle.
+struct Place {
+    std::string scene;
+    double wall_m = 1.0;
+    core::Vec3 middle_m = core::Vec3::Zero();
+    unsigned seed = 7;  ///< of noise
+
+    bool has_bent_wall() const { return scene == "curved"; }
+};
+
+/// The scenes that the thresholds of the recognition were chosen with, and others.
+const std::vector<Place> kKnown{{"letter"}, {"animal"}, {"bars"}, {"corner"}, {"curved"}};
+const std::vector<Place> kHeldOut{{"glossy", 1.0, {0.0, 0.0, 0.0}, 11},
+                                  {"letter", 1.3, {0.12, -0.08, 0.0}, 12},
+                                  {"animal", 0.8, {-0.1, 0.1, 0.0}, 13},
+                                  {"bars", 1.4, {0.1, 0.05, 0.0}, 14},
+                                  {"corner", 0.9, {0.05, 0.1, 0.0}, 15}};
+
+/// A scan of a wall; `size` in those of the place.
+struct ScanCase {
+    std::vector<std::string> settings;
+    std::array<double, 2> size{1.0, 1.0};
+};
 const std::vector<std::string> kAxis{"time_axis.bin_width_m=0.012", "time_axis.num_bins=256"};
-const std::vector<std::string> kConfocal{"scan.sensing_points=[16,16]"};
-const std::vector<std::string> kOblong{"scan.sensing_points=[18,12]",
-                                       "relay_wall.size_m=[1.2,0.8]"};
-const std::vector<std::string> kSingle{
-    "scan.sensing_points=[16,16]", "scan.pattern=single", "scan.illumination_m=[-0.35,0.2,0]"};
-const std::vector<std::string> kDevices{"scan.sensing_points=[16,16]",
-                                        "scan.opl_origin=device",
-                                        "scan.laser_m=[-0.6,-0.3,-1.2]",
-                                        "scan.detector_m=[0.4,0.2,-1.0]",
-                                        "time_axis.opl_start_m=1.8",
-                                        "time_axis.bin_width_m=0.016"};
+const ScanCase kConfocal{{"scan.sensing_points=[16,16]"}};
+const ScanCase kOblong{{"scan.sensing_points=[18,12]"}, {1.2, 0.8}};
+const ScanCase kSingle{
+    {"scan.sensing_points=[16,16]", "scan.pattern=single", "scan.illumination_m=[-0.25,0.2,0]"}};
+
+/// A wall that is wide against the scene's distance. On narrow ones a flip or an exchange of axes
+/// gives, but for less than a bin, the lengths of a mirrored scene that stands a little elsewhere:
+/// 14 mm at most for the letter and the spot of kSingle.
+const ScanCase kWideSingle{
+    {"scan.sensing_points=[16,16]", "scan.pattern=single", "scan.illumination_m=[-0.7,0.6,0]"},
+    {2.0, 2.0}};
+const std::vector<std::string> kDevicePositions{"scan.sensing_points=[16,16]",
+                                                "scan.laser_m=[-0.6,-0.3,-1.2]",
+                                                "scan.detector_m=[0.4,0.2,-1.0]"};
+const ScanCase kLegsOut{kDevicePositions};
+const ScanCase kLegsIn{[] {
+    std::vector<std::string> settings = kDevicePositions;
+    settings.insert(
+        settings.end(),
+        {"scan.opl_origin=device", "time_axis.opl_start_m=1.8", "time_axis.bin_width_m=0.016"});
+    return settings;
+}()};
+
+/// Lights one point of the curved wall: that of flat ones is not on it.
+core::Scan with_a_spot(core::Scan scan) {
+    const std::size_t spot = scan.sensing.size() / 5;
+    scan.pattern = core::ScanPattern::Single;
+    scan.illumination.positions = {scan.sensing.positions[spot]};
+    scan.illumination.normals = {scan.sensing.normals[spot]};
+    scan.illumination.grid.reset();
+    return scan;
+}
 
 /// The capture of a scene, without noise. The curved wall has points of its own.
-Capture render(const std::string& scene, std::vector<std::string> overrides) {
-    overrides.insert(overrides.begin(), kAxis.begin(), kAxis.end());
-    if (scene == "curved") {
+Capture render(const Place& place, const ScanCase& scan_case) {
+    std::vector<std::string> overrides = kAxis;
+    overrides.insert(overrides.end(), scan_case.settings.begin(), scan_case.settings.end());
+    const bool has_spot = std::ranges::count(overrides, "scan.pattern=single") > 0;
+    if (place.has_bent_wall()) {
         std::erase_if(overrides, [](const std::string& text) {
-            return text.starts_with("scan.sensing_points=") || text.starts_with("relay_wall.");
+            return text.starts_with("scan.sensing_points=") || text.starts_with("relay_wall.") ||
+                   text.starts_with("scan.pattern=") || text.starts_with("scan.illumination_m=");
         });
+    } else {
+        overrides.push_back(fmt::format("relay_wall.size_m=[{},{}]",
+                                        place.wall_m * scan_case.size[0],
+                                        place.wall_m * scan_case.size[1]));
+        if (!place.middle_m.isZero()) {
+            overrides.push_back(fmt::format("relay_wall.center_m=[{},{},{}]",
+                                            place.middle_m.x(),
+                                            place.middle_m.y(),
+                                            place.middle_m.z()));
+        }
     }
     overrides.emplace_back("render.method=third_bounce");
     overrides.emplace_back("render.max_bounces=3");
     overrides.emplace_back("render.by_order=false");
-    const BenchScene bench(NLOS_SOURCE_DIR "/scenes/" + scene + "/scene.json", overrides);
-    return bench.render(bench.settings());
+    const BenchScene bench(NLOS_SOURCE_DIR "/scenes/" + place.scene + "/scene.json", overrides);
+    const core::Scan scan =
+        place.has_bent_wall() && has_spot ? with_a_spot(bench.scan()) : bench.scan();
+    return renderer::render(bench.scene(), scan, bench.axis(), bench.settings(), {}).capture;
 }
 
 /// Poisson counts, `peak` in the brightest bin over an ambient light of 1 % of that.
-Capture counted(const Capture& capture, double peak) {
+Capture counted(const Capture& capture, double peak, unsigned seed) {
     Capture counts = capture;
     counts.unit = core::TransientUnit::Counts;
     const double most = *std::ranges::max_element(capture.transient.values());
-    std::mt19937 random(7);
+    std::mt19937 random(seed);
     for (float& value : counts.transient.values()) {
         const double mean = peak * (static_cast<double>(value) / most + 0.01);
         value = static_cast<float>(std::poisson_distribution<int>(mean)(random));
@@ -91,6 +150,15 @@ void swap_axes(Capture& capture) {
     }
 }
 
+void flip_x_axis(Capture& capture) {
+    const auto [nx, ny] = *capture.scan.sensing.grid;
+    const core::Transient right = capture.transient;
+    for (std::size_t i = 0; i < nx * ny; ++i) {
+        std::ranges::copy(right.histogram(i),
+                          capture.transient.histogram((nx - 1 - i / ny) * ny + i % ny).begin());
+    }
+}
+
 void reverse_time(Capture& capture) {
     for (std::size_t pair = 0; pair < capture.transient.num_pairs(); ++pair) {
         std::ranges::reverse(capture.transient.histogram(pair));
@@ -114,7 +182,7 @@ void add_direct_return(Capture& capture, double offset_m) {
 /// A slip, the scan that it is tried on, and how its remedy reads.
 struct Slip {
     std::string name;
-    std::vector<std::string> scan;
+    ScanCase scan;
     std::function<void(Capture&)> make;
     std::function<std::string(const Capture& right)> remedy;
 };
@@ -155,110 +223,162 @@ std::vector<Slip> all_slips() {
         {"width for half width", kConfocal, wall(2.0), wall_of},
         {"half width, single", kSingle, wall(0.5), wall_of},
         {"legs in, said out",
-         kDevices,
+         kLegsIn,
          origin(core::OplOrigin::RelayWall),
          text("capture.opl_origin=device")},
+        {"legs out, said in",
+         kLegsOut,
+         origin(core::OplOrigin::Device),
+         text("capture.opl_origin=relay_wall")},
         {"x and y swapped", kOblong, swap_axes, text("capture.swap_xy=true")},
+        {"x and y swapped, single", kWideSingle, swap_axes, text("capture.swap_xy=true")},
+        {"x flipped, single", kWideSingle, flip_x_axis, text("capture.flip_x=true")},
         {"time reversed", kConfocal, reverse_time, text("capture.flip_t=true")},
         {"time reversed, single", kSingle, reverse_time, text("capture.flip_t=true")},
         {"direct return 1.3 m late",
          kConfocal,
          [](Capture& capture) { add_direct_return(capture, 1.3); },
          text("capture.opl_shift_m=-1.3")},
+        {"direct return late, single",
+         kSingle,
+         [](Capture& capture) { add_direct_return(capture, 1.3); },
+         text("capture.opl_shift_m=-1.3")},
     };
 }
 
-/// Whether nothing in the data speaks against a slip, for a reason that geometry gives.
-bool cannot_be_told(const std::string& slip, const std::string& scene) {
-    // Points of the curved wall are a list: there are no axes to swap.
-    return scene == "curved" && slip.starts_with("x and y");
+/// Whether a slip cannot be made: points of the curved wall are a list, which has no axes.
+bool is_impossible(const Slip& slip, const Place& place) {
+    return place.has_bent_wall() &&
+           (slip.name.starts_with("x and y") || slip.name.starts_with("x flipped"));
 }
 
-/// Captures by scan, each scene rendered once per scan.
-const Capture& right_capture(const std::string& scene, const std::vector<std::string>& scan) {
+/// Captures by place and scan, each rendered once.
+const Capture& right_capture(const Place& place, const ScanCase& scan) {
     static std::map<std::string, Capture> rendered;
-    const std::string key = fmt::format("{} {}", scene, fmt::join(scan, " "));
-    if (!rendered.contains(key)) rendered.emplace(key, render(scene, scan));
+    const std::string key = fmt::format("{} {} {} {} {}",
+                                        place.scene,
+                                        place.wall_m,
+                                        scan.size[0],
+                                        scan.size[1],
+                                        fmt::join(scan.settings, " "));
+    if (!rendered.contains(key)) rendered.emplace(key, render(place, scan));
     return rendered.at(key);
+}
+
+/// A right capture: radiance, or counts where a peak is asked for.
+Capture seen(const Place& place, const ScanCase& scan, double peak) {
+    const Capture& right = right_capture(place, scan);
+    return peak > 0.0 ? counted(right, peak, place.seed) : right;
 }
 
 std::string warnings_of(const Capture& capture) {
     return fmt::format("{}", fmt::join(nlos::capture_warnings(capture), " | "));
 }
 
-TEST(Slips, AreRecognisedAndRightlyNamed) {
+struct Rate {
     int tried = 0;
     int named = 0;
-    fmt::print("{:<26}", "");
-    for (const std::string& scene : kScenes) fmt::print("{:<14}", scene);
-    fmt::print("\n");
+};
+
+/// Tries every slip at every place, without noise and with few photons, and prints the table.
+Rate recognised(const std::vector<Place>& places) {
+    Rate rate;
+    std::string missed;
+    fmt::print("{:<28}", "");
+    for (const Place& place : places) fmt::print("{:<14}", place.scene);
     for (const Slip& slip : all_slips()) {
-        fmt::print("{:<26}", slip.name);
-        for (const std::string& scene : kScenes) {
+        fmt::print("\n{:<28}", slip.name);
+        for (const Place& place : places) {
             std::string cell;
-            if (!cannot_be_told(slip.name, scene)) {
-                const Capture& right = right_capture(scene, slip.scan);
-                for (const double peak : {0.0, 100.0, 20.0}) {
-                    Capture capture = right;
-                    slip.make(capture);
-                    if (peak > 0.0) capture = counted(capture, peak);
-                    const bool is_named =
-                        warnings_of(capture).find(slip.remedy(right)) != std::string::npos;
-                    ++tried;
-                    named += is_named ? 1 : 0;
-                    cell += is_named ? "yes " : "no ";
-                }
+            for (const double peak : {0.0, 100.0, 20.0}) {
+                if (is_impossible(slip, place)) continue;
+                const Capture right = seen(place, slip.scan, peak);
+                Capture capture = right;
+                slip.make(capture);
+                const std::string warnings = warnings_of(capture);
+                const bool is_named = warnings.find(slip.remedy(right)) != std::string::npos;
+                ++rate.tried;
+                rate.named += is_named ? 1 : 0;
+                cell += is_named ? "yes " : "no ";
+                if (is_named) continue;
+                missed +=
+                    fmt::format("{}, {}, {} counts: {}\n", slip.name, place.scene, peak, warnings);
             }
             fmt::print("{:<14}", cell.empty() ? "-" : cell);
         }
-        fmt::print("\n");
+        std::fflush(stdout);
     }
-    fmt::print("{} of {} named\n", named, tried);
-    EXPECT_GE(named, 0.8 * tried);  // the aim is 0.95
+    fmt::print("\n{} of {} named; not named:\n{}", rate.named, rate.tried, missed);
+    return rate;
 }
 
-TEST(Slips, AreNotSeenInCapturesThatAreRight) {
-    const std::vector<std::vector<std::string>> scans{
+/// Counts warnings about captures that are right.
+Rate alarmed(const std::vector<Place>& places) {
+    const std::vector<ScanCase> scans{
         kConfocal,
         kOblong,
         kSingle,
-        kDevices,
-        {"scan.sensing_points=[16,16]", "relay_wall.size_m=[2,2]"},
-        {"scan.sensing_points=[12,12]", "relay_wall.size_m=[0.5,0.5]"},
-        {"scan.sensing_points=[5,5]"},
-        {"scan.sensing_points=[16,16]",
-         "relay_wall.normal=[0.2,0.1,1]",
-         "relay_wall.center_m=[0.1,-0.1,0]"},
-        {"scan.sensing_points=[16,16]", "time_axis.opl_start_m=1.0", "time_axis.num_bins=100"},
-        {"scan.pattern=exhaustive", "scan.sensing_points=[6,6]", "scan.illumination_points=[4,4]"}};
-    int tried = 0;
-    int alarms = 0;
-    for (const std::string& scene : kScenes) {
-        for (const std::vector<std::string>& scan : scans) {
-            if (scene == "curved" && &scan != &scans.front() && scan != kDevices) continue;
+        kLegsIn,
+        {{"scan.sensing_points=[16,16]"}, {2.0, 2.0}},
+        {{"scan.sensing_points=[12,12]"}, {0.5, 0.5}},
+        {{"scan.sensing_points=[5,5]"}},
+        {{"scan.sensing_points=[16,16]", "relay_wall.normal=[0.2,0.1,1]"}},
+        {{"scan.sensing_points=[16,16]", "time_axis.opl_start_m=1.0", "time_axis.num_bins=100"}},
+        {{"scan.pattern=exhaustive",
+          "scan.sensing_points=[6,6]",
+          "scan.illumination_points=[4,4]"}}};
+    Rate rate;
+    for (const Place& place : places) {
+        for (const ScanCase& scan : scans) {
+            if (place.has_bent_wall() && &scan != &scans[0] && &scan != &scans[2] &&
+                &scan != &scans[3]) {
+                continue;  // the wall's points are its own
+            }
             for (const double peak : {0.0, 100.0, 20.0}) {
-                const Capture& right = right_capture(scene, scan);
-                const std::string warnings = warnings_of(peak > 0.0 ? counted(right, peak) : right);
-                ++tried;
+                const std::string warnings = warnings_of(seen(place, scan, peak));
+                ++rate.tried;
                 if (warnings.empty()) continue;
-                ++alarms;
-                fmt::print("{} {} {}: {}\n", scene, fmt::join(scan, " "), peak, warnings);
+                ++rate.named;
+                fmt::print(
+                    "{} {} {}: {}\n", place.scene, fmt::join(scan.settings, " "), peak, warnings);
             }
         }
     }
-    fmt::print("{} of {} false alarms\n", alarms, tried);
-    EXPECT_LE(alarms, 0.05 * tried);  // the aim is 0.02
+    fmt::print("{} of {} false alarms\n", rate.named, rate.tried);
+    return rate;
+}
+
+TEST(Slips, AreRecognisedAndRightlyNamed) {
+    const Rate rate = recognised(kKnown);
+    EXPECT_GE(rate.named, 0.95 * rate.tried);
+}
+
+TEST(Slips, AreRecognisedAtPlacesThatWereHeldOut) {
+    const Rate rate = recognised(kHeldOut);
+    EXPECT_GE(rate.named, 0.95 * rate.tried);
+}
+
+TEST(Slips, AreNotSeenInCapturesThatAreRight) {
+    const Rate rate = alarmed(kKnown);
+    EXPECT_LE(rate.named, 0.04 * rate.tried);  // the aim is 0.02
+}
+
+TEST(Slips, AreNotSeenInRightCapturesThatWereHeldOut) {
+    const Rate rate = alarmed(kHeldOut);
+    EXPECT_LE(rate.named, 0.04 * rate.tried);  // the aim is 0.02
 }
 
 TEST(Slips, OfUnitsAreSeenInEveryScene) {
-    for (const std::string& scene : kScenes) {
-        const Capture& right = right_capture(scene, kConfocal);
-        Capture counts = counted(right, 20.0);
+    for (const Place& place : kKnown) {
+        const Capture& right = right_capture(place, kConfocal);
+        Capture counts = counted(right, 20.0, place.seed);
         counts.unit = core::TransientUnit::Radiance;
-        EXPECT_NE(warnings_of(counts).find("capture.unit=counts"), std::string::npos) << scene;
+        EXPECT_NE(warnings_of(counts).find("capture.unit=counts"), std::string::npos)
+            << place.scene;
         Capture radiance = right;
         radiance.unit = core::TransientUnit::Counts;
-        EXPECT_NE(warnings_of(radiance).find("capture.unit=radiance"), std::string::npos) << scene;
+        EXPECT_NE(warnings_of(radiance).find("capture.unit=radiance"), std::string::npos)
+            << place.scene;
     }
 }
 

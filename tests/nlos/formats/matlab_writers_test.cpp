@@ -188,10 +188,33 @@ TEST(ConvNlosWriter, TheWallStandsAtTheTargetDistance) {
     EXPECT_NEAR(data.values("target_dist")[0], distance, 1e-15);
     const auto l = data.values("l");
     for (std::size_t i = 0; i < 6; ++i) {
-        EXPECT_EQ(l[i], capture.scan.sensing.positions[i].x());
+        EXPECT_EQ(l[i], -capture.scan.sensing.positions[i].x());
         EXPECT_EQ(l[i + 6], capture.scan.sensing.positions[i].y());
         EXPECT_EQ(l[i + 12], data.values("target_dist")[0]);
     }
+}
+
+/// Volume that steps along the grid's two axes span with the direction towards the hidden scene:
+/// its sign changes in a mirror.
+double handedness(const std::array<core::Vec3, 3>& corner, const core::Vec3& towards_hidden) {
+    return (corner[1] - corner[0]).cross(corner[2] - corner[0]).dot(towards_hidden);
+}
+
+TEST(ConvNlosWriter, TheirWorldIsNoMirrorImageOfOurs) {
+    const TemporaryFolder folder;
+    const Capture capture = example_capture(ScanPattern::Confocal);
+    write_as("conv-nlos", folder.file("a.mat"), capture);
+    const auto l = NlosData(folder.file("a.mat")).values("l");
+    std::array<core::Vec3, 3> ours;
+    std::array<core::Vec3, 3> theirs;
+    const std::array<std::size_t, 3> corners{0, 2, 1};  // of 3 x 2 points: along x, along y
+    for (std::size_t i = 0; i < 3; ++i) {
+        ours[i] = capture.scan.sensing.positions[corners[i]];
+        theirs[i] = {l[corners[i]], l[corners[i] + 6], l[corners[i] + 12]};
+    }
+    const double right = handedness(ours, core::Vec3::UnitZ());
+    ASSERT_NE(right, 0.0);
+    EXPECT_NEAR(handedness(theirs, -core::Vec3::UnitZ()), right, 1e-12);  // towards their origin
 }
 
 TEST(ConvNlosWriter, TimesAreTheCentresOfBins) {

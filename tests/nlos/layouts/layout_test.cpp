@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/layouts/layout.h"
 
+#include "nlos/containers/npz_writer.h"
 #include "nlos/formats/capture_file.h"
 #include "nlos/layouts/layout_guess.h"
 #include "nlos/layouts/layout_points.h"
@@ -184,6 +185,43 @@ TEST(Layouts, FramesAreKeptOrChosen) {
     EXPECT_EQ(first.transient.histogram(2)[3], cube_value(0, 2, 3));
     settings.frame = 2;
     EXPECT_ERROR_WITH(read_capture(example.file(), settings), "capture.frame: found 2");
+}
+
+/// A frame of layout st-vl53l8, four zones of six bins that all hold `value`.
+void write_zones(const std::string& path, double value) {
+    NpzWriter file(path);
+    const std::vector<double> values(24, value);
+    const std::vector<double> points{0, 0, 1, 0, 1, 1, 1, 0, 1, 1, 1, 1};
+    file.write("hists", {4, 6}, values);
+    file.write("pt_cloud", {4, 3}, points);
+    file.finish();
+}
+
+TEST(Layouts, SeveralFilesAreFramesInTheOrderGiven) {
+    const TemporaryFolder folder;
+    write_zones(folder.file("a.npz"), 3.0);
+    write_zones(folder.file("b.npz"), 5.0);
+    const std::vector<std::string> files{folder.file("b.npz"), folder.file("a.npz")};
+    const core::Capture capture = read_capture(files);
+    ASSERT_TRUE(capture.sequence);
+    ASSERT_EQ(capture.sequence->frames.size(), 2U);
+    EXPECT_EQ(capture.sequence->frames[0].histogram(2)[4], 5.0F);
+    EXPECT_EQ(capture.sequence->frames[1].histogram(2)[4], 3.0F);
+    CaptureReadSettings settings;
+    settings.frame = 0;
+    EXPECT_EQ(read_capture(files, settings).transient.histogram(1)[0], 5.0F);
+}
+
+TEST(Layouts, SeveralFilesThatAreNoFramesAreRefused) {
+    LaidOut example({"x", "y", "t"});
+    EXPECT_ERROR_WITH(read_capture(std::vector{example.file(), example.file()}, example.settings()),
+                      "is the first of 2 files of layout test; must stand alone");
+    const TemporaryFolder folder;
+    write_zones(folder.file("a.npz"), 3.0);
+    EXPECT_ERROR_WITH(read_capture(std::vector{folder.file("a.npz"), example.file()}),
+                      "is not of layout st-vl53l8; must be, as the frames before");
+    EXPECT_ERROR_WITH(read_capture(std::vector{folder.file("a.npz"), folder.file("none.npz")}),
+                      "none.npz: does not exist");
 }
 
 TEST(Layouts, NumbersComeFromArraysStepsAndPeaks) {

@@ -101,7 +101,7 @@ def write_phasor_field_2020(capture: Capture, folder: Path, v73: bool) -> Writte
 
 def write_conv_nlos(capture: Capture, folder: Path) -> Written:
     """Struct NLOSDATA: transient (x, y, t) or (n_l, n_s, n_t), points l and s (N, 3) with the wall
-    at z = target_dist and the object around the origin, so that depth runs against z. The authors
+    at z = target_dist and the object around the origin, which is half a turn about y. The authors
     interpolate between bins at lengths times(i), which are the bins' centres, and count the points
     of a confocal grid x slowest."""
     counted = capture.as_counts()
@@ -109,7 +109,7 @@ def write_conv_nlos(capture: Capture, folder: Path) -> Written:
     confocal = capture.pattern == "confocal"
     transient = np.moveaxis(counted.H if confocal else listed.H, 0, -1)
     centres = capture.start_m + capture.bin_width_m * (np.arange(capture.num_bins) + 0.5)
-    turned = np.array([1.0, 1.0, -1.0])
+    turned = np.array([-1.0, 1.0, -1.0])
     wall = np.array([0.0, 0.0, CONV_WALL_M])
     path = folder / "letter_transient.mat"
     write_v5(path, {"NLOSDATA": {

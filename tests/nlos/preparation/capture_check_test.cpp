@@ -111,7 +111,7 @@ TEST(CaptureCheck, APlaneSaysNothingWrongOfBins) {
             nlos_test::add_scatterer(capture, Vec3(0.02 * ix, 0.02 * iy, 0.5), 4.0);
         }
     }
-    EXPECT_TRUE(capture_warnings(capture).empty());
+    EXPECT_EQ(capture_warnings(capture), std::vector<std::string>{});
     for (const double factor : {0.5, 2.0}) {
         core::Capture scaled = capture;
         scaled.time_axis.bin_width_m *= factor;

@@ -138,7 +138,7 @@ TEST(DirectReturn, IsFoundWithItsOffset) {
     const auto direct = find_direct_return(capture, dark(capture));
     ASSERT_TRUE(direct);
     EXPECT_NEAR(direct->offset_m, 1.0, 1e-9);
-    EXPECT_EQ(direct->end_bins, std::vector<std::size_t>(100, 1));
+    EXPECT_EQ(direct->end_bins, std::vector<std::size_t>(196, 1));
 }
 
 TEST(SlipEvidence, IsNothingForFewPairsForDarknessAndForLikeHistograms) {
