@@ -2,6 +2,7 @@
 #include "apps/arguments.h"
 #include "apps/commands.h"
 #include "apps/estimate_text.h"
+#include "apps/terminal.h"
 #include "apps/version.h"
 #include "calib/calibrate.h"
 #include "nlos/formats/capture_file.h"
@@ -35,16 +36,15 @@ void run(const CalibrateArguments& arguments) {
     const calib::SetupGeometry& setup = calibration.setup;
     for (std::size_t i = 0; i < setup.values.size(); ++i) {
         if (setup.sigma[i] == 0.0) continue;
-        fmt::print(
-            "{:<18} {}\n", calib::kSetupNames[i], estimate_text(setup.values[i], setup.sigma[i]));
+        print("{:<18} {}\n", calib::kSetupNames[i], estimate_text(setup.values[i], setup.sigma[i]));
     }
     const auto response = json["response"];
-    fmt::print("{:<18} {:>11.6g} ps\n", "response FWHM", response["jitter_fwhm_ps"].get<double>());
-    fmt::print("wrote {} ({} points, condition number {:.3g}, path lengths off by {:.3g} mm rms)\n",
-               arguments.output,
-               setup.points_m.size(),
-               setup.uncertainty.condition_number,
-               1e3 * setup.range_rms_m);
+    print("{:<18} {:>11.6g} ps\n", "response FWHM", response["jitter_fwhm_ps"].get<double>());
+    print("wrote {} ({} points, condition number {:.3g}, path lengths off by {:.3g} mm rms)\n",
+          arguments.output,
+          setup.points_m.size(),
+          setup.uncertainty.condition_number,
+          1e3 * setup.range_rms_m);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include "apps/arguments.h"
 #include "apps/commands.h"
 #include "apps/report/report.h"
+#include "apps/terminal.h"
 
 #include <fmt/core.h>
 
@@ -28,7 +29,7 @@ void add_report_command(CLI::App& app) {
     command->callback([arguments] {
         require_suffix(arguments->output, {".html", ".htm"});
         write_report(arguments->folder, arguments->output);
-        fmt::print("wrote {}\n", arguments->output);
+        print("wrote {}\n", arguments->output);
     });
 }
 

@@ -2,7 +2,6 @@
 #include "renderer/gltf/gltf_accessor.h"
 
 #include "renderer/core/error.h"
-#include "renderer/core/process.h"
 
 #include <fmt/core.h>
 #include <tiny_gltf.h>
@@ -15,6 +14,9 @@
 
 namespace renderer {
 namespace {
+
+// A few bytes of file can ask for any number of zeros.
+constexpr std::size_t kMostWithoutData = 1'000'000;
 
 template <int N>
 using Elements = std::vector<Eigen::Matrix<double, N, 1>>;
@@ -150,11 +152,10 @@ Elements<N> read_elements(const GltfDocument& document,
     ElementRange range;
     if (accessor.bufferView >= 0) {
         range = locate(document, accessor, where);
-    } else if (accessor.count > core::available_memory_bytes() / (4 * sizeof(double) * N)) {
-        // Without a buffer view, a few bytes of file can ask for any number of zeros.
+    } else if (accessor.count > kMostWithoutData) {
         throw core::Error(document.where(where),
-                          fmt::format("has {} elements", accessor.count),
-                          "must fit into a quarter of the free memory");
+                          fmt::format("has {} elements and no bufferView", accessor.count),
+                          fmt::format("must have at most {} without one", kMostWithoutData));
     }
     Elements<N> elements(accessor.count, Eigen::Matrix<double, N, 1>::Zero());
     for (std::size_t i = 0; range.first && i < accessor.count; ++i) {
