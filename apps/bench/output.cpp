@@ -99,7 +99,7 @@ core::Json run_benchmark(const BenchOutput& output,
         result.figures["against"] = core::write_value(against);
         table += plain_text(tables_of(result.figures["against"]));
     }
-    core::write_text_file(stem + ".json", result.figures.dump(2) + "\n");
+    core::write_text_file(stem + ".json", core::json_text(result.figures));
     core::write_text_file(stem + ".txt", table);
     if (!output.results.empty()) write_results(output, name, result.figures);
     for (const auto& [suffix, bytes] : result.pictures) {

@@ -48,7 +48,7 @@ void run_all(const AllArguments& arguments) {
         [&](const core::Progress& progress) { return measure_reconstruct(reconstruct, progress); });
     add("fit", [&](const core::Progress& progress) { return measure_fit(fit, progress); });
     const auto path = std::filesystem::path(arguments.output.folder) / "bench_all.json";
-    core::write_text_file(path.string(), all.dump(2) + "\n");
+    core::write_text_file(path.string(), core::json_text(all));
     print("wrote {}\n", path.string());
 }
 

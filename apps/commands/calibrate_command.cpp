@@ -31,7 +31,7 @@ void run(const CalibrateArguments& arguments) {
     json["program"] = version_text();
     json["command"] = command_line();
     json["settings"] = core::write_value(settings);
-    core::write_text_file(arguments.output, json.dump(2) + "\n");
+    core::write_text_file(arguments.output, core::json_text(json));
 
     const calib::SetupGeometry& setup = calibration.setup;
     for (std::size_t i = 0; i < setup.values.size(); ++i) {
@@ -55,8 +55,7 @@ void add_calibrate_command(CLI::App& app) {
     const auto arguments = std::make_shared<CalibrateArguments>();
     command->add_option("SETUP", arguments->setup, "Description of the measurements (.json)")
         ->required();
-    command->add_option("-o,--output", arguments->output, "Calibration to write (.json)")
-        ->required();
+    add_output_option(*command, arguments->output, "Calibration to write (.json)")->required();
     add_set_option(*command, arguments->overrides);
     command->footer(settings_footer(core::settings_help(calib::SetupSettings{}),
                                     "nlos calibrate data/setup.json -o calibration.json"));

@@ -57,7 +57,7 @@ void add_compare_command(CLI::App& app) {
         ->required();
     command->add_option("B", arguments->b, "scene.json as the truth, or another of A's kind")
         ->required();
-    command->add_option("-o,--output", arguments->output, "Metrics to write (.json)");
+    add_output_option(*command, arguments->output, "Metrics to write (.json)");
     command->add_option("--fscore-threshold-m",
                         arguments->fscore_threshold_m,
                         "Distance that counts as a match of points [m] (default 0.01, of volumes "

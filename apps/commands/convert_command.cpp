@@ -33,7 +33,7 @@ void convert_scene(const std::string& input, const std::string& output) {
     const renderer::ImportedScene scene = renderer::import_scene(input);
     const std::string name = std::filesystem::path(geometry).filename().string();
     renderer::write_gltf(geometry, scene.geometry);
-    core::write_text_file(output, renderer::imported_scene_json(scene, name).dump(2) + "\n");
+    core::write_text_file(output, core::json_text(renderer::imported_scene_json(scene, name)));
     for (const std::string& text : scene.not_translated) print("not the same: {}\n", text);
     print("wrote {} and {} ({} objects)\n", output, geometry, scene.geometry.objects.size());
 }

@@ -98,8 +98,7 @@ void add_demo_command(CLI::App& app) {
     CLI::App* command = app.add_subcommand(
         "demo", "Scene, capture, reconstruction, fit, comparison and report in one go");
     const auto arguments = std::make_shared<DemoArguments>();
-    command->add_option("-o,--output", arguments->folder, "Folder for the results")
-        ->capture_default_str();
+    add_output_option(*command, arguments->folder, "Folder for the results")->capture_default_str();
     command->footer(settings_footer({}, "nlos demo -o out/demo"));
     command->callback([arguments] { run(*arguments); });
 }

@@ -72,7 +72,10 @@ void print_differences(const core::Json& json, const core::Json& usual, const st
         } else if (value.is_array() && value.flatten().size() > 4) {
             print("  {}{}: {} items\n", prefix, key, value.size());
         } else {
-            print("  {}{}: {}\n", prefix, key, value.dump());
+            print("  {}{}: {}\n",
+                  prefix,
+                  key,
+                  value.dump(-1, ' ', false, core::Json::error_handler_t::replace));
         }
     }
 }

@@ -96,10 +96,9 @@ void add_fit_command(CLI::App& app) {
         ->required();
     command->add_option("MODEL", arguments->model, "What is fitted and from where (.json)")
         ->required();
-    command
-        ->add_option("-o,--output",
-                     arguments->output,
-                     "Fit to write (.json); the fitted scene and a picture go beside it")
+    add_output_option(*command,
+                      arguments->output,
+                      "Fit to write (.json); the fitted scene and a picture go beside it")
         ->required();
     command->add_option(
         "--calibration", arguments->calibration, "Calibration of the set-up (.json)");

@@ -128,7 +128,7 @@ void write_layout(const std::string& path, const std::string& layout_path) {
     if (guess.layout.is_null()) {
         throw core::Error(path, "holds no array that could be histograms", "must hold one");
     }
-    core::write_text_file(layout_path, guess.layout.dump(2) + "\n");
+    core::write_text_file(layout_path, core::json_text(guess.layout));
     for (const std::string& line : guess.findings) print("{}\n", line);
     print("wrote {}\n", layout_path);
 }

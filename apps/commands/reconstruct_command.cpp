@@ -59,9 +59,7 @@ void add_reconstruct_command(CLI::App& app) {
     const auto arguments = std::make_shared<ReconstructArguments>();
     command->add_option("CAPTURE", arguments->capture, "Capture in any readable format")
         ->required();
-    command
-        ->add_option(
-            "-o,--output", arguments->output, "Volume to write (.h5); a .png goes beside it")
+    add_output_option(*command, arguments->output, "Volume to write (.h5); a .png goes beside it")
         ->required();
     command->add_option("--method",
                         arguments->method,

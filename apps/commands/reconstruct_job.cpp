@@ -47,8 +47,9 @@ nlos::Reconstruction reconstruct_to_file(const std::string& capture_path,
 
     ProgressBar bar("reconstruct");
     nlos::Reconstruction result = nlos::reconstruct(capture, options.reconstruct, bar.progress());
-    result.provenance = {
-        {"program", version_text()}, {"command", command_line()}, {"capture", capture_path}};
+    result.provenance = {{"program", version_text()},
+                         {"command", command_line()},
+                         {"capture", core::printable(capture_path)}};
     nlos::write_volume(volume_path, result);
     nlos::write_panels_png(with_suffix(volume_path, ".png"), nlos::volume_panels(result), 2);
     if (!ply_path.empty()) nlos::write_ply(ply_path, result.points);

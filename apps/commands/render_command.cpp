@@ -96,8 +96,7 @@ void add_render_command(CLI::App& app) {
     CLI::App* command = app.add_subcommand("render", "Simulate the transients a scan records");
     const auto arguments = std::make_shared<RenderArguments>();
     command->add_option("SCENE", arguments->scene, "Scene description (.json)")->required();
-    command
-        ->add_option("-o,--output", arguments->output, "Capture to write (.h5, .npz, .exr, .mat)")
+    add_output_option(*command, arguments->output, "Capture to write (.h5, .npz, .exr, .mat)")
         ->required();
     add_shorthands(*command, kRenderShorthands, arguments->shorthands);
     command->add_option("--calibration",

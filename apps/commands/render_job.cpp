@@ -45,7 +45,8 @@ core::Json provenance(const std::string& scene_path,
     core::Json info;
     info["program"] = version_text();
     info["command"] = command_line();
-    info["scene"] = std::filesystem::absolute(scene_path).lexically_normal().string();
+    info["scene"] =
+        core::printable(std::filesystem::absolute(scene_path).lexically_normal().string());
     const std::string names = estimator_names(result);
     info["estimator"] = names;
     for (const renderer::OrderSource& source : result.sources) {

@@ -24,7 +24,7 @@ void add_report_command(CLI::App& app) {
     const auto arguments = std::make_shared<ReportArguments>();
     command->add_option("DIR", arguments->folder, "Folder of captures, volumes and metrics")
         ->required();
-    command->add_option("-o,--output", arguments->output, "Page to write (.html)")->required();
+    add_output_option(*command, arguments->output, "Page to write (.html)")->required();
     command->footer(settings_footer({}, "nlos report data -o report.html"));
     command->callback([arguments] {
         require_suffix(arguments->output, {".html", ".htm"});

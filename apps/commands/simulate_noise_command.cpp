@@ -92,8 +92,7 @@ void add_simulate_noise_command(CLI::App& app) {
     const auto arguments = std::make_shared<NoiseArguments>();
     command->add_option("CAPTURE", arguments->capture, "Capture in any readable format")
         ->required();
-    command
-        ->add_option("-o,--output", arguments->output, "Capture to write (.h5, .npz, .exr, .mat)")
+    add_output_option(*command, arguments->output, "Capture to write (.h5, .npz, .exr, .mat)")
         ->required();
     add_shorthands(*command, kNoiseShorthands, arguments->shorthands);
     add_threads_option(*command, arguments->threads);

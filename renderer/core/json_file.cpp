@@ -134,6 +134,10 @@ std::optional<Json> json_if_valid(std::string_view text) {
     }
 }
 
+std::string json_text(const Json& json) {
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
 Json read_json_file(const std::string& path) {
     return parse_json(MappedFile(path, "must be a readable JSON file").bytes(), path);
 }

@@ -143,7 +143,7 @@ const std::vector<core::Vec2>* PrimitiveReader::uv_of(const tinygltf::Primitive&
 PrimitiveReader::Size PrimitiveReader::claimed_size(int mesh_index) const {
     const tinygltf::Model& model = *document_.model;
     const auto count_of = [&](int accessor) {
-        return static_cast<double>(model.accessors[static_cast<std::size_t>(accessor)].count);
+        return static_cast<double>(checked_count(document_, accessor));
     };
     Size size;
     for (const auto& source : model.meshes[static_cast<std::size_t>(mesh_index)].primitives) {

@@ -40,7 +40,7 @@ class PrimitiveReader {
     const std::vector<Primitive>& read(int mesh_index);
 
     /// At most how many triangles read() will give by what the file says of its accessors, and how
-    /// many bytes they and their vertices take.
+    /// many bytes they and their vertices take. Throws core::Error for claims that are not stored.
     struct Size {
         double triangles = 0.0;
         double bytes = 0.0;
