@@ -4,7 +4,6 @@
 #include "renderer/core/output_file.h"
 
 #include <fmt/core.h>
-#include <limits.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -12,6 +11,7 @@
 #include <atomic>
 #include <cerrno>
 #include <charconv>
+#include <climits>
 #include <csignal>
 #include <cstdint>
 #include <cstring>
