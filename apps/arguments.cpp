@@ -29,6 +29,12 @@ std::vector<std::string> expand_set_arguments(const std::vector<std::string>& ar
     return expanded;
 }
 
+CLI::Option* add_output_option(CLI::App& command, std::string& path, const std::string& meaning) {
+    return command.add_option("-o,--output", path, meaning)->check([](const std::string& name) {
+        return std::string(name.empty() ? "found no name; must be one" : "");
+    });
+}
+
 void add_set_option(CLI::App& command, std::vector<std::string>& overrides) {
     command.add_option("--set", overrides, "Change a setting; may be given several times")
         ->type_name("KEY.PATH=VALUE")

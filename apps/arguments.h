@@ -14,6 +14,9 @@ namespace apps {
 /// Splits `--set a=1 b=2` into one `--set` per item, so that it may stand before other arguments.
 std::vector<std::string> expand_set_arguments(const std::vector<std::string>& arguments);
 
+/// Declares `-o`, the file or folder to write, which has a name if it is given.
+CLI::Option* add_output_option(CLI::App& command, std::string& path, const std::string& meaning);
+
 /// Declares the repeatable `--set key.path=value`; its texts go to `overrides`.
 void add_set_option(CLI::App& command, std::vector<std::string>& overrides);
 

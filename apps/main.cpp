@@ -6,8 +6,8 @@
 #include "renderer/core/error.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <span>
 
@@ -17,10 +17,19 @@ constexpr int kFailed = 1;
 constexpr int kBadInput = 2;
 
 // Whatever a message holds, it ends up as exactly one line.
-int fail(int status, std::string message) {
-    std::replace(message.begin(), message.end(), '\n', ' ');
-    std::fprintf(stderr, "%s\n", message.c_str());
+int fail(int status, const std::string& message) {
+    apps::print_error("{}\n", message);
     return status;
+}
+
+// Names that the system refuses before anything is read: too long, in circles, not permitted.
+int refuse_path(const std::filesystem::filesystem_error& error) {
+    const std::string reason = error.code().message();
+    return fail(kBadInput,
+                core::Error(error.path1().string(),
+                            "cannot be reached (" + reason + ")",
+                            "must be a file or folder that can be")
+                    .what());
 }
 
 // CLI11 would only say that a command is missing.
@@ -74,14 +83,20 @@ int run(const std::vector<std::string>& arguments) {
 int main(int argc, char** argv) {
     const std::vector<std::string> arguments(argv + 1, argv + argc);
     apps::command_line() = "nlos";
-    for (const std::string& argument : arguments) apps::command_line() += " " + argument;
-    apps::catch_interrupt();
+    for (const std::string& argument : arguments) {
+        apps::command_line() += " " + core::printable(argument);
+    }
+    apps::handle_signals();
     try {
-        return run(arguments);
+        const int status = run(arguments);
+        apps::flush_output();
+        return status;
     } catch (const core::Error& error) {
         return fail(kBadInput, error.what());
     } catch (const core::Failure& error) {
         return fail(kFailed, error.what());
+    } catch (const std::filesystem::filesystem_error& error) {
+        return refuse_path(error);
     } catch (const std::bad_alloc&) {
         return fail(kFailed, "nlos: not enough memory");
     } catch (const std::exception& error) {

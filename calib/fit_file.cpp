@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "calib/fit_file.h"
 
+#include "renderer/core/mapped_file.h"
+
 #include <cmath>
-#include <fstream>
+#include <filesystem>
 
 namespace calib {
 namespace {
@@ -129,9 +131,9 @@ FitResult read_fit(const std::string& path) {
 }
 
 bool is_fit_file(const std::string& path) {
-    std::ifstream file(path);
-    const std::string text{std::istreambuf_iterator<char>(file), {}};
-    const std::optional<Json> json = core::json_if_valid(text);
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(path, ignored)) return false;
+    const std::optional<Json> json = core::json_if_valid(core::MappedFile(path).bytes());
     return json && json->is_object() && json->contains("objects") && json->contains("sigma") &&
            json->contains("expected_deviance");
 }

@@ -4,8 +4,7 @@
 namespace apps {
 
 void add_output_options(CLI::App& command, BenchOutput& output) {
-    command.add_option("-o,--output", output.folder, "Folder for JSON, table and plots")
-        ->required();
+    add_output_option(command, output.folder, "Folder for JSON, table and plots")->required();
     command.add_option("--against",
                        output.against,
                        "JSON of an earlier run: says what got slower or less accurate");

@@ -1,29 +1,47 @@
 // SPDX-License-Identifier: MIT
 #include "apps/bench/gnuplot.h"
 
+#include "renderer/core/error.h"
 #include "renderer/core/output_file.h"
 
+#include <fcntl.h>
 #include <fmt/core.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
+#include <memory>
 #include <utility>
 
 namespace apps {
 namespace {
 
-// The text of a gnuplot script; data stand in it, so nothing is left beside the pictures.
-std::string script_of(const LogPlot& plot, const std::string& terminal, const std::string& target) {
+/// A text of a script. Between single quotes gnuplot takes every character as it is; a quote is
+/// written twice, and no printable text ends the line.
+std::string quoted(const std::string& text) {
+    std::string result = "'";
+    for (const char c : core::printable(text)) {
+        if (c == '\'') result += c;
+        result += c;
+    }
+    return result + "'";
+}
+
+// The text of a gnuplot script. Data stand in it, so nothing is left beside the pictures; the
+// picture goes to standard output, so no name of a file does.
+std::string script_of(const LogPlot& plot, const std::string& terminal) {
     std::string script = fmt::format(
-        "set terminal {}\nset output '{}'\nset logscale xy\nset grid\nset key below reverse Left "
+        "set terminal {}\nset logscale xy\nset grid\nset key below reverse Left "
         "samplen 3\n"
         "set linetype 9 lc rgb '#999999'\nset linetype 10 lc rgb '#8b4513'\nset linetype cycle 10\n"
-        "set title '{}'\nset xlabel '{}'\nset ylabel '{}'\nset format '%g'\n",
+        "set title {}\nset xlabel {}\nset ylabel {}\nset format '%g'\n",
         terminal,
-        target,
-        plot.title,
-        plot.x_label,
-        plot.y_label);
+        quoted(plot.title),
+        quoted(plot.x_label),
+        quoted(plot.y_label));
     std::string data;
     std::string curves;
     for (std::size_t i = 0; i < plot.lines.size(); ++i) {
@@ -34,26 +52,46 @@ std::string script_of(const LogPlot& plot, const std::string& terminal, const st
         }
         data += "EOD\n";
         curves += fmt::format(
-            "{}$line{} with {} lc {} title '{}'",
+            "{}$line{} with {} lc {} title {}",
             i == 0 ? "plot " : ", ",
             i,
             line.style == LineStyle::Measured ? "linespoints lw 2 pt 7" : "lines lw 3 dt 2",
             line.limit_of < 0 ? static_cast<int>(i) + 1 : line.limit_of + 1,
-            line.title);
+            quoted(line.title));
     }
     return script + data + curves + "\n";
 }
 
-bool run_gnuplot(const std::string& script) {
-    std::FILE* pipe = ::popen("gnuplot 2>/dev/null", "w");
-    if (pipe == nullptr) return false;
-    std::fwrite(script.data(), 1, script.size(), pipe);
-    return ::pclose(pipe) == 0;
+/// Runs gnuplot, without a shell and without start-up files.
+///
+/// script    goes to its standard input
+/// picture   the file that its standard output goes to
+/// returns   whether gnuplot was there and content
+bool run_gnuplot(const std::string& script, const std::string& picture) {
+    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> input(std::tmpfile(), &std::fclose);
+    if (!input || std::fputs(script.c_str(), input.get()) < 0) return false;
+    std::rewind(input.get());
+
+    posix_spawn_file_actions_t streams;
+    ::posix_spawn_file_actions_init(&streams);
+    ::posix_spawn_file_actions_adddup2(&streams, ::fileno(input.get()), STDIN_FILENO);
+    ::posix_spawn_file_actions_addopen(
+        &streams, STDOUT_FILENO, picture.c_str(), O_WRONLY | O_TRUNC, 0);
+    ::posix_spawn_file_actions_addopen(&streams, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+    std::string program = "gnuplot";
+    std::string option = "--default-settings";
+    const std::array<char*, 3> arguments{program.data(), option.data(), nullptr};
+    pid_t process = 0;
+    const int error =
+        ::posix_spawnp(&process, program.c_str(), &streams, nullptr, arguments.data(), ::environ);
+    ::posix_spawn_file_actions_destroy(&streams);
+    int status = 0;
+    return error == 0 && ::waitpid(process, &status, 0) == process && status == 0;
 }
 
 bool draw_as(const LogPlot& plot, const std::string& terminal, const std::string& target) {
     core::OutputFile output(target);
-    if (!run_gnuplot(script_of(plot, terminal, output.temporary()))) return false;
+    if (!run_gnuplot(script_of(plot, terminal), output.temporary())) return false;
     output.commit();
     return true;
 }

@@ -7,6 +7,7 @@
 #include "apps/bench/tables.h"
 #include "apps/terminal.h"
 #include "apps/version.h"
+#include "renderer/core/mapped_file.h"
 #include "renderer/core/output_file.h"
 
 #include <fmt/chrono.h>
@@ -14,8 +15,6 @@
 
 #include <ctime>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
 namespace apps {
 namespace {
@@ -27,16 +26,6 @@ std::string make_stem(const std::string& folder, const std::string& name) {
     return (std::filesystem::path(folder) / ("bench_" + name)).string();
 }
 
-core::Json read_earlier(const std::string& path, const std::string& name) {
-    if (path.empty()) return nullptr;
-    core::Json json = core::read_json_file(path);
-    if (json.contains(name) && json[name].is_object()) json = core::Json(json[name]);
-    if (!json.contains("program")) {
-        throw core::Error(path, "is not a benchmark's", "must be a bench_*.json of an earlier run");
-    }
-    return json;
-}
-
 bool draw_plots(const BenchResult& result, const std::string& stem) {
     bool drawn = true;
     for (const auto& [suffix, plot] : result.plots) drawn = draw_plot(plot, stem + suffix) && drawn;
@@ -44,8 +33,8 @@ bool draw_plots(const BenchResult& result, const std::string& stem) {
 }
 
 std::string text_of_file(const std::string& path) {
-    std::ifstream file(path);
-    return {std::istreambuf_iterator<char>(file), {}};
+    if (!std::filesystem::exists(path)) return "";
+    return std::string(core::MappedFile(path, "must be a Markdown file").bytes());
 }
 
 void write_results(const BenchOutput& output, const std::string& name, core::Json figures) {
@@ -80,11 +69,25 @@ std::string with_section(const std::string& text,
     return text.substr(0, first) + marked + text.substr(last + end.size());
 }
 
+core::Json read_earlier_run(const std::string& path, const std::string& name) {
+    if (path.empty()) return nullptr;
+    core::Json json = core::read_json_file(path);
+    if (json.contains(name) && json[name].is_object()) json = core::Json(json[name]);
+    const auto is_text = [&](const char* key) {
+        return json.contains(key) && json[key].is_string();
+    };
+    if (!is_text("program") || !is_text("machine")) {
+        throw core::Error(path, "is not a benchmark's", "must be a bench_*.json of an earlier run");
+    }
+    return json;
+}
+
 core::Json run_benchmark(const BenchOutput& output,
                          const std::string& name,
                          const Benchmark& benchmark) {
     const std::string stem = make_stem(output.folder, name);
-    const core::Json earlier = read_earlier(output.against, name);
+    core::check_targets({stem + ".json", stem + ".txt", output.results}, {});
+    const core::Json earlier = read_earlier_run(output.against, name);
     ProgressBar bar("bench " + name);
     BenchResult result = benchmark(bar.progress());
     std::string table = plain_text(tables_of(result.figures));
@@ -96,16 +99,17 @@ core::Json run_benchmark(const BenchOutput& output,
         result.figures["against"] = core::write_value(against);
         table += plain_text(tables_of(result.figures["against"]));
     }
-    core::write_text_file(stem + ".json", result.figures.dump(2) + "\n");
+    core::write_text_file(stem + ".json", core::json_text(result.figures));
     core::write_text_file(stem + ".txt", table);
     if (!output.results.empty()) write_results(output, name, result.figures);
     for (const auto& [suffix, bytes] : result.pictures) {
         core::write_text_file(stem + suffix + ".png", bytes);
     }
     if (!draw_plots(result, stem)) {
-        fmt::print(stderr, "bench: gnuplot is not there, so no plot was drawn\n");
+        print_error("bench: gnuplot is not there, so no plot was drawn\n");
     }
-    fmt::print("{}wrote {}\n", table, stem + ".json");
+    write_output(table);
+    print("wrote {}\n", stem + ".json");
     return result.figures;
 }
 

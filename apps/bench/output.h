@@ -37,6 +37,12 @@ struct BenchResult {
 
 using Benchmark = std::function<BenchResult(const core::Progress&)>;
 
+/// The figures of an earlier run of a benchmark; null for an empty path.
+///
+/// path      its bench_NAME.json, or one of `bench all`, which has them under `name`
+/// throws    core::Error when there are none
+core::Json read_earlier_run(const std::string& path, const std::string& name);
+
 /// Runs a benchmark and writes bench_NAME.json (with version and machine), bench_NAME.txt, and
 /// plots as .svg and .png beside them; prints the tables. With `results`, the tables also replace
 /// the benchmark's section of that Markdown file, or are appended to it; the rest stays.

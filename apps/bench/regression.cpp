@@ -175,8 +175,8 @@ double size_of(const BenchChange& change) {
 
 BenchRegression compare_benches(const Json& before, const Json& now) {
     BenchRegression result;
-    result.program = before.value("program", "unknown version");
-    result.machine = before.value("machine", "unknown machine");
+    result.program = before.at("program");
+    result.machine = before.at("machine");
     Walk(result).compare(before, now, "");
     std::sort(result.changes.begin(),
               result.changes.end(),

@@ -23,7 +23,7 @@ std::string text_of(const Json& value) {
     if (value.is_null()) return "";
     if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
     if (value.is_number_float()) return fmt::format("{:.4g}", value.get<double>());
-    if (value.is_string()) return value.get<std::string>();
+    if (value.is_string()) return core::printable(value.get<std::string>());
     if (!value.is_array()) return value.dump();
     if (value.size() > kMaxListed) return "";
     std::vector<std::string> texts;

@@ -4,6 +4,7 @@
 #include "apps/bench/reconstruct/reconstruct.h"
 #include "apps/bench/render/render.h"
 #include "apps/commands.h"
+#include "apps/terminal.h"
 #include "renderer/core/output_file.h"
 
 #include <fmt/core.h>
@@ -35,6 +36,9 @@ void run_all(const AllArguments& arguments) {
     }
     FitBenchSettings fit;
     if (arguments.quick) fit.trials = kQuickFitTrials;
+    for (const char* name : {"render", "reconstruct", "fit"}) {
+        read_earlier_run(arguments.output.against, name);  // before an hour has passed
+    }
     core::Json all;
     const auto add = [&](const std::string& name, const Benchmark& benchmark) {
         all[name] = run_benchmark(arguments.output, name, benchmark);
@@ -44,8 +48,8 @@ void run_all(const AllArguments& arguments) {
         [&](const core::Progress& progress) { return measure_reconstruct(reconstruct, progress); });
     add("fit", [&](const core::Progress& progress) { return measure_fit(fit, progress); });
     const auto path = std::filesystem::path(arguments.output.folder) / "bench_all.json";
-    core::write_text_file(path.string(), all.dump(2) + "\n");
-    fmt::print("wrote {}\n", path.string());
+    core::write_text_file(path.string(), core::json_text(all));
+    print("wrote {}\n", path.string());
 }
 
 }  // namespace

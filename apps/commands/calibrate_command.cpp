@@ -2,6 +2,7 @@
 #include "apps/arguments.h"
 #include "apps/commands.h"
 #include "apps/estimate_text.h"
+#include "apps/terminal.h"
 #include "apps/version.h"
 #include "calib/calibrate.h"
 #include "nlos/formats/capture_file.h"
@@ -30,21 +31,20 @@ void run(const CalibrateArguments& arguments) {
     json["program"] = version_text();
     json["command"] = command_line();
     json["settings"] = core::write_value(settings);
-    core::write_text_file(arguments.output, json.dump(2) + "\n");
+    core::write_text_file(arguments.output, core::json_text(json));
 
     const calib::SetupGeometry& setup = calibration.setup;
     for (std::size_t i = 0; i < setup.values.size(); ++i) {
         if (setup.sigma[i] == 0.0) continue;
-        fmt::print(
-            "{:<18} {}\n", calib::kSetupNames[i], estimate_text(setup.values[i], setup.sigma[i]));
+        print("{:<18} {}\n", calib::kSetupNames[i], estimate_text(setup.values[i], setup.sigma[i]));
     }
     const auto response = json["response"];
-    fmt::print("{:<18} {:>11.6g} ps\n", "response FWHM", response["jitter_fwhm_ps"].get<double>());
-    fmt::print("wrote {} ({} points, condition number {:.3g}, path lengths off by {:.3g} mm rms)\n",
-               arguments.output,
-               setup.points_m.size(),
-               setup.uncertainty.condition_number,
-               1e3 * setup.range_rms_m);
+    print("{:<18} {:>11.6g} ps\n", "response FWHM", response["jitter_fwhm_ps"].get<double>());
+    print("wrote {} ({} points, condition number {:.3g}, path lengths off by {:.3g} mm rms)\n",
+          arguments.output,
+          setup.points_m.size(),
+          setup.uncertainty.condition_number,
+          1e3 * setup.range_rms_m);
 }
 
 }  // namespace
@@ -55,8 +55,7 @@ void add_calibrate_command(CLI::App& app) {
     const auto arguments = std::make_shared<CalibrateArguments>();
     command->add_option("SETUP", arguments->setup, "Description of the measurements (.json)")
         ->required();
-    command->add_option("-o,--output", arguments->output, "Calibration to write (.json)")
-        ->required();
+    add_output_option(*command, arguments->output, "Calibration to write (.json)")->required();
     add_set_option(*command, arguments->overrides);
     command->footer(settings_footer(core::settings_help(calib::SetupSettings{}),
                                     "nlos calibrate data/setup.json -o calibration.json"));

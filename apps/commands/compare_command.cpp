@@ -3,6 +3,7 @@
 #include "apps/capture_options.h"
 #include "apps/commands.h"
 #include "apps/commands/compare_job.h"
+#include "apps/terminal.h"
 #include "renderer/core/error.h"
 
 #include <fmt/core.h>
@@ -34,13 +35,13 @@ void run(const CompareArguments& arguments) {
                                           arguments.output,
                                           threshold,
                                           capture_options(arguments.overrides).capture);
-    for_each_field(
-        comparison.metrics, [](const char* name, const auto& value, const char* meaning) {
-            if (!value) return;
-            fmt::print("{:<24} {:<12.6g} {}\n", name, static_cast<double>(*value), meaning);
-        });
-    for (const std::string& text : comparison.warnings) fmt::print(stderr, "warning: {}\n", text);
-    if (!arguments.output.empty()) fmt::print("wrote {}\n", arguments.output);
+    for_each_field(comparison.metrics,
+                   [](const char* name, const auto& value, const char* meaning) {
+                       if (!value) return;
+                       print("{:<24} {:<12.6g} {}\n", name, static_cast<double>(*value), meaning);
+                   });
+    for (const std::string& text : comparison.warnings) print_error("warning: {}\n", text);
+    if (!arguments.output.empty()) print("wrote {}\n", arguments.output);
 }
 
 }  // namespace
@@ -56,14 +57,15 @@ void add_compare_command(CLI::App& app) {
         ->required();
     command->add_option("B", arguments->b, "scene.json as the truth, or another of A's kind")
         ->required();
-    command->add_option("-o,--output", arguments->output, "Metrics to write (.json)");
+    add_output_option(*command, arguments->output, "Metrics to write (.json)");
     command->add_option("--fscore-threshold-m",
                         arguments->fscore_threshold_m,
                         "Distance that counts as a match of points [m] (default 0.01, of volumes "
                         "their voxel diagonal)");
     add_capture_options(*command, arguments->overrides);
     command->footer(settings_footer(
-        core::settings_help(CaptureOptions{}), "nlos compare scenes/letter/scene.glb scenes/letter/scene.json -o metrics.json"));
+        core::settings_help(CaptureOptions{}),
+        "nlos compare scenes/letter/scene.glb scenes/letter/scene.json -o metrics.json"));
     command->callback([arguments] { run(*arguments); });
 }
 

@@ -140,10 +140,10 @@ Comparison compare_files(const std::string& a,
     Comparison comparison = compare_kinds(a, b, picture, fscore_threshold_m, settings);
     if (!metrics_path.empty()) {
         core::Json json = core::write_value(comparison.metrics);
-        json["result"] = a;
-        json["reference"] = b;
+        json["result"] = core::printable(a);
+        json["reference"] = core::printable(b);
         if (!comparison.warnings.empty()) json["warnings"] = comparison.warnings;
-        core::write_text_file(metrics_path, json.dump(2) + "\n");
+        core::write_text_file(metrics_path, core::json_text(json));
     }
     return comparison;
 }

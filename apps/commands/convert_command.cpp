@@ -2,6 +2,7 @@
 #include "apps/arguments.h"
 #include "apps/capture_options.h"
 #include "apps/commands.h"
+#include "apps/terminal.h"
 #include "nlos/formats/capture_file.h"
 #include "nlos/preparation/gated_capture.h"
 #include "renderer/core/output_file.h"
@@ -33,9 +34,9 @@ void convert_scene(const std::string& input, const std::string& output) {
     const renderer::ImportedScene scene = renderer::import_scene(input);
     const std::string name = std::filesystem::path(geometry).filename().string();
     renderer::write_gltf(geometry, scene.geometry);
-    core::write_text_file(output, renderer::imported_scene_json(scene, name).dump(2) + "\n");
-    for (const std::string& text : scene.not_translated) fmt::print("not the same: {}\n", text);
-    fmt::print("wrote {} and {} ({} objects)\n", output, geometry, scene.geometry.objects.size());
+    core::write_text_file(output, core::json_text(renderer::imported_scene_json(scene, name)));
+    for (const std::string& text : scene.not_translated) print("not the same: {}\n", text);
+    print("wrote {} and {} ({} objects)\n", output, geometry, scene.geometry.objects.size());
 }
 
 void run(const ConvertArguments& arguments) {
@@ -56,15 +57,16 @@ void run(const ConvertArguments& arguments) {
     } else if (!arguments.gate_m.empty()) {
         capture = nlos::gated_capture(capture, arguments.gate_m[0], arguments.gate_m[1]);
     }
-    for (const std::string& note : capture.notes) fmt::print("read: {}\n", note);
-    for (const std::string& loss : nlos::write_capture(output, capture, arguments.write)) {
-        fmt::print("not kept: {}\n", loss);
+    for (const std::string& note : capture.notes) print("read: {}\n", note);
+    for (const std::string& loss :
+         nlos::write_capture(output, capture, arguments.write)) {
+        print("not kept: {}\n", loss);
     }
-    fmt::print("wrote {} ({} pairs x {} bins, {})\n",
-               output,
-               capture.transient.num_pairs(),
-               capture.transient.num_bins(),
-               core::enum_name(capture.unit));
+    print("wrote {} ({} pairs x {} bins, {})\n",
+          output,
+          capture.transient.num_pairs(),
+          capture.transient.num_bins(),
+          core::enum_name(capture.unit));
 }
 
 }  // namespace

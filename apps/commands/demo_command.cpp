@@ -48,10 +48,10 @@ void run(const DemoArguments& arguments) {
     const auto file = [&](const std::string& name) { return (folder / name).string(); };
 
     const std::string scene = letter_scene();
-    fmt::print("scene        {}\n", scene);
+    print("scene        {}\n", scene);
     write_picture({scene}, file("ground_truth.png"));
     const renderer::RenderResult render = render_to_file(scene, {}, file("capture.h5"));
-    fmt::print("capture      {} ({:.2f} s)\n", file("capture.h5"), render.seconds);
+    print("capture      {} ({:.2f} s)\n", file("capture.h5"), render.seconds);
     for (const std::string method : {"lct", "bp"}) {
         stop_if_interrupted();
         const std::string volume = file("volume_" + method + ".h5");
@@ -59,12 +59,12 @@ void run(const DemoArguments& arguments) {
             reconstruct_to_file({file("capture.h5")}, {"method=" + method}, volume, "");
         const nlos::Metrics metrics =
             compare_files(volume, scene, file("metrics_" + method + ".json"), kMatch_m).metrics;
-        fmt::print("{:<12} {} ({:.2f} s, depth error {:.2f} mm over {:.0f} % of the letter)\n",
-                   method,
-                   volume,
-                   result.seconds,
-                   1e3 * metrics.depth_mae_m.value_or(0.0),
-                   1e2 * metrics.depth_coverage.value_or(0.0));
+        print("{:<12} {} ({:.2f} s, depth error {:.2f} mm over {:.0f} % of the letter)\n",
+              method,
+              volume,
+              result.seconds,
+              1e3 * metrics.depth_mae_m.value_or(0.0),
+              1e2 * metrics.depth_coverage.value_or(0.0));
     }
     stop_if_interrupted();
     nlos::DetectorSettings detector;
@@ -72,24 +72,24 @@ void run(const DemoArguments& arguments) {
     detector.response.jitter_fwhm_ps = kJitterFwhm_ps;
     const core::Capture counts = nlos::detect(render.capture, detector);
     nlos::write_capture(file("counts.h5"), counts);
-    fmt::print("{:<12} {} ({:.0g} photons, jitter {} ps)\n",
-               "counts",
-               file("counts.h5"),
-               kPhotons,
-               kJitterFwhm_ps);
+    print("{:<12} {} ({:.0g} photons, jitter {} ps)\n",
+          "counts",
+          file("counts.h5"),
+          kPhotons,
+          kJitterFwhm_ps);
     const std::string model = (fs::path(scene).parent_path() / "model.json").string();
     const calib::FitResult fit =
         fit_to_file(file("counts.h5"), model, {"response=capture"}, "", file("fit.json"));
     const nlos::Metrics errors =
         compare_files(file("fit.json"), scene, file("metrics_fit.json"), kMatch_m).metrics;
-    fmt::print("{:<12} {} ({:.2f} s, position error {:.2f} mm, rotation error {:.2f} deg)\n",
-               "fit",
-               file("fit.json"),
-               fit.seconds,
-               1e3 * errors.position_error_m.value_or(0.0),
-               errors.rotation_error_deg.value_or(0.0));
+    print("{:<12} {} ({:.2f} s, position error {:.2f} mm, rotation error {:.2f} deg)\n",
+          "fit",
+          file("fit.json"),
+          fit.seconds,
+          1e3 * errors.position_error_m.value_or(0.0),
+          errors.rotation_error_deg.value_or(0.0));
     write_report(folder.string(), file("report.html"));
-    fmt::print("wrote {}\n", file("report.html"));
+    print("wrote {}\n", file("report.html"));
 }
 
 }  // namespace
@@ -98,8 +98,7 @@ void add_demo_command(CLI::App& app) {
     CLI::App* command = app.add_subcommand(
         "demo", "Scene, capture, reconstruction, fit, comparison and report in one go");
     const auto arguments = std::make_shared<DemoArguments>();
-    command->add_option("-o,--output", arguments->folder, "Folder for the results")
-        ->capture_default_str();
+    add_output_option(*command, arguments->folder, "Folder for the results")->capture_default_str();
     command->footer(settings_footer({}, "nlos demo -o out/demo"));
     command->callback([arguments] { run(*arguments); });
 }

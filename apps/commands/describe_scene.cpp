@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/commands/describe_scene.h"
 
+#include "apps/terminal.h"
 #include "renderer/light_range.h"
 #include "renderer/scene/load_geometry.h"
 
@@ -23,7 +24,7 @@ std::string describe_material(const renderer::Material& material) {
 void print_object(const renderer::Object& object) {
     Eigen::AlignedBox3d box;
     for (const core::Vec3& vertex : object.mesh.vertices) box.extend(vertex);
-    fmt::print(
+    print(
         "object {}: {} triangles, role {}, {}, x {:.4g} to {:.4g}, y {:.4g} to {:.4g}, "
         "z {:.4g} to {:.4g} m{}\n",
         object.name.empty() ? "(unnamed)" : object.name,
@@ -49,16 +50,16 @@ void print_size(const renderer::SceneGeometry& geometry) {
         triangles += object.mesh.triangles.size();
     }
     const core::Vec3 size = box.sizes();
-    fmt::print("size: {} objects, {} triangles, {:.4g} x {:.4g} x {:.4g} m\n",
-               geometry.objects.size(),
-               triangles,
-               size.x(),
-               size.y(),
-               size.z());
+    print("size: {} objects, {} triangles, {:.4g} x {:.4g} x {:.4g} m\n",
+          geometry.objects.size(),
+          triangles,
+          size.x(),
+          size.y(),
+          size.z());
 }
 
 void print_warnings(const std::vector<std::string>& warnings) {
-    for (const std::string& text : warnings) fmt::print("warning: {}\n", text);
+    for (const std::string& text : warnings) print("warning: {}\n", text);
 }
 
 // "key: value" lines, with the full key, of what differs from `usual`.
@@ -69,24 +70,27 @@ void print_differences(const core::Json& json, const core::Json& usual, const st
         if (value.is_object()) {
             print_differences(value, other, prefix + key + ".");
         } else if (value.is_array() && value.flatten().size() > 4) {
-            fmt::print("  {}{}: {} items\n", prefix, key, value.size());
+            print("  {}{}: {} items\n", prefix, key, value.size());
         } else {
-            fmt::print("  {}{}: {}\n", prefix, key, value.dump());
+            print("  {}{}: {}\n",
+                  prefix,
+                  key,
+                  value.dump(-1, ' ', false, core::Json::error_handler_t::replace));
         }
     }
 }
 
 void print_measurement(const renderer::SceneDescription& description, const core::Scan& scan) {
     if (scan.camera) {
-        fmt::print("camera: {} x {} pixels\n", scan.camera->width(), scan.camera->height());
+        print("camera: {} x {} pixels\n", scan.camera->width(), scan.camera->height());
         return;
     }
-    fmt::print("scan: {}, {} sensing points, {} illumination points, wall {:.4g} x {:.4g} m\n",
-               core::enum_name(scan.pattern),
-               scan.sensing.size(),
-               scan.illumination.size(),
-               description.relay_wall.size_m[0],
-               description.relay_wall.size_m[1]);
+    print("scan: {}, {} sensing points, {} illumination points, wall {:.4g} x {:.4g} m\n",
+          core::enum_name(scan.pattern),
+          scan.sensing.size(),
+          scan.illumination.size(),
+          description.relay_wall.size_m[0],
+          description.relay_wall.size_m[1]);
 }
 
 void print_light(const renderer::Scene& scene,
@@ -96,17 +100,17 @@ void print_light(const renderer::Scene& scene,
     core::TimeAxis axis = description.time_axis;
     if (range && !range->is_dark()) {
         const auto [first, last] = range->without_tails(0.001);
-        fmt::print("light: from {:.4g} to {:.4g} m of path length (99.8 % of it)\n", first, last);
+        print("light: from {:.4g} to {:.4g} m of path length (99.8 % of it)\n", first, last);
         if (description.time_axis.automatic) {
             axis = renderer::choose_time_axis(range, scene, scan, description);
         }
     }
-    fmt::print("time axis: {:.4g} to {:.4g} m, {} bins of {:.4g} m{}\n",
-               axis.opl_start_m,
-               axis.opl_end_m(),
-               axis.num_bins,
-               axis.bin_width_m,
-               description.time_axis.automatic ? " (auto)" : "");
+    print("time axis: {:.4g} to {:.4g} m, {} bins of {:.4g} m{}\n",
+          axis.opl_start_m,
+          axis.opl_end_m(),
+          axis.num_bins,
+          axis.bin_width_m,
+          description.time_axis.automatic ? " (auto)" : "");
     if (!range) return;
     print_warnings(renderer::axis_warnings(*range, axis, description.frames));
 }
@@ -115,10 +119,10 @@ void print_light(const renderer::Scene& scene,
 
 void describe_geometry(const std::string& path) {
     const renderer::SceneGeometry geometry = renderer::load_geometry(path);
-    fmt::print("format: {}\n", renderer::geometry_format(path));
+    print("format: {}\n", renderer::geometry_format(path));
     renderer::SceneDescription alone;
     alone.geometry = path;
-    for (const std::string& line : renderer::describe_frame(alone)) fmt::print("{}\n", line);
+    for (const std::string& line : renderer::describe_frame(alone)) print("{}\n", line);
     print_size(geometry);
     for (const renderer::Object& object : geometry.objects) print_object(object);
     print_warnings(geometry.warnings);
@@ -128,13 +132,13 @@ void describe_scene(const std::string& path) {
     const renderer::SceneDescription description = renderer::read_scene_description(path, {});
     const core::Scan scan = renderer::make_scan(description);
     const renderer::Scene scene = renderer::load_scene(description, scan);
-    fmt::print("format: scene description\ngeometry: {}\n", description.geometry);
-    for (const std::string& line : renderer::describe_frame(description)) fmt::print("{}\n", line);
+    print("format: scene description\ngeometry: {}\n", description.geometry);
+    for (const std::string& line : renderer::describe_frame(description)) print("{}\n", line);
     for (const renderer::Object& object : scene.objects()) print_object(object);
     print_warnings(scene.warnings());
     print_measurement(description, scan);
     print_light(scene, scan, description);
-    fmt::print("settings that differ from the defaults (nlos render --help lists all):\n");
+    print("settings that differ from the defaults (nlos render --help lists all):\n");
     core::Json settings = core::write_value(description);
     settings.erase("geometry");
     print_differences(settings, core::write_value(renderer::SceneDescription{}), "");

@@ -4,6 +4,7 @@
 #include "apps/commands.h"
 #include "apps/commands/fit_job.h"
 #include "apps/estimate_text.h"
+#include "apps/terminal.h"
 #include "renderer/core/error.h"
 #include "renderer/core/parallel.h"
 
@@ -33,12 +34,12 @@ std::string place_text(const core::Vec3& position_m, const core::Vec3& sigma_m) 
 }
 
 void print_object(const calib::FittedObject& object) {
-    fmt::print("{:<14} {}, turned +- {:.2g} deg, size {}, albedo {}\n",
-               object.name,
-               place_text(object.position_m, object.position_sigma_m),
-               object.rotation_sigma_deg.norm(),
-               estimate_text(object.size, object.size_sigma),
-               estimate_text(object.albedo, object.albedo_sigma));
+    print("{:<14} {}, turned +- {:.2g} deg, size {}, albedo {}\n",
+          object.name,
+          place_text(object.position_m, object.position_sigma_m),
+          object.rotation_sigma_deg.norm(),
+          estimate_text(object.size, object.size_sigma),
+          estimate_text(object.albedo, object.albedo_sigma));
 }
 
 void run(const FitArguments& arguments) {
@@ -50,9 +51,9 @@ void run(const FitArguments& arguments) {
                                                 arguments.output);
     for (const calib::FittedObject& object : result.objects) print_object(object);
     for (const calib::FittedPoint& point : result.points) {
-        fmt::print("point          {}\n", place_text(point.position_m, point.position_sigma_m));
+        print("point          {}\n", place_text(point.position_m, point.position_sigma_m));
     }
-    fmt::print(
+    print(
         "wrote {}, {}, {}, {} ({}, deviance {:.4g} of {:.4g} expected, {} iterations, "
         "{:.2f} s)\n",
         arguments.output,
@@ -74,9 +75,9 @@ void run(const FitArguments& arguments) {
                                         arguments.output));
     }
     for (const std::string& text : result.unidentifiable) {
-        fmt::print(stderr, "unidentifiable: {}\n", text);
+        print_error("unidentifiable: {}\n", text);
     }
-    for (const std::string& text : result.warnings) fmt::print(stderr, "warning: {}\n", text);
+    for (const std::string& text : result.warnings) print_error("warning: {}\n", text);
 }
 
 std::vector<core::SettingHelp> fit_help() {
@@ -95,18 +96,16 @@ void add_fit_command(CLI::App& app) {
         ->required();
     command->add_option("MODEL", arguments->model, "What is fitted and from where (.json)")
         ->required();
-    command
-        ->add_option("-o,--output",
-                     arguments->output,
-                     "Fit to write (.json); the fitted scene and a picture go beside it")
+    add_output_option(*command,
+                      arguments->output,
+                      "Fit to write (.json); the fitted scene and a picture go beside it")
         ->required();
     command->add_option(
         "--calibration", arguments->calibration, "Calibration of the set-up (.json)");
     add_threads_option(*command, arguments->threads);
     add_capture_options(*command, arguments->overrides);
-    command->footer(
-        settings_footer(fit_help(),
-                        "nlos fit data/letter.h5 scenes/letter/model.json -o fit.json"));
+    command->footer(settings_footer(
+        fit_help(), "nlos fit data/letter.h5 scenes/letter/model.json -o fit.json"));
     command->callback([arguments] { run(*arguments); });
 }
 

@@ -60,13 +60,13 @@ void write_results(const calib::FitInput& input,
     renderer::write_gltf(stem + ".glb", result.geometry);
     const std::string geometry = fs::path(stem + ".glb").filename().string();
     core::write_text_file(stem + ".scene.json",
-                          calib::fitted_scene_json(input, geometry).dump(2) + "\n");
+                          core::json_text(calib::fitted_scene_json(input, geometry)));
     nlos::write_panels_png(stem + ".png", fit_panels(result), 3);
     core::Json json = calib::fit_json(result);
     json["program"] = version_text();
     json["command"] = command_line();
     json["settings"] = core::write_value(input.settings);
-    core::write_text_file(fit_path, json.dump(2) + "\n");
+    core::write_text_file(fit_path, core::json_text(json));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include "apps/commands/describe_scene.h"
 #include "apps/commands/file_picture.h"
 #include "apps/file_kind.h"
+#include "apps/terminal.h"
 #include "calib/fit_file.h"
 #include "nlos/containers/array_reader.h"
 #include "nlos/formats/capture_file.h"
@@ -31,31 +32,31 @@ struct InfoArguments {
 
 void print_range(const char* axis, const std::vector<double>& centers_m) {
     if (centers_m.empty()) return;
-    fmt::print("{}: {} voxels, {:.4f} to {:.4f} m\n",
-               axis,
-               centers_m.size(),
-               centers_m.front(),
-               centers_m.back());
+    print("{}: {} voxels, {:.4f} to {:.4f} m\n",
+          axis,
+          centers_m.size(),
+          centers_m.front(),
+          centers_m.back());
 }
 
 // One line per key, texts and numbers as they are, lists by their length; and no more than a screen
 // or two, since files from elsewhere may hold anything.
 class KeyPrinter {
  public:
-    void print(const core::Json& json, const std::string& indent) {
+    void print_keys(const core::Json& json, const std::string& indent) {
         for (const auto& [key, value] : json.items()) {
             if (lines_left_ == 0) {
-                fmt::print("{}... and more\n", indent);
+                print("{}... and more\n", indent);
                 return;
             }
             --lines_left_;
             if (value.is_object() && !value.empty() && key != "settings") {
-                fmt::print("{}{}:\n", indent, key);
-                print(value, indent + "  ");
+                print("{}{}:\n", indent, key);
+                print_keys(value, indent + "  ");
             } else if (value.is_array() && (value.size() > 4 || value.flatten().size() > 4)) {
-                fmt::print("{}{}: {} items\n", indent, key, value.size());
+                print("{}{}: {} items\n", indent, key, value.size());
             } else if (!value.is_null()) {
-                fmt::print("{}{}: {}\n", indent, key, text_of(value));
+                print("{}{}: {}\n", indent, key, text_of(value));
             }
         }
     }
@@ -75,49 +76,50 @@ class KeyPrinter {
 
 void print_provenance(const core::Json& made) {
     if (!made.is_object() || made.empty()) return;
-    fmt::print("provenance:\n");
-    KeyPrinter().print(made, "  ");
+    print("provenance:\n");
+    KeyPrinter().print_keys(made, "  ");
 }
 
 void describe_json(const std::string& path, const char* format) {
-    fmt::print("format: {}\n", format);
-    KeyPrinter().print(core::read_json_file(path), "");
+    print("format: {}\n", format);
+    KeyPrinter().print_keys(core::read_json_file(path), "");
 }
 
 void describe_volume(const std::string& path) {
     const nlos::Reconstruction volume = nlos::read_volume(path);
-    fmt::print("format: reconstructed volume (HDF5)\n");
-    fmt::print("method: {}\n", volume.method);
+    print("format: reconstructed volume (HDF5)\n");
+    print("method: {}\n", volume.method);
     print_range("x", volume.volume.axes.x_m);
     print_range("y", volume.volume.axes.y_m);
     print_range("z", volume.volume.axes.z_m);
-    fmt::print("surface points: {}\n", volume.points.positions.size());
-    fmt::print("time: {:.2f} s, peak memory: {:.2f} GB\n",
-               volume.seconds,
-               static_cast<double>(volume.peak_bytes) * 1e-9);
-    fmt::print("settings: {}\n", core::write_value(volume.settings).dump());
+    print("surface points: {}\n", volume.points.positions.size());
+    print("time: {:.2f} s, peak memory: {:.2f} GB\n",
+          volume.seconds,
+          static_cast<double>(volume.peak_bytes) * 1e-9);
+    print("settings: {}\n", core::write_value(volume.settings).dump());
     print_provenance(volume.provenance);
 }
 
 void describe_ply(const std::string& path) {
     const core::TriangleMesh points = nlos::read_ply(path);
     if (!points.triangles.empty()) return describe_geometry(path);
-    fmt::print("format: PLY\npoints: {}\n", points.vertices.size());
+    print("format: PLY\npoints: {}\n", points.vertices.size());
 }
 
 /// A file in no known format or layout: what it holds and what that could mean.
 void describe_unknown(const std::string& path) {
     const nlos::LayoutGuess guess = nlos::guess_layout(path);
-    fmt::print("format: no known capture; arrays:\n");
-    for (const std::string& line : guess.arrays) fmt::print("  {}\n", line);
-    fmt::print("what could be what:\n");
-    for (const std::string& line : guess.findings) fmt::print("  {}\n", line);
-    fmt::print("nearest layouts, and what speaks against them:\n");
-    for (const std::string& line : guess.nearest) fmt::print("  {}\n", line);
+    print("format: no known capture; arrays:\n");
+    for (const std::string& line : guess.arrays) print("  {}\n", line);
+    print("what could be what:\n");
+    for (const std::string& line : guess.findings) print("  {}\n", line);
+    print("nearest layouts, and what speaks against them:\n");
+    for (const std::string& line : guess.nearest) print("  {}\n", line);
     if (guess.layout.is_null()) return;
-    fmt::print("`nlos info {} --write-layout my.json` writes a layout to complete, and --layout "
-               "my.json uses it\n",
-               path);
+    print(
+        "`nlos info {} --write-layout my.json` writes a layout to complete, and --layout "
+        "my.json uses it\n",
+        path);
 }
 
 void write_layout(const std::string& path, const std::string& layout_path) {
@@ -126,9 +128,9 @@ void write_layout(const std::string& path, const std::string& layout_path) {
     if (guess.layout.is_null()) {
         throw core::Error(path, "holds no array that could be histograms", "must hold one");
     }
-    core::write_text_file(layout_path, guess.layout.dump(2) + "\n");
-    for (const std::string& line : guess.findings) fmt::print("{}\n", line);
-    fmt::print("wrote {}\n", layout_path);
+    core::write_text_file(layout_path, core::json_text(guess.layout));
+    for (const std::string& line : guess.findings) print("{}\n", line);
+    print("wrote {}\n", layout_path);
 }
 
 void describe_capture_files(const std::vector<std::string>& paths,
@@ -149,40 +151,40 @@ void describe_capture_files(const std::vector<std::string>& paths,
     if (!missing.empty()) {
         std::erase_if(capture.notes, [](const auto& note) { return note.ends_with(", as told"); });
     }
-    fmt::print("format: {}\n", format.value_or("unknown"));
-    for (const std::string& line : nlos::describe_capture(capture)) fmt::print("{}\n", line);
+    print("format: {}\n", format.value_or("unknown"));
+    for (const std::string& line : nlos::describe_capture(capture)) print("{}\n", line);
     print_provenance(capture.scene_info);
     if (!missing.empty()) {
-        fmt::print("warning: the file does not hold what stands as 1 m above: --set {}\n",
-                   fmt::join(missing, " "));
+        print("warning: the file does not hold what stands as 1 m above: --set {}\n",
+              fmt::format("{}", fmt::join(missing, " ")));
         return;
     }
     for (const std::string& warning : nlos::capture_warnings(capture)) {
-        fmt::print("warning: {}\n", warning);
+        print("warning: {}\n", warning);
     }
     for (const std::string& warning : core::detector_warnings(capture, {})) {
-        fmt::print("warning: {}\n", warning);
+        print("warning: {}\n", warning);
     }
 }
 
 void describe_fit(const std::string& path) {
     const calib::FitResult fit = calib::read_fit(path);
-    fmt::print("format: fit\n{}converged in {:.2f} s, deviance {:.4g} of {:.4g} expected\n",
-               fit.converged ? "" : "not ",
-               fit.seconds,
-               fit.deviance,
-               fit.expected_deviance);
+    print("format: fit\n{}converged in {:.2f} s, deviance {:.4g} of {:.4g} expected\n",
+          fit.converged ? "" : "not ",
+          fit.seconds,
+          fit.deviance,
+          fit.expected_deviance);
     for (const calib::FittedObject& object : fit.objects) {
         const auto& p = object.position_m;
-        fmt::print("{}: at ({:.4f}, {:.4f}, {:.4f}) m, size {:.4f}, albedo {:.4f}\n",
-                   object.name,
-                   p.x(),
-                   p.y(),
-                   p.z(),
-                   object.size,
-                   object.albedo);
+        print("{}: at ({:.4f}, {:.4f}, {:.4f}) m, size {:.4f}, albedo {:.4f}\n",
+              object.name,
+              p.x(),
+              p.y(),
+              p.z(),
+              object.size,
+              object.albedo);
     }
-    fmt::print("{} point scatterers\n", fit.points.size());
+    print("{} point scatterers\n", fit.points.size());
 }
 
 void describe_file(const std::string& path, const nlos::CaptureReadSettings& settings) {
@@ -237,7 +239,7 @@ void run(const InfoArguments& arguments) {
     }
     if (arguments.picture.empty()) return;
     write_picture(files, arguments.picture, settings);
-    fmt::print("wrote {}\n", arguments.picture);
+    print("wrote {}\n", arguments.picture);
 }
 
 }  // namespace

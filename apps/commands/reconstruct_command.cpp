@@ -3,6 +3,7 @@
 #include "apps/capture_options.h"
 #include "apps/commands.h"
 #include "apps/commands/reconstruct_job.h"
+#include "apps/terminal.h"
 #include "renderer/core/parallel.h"
 
 #include <fmt/core.h>
@@ -34,20 +35,20 @@ void run(const ReconstructArguments& arguments) {
                                                             arguments.glb,
                                                             arguments.calibration);
     for (const std::string& warning : result.warnings) {
-        fmt::print(stderr, "warning: {}\n", warning);
+        print_error("warning: {}\n", warning);
     }
     const nlos::VolumeAxes& axes = result.volume.axes;
-    fmt::print("wrote {}, {}{}{} ({}, {} x {} x {} voxels, {} surface points, {:.2f} s)\n",
-               arguments.output,
-               with_suffix(arguments.output, ".png"),
-               arguments.ply.empty() ? "" : ", " + arguments.ply,
-               arguments.glb.empty() ? "" : ", " + arguments.glb,
-               result.method,
-               axes.x_m.size(),
-               axes.y_m.size(),
-               axes.z_m.size(),
-               result.points.positions.size(),
-               result.seconds);
+    print("wrote {}, {}{}{} ({}, {} x {} x {} voxels, {} surface points, {:.2f} s)\n",
+          arguments.output,
+          with_suffix(arguments.output, ".png"),
+          arguments.ply.empty() ? "" : ", " + arguments.ply,
+          arguments.glb.empty() ? "" : ", " + arguments.glb,
+          result.method,
+          axes.x_m.size(),
+          axes.y_m.size(),
+          axes.z_m.size(),
+          result.points.positions.size(),
+          result.seconds);
 }
 
 }  // namespace
@@ -61,9 +62,7 @@ void add_reconstruct_command(CLI::App& app) {
                      arguments->captures,
                      "Capture in any readable format; several files: the frames of a sequence")
         ->required();
-    command
-        ->add_option(
-            "-o,--output", arguments->output, "Volume to write (.h5); a .png goes beside it")
+    add_output_option(*command, arguments->output, "Volume to write (.h5); a .png goes beside it")
         ->required();
     command->add_option("--method",
                         arguments->method,

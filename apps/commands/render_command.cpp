@@ -2,6 +2,7 @@
 #include "apps/arguments.h"
 #include "apps/commands.h"
 #include "apps/commands/render_job.h"
+#include "apps/terminal.h"
 #include "renderer/core/parallel.h"
 #include "renderer/scene/scene_file.h"
 
@@ -50,7 +51,7 @@ void run(const RenderArguments& arguments) {
     const renderer::RenderResult result =
         render_to_file(arguments.scene, overrides, arguments.output, arguments.calibration);
     for (const std::string& warning : result.warnings) {
-        fmt::print(stderr, "warning: {}\n", warning);
+        print_error("warning: {}\n", warning);
     }
     std::string effort;
     if (result.estimated_error)
@@ -74,19 +75,19 @@ void run(const RenderArguments& arguments) {
     if (arguments.verbose) {
         core::Json details = capture.scene_info;
         details.erase("settings");
-        fmt::print("{}\n", details.dump(2));
+        write_output(details.dump(2, ' ', true, core::Json::error_handler_t::replace) + "\n");
     }
     const std::string frames =
         capture.sequence ? fmt::format("{} frames x ", capture.sequence->frames.size()) : "";
-    fmt::print("wrote {} ({}{} pairs x {} bins, {} by {}, {}{:.2f} s)\n",
-               arguments.output,
-               frames,
-               capture.scan.num_pairs(),
-               capture.time_axis.num_bins,
-               capture.scan.camera ? "camera" : core::enum_name(capture.scan.pattern),
-               estimator_names(result),
-               effort,
-               result.seconds);
+    print("wrote {} ({}{} pairs x {} bins, {} by {}, {}{:.2f} s)\n",
+          arguments.output,
+          frames,
+          capture.scan.num_pairs(),
+          capture.time_axis.num_bins,
+          capture.scan.camera ? "camera" : core::enum_name(capture.scan.pattern),
+          estimator_names(result),
+          effort,
+          result.seconds);
 }
 
 }  // namespace
@@ -95,7 +96,7 @@ void add_render_command(CLI::App& app) {
     CLI::App* command = app.add_subcommand("render", "Simulate the transients a scan records");
     const auto arguments = std::make_shared<RenderArguments>();
     command->add_option("SCENE", arguments->scene, "Scene description (.json)")->required();
-    command->add_option("-o,--output", arguments->output, "Capture to write (.h5, .npz, .exr, .mat)")
+    add_output_option(*command, arguments->output, "Capture to write (.h5, .npz, .exr, .mat)")
         ->required();
     add_shorthands(*command, kRenderShorthands, arguments->shorthands);
     command->add_option("--calibration",

@@ -45,7 +45,8 @@ core::Json provenance(const std::string& scene_path,
     core::Json info;
     info["program"] = version_text();
     info["command"] = command_line();
-    info["scene"] = std::filesystem::absolute(scene_path).lexically_normal().string();
+    info["scene"] =
+        core::printable(std::filesystem::absolute(scene_path).lexically_normal().string());
     const std::string names = estimator_names(result);
     info["estimator"] = names;
     for (const renderer::OrderSource& source : result.sources) {
@@ -119,7 +120,7 @@ void report_darkness(renderer::RenderResult& result) {
 }
 
 void print_light(const renderer::LightRange& light, const core::TimeAxis& axis) {
-    fmt::print(
+    print(
         "paths of {:.4g} to {:.4g} m are possible; the time axis, {:.4g} to {:.4g} m, holds "
         "{:.3g} % of the light\n",
         light.possible_m[0],
@@ -127,7 +128,7 @@ void print_light(const renderer::LightRange& light, const core::TimeAxis& axis) 
         axis.opl_start_m,
         axis.opl_end_m(),
         100.0 * light.share_between(axis.opl_start_m, axis.opl_end_m()));
-    std::fflush(stdout);
+    flush_output();
 }
 
 core::Json write_light(const renderer::LightRange& light, const core::TimeAxis& axis) {
@@ -184,7 +185,7 @@ renderer::RenderResult render_to_file(const std::string& scene_path,
         doubts.insert(doubts.end(), texts.begin(), texts.end());
     }
     if (light && !light->is_dark()) print_light(*light, rendered.time_axis);
-    for (const std::string& doubt : doubts) fmt::print(stderr, "warning: {}\n", doubt);
+    for (const std::string& doubt : doubts) print_error("warning: {}\n", doubt);
 
     ProgressBar bar("render");
     renderer::RenderResult result = run(scene, rendered, scan, bar.progress());

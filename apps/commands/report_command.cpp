@@ -2,6 +2,7 @@
 #include "apps/arguments.h"
 #include "apps/commands.h"
 #include "apps/report/report.h"
+#include "apps/terminal.h"
 
 #include <fmt/core.h>
 
@@ -23,12 +24,12 @@ void add_report_command(CLI::App& app) {
     const auto arguments = std::make_shared<ReportArguments>();
     command->add_option("DIR", arguments->folder, "Folder of captures, volumes and metrics")
         ->required();
-    command->add_option("-o,--output", arguments->output, "Page to write (.html)")->required();
+    add_output_option(*command, arguments->output, "Page to write (.html)")->required();
     command->footer(settings_footer({}, "nlos report data -o report.html"));
     command->callback([arguments] {
         require_suffix(arguments->output, {".html", ".htm"});
         write_report(arguments->folder, arguments->output);
-        fmt::print("wrote {}\n", arguments->output);
+        print("wrote {}\n", arguments->output);
     });
 }
 

@@ -2,6 +2,7 @@
 #include "apps/arguments.h"
 #include "apps/capture_options.h"
 #include "apps/commands.h"
+#include "apps/terminal.h"
 #include "apps/version.h"
 #include "nlos/detector/detector.h"
 #include "nlos/formats/capture_file.h"
@@ -63,24 +64,24 @@ void run(const NoiseArguments& arguments) {
     }
     const core::Capture capture = nlos::read_capture(arguments.capture, options.capture);
     if (const auto warning = nlos::coarse_bins_warning(capture, options.detector)) {
-        fmt::print(stderr, "warning: {}\n", *warning);
+        print_error("warning: {}\n", *warning);
     }
     core::Capture noisy = nlos::detect(capture, options.detector);
     noisy.scene_info["detector"]["program"] = version_text();
     noisy.scene_info["detector"]["command"] = command_line();
     for (const std::string& loss : nlos::write_capture(arguments.output, noisy)) {
-        fmt::print("not kept: {}\n", loss);
+        print("not kept: {}\n", loss);
     }
 
     const auto values = noisy.transient.values();
     const double sum = std::accumulate(values.begin(), values.end(), 0.0);
-    fmt::print("wrote {} ({} pairs x {} bins, {:.6g} {}counts, at most {:.6g} in a bin)\n",
-               arguments.output,
-               noisy.transient.num_pairs(),
-               noisy.transient.num_bins(),
-               sum,
-               options.detector.expected ? "expected " : "",
-               *std::max_element(values.begin(), values.end()));
+    print("wrote {} ({} pairs x {} bins, {:.6g} {}counts, at most {:.6g} in a bin)\n",
+          arguments.output,
+          noisy.transient.num_pairs(),
+          noisy.transient.num_bins(),
+          sum,
+          options.detector.expected ? "expected " : "",
+          *std::max_element(values.begin(), values.end()));
 }
 
 }  // namespace
@@ -91,7 +92,7 @@ void add_simulate_noise_command(CLI::App& app) {
     const auto arguments = std::make_shared<NoiseArguments>();
     command->add_option("CAPTURE", arguments->capture, "Capture in any readable format")
         ->required();
-    command->add_option("-o,--output", arguments->output, "Capture to write (.h5, .npz, .exr, .mat)")
+    add_output_option(*command, arguments->output, "Capture to write (.h5, .npz, .exr, .mat)")
         ->required();
     add_shorthands(*command, kNoiseShorthands, arguments->shorthands);
     add_threads_option(*command, arguments->threads);

@@ -2,13 +2,12 @@
 #include "apps/report/bench_cards.h"
 
 #include "apps/report/html.h"
+#include "apps/report/result_cards.h"
 
 #include <fmt/core.h>
 
 #include <filesystem>
-#include <fstream>
 #include <set>
-#include <sstream>
 
 namespace apps {
 namespace {
@@ -46,9 +45,8 @@ BenchCard read_bench_card(const std::string& path, const core::Json& json) {
     card.facts = {{"Version", text_of(json, "program")},
                   {"Machine", text_of(json, "machine")},
                   {"Libraries", text_of(json, "libraries")}};
-    std::ostringstream table;
-    if (std::ifstream file(fs::path(path).replace_extension(".txt")); file) table << file.rdbuf();
-    card.table = table.str();
+    const fs::path table = fs::path(path).replace_extension(".txt");
+    if (fs::exists(table)) card.table = read_bytes(table.string());
     return card;
 }
 

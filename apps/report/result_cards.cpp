@@ -7,14 +7,13 @@
 #include "nlos/formats/volume_file.h"
 #include "nlos/pictures/pictures.h"
 #include "nlos/preparation/wall_frame.h"
+#include "renderer/core/mapped_file.h"
 
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
 namespace apps {
 namespace {
@@ -178,11 +177,9 @@ std::string short_number(double value) {
 }
 
 std::string read_bytes(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    if (!file) throw core::Error(path, "cannot be opened", "must be a readable file");
-    std::ostringstream bytes;
-    bytes << file.rdbuf();
-    return bytes.str();
+    const core::MappedFile file(path, "must be a readable file");
+    file.require_stored();
+    return std::string(file.bytes());
 }
 
 ResultCard capture_card(const std::string& path) {

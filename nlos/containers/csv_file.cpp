@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/containers/mapped_file.h"
 #include "nlos/containers/stored_array.h"
 #include "renderer/core/error.h"
+#include "renderer/core/mapped_file.h"
 
 #include <fmt/core.h>
 
@@ -65,7 +65,7 @@ std::string_view unquote(std::string_view cell) {
 class CsvFile : public StoredArrayFile {
  public:
     explicit CsvFile(const std::string& path) : path_(path) {
-        const MappedFile file(path);
+        const core::MappedFile file(path);
         std::string_view text = file.bytes();
         constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
         if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());

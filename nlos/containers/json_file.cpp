@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/containers/json_leaves.h"
-#include "nlos/containers/mapped_file.h"
 #include "renderer/core/error.h"
+#include "renderer/core/mapped_file.h"
 
 #include <fmt/core.h>
 
@@ -44,7 +44,7 @@ Json parse_file(std::string_view text, const std::string& path) {
 class JsonFile : public JsonLeaves {
  public:
     explicit JsonFile(const std::string& path) {
-        const MappedFile file(path);
+        const core::MappedFile file(path);
         add_leaves("", parse_file(file.bytes(), path));
     }
 

@@ -3,6 +3,10 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
+#include <string_view>
+#include <unordered_map>
+#include <unordered_set>
 
 namespace nlos {
 namespace {
@@ -33,26 +37,46 @@ std::string indexed_path(const std::string& path, const Shape& shape, std::size_
     return join_path(path, indices);
 }
 
-/// The member of an object; null when there is none. It is looked for at `place` first, as objects
-/// of one kind have their keys in the same order.
-const Json* find(const Json& object, const std::string& key, std::size_t place) {
-    const auto& members = object.get_ref<const Json::object_t&>();
-    const auto guess =
-        members.begin() + static_cast<std::ptrdiff_t>(std::min(place, members.size()));
-    if (guess != members.end() && guess->first == key) return &guess->second;
-    const auto found = members.find(key);
-    return found == members.end() ? nullptr : &found->second;
-}
+/// Finds members of an object. They are looked for at their place first, as objects of one kind
+/// have their keys in the same order; where that fails, an index is made of larger objects.
+class Members {
+ public:
+    explicit Members(const Json& object) : members_(object.get_ref<const Json::object_t&>()) {}
+
+    /// The member `key`, or null when there is none; `place` is where it may be.
+    const Json* find(const std::string& key, std::size_t place) {
+        const auto guess =
+            members_.begin() + static_cast<std::ptrdiff_t>(std::min(place, members_.size()));
+        if (guess != members_.end() && guess->first == key) return &guess->second;
+        constexpr std::size_t kFew = 16;
+        if (members_.size() <= kFew) {
+            const auto found = members_.find(key);
+            return found == members_.end() ? nullptr : &found->second;
+        }
+        if (!index_) {
+            index_ = std::make_unique<Index>();
+            for (const auto& [name, value] : members_) index_->emplace(name, &value);
+        }
+        const auto found = index_->find(key);
+        return found == index_->end() ? nullptr : found->second;
+    }
+
+ private:
+    using Index = std::unordered_map<std::string_view, const Json*>;
+
+    const Json::object_t& members_;
+    std::unique_ptr<Index> index_;
+};
 
 /// All keys of some objects.
 std::vector<std::string> keys_of(const std::vector<const Json*>& objects) {
     std::vector<std::string> keys;
+    std::unordered_set<std::string_view> known;
     for (const Json* object : objects) {
         std::size_t k = 0;
         for (const auto& [key, value] : object->get_ref<const Json::object_t&>()) {
-            const bool is_known =
-                (k < keys.size() && keys[k] == key) || std::ranges::find(keys, key) != keys.end();
-            if (!is_known) keys.push_back(key);
+            const bool is_known = k < keys.size() && keys[k] == key;
+            if (!is_known && known.insert(key).second) keys.push_back(key);
             ++k;
         }
     }
@@ -94,9 +118,11 @@ void JsonLeaves::add_stack(const std::string& path, const Stack& stack) {
 /// Each key that all objects have is a stack of its own; others are named by index.
 void JsonLeaves::add_members(const std::string& path, const Stack& stack) {
     const std::vector<std::string> keys = keys_of(stack.values);
+    std::vector<Members> objects;
+    for (const Json* value : stack.values) objects.emplace_back(*value);
     for (std::size_t k = 0; k < keys.size() && !is_full(); ++k) {
         Stack members{stack.shape, {}};
-        for (const Json* value : stack.values) members.values.push_back(find(*value, keys[k], k));
+        for (Members& object : objects) members.values.push_back(object.find(keys[k], k));
         if (std::ranges::find(members.values, nullptr) == members.values.end()) {
             add_stack(join_path(path, keys[k]), members);
             continue;

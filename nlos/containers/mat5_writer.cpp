@@ -7,6 +7,8 @@
 #include <fmt/core.h>
 #include <matio.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <fstream>
@@ -93,6 +95,13 @@ class MemoryFile {
         std::ifstream stream(path(), std::ios::binary);
         return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
     }
+    /// Whether it is as large as the process may make files, so that its end may be missing.
+    bool is_full() const {
+        rlimit limit{};
+        struct stat status {};
+        return ::getrlimit(RLIMIT_FSIZE, &limit) != 0 || ::fstat(descriptor_, &status) != 0 ||
+               static_cast<rlim_t>(status.st_size) >= limit.rlim_cur;
+    }
 
  private:
     int descriptor_;
@@ -111,7 +120,7 @@ void write_mat_file(const std::string& path, const std::vector<MatVariable>& var
     const auto check = [&](bool ok) {
         if (!ok) throw core::Failure(path, "cannot be written (out of memory?)");
     };
-    // matio does not notice when a disk is full, so that it writes to memory.
+    // matio does not notice when a write fails, so that it writes to memory.
     const MemoryFile memory;
     MatFile file(Mat_CreateVer(memory.path().c_str(), nullptr, MAT_FT_MAT5), Mat_Close);
     check(file != nullptr);
@@ -121,6 +130,7 @@ void write_mat_file(const std::string& path, const std::vector<MatVariable>& var
         check(Mat_VarWrite(file.get(), array.get(), MAT_COMPRESSION_ZLIB) == 0);
     }
     check(Mat_Close(file.release()) == 0);
+    if (memory.is_full()) throw core::Failure(path, "cannot be written (File too large)");
     core::write_text_file(path, memory.bytes());
 }
 

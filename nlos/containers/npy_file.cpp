@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/containers/mapped_file.h"
 #include "nlos/containers/npy_array.h"
 #include "renderer/core/error.h"
+#include "renderer/core/mapped_file.h"
 
 #include <fmt/core.h>
 
@@ -53,7 +53,7 @@ class NpyFile : public ArrayFile {
                         path));
     }
 
-    MappedFile file_;
+    core::MappedFile file_;
     NpyHeader header_;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/containers/json_leaves.h"
-#include "nlos/containers/mapped_file.h"
 #include "renderer/core/error.h"
+#include "renderer/core/mapped_file.h"
 
 #include <fmt/core.h>
 
@@ -127,7 +127,7 @@ class TiFile : public JsonLeaves {
     }
 
     std::string path_;
-    MappedFile file_;
+    core::MappedFile file_;
     std::string_view rest_;
 };
 

@@ -3,6 +3,7 @@
 
 #include "nlos/containers/file_memory.h"
 #include "renderer/core/error.h"
+#include "renderer/core/mapped_file.h"
 #include "renderer/core/output_file.h"
 
 #include <fmt/core.h>
@@ -13,7 +14,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <optional>
 #include <span>
@@ -103,14 +103,14 @@ void parse_header_line(const std::string& path, const std::string& line, Header&
     }
 }
 
-Header parse_header(const std::string& path, const std::string& text) {
+Header parse_header(const std::string& path, std::string_view text) {
     Header header{};
     std::size_t begin = 0;
     for (bool first = true;; first = false) {
         const std::size_t end = text.find('\n', begin);
-        if (end == std::string::npos)
+        if (end == std::string_view::npos)
             throw_damaged(path, first ? "is no PLY file" : "is cut short");
-        std::string line = text.substr(begin, end - begin);
+        std::string line(text.substr(begin, end - begin));
         if (line.ends_with('\r')) line.pop_back();
         begin = end + 1;
         if (first && line != "ply") throw_damaged(path, "is no PLY file");
@@ -124,10 +124,8 @@ Header parse_header(const std::string& path, const std::string& text) {
 /// Hands out the numbers of a body one after the other.
 class Body {
  public:
-    Body(const std::string& path, const std::string& text, const Header& header)
-        : path_(path),
-          ascii_(header.ascii),
-          rest_(std::string_view(text).substr(header.body_begin)) {}
+    Body(const std::string& path, std::string_view text, const Header& header)
+        : path_(path), ascii_(header.ascii), rest_(text.substr(header.body_begin)) {}
 
     double next(Scalar type) { return ascii_ ? next_token() : next_bytes(type); }
 
@@ -310,16 +308,12 @@ void write_body(const std::string& path,
 }  // namespace
 
 core::TriangleMesh read_ply(const std::string& path) {
-    std::error_code error;
-    const std::uint64_t bytes = std::filesystem::file_size(path, error);
-    std::ifstream file(path, std::ios::binary);
-    if (error || !file) throw Error(path, "cannot be opened", "must be a readable PLY file");
-    // The text itself, and at most a position and a normal for every few bytes of it.
-    require_memory(8 * bytes, path);
-    std::string text(bytes, '\0');
-    if (!file.read(text.data(), static_cast<std::streamsize>(bytes)))
-        throw_damaged(path, "is cut short");
+    const core::MappedFile file(path, "must be a readable PLY file");
+    const std::string_view text = file.bytes();
     const Header header = parse_header(path, text);
+    file.require_stored();
+    // At most a position and a normal for every few bytes of the text.
+    require_memory(7 * text.size(), path);
     Body body(path, text, header);
     core::TriangleMesh mesh;
     for (const Element& element : header.elements) read_element(path, element, body, mesh);

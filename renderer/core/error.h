@@ -7,8 +7,8 @@
 
 namespace core {
 
-/// Text on one line that any terminal shows: characters of UTF-8 stay, control characters and what
-/// is no UTF-8 become '?'.
+/// Text on one line that any terminal shows: characters of UTF-8 stay, control characters and bytes
+/// that are no UTF-8 are escaped (`\n`, `\x1b`).
 std::string printable(std::string_view text);
 
 /// Wrong input, file or setting: the caller can mend it. Programs exit with status 2.

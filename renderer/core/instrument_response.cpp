@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/core/instrument_response.h"
 
+#include "renderer/core/mapped_file.h"
 #include "renderer/core/parallel.h"
 
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <cassert>
-#include <fstream>
 #include <functional>
 #include <numeric>
 #include <sstream>
@@ -25,11 +25,12 @@ double opl_from_ps(double ps) {
 /// Reads lines of a delay [ps] and a weight; lines that start with # are comments.
 MeasuredResponse read_curve(const std::string& path) {
     constexpr std::size_t kMaxLines = std::size_t{1} << 20;
-    std::ifstream file(path);
-    if (!file) throw Error(path, "cannot be opened", "must be a readable text file");
+    const MappedFile file(path, "must be a readable text file");
+    file.require_stored();
+    std::istringstream lines{std::string(file.bytes())};
     MeasuredResponse response;
     std::string line;
-    for (std::size_t number = 1; std::getline(file, line); ++number) {
+    for (std::size_t number = 1; std::getline(lines, line); ++number) {
         const std::size_t begin = line.find_first_not_of(" \t\r");
         if (begin == std::string::npos || line[begin] == '#') continue;
         std::istringstream fields(line);

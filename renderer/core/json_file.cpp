@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: MIT
+#include "renderer/core/mapped_file.h"
 #include "renderer/core/settings.h"
 
-#include <array>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <unordered_set>
 
 namespace core {
 namespace {
 
-constexpr int kDeepestNesting = 100;
-constexpr std::size_t kMostKeys = 10'000;  // of one object: looking a key up takes as many steps
+constexpr std::size_t kDeepestNesting = 100;
 
 /// Control characters as people write them in strings, where the library says <U+000A>.
 std::string with_escapes(std::string text) {
@@ -42,48 +38,92 @@ std::string shorten(const std::string& message) {
     return text.substr(0, read + kRead.size()) + "..." + text.substr(text.size() - kLongestRead);
 }
 
-/// What parsing may not find: nesting without end, and keys that come twice.
-class Limits {
+/// Builds the value that a text describes, in time proportional to its length, and throws Error for
+/// what it may not hold: nesting without end, and keys that come twice. (The library's own parser
+/// looks every key up among those before it, and with a callback every item of a list.)
+class JsonBuilder : public nlohmann::json_sax<Json> {
  public:
-    explicit Limits(const std::string& where) : where_(where) {}
+    explicit JsonBuilder(const std::string& where) : where_(where) {}
 
-    bool operator()(int depth, Json::parse_event_t event, const Json& value) {
-        if (depth > kDeepestNesting) {
+    Json take() { return std::move(root_); }
+
+    bool null() override { return add(nullptr); }
+    bool boolean(bool value) override { return add(value); }
+    bool number_integer(number_integer_t value) override { return add(value); }
+    bool number_unsigned(number_unsigned_t value) override { return add(value); }
+    bool number_float(number_float_t value, const string_t&) override { return add(value); }
+    bool string(string_t& value) override { return add(std::move(value)); }
+    bool binary(binary_t& value) override { return add(std::move(value)); }
+
+    bool start_object(std::size_t) override { return open(Json::object()); }
+    bool start_array(std::size_t) override { return open(Json::array()); }
+    bool end_object() override { return close(); }
+    bool end_array() override { return close(); }
+
+    bool key(string_t& key) override {
+        if (!open_.back().keys.insert(key).second) {
+            throw Error(where_, "its JSON has the key '" + key + "' twice", "must have it once");
+        }
+        key_ = std::move(key);
+        return true;
+    }
+
+    bool parse_error(std::size_t, const std::string&, const Json::exception& error) override {
+        throw Error(where_, "is not valid JSON (" + shorten(error.what()) + ")", "must be JSON");
+    }
+
+ private:
+    /// A list or object whose end has not come yet.
+    struct Open {
+        Json* value = nullptr;
+        std::unordered_set<std::string> keys{};
+    };
+
+    bool add(Json value) {
+        place(std::move(value));
+        return true;
+    }
+
+    bool open(Json value) {
+        if (open_.size() >= kDeepestNesting) {
             throw Error(where_,
                         "its JSON is nested deeper than " + std::to_string(kDeepestNesting),
                         "must be nested less");
         }
-        if (event == Json::parse_event_t::object_start) keys_.emplace_back();
-        if (event == Json::parse_event_t::object_end) keys_.pop_back();
-        if (event == Json::parse_event_t::key) take_key(value.get_ref<const std::string&>());
+        open_.push_back({&place(std::move(value))});
         return true;
     }
 
- private:
-    void take_key(const std::string& key) {
-        if (!keys_.back().insert(key).second) {
-            throw Error(where_, "its JSON has the key '" + key + "' twice", "must have it once");
+    bool close() {
+        open_.pop_back();
+        return true;
+    }
+
+    /// Puts a value where it belongs; that place lasts until the list or object around it goes on.
+    Json& place(Json value) {
+        if (open_.empty()) return root_ = std::move(value);
+        Json& outer = *open_.back().value;
+        if (outer.is_array()) {
+            outer.push_back(std::move(value));
+            return outer.back();
         }
-        if (keys_.back().size() > kMostKeys) {
-            throw Error(
-                where_,
-                "its JSON has more than " + std::to_string(kMostKeys) + " keys in an object",
-                "must have fewer");
-        }
+        auto& members = outer.get_ref<Json::object_t&>();
+        members.emplace_back(std::move(key_), std::move(value));
+        return members.back().second;
     }
 
     const std::string& where_;
-    std::vector<std::unordered_set<std::string>> keys_;  ///< of the objects that are open
+    Json root_;
+    std::vector<Open> open_;
+    std::string key_;
 };
 
 }  // namespace
 
 Json parse_json(std::string_view text, const std::string& where) {
-    try {
-        return Json::parse(text, Limits(where));
-    } catch (const Json::exception& error) {
-        throw Error(where, "is not valid JSON (" + shorten(error.what()) + ")", "must be JSON");
-    }
+    JsonBuilder builder(where);
+    Json::sax_parse(text, &builder);
+    return builder.take();
 }
 
 std::optional<Json> json_if_valid(std::string_view text) {
@@ -94,16 +134,12 @@ std::optional<Json> json_if_valid(std::string_view text) {
     }
 }
 
+std::string json_text(const Json& json) {
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
 Json read_json_file(const std::string& path) {
-    constexpr const char* kAllowed = "must be a readable JSON file";
-    if (std::filesystem::is_directory(path)) throw Error(path, "is a folder", kAllowed);
-    if (std::filesystem::exists(path) && !std::filesystem::is_regular_file(path)) {
-        throw Error(path, "is no regular file", kAllowed);
-    }
-    std::ifstream file(path, std::ios::binary);
-    if (!file) throw Error(path, "cannot be opened", kAllowed);
-    const std::string text{std::istreambuf_iterator<char>(file), {}};
-    return parse_json(text, path);
+    return parse_json(MappedFile(path, "must be a readable JSON file").bytes(), path);
 }
 
 }  // namespace core

@@ -7,10 +7,12 @@
 namespace core {
 
 /// A result file that appears whole or not at all: written under a temporary name beside the
-/// target, renamed by commit(), removed again when commit() is never reached.
+/// target, renamed by commit(), removed again when commit() is never reached. What a killed run
+/// left of the same target is removed by the next one.
 class OutputFile {
  public:
-    /// Throws Error when the target's folder does not exist or cannot be written.
+    /// Throws Error when the target's folder does not exist or cannot be written, or its name is
+    /// too long.
     explicit OutputFile(std::string target);
     ~OutputFile();
     OutputFile(const OutputFile&) = delete;
@@ -27,6 +29,9 @@ class OutputFile {
     std::string temporary_;
     bool committed_ = false;
 };
+
+/// Removes what is being written now; for signal handlers that end the program (it is safe there).
+void remove_partial_files() noexcept;
 
 /// Checks targets before the work, so that a run does not fail only when it writes its result.
 ///

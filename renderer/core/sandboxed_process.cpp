@@ -108,13 +108,13 @@ void bound_resources(std::uint64_t file_bytes) {
     bound_memory(available_memory_bytes());
 }
 
-/// A crash is silent and ends the child; Ctrl-C is left to the parent.
+/// A crash is silent and ends the child; to be interrupted is left to the parent.
 void isolate() {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-    for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGXCPU, SIGTERM}) {
+    for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGXCPU}) {
         std::signal(signal, SIG_DFL);
     }
-    std::signal(SIGINT, SIG_IGN);
+    for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, SIG_IGN);
     const int nowhere = ::open("/dev/null", O_RDWR);
     if (nowhere < 0) return;
     for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {

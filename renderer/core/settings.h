@@ -306,6 +306,10 @@ Json parse_json(std::string_view text, const std::string& where);
 /// The same; nothing when the text is no such JSON.
 std::optional<Json> json_if_valid(std::string_view text);
 
+/// JSON as files of ours hold it, indented, with U+FFFD for what is no UTF-8, as names of files may
+/// be.
+std::string json_text(const Json& json);
+
 /// Reads a whole JSON file. Throws Error when it is missing or parse_json() refuses it.
 Json read_json_file(const std::string& path);
 

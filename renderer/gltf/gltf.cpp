@@ -132,16 +132,13 @@ class SceneReader {
 
     /// Instances can multiply a small file beyond any memory.
     void check_memory(const std::vector<Visit>& visits) {
+        constexpr double kBytesPerTriangle = 400.0;  // of facets and of the tree that rays walk
         double bytes = 0.0;
         for (const Visit& visit : visits) {
             const int mesh = model_.nodes[static_cast<std::size_t>(visit.node)].mesh;
             if (mesh < 0) continue;
-            for (const Primitive& primitive : primitives_.read(mesh)) {
-                bytes += static_cast<double>(sizeof(Object) +
-                                             primitive.positions.size() * sizeof(core::Vec3) +
-                                             primitive.uv.size() * sizeof(core::Vec2) +
-                                             primitive.triangles.size() * sizeof(Triangle));
-            }
+            const PrimitiveReader::Size size = primitives_.claimed_size(mesh);
+            bytes += sizeof(Object) + size.bytes + kBytesPerTriangle * size.triangles;
         }
         constexpr double kAlwaysThere = 1e8;  // asking the system takes milliseconds
         if (bytes < kAlwaysThere) return;

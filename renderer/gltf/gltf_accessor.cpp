@@ -2,7 +2,6 @@
 #include "renderer/gltf/gltf_accessor.h"
 
 #include "renderer/core/error.h"
-#include "renderer/core/process.h"
 
 #include <fmt/core.h>
 #include <tiny_gltf.h>
@@ -142,6 +141,19 @@ void apply_sparse(const GltfDocument& document,
     }
 }
 
+// Fewer elements than that take no time or memory worth a check of their own.
+constexpr std::size_t kMany = 1'000'000;
+
+/// A few bytes of file can ask for any number of zeros.
+void check_unstored(const GltfDocument& document,
+                    const tinygltf::Accessor& accessor,
+                    const std::string& where) {
+    if (accessor.count <= kMany) return;
+    throw core::Error(document.where(where),
+                      fmt::format("has {} elements and no bufferView", accessor.count),
+                      fmt::format("must have at most {} without one", kMany));
+}
+
 /// All elements of an accessor whose type the caller has checked; zeros where it has no data.
 template <int N>
 Elements<N> read_elements(const GltfDocument& document,
@@ -150,11 +162,8 @@ Elements<N> read_elements(const GltfDocument& document,
     ElementRange range;
     if (accessor.bufferView >= 0) {
         range = locate(document, accessor, where);
-    } else if (accessor.count > core::available_memory_bytes() / (4 * sizeof(double) * N)) {
-        // Without a buffer view, a few bytes of file can ask for any number of zeros.
-        throw core::Error(document.where(where),
-                          fmt::format("has {} elements", accessor.count),
-                          "must fit into a quarter of the free memory");
+    } else {
+        check_unstored(document, accessor, where);
     }
     Elements<N> elements(accessor.count, Eigen::Matrix<double, N, 1>::Zero());
     for (std::size_t i = 0; range.first && i < accessor.count; ++i) {
@@ -193,6 +202,17 @@ Elements<N> read_attribute(const GltfDocument& document, int index, const char* 
 }
 
 }  // namespace
+
+std::size_t checked_count(const GltfDocument& document, int index) {
+    const tinygltf::Accessor& accessor = document.model->accessors[static_cast<std::size_t>(index)];
+    const std::string where = fmt::format("accessors[{}]", index);
+    if (accessor.bufferView < 0) {
+        check_unstored(document, accessor, where);
+    } else if (accessor.count > kMany) {
+        locate(document, accessor, where);
+    }
+    return accessor.count;
+}
 
 std::vector<core::Vec3> read_positions(const GltfDocument& document, int accessor) {
     return read_attribute<3>(document, accessor, "positions");

@@ -9,6 +9,10 @@
 
 namespace renderer {
 
+/// How many elements an accessor has; none of them has been looked at.
+/// Throws core::Error when they are not in its buffer view, or, without one, beyond reason.
+std::size_t checked_count(const GltfDocument& document, int accessor);
+
 /// Vertex positions: floats, or bytes and shorts as KHR_mesh_quantization allows, sparse or not.
 ///
 /// document   a file that read_gltf_document has checked

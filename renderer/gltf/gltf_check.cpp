@@ -37,6 +37,13 @@ Allowed count_from(std::uint64_t smallest) {
             }};
 }
 
+/// Parts beyond that cost gigabytes and minutes before any triangle is read.
+Allowed few_enough() {
+    constexpr std::size_t kMost = 100'000;
+    return {"a list of at most " + std::to_string(kMost) + " items",
+            [=](const Json& list) { return list.is_array() && list.size() <= kMost; }};
+}
+
 Allowed numbers(std::size_t count) {
     return {"a list of " + std::to_string(count) + " numbers", [=](const Json& list) {
                 return list.is_array() && list.size() == count &&
@@ -72,6 +79,7 @@ class GltfChecker {
                                   "textures",
                                   "images",
                                   "samplers"}) {
+            check(root_, "", array, few_enough());
             check(root_, "", std::string(array) + "[].name", a_text());
         }
         check_values();

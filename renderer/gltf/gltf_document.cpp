@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/gltf/gltf_document.h"
 
+#include "renderer/core/mapped_file.h"
+
 #include <tiny_gltf.h>
 
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 #include <string_view>
 
@@ -17,24 +18,6 @@ namespace {
 constexpr std::size_t kHeaderBytes = 12;
 constexpr std::size_t kChunkHeaderBytes = 8;
 constexpr const char* kAllowed = "must be a whole glTF 2.0 file (.gltf or .glb)";
-
-std::string read_bytes(const std::string& path) {
-    std::error_code ignored;
-    if (std::filesystem::is_directory(path, ignored)) {
-        throw core::Error(path, "is a folder", "must be a readable glTF file (.gltf or .glb)");
-    }
-    std::ifstream file(path, std::ios::binary);
-    if (!file) {
-        throw core::Error(path, "cannot be opened", "must be a readable glTF file (.gltf or .glb)");
-    }
-    std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-    if (bytes.size() > std::numeric_limits<std::uint32_t>::max()) {
-        throw core::Error(path,
-                          "has " + std::to_string(bytes.size()) + " bytes",
-                          "a glTF file must be smaller than 4 GiB");
-    }
-    return bytes;
-}
 
 bool is_binary_gltf(std::string_view bytes) {
     return bytes.starts_with("glTF");
@@ -107,11 +90,51 @@ std::string first_line(const std::string& message) {
     return line;
 }
 
-std::shared_ptr<const tinygltf::Model> load_model(const std::string& bytes,
+/// The size of the largest external file that makes sense [bytes]: an image, or a buffer of `json`.
+std::uint64_t largest_external_file(const core::Json& json) {
+    std::uint64_t largest = 256'000'000;
+    const auto buffers = json.find("buffers");
+    if (buffers == json.end()) return largest;
+    for (const core::Json& buffer : *buffers) {
+        largest = std::max(largest, buffer["byteLength"].get<std::uint64_t>());
+    }
+    return largest;
+}
+
+/// Reads a buffer or image for tinygltf, which would wait for pipes and read devices and files of
+/// any size. Throws Error for what cannot be one.
+bool read_external_file(std::vector<unsigned char>* bytes,
+                        std::string* /*error*/,
+                        const std::string& path,
+                        void* largest) {
+    const core::MappedFile file(path, "must be a buffer or an image of a glTF file");
+    if (const auto most = *static_cast<const std::uint64_t*>(largest); file.bytes().size() > most) {
+        throw core::Error(path,
+                          "has " + std::to_string(file.bytes().size()) + " bytes",
+                          "must have at most " + std::to_string(most));
+    }
+    file.require_stored();
+    bytes->assign(file.bytes().begin(), file.bytes().end());
+    return true;
+}
+
+bool external_file_exists(const std::string& path, void* /*user_data*/) {
+    std::error_code ignored;
+    return std::filesystem::exists(path, ignored);
+}
+
+std::shared_ptr<const tinygltf::Model> load_model(std::string_view bytes,
+                                                  const core::Json& json,
                                                   const std::string& path) {
     auto model = std::make_shared<tinygltf::Model>();
     tinygltf::TinyGLTF loader;
     loader.SetImageLoader(&keep_image_bytes, nullptr);
+    std::uint64_t largest = largest_external_file(json);
+    loader.SetFsCallbacks({&external_file_exists,
+                           &tinygltf::ExpandFilePath,
+                           &read_external_file,
+                           &tinygltf::WriteWholeFile,
+                           &largest});
     const std::string folder = std::filesystem::path(path).parent_path().string();
     const auto num_bytes = static_cast<unsigned int>(bytes.size());
     std::string error;
@@ -128,6 +151,8 @@ std::shared_ptr<const tinygltf::Model> load_model(const std::string& bytes,
                                               folder)
                 : loader.LoadASCIIFromString(
                       model.get(), &error, &warning, bytes.data(), num_bytes, folder);
+    } catch (const core::Error&) {
+        throw;
     } catch (const std::exception& exception) {
         error = exception.what();
     }
@@ -140,13 +165,19 @@ std::shared_ptr<const tinygltf::Model> load_model(const std::string& bytes,
 }  // namespace
 
 GltfDocument read_gltf_document(const std::string& path) {
-    const std::string bytes = read_bytes(path);
+    const core::MappedFile file(path, "must be a readable glTF file (.gltf or .glb)");
+    const std::string_view bytes = file.bytes();
+    if (bytes.size() > std::numeric_limits<std::uint32_t>::max()) {
+        throw core::Error(path,
+                          "has " + std::to_string(bytes.size()) + " bytes",
+                          "a glTF file must be smaller than 4 GiB");
+    }
     GltfDocument document;
     document.path = path;
     document.json =
         core::parse_json(is_binary_gltf(bytes) ? find_json_chunk(bytes, path) : bytes, path);
     check_gltf_json(document.json, path);
-    document.model = load_model(bytes, path);
+    document.model = load_model(bytes, document.json, path);
     return document;
 }
 

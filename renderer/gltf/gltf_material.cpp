@@ -8,7 +8,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <cstring>
+#include <optional>
+#include <span>
 
 namespace renderer {
 namespace {
@@ -27,6 +30,38 @@ TextureWrap wrap_from_gltf(int wrap, const std::string& where) {
     }
 }
 
+/// Width and height that a PNG or JPEG file states; nothing where it states none.
+std::optional<std::array<std::uint64_t, 2>> stated_size(std::span<const unsigned char> bytes) {
+    const auto number = [&](std::size_t at, std::size_t count) {
+        std::uint64_t value = 0;
+        for (std::size_t i = 0; i < count; ++i) value = value << 8 | bytes[at + i];
+        return value;
+    };
+    if (bytes.size() < 24) return std::nullopt;
+    if (number(0, 4) == 0x89504e47) return std::array{number(16, 4), number(20, 4)};
+    if (number(0, 2) != 0xffd8) return std::nullopt;
+    // JPEG: segments of marker and length, until the one that starts a frame (SOF0 to SOF15).
+    for (std::size_t at = 2; at + 9 <= bytes.size() && bytes[at] == 0xff;) {
+        const unsigned char marker = bytes[at + 1];
+        const bool is_table = marker == 0xc4 || marker == 0xc8 || marker == 0xcc;
+        if (marker >= 0xc0 && marker <= 0xcf && !is_table) {
+            return std::array{number(at + 7, 2), number(at + 5, 2)};
+        }
+        at += marker == 0xff ? 1 : 2 + number(at + 2, 2);
+    }
+    return std::nullopt;
+}
+
+/// A few bytes can inflate to any number of texels.
+void check_texels(std::span<const unsigned char> bytes, const std::string& where) {
+    constexpr std::uint64_t kMostTexels = 8192 * 8192;
+    const auto size = stated_size(bytes);
+    if (!size || (*size)[0] == 0 || (*size)[1] <= kMostTexels / (*size)[0]) return;
+    throw core::Error(where,
+                      fmt::format("has {} x {} texels", (*size)[0], (*size)[1]),
+                      fmt::format("must have at most {}", kMostTexels));
+}
+
 /// Decodes an image that was kept as bytes. Throws Error when there is none or it is broken.
 tinygltf::Image decode_image(const GltfDocument& document, int index) {
     const std::string where = document.where(fmt::format("images[{}]", index));
@@ -36,6 +71,7 @@ tinygltf::Image decode_image(const GltfDocument& document, int index) {
                           "'" + source.uri + "' cannot be read",
                           "must be a PNG or JPEG file beside the glTF file");
     }
+    check_texels(source.image, where);
     tinygltf::Image image;
     std::string error;
     std::string warning;

@@ -7,6 +7,8 @@
 #include <fmt/core.h>
 #include <tiny_gltf.h>
 
+#include <algorithm>
+
 namespace renderer {
 namespace {
 
@@ -28,25 +30,14 @@ std::vector<Triangle> triangle_corners(int mode, std::uint32_t n) {
     return corners;
 }
 
-/// Keeps the vertices in use: primitives often share one long list.
-void drop_unused_vertices(Primitive& primitive) {
-    constexpr std::uint32_t kUnused = ~0u;
-    std::vector<std::uint32_t> renumbered(primitive.positions.size(), kUnused);
-    for (const Triangle& triangle : primitive.triangles) {
-        for (const std::uint32_t vertex : triangle) renumbered[vertex] = 0;
-    }
-    std::uint32_t next = 0;
-    for (std::size_t i = 0; i < renumbered.size(); ++i) {
-        if (renumbered[i] == kUnused) continue;
-        primitive.positions[next] = primitive.positions[i];
-        if (!primitive.uv.empty()) primitive.uv[next] = primitive.uv[i];
-        renumbered[i] = next++;
-    }
-    primitive.positions.resize(next);
-    if (!primitive.uv.empty()) primitive.uv.resize(next);
-    for (Triangle& triangle : primitive.triangles) {
-        for (std::uint32_t& vertex : triangle) vertex = renumbered[vertex];
-    }
+constexpr std::uint32_t kUnused = ~0U;
+
+/// What `read` makes of an accessor, once.
+template <class Elements, class Read>
+const Elements& read_once(std::map<int, Elements>& known, int accessor, const Read& read) {
+    const auto found = known.find(accessor);
+    return found != known.end() ? found->second
+                                : known.emplace(accessor, read(accessor)).first->second;
 }
 
 }  // namespace
@@ -77,15 +68,17 @@ Primitive PrimitiveReader::read_primitive(const tinygltf::Primitive& source,
     }
     Primitive primitive;
     primitive.material = source.material;
-    primitive.positions = read_positions(document_, position->second);
-    read_uv(source, where, primitive);
+    const std::vector<core::Vec3>& positions =
+        read_once(positions_, position->second, [&](int accessor) {
+            return read_positions(document_, accessor);
+        });
+    const std::vector<core::Vec2>* const uv = uv_of(source, where, positions.size());
 
     std::vector<std::uint32_t> indices;
     if (source.indices >= 0) {
-        indices = read_indices(document_, source.indices, primitive.positions.size());
+        indices = read_indices(document_, source.indices, positions.size());
     }
-    const std::size_t num_corners =
-        source.indices >= 0 ? indices.size() : primitive.positions.size();
+    const std::size_t num_corners = source.indices >= 0 ? indices.size() : positions.size();
     if (num_corners < 3 || (source.mode == TINYGLTF_MODE_TRIANGLES && num_corners % 3 != 0)) {
         throw core::Error(where,
                           fmt::format("has {} corners", num_corners),
@@ -97,28 +90,73 @@ Primitive PrimitiveReader::read_primitive(const tinygltf::Primitive& source,
             for (std::uint32_t& corner : triangle) corner = indices[corner];
         }
     }
-    drop_unused_vertices(primitive);
+    take_vertices(positions, uv, primitive);
     return primitive;
 }
 
-void PrimitiveReader::read_uv(const tinygltf::Primitive& source,
-                              const std::string& where,
-                              Primitive& primitive) {
+/// Takes the vertices in use, in their order: primitives often share one long list.
+void PrimitiveReader::take_vertices(const std::vector<core::Vec3>& positions,
+                                    const std::vector<core::Vec2>* uv,
+                                    Primitive& primitive) {
+    if (renumbered_.size() < positions.size()) renumbered_.resize(positions.size(), kUnused);
+    std::vector<std::uint32_t> used;
+    for (const Triangle& triangle : primitive.triangles) {
+        for (const std::uint32_t vertex : triangle) {
+            if (renumbered_[vertex] == kUnused) used.push_back(vertex);
+            renumbered_[vertex] = 0;
+        }
+    }
+    std::sort(used.begin(), used.end());
+    for (std::uint32_t i = 0; i < used.size(); ++i) {
+        primitive.positions.push_back(positions[used[i]]);
+        if (uv) primitive.uv.push_back((*uv)[used[i]]);
+        renumbered_[used[i]] = i;
+    }
+    for (Triangle& triangle : primitive.triangles) {
+        for (std::uint32_t& vertex : triangle) vertex = renumbered_[vertex];
+    }
+    for (const std::uint32_t vertex : used) renumbered_[vertex] = kUnused;
+}
+
+const std::vector<core::Vec2>* PrimitiveReader::uv_of(const tinygltf::Primitive& source,
+                                                      const std::string& where,
+                                                      std::size_t num_positions) {
     const LoadedMaterial& loaded = materials_.read(source.material);
     const std::string name = fmt::format("TEXCOORD_{}", loaded.texture_coordinate_set);
     const auto attribute = source.attributes.find(name);
     if (attribute == source.attributes.end()) {
-        if (!loaded.material.albedo_texture) return;
+        if (!loaded.material.albedo_texture) return nullptr;
         throw core::Error(where, "has no " + name, "its textured material needs it");
     }
-    primitive.uv = read_texture_coordinates(document_, attribute->second);
-    if (primitive.uv.size() != primitive.positions.size()) {
-        throw core::Error(where,
-                          fmt::format("has {} positions and {} texture coordinates",
-                                      primitive.positions.size(),
-                                      primitive.uv.size()),
-                          "must be as many");
+    const std::vector<core::Vec2>& uv = read_once(uv_, attribute->second, [&](int accessor) {
+        return read_texture_coordinates(document_, accessor);
+    });
+    if (uv.size() != num_positions) {
+        throw core::Error(
+            where,
+            fmt::format("has {} positions and {} texture coordinates", num_positions, uv.size()),
+            "must be as many");
     }
+    return &uv;
+}
+
+PrimitiveReader::Size PrimitiveReader::claimed_size(int mesh_index) const {
+    const tinygltf::Model& model = *document_.model;
+    const auto count_of = [&](int accessor) {
+        return static_cast<double>(checked_count(document_, accessor));
+    };
+    Size size;
+    for (const auto& source : model.meshes[static_cast<std::size_t>(mesh_index)].primitives) {
+        const auto position = source.attributes.find("POSITION");
+        if (position == source.attributes.end()) continue;
+        const double positions = count_of(position->second);
+        const double corners = source.indices >= 0 ? count_of(source.indices) : positions;
+        const double triangles = source.mode == TINYGLTF_MODE_TRIANGLES ? corners / 3.0 : corners;
+        size.triangles += triangles;
+        size.bytes += std::min(positions, corners) * (sizeof(core::Vec3) + sizeof(core::Vec2)) +
+                      triangles * sizeof(Triangle);
+    }
+    return size;
 }
 
 }  // namespace renderer

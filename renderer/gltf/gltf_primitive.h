@@ -39,13 +39,29 @@ class PrimitiveReader {
     /// throws       core::Error naming the part whose data are wrong
     const std::vector<Primitive>& read(int mesh_index);
 
+    /// At most how many triangles read() will give by what the file says of its accessors, and how
+    /// many bytes they and their vertices take. Throws core::Error for claims that are not stored.
+    struct Size {
+        double triangles = 0.0;
+        double bytes = 0.0;
+    };
+    Size claimed_size(int mesh_index) const;
+
  private:
     Primitive read_primitive(const tinygltf::Primitive& source, const std::string& where);
-    void read_uv(const tinygltf::Primitive& source, const std::string& where, Primitive& primitive);
+    const std::vector<core::Vec2>* uv_of(const tinygltf::Primitive& source,
+                                         const std::string& where,
+                                         std::size_t num_positions);
+    void take_vertices(const std::vector<core::Vec3>& positions,
+                       const std::vector<core::Vec2>* uv,
+                       Primitive& primitive);
 
     const GltfDocument& document_;
     MaterialReader& materials_;
     std::map<int, std::vector<Primitive>> loaded_;
+    std::map<int, std::vector<core::Vec3>> positions_;  ///< by accessor: primitives share them
+    std::map<int, std::vector<core::Vec2>> uv_;
+    std::vector<std::uint32_t> renumbered_;  ///< for take_vertices()
 };
 
 }  // namespace renderer

@@ -2,6 +2,7 @@
 #include "renderer/mesh_file/mesh_file.h"
 
 #include "renderer/core/error.h"
+#include "renderer/core/mapped_file.h"
 #include "renderer/mesh_file/assimp_file.h"
 
 #include <fmt/core.h>
@@ -108,7 +109,7 @@ void require_readable(const std::string& path) {
     constexpr const char* kAllowed = "must be a readable OBJ, PLY or STL file";
     std::error_code ignored;
     if (!fs::exists(path, ignored)) throw core::Error(path, "does not exist", kAllowed);
-    if (!fs::is_regular_file(path, ignored)) throw core::Error(path, "is no file", kAllowed);
+    core::MappedFile(path, kAllowed).require_stored();
 }
 
 }  // namespace

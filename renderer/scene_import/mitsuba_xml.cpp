@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/core/error.h"
+#include "renderer/core/mapped_file.h"
 #include "renderer/core/sandboxed_process.h"
 #include "renderer/scene_import/foreign_file.h"
 #include "renderer/scene_import/mitsuba_transform.h"
@@ -9,7 +10,6 @@
 
 #include <cctype>
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <sstream>
 
@@ -240,10 +240,9 @@ core::Json parse_mitsuba_xml(const std::string& text,
 
 core::Json read_mitsuba_xml(const std::string& path) {
     return Json::from_cbor(core::run_sandboxed(path, [&] {
-        std::ifstream file(path, std::ios::binary);
-        std::ostringstream text;
-        text << file.rdbuf();
-        return parse_to_cbor(text.str(), path);
+        const core::MappedFile file(path, "must be a scene of Mitsuba 3");
+        file.require_stored();
+        return parse_to_cbor(std::string(file.bytes()), path);
     }));
 }
 

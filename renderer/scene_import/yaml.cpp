@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/core/error.h"
+#include "renderer/core/mapped_file.h"
 #include "renderer/core/sandboxed_process.h"
 #include "renderer/scene_import/foreign_file.h"
 
@@ -89,8 +90,10 @@ class YamlReader {
 core::Json read_yaml(const std::string& path) {
     return Json::from_cbor(core::run_sandboxed(path, [&] {
         try {
+            const core::MappedFile file(path, "must be a scene of y-tal");
+            file.require_stored();
             std::string bytes;
-            Json::to_cbor(YamlReader(path).read(YAML::LoadFile(path)), bytes);
+            Json::to_cbor(YamlReader(path).read(YAML::Load(std::string(file.bytes()))), bytes);
             return bytes;
         } catch (const core::Error&) {
             throw;

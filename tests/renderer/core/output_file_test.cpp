@@ -2,10 +2,13 @@
 #include "renderer/core/output_file.h"
 
 #include "renderer/core/error.h"
+#include "renderer/core/partial_file.h"
 #include "tests/support/file_bytes.h"
 #include "tests/support/temporary_folder.h"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -13,6 +16,7 @@
 namespace {
 
 namespace fs = std::filesystem;
+using test_support::write_file_bytes;
 
 TEST(OutputFile, AppearsOnlyWhenCommitted) {
     const test_support::TemporaryFolder folder;
@@ -37,6 +41,49 @@ TEST(OutputFile, FailedWorkLeavesTheOlderResult) {
         std::ofstream(output.temporary()) << "new";
     }
     EXPECT_EQ(test_support::file_bytes(target), "old");
+}
+
+TEST(OutputFile, LeftoversOfKilledRunsOfTheSameNameAreRemoved) {
+    const test_support::TemporaryFolder folder;
+    const std::string target = folder.file("result.txt");
+    const auto partial_of = [&](const std::string& name, const std::string& process) {
+        std::string partial = core::partial_file_of(folder.file(name));
+        const std::string own = "." + std::to_string(::getpid()) + "-";
+        return partial.replace(partial.find(own), own.size(), "." + process + "-");
+    };
+    const pid_t ended = ::fork();
+    if (ended == 0) ::_exit(0);
+    ::waitpid(ended, nullptr, 0);
+    const std::string stale = partial_of("result.txt", std::to_string(ended));
+    const std::string other_machine =
+        folder.file(".result." + std::to_string(ended) + "-0.partial.txt");
+    const std::vector<std::string> others{partial_of("result.txt", std::to_string(::getppid())),
+                                          partial_of("result.png", std::to_string(ended)),
+                                          partial_of("result.more.txt", std::to_string(ended)),
+                                          partial_of("result.txt", "x"),
+                                          partial_of("result.txt", ""),
+                                          other_machine,
+                                          folder.file("result.partial.txt")};
+    for (const std::string& name : others) write_file_bytes(name, "theirs");
+    write_file_bytes(stale, "half");
+    { const core::OutputFile output(target); }
+    EXPECT_FALSE(fs::exists(stale));
+    for (const std::string& name : others) EXPECT_TRUE(fs::exists(name)) << name;
+}
+
+TEST(OutputFile, SignalHandlersRemoveWhatIsBeingWritten) {
+    const test_support::TemporaryFolder folder;
+    const core::OutputFile first(folder.file("a.txt"));
+    std::string gone;
+    {
+        const core::OutputFile second(folder.file("b.txt"));
+        gone = second.temporary();
+    }
+    write_file_bytes(gone, "of somebody else by now");
+    EXPECT_TRUE(fs::exists(first.temporary()));
+    core::remove_partial_files();
+    EXPECT_FALSE(fs::exists(first.temporary()));
+    EXPECT_TRUE(fs::exists(gone));
 }
 
 TEST(OutputFile, ImpossibleTargetsAreNamed) {

@@ -55,11 +55,14 @@ TEST_P(PlanarPatches, LocateFindsTheFacetOfAPoint) {
     for (int i = 0; i < 500; ++i) {
         const auto facet =
             static_cast<std::uint32_t>(rng.uniform() * double(scene_.facets().size()));
-        const auto elsewhere =
-            static_cast<std::uint32_t>(rng.uniform() * double(scene_.facets().size()));
-        const Vec2 b = core::sample_triangle({rng.uniform(), rng.uniform()});
         const std::uint32_t patch = patches_.patch_of(facet);
-        if (patches_.patch_of(elsewhere) != patch) continue;
+        std::vector<std::uint32_t> of_patch;
+        for (std::uint32_t f = 0; f < scene_.facets().size(); ++f) {
+            if (patches_.patch_of(f) == patch) of_patch.push_back(f);
+        }
+        const std::uint32_t elsewhere =
+            of_patch[static_cast<std::size_t>(rng.uniform() * double(of_patch.size()))];
+        const Vec2 b = core::sample_triangle({rng.uniform(), rng.uniform()});
         const auto found =
             patches_.locate(patch, scene_.facet(facet).point(b.x(), b.y()), elsewhere);
         ASSERT_TRUE(found);

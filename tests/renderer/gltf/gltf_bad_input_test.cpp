@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/core/random.h"
 #include "tests/renderer/gltf/gltf_files.h"
+#include "tests/support/error_message.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
+#include <filesystem>
 #include <limits>
 
 namespace {
@@ -247,6 +250,50 @@ TEST(GltfBadInput, MutatedFilesAreAcceptedOrRefused) {
         write_bytes(path, bytes);
         expect_no_crash(path);
     }
+}
+
+TEST(GltfBadInput, ElementsThatAreNotStoredAreFew) {
+    GltfFile file = square_file();
+    Json& accessor = file.json["accessors"][0];
+    accessor.erase("bufferView");
+    accessor["count"] = 100'000'000;
+    EXPECT_NE(error_of(file).find("100000000 elements and no bufferView"), std::string::npos);
+}
+
+TEST(GltfBadInput, NodesBeyondReasonAreRefused) {
+    GltfFile file = square_file();
+    for (int i = 0; i < 100'001; ++i) file.json["nodes"].push_back(Json::object());
+    EXPECT_NE(error_of(file).find("a list of at most 100000 items"), std::string::npos);
+}
+
+TEST(GltfBadInput, PrimitivesThatShareALongListAreRead) {
+    GltfFile file = square_file();
+    const Json primitive = file.primitive();
+    for (int i = 1; i < 5'000; ++i) file.json["meshes"][0]["primitives"].push_back(primitive);
+    const auto geometry = file.load();
+    EXPECT_EQ(geometry.objects.size(), 5'000U);
+    EXPECT_EQ(geometry.objects.back().mesh.vertices, geometry.objects.front().mesh.vertices);
+}
+
+TEST(GltfBadInput, ExternalFilesAreRegularAndStored) {
+    const std::string pipe = temporary_path("pipe");
+    ::mkfifo(pipe.c_str(), 0600);
+    std::filesystem::create_symlink("/dev/zero", temporary_path("zero"));
+    const std::string holes = temporary_path("holes");
+    write_bytes(holes, "");
+    std::filesystem::resize_file(holes, 2'000'000'000);
+    const auto error_with = [](const std::string& uri, std::size_t bytes) {
+        GltfFile file = square_file();
+        file.json["buffers"][0] = {{"uri", uri}, {"byteLength", bytes}};
+        const std::string path = temporary_path("external.gltf");
+        write_bytes(path, file.json.dump());
+        return test_support::error_message([&] { renderer::load_gltf(path); });
+    };
+    EXPECT_NE(error_with("pipe", 1000).find("is no regular file"), std::string::npos);
+    EXPECT_NE(error_with("zero", 1000).find("is no regular file"), std::string::npos);
+    EXPECT_NE(error_with(".", 1000).find("is a folder"), std::string::npos);
+    EXPECT_NE(error_with("holes", 1000).find("must have at most"), std::string::npos);
+    EXPECT_NE(error_with("holes", 2'000'000'000).find("of which 0 are stored"), std::string::npos);
 }
 
 }  // namespace

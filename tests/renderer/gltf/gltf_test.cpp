@@ -336,6 +336,15 @@ TEST(Gltf, TexturesThatCannotBeUsedAreRefused) {
     file.json["images"][0]["uri"] = "data:image/png;base64,AAAA";
     EXPECT_NE(error_of(file).find("images[0]: cannot be decoded"), std::string::npos);
 
+    // The size that a PNG or a JPEG file states is enough to tell.
+    for (const char* large :
+         {"iVBORw0KGgoAAAANSUhEUgABAAAAAQAACAIAAAA=", "/9j/4AAEAAD/wAARCP////8DASIAAhEBAxEB"}) {
+        file = textured_file();
+        file.json["images"][0]["uri"] = std::string("data:image/png;base64,") + large;
+        EXPECT_NE(error_of(file).find("must have at most 67108864"), std::string::npos)
+            << error_of(file);
+    }
+
     file = textured_file();
     file.json["images"][0]["uri"] = "no_such_image.png";
     EXPECT_NE(error_of(file).find("images[0]: 'no_such_image.png' cannot be read"),

@@ -220,7 +220,7 @@ TEST(MeshFile, FilesThatAreNoneAreNamed) {
     const TemporaryFolder folder;
     EXPECT_ERROR_WITH(renderer::load_mesh_file(folder.file("a.obj"), {}), "a.obj: does not exist");
     ASSERT_EQ(::mkfifo(folder.file("pipe.stl").c_str(), 0600), 0);
-    EXPECT_ERROR_WITH(renderer::load_mesh_file(folder.file("pipe.stl"), {}), "is no file");
+    EXPECT_ERROR_WITH(renderer::load_mesh_file(folder.file("pipe.stl"), {}), "is no regular file");
     EXPECT_ERROR_WITH(load_text("a.ply", "hello\n"), "a.ply: is damaged");
     EXPECT_ERROR_WITH(load_text("a.stl", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"), "a.stl: ");
     EXPECT_ERROR_WITH(

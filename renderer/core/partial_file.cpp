@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/core/partial_file.h"
+
+#include "renderer/core/output_file.h"
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <charconv>
+#include <climits>
+#include <csignal>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <optional>
+
+namespace core {
+namespace fs = std::filesystem;
+namespace {
+
+/// A place for a path that a signal handler may read at any time: no memory is freed here.
+struct Slot {
+    std::atomic<bool> is_taken{false};
+    std::atomic<bool> is_ready{false};  ///< the path may be read
+    std::array<char, PATH_MAX> path{};
+};
+
+std::array<Slot, 16> g_slots;  // more files than that at once are left to the next run
+
+std::uint32_t hash_of(const std::string& text) {  // FNV-1a
+    std::uint32_t hash = 2166136261U;
+    for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 16777619U;
+    return hash;
+}
+
+/// Says where process numbers mean the same: the machine and, in it, the container.
+std::string machine_tag() {
+    std::array<char, 256> host{};
+    std::array<char, 256> numbering{};
+    ::gethostname(host.data(), host.size() - 1);
+    const bool is_known =
+        ::readlink("/proc/self/ns/pid", numbering.data(), numbering.size() - 1) > 0;
+    return fmt::format("{:08x}",
+                       hash_of(std::string(host.data()) + (is_known ? numbering.data() : "")));
+}
+
+struct PartialName {
+    std::string begin;  ///< before the number of the process
+    std::string end;    ///< after it
+};
+
+PartialName partial_name_of(const fs::path& target) {
+    return {"." + target.stem().string() + ".",
+            "-" + machine_tag() + ".partial" + target.extension().string()};
+}
+
+fs::path folder_of(const fs::path& target) {
+    return target.has_parent_path() ? target.parent_path() : fs::path(".");
+}
+
+/// The process that a file of this name is from; nothing for other names.
+std::optional<pid_t> process_of(const std::string& file, const PartialName& name) {
+    if (!file.starts_with(name.begin) || !file.ends_with(name.end)) return std::nullopt;
+    if (file.size() <= name.begin.size() + name.end.size()) return std::nullopt;
+    const char* const last = file.data() + file.size() - name.end.size();
+    pid_t process = 0;
+    const auto [end, error] = std::from_chars(file.data() + name.begin.size(), last, process);
+    if (error != std::errc() || end != last || process <= 0) return std::nullopt;
+    return process;
+}
+
+bool has_ended(pid_t process) {
+    return ::kill(process, 0) != 0 && errno == ESRCH;
+}
+
+}  // namespace
+
+std::string partial_file_of(const std::string& target) {
+    const PartialName name = partial_name_of(target);
+    return (folder_of(target) / (name.begin + std::to_string(::getpid()) + name.end)).string();
+}
+
+void remove_stale_partial_files(const std::string& target) {
+    const PartialName name = partial_name_of(target);
+    std::error_code error;
+    std::error_code ignored;
+    for (fs::directory_iterator entry(folder_of(target), error), end; !error && entry != end;
+         entry.increment(error)) {
+        const auto process = process_of(entry->path().filename().string(), name);
+        if (process && has_ended(*process)) fs::remove(entry->path(), ignored);
+    }
+}
+
+void announce_partial_file(const std::string& path) {
+    for (Slot& slot : g_slots) {
+        if (path.size() >= slot.path.size() || slot.is_taken.exchange(true)) continue;
+        std::strcpy(slot.path.data(), path.c_str());
+        slot.is_ready = true;
+        return;
+    }
+}
+
+void forget_partial_file(const std::string& path) {
+    for (Slot& slot : g_slots) {
+        if (!slot.is_ready || path != slot.path.data()) continue;
+        slot.is_ready = false;
+        slot.is_taken = false;
+        return;
+    }
+}
+
+void remove_partial_files() noexcept {
+    for (const Slot& slot : g_slots) {
+        if (slot.is_ready) ::unlink(slot.path.data());
+    }
+}
+
+}  // namespace core

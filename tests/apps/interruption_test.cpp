@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: MIT
+// Signals, limits and closed streams: nothing older is lost, nothing half is left, one line says
+// why.
+#include "nlos/formats/capture_file.h"
+#include "tests/support/command_line.h"
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <array>
+#include <chrono>
+#include <csignal>
+#include <random>
+#include <thread>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+using test_support::CommandLine;
+using test_support::file_bytes;
+using test_support::Outcome;
+using test_support::write_file_bytes;
+
+void wait_for(double seconds) {
+    std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
+}
+
+class Interruption : public CommandLine {
+ protected:
+    // Starts the program; its output goes to the files that run() uses.
+    pid_t start(const std::vector<std::string>& arguments) const {
+        std::vector<std::string> texts{NLOS_PROGRAM};
+        texts.insert(texts.end(), arguments.begin(), arguments.end());
+        std::vector<char*> pointers;
+        for (std::string& text : texts) pointers.push_back(text.data());
+        pointers.push_back(nullptr);
+        posix_spawn_file_actions_t streams;
+        ::posix_spawn_file_actions_init(&streams);
+        for (const auto& [stream, name] :
+             {std::pair{STDOUT_FILENO, "out.txt"}, std::pair{STDERR_FILENO, "err.txt"}}) {
+            ::posix_spawn_file_actions_addopen(
+                &streams, stream, file(name).c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+        }
+        pid_t process = 0;
+        EXPECT_EQ(
+            ::posix_spawn(&process, NLOS_PROGRAM, &streams, nullptr, pointers.data(), ::environ),
+            0);
+        ::posix_spawn_file_actions_destroy(&streams);
+        return process;
+    }
+
+    // Waits for the end; the status is negative after a signal.
+    Outcome finish(pid_t process) const {
+        int raw = 0;
+        ::waitpid(process, &raw, 0);
+        return {WIFSIGNALED(raw) ? -WTERMSIG(raw) : WEXITSTATUS(raw),
+                file_bytes(file("out.txt")),
+                test_support::without_progress(file_bytes(file("err.txt")))};
+    }
+
+    void wait_for_output(const std::string& part) const {
+        for (int i = 0; i < 3000 && file_bytes(file("out.txt")).find(part) == std::string::npos;
+             ++i) {
+            wait_for(0.01);
+        }
+    }
+
+    std::vector<std::string> partial_files() const {
+        std::vector<std::string> names;
+        for (const auto& entry : fs::directory_iterator(fs::path(file("x")).parent_path())) {
+            const std::string name = entry.path().filename().string();
+            if (name.find(".partial") != std::string::npos) names.push_back(name);
+        }
+        return names;
+    }
+
+    std::vector<std::string> long_render() const {
+        const std::string scene = make_scene("scene.json", core::Json::object());
+        return {"render", scene, "-o", file("c.h5"), "--method", "path", "--samples", "100000000"};
+    }
+};
+
+TEST_F(Interruption, SigtermKeepsWholePassesAsCtrlCDoes) {
+    for (const int signal : {SIGTERM, SIGINT}) {
+        write_file_bytes(file("c.h5"), "older result");
+        const pid_t process = start(long_render());
+        wait_for_output("paths of");
+        wait_for(0.5);
+        ::kill(process, signal);
+        const Outcome outcome = finish(process);
+        EXPECT_EQ(outcome.status, 1);
+        EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+        EXPECT_NE(outcome.err.find("interrupted; " + file("c.h5") + " holds what was computed"),
+                  std::string::npos)
+            << outcome.err;
+        EXPECT_FALSE(nlos::read_capture(file("c.h5")).transient.is_dark());
+        EXPECT_TRUE(partial_files().empty());
+    }
+}
+
+TEST_F(Interruption, ASecondSignalEndsAtOnce) {
+    std::vector<std::string> render = long_render();
+    render.insert(render.end(), {"--set", "scan.sensing_points=[512,512]"});
+    write_file_bytes(file("c.h5"), "older result");
+    const pid_t process = start(render);  // a single pass takes minutes
+    wait_for_output("paths of");
+    wait_for(0.5);
+    ::kill(process, SIGINT);
+    wait_for(0.1);
+    ::kill(process, SIGTERM);
+    const Outcome outcome = finish(process);
+    EXPECT_EQ(outcome.status, 1);
+    EXPECT_EQ(outcome.err, "nlos: interrupted\n");
+    EXPECT_EQ(file_bytes(file("c.h5")), "older result");
+    EXPECT_TRUE(partial_files().empty());
+}
+
+TEST_F(Interruption, KilledAtAnyTimeNothingIsLostOrLeft) {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> up_to(0.0, 0.6);
+    ASSERT_EQ(run("convert data/letter.h5 " + file("in.npz")).status, 0);
+    const std::vector<std::string> convert{"convert", file("in.npz"), file("out.h5")};
+    const std::vector<std::string> reconstruct{"reconstruct", file("in.npz"), "-o", file("out.h5")};
+    for (int i = 0; i < 24; ++i) {
+        write_file_bytes(file("out.h5"), "older result");
+        const int signal = std::array{SIGKILL, SIGTERM, SIGINT}[static_cast<std::size_t>(i % 3)];
+        const pid_t process = start(i % 2 == 0 ? convert : reconstruct);
+        wait_for(up_to(random));
+        ::kill(process, signal);
+        const Outcome outcome = finish(process);
+        const std::string bytes = file_bytes(file("out.h5"));
+        if (bytes != "older result") {
+            EXPECT_EQ(run("info " + file("out.h5")).status, 0) << "a new result is whole";
+        }
+        if (signal == SIGKILL) continue;
+        const std::string own = "." + std::to_string(process) + "-";
+        for (const std::string& name : partial_files()) {
+            EXPECT_EQ(name.find(own), std::string::npos) << name << " of an interrupted run";
+        }
+        if (outcome.status == 1) {
+            EXPECT_TRUE(outcome.err.ends_with("interrupted\n")) << outcome.err;
+        }
+    }
+    ASSERT_EQ(run("reconstruct " + file("in.npz") + " -o " + file("out.h5")).status, 0);
+    EXPECT_TRUE(partial_files().empty()) << "the next run of the same names removes them";
+}
+
+TEST_F(Interruption, FilesBeyondTheLimitAreOneLine) {
+    for (const std::string name : {"a.h5", "a.npz", "a.exr", "a.mat"}) {
+        write_file_bytes(file(name), "older result");
+        const std::string limited =
+            "ulimit -f 1; '" NLOS_PROGRAM "' convert data/letter.h5 '" + file(name) + "'";
+        const std::string command = "cd '" NLOS_SOURCE_DIR "'; (" + limited + ") >'" +
+                                    file("out.txt") + "' 2>'" + file("err.txt") + "'";
+        const int raw = std::system(("bash -c \"" + command + "\"").c_str());
+        const std::string error = file_bytes(file("err.txt"));
+        EXPECT_EQ(WEXITSTATUS(raw), 1) << error;
+        EXPECT_EQ(std::count(error.begin(), error.end(), '\n'), 1) << error;
+        EXPECT_NE(error.find(name + ": "), std::string::npos) << error;
+        EXPECT_EQ(file_bytes(file(name)), "older result");
+        EXPECT_TRUE(partial_files().empty());
+    }
+}
+
+TEST_F(Interruption, OutputThatNobodyReadsIsOneLine) {
+    for (const std::string target : {"| true", "> /dev/full", ">&-"}) {
+        const std::string program = "'" NLOS_PROGRAM "' info data/letter.h5 2>'" + file("err.txt");
+        const std::string command = "cd '" NLOS_SOURCE_DIR "'; (sleep 0.2; " + program +
+                                    "'; echo $? >'" + file("status") + "') " + target;
+        ASSERT_EQ(std::system(("bash -c \"" + command + "\" 2>/dev/null").c_str()) & 0x7f, 0);
+        const std::string error = file_bytes(file("err.txt"));
+        EXPECT_EQ(error.rfind("standard output: cannot be written (", 0), 0U) << error;
+        EXPECT_EQ(std::count(error.begin(), error.end(), '\n'), 1) << error;
+    }
+}
+
+TEST_F(Interruption, MessagesNeverLandInAResult) {
+    ASSERT_EQ(std::system(("cd '" NLOS_SOURCE_DIR "'; '" NLOS_PROGRAM "' convert data/letter.h5 '" +
+                           file("a.mat") + "' >&- 2>&-")
+                              .c_str()) &
+                  0x7f,
+              0);
+    EXPECT_EQ(run("info " + file("a.mat")).status, 0);
+}
+
+}  // namespace

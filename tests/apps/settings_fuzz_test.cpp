@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT
+// Every setting of every command with values from the edges of its type: exit codes as documented,
+// one line for what is refused, no crash.
+#include "apps/capture_options.h"
+#include "apps/commands/reconstruct_job.h"
+#include "calib/calibrate.h"
+#include "calib/fit.h"
+#include "renderer/scene/scene_file.h"
+#include "tests/support/command_line.h"
+
+#include <algorithm>
+#include <random>
+#include <vector>
+
+namespace {
+
+using test_support::CommandLine;
+using test_support::Outcome;
+
+// Values of every JSON type, at its edges.
+const std::vector<std::string> kValues{"0",
+                                       "-1",
+                                       "1",
+                                       "2147483647",
+                                       "-2147483648",
+                                       "2147483648",
+                                       "9223372036854775807",
+                                       "18446744073709551615",
+                                       "0.5",
+                                       "-0.0",
+                                       "1e-308",
+                                       "5e-324",
+                                       "1e308",
+                                       "1e999",
+                                       "nan",
+                                       "inf",
+                                       "null",
+                                       "true",
+                                       "false",
+                                       "\"\"",
+                                       "auto",
+                                       "[]",
+                                       "{}",
+                                       "[0,0]",
+                                       "[1,1,1]",
+                                       "[1e300,-1e300,1e-300]",
+                                       "[[0,0,0]]",
+                                       "[null]",
+                                       "/",
+                                       "/dev/zero",
+                                       "%s%n$(id)"};
+
+class SettingsFuzz : public CommandLine {
+ protected:
+    // Tries `count` of the settings, each with one value, chosen by the seed.
+    void try_settings(const std::string& command,
+                      const std::vector<core::SettingHelp>& settings,
+                      int count,
+                      unsigned seed) const {
+        std::mt19937 random(seed);
+        for (int i = 0; i < count; ++i) {
+            const std::string& key = settings[random() % settings.size()].key;
+            const std::string& value = kValues[random() % kValues.size()];
+            const std::string arguments = command + " --set '" + key + "=" + value + "'";
+            const Outcome outcome = run(arguments);
+            EXPECT_TRUE(outcome.status >= 0 && outcome.status <= 2) << arguments;
+            if (outcome.status == 0) continue;
+            const std::string& error = outcome.err;
+            EXPECT_GE(std::count(error.begin(), error.end(), '\n'), 1) << arguments;
+            EXPECT_EQ(error.find("nlos: "), std::string::npos) << arguments << "\n"
+                                                               << error << "no message of ours";
+            if (outcome.status != 2) continue;
+            EXPECT_EQ(std::count(error.begin(), error.end(), '\n'), 1) << arguments << "\n"
+                                                                       << error;
+        }
+    }
+};
+
+// Small and short, whatever the setting is.
+TEST_F(SettingsFuzz, OfRender) {
+    const std::string scene = make_scene("scene.json",
+                                         {{"scan", {{"sensing_points", {2, 2}}}},
+                                          {"time_axis", {{"num_bins", 16}, {"bin_width_m", 0.2}}},
+                                          {"render", {{"samples", 4}}}});
+    try_settings("render " + scene + " -o " + file("c.h5"),
+                 core::settings_help(renderer::SceneDescription{}),
+                 40,
+                 11);
+}
+
+TEST_F(SettingsFuzz, OfReconstruct) {
+    try_settings("reconstruct data/letter.h5 -o " + file("v.h5") + " --set volume.voxels=[8,8,8]",
+                 core::settings_help(apps::ReconstructOptions{}),
+                 40,
+                 12);
+}
+
+TEST_F(SettingsFuzz, OfCaptures) {
+    for (const std::string command : {"info data/letter.h5", "convert data/letter.h5 "}) {
+        const bool writes = command.ends_with(' ');
+        try_settings(command + (writes ? file("c.npz") : ""),
+                     core::settings_help(apps::CaptureOptions{}),
+                     20,
+                     13);
+    }
+}
+
+TEST_F(SettingsFuzz, OfFitAndCalibrate) {
+    try_settings("fit data/letter.h5 scenes/letter/model.json -o " + file("f.json") +
+                     " --set start=given max_iterations=1 blur_schedule_m=[0]",
+                 core::settings_help(calib::FitSettings{}),
+                 30,
+                 14);
+    try_settings("calibrate data/setup.json -o " + file("c.json"),
+                 core::settings_help(calib::SetupSettings{}),
+                 20,
+                 15);
+}
+
+}  // namespace
