@@ -12,6 +12,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 
 namespace {
 
@@ -28,8 +29,11 @@ TEST(OutputFile, AppearsOnlyWhenCommitted) {
         EXPECT_TRUE(fs::exists(output.temporary()));
     }
     EXPECT_TRUE(fs::is_empty(folder.path()));
-    core::write_text_file(target, "whole");
-    EXPECT_EQ(test_support::file_bytes(target), "whole");
+    for (const std::string text : {"whole", "newer"}) {
+        core::write_text_file(target, text);
+        EXPECT_EQ(test_support::file_bytes(target), text);
+        EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 1);
+    }
 }
 
 TEST(OutputFile, FailedWorkLeavesTheOlderResult) {

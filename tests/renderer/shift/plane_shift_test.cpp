@@ -52,6 +52,23 @@ TEST(PlaneShift, ConfocalJacobianIsTheRatioOfRadii) {
     }
 }
 
+TEST(PlaneShift, ScalesWithTheScene) {
+    const auto shift_of = [](double scale) {
+        const FocusPair source{scale * Vec3(-3, 1, 1), scale * Vec3(5, 1, 1)};
+        const FocusPair target{scale * Vec3(-3, 1, 1.1), scale * Vec3(5, 1.1, 1)};
+        ShiftTrace trace;
+        return shift_on_plane(plane_z0(), source, target, {1.0, 0.2 * scale}, 0.0, trace);
+    };
+    const auto unscaled = shift_of(1.0);
+    ASSERT_TRUE(unscaled);
+    for (const double scale : {0.01, 0.3, 7.0, 100.0}) {
+        const auto shift = shift_of(scale);
+        ASSERT_TRUE(shift) << scale;
+        EXPECT_NEAR((shift->displacement / scale - unscaled->displacement).norm(), 0.0, 1e-12);
+        EXPECT_NEAR(shift->jacobian, unscaled->jacobian, 1e-10);
+    }
+}
+
 // Around coincident foci that stay in place every gradient in the plane points away from the foot
 // of the perpendicular, so all gauges move along the same line, and the closed form is an oracle.
 template <class Gauge>
