@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "nlos/methods/method_input.h"
 #include "nlos/preparation/prepared_capture.h"
 #include "nlos/reconstruction/reconstruct_settings.h"
 
@@ -29,8 +30,5 @@ MethodChoice choose_method(const ReconstructSettings& settings, PreparedCapture&
 std::optional<std::string> unobserved_warning(const ReconstructSettings& settings,
                                               const core::ObservedBins& observed,
                                               int num_bins);
-
-/// Fewest bins from which frequency-domain methods make sense.
-inline constexpr int kMinBins = 8;
 
 }  // namespace nlos

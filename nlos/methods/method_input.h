@@ -44,12 +44,16 @@ struct MethodInput {
     Measurement measurement = {};      ///< for Method::Solver; all others get it taken off
 };
 
+/// Fewest bins from which frequency-domain methods make sense.
+inline constexpr int kMinBins = 8;
+
 /// Whether a method for confocal grids can serve: an even planar grid with a voxel column at each
-/// of its points.
+/// of its points, and enough bins.
 inline bool is_confocal_grid(const MethodInput& input) {
     return input.scan.pattern == core::ScanPattern::Confocal && input.wall.grid &&
            input.axes.x_m.size() == input.wall.grid->size[0] &&
-           input.axes.y_m.size() == input.wall.grid->size[1];
+           input.axes.y_m.size() == input.wall.grid->size[1] &&
+           input.time_axis.num_bins >= kMinBins;
 }
 
 /// The same measurement with other histograms, all of them observed.

@@ -67,11 +67,12 @@ class WallHistograms {
     double shortest_leg_m_;
 };
 
-/// Light of all points per bin of their common axis: sums, and sums of squares for intensities.
+/// Light of all points per bin of their common axis.
 struct TotalLight {
-    std::vector<double> sum, squares, points;
+    std::vector<double> excess;        ///< over the background
+    std::vector<double> sum, squares;  ///< of values, background included
 
-    explicit TotalLight(std::size_t num_bins) : sum(num_bins), squares(num_bins), points(num_bins) {}
+    explicit TotalLight(std::size_t num_bins) : excess(num_bins), sum(num_bins), squares(num_bins) {}
 };
 
 TotalLight total_light(const MethodInput& input, const WallHistograms& histograms) {
@@ -80,9 +81,9 @@ TotalLight total_light(const MethodInput& input, const WallHistograms& histogram
         const double background = input.measurement.background(pair);
         histograms.visit(pair, [&](int bin, float value) {
             const auto i = static_cast<std::size_t>(bin);
-            total.sum[i] += static_cast<double>(value) - background;
+            total.excess[i] += static_cast<double>(value) - background;
+            total.sum[i] += static_cast<double>(value);
             total.squares[i] += std::pow(static_cast<double>(value), 2);
-            total.points[i] += 1.0;
         });
     }
     return total;
@@ -94,23 +95,29 @@ core::BinRange find_window(const MethodInput& input, const TotalLight& total, bo
     const int length = std::max(1, num_bins / kWindowParts);
     const int num_parts = (num_bins + length - 1) / length;
     std::vector<double> light(static_cast<std::size_t>(num_parts));
-    std::vector<double> noise(light.size());
+    std::vector<double> variance(light.size());  // of counts
     for (std::size_t i = 0; i < total.sum.size(); ++i) {
         const std::size_t part = i / static_cast<std::size_t>(length);
-        light[part] += total.sum[i];
-        noise[part] += std::sqrt(total.squares[i]);
+        light[part] += total.excess[i];
+        variance[part] += std::max(0.0, total.sum[i]);
     }
     const double strongest = *std::ranges::max_element(light);
     core::BinRange window{num_bins, 0};
     for (int part = 0; part < num_parts; ++part) {
         const double own = light[static_cast<std::size_t>(part)];
-        const double sigma = is_poisson ? noise[static_cast<std::size_t>(part)] : 0.0;
+        const double sigma =
+            is_poisson ? std::sqrt(variance[static_cast<std::size_t>(part)]) : 0.0;
         if (own <= std::max(kSmallestLight * strongest, kSignificance * sigma)) continue;
         window.begin = std::min(window.begin, (part - 1) * length);
         window.end = (part + 2) * length;
     }
     if (window.end == 0) return {0, num_bins};
-    return core::intersection(window, {0, num_bins});
+    window = core::intersection(window, {0, num_bins});
+    // A few bins at least, that depths have neighbours.
+    const int missing = std::max(0, std::min(num_bins, kMinBins) - window.size());
+    window.begin = std::max(0, window.begin - missing);
+    window.end = std::min(num_bins, std::max(window.end, window.begin + kMinBins));
+    return window;
 }
 
 Cone make_window_cone(const MethodInput& input, const core::TimeAxis& axis) {

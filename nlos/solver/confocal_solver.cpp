@@ -299,7 +299,7 @@ class ConfocalSolver {
 // Of the choice between falloffs.
 constexpr int kTrialIterations = 20;
 constexpr double kFewCounts = 5.0;       // in the bins that hold most of the light
-constexpr double kClearlyBetter = 0.95;  // share of the misfit
+constexpr double kClearlyBetter = 0.8;   // share of the misfit
 
 /// The mean of counts, weighted by themselves.
 double mean_intensity(const ConfocalProblem& data) {

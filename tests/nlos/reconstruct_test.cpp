@@ -157,6 +157,42 @@ TEST(Reconstruct, StatesDeviationsOfDepthWhereTheNoiseIsKnown) {
     EXPECT_GT(num_stated(capture), 0);
 }
 
+TEST(Reconstruct, AutoLooksAtTheCaptureAndSaysWhatItFound) {
+    core::Capture capture = example();
+    EXPECT_EQ(reconstruct(capture, {}, {}).method, "lct");
+    for (float& value : capture.transient.values()) value = std::round(500.0F * value);
+    capture.unit = core::TransientUnit::Counts;
+    const Reconstruction counts = reconstruct(capture, {}, {});
+    EXPECT_EQ(counts.method, "solver");
+    ASSERT_GE(counts.findings.size(), 4U);
+    EXPECT_NE(counts.findings[0].find("counts"), std::string::npos);
+    EXPECT_LT((nlos_test::brightest_point(counts) - Vec3(0.075, -0.125, 0.5)).norm(), 0.01);
+    EXPECT_TRUE(reconstruct(capture, with({"method=lct"}), {}).findings.empty());
+    capture.unit = core::TransientUnit::Radiance;
+    std::vector<core::BinRange> ranges(capture.scan.num_pairs(), {0, capture.time_axis.num_bins});
+    ranges[7] = {};
+    core::restrict_observed(capture, ranges);
+    EXPECT_EQ(reconstruct(capture, {}, {}).method, "solver");
+}
+
+TEST(Reconstruct, AutoTellsRetroreflectiveFromDiffuseCounts) {
+    for (const double falloff : {2.0, 4.0}) {
+        core::Capture capture = nlos_test::confocal_capture(
+            nlos_test::wall_grid({16, 16}, {0.1, 0.1}), {0.0, 0.016, 128});
+        for (int i = -3; i <= 3; ++i) {
+            for (int j = -3; j <= 3; ++j) {
+                nlos_test::add_scatterer(capture, Vec3(0.05 * i, 0.05 * j, 0.4), falloff);
+            }
+        }
+        const auto values = capture.transient.values();
+        const float largest = *std::ranges::max_element(values);
+        for (float& value : values) value = std::round(1000.0F * value / largest);
+        capture.unit = core::TransientUnit::Counts;
+        EXPECT_EQ(reconstruct(capture, {}, {}).settings.falloff,
+                  falloff == 2.0 ? Falloff::Retro : Falloff::Diffuse);
+    }
+}
+
 TEST(Reconstruct, TakesANoiseFloorOffWhateverTheUnit) {
     core::Capture clean = example();
     core::Capture noisy = example();
@@ -167,7 +203,7 @@ TEST(Reconstruct, TakesANoiseFloorOffWhateverTheUnit) {
     EXPECT_EQ(reconstruct(noisy, with({"noise_floor=2", all}), {}).volume.values, expected);
     EXPECT_NE(reconstruct(noisy, with({"noise_floor=1", all}), {}).volume.values, expected);
     noisy.unit = core::TransientUnit::Counts;
-    const Reconstruction estimated = reconstruct(noisy, with({"snr=1", all}), {});
+    const Reconstruction estimated = reconstruct(noisy, with({"method=lct", "snr=1", all}), {});
     EXPECT_EQ(estimated.volume.values, expected);
     EXPECT_FALSE(estimated.settings.noise_floor);
 }
