@@ -119,6 +119,7 @@ class PairSolver {
         const std::size_t stride = std::max<std::size_t>(1, seen_pairs_.size() / kFirstPairs);
         const std::vector<std::size_t> pairs = pairs_of(0, stride);
         const std::vector<std::size_t> all = reachable_voxels();
+        if (all.empty()) return;
         place(all);
         std::vector<float> counts = counts_of(pairs);
         for (std::size_t i = 0; i < counts.size(); ++i) {

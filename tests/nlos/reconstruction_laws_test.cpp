@@ -67,6 +67,14 @@ class ReconstructionLaw : public testing::TestWithParam<LawCase> {
         return reconstruct(capture, settings, {});
     }
 
+    /// The nearest column; one of the two that a point lies between where expectation maximisation
+    /// gathers all light in one.
+    static double lateral_tolerance_m() {
+        const bool gathers = GetParam().name.starts_with("Solver") &&
+                             GetParam().pattern != ScanPattern::Confocal;
+        return (gathers ? 1.0 : 0.5) * kPitch_m;
+    }
+
     /// A tenth of a bin in path length, half as much in depth.
     static double depth_tolerance_m(const Vec3& place, const core::TimeAxis& axis = kAxis) {
         const double bin_m2 = std::pow(0.5 * axis.opl_end_m(), 2) / axis.num_bins;
@@ -149,8 +157,8 @@ TEST_P(ReconstructionLaw, APointAnywhereIsBrightestAtItsPlace) {
         nlos_test::add_scatterer(capture, place, 4.0);
         const Vec3 found = nlos_test::fitted_peak(
             run(capture, {std::array{24, 24, 66}, std::array{0.2, 1.0}}).volume);
-        EXPECT_NEAR(found.x(), place.x(), 0.5 * kPitch_m) << place.transpose();
-        EXPECT_NEAR(found.y(), place.y(), 0.5 * kPitch_m) << place.transpose();
+        EXPECT_NEAR(found.x(), place.x(), lateral_tolerance_m()) << place.transpose();
+        EXPECT_NEAR(found.y(), place.y(), lateral_tolerance_m()) << place.transpose();
         const double bend = (GetParam().is_wave() ? 2.0 : 1.0) * kPitch_m * kPitch_m / place.z();
         EXPECT_NEAR(found.z(), place.z(), depth_tolerance_m(place, axis) + bend)
             << place.transpose();

@@ -59,7 +59,7 @@ NLOS_FIGURES(CoverageBench, depths, probabilities);
 /// What `nlos bench coverage` is to measure.
 struct CoverageBenchSettings {
     int surfaces = 60;  ///< each at every signal level
-    int first = 1000;   ///< number of the first; constants were fitted to those below 20
+    int first = 1000;   ///< number of the first
     std::vector<std::string> methods{"lct", "dlct", "fk", "phasor", "fbp", "bp"};
     std::vector<double> peaks{3.0, 10.0, 20.0, 100.0, 1000.0};
 };

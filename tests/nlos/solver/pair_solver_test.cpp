@@ -37,6 +37,7 @@ core::Capture plate_before_uneven_wall(double photons_of_brightest_bin) {
         const auto values = capture.transient.values();
         const double largest = static_cast<double>(*std::ranges::max_element(values));
         for (float& value : values) {
+            if (!(value > 0.0F)) continue;
             std::poisson_distribution<int> counts(photons_of_brightest_bin *
                                                   static_cast<double>(value) / largest);
             value = static_cast<float>(counts(generator));
