@@ -165,8 +165,8 @@ void choose_axes(const core::Scan& scan,
 }
 
 MethodChoice choose_and_enter_method(const core::Capture& capture,
-                    ReconstructSettings& settings,
-                    PreparedCapture& prepared) {
+                                     ReconstructSettings& settings,
+                                     PreparedCapture& prepared) {
     ReconstructSettings with_response = settings;
     if (settings.method == Method::Auto && !core::is_stated(settings.response)) {
         with_response.response = core::recorded_response(capture).value_or(settings.response);

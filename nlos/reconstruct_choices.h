@@ -13,8 +13,8 @@ namespace nlos {
 // What reconstruct() chooses from a capture where its settings leave it open. Each choice is
 // entered into the settings.
 
-/// Chooses the method and enters it and what it takes from the capture's provenance: `auto` lets the
-/// solver explain a recorded response.
+/// Chooses the method and enters it and what it takes from the capture's provenance: `auto` lets
+/// the solver explain a recorded response.
 MethodChoice choose_and_enter_method(const core::Capture& capture,
                                      ReconstructSettings& settings,
                                      PreparedCapture& prepared);

@@ -77,7 +77,8 @@ MethodChoice choose_automatically(const ReconstructSettings& settings,
     const Method method = best_method(prepared, settings.volume);
     if (method == Method::Lct) {
         const std::string noise = why_statistical(settings, prepared);
-        if (!noise.empty()) return {Method::Solver, "confocal scan on an even planar grid, " + noise};
+        if (!noise.empty())
+            return {Method::Solver, "confocal scan on an even planar grid, " + noise};
         return {method, "confocal scan on an even planar grid"};
     }
     const std::string no_lct = why_no_confocal_method(prepared, settings.volume);
@@ -126,8 +127,7 @@ std::optional<std::string> unobserved_warning(const ReconstructSettings& setting
                                               const core::ObservedBins& observed,
                                               int num_bins) {
     const bool works_by_transforms =
-        settings.method == Method::Phasor ||
-        is_confocal_method(settings.method);
+        settings.method == Method::Phasor || is_confocal_method(settings.method);
     if (!observed || !works_by_transforms) return std::nullopt;
     const auto partial = std::ranges::count_if(
         *observed, [&](const core::BinRange& range) { return range.size() < num_bins; });

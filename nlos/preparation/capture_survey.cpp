@@ -67,8 +67,8 @@ std::string observed_text(const PreparedCapture& prepared) {
 std::vector<std::string> survey_capture(const PreparedCapture& prepared,
                                         const PreparationPlan& plan,
                                         const ReconstructSettings& settings) {
-    std::vector<std::string> lines{light_text(prepared), range_text(prepared, plan),
-                                   observed_text(prepared)};
+    std::vector<std::string> lines{
+        light_text(prepared), range_text(prepared, plan), observed_text(prepared)};
     if (!plan.ambient_per_bin.empty()) {
         const double sum =
             std::accumulate(plan.ambient_per_bin.begin(), plan.ambient_per_bin.end(), 0.0);

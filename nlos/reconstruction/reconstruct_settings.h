@@ -129,9 +129,10 @@ void for_each_field(SolverSettings& s, Visitor&& visit) {
           core::at_least(0,
                          "weight of total variation, in standard deviations of a voxel's noise; "
                          "null: 1 for counts, 4 for radiance"));
-    visit("sparsity",
-          s.sparsity,
-          core::at_least(0, "weight of the sum of all voxels, likewise; null: a tenth of solver.tv"));
+    visit(
+        "sparsity",
+        s.sparsity,
+        core::at_least(0, "weight of the sum of all voxels, likewise; null: a tenth of solver.tv"));
     visit("spot_m",
           s.spot_m,
           core::at_least(0, "full width at half maximum of the spot on the wall [m]"));
@@ -145,10 +146,11 @@ template <class Visitor>
 void for_each_field(ReconstructSettings& s, Visitor&& visit) {
     visit("method", s.method, "reconstruction method");
     visit("volume", s.volume, "where to reconstruct");
-    visit("falloff",
-          s.falloff,
-          "how the hidden surface reflects (lct, dlct, fk, phasor, fbp by phasor, solver); auto: as "
-          "counts say where method=auto takes the solver, else diffuse");
+    visit(
+        "falloff",
+        s.falloff,
+        "how the hidden surface reflects (lct, dlct, fk, phasor, fbp by phasor, solver); auto: as "
+        "counts say where method=auto takes the solver, else diffuse");
     visit("prior", s.prior, "assumption about the hidden scene (lct); tv: as method solver");
     visit("solver", s.solver, "the statistical solver");
     visit("compensation",
@@ -208,8 +210,7 @@ void validate(const ReconstructSettings& settings);
 template <>
 struct core::EnumNames<nlos::Method> {
     static constexpr auto value =
-        names_from_zero<nlos::Method>(
-        "auto", "lct", "bp", "fbp", "fk", "phasor", "dlct", "solver");
+        names_from_zero<nlos::Method>("auto", "lct", "bp", "fbp", "fk", "phasor", "dlct", "solver");
 };
 template <>
 struct core::EnumNames<nlos::Compensation> {
@@ -233,6 +234,5 @@ struct core::EnumNames<nlos::Prior> {
 };
 template <>
 struct core::EnumNames<nlos::Likelihood> {
-    static constexpr auto value =
-        names_from_zero<nlos::Likelihood>("auto", "poisson", "gaussian");
+    static constexpr auto value = names_from_zero<nlos::Likelihood>("auto", "poisson", "gaussian");
 };

@@ -39,9 +39,8 @@ ConeConvolution::ConeConvolution(
       inverse_(Fft::complex_to_real(cone.length, kRowsPerBatch)),
       qx_(cone.px / 2 + 1),
       qy_(cone.py / 2 + 1),
-      gradient_power_{difference_power(cone.px),
-                      difference_power(cone.py),
-                      difference_power(cone.length)} {
+      gradient_power_{
+          difference_power(cone.px), difference_power(cone.py), difference_power(cone.length)} {
     const ConeKernel kernel(cone, grid);
     const Fft transform = Fft::even_2d(qx_, qy_);
     const double scale = 1.0 / std::sqrt(kernel.squared_norm());
@@ -113,8 +112,7 @@ void ConeConvolution::from_frequencies(Planes& planes, ConeField& field) const {
             inverse_.run(rows);
             for (std::size_t v = 0; v < num_v; ++v) {
                 for (std::size_t lane = 0; lane < lanes; ++lane) {
-                    plane[v * cone_.ny + first + lane] =
-                        scale * rows.data()[lane * row_floats + v];
+                    plane[v * cone_.ny + first + lane] = scale * rows.data()[lane * row_floats + v];
                 }
             }
         }

@@ -24,8 +24,7 @@ class ConeConvolution {
  public:
     /// spot_m   full width at half maximum of the illuminated and observed spot [m]
     /// mu, nu   see above
-    ConeConvolution(
-        const Cone& cone, const WallGrid& grid, double spot_m, double mu, double nu);
+    ConeConvolution(const Cone& cone, const WallGrid& grid, double spot_m, double mu, double nu);
 
     std::size_t num_values() const { return cone_.num_columns() * cone_.num_v(); }
 

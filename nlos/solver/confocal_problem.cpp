@@ -72,7 +72,8 @@ struct TotalLight {
     std::vector<double> excess;        ///< over the background
     std::vector<double> sum, squares;  ///< of values, background included
 
-    explicit TotalLight(std::size_t num_bins) : excess(num_bins), sum(num_bins), squares(num_bins) {}
+    explicit TotalLight(std::size_t num_bins)
+        : excess(num_bins), sum(num_bins), squares(num_bins) {}
 };
 
 TotalLight total_light(const MethodInput& input, const WallHistograms& histograms) {
@@ -105,8 +106,7 @@ core::BinRange find_window(const MethodInput& input, const TotalLight& total, bo
     core::BinRange window{num_bins, 0};
     for (int part = 0; part < num_parts; ++part) {
         const double own = light[static_cast<std::size_t>(part)];
-        const double sigma =
-            is_poisson ? std::sqrt(variance[static_cast<std::size_t>(part)]) : 0.0;
+        const double sigma = is_poisson ? std::sqrt(variance[static_cast<std::size_t>(part)]) : 0.0;
         if (own <= std::max(kSmallestLight * strongest, kSignificance * sigma)) continue;
         window.begin = std::min(window.begin, (part - 1) * length);
         window.end = (part + 2) * length;
@@ -151,8 +151,7 @@ std::vector<double> poisson_precision(const TotalLight& total, const core::BinRa
         const auto i = static_cast<std::size_t>(bin);
         intensity.push_back(total.sum[i] > 0.0 ? total.squares[i] / total.sum[i] : 0.0);
     }
-    const double floor =
-        std::max(1e-12, kSmallestIntensity * *std::ranges::max_element(intensity));
+    const double floor = std::max(1e-12, kSmallestIntensity * *std::ranges::max_element(intensity));
     for (double& value : intensity) value = 1.0 / std::max(floor, value);
     return intensity;
 }
@@ -178,8 +177,7 @@ double difference_noise(const ConfocalProblem& data, double power) {
                                      data.observed[column + 1].holds(static_cast<int>(bin)) &&
                                      data.observed[column + 2].holds(static_cast<int>(bin));
                 if (!is_seen) continue;
-                const auto second =
-                    static_cast<double>(row[iy] - 2.0F * row[iy + 1] + row[iy + 2]);
+                const auto second = static_cast<double>(row[iy] - 2.0F * row[iy + 1] + row[iy + 2]);
                 sum += std::pow(factor * second, 2) / 6.0;
                 count += 1.0;
             }
@@ -224,7 +222,8 @@ bool holds_counts(const MethodInput& input) {
 
 }  // namespace
 
-ConfocalProblem make_confocal_problem(const MethodInput& input, const ReconstructSettings& settings) {
+ConfocalProblem make_confocal_problem(const MethodInput& input,
+                                      const ReconstructSettings& settings) {
     const WallHistograms histograms(input);
     const double power = falloff_power(settings.falloff);
     Likelihood likelihood = settings.solver.likelihood;
@@ -255,7 +254,8 @@ ConfocalProblem make_confocal_problem(const MethodInput& input, const Reconstruc
             data.values[(column / ny * num_bins + t) * ny + column % ny] = value;
         });
     }
-    data.precision = is_poisson ? poisson_precision(total, window) : gaussian_precision(data, power);
+    data.precision =
+        is_poisson ? poisson_precision(total, window) : gaussian_precision(data, power);
     data.unit = light_unit(data);
     data.time.scale(data.unit);
     return data;

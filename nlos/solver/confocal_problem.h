@@ -28,6 +28,7 @@ struct ConfocalProblem {
 /// Where device legs differ by no whole number of bins, a bin is split between two.
 ///
 /// throws     core::Error when the axis has no positive range
-ConfocalProblem make_confocal_problem(const MethodInput& input, const ReconstructSettings& settings);
+ConfocalProblem make_confocal_problem(const MethodInput& input,
+                                      const ReconstructSettings& settings);
 
 }  // namespace nlos

@@ -18,7 +18,8 @@
 //     c <- (1 + B'P B)^-1 (K f + p + B'P (h + r)),    p <- p + K f - c,    r <- r + h - B c
 //     d <- shrink(grad f + u, tv / mu),               u <- u + grad f - d
 //     w <- max(0, f + q - sparsity / nu),             q <- q + f - w.
-// each of f and h taken beyond where they moved from their splits (over-relaxation). Outside the wall's footprint nothing was measured: there c - p = K f, and d, u, w and q are 0.
+// each of f and h taken beyond where they moved from their splits (over-relaxation). Outside the
+// wall's footprint nothing was measured: there c - p = K f, and d, u, w and q are 0.
 
 namespace nlos {
 namespace {
@@ -99,9 +100,9 @@ class ConfocalSolver {
             convolution_.solve(light_, right_);
             split_data(false);
             const Change change = split_field();
-            const double share = std::max(
-                static_cast<double>(i) / max_iterations,
-                std::min(1.0, std::log(change.relative()) / std::log(tolerance_)));
+            const double share =
+                std::max(static_cast<double>(i) / max_iterations,
+                         std::min(1.0, std::log(change.relative()) / std::log(tolerance_)));
             progress.update(0.95 * share, "solver");
             if (change.relative() <= tolerance_) return i;
         }
@@ -178,9 +179,7 @@ class ConfocalSolver {
         });
     }
 
-    static float relaxed(float value, float split) {
-        return split + kRelaxation * (value - split);
-    }
+    static float relaxed(float value, float split) { return split + kRelaxation * (value - split); }
 
     /// From B c of one bin to P (h + r) in its place; h + r stays in `r`.
     void explain_bins(std::size_t ix, std::size_t t, bool is_first, float* time, float* r) const {
@@ -195,9 +194,8 @@ class ConfocalSolver {
             const float e = time[lane] - r[lane] + background[lane];
             float h = is_seen ? values[lane] : background[lane];
             if (!is_first) {
-                const float m = is_poisson
-                                    ? poisson_proximal(values[lane], e, penalty)
-                                    : gaussian_proximal(values[lane], e, penalty, penalty);
+                const float m = is_poisson ? poisson_proximal(values[lane], e, penalty)
+                                           : gaussian_proximal(values[lane], e, penalty, penalty);
                 h = is_seen ? m : e;
             }
             h -= background[lane];
@@ -298,8 +296,8 @@ class ConfocalSolver {
 
 // Of the choice between falloffs.
 constexpr int kTrialIterations = 20;
-constexpr double kFewCounts = 5.0;       // in the bins that hold most of the light
-constexpr double kClearlyBetter = 0.8;   // share of the misfit
+constexpr double kFewCounts = 5.0;      // in the bins that hold most of the light
+constexpr double kClearlyBetter = 0.8;  // share of the misfit
 
 /// The mean of counts, weighted by themselves.
 double mean_intensity(const ConfocalProblem& data) {
@@ -335,8 +333,9 @@ Volume solve_confocal(const MethodInput& input,
     core::parallel_for(cone.num_columns(), [&](std::size_t column) {
         std::vector<float> row(cone.num_v());
         for (std::size_t v = 0; v < cone.num_v(); ++v) {
-            row[v] = unit * solver.albedo()[(column / cone.ny * cone.num_v() + v) * cone.ny +
-                                            column % cone.ny];
+            row[v] =
+                unit *
+                solver.albedo()[(column / cone.ny * cone.num_v() + v) * cone.ny + column % cone.ny];
         }
         to_depth.apply(row.data(), volume.values.data() + column * num_z);
     });

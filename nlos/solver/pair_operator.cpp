@@ -65,8 +65,8 @@ void PairOperator::fill_legs(std::size_t pair,
     const Eigen::Vector3f s = sensing_[scan_.sensing_index(pair)];
     const auto per_bin = static_cast<float>(1.0 / axis_.bin_width_m);
     // Bin 0's centre stands at 1, half a bin behind the axis's start.
-    const float offset = device_legs_bins_[pair] + 0.5F -
-                         static_cast<float>(axis_.opl_start_m / axis_.bin_width_m);
+    const float offset =
+        device_legs_bins_[pair] + 0.5F - static_cast<float>(axis_.opl_start_m / axis_.bin_width_m);
     const auto last = static_cast<float>(num_bins_ + 1);
     const float* __restrict x = x_.data() + begin;
     const float* __restrict y = y_.data() + begin;

@@ -47,9 +47,9 @@ class PairOperator {
     std::size_t num_bins_;
     core::ResponseFilter response_;
     bool is_retro_;
-    std::vector<core::BinRange> observed_;             ///< per pair
+    std::vector<core::BinRange> observed_;                 ///< per pair
     std::vector<Eigen::Vector3f> illumination_, sensing_;  ///< wall's frame
-    std::vector<float> device_legs_bins_;              ///< per pair
+    std::vector<float> device_legs_bins_;                  ///< per pair
     std::vector<float> x_, y_, z_;
 };
 

@@ -12,25 +12,25 @@
 namespace nlos {
 namespace {
 
-constexpr double kRadianceCounts = 400.0;     // in the brightest bin
-constexpr std::size_t kPairsPerSubset = 64;   // at least
-constexpr std::size_t kMaxSubsets = 16;       // at first
-constexpr int kPassesPerDoubling = 3;         // of the subsets' size
-constexpr std::size_t kFirstPairs = 256;      // that choose voxels
-constexpr double kFirstShare = 0.1;           // of the voxels to start with, the brightest
-constexpr double kSmallestPairLight = 1e-3;        // of the brightest bin
-constexpr float kNothing = 2e-3F;             // of the brightest voxel
-constexpr int kTotalVariationSteps = 8;       // after each pass
-constexpr double kSparsityOfPairs = 0.1;        // of the weight of total variation, unless set
-constexpr double kWeight = 1.0;               // of total variation, unless set
+constexpr double kRadianceCounts = 400.0;    // in the brightest bin
+constexpr std::size_t kPairsPerSubset = 64;  // at least
+constexpr std::size_t kMaxSubsets = 16;      // at first
+constexpr int kPassesPerDoubling = 3;        // of the subsets' size
+constexpr std::size_t kFirstPairs = 256;     // that choose voxels
+constexpr double kFirstShare = 0.1;          // of the voxels to start with, the brightest
+constexpr double kSmallestPairLight = 1e-3;  // of the brightest bin
+constexpr float kNothing = 2e-3F;            // of the brightest voxel
+constexpr int kTotalVariationSteps = 8;      // after each pass
+constexpr double kSparsityOfPairs = 0.1;     // of the weight of total variation, unless set
+constexpr double kWeight = 1.0;              // of total variation, unless set
 constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
 /// Voxels that may hold something: where they are, what they hold, who their neighbours are.
 struct ActiveVoxels {
     std::vector<std::size_t> indices;  ///< in the volume, ascending
     std::vector<float> albedo;
-    std::array<std::vector<float>, 3> duals;           ///< of total variation
-    std::array<std::vector<std::size_t>, 3> next;      ///< along x, y, z; kNone: holds nothing
+    std::array<std::vector<float>, 3> duals;       ///< of total variation
+    std::array<std::vector<std::size_t>, 3> next;  ///< along x, y, z; kNone: holds nothing
     std::array<std::vector<std::size_t>, 3> previous;
 
     std::size_t size() const { return indices.size(); }
@@ -43,13 +43,12 @@ class PairSolver {
           settings_(settings.solver),
           light_(input, settings.falloff),
           size_{input.axes.x_m.size(), input.axes.y_m.size(), input.axes.z_m.size()} {
-        const bool is_counts = settings.solver.likelihood != Likelihood::Gaussian &&
-                               input.measurement.is_counts;
+        const bool is_counts =
+            settings.solver.likelihood != Likelihood::Gaussian && input.measurement.is_counts;
         const auto values = input.transient.values();
         const float largest = *std::ranges::max_element(values);
-        scale_ = is_counts || !(largest > 0.0F)
-                     ? 1.0F
-                     : static_cast<float>(kRadianceCounts) / largest;
+        scale_ =
+            is_counts || !(largest > 0.0F) ? 1.0F : static_cast<float>(kRadianceCounts) / largest;
         for (std::size_t pair = 0; pair < input.scan.num_pairs(); ++pair) {
             if (light_.observed()[pair].size() > 0) seen_pairs_.push_back(pair);
         }
@@ -64,13 +63,13 @@ class PairSolver {
 
     Volume run() {
         choose_first_voxels();
-        const std::size_t most = std::clamp<std::size_t>(
-            seen_pairs_.size() / kPairsPerSubset, 1, kMaxSubsets);
+        const std::size_t most =
+            std::clamp<std::size_t>(seen_pairs_.size() / kPairsPerSubset, 1, kMaxSubsets);
         int pass = 0;
         for (; pass < settings_.max_iterations && voxels_.size() > 0; ++pass) {
             check_stop(input_.progress);
-            const std::size_t num_subsets = std::max<std::size_t>(
-                1, most >> std::min<int>(pass / kPassesPerDoubling, 16));
+            const std::size_t num_subsets =
+                std::max<std::size_t>(1, most >> std::min<int>(pass / kPassesPerDoubling, 16));
             const std::vector<float> before = voxels_.albedo;
             for (std::size_t subset = 0; subset < num_subsets; ++subset) {
                 maximise_expectation(subset, num_subsets);
@@ -78,7 +77,8 @@ class PairSolver {
             smooth();
             const double change = relative_change(before);
             input_.progress.update(
-                0.95 * std::min(1.0, std::log(change) / std::log(settings_.tolerance)), "solver");
+                0.95 * std::clamp(std::log(change) / std::log(settings_.tolerance), 0.0, 1.0),
+                "solver");
             if (num_subsets == 1 && change <= settings_.tolerance) break;
             leave_out_empty();
         }
@@ -123,8 +123,7 @@ class PairSolver {
         place(all);
         std::vector<float> counts = counts_of(pairs);
         for (std::size_t i = 0; i < counts.size(); ++i) {
-            const double background =
-                input_.measurement.background(pairs[i / light_.num_bins()]);
+            const double background = input_.measurement.background(pairs[i / light_.num_bins()]);
             counts[i] = std::max(0.0F, counts[i] - scale_ * static_cast<float>(background));
         }
         std::vector<float> bright(all.size());
@@ -135,8 +134,8 @@ class PairSolver {
             bright[i] = seen[i] > 0.0F ? bright[i] / seen[i] : 0.0F;
         }
         std::vector<float> sorted = bright;
-        const auto keep = static_cast<std::ptrdiff_t>(
-            kFirstShare * static_cast<double>(all.size()));
+        const auto keep =
+            static_cast<std::ptrdiff_t>(kFirstShare * static_cast<double>(all.size()));
         std::ranges::nth_element(sorted, sorted.end() - keep - 1);
         const float least = *(sorted.end() - keep - 1);
         for (std::size_t i = 0; i < all.size(); ++i) {
@@ -162,8 +161,8 @@ class PairSolver {
         const double least = kSmallestPairLight * *std::ranges::max_element(light);
         double end = static_cast<double>(light.size());
         while (end > 1.0 && light[static_cast<std::size_t>(end) - 1] <= least) end -= 1.0;
-        const double farthest = 0.5 * (input_.time_axis.bin_begin_m(end) -
-                                       core::device_leg_range_m(input_.scan)[0]);
+        const double farthest =
+            0.5 * (input_.time_axis.bin_begin_m(end) - core::device_leg_range_m(input_.scan)[0]);
         std::vector<std::size_t> voxels;
         for (std::size_t i = 0; i < input_.axes.num_voxels(); ++i) {
             if (input_.axes.z_m[i % size_[2]] <= farthest) voxels.push_back(i);
@@ -209,8 +208,7 @@ class PairSolver {
         std::vector<float>& own = sensitivity_[subset];
         if (own.empty()) {
             own.resize(voxels_.size());
-            light_.adjoint(
-                std::vector<float>(pairs.size() * light_.num_bins(), 1.0F), pairs, own);
+            light_.adjoint(std::vector<float>(pairs.size() * light_.num_bins(), 1.0F), pairs, own);
         }
         return own;
     }
@@ -223,8 +221,8 @@ class PairSolver {
         std::vector<float> expected(counts.size());
         light_.forward(voxels_.albedo, pairs, expected);
         for (std::size_t i = 0; i < counts.size(); ++i) {
-            const auto background = static_cast<float>(
-                input_.measurement.background(pairs[i / light_.num_bins()]));
+            const auto background =
+                static_cast<float>(input_.measurement.background(pairs[i / light_.num_bins()]));
             const float m = expected[i] + scale_ * background;
             expected[i] = m > 1e-6F ? counts[i] / m : 0.0F;
         }

@@ -25,9 +25,10 @@ std::vector<float> signed_values(std::size_t count, unsigned seed) {
 }
 
 double product(const std::vector<float>& a, const std::vector<float>& b) {
-    return std::inner_product(a.begin(), a.end(), b.begin(), 0.0, std::plus<>(), [](float x, float y) {
-        return static_cast<double>(x) * static_cast<double>(y);
-    });
+    return std::inner_product(
+        a.begin(), a.end(), b.begin(), 0.0, std::plus<>(), [](float x, float y) {
+            return static_cast<double>(x) * static_cast<double>(y);
+        });
 }
 
 /// |<A x, y> - <x, A' y>| over what rounding in single precision may make of it.
@@ -65,7 +66,8 @@ TEST(TimeOperator, SolvesItsNormalEquations) {
     for (const bool has_response : {false, true}) {
         TimeOperator time = example_time_operator(has_response);
         std::vector<double> weights(time.num_bins());
-        for (std::size_t t = 0; t < weights.size(); ++t) weights[t] = 0.1 + 0.02 * static_cast<double>(t);
+        for (std::size_t t = 0; t < weights.size(); ++t)
+            weights[t] = 0.1 + 0.02 * static_cast<double>(t);
         time.factorize(weights);
         const std::vector<float> right = signed_values(time.num_v(), 3);
         std::vector<float> x = right;
@@ -99,7 +101,8 @@ TEST(TimeOperator, KeepsLightThatTheAxisHoldsAndDelaysItByTheResponse) {
     };
     EXPECT_NEAR(moments_of(plain)[0], 80.0, 1e-3);
     EXPECT_NEAR(moments_of(blurred)[0], 80.0, 1e-3);
-    EXPECT_NEAR(moments_of(blurred)[1] - moments_of(plain)[1], core::moments(response).mean_m, 1e-4);
+    EXPECT_NEAR(
+        moments_of(blurred)[1] - moments_of(plain)[1], core::moments(response).mean_m, 1e-4);
 }
 
 struct ConeExample {
@@ -183,10 +186,10 @@ TEST(ConeConvolution, SolvesItsSystem) {
                 const auto value = [&](std::size_t x, std::size_t z, std::size_t y) {
                     return static_cast<double>(f[example.at(x, z, y)]);
                 };
-                const double curvature =
-                    6.0 * value(ix, v, iy) - value(ix - 1, v, iy) - value(ix + 1, v, iy) -
-                    value(ix, v - 1, iy) - value(ix, v + 1, iy) - value(ix, v, iy - 1) -
-                    value(ix, v, iy + 1);
+                const double curvature = 6.0 * value(ix, v, iy) - value(ix - 1, v, iy) -
+                                         value(ix + 1, v, iy) - value(ix, v - 1, iy) -
+                                         value(ix, v + 1, iy) - value(ix, v, iy - 1) -
+                                         value(ix, v, iy + 1);
                 const std::size_t i = example.at(ix, v, iy);
                 ASSERT_NEAR(static_cast<double>(slope[i] + b[i]),
                             kMu * curvature + kNu * value(ix, v, iy),
@@ -207,9 +210,9 @@ TEST(Proximal, PoissonMinimisesItsFunction) {
                            static_cast<double>(penalty) * (x - static_cast<double>(e));
                 };
                 if (m > 0.0) {
-                    const double size = 1.0 + static_cast<double>(y) / m +
-                                        static_cast<double>(penalty) *
-                                            (m + std::abs(static_cast<double>(e)));
+                    const double size =
+                        1.0 + static_cast<double>(y) / m +
+                        static_cast<double>(penalty) * (m + std::abs(static_cast<double>(e)));
                     EXPECT_NEAR(slope(m), 0.0, 1e-5 * size) << y << ' ' << e << ' ' << penalty;
                 } else {
                     EXPECT_EQ(y, 0.0F);
@@ -222,7 +225,8 @@ TEST(Proximal, PoissonMinimisesItsFunction) {
 
 TEST(Proximal, DevianceIsThatOfPoissonCounts) {
     const auto log_likelihood = [](double y, double m) { return y * std::log(m) - m; };
-    EXPECT_NEAR(poisson_deviance(7.0, 4.0), 2.0 * (log_likelihood(7, 7) - log_likelihood(7, 4)), 1e-12);
+    EXPECT_NEAR(
+        poisson_deviance(7.0, 4.0), 2.0 * (log_likelihood(7, 7) - log_likelihood(7, 4)), 1e-12);
     EXPECT_NEAR(poisson_deviance(0.0, 2.5), 5.0, 1e-12);
     EXPECT_EQ(poisson_deviance(3.0, 3.0), 0.0);
 }
@@ -235,7 +239,8 @@ core::Capture uneven_scan(core::ScanPattern pattern, unsigned seed) {
     capture.scan.pattern = pattern;
     const auto add = [&](core::WallPoints& points, int count) {
         for (int i = 0; i < count; ++i) {
-            points.positions.emplace_back(uniform(generator), uniform(generator), 0.05 * uniform(generator));
+            points.positions.emplace_back(
+                uniform(generator), uniform(generator), 0.05 * uniform(generator));
             points.normals.push_back(core::Vec3::UnitZ());
         }
     };
@@ -259,15 +264,22 @@ TEST(PairOperator, AdjointIsExactForEveryPatternWithGapsAndResponse) {
         const WallFrame wall = derive_wall_frame(capture.scan);
         const core::Progress progress;
         const VolumeAxes axes{{0.0}, {0.0}, {0.5}, wall.world_from_wall};
-        MethodInput input{capture.scan, capture.time_axis, capture.transient, wall, axes, {0.4, 0.6},
-                          progress, &observed};
+        MethodInput input{capture.scan,
+                          capture.time_axis,
+                          capture.transient,
+                          wall,
+                          axes,
+                          {0.4, 0.6},
+                          progress,
+                          &observed};
         input.measurement.response =
             core::sample_response(core::ExponentialGaussianResponse{0.02, 0.03}, 0.02);
         PairOperator light(input, Falloff::Retro);
         std::vector<Eigen::Vector3f> voxels;
         const std::vector<float> places = signed_values(3000, 9);
         for (std::size_t i = 0; i < 1000; ++i) {
-            voxels.emplace_back(0.6F * places[3 * i], 0.6F * places[3 * i + 1], 0.6F + 0.4F * places[3 * i + 2]);
+            voxels.emplace_back(
+                0.6F * places[3 * i], 0.6F * places[3 * i + 1], 0.6F + 0.4F * places[3 * i + 2]);
         }
         light.set_voxels(voxels);
         std::vector<std::size_t> pairs(capture.scan.num_pairs());
@@ -294,8 +306,7 @@ TEST(PairOperator, ShowsAPointAsTheClosedFormDoes) {
         const MethodInput input{
             capture.scan, capture.time_axis, capture.transient, wall, axes, {0.4, 0.6}, progress};
         PairOperator light(input, falloff == 2.0 ? Falloff::Retro : Falloff::Diffuse);
-        light.set_voxels(
-            {(wall.world_from_wall.inverse(Eigen::Isometry) * point).cast<float>()});
+        light.set_voxels({(wall.world_from_wall.inverse(Eigen::Isometry) * point).cast<float>()});
         std::vector<std::size_t> pairs(40);
         std::iota(pairs.begin(), pairs.end(), std::size_t{0});
         std::vector<float> histograms(40 * 90);

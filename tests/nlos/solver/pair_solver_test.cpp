@@ -47,7 +47,8 @@ core::Capture plate_before_uneven_wall(double photons_of_brightest_bin) {
     return capture;
 }
 
-Reconstruction solve_plate(const core::Capture& capture, const std::vector<std::string>& overrides = {}) {
+Reconstruction solve_plate(const core::Capture& capture,
+                           const std::vector<std::string>& overrides = {}) {
     ReconstructSettings settings;
     settings.method = Method::Solver;
     core::apply_override(settings, "volume.voxels=[25,25,64]");
@@ -85,9 +86,9 @@ TEST(PairSolver, LeavesNothingBesideThePlate) {
     double all = 0.0;
     const VolumeAxes& axes = result.volume.axes;
     for (std::size_t i = 0; i < result.volume.values.size(); ++i) {
-        const core::Vec3 place = axes.world_from_wall * core::Vec3(axes.x_m[i / (25 * 64)],
-                                                                   axes.y_m[i / 64 % 25],
-                                                                   axes.z_m[i % 64]);
+        const core::Vec3 place =
+            axes.world_from_wall *
+            core::Vec3(axes.x_m[i / (25 * 64)], axes.y_m[i / 64 % 25], axes.z_m[i % 64]);
         const double value = static_cast<double>(result.volume.values[i]);
         ASSERT_GE(value, 0.0);
         all += value;
