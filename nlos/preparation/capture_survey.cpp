@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/preparation/capture_survey.h"
 
+#include "renderer/core/recorded_detector.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,16 +24,9 @@ std::string light_text(const PreparedCapture& prepared) {
 /// The ranges at which the capture holds all but a thousandth of its light, background taken off.
 std::string range_text(const PreparedCapture& prepared, const PreparationPlan& plan) {
     const core::TimeAxis& axis = prepared.time_axis;
-    std::vector<double> light(static_cast<std::size_t>(axis.num_bins), 0.0);
-    for (std::size_t pair = 0; pair < prepared.scan.num_pairs(); ++pair) {
-        const double background = plan.ambient_per_bin.empty() ? 0.0 : plan.ambient_per_bin[pair];
-        const core::BinRange seen = core::observed_range(prepared.observed, pair, axis.num_bins);
-        const auto histogram = prepared.transient().histogram(pair);
-        for (int bin = seen.begin; bin < seen.end; ++bin) {
-            const auto i = static_cast<std::size_t>(bin);
-            light[i] += static_cast<double>(histogram[i]) - background;
-        }
-    }
+    std::vector<double> light = light_per_bin(prepared.transient(),
+                                              prepared.observed ? &*prepared.observed : nullptr,
+                                              plan.ambient_per_bin);
     std::partial_sum(light.begin(), light.end(), light.begin());
     const double all = *std::ranges::max_element(light);
     if (!(all > 0.0)) return "no light";
@@ -75,13 +70,7 @@ std::vector<std::string> survey_capture(const PreparedCapture& prepared,
         lines.push_back(fmt::format("background of {:.3g} in a bin",
                                     sum / static_cast<double>(plan.ambient_per_bin.size())));
     }
-    if (settings.response.jitter_fwhm_ps > 0.0 || settings.response.tail_ps > 0.0) {
-        lines.push_back(fmt::format("response of {:.4g} ps (FWHM), tail of {:.4g} ps",
-                                    settings.response.jitter_fwhm_ps,
-                                    settings.response.tail_ps));
-    } else if (!settings.response.curve.empty()) {
-        lines.push_back("measured response " + settings.response.curve);
-    }
+    if (core::is_stated(settings.response)) lines.push_back(core::describe(settings.response));
     return lines;
 }
 

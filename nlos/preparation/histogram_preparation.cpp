@@ -157,6 +157,24 @@ std::optional<SignalExtent> find_signal(const core::Transient& transient,
     return extent;
 }
 
+std::vector<double> light_per_bin(const core::Transient& transient,
+                                  const std::vector<core::BinRange>* observed,
+                                  const std::vector<double>& background) {
+    const int num_bins = static_cast<int>(transient.num_bins());
+    std::vector<double> light(transient.num_bins(), 0.0);
+    for (std::size_t pair = 0; pair < transient.num_pairs(); ++pair) {
+        const core::BinRange seen = observed ? (*observed)[pair] : core::BinRange{0, num_bins};
+        const double own_background = background.empty() ? 0.0 : background[pair];
+        const auto histogram = transient.histogram(pair);
+        for (auto bin = static_cast<std::size_t>(seen.begin);
+             bin < static_cast<std::size_t>(seen.end);
+             ++bin) {
+            light[bin] += static_cast<double>(histogram[bin]) - own_background;
+        }
+    }
+    return light;
+}
+
 core::ObservedBins prepared_observed(const PreparationPlan& plan) {
     if (!plan.observed) return std::nullopt;
     std::vector<core::BinRange> ranges;

@@ -33,6 +33,14 @@ struct SignalExtent {
 std::optional<SignalExtent> find_signal(const core::Transient& transient,
                                         const core::ObservedBins& observed = std::nullopt);
 
+/// Light of all pairs in each bin, of those that observed it.
+///
+/// observed     per pair, null: all bins
+/// background   per bin of each pair, taken off; empty: none
+std::vector<double> light_per_bin(const core::Transient& transient,
+                                  const std::vector<core::BinRange>* observed,
+                                  const std::vector<double>& background);
+
 /// What to do to histograms before a method sees them.
 struct PreparationPlan {
     int merge_bins = 1;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/solver/pair_solver.h"
 
+#include "nlos/preparation/histogram_preparation.h"
 #include "nlos/solver/pair_operator.h"
 
 #include <fmt/format.h>
@@ -150,14 +151,8 @@ class PairSolver {
 
     /// Voxels no farther from the wall than light can have come from.
     std::vector<std::size_t> reachable_voxels() const {
-        std::vector<double> light(light_.num_bins(), 0.0);
-        for (const std::size_t pair : seen_pairs_) {
-            const auto histogram = input_.transient.histogram(pair);
-            const double background = input_.measurement.background(pair);
-            for (std::size_t bin = 0; bin < light.size(); ++bin) {
-                light[bin] += static_cast<double>(histogram[bin]) - background;
-            }
-        }
+        const std::vector<double> light = light_per_bin(
+            input_.transient, input_.observed, input_.measurement.background_per_bin);
         const double least = kSmallestPairLight * *std::ranges::max_element(light);
         double end = static_cast<double>(light.size());
         while (end > 1.0 && light[static_cast<std::size_t>(end) - 1] <= least) end -= 1.0;

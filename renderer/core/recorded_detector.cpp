@@ -29,13 +29,6 @@ bool matters(const ResponseSettings& response, double bin_width_m) {
     return std::max(std::sqrt(m.variance_m2), std::abs(m.mean_m)) > 0.5 * bin_width_m;
 }
 
-std::string describe(const ResponseSettings& response) {
-    if (!response.curve.empty()) return "a measured response (" + response.curve + ")";
-    std::string text = fmt::format("a response of {:.4g} ps (FWHM)", response.jitter_fwhm_ps);
-    if (response.tail_ps > 0.0) text += fmt::format(" with a tail of {:.4g} ps", response.tail_ps);
-    return text;
-}
-
 // Photons per pulse of the brightest pair: late ones hide behind as large a share of them.
 double largest_share_of_pulses(const Capture& capture, double pulses) {
     double largest = 0.0;
@@ -47,6 +40,13 @@ double largest_share_of_pulses(const Capture& capture, double pulses) {
 }
 
 }  // namespace
+
+std::string describe(const ResponseSettings& response) {
+    if (!response.curve.empty()) return "a measured response (" + response.curve + ")";
+    std::string text = fmt::format("a response of {:.4g} ps (FWHM)", response.jitter_fwhm_ps);
+    if (response.tail_ps > 0.0) text += fmt::format(" with a tail of {:.4g} ps", response.tail_ps);
+    return text;
+}
 
 std::optional<ResponseSettings> recorded_response(const Capture& capture) {
     const Json* detector = detector_of(capture);

@@ -10,6 +10,11 @@
 
 namespace core {
 
+/// A response in words: "a response of 100 ps (FWHM)".
+///
+/// response   stated, see is_stated()
+std::string describe(const ResponseSettings& response);
+
 /// The response that a capture's provenance says its detector had, as `simulate-noise` writes it;
 /// nothing when it says nothing of the kind.
 std::optional<ResponseSettings> recorded_response(const Capture& capture);
