@@ -10,6 +10,7 @@
 #include "nlos/methods/virtual_wave.h"
 #include "nlos/preparation/capture_check.h"
 #include "nlos/preparation/capture_survey.h"
+#include "nlos/preparation/direct_response.h"
 #include "nlos/preparation/histogram_preparation.h"
 #include "nlos/preparation/memory_limit.h"
 #include "nlos/preparation/prepared_capture.h"
@@ -172,6 +173,7 @@ class Job {
     void choose() {
         ReconstructSettings& settings = result_.settings;
         settings.response = core::resolve_response(settings.response, capture_, "response");
+        if (is_auto_) leave_out_direct_return();
         prepared_ = crop_capture(capture_, settings.crop);
         const MethodChoice choice = choose_and_enter_method(capture_, settings, prepared_);
         result_.method = core::enum_name(choice.method);
@@ -184,7 +186,11 @@ class Job {
         axis_ = prepared_.time_axis;
         axis_.bin_width_m *= plan_.merge_bins;
         axis_.num_bins = plan_.num_bins;
-        if (is_auto_) result_.findings = survey_capture(prepared_, plan_, settings);
+        if (is_auto_) {
+            for (std::string& found : survey_capture(prepared_, plan_, settings)) {
+                result_.findings.push_back(std::move(found));
+            }
+        }
         if (choice.method == Method::Solver) {
             measurement_ = take_measurement(prepared_, settings, axis_, plan_);
         }
@@ -198,6 +204,20 @@ class Job {
         if (auto warning = unobserved_warning(settings, observed_, axis_.num_bins)) {
             result_.warnings.push_back(std::move(*warning));
         }
+    }
+
+    /// Crops the wall's direct return off, whose shape is the response unless one is known.
+    void leave_out_direct_return() {
+        ReconstructSettings& settings = result_.settings;
+        if (settings.crop.opl_range_m) return;
+        const std::optional<DirectResponse> direct = measure_direct_return(capture_);
+        const double end_m = capture_.time_axis.opl_end_m();
+        if (!direct || direct->end_opl_m >= end_m) return;
+        settings.crop.opl_range_m = {direct->end_opl_m, end_m};
+        if (!core::is_stated(settings.response) && !core::recorded_response(capture_)) {
+            settings.response = direct->response;
+        }
+        result_.findings.push_back(describe(*direct));
     }
 
     /// Whether the capture's own histograms are what the method gets.

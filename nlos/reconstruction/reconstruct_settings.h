@@ -64,6 +64,7 @@ struct SolverSettings {
     std::optional<double> tv;        ///< weight of total variation; empty: by the likelihood
     std::optional<double> sparsity;  ///< weight of the sum; empty: a tenth of `tv`
     double spot_m = 0.0;             ///< full width at half maximum of the spot on the wall
+    bool gains = false;              ///< finds a factor of every pair, see PairGains
     double tolerance = 0.01;
     int max_iterations = 200;
 };
@@ -136,6 +137,10 @@ void for_each_field(SolverSettings& s, Visitor&& visit) {
     visit("spot_m",
           s.spot_m,
           core::at_least(0, "full width at half maximum of the spot on the wall [m]"));
+    visit("gains",
+          s.gains,
+          "whether a factor of every wall point (its reflectance, the detector's efficiency), known "
+          "to three tenths, is found with the scene");
     visit("tolerance",
           s.tolerance,
           core::strictly_between(0, 1, "relative change of the result at which iterations stop"));

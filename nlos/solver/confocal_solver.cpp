@@ -3,6 +3,7 @@
 
 #include "nlos/solver/cone_convolution.h"
 #include "nlos/solver/confocal_problem.h"
+#include "nlos/solver/pair_gains.h"
 #include "nlos/solver/proximal.h"
 
 #include <fmt/format.h>
@@ -19,7 +20,8 @@
 //     d <- shrink(grad f + u, tv / mu),               u <- u + grad f - d
 //     w <- max(0, f + q - sparsity / nu),             q <- q + f - w.
 // each of f and h taken beyond where they moved from their splits (over-relaxation). Outside the
-// wall's footprint nothing was measured: there c - p = K f, and d, u, w and q are 0.
+// wall's footprint nothing was measured: there c - p = K f, and d, u, w and q are 0. Where points
+// have gains g of their own, light of h counts g h + background.
 
 namespace nlos {
 namespace {
@@ -28,6 +30,7 @@ namespace {
 constexpr double kGradientPenalty = 1.0;  // mu
 constexpr double kAlbedoPenalty = 10.0;   // nu
 constexpr float kRelaxation = 1.7F;       // of f and h away from their splits
+constexpr int kGainInterval = 5;          // iterations from one update of gains to the next
 
 // Weights of total variation, unless set. What radiance leaves unexplained is the model's error,
 // much alike at neighbouring points, where counts have noise of their own.
@@ -73,6 +76,8 @@ class ConfocalSolver {
           time_(data.time),
           convolution_(cone_, *input.wall.grid, settings.spot_m, kGradientPenalty, kAlbedoPenalty),
           num_bins_(static_cast<std::size_t>(data.axis.num_bins)),
+          has_gains_(settings.gains),
+          gains_(cone_.num_columns()),
           right_(convolution_.num_values()),
           light_(right_.size()),
           c_(right_.size()),
@@ -98,6 +103,7 @@ class ConfocalSolver {
         for (int i = 1; i <= max_iterations; ++i) {
             check_stop(progress);
             convolution_.solve(light_, right_);
+            if (has_gains_ && i % kGainInterval == 0) update_gains();
             split_data(false);
             const Change change = split_field();
             const double share =
@@ -124,7 +130,8 @@ class ConfocalSolver {
                 const std::size_t t = i / lanes;
                 if (!data_.observed[column].holds(static_cast<int>(t))) continue;
                 const double y = static_cast<double>(data_.values[ix * num_bins_ * lanes + i]);
-                const double m = static_cast<double>(time[i] + data_.background_per_bin[column]);
+                const double m = static_cast<double>(gains_[column] * time[i] +
+                                                     data_.background_per_bin[column]);
                 rows[ix] += data_.likelihood == Likelihood::Poisson
                                 ? poisson_deviance(y, m)
                                 : data_.precision[t] * (y - m) * (y - m);
@@ -179,6 +186,26 @@ class ConfocalSolver {
         });
     }
 
+    /// The gains that explain the data best by K f, in light_.
+    void update_gains() {
+        std::vector<double> measured(cone_.num_columns(), 0.0);
+        std::vector<double> expected(cone_.num_columns(), 0.0);
+        core::parallel_for(cone_.nx, [&](std::size_t ix) {
+            const std::size_t lanes = cone_.ny;
+            std::vector<float> time(num_bins_ * lanes);
+            time_.apply(light_.data() + ix * cone_.num_v() * lanes, time.data(), lanes);
+            for (std::size_t i = 0; i < time.size(); ++i) {
+                const std::size_t column = ix * lanes + i % lanes;
+                if (!data_.observed[column].holds(static_cast<int>(i / lanes))) continue;
+                const double m = data_.precision[i / lanes] * static_cast<double>(time[i]);
+                measured[column] += m * static_cast<double>(data_.values[ix * time.size() + i] -
+                                                            data_.background_per_bin[column]);
+                expected[column] += m * static_cast<double>(time[i]);
+            }
+        });
+        gains_.update(measured, expected);
+    }
+
     static float relaxed(float value, float split) { return split + kRelaxation * (value - split); }
 
     /// From B c of one bin to P (h + r) in its place; h + r stays in `r`.
@@ -191,14 +218,18 @@ class ConfocalSolver {
         const bool is_poisson = data_.likelihood == Likelihood::Poisson;
         for (std::size_t lane = 0; lane < lanes; ++lane) {
             const bool is_seen = observed[lane].holds(static_cast<int>(t));
-            const float e = time[lane] - r[lane] + background[lane];
-            float h = is_seen ? values[lane] : background[lane];
-            if (!is_first) {
-                const float m = is_poisson ? poisson_proximal(values[lane], e, penalty)
-                                           : gaussian_proximal(values[lane], e, penalty, penalty);
-                h = is_seen ? m : e;
+            const float gain = gains_[ix * lanes + lane];
+            const float e = time[lane] - r[lane];
+            float h = is_first ? 0.0F : e;
+            if (is_seen) {
+                const float y = values[lane];
+                const float expected = gain * e + background[lane];
+                const float own_penalty = penalty / (gain * gain);  // of counts instead of light
+                const float m = is_first     ? y
+                                : is_poisson ? poisson_proximal(y, expected, own_penalty)
+                                             : gaussian_proximal(y, expected, penalty, own_penalty);
+                h = (m - background[lane]) / gain;
             }
-            h -= background[lane];
             r[lane] += is_first ? h : relaxed(h, time[lane]);
             time[lane] = penalty * r[lane];
         }
@@ -287,6 +318,8 @@ class ConfocalSolver {
     TimeOperator time_;
     ConeConvolution convolution_;
     std::size_t num_bins_;
+    bool has_gains_;
+    PairGains gains_;
     ConeField right_, light_;  ///< f and K f, or what the next of them is computed from
     ConeField c_, p_, q_, w_;
     std::array<ConeField, 3> u_, b_;

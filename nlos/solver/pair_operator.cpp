@@ -30,14 +30,21 @@ struct PairOperator::Legs {
     std::vector<float> factors = std::vector<float>(kVoxelsPerChunk);
 };
 
-PairOperator::PairOperator(const MethodInput& input, Falloff falloff)
+PairOperator::PairOperator(const MethodInput& input, Falloff falloff, double spot_m)
     : scan_(input.scan),
       axis_(input.time_axis),
       num_bins_(static_cast<std::size_t>(input.time_axis.num_bins)),
       response_(input.measurement.response),
       is_retro_(falloff == Falloff::Retro),
+      spot_{{0.0F, 1.0F}},
+      gains_(input.scan.num_pairs()),
       illumination_(to_wall_frame(input.axes.world_from_wall, input.scan.illumination)),
       sensing_(to_wall_frame(input.axes.world_from_wall, input.scan.sensing)) {
+    if (spot_m > 0.0) {  // three points of Gauss and Hermite
+        const double deviation = spot_m / std::sqrt(8.0 * std::log(2.0)) / axis_.bin_width_m;
+        const auto shift = static_cast<float>(std::sqrt(3.0) * deviation);
+        spot_ = {{-shift, 1.0F / 6.0F}, {0.0F, 2.0F / 3.0F}, {shift, 1.0F / 6.0F}};
+    }
     for (std::size_t pair = 0; pair < scan_.num_pairs(); ++pair) {
         observed_.push_back(input.observed ? (*input.observed)[pair]
                                            : core::BinRange{0, axis_.num_bins});
@@ -58,6 +65,7 @@ void PairOperator::set_voxels(std::vector<Eigen::Vector3f> positions) {
 }
 
 void PairOperator::fill_legs(std::size_t pair,
+                             const SpotPoint& point,
                              std::size_t begin,
                              std::size_t end,
                              Legs& legs) const {
@@ -68,6 +76,8 @@ void PairOperator::fill_legs(std::size_t pair,
     const float offset =
         device_legs_bins_[pair] + 0.5F - static_cast<float>(axis_.opl_start_m / axis_.bin_width_m);
     const auto last = static_cast<float>(num_bins_ + 1);
+    const float weight = gains_[pair] * point.weight;
+    const float joint = scan_.pattern == core::ScanPattern::Confocal ? 2.0F : 0.0F;
     const float* __restrict x = x_.data() + begin;
     const float* __restrict y = y_.data() + begin;
     const float* __restrict z = z_.data() + begin;
@@ -79,13 +89,16 @@ void PairOperator::fill_legs(std::size_t pair,
         const float sx = x[i] - s.x(), sy = y[i] - s.y(), sz = z[i] - s.z();
         const float out = std::sqrt(lx * lx + ly * ly + lz * lz);
         const float back = std::sqrt(sx * sx + sy * sy + sz * sz);
-        float position = (out + back) * per_bin + offset;
+        const float product = out * back;
+        const float slope =
+            std::sqrt((lx * lx + ly * ly) / (out * out) + (sx * sx + sy * sy) / (back * back) +
+                      joint * (lx * sx + ly * sy) / product);
+        float position = (out + back) * per_bin + offset + point.shift_bins * slope;
         position = position > 0.0F ? position : 0.0F;
         position = position < last ? position : last;
         bins[i] = static_cast<int>(position);
         late[i] = position - static_cast<float>(bins[i]);
-        const float product = out * back;
-        factors[i] = 1.0F / (is_retro_ ? product : product * product);
+        factors[i] = weight / (is_retro_ ? product : product * product);
     }
 }
 
@@ -125,12 +138,14 @@ void PairOperator::forward(std::span<const float> albedo,
             std::ranges::fill(padded, 0.0F);
             for (std::size_t first = 0; first < num_voxels(); first += kVoxelsPerChunk) {
                 const std::size_t count = std::min(kVoxelsPerChunk, num_voxels() - first);
-                fill_legs(pairs[i], first, first + count, legs);
-                for (std::size_t v = 0; v < count; ++v) {
-                    const float value = albedo[first + v] * legs.factors[v];
-                    const auto bin = static_cast<std::size_t>(legs.bins[v]);
-                    padded[bin] += (1.0F - legs.late[v]) * value;
-                    padded[bin + 1] += legs.late[v] * value;
+                for (const SpotPoint& point : spot_) {
+                    fill_legs(pairs[i], point, first, first + count, legs);
+                    for (std::size_t v = 0; v < count; ++v) {
+                        const float value = albedo[first + v] * legs.factors[v];
+                        const auto bin = static_cast<std::size_t>(legs.bins[v]);
+                        padded[bin] += (1.0F - legs.late[v]) * value;
+                        padded[bin + 1] += legs.late[v] * value;
+                    }
                 }
             }
             const auto own = histograms.subspan(i * num_bins_, num_bins_);
@@ -160,12 +175,14 @@ void PairOperator::adjoint(std::span<const float> histograms,
         float* __restrict sums = albedo.data() + begin;
         std::fill_n(sums, end - begin, 0.0F);
         for (std::size_t i = 0; i < pairs.size(); ++i) {
-            fill_legs(pairs[i], begin, end, legs);
             const float* __restrict row = padded.data() + i * stride;
-            for (std::size_t v = 0; v < end - begin; ++v) {
-                const int bin = legs.bins[v];
-                const float value = row[bin] + legs.late[v] * (row[bin + 1] - row[bin]);
-                sums[v] += legs.factors[v] * value;
+            for (const SpotPoint& point : spot_) {
+                fill_legs(pairs[i], point, begin, end, legs);
+                for (std::size_t v = 0; v < end - begin; ++v) {
+                    const int bin = legs.bins[v];
+                    const float value = row[bin] + legs.late[v] * (row[bin + 1] - row[bin]);
+                    sums[v] += legs.factors[v] * value;
+                }
             }
         }
     });

@@ -3,6 +3,7 @@
 
 #include "nlos/methods/method_input.h"
 #include "nlos/reconstruction/reconstruct_settings.h"
+#include "nlos/solver/pair_gains.h"
 
 #include <cstddef>
 #include <span>
@@ -11,13 +12,22 @@
 namespace nlos {
 
 /// Light of voxels at any pairs of wall points, and its exact adjoint: albedo times
-/// 1 / (r_l r_s)^2 (diffuse) or 1 / (r_l r_s) (retroreflective), shared linearly by the two bins
-/// whose centres enclose the path length, blurred by the response, and 0 in bins that were not
-/// observed. The factors are those of backproject() with compensation, the other way round.
+/// 1 / (r_l r_s)^2 (diffuse) or 1 / (r_l r_s) (retroreflective) and the pair's gain, shared
+/// linearly by the two bins whose centres enclose the path length, blurred by the response, and 0
+/// in bins that were not observed. The factors are those of backproject() with compensation, the
+/// other way round.
+///
+/// A spot spreads path lengths, to first order as a Gaussian whose deviation is the spot's times
+/// the slope of the path length along the wall; three points of the same moments up to the fifth
+/// stand for it. The illuminated and the observed spot are blurred each for itself, the one of a
+/// confocal scan only once.
 class PairOperator {
  public:
-    /// input   any scan; its measurement's response is part of the operator
-    PairOperator(const MethodInput& input, Falloff falloff);
+    /// input    any scan; its measurement's response is part of the operator
+    /// spot_m   full width at half maximum of the spots [m]
+    PairOperator(const MethodInput& input, Falloff falloff, double spot_m);
+
+    void set_gains(const PairGains& gains) { gains_ = gains; }
 
     /// Chooses the voxels that albedo and its like are about [m, wall's frame].
     void set_voxels(std::vector<Eigen::Vector3f> positions);
@@ -39,14 +49,24 @@ class PairOperator {
 
  private:
     struct Legs;
+    struct SpotPoint {
+        float shift_bins;  ///< per unit of the path length's slope along the wall
+        float weight;
+    };
     void blur(std::span<const float> input, std::span<float> output, bool is_adjoint) const;
-    void fill_legs(std::size_t pair, std::size_t begin, std::size_t end, Legs& legs) const;
+    void fill_legs(std::size_t pair,
+                   const SpotPoint& point,
+                   std::size_t begin,
+                   std::size_t end,
+                   Legs& legs) const;
 
     const core::Scan& scan_;
     core::TimeAxis axis_;
     std::size_t num_bins_;
     core::ResponseFilter response_;
     bool is_retro_;
+    std::vector<SpotPoint> spot_;
+    PairGains gains_;
     std::vector<core::BinRange> observed_;                 ///< per pair
     std::vector<Eigen::Vector3f> illumination_, sensing_;  ///< wall's frame
     std::vector<float> device_legs_bins_;                  ///< per pair

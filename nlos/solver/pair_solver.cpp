@@ -42,7 +42,8 @@ class PairSolver {
     PairSolver(const MethodInput& input, const ReconstructSettings& settings)
         : input_(input),
           settings_(settings.solver),
-          light_(input, settings.falloff),
+          light_(input, settings.falloff, settings.solver.spot_m),
+          gains_(input.scan.num_pairs()),
           size_{input.axes.x_m.size(), input.axes.y_m.size(), input.axes.z_m.size()} {
         const bool is_counts =
             settings.solver.likelihood != Likelihood::Gaussian && input.measurement.is_counts;
@@ -71,6 +72,7 @@ class PairSolver {
             check_stop(input_.progress);
             const std::size_t num_subsets =
                 std::max<std::size_t>(1, most >> std::min<int>(pass / kPassesPerDoubling, 16));
+            if (settings_.gains && pass > 0 && pass % kPassesPerDoubling == 0) update_gains();
             const std::vector<float> before = voxels_.albedo;
             for (std::size_t subset = 0; subset < num_subsets; ++subset) {
                 maximise_expectation(subset, num_subsets);
@@ -151,8 +153,8 @@ class PairSolver {
 
     /// Voxels no farther from the wall than light can have come from.
     std::vector<std::size_t> reachable_voxels() const {
-        const std::vector<double> light = light_per_bin(
-            input_.transient, input_.observed, input_.measurement.background_per_bin);
+        const std::vector<double> light =
+            light_per_bin(input_.transient, input_.observed, input_.measurement.background_per_bin);
         const double least = kSmallestPairLight * *std::ranges::max_element(light);
         double end = static_cast<double>(light.size());
         while (end > 1.0 && light[static_cast<std::size_t>(end) - 1] <= least) end -= 1.0;
@@ -228,6 +230,29 @@ class PairSolver {
             const float cost = seen[i] + share * sparsity_weight(i);
             voxels_.albedo[i] *= cost > 0.0F ? gain[i] / cost : 0.0F;
         }
+    }
+
+    /// The gains that explain counts best by the voxels as they are.
+    void update_gains() {
+        std::vector<double> measured(gains_.factors().size(), 0.0);
+        std::vector<double> expected(measured.size(), 0.0);
+        for (std::size_t subset = 0; subset < kMaxSubsets; ++subset) {
+            const std::vector<std::size_t> pairs = pairs_of(subset, kMaxSubsets);
+            const std::vector<float> counts = counts_of(pairs);
+            std::vector<float> light(counts.size());
+            light_.forward(voxels_.albedo, pairs, light);
+            for (std::size_t i = 0; i < counts.size(); ++i) {
+                const std::size_t pair = pairs[i / light_.num_bins()];
+                const auto bin = static_cast<int>(i % light_.num_bins());
+                if (!light_.observed()[pair].holds(bin)) continue;
+                measured[pair] += static_cast<double>(counts[i]) -
+                                  static_cast<double>(scale_) * input_.measurement.background(pair);
+                expected[pair] += static_cast<double>(light[i] / gains_[pair]);
+            }
+        }
+        gains_.update(measured, expected);
+        light_.set_gains(gains_);
+        sensitivity_.clear();
     }
 
     /// The standard deviation that noise gives the likelihood's slope at a voxel, the root of the
@@ -325,6 +350,7 @@ class PairSolver {
     const MethodInput& input_;
     const SolverSettings& settings_;
     PairOperator light_;
+    PairGains gains_;
     std::array<std::size_t, 3> size_;
     float scale_ = 1.0F;      ///< from the histograms' unit to counts
     float intensity_ = 1.0F;  ///< the mean of counts, weighted by themselves

@@ -8,6 +8,7 @@ namespace {
 
 void declare_coverage(CLI::App& command, CoverageBenchSettings& settings) {
     add_setting(command, "--surfaces", settings.surfaces, "Random surfaces", {1, 10000});
+    add_setting(command, "--first", settings.first, "Number of the first of them", {0, 1000000});
     add_setting(command, "--methods", settings.methods, "Methods, each with its own settings");
     add_setting(command, "--peaks", settings.peaks, "Counts in the brightest bin");
 }

@@ -43,7 +43,8 @@ TEST(SecondCapture, AddsTheNoiseOfCountsOnceMore) {
     for (const float count : {1.0F, 7.0F, 400.0F, 0.3F, 2.5F}) {
         const core::Capture capture = even_capture(core::TransientUnit::Counts, count);
         expect_noise(capture, count);
-        const auto values = measure_again(capture)->transient.values();
+        const core::Capture again = *measure_again(capture);
+        const auto values = again.transient.values();
         EXPECT_GE(*std::ranges::min_element(values), 0.0F);
     }
 }
