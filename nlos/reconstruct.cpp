@@ -40,29 +40,41 @@ void take_normals(const Volume& volume, core::DepthMap& depth) {
     }
 }
 
-/// Waves and f-k migration give squares. The deviations of depth are those that simulated surfaces
-/// showed without noise, see nlos/README.md.
-VolumeErrors volume_errors(const ReconstructSettings& settings) {
-    if (uses_wave(settings)) return {VolumeScale::Power, 0.5};
+/// Noise makes dim columns of its own: where there may be any, all columns are held against the
+/// brightest surfaces alone. Backprojection leaves no edges, and the solver sharp ones.
+PlateauShares plateau_shares(Method method, bool has_noise) {
+    if (method == Method::Solver) return {0.0, 0.25};
+    if (method == Method::Bp || has_noise) return {0.0, 0.45};
+    return {};
+}
+
+/// Waves and f-k migration give squares. The deviations of depth are those of random surfaces, see
+/// nlos/README.md.
+VolumeErrors volume_errors(const ReconstructSettings& settings, bool has_noise) {
+    const PlateauShares shares = plateau_shares(settings.method, has_noise);
+    if (uses_wave(settings)) return {VolumeScale::Power, 0.4, 0.7, shares};
     switch (settings.method) {
         case Method::Solver:
-            return {VolumeScale::Amplitude, 0.2, 0.25};
+            return {VolumeScale::Amplitude, 0.2, 0.5, shares};
         case Method::Fk:
-            return {VolumeScale::Power, 0.28};
-        case Method::Fbp:
-            return {VolumeScale::Amplitude, 0.2};
+            return {VolumeScale::Power, 0.16, 0.35, shares};
         case Method::Bp:
-            return {VolumeScale::Amplitude, 0.5};
+            return {VolumeScale::Amplitude, 0.25, 0.7, shares};
+        case Method::Fbp:
+        case Method::Dlct:
+            return {VolumeScale::Amplitude, 0.1, 0.5, shares};
         default:
-            return {VolumeScale::Amplitude, 0.12};
+            return {VolumeScale::Amplitude, 0.07, 0.5, shares};
     }
 }
 
 /// Takes depths, what is known of them and points from the volume and, where the noise is known,
 /// that of the scene measured again.
 void take_surface(const Volume* again, Reconstruction& result) {
-    Surface surface = find_surface(
-        result.volume, again, volume_errors(result.settings), result.settings.mask_threshold);
+    Surface surface = find_surface(result.volume,
+                                   again,
+                                   volume_errors(result.settings, again != nullptr),
+                                   result.settings.mask_threshold);
     result.depth = std::move(surface.depth);
     result.surface_probability = std::move(surface.probability);
     result.depth_sigma_m = std::move(surface.depth_sigma_m);

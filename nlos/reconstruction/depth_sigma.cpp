@@ -3,6 +3,8 @@
 
 #include "renderer/core/types.h"
 
+#include <Eigen/Cholesky>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,8 +13,12 @@
 namespace nlos {
 namespace {
 
-constexpr double kDoubtFactor = 5.0;  // on simulated surfaces, of odds against one to this power
-constexpr double kDoubtPower = 1.25;
+constexpr double kDoubtFactor = 12.0;  // of odds against a surface to this power
+constexpr double kDoubtPower = 1.75;
+constexpr double kRoughnessShare = 0.65;
+constexpr std::size_t kPlaneColumns = 2;   // on either side
+constexpr double kFewestForPlane = 6.0;    // columns
+constexpr double kUnknownRoughness = 3.0;  // voxels, where there are fewer
 constexpr std::size_t kSearched = 6;       // voxels on either side
 constexpr std::size_t kPooledColumns = 4;  // columns
 constexpr double kPriorColumns = 16.0;     // of the whole map, beside those within reach
@@ -85,6 +91,34 @@ double pooled_size(const std::vector<double>& sizes,
     return (near.sum + kPriorColumns * prior) / (near.count + kPriorColumns);
 }
 
+/// Distance of a depth from the plane through the foreground columns around it [m]; NaN where these
+/// are too few.
+double off_plane_m(const core::DepthMap& depth, std::size_t ix, std::size_t iy) {
+    core::Mat3 lhs = core::Mat3::Zero();
+    core::Vec3 rhs = core::Vec3::Zero();
+    for (std::size_t jx = ix - std::min(ix, kPlaneColumns);
+         jx < std::min(depth.x_m.size(), ix + kPlaneColumns + 1);
+         ++jx) {
+        for (std::size_t jy = iy - std::min(iy, kPlaneColumns);
+             jy < std::min(depth.y_m.size(), iy + kPlaneColumns + 1);
+             ++jy) {
+            const std::size_t j = depth.index(jx, jy);
+            if ((jx == ix && jy == iy) || !depth.is_foreground(j)) continue;
+            const core::Vec3 row(1.0,
+                                 static_cast<double>(jx) - static_cast<double>(ix),
+                                 static_cast<double>(jy) - static_cast<double>(iy));
+            lhs += row * row.transpose();
+            rhs += row * depth.depth_m[j];
+        }
+    }
+    const Eigen::LDLT<core::Mat3> solver(lhs);
+    constexpr double kLeastPivot = 1e-9;  // all columns on a line
+    if (lhs(0, 0) < kFewestForPlane || solver.vectorD().minCoeff() < kLeastPivot) {
+        return std::numeric_limits<double>::quiet_NaN();
+    }
+    return std::abs(depth.depth_m[depth.index(ix, iy)] - solver.solve(rhs).x());
+}
+
 }  // namespace
 
 std::vector<double> depth_sigmas(const Volume& volume,
@@ -122,7 +156,11 @@ std::vector<double> depth_sigmas(const Volume& volume,
             const double odds_against = 1.0 / surface.probability[i] - 1.0;
             const double factor = 1.0 + kDoubtFactor * std::pow(odds_against, kDoubtPower);
             const double moved = firm[i] > 0.0 ? slope / firm[i] : 0.0;
-            sigmas[i] = step_m * factor * std::hypot(moved, errors.model_voxels);
+            const double off_plane = off_plane_m(depth, ix, iy);
+            const double rough_m = std::isnan(off_plane) ? kUnknownRoughness * step_m : off_plane;
+            sigmas[i] = std::hypot(step_m * factor * errors.noise_share * moved,
+                                   step_m * factor * errors.model_voxels,
+                                   kRoughnessShare * rough_m);
         }
     }
     return sigmas;

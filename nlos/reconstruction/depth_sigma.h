@@ -16,7 +16,9 @@ namespace nlos {
 /// foreground columns nearby; it stands relative to the noise's deviation at that depth, which
 /// falloff raises. What the method leaves of its own is added in squares. Where a column may be
 /// none of the surface's, depths are worse than either says: the sum is multiplied by a factor of
-/// the odds that simulated surfaces ask for (`nlos bench coverage` says how well it does).
+/// the odds. How far a depth lies off the plane through its neighbours tells the columns that went
+/// wrong from those that did not; its share is added in squares, too. The shares are those that
+/// random surfaces ask for, and `nlos bench coverage` says how well they do on others.
 ///
 /// peaks     of the volume, per column
 /// surface   with depths and probabilities of the same columns

@@ -137,10 +137,11 @@ void for_each_field(SolverSettings& s, Visitor&& visit) {
     visit("spot_m",
           s.spot_m,
           core::at_least(0, "full width at half maximum of the spot on the wall [m]"));
-    visit("gains",
-          s.gains,
-          "whether a factor of every wall point (its reflectance, the detector's efficiency), known "
-          "to three tenths, is found with the scene");
+    visit(
+        "gains",
+        s.gains,
+        "whether a factor of every wall point (its reflectance, the detector's efficiency), known "
+        "to three tenths, is found with the scene");
     visit("tolerance",
           s.tolerance,
           core::strictly_between(0, 1, "relative change of the result at which iterations stop"));

@@ -120,10 +120,11 @@ std::vector<double> surface_probabilities(const Volume& volume,
                                probabilities.begin(),
                                [](double rate) { return 1.0 - rate; });
     }
-    std::ranges::transform(probabilities,
-                           plateau_probabilities(brightness, probabilities, errors.edge_share),
-                           probabilities.begin(),
-                           std::multiplies<>());
+    std::ranges::transform(
+        probabilities,
+        plateau_probabilities(brightness, probabilities, volume.axes.y_m.size(), errors.shares),
+        probabilities.begin(),
+        std::multiplies<>());
     return probabilities;
 }
 

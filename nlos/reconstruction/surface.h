@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "nlos/reconstruction/surface_probability.h"
 #include "nlos/reconstruction/volume.h"
 #include "nlos/reconstruction/volume_noise.h"
 #include "renderer/core/depth_map.h"
@@ -20,7 +21,8 @@ struct Surface {
 struct VolumeErrors {
     VolumeScale scale = VolumeScale::Amplitude;
     double model_voxels = 0.0;  ///< deviation of depths without noise, inside surfaces
-    double edge_share = 0.45;   ///< see plateau_probabilities()
+    double noise_share = 0.5;   ///< of the noise's deviation that roughness does not show
+    PlateauShares shares = {};
 };
 
 /// Finds each column's peak, how likely it is a surface, and how well its depth is known.

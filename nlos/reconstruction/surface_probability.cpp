@@ -8,7 +8,8 @@
 namespace nlos {
 namespace {
 
-constexpr double kOddsPower = 4.0;
+constexpr double kPowerAround = 12.0;  // of odds
+constexpr double kPowerAmongAll = 4.0;
 
 /// A stretch of p-values of one density.
 struct Stretch {
@@ -37,19 +38,66 @@ std::vector<Stretch> falling_density(const std::vector<double>& rising_p_values)
     return stretches;
 }
 
-/// Mean peak of surfaces: weighted by brightness and squared probability, so that much haze does
-/// not outweigh few surfaces.
-double surface_brightness(const std::vector<double>& peaks,
-                          const std::vector<double>& probabilities,
-                          const std::vector<double>& weights) {
+/// Sums over columns for the mean peak of surfaces: weighted by brightness and squared probability,
+/// so that much haze does not outweigh few surfaces.
+struct SurfaceMean {
     double sum = 0.0;
     double weight_sum = 0.0;
-    for (std::size_t i = 0; i < peaks.size(); ++i) {
-        const double weight = weights[i] * probabilities[i] * probabilities[i] * peaks[i];
-        sum += weight * peaks[i];
-        weight_sum += weight;
+
+    void add(double peak, double weight, double probability) {
+        const double own = weight * probability * probability * peak;
+        sum += own * peak;
+        weight_sum += own;
     }
-    return weight_sum > 0.0 ? sum / weight_sum : 0.0;
+    double value() const { return weight_sum > 0.0 ? sum / weight_sum : 0.0; }
+};
+
+/// 1 / (1 + (share mean / peak)^power).
+double plateau_probability(double peak, double share_of_mean, double power) {
+    return peak > 0.0 ? 1.0 / (1.0 + std::pow(share_of_mean / peak, power)) : 0.0;
+}
+
+constexpr int kMaxIterations = 100;
+constexpr double kTolerance = 1e-6;
+
+/// Against all surfaces. From above: the mean of what is bright, then of what that calls a surface.
+std::vector<double> probabilities_among_all(const std::vector<double>& peaks,
+                                            const std::vector<double>& weights,
+                                            double share) {
+    std::vector<double> probabilities(peaks.size(), 1.0);
+    double last = 0.0;
+    for (int i = 0; i < kMaxIterations; ++i) {
+        SurfaceMean mean;
+        for (std::size_t k = 0; k < peaks.size(); ++k) {
+            mean.add(peaks[k], weights[k], probabilities[k]);
+        }
+        if (std::abs(mean.value() - last) <= kTolerance * last) break;
+        last = mean.value();
+        std::ranges::transform(peaks, probabilities.begin(), [&](double peak) {
+            return plateau_probability(peak, share * last, kPowerAmongAll);
+        });
+    }
+    return probabilities;
+}
+
+/// Mean peak of the surfaces among a column and its neighbours.
+double mean_around(std::size_t column,
+                   std::size_t num_y,
+                   const std::vector<double>& peaks,
+                   const std::vector<double>& weights,
+                   const std::vector<double>& probabilities) {
+    const std::size_t ix = column / num_y;
+    const std::size_t iy = column % num_y;
+    const std::size_t num_x = peaks.size() / num_y;
+    SurfaceMean mean;
+    for (std::size_t jx = ix - std::min<std::size_t>(ix, 1); jx < std::min(num_x, ix + 2); ++jx) {
+        for (std::size_t jy = iy - std::min<std::size_t>(iy, 1); jy < std::min(num_y, iy + 2);
+             ++jy) {
+            const std::size_t j = jx * num_y + jy;
+            mean.add(peaks[j], weights[j], probabilities[j]);
+        }
+    }
+    return mean.value();
 }
 
 }  // namespace
@@ -76,19 +124,21 @@ std::vector<double> false_discovery_rates(const std::vector<double>& p_values) {
 
 std::vector<double> plateau_probabilities(const std::vector<double>& peaks,
                                           const std::vector<double>& weights,
-                                          double edge_share) {
-    constexpr int kMaxIterations = 100;
-    constexpr double kTolerance = 1e-6;
-    // From above: the mean of what is bright, then of what that calls a surface.
-    std::vector<double> probabilities(peaks.size(), 1.0);
-    double mean = surface_brightness(peaks, probabilities, weights);
+                                          std::size_t num_y,
+                                          const PlateauShares& shares) {
+    const std::vector<double> among_all = probabilities_among_all(peaks, weights, shares.dimmest);
+    std::vector<double> probabilities = among_all;
     for (int i = 0; i < kMaxIterations; ++i) {
-        std::ranges::transform(peaks, probabilities.begin(), [&](double peak) {
-            return peak > 0.0 ? 1.0 / (1.0 + std::pow(edge_share * mean / peak, kOddsPower)) : 0.0;
-        });
-        const double last = mean;
-        mean = surface_brightness(peaks, probabilities, weights);
-        if (std::abs(mean - last) <= kTolerance * last) break;
+        std::vector<double> next(peaks.size());
+        double change = 0.0;
+        for (std::size_t column = 0; column < peaks.size(); ++column) {
+            const double mean = mean_around(column, num_y, peaks, weights, probabilities);
+            next[column] = among_all[column] *
+                           plateau_probability(peaks[column], shares.edge * mean, kPowerAround);
+            change = std::max(change, std::abs(next[column] - probabilities[column]));
+        }
+        probabilities = std::move(next);
+        if (change <= kTolerance) break;
     }
     return probabilities;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 namespace nlos {
@@ -15,19 +16,28 @@ namespace nlos {
 ///            true null hypotheses [Storey2002]
 std::vector<double> false_discovery_rates(const std::vector<double>& p_values);
 
+/// Brightness at which a column is as likely a surface as what a method smears around one.
+struct PlateauShares {
+    double edge = 0.7;     ///< of the surfaces among the column and its eight neighbours; 0: none
+    double dimmest = 0.2;  ///< of all surfaces
+};
+
 /// The probability that columns hold a surface and not what a method smears around one.
 ///
-/// A blurred edge crosses about half of the surface's brightness where the surface ends. So the
-/// odds are the ratio of the peak to a share of the surfaces' mean brightness, to the power of 4;
-/// the numbers fit simulated scenes. The mean is weighted by brightness and the square of this very
-/// probability.
+/// Across a blurred edge brightness falls within a column or two; where a surface turns away, or is
+/// dim, it falls slowly. So a column is held against the mean brightness of the surfaces around it,
+/// and, less strictly, against that of all. The odds are the ratio to a share of the one to the
+/// power of 12, and of the other to the power of 4; the probabilities of both are multiplied. Means
+/// are weighted by brightness and the square of the probability itself. Shares and powers fit
+/// simulated scenes.
 ///
-/// peaks        brightest value of each column, not negative
-/// weights      in [0, 1]: the probability that it is more than noise
-/// edge_share   of the mean brightness, at which the odds are even: 0.45 for methods that blur
-/// returns      as many values in [0, 1], rising with the peak; 0 for a peak of 0
+/// peaks     brightest value of each column of a grid (x, y), not negative
+/// weights   in [0, 1]: the probability that it is more than noise
+/// num_y     number of columns along y
+/// returns   as many values in [0, 1]; 0 for a peak of 0
 std::vector<double> plateau_probabilities(const std::vector<double>& peaks,
                                           const std::vector<double>& weights,
-                                          double edge_share);
+                                          std::size_t num_y,
+                                          const PlateauShares& shares);
 
 }  // namespace nlos

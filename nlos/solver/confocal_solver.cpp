@@ -109,7 +109,7 @@ class ConfocalSolver {
             const double share =
                 std::max(static_cast<double>(i) / max_iterations,
                          std::min(1.0, std::log(change.relative()) / std::log(tolerance_)));
-            progress.update(0.95 * share, "solver");
+            progress.update(0.95 * share, fmt::format("change {:.2g}", change.relative()));
             if (change.relative() <= tolerance_) return i;
         }
         return max_iterations;
@@ -343,6 +343,12 @@ double mean_intensity(const ConfocalProblem& data) {
     return sum > 0.0 ? squares / sum : 0.0;
 }
 
+double num_observed_bins(const ConfocalProblem& data) {
+    double count = 0.0;
+    for (const core::BinRange& range : data.observed) count += range.size();
+    return std::max(1.0, count);
+}
+
 /// Fields over the footprint that a solver holds, those of time included.
 constexpr double kNumFields = 14.0;
 
@@ -356,7 +362,10 @@ Volume solve_confocal(const MethodInput& input,
     ConfocalSolver solver(input, data, settings.solver);
     const int iterations = solver.run(input.progress, settings.solver.max_iterations);
     if (input.progress.announce) {
-        input.progress.announce(fmt::format("solver: {} iterations", iterations));
+        input.progress.announce(
+            fmt::format("solver: {} iterations, {:.3g} of deviance per observed bin",
+                        iterations,
+                        solver.misfit() / num_observed_bins(data)));
     }
     const ConservativeResampling to_depth = squared_range_to_depth(input, cone);
     const std::size_t num_z = input.axes.z_m.size();

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
 
 namespace nlos {
 namespace {
@@ -28,20 +29,51 @@ TEST(FalseDiscoveryRates, TellFewDiscoveriesFromMuchNoise) {
               20);
 }
 
-TEST(PlateauProbabilities, CrossOneHalfAtAShareOfTheSurfacesBrightness) {
+/// Columns of a 12 x 12 grid of which the middle 6 x 6 have this brightness and those around less.
+std::vector<double> plateau(double brightness, double around) {
+    std::vector<double> peaks(144, 0.0);
+    for (int i = 0; i < 144; ++i) {
+        const int distance = std::max(std::abs(2 * (i / 12) - 11), std::abs(2 * (i % 12) - 11));
+        peaks[static_cast<std::size_t>(i)] = distance < 6   ? brightness
+                                             : distance < 8 ? around
+                                                            : 0.0;
+    }
+    return peaks;
+}
+
+TEST(PlateauProbabilities, KeepPlateausAndLeaveOutTheirSmearedEdges) {
+    const std::vector<double> weights(144, 1.0);
+    const std::vector<double> blurred = plateau_probabilities(plateau(2.0, 1.0), weights, 12, {});
+    EXPECT_GT(blurred[5 * 12 + 5], 0.9);
+    EXPECT_LT(blurred[2 * 12 + 5], 0.2);
+    EXPECT_EQ(blurred[0], 0.0);
+}
+
+// Beside a plateau of the same size that is four times as bright.
+TEST(PlateauProbabilities, KeepDimSurfacesBesideBrightOnes) {
+    std::vector<double> peaks = plateau(8.0, 0.0);
+    const std::vector<double> dim = plateau(2.0, 0.0);
+    peaks.insert(peaks.end(), dim.begin(), dim.end());
+    const std::vector<double> weights(288, 1.0);
+    const std::vector<double> both = plateau_probabilities(peaks, weights, 12, {});
+    EXPECT_GT(both[144 + 5 * 12 + 5], 0.5);
+    const std::vector<double> strict = plateau_probabilities(peaks, weights, 12, {0.7, 0.45});
+    EXPECT_LT(strict[144 + 5 * 12 + 5], 0.2);
+}
+
+TEST(PlateauProbabilities, CrossOneHalfAtTheShareOfAllSurfaces) {
     std::vector<double> peaks(100, 2.0);
-    peaks.insert(peaks.end(), {0.9, 0.2, 0.0});
+    peaks.insert(peaks.end(), {0.0, 0.0, 0.4, 0.0, 0.0});
     std::vector<double> weights(peaks.size(), 1.0);
-    weights[100] = weights[101] = 0.0;  // so that the mean is that of the plateau
-    const std::vector<double> probabilities = plateau_probabilities(peaks, weights, 0.45);
-    EXPECT_GT(probabilities[0], 0.95);
-    EXPECT_NEAR(probabilities[100], 0.5, 1e-6);
-    EXPECT_LT(probabilities[101], 3e-3);
-    EXPECT_EQ(probabilities[102], 0.0);
+    weights[102] = 0.0;  // so that both means are those of the others
+    const std::vector<double> probabilities = plateau_probabilities(peaks, weights, 1, {});
+    EXPECT_NEAR(probabilities[102], 0.5, 1e-3);
+    EXPECT_EQ(probabilities[103], 0.0);
 }
 
 TEST(PlateauProbabilities, OfDarknessAreZero) {
-    EXPECT_EQ(plateau_probabilities({0.0, 0.0}, {1.0, 1.0}, 0.45), (std::vector<double>{0.0, 0.0}));
+    EXPECT_EQ(plateau_probabilities({0.0, 0.0}, {1.0, 1.0}, 2, {}),
+              (std::vector<double>{0.0, 0.0}));
 }
 
 }  // namespace
