@@ -12,8 +12,7 @@ namespace {
 
 using core::Vec3;
 
-constexpr int kStages = 3;
-constexpr int kIterations = 8;       // of expectation maximisation per stage
+constexpr int kIterations = 8;             // of expectation maximisation per stage
 constexpr double kModelError = 0.1;  // of a value: cells are coarse, angles and shadows left out
 constexpr double kNearest = 0.02;    // of the farthest range; nearer cells see one point alone
 constexpr double kStray = 1e-3;      // of the mean value, everywhere: no bin is impossible
@@ -62,7 +61,8 @@ class FitData {
             if (sample_.observed[i] == 0.0F) continue;
             const double mean = expected(model, gain, i);
             const double difference = static_cast<double>(sample_.values[i]) - mean;
-            const double variance = mean + 1.0 + std::pow(kModelError * mean, 2);
+            const double larger = std::max(mean, static_cast<double>(sample_.values[i]));
+            const double variance = mean + 1.0 + std::pow(kModelError * larger, 2);
             sum += difference * difference / variance;
             if (sample_.has_poisson_noise) sum -= mean / variance;
         }
@@ -158,22 +158,31 @@ bool has_structure(const HistogramSample& sample) {
     return FitData(sample).misfit_of_mean() > kSignificance * noise;
 }
 
-double unexplained_share(const HistogramSample& sample,
-                         const PathGeometry& geometry,
-                         double hopeless) {
-    const auto [low_m, high_m] = range_limits(sample, geometry);
-    if (!(high_m > low_m)) return 1.0;
-    const FitData data(sample);
-    ScatterCells cells = coarse_cells(low_m, high_m);
-    const double structure = std::max(data.misfit_of_mean(), 1e-30);
-    double share = 0.0;
-    for (int stage = 0; stage < kStages && !(share > hopeless); ++stage) {
-        if (stage > 0) cells = halved_cells(cells);
-        if (cells.centers.empty()) return 1.0;
-        const ScatterTransport transport(sample, geometry, cells);
-        share = fit_light(sample, data, transport, cells) / structure;
-    }
-    return std::isfinite(share) ? std::max(0.0, share) : 1.0;
+ScatterFit::ScatterFit(const HistogramSample& sample, PathGeometry geometry)
+    : sample_(&sample), geometry_(std::move(geometry)) {
+    const auto [low_m, high_m] = range_limits(sample, geometry_);
+    if (high_m > low_m) fit(coarse_cells(low_m, high_m));
+}
+
+void ScatterFit::refine() {
+    if (!cells_.centers.empty()) fit(refined_cells(cells_));
+}
+
+void ScatterFit::fit(ScatterCells cells) {
+    cells_ = std::move(cells);
+    unexplained_ = 1.0;
+    if (cells_.centers.empty()) return;
+    const FitData data(*sample_);
+    const ScatterTransport transport(*sample_, geometry_, cells_);
+    const double share = fit_light(*sample_, data, transport, cells_) /
+                         std::max(data.misfit_of_mean(), 1e-30);
+    if (std::isfinite(share)) unexplained_ = std::max(0.0, share);
+}
+
+double unexplained_share(const HistogramSample& sample, const PathGeometry& geometry) {
+    ScatterFit fit(sample, geometry);
+    for (int i = 0; i < ScatterFit::kRefinements; ++i) fit.refine();
+    return fit.unexplained();
 }
 
 }  // namespace nlos
