@@ -155,7 +155,10 @@ PairNumbers read_points(const LayoutFiles& files,
 }
 
 /// Laser and detector, and whether lengths start and end there.
-void read_devices(const LayoutFiles& files, const Layout& layout, Capture& capture) {
+void read_devices(const LayoutFiles& files,
+                  const Layout& layout,
+                  const CaptureReadSettings& settings,
+                  Capture& capture) {
     const LayoutDevices& devices = layout.devices;
     const auto position = [&](const std::string& array, Vec3& value) {
         if (array.empty() || !files.has(array)) return false;
@@ -173,6 +176,13 @@ void read_devices(const LayoutFiles& files, const Layout& layout, Capture& captu
     known = position(devices.detector, scan.detector_position) && known;
     if (!devices.position_m.empty()) {
         scan.laser_position = scan.detector_position = Vec3(devices.position_m.data());
+        known = true;
+    }
+    if (devices.distance_m.is_given()) {
+        const double distance_m = settings.distance_m
+                                      ? *settings.distance_m
+                                      : *files.number(devices.distance_m, "capture.distance_m");
+        scan.laser_position = scan.detector_position = Vec3(0.0, 0.0, distance_m);
         known = true;
     }
     bool included = devices.legs_included;
@@ -246,7 +256,7 @@ Capture read_one(const std::string& path,
             "must hold what the layout says");
     }
     Capture capture;
-    read_devices(files, layout, capture);
+    read_devices(files, layout, settings, capture);
     const PairNumbers numbers = read_points(files, layout, *array, settings, capture.scan);
     capture.time_axis = read_axis(files, layout.bins, *array->extent("t"), settings);
     keep_frames(read_histograms(files, *array, numbers, capture.scan.num_pairs(), settings.frame),
@@ -384,6 +394,7 @@ std::vector<std::string> open_questions(const Layout& layout, const CaptureReadS
     };
     ask(layout.bins.width_m, settings.bin_width_m.has_value(), "capture.bin_width_m");
     ask(layout.bins.width_s, settings.bin_width_m.has_value(), "capture.bin_width_m");
+    ask(layout.devices.distance_m, settings.distance_m.has_value(), "capture.distance_m");
     const auto ask_points = [&](const LayoutPoints& points) {
         ask(points.pitch_m, settings.pitch_m.has_value(), "capture.pitch_m");
         if (!points.grid) return;

@@ -18,12 +18,36 @@ constexpr std::size_t kDirections = 16;  // per side of the square around the he
 constexpr double kKeptLight = 0.98;      // of all
 constexpr std::size_t kMostHalved = 600;
 constexpr std::size_t kBlock = 256;  // cells at once
-constexpr std::size_t kLanes = 8;    // pairs at once: sums of one would wait for each other
+constexpr std::size_t kPairsAtOnce = 8;    // pairs at once: sums of one would wait for each other
 
 Vec3 position_of(const Cell& cell, const core::Transform& world_from_wall) {
     const double z = std::sqrt(std::max(1e-4, 1.0 - cell.y() * cell.y() - cell.z() * cell.z()));
     return world_from_wall * Vec3(cell.x() * cell.y(), cell.x() * cell.z(), cell.x() * z);
 }
+
+double farthest_m(const ScatterCells& cells) {
+    double farthest = 0.0;
+    for (const Cell& center : cells.centers) farthest = std::max(farthest, center.x());
+    return farthest;
+}
+
+/// Ways between a point of the wall and all cells, in the unit of `positions`.
+struct Legs {
+    Eigen::ArrayXf length;
+    Eigen::ArrayXf cosine;  ///< with the wall's normal
+
+    Legs(const Eigen::ArrayX3f& positions, const Vec3& point, const Vec3& normal)
+        : length(Eigen::ArrayXf::Zero(positions.rows())), cosine(length) {
+        const Eigen::Array3f from = point.array().cast<float>();
+        const Eigen::Array3f up = normal.array().cast<float>();
+        for (int i = 0; i < 3; ++i) {
+            length += (positions.col(i) - from[i]).square();
+            cosine += up[i] * (positions.col(i) - from[i]);
+        }
+        length = length.sqrt();
+        cosine /= length;
+    }
+};
 
 bool is_before_the_wall(const Cell& cell) {
     return cell.y() * cell.y() + cell.z() * cell.z() < 1.0;
@@ -96,75 +120,69 @@ ScatterTransport::ScatterTransport(const HistogramSample& sample,
     : num_pairs_(sample.pairs.size()),
       num_bins_(sample.num_bins),
       num_cells_(cells.centers.size()),
+      unit_m_(farthest_m(cells)),
       observed_(sample.observed),
       position_(num_pairs_ * num_cells_),
       weight_(num_pairs_ * num_cells_) {
-    Eigen::ArrayX3d positions(num_cells_, 3);
+    Eigen::ArrayX3f positions(num_cells_, 3);
     for (std::size_t i = 0; i < num_cells_; ++i) {
-        positions.row(static_cast<Eigen::Index>(i)) =
-            position_of(cells.centers[i], geometry.world_from_wall).transpose();
+        const Vec3 position = position_of(cells.centers[i], geometry.world_from_wall) / unit_m_;
+        positions.row(static_cast<Eigen::Index>(i)) = position.transpose().array().cast<float>();
     }
     core::parallel_for(num_pairs_, [&](std::size_t pair) { fill(pair, geometry, positions); });
 }
 
 void ScatterTransport::fill(std::size_t pair,
                             const PathGeometry& geometry,
-                            const Eigen::ArrayX3d& positions) {
-    const Eigen::Array3d normal = geometry.world_from_wall.linear().col(2).array();
-    const auto distances = [&](const Vec3& point, Eigen::ArrayXd& height) {
-        Eigen::ArrayXd squares = Eigen::ArrayXd::Zero(positions.rows());
-        height = squares;
-        for (int i = 0; i < 3; ++i) {
-            squares += (positions.col(i) - point[i]).square();
-            height += normal[i] * (positions.col(i) - point[i]);
-        }
-        return Eigen::ArrayXd(squares.sqrt());
-    };
-    Eigen::ArrayXd out_height;
-    Eigen::ArrayXd back_height;
-    const Eigen::ArrayXd out_m = distances(geometry.illumination[pair], out_height);
-    const Eigen::ArrayXd back_m = distances(geometry.sensing[pair], back_height);
-    const Eigen::ArrayXf bin =
-        ((out_m + back_m + (geometry.legs_m[pair] - geometry.opl_start_m)) / geometry.bin_width_m -
-         0.5)
-            .cast<float>();
-    const Eigen::ArrayXd product = out_m * back_m;
+                            const Eigen::ArrayX3f& positions) {
+    const Vec3 normal = geometry.world_from_wall.linear().col(2);
+    const Legs out(positions, geometry.illumination[pair] / unit_m_, normal);
+    const Legs back(positions, geometry.sensing[pair] / unit_m_, normal);
+    const auto before = static_cast<float>((geometry.legs_m[pair] - geometry.opl_start_m) / unit_m_);
+    const auto per_bin = static_cast<float>(unit_m_ / geometry.bin_width_m);
+    const Eigen::ArrayXf bin = (out.length + back.length + before) * per_bin - 0.5F;
     const Eigen::ArrayXf weight =
-        ((out_height * back_height).abs() / (product * product * product)).cast<float>();
-    const auto last_bin = static_cast<float>(num_bins_ - 1);
-    const auto is_inside = bin >= 0.0F && bin < last_bin;
-    const auto first = static_cast<Eigen::Index>(pair * num_cells_);
+        out.cosine.abs() * back.cosine.abs() / (out.length * back.length).square();
+    const auto is_inside = bin >= 0.0F && bin < static_cast<float>(num_bins_ - 1);
+    const std::size_t first = pair * num_cells_;
     Eigen::ArrayXf::Map(position_.data() + first, bin.size()) = is_inside.select(bin, 0.0F);
     Eigen::ArrayXf::Map(weight_.data() + first, bin.size()) = is_inside.select(weight, 0.0F);
 }
 
-std::vector<float> ScatterTransport::forward(const std::vector<double>& light) const {
+std::vector<float> ScatterTransport::forward(const std::vector<double>& light,
+                                             const PairSubset& subset) const {
     std::vector<float> model(num_pairs_ * num_bins_);
-    core::parallel_blocks(num_pairs_, kLanes, [&](std::size_t begin, std::size_t end) {
-        std::vector<double> rows(kLanes * num_bins_, 0.0);
+    const std::size_t count = (num_pairs_ - subset.first + subset.step - 1) / subset.step;
+    core::parallel_blocks(count, kPairsAtOnce, [&](std::size_t begin, std::size_t end) {
+        std::vector<double> rows(kPairsAtOnce * num_bins_, 0.0);
         for (std::size_t cell = 0; cell < num_cells_; ++cell) {
-            for (std::size_t pair = begin; pair < end; ++pair) {
-                const std::size_t i = pair * num_cells_ + cell;
+            for (std::size_t lane = begin; lane < end; ++lane) {
+                const std::size_t i = (subset.first + lane * subset.step) * num_cells_ + cell;
                 const auto bin = static_cast<int>(position_[i]);
                 const double value = light[cell] * static_cast<double>(weight_[i]);
                 const double late = static_cast<double>(position_[i] - static_cast<float>(bin));
-                double* row = rows.data() + (pair - begin) * num_bins_ + bin;
+                double* row = rows.data() + (lane - begin) * num_bins_ + bin;
                 row[0] += value - late * value;
                 row[1] += late * value;
             }
         }
-        for (std::size_t i = begin * num_bins_; i < end * num_bins_; ++i) {
-            model[i] = observed_[i] * static_cast<float>(rows[i - begin * num_bins_]);
+        for (std::size_t lane = begin; lane < end; ++lane) {
+            const std::size_t first = (subset.first + lane * subset.step) * num_bins_;
+            for (std::size_t bin = 0; bin < num_bins_; ++bin) {
+                model[first + bin] = observed_[first + bin] *
+                                     static_cast<float>(rows[(lane - begin) * num_bins_ + bin]);
+            }
         }
     });
     return model;
 }
 
 CellReach ScatterTransport::backward(const std::vector<float>& ratio,
-                                     const std::vector<double>& gain) const {
+                                     const std::vector<double>& gain,
+                                     const PairSubset& subset) const {
     CellReach reach{std::vector<float>(num_cells_), std::vector<float>(num_cells_)};
     core::parallel_blocks(num_cells_, kBlock, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t pair = 0; pair < num_pairs_; ++pair) {
+        for (std::size_t pair = subset.first; pair < num_pairs_; pair += subset.step) {
             const float* seen = observed_.data() + pair * num_bins_;
             const float* rated = ratio.data() + pair * num_bins_;
             const auto pair_gain = static_cast<float>(gain[pair]);

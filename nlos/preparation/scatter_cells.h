@@ -41,6 +41,12 @@ struct CellReach {
     std::vector<float> rated;  ///< every bin times a ratio
 };
 
+/// Every `step`-th pair of a sample, from `first` on.
+struct PairSubset {
+    std::size_t first = 0;
+    std::size_t step = 1;
+};
+
 /// How light of cells reaches the bins of a sample: a weight and a position between two bins for
 /// each pair and cell. Light falls with the squares of both legs and with the cosines at the wall.
 class ScatterTransport {
@@ -49,21 +55,23 @@ class ScatterTransport {
                      const PathGeometry& geometry,
                      const ScatterCells& cells);
 
-    /// Histograms of the cells' light, [pair][bin]; 0 in bins that were not observed.
-    std::vector<float> forward(const std::vector<double>& light) const;
+    /// Histograms of the cells' light, [pair][bin]; 0 in bins that were not observed, and for pairs
+    /// outside the subset.
+    std::vector<float> forward(const std::vector<double>& light, const PairSubset& subset) const;
 
     /// What each cell sends to observed bins for unit light, each pair times its gain, and the same
     /// with every bin times `ratio` [pair][bin].
-    CellReach backward(const std::vector<float>& ratio, const std::vector<double>& gain) const;
+    CellReach backward(const std::vector<float>& ratio,
+                       const std::vector<double>& gain,
+                       const PairSubset& subset) const;
 
  private:
-    void fill(std::size_t pair,
-              const PathGeometry& geometry,
-              const Eigen::ArrayX3d& positions);
+    void fill(std::size_t pair, const PathGeometry& geometry, const Eigen::ArrayX3f& positions);
 
     std::size_t num_pairs_;
     std::size_t num_bins_;
     std::size_t num_cells_;
+    double unit_m_;                ///< of lengths in single precision
     std::vector<float> observed_;  ///< [pair][bin], 1 or 0
     std::vector<float> position_;  ///< [pair][cell], in bins
     std::vector<float> weight_;    ///< [pair][cell]; 0 outside the sample's bins

@@ -12,7 +12,9 @@ namespace {
 
 using core::Vec3;
 
-constexpr int kIterations = 8;             // of expectation maximisation per stage
+constexpr int kUpdates = 12;         // of the light, each by a subset of pairs
+constexpr std::size_t kMostSubsets = 4;
+constexpr std::size_t kSmallestSubset = 25;
 constexpr double kModelError = 0.1;  // of a value: cells are coarse, angles and shadows left out
 constexpr double kNearest = 0.02;    // of the farthest range; nearer cells see one point alone
 constexpr double kStray = 1e-3;      // of the mean value, everywhere: no bin is impossible
@@ -129,25 +131,34 @@ std::vector<double> even_light(const std::vector<float>& reach) {
     return light;
 }
 
-/// Fits the light of cells to a sample; returns the misfit.
+/// Improves the light of cells by what a subset of pairs saw.
+void improve(const FitData& data,
+             const ScatterTransport& transport,
+             const PairSubset& subset,
+             std::vector<double>& light) {
+    const std::vector<float> model = transport.forward(light, subset);
+    const std::vector<double> gains = data.gains(model);
+    const CellReach reach = transport.backward(data.ratios(model, gains), gains, subset);
+    for (std::size_t c = 0; c < light.size(); ++c) {
+        light[c] *=
+            reach.plain[c] > 0.0F ? static_cast<double>(reach.rated[c] / reach.plain[c]) : 1.0;
+    }
+}
+
+/// Fits the light of cells to a sample, in ordered subsets [Hudson1994]; returns the misfit.
 double fit_light(const HistogramSample& sample,
                  const FitData& data,
                  const ScatterTransport& transport,
                  ScatterCells& cells) {
+    const std::size_t num_pairs = sample.pairs.size();
     cells.reach =
-        transport.backward(sample.observed, std::vector<double>(sample.pairs.size(), 1.0)).plain;
+        transport.backward(sample.observed, std::vector<double>(num_pairs, 1.0), {}).plain;
     if (cells.light.empty()) cells.light = even_light(cells.reach);
-    std::vector<float> model = transport.forward(cells.light);
-    for (int i = 0; i < kIterations; ++i) {
-        const std::vector<double> gains = data.gains(model);
-        const CellReach reach = transport.backward(data.ratios(model, gains), gains);
-        for (std::size_t c = 0; c < cells.light.size(); ++c) {
-            cells.light[c] *=
-                reach.plain[c] > 0.0F ? static_cast<double>(reach.rated[c] / reach.plain[c]) : 0.0;
-        }
-        model = transport.forward(cells.light);
+    const std::size_t subsets = std::clamp<std::size_t>(num_pairs / kSmallestSubset, 1, kMostSubsets);
+    for (std::size_t i = 0; i < kUpdates; ++i) {
+        improve(data, transport, {i % subsets, subsets}, cells.light);
     }
-    return data.misfit(model);
+    return data.misfit(transport.forward(cells.light, {}));
 }
 
 }  // namespace
