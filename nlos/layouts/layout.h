@@ -103,6 +103,7 @@ struct LayoutHistogram {
     std::vector<std::string> axes;   ///< see kHistogramAxes; any other name is summed over
     std::optional<LayoutSplit> split;
     bool also_reversed = false;  ///< the same axes from last to first are as good
+    int first_order = 1;         ///< bounces of the first entry along the axis `order`
     bool square = false;         ///< x and y have one extent, which tells axes apart
     core::TransientUnit unit = core::TransientUnit::Counts;
     LayoutNumber is_counts;            ///< instead of unit: 0 says radiance
@@ -114,9 +115,12 @@ struct LayoutHistogram {
 template <class Visitor>
 void for_each_field(LayoutHistogram& h, Visitor&& visit) {
     visit("array", h.array, "the first of these arrays that the file holds");
-    visit("axes", h.axes, "t, x, y, lx, ly, sx, sy, l, s, pair, frame; others are summed over");
+    visit("axes", h.axes, "t, x, y, lx, ly, sx, sy, l, s, pair, frame, order; others are summed over");
     visit("split", h.split, "an axis that stands for two");
     visit("also_reversed", h.also_reversed, "the same axes from last to first are as good");
+    visit("first_order",
+          h.first_order,
+          core::at_least(1, "bounces of the first entry along the axis order"));
     visit("square", h.square, "x and y have one extent");
     visit("unit", h.unit, "what the numbers are");
     visit("is_counts", h.is_counts, "instead of unit: 0 for radiance");

@@ -204,6 +204,15 @@ void keep_frames(std::vector<core::Transient> frames, Capture& capture) {
     capture.sequence->frames = std::move(frames);
 }
 
+/// Keeps light by order of bounces, but for orders without any.
+void keep_orders(std::vector<core::Transient> by_order, int first_order, Capture& capture) {
+    for (std::size_t i = 0; i < by_order.size(); ++i) {
+        if (by_order[i].is_dark()) continue;
+        capture.orders.push_back(first_order + static_cast<int>(i));
+        capture.by_order.push_back(std::move(by_order[i]));
+    }
+}
+
 void describe(const LayoutFiles& files, const Layout& layout, Capture& capture) {
     capture.scene_info["original_format"] = layout.title;
     for (const std::string& name : layout.keep) {
@@ -259,8 +268,10 @@ Capture read_one(const std::string& path,
     read_devices(files, layout, settings, capture);
     const PairNumbers numbers = read_points(files, layout, *array, settings, capture.scan);
     capture.time_axis = read_axis(files, layout.bins, *array->extent("t"), settings);
-    keep_frames(read_histograms(files, *array, numbers, capture.scan.num_pairs(), settings.frame),
-                capture);
+    Histograms histograms =
+        read_histograms(files, *array, numbers, capture.scan.num_pairs(), settings.frame);
+    keep_frames(std::move(histograms.frames), capture);
+    keep_orders(std::move(histograms.by_order), layout.histogram.first_order, capture);
     read_unit(files, layout.histogram, capture);
     describe(files, layout, capture);
     const core::BinRange lit = lit_bins(capture);
