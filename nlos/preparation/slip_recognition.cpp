@@ -13,8 +13,9 @@ namespace {
 
 constexpr double kWellExplained = 0.1;    // no questions are asked
 constexpr double kFullyExplained = 0.03;  // nor about axes, which change lengths little
-constexpr double kDecisive = 1.3;         // by which the description must explain less
+constexpr double kDecisive = 1.2;         // by which the description must explain less
 constexpr double kOverwhelming = 4.0;     // the same for a slip that leaves much itself
+constexpr double kReversal = 2.5;         // the same for reversed time
 constexpr double kMostUnexplained = 0.6;  // by a slip that is named
 constexpr double kBrief = 0.25;           // of how late it is, for a direct return to fade in
 constexpr double kPromising = 3.0;        // times the least share, up to which fits are refined
@@ -48,6 +49,13 @@ void fit_corrections(const core::Capture& capture,
     for (std::size_t i = 0; i < fits.size(); ++i) {
         evidence.corrections[i].unexplained = fits[i].unexplained();
     }
+}
+
+/// How many times as much the description must leave unexplained. Light that spreads from all around
+/// explains much of a plane's histograms backwards, so that only a great gain shows a reversal.
+double needed_gain(const CorrectionShare& share) {
+    if (share.unexplained >= kMostUnexplained) return kOverwhelming;
+    return share.correction.flip_t ? kReversal : kDecisive;
 }
 
 double extent_m(const core::Capture& capture) {
@@ -90,11 +98,12 @@ std::vector<CaptureCorrection> recognise_slips(const SlipEvidence& evidence) {
         const bool fits = candidate.unexplained < std::max(kMostUnexplained, evidence.given);
         if (candidate.is_seen && fits) named.push_back(candidate.correction);
     }
-    if (best.empty() || evidence.given < kFullyExplained) return named;
-    const double least = best.front().unexplained;
-    const double decisive = least < kMostUnexplained ? kDecisive : kOverwhelming;
-    if (least > 1.0 || evidence.given < decisive * least) return named;
+    if (evidence.given < kFullyExplained) return named;
+    std::erase_if(best, [&](const CorrectionShare& c) {
+        return c.unexplained > 1.0 || evidence.given < needed_gain(c) * c.unexplained;
+    });
     for (const CorrectionShare& candidate : best) {
+        const double least = best.front().unexplained;
         if (candidate.unexplained > std::max(kTie * least, kFullyExplained)) break;
         if (!candidate.is_seen && named.size() < kMostNamed) named.push_back(candidate.correction);
     }
