@@ -46,7 +46,8 @@ void for_each_field(CaptureReadSettings& s, Visitor&& visit) {
           core::above(0, "distance of grid neighbours where only indices are stored [m]"));
     visit("distance_m",
           s.distance_m,
-          core::above(0, "distance of a sensor from the wall that it faces, where the file lacks it [m]"));
+          core::above(
+              0, "distance of a sensor from the wall that it faces, where the file lacks it [m]"));
     visit("opl_shift_m",
           s.opl_shift_m,
           core::Ranged{"added to the start of the axis (time zero) [m]", {}});

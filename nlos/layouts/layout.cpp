@@ -123,11 +123,12 @@ void validate(const Layout& layout, const std::string& where) {
                       "every axis once");
     }
     const auto has_axis = [&](const char* name) { return std::ranges::count(axes, name) > 0; };
-    core::require(!has_axis("order") || !(has_axis("frame") || layout.files_are_frames ||
-                                          layout.bins.shift || !layout.histogram.background.empty()),
-                  key("histogram.axes"),
-                  "order",
-                  "no order beside frames, delays or a background");
+    core::require(
+        !has_axis("order") || !(has_axis("frame") || layout.files_are_frames || layout.bins.shift ||
+                                !layout.histogram.background.empty()),
+        key("histogram.axes"),
+        "order",
+        "no order beside frames, delays or a background");
     if (layout.histogram.split) {
         core::require(
             layout.histogram.split->into.size() == 2 && layout.histogram.split->extents.size() == 2,

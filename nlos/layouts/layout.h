@@ -115,7 +115,9 @@ struct LayoutHistogram {
 template <class Visitor>
 void for_each_field(LayoutHistogram& h, Visitor&& visit) {
     visit("array", h.array, "the first of these arrays that the file holds");
-    visit("axes", h.axes, "t, x, y, lx, ly, sx, sy, l, s, pair, frame, order; others are summed over");
+    visit("axes",
+          h.axes,
+          "t, x, y, lx, ly, sx, sy, l, s, pair, frame, order; others are summed over");
     visit("split", h.split, "an axis that stands for two");
     visit("also_reversed", h.also_reversed, "the same axes from last to first are as good");
     visit("first_order",

@@ -17,8 +17,8 @@ constexpr std::size_t kRanges = 16;      // cells to begin with
 constexpr std::size_t kDirections = 16;  // per side of the square around the hemisphere
 constexpr double kKeptLight = 0.98;      // of all
 constexpr std::size_t kMostHalved = 600;
-constexpr std::size_t kBlock = 256;  // cells at once
-constexpr std::size_t kPairsAtOnce = 8;    // pairs at once: sums of one would wait for each other
+constexpr std::size_t kBlock = 256;      // cells at once
+constexpr std::size_t kPairsAtOnce = 8;  // pairs at once: sums of one would wait for each other
 
 Vec3 position_of(const Cell& cell, const core::Transform& world_from_wall) {
     const double z = std::sqrt(std::max(1e-4, 1.0 - cell.y() * cell.y() - cell.z() * cell.z()));
@@ -64,8 +64,7 @@ std::vector<std::size_t> heaviest_cells(const ScatterCells& cells) {
     std::ranges::stable_sort(order, std::greater(), [&](std::size_t i) { return sent[i]; });
     double missing = kKeptLight * std::accumulate(sent.begin(), sent.end(), 0.0);
     std::size_t kept = 0;
-    while (kept < order.size() && missing > 0.0)
-        missing -= sent[order[kept++]];
+    while (kept < order.size() && missing > 0.0) missing -= sent[order[kept++]];
     order.resize(kept);
     return order;
 }
@@ -138,7 +137,8 @@ void ScatterTransport::fill(std::size_t pair,
     const Vec3 normal = geometry.world_from_wall.linear().col(2);
     const Legs out(positions, geometry.illumination[pair] / unit_m_, normal);
     const Legs back(positions, geometry.sensing[pair] / unit_m_, normal);
-    const auto before = static_cast<float>((geometry.legs_m[pair] - geometry.opl_start_m) / unit_m_);
+    const auto before =
+        static_cast<float>((geometry.legs_m[pair] - geometry.opl_start_m) / unit_m_);
     const auto per_bin = static_cast<float>(unit_m_ / geometry.bin_width_m);
     const Eigen::ArrayXf bin = (out.length + back.length + before) * per_bin - 0.5F;
     const Eigen::ArrayXf weight =

@@ -12,7 +12,7 @@ namespace {
 
 using core::Vec3;
 
-constexpr int kUpdates = 12;         // of the light, each by a subset of pairs
+constexpr int kUpdates = 12;  // of the light, each by a subset of pairs
 constexpr std::size_t kMostSubsets = 4;
 constexpr std::size_t kSmallestSubset = 25;
 constexpr double kModelError = 0.1;  // of a value: cells are coarse, angles and shadows left out
@@ -154,7 +154,8 @@ double fit_light(const HistogramSample& sample,
     cells.reach =
         transport.backward(sample.observed, std::vector<double>(num_pairs, 1.0), {}).plain;
     if (cells.light.empty()) cells.light = even_light(cells.reach);
-    const std::size_t subsets = std::clamp<std::size_t>(num_pairs / kSmallestSubset, 1, kMostSubsets);
+    const std::size_t subsets =
+        std::clamp<std::size_t>(num_pairs / kSmallestSubset, 1, kMostSubsets);
     for (std::size_t i = 0; i < kUpdates; ++i) {
         improve(data, transport, {i % subsets, subsets}, cells.light);
     }
@@ -185,8 +186,8 @@ void ScatterFit::fit(ScatterCells cells) {
     if (cells_.centers.empty()) return;
     const FitData data(*sample_);
     const ScatterTransport transport(*sample_, geometry_, cells_);
-    const double share = fit_light(*sample_, data, transport, cells_) /
-                         std::max(data.misfit_of_mean(), 1e-30);
+    const double share =
+        fit_light(*sample_, data, transport, cells_) / std::max(data.misfit_of_mean(), 1e-30);
     if (std::isfinite(share)) unexplained_ = std::max(0.0, share);
 }
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kWellExplained = 0.1;    // no questions are asked
 constexpr double kFullyExplained = 0.03;  // nor about axes, which change lengths little
-constexpr double kDecisive = 1.2;         // by which the description must explain less
+constexpr double kDecisive = 1.3;         // by which the description must explain less
 constexpr double kOverwhelming = 4.0;     // the same for a slip that leaves much itself
 constexpr double kReversal = 2.5;         // the same for reversed time
 constexpr double kMostUnexplained = 0.6;  // by a slip that is named
@@ -22,8 +22,8 @@ constexpr double kPromising = 3.0;        // times the least share, up to which 
 constexpr double kTie = 1.5;              // slips that explain so much alike are all named
 constexpr std::size_t kMostNamed = 2;
 
-/// With the direct return where it belongs. The light of a plane that faces the wall is equally late
-/// everywhere, too, but takes as long to fade as the plane is far.
+/// With the direct return where it belongs. The light of a plane that faces the wall is equally
+/// late everywhere, too, but takes as long to fade as the plane is far.
 CorrectionShare shifted(const DirectReturn& direct) {
     CorrectionShare share;
     share.correction.shift_m = -direct.offset_m;
@@ -51,8 +51,9 @@ void fit_corrections(const core::Capture& capture,
     }
 }
 
-/// How many times as much the description must leave unexplained. Light that spreads from all around
-/// explains much of a plane's histograms backwards, so that only a great gain shows a reversal.
+/// How many times as much the description must leave unexplained. Light that spreads from all
+/// around explains much of a plane's histograms backwards, so that only a great gain shows a
+/// reversal.
 double needed_gain(const CorrectionShare& share) {
     if (share.unexplained >= kMostUnexplained) return kOverwhelming;
     return share.correction.flip_t ? kReversal : kDecisive;
