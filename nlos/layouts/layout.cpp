@@ -55,7 +55,7 @@ namespace {
 
 /// Axes of histograms that say which pair, bin or frame a value belongs to.
 const std::vector<std::string> kHistogramAxes{
-    "t", "x", "y", "lx", "ly", "sx", "sy", "l", "s", "pair", "frame"};
+    "t", "x", "y", "lx", "ly", "sx", "sy", "l", "s", "pair", "frame", "order"};
 
 void require_lengths(const std::vector<double>& list, std::size_t count, const std::string& where) {
     core::require(list.empty() || list.size() == count,
@@ -122,6 +122,13 @@ void validate(const Layout& layout, const std::string& where) {
                       axis + " twice",
                       "every axis once");
     }
+    const auto has_axis = [&](const char* name) { return std::ranges::count(axes, name) > 0; };
+    core::require(
+        !has_axis("order") || !(has_axis("frame") || layout.files_are_frames || layout.bins.shift ||
+                                !layout.histogram.background.empty()),
+        key("histogram.axes"),
+        "order",
+        "no order beside frames, delays or a background");
     if (layout.histogram.split) {
         core::require(
             layout.histogram.split->into.size() == 2 && layout.histogram.split->extents.size() == 2,

@@ -26,7 +26,7 @@ struct LayoutNumber {
     std::string array;    ///< it is one of the array's values
     int element = 0;      ///< which one, in storage order
     std::string step_of;  ///< it is the mean step of this array
-    std::string peak_of;  ///< it is the index of this array's largest value
+    std::string peak_of;  ///< it is the bin in which this array, a histogram or several, peaks
     double factor = 1.0;  ///< from the array's unit to the key's
     double offset = 0.0;  ///< added after that
     std::string ask;      ///< the file does not hold it: values that publications give
@@ -42,7 +42,7 @@ void for_each_field(LayoutNumber& n, Visitor&& visit) {
     visit("array", n.array, "array that holds it");
     visit("element", n.element, core::at_least(0, "which of the array's values, as stored"));
     visit("step_of", n.step_of, "array whose mean step it is");
-    visit("peak_of", n.peak_of, "array, the index of whose largest value it is");
+    visit("peak_of", n.peak_of, "array of a histogram or several, in whose sum it is the peak");
     visit("factor", n.factor, "from the array's unit to that of the key");
     visit("offset", n.offset, "added after that");
     visit("ask", n.ask, "the file does not hold it: typical values, for the message");
@@ -87,15 +87,15 @@ void for_each_field(LayoutRecognition& r, Visitor&& visit) {
 /// One axis of an array that stands for two, as lists of the points of a grid do.
 struct LayoutSplit {
     std::string axis;
-    std::vector<std::string> into;     ///< names of the two, in the writer's order
-    std::vector<std::string> extents;  ///< scalars that hold their extents
+    std::vector<std::string> into;      ///< names of the two, in the writer's order
+    std::vector<LayoutNumber> extents;  ///< numbers, or scalars of the file
 };
 
 template <class Visitor>
 void for_each_field(LayoutSplit& s, Visitor&& visit) {
     visit("axis", s.axis, "axis that stands for two");
     visit("into", s.into, "their names, in the writer's order");
-    visit("extents", s.extents, "arrays that hold their extents");
+    visit("extents", s.extents, "their extents, numbers or arrays that hold them");
 }
 
 struct LayoutHistogram {
@@ -103,6 +103,7 @@ struct LayoutHistogram {
     std::vector<std::string> axes;   ///< see kHistogramAxes; any other name is summed over
     std::optional<LayoutSplit> split;
     bool also_reversed = false;  ///< the same axes from last to first are as good
+    int first_order = 1;         ///< bounces of the first entry along the axis `order`
     bool square = false;         ///< x and y have one extent, which tells axes apart
     core::TransientUnit unit = core::TransientUnit::Counts;
     LayoutNumber is_counts;            ///< instead of unit: 0 says radiance
@@ -114,9 +115,14 @@ struct LayoutHistogram {
 template <class Visitor>
 void for_each_field(LayoutHistogram& h, Visitor&& visit) {
     visit("array", h.array, "the first of these arrays that the file holds");
-    visit("axes", h.axes, "t, x, y, lx, ly, sx, sy, l, s, pair, frame; others are summed over");
+    visit("axes",
+          h.axes,
+          "t, x, y, lx, ly, sx, sy, l, s, pair, frame, order; others are summed over");
     visit("split", h.split, "an axis that stands for two");
     visit("also_reversed", h.also_reversed, "the same axes from last to first are as good");
+    visit("first_order",
+          h.first_order,
+          core::at_least(1, "bounces of the first entry along the axis order"));
     visit("square", h.square, "x and y have one extent");
     visit("unit", h.unit, "what the numbers are");
     visit("is_counts", h.is_counts, "instead of unit: 0 for radiance");
@@ -257,7 +263,8 @@ namespace nlos {
 struct LayoutDevices {
     std::string laser;  ///< array of 3 values, world [m]
     std::string detector;
-    std::vector<double> position_m;  ///< of both
+    std::vector<double> position_m;  ///< of both; or:
+    LayoutNumber distance_m;         ///< of both from the wall z = 0, above its origin
     bool legs_included = false;      ///< whether path lengths start and end there
     LayoutNumber legs_excluded;      ///< instead: 0 says included
 };
@@ -267,6 +274,7 @@ void for_each_field(LayoutDevices& d, Visitor&& visit) {
     visit("laser", d.laser, "array of the laser's position [m]");
     visit("detector", d.detector, "array of the detector's position [m]");
     visit("position_m", d.position_m, "position of both [m]");
+    visit("distance_m", d.distance_m, "or their distance from the origin of the wall z = 0 [m]");
     visit("legs_included", d.legs_included, "path lengths start and end at the devices");
     visit("legs_excluded", d.legs_excluded, "instead: 0 says that they do");
 }

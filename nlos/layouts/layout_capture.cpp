@@ -155,7 +155,10 @@ PairNumbers read_points(const LayoutFiles& files,
 }
 
 /// Laser and detector, and whether lengths start and end there.
-void read_devices(const LayoutFiles& files, const Layout& layout, Capture& capture) {
+void read_devices(const LayoutFiles& files,
+                  const Layout& layout,
+                  const CaptureReadSettings& settings,
+                  Capture& capture) {
     const LayoutDevices& devices = layout.devices;
     const auto position = [&](const std::string& array, Vec3& value) {
         if (array.empty() || !files.has(array)) return false;
@@ -175,6 +178,13 @@ void read_devices(const LayoutFiles& files, const Layout& layout, Capture& captu
         scan.laser_position = scan.detector_position = Vec3(devices.position_m.data());
         known = true;
     }
+    if (devices.distance_m.is_given()) {
+        const double distance_m = settings.distance_m
+                                      ? *settings.distance_m
+                                      : *files.number(devices.distance_m, "capture.distance_m");
+        scan.laser_position = scan.detector_position = Vec3(0.0, 0.0, distance_m);
+        known = true;
+    }
     bool included = devices.legs_included;
     if (const auto excluded = files.number(devices.legs_excluded, "capture.opl_origin")) {
         included = *excluded == 0.0;
@@ -192,6 +202,15 @@ void keep_frames(std::vector<core::Transient> frames, Capture& capture) {
     if (frames.size() == 1) return;
     capture.sequence.emplace();
     capture.sequence->frames = std::move(frames);
+}
+
+/// Keeps light by order of bounces, but for orders without any.
+void keep_orders(std::vector<core::Transient> by_order, int first_order, Capture& capture) {
+    for (std::size_t i = 0; i < by_order.size(); ++i) {
+        if (by_order[i].is_dark()) continue;
+        capture.orders.push_back(first_order + static_cast<int>(i));
+        capture.by_order.push_back(std::move(by_order[i]));
+    }
 }
 
 void describe(const LayoutFiles& files, const Layout& layout, Capture& capture) {
@@ -246,11 +265,13 @@ Capture read_one(const std::string& path,
             "must hold what the layout says");
     }
     Capture capture;
-    read_devices(files, layout, capture);
+    read_devices(files, layout, settings, capture);
     const PairNumbers numbers = read_points(files, layout, *array, settings, capture.scan);
     capture.time_axis = read_axis(files, layout.bins, *array->extent("t"), settings);
-    keep_frames(read_histograms(files, *array, numbers, capture.scan.num_pairs(), settings.frame),
-                capture);
+    Histograms histograms =
+        read_histograms(files, *array, numbers, capture.scan.num_pairs(), settings.frame);
+    keep_frames(std::move(histograms.frames), capture);
+    keep_orders(std::move(histograms.by_order), layout.histogram.first_order, capture);
     read_unit(files, layout.histogram, capture);
     describe(files, layout, capture);
     const core::BinRange lit = lit_bins(capture);
@@ -384,6 +405,7 @@ std::vector<std::string> open_questions(const Layout& layout, const CaptureReadS
     };
     ask(layout.bins.width_m, settings.bin_width_m.has_value(), "capture.bin_width_m");
     ask(layout.bins.width_s, settings.bin_width_m.has_value(), "capture.bin_width_m");
+    ask(layout.devices.distance_m, settings.distance_m.has_value(), "capture.distance_m");
     const auto ask_points = [&](const LayoutPoints& points) {
         ask(points.pitch_m, settings.pitch_m.has_value(), "capture.pitch_m");
         if (!points.grid) return;

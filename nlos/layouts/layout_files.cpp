@@ -63,6 +63,16 @@ std::vector<double> LayoutFiles::read(const std::string& array) const {
     return source.reader->read_doubles(source.name, source.reader->shape(source.name));
 }
 
+std::size_t LayoutFiles::peak_bin(const std::string& array) const {
+    const Source source = find(array);
+    Shape stored = source.reader->shape(source.name);
+    const std::vector<double> values = source.reader->read_doubles(source.name, stored);
+    while (!stored.empty() && stored.back() == 1) stored.pop_back();
+    std::vector<double> sums(stored.empty() ? 1 : stored.back(), 0.0);
+    for (std::size_t i = 0; i < values.size(); ++i) sums[i % sums.size()] += values[i];
+    return static_cast<std::size_t>(std::ranges::max_element(sums) - sums.begin());
+}
+
 std::optional<double> LayoutFiles::number(const LayoutNumber& number,
                                           const std::string& setting) const {
     if (number.value) return *number.value;
@@ -88,11 +98,7 @@ std::optional<double> LayoutFiles::number(const LayoutNumber& number,
         return (values.back() - values.front()) / steps * number.factor + number.offset;
     }
     if (!number.peak_of.empty()) {
-        const std::vector<double> values = read(number.peak_of);
-        const auto peak = std::max_element(values.begin(), values.end());
-        if (peak == values.end())
-            throw Error(where(number.peak_of), "is empty", "must hold values");
-        return static_cast<double>(peak - values.begin()) * number.factor + number.offset;
+        return static_cast<double>(peak_bin(number.peak_of)) * number.factor + number.offset;
     }
     if (number.ask.empty()) return std::nullopt;
     throw Error(path_,

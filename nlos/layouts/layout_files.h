@@ -64,6 +64,10 @@ class LayoutFiles {
     std::optional<Source> find_source(const std::string& array) const;
     Source find(const std::string& array) const;
 
+    /// The bin, along the axis that runs fastest in storage, in which the sum of all histograms of
+    /// an array peaks.
+    std::size_t peak_bin(const std::string& array) const;
+
     std::string path_;
     std::unique_ptr<ArrayReader> main_;
     mutable std::map<std::string, std::unique_ptr<ArrayReader>> beside_;

@@ -21,6 +21,7 @@ struct AxisStep {
     std::size_t sensing = 0;
     std::size_t bin = 0;
     std::size_t frame = 0;
+    std::size_t order = 0;
 };
 
 /// Entries number points with x before y.
@@ -30,6 +31,7 @@ AxisStep step_of(const HistogramArray& array, std::size_t axis) {
     const auto rows = [&](const char* y) { return array.extent(y).value_or(1); };
     if (name == "t") step.bin = 1;
     if (name == "frame") step.frame = 1;
+    if (name == "order") step.order = 1;
     if (name == "y" || name == "sy" || name == "s" || name == "pair") step.sensing = 1;
     if (name == "x") step.sensing = rows("y");
     if (name == "sx") step.sensing = rows("sy");
@@ -73,6 +75,7 @@ class Walk {
         place_.sensing += count * step.sensing;
         place_.bin += count * step.bin;
         place_.frame += count * step.frame;
+        place_.order += count * step.order;
     }
 
     std::vector<AxisStep> steps_;
@@ -82,11 +85,11 @@ class Walk {
 
 }  // namespace
 
-std::vector<core::Transient> read_histograms(const LayoutFiles& files,
-                                             const HistogramArray& array,
-                                             const PairNumbers& numbers,
-                                             std::size_t num_pairs,
-                                             std::optional<int> frame) {
+Histograms read_histograms(const LayoutFiles& files,
+                           const HistogramArray& array,
+                           const PairNumbers& numbers,
+                           std::size_t num_pairs,
+                           std::optional<int> frame) {
     const std::size_t bins = array.extent("t").value();
     const std::size_t frames = array.extent("frame").value_or(1);
     const std::string where = files.where(array.name);
@@ -99,20 +102,24 @@ std::vector<core::Transient> read_histograms(const LayoutFiles& files,
                     fmt::format("must be less than the {} frames of {}", frames, where));
     }
     const std::size_t kept = frame ? 1 : frames;
-    require_memory(sizeof(float) * num_pairs * bins * (kept + (kept > 1 ? 1 : 0)), where);
-    std::vector<core::Transient> transients(kept, {num_pairs, static_cast<int>(bins)});
+    const std::size_t num_orders = array.extent("order").value_or(1);
+    const std::size_t orders = num_orders > 1 ? num_orders : 0;
+    require_memory(sizeof(float) * num_pairs * bins * (kept + (kept > 1 ? 1 : 0) + orders), where);
+    const core::Transient dark(num_pairs, static_cast<int>(bins));
+    Histograms read{std::vector(kept, dark), std::vector(orders, dark)};
     Walk walk(steps_of(array, files.first_index_fastest(array.name)));
     files.read_runs(array.name, [&](const std::vector<float>& values) {
         for (const float value : values) {
             const AxisStep& place = walk.place();
             if (!frame || place.frame == static_cast<std::size_t>(*frame)) {
                 const std::size_t pair = numbers.pair(place.illumination, place.sensing);
-                transients[frame ? 0 : place.frame].histogram(pair)[place.bin] += value;
+                read.frames[frame ? 0 : place.frame].histogram(pair)[place.bin] += value;
+                if (orders > 0) read.by_order[place.order].histogram(pair)[place.bin] += value;
             }
             walk.advance();
         }
     });
-    return transients;
+    return read;
 }
 
 void subtract_background(const LayoutFiles& files,

@@ -25,16 +25,22 @@ struct PairNumbers {
     }
 };
 
-/// Reads the histograms of every frame. Axes that name neither points, bins nor frames are summed.
+struct Histograms {
+    std::vector<core::Transient> frames;
+    std::vector<core::Transient> by_order;  ///< along the axis `order`; they sum to the last frame
+};
+
+/// Reads the histograms of every frame. Axes that name neither points, bins, frames nor orders of
+/// bounces are summed; orders are summed as well as kept.
 ///
 /// frame     the only frame to read; nothing: all of them
-/// returns   one transient per frame
+/// returns   one transient per frame, and per order where there are several
 /// throws    core::Error when an array is cut short or does not fit in memory
-std::vector<core::Transient> read_histograms(const LayoutFiles& files,
-                                             const HistogramArray& array,
-                                             const PairNumbers& numbers,
-                                             std::size_t num_pairs,
-                                             std::optional<int> frame);
+Histograms read_histograms(const LayoutFiles& files,
+                           const HistogramArray& array,
+                           const PairNumbers& numbers,
+                           std::size_t num_pairs,
+                           std::optional<int> frame);
 
 /// Subtracts the mean of some histograms, which have the bins of the transient, from all of its.
 /// Throws core::Error when one has another number of bins.

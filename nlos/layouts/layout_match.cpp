@@ -42,9 +42,10 @@ bool split_axis(const LayoutFiles& files, const LayoutSplit& split, HistogramArr
     if (place == array.axes.end()) return false;
     const auto axis = place - array.axes.begin();
     Shape extents;
-    for (const std::string& name : split.extents) {
-        if (!files.has(name)) return false;
-        const std::vector<double> values = files.read(name);
+    for (const LayoutNumber& extent : split.extents) {
+        if (!extent.value && !files.has(extent.array)) return false;
+        const auto values =
+            extent.value ? std::vector<double>{*extent.value} : files.read(extent.array);
         if (values.size() != 1 || !(values[0] >= 1.0 && values[0] < 1e9)) return false;
         extents.push_back(static_cast<std::size_t>(values[0]));
     }

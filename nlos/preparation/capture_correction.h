@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "nlos/preparation/scatter_fit.h"
+#include "nlos/preparation/scatter_cells.h"
 #include "renderer/core/capture.h"
 
 #include <optional>

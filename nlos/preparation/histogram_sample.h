@@ -1,13 +1,25 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "nlos/preparation/scatter_fit.h"
 #include "renderer/core/capture.h"
 
 #include <optional>
 #include <vector>
 
 namespace nlos {
+
+/// A few histograms of a capture, a few dozen bins each: enough to ask whether a geometry can be
+/// true.
+struct HistogramSample {
+    std::vector<std::size_t> pairs;  ///< numbers in the capture
+    std::size_t num_bins = 0;        ///< per histogram
+    double first_bin = 0.0;          ///< of the capture, where the sample begins
+    double merged_bins = 1.0;        ///< bins of the capture in one of these
+    std::vector<float> values;       ///< [pair][bin], photon counts or what stands for them
+    std::vector<float> observed;     ///< [pair][bin], 1 where something could be recorded, else 0
+    std::vector<float> ambient;      ///< per bin of each pair
+    bool has_poisson_noise = false;
+};
 
 /// The pairs that a sample holds: at most 196, spread over the scanned points.
 std::vector<std::size_t> sampled_pairs(const core::Scan& scan);

@@ -15,14 +15,39 @@ using Cell = ScatterCells::Cell;
 
 constexpr std::size_t kRanges = 16;      // cells to begin with
 constexpr std::size_t kDirections = 16;  // per side of the square around the hemisphere
-constexpr double kKeptLight = 0.98;      // of all, in cells that are halved
-constexpr std::size_t kMostKept = 600;
-constexpr std::size_t kBlock = 256;  // cells at once
+constexpr double kKeptLight = 0.98;      // of all
+constexpr std::size_t kMostHalved = 600;
+constexpr std::size_t kBlock = 256;      // cells at once
+constexpr std::size_t kPairsAtOnce = 8;  // pairs at once: sums of one would wait for each other
 
 Vec3 position_of(const Cell& cell, const core::Transform& world_from_wall) {
     const double z = std::sqrt(std::max(1e-4, 1.0 - cell.y() * cell.y() - cell.z() * cell.z()));
     return world_from_wall * Vec3(cell.x() * cell.y(), cell.x() * cell.z(), cell.x() * z);
 }
+
+double farthest_m(const ScatterCells& cells) {
+    double farthest = 0.0;
+    for (const Cell& center : cells.centers) farthest = std::max(farthest, center.x());
+    return farthest;
+}
+
+/// Ways between a point of the wall and all cells, in the unit of `positions`.
+struct Legs {
+    Eigen::ArrayXf length;
+    Eigen::ArrayXf cosine;  ///< with the wall's normal
+
+    Legs(const Eigen::ArrayX3f& positions, const Vec3& point, const Vec3& normal)
+        : length(Eigen::ArrayXf::Zero(positions.rows())), cosine(length) {
+        const Eigen::Array3f from = point.array().cast<float>();
+        const Eigen::Array3f up = normal.array().cast<float>();
+        for (int i = 0; i < 3; ++i) {
+            length += (positions.col(i) - from[i]).square();
+            cosine += up[i] * (positions.col(i) - from[i]);
+        }
+        length = length.sqrt();
+        cosine /= length;
+    }
+};
 
 bool is_before_the_wall(const Cell& cell) {
     return cell.y() * cell.y() + cell.z() * cell.z() < 1.0;
@@ -39,8 +64,7 @@ std::vector<std::size_t> heaviest_cells(const ScatterCells& cells) {
     std::ranges::stable_sort(order, std::greater(), [&](std::size_t i) { return sent[i]; });
     double missing = kKeptLight * std::accumulate(sent.begin(), sent.end(), 0.0);
     std::size_t kept = 0;
-    while (kept < std::min(kMostKept, order.size()) && missing > 0.0)
-        missing -= sent[order[kept++]];
+    while (kept < order.size() && missing > 0.0) missing -= sent[order[kept++]];
     order.resize(kept);
     return order;
 }
@@ -49,33 +73,44 @@ std::vector<std::size_t> heaviest_cells(const ScatterCells& cells) {
 
 ScatterCells coarse_cells(double low_m, double high_m) {
     ScatterCells cells;
-    cells.size = {(high_m - low_m) / kRanges, 2.0 / kDirections, 2.0 / kDirections};
+    const Cell size((high_m - low_m) / kRanges, 2.0 / kDirections, 2.0 / kDirections);
     for (std::size_t r = 0; r < kRanges; ++r) {
         for (std::size_t i = 0; i < kDirections * kDirections; ++i) {
             const Cell index(static_cast<double>(r) + 0.5,
                              static_cast<double>(i / kDirections) + 0.5,
                              static_cast<double>(i % kDirections) + 0.5);
-            const Cell center = Cell(low_m, -1.0, -1.0) + index.cwiseProduct(cells.size);
-            if (is_before_the_wall(center)) cells.centers.push_back(center);
+            const Cell center = Cell(low_m, -1.0, -1.0) + index.cwiseProduct(size);
+            if (!is_before_the_wall(center)) continue;
+            cells.centers.push_back(center);
+            cells.sizes.push_back(size);
         }
     }
     return cells;
 }
 
-ScatterCells halved_cells(const ScatterCells& cells) {
-    ScatterCells halves;
-    halves.size = 0.5 * cells.size;
-    for (const std::size_t i : heaviest_cells(cells)) {
+ScatterCells refined_cells(const ScatterCells& cells) {
+    const std::vector<std::size_t> kept = heaviest_cells(cells);
+    ScatterCells refined;
+    const auto add = [&](const Cell& center, const Cell& size, double light) {
+        if (!is_before_the_wall(center)) return;
+        refined.centers.push_back(center);
+        refined.sizes.push_back(size);
+        refined.light.push_back(light);
+    };
+    for (std::size_t k = 0; k < kept.size(); ++k) {
+        const std::size_t i = kept[k];
+        if (k >= kMostHalved) {
+            add(cells.centers[i], cells.sizes[i], cells.light[i]);
+            continue;
+        }
+        const Cell half = 0.5 * cells.sizes[i];
         for (int corner = 0; corner < 8; ++corner) {
             const Cell side(
                 corner & 1 ? 0.5 : -0.5, corner & 2 ? 0.5 : -0.5, corner & 4 ? 0.5 : -0.5);
-            const Cell center = cells.centers[i] + side.cwiseProduct(halves.size);
-            if (!is_before_the_wall(center)) continue;
-            halves.centers.push_back(center);
-            halves.light.push_back(cells.light[i]);
+            add(cells.centers[i] + side.cwiseProduct(half), half, cells.light[i]);
         }
     }
-    return halves;
+    return refined;
 }
 
 ScatterTransport::ScatterTransport(const HistogramSample& sample,
@@ -84,61 +119,70 @@ ScatterTransport::ScatterTransport(const HistogramSample& sample,
     : num_pairs_(sample.pairs.size()),
       num_bins_(sample.num_bins),
       num_cells_(cells.centers.size()),
+      unit_m_(farthest_m(cells)),
       observed_(sample.observed),
       position_(num_pairs_ * num_cells_),
       weight_(num_pairs_ * num_cells_) {
-    std::vector<Vec3> positions;
-    for (const Cell& cell : cells.centers) {
-        positions.push_back(position_of(cell, geometry.world_from_wall));
+    Eigen::ArrayX3f positions(num_cells_, 3);
+    for (std::size_t i = 0; i < num_cells_; ++i) {
+        const Vec3 position = position_of(cells.centers[i], geometry.world_from_wall) / unit_m_;
+        positions.row(static_cast<Eigen::Index>(i)) = position.transpose().array().cast<float>();
     }
     core::parallel_for(num_pairs_, [&](std::size_t pair) { fill(pair, geometry, positions); });
 }
 
 void ScatterTransport::fill(std::size_t pair,
                             const PathGeometry& geometry,
-                            const std::vector<Vec3>& positions) {
+                            const Eigen::ArrayX3f& positions) {
     const Vec3 normal = geometry.world_from_wall.linear().col(2);
-    const auto last_bin = static_cast<float>(num_bins_ - 1);
-    for (std::size_t cell = 0; cell < num_cells_; ++cell) {
-        const Vec3 out = positions[cell] - geometry.illumination[pair];
-        const Vec3 back = positions[cell] - geometry.sensing[pair];
-        const double out_m = out.norm();
-        const double back_m = back.norm();
-        const double opl = out_m + back_m + geometry.legs_m[pair] - geometry.opl_start_m;
-        const auto bin = static_cast<float>(opl / geometry.bin_width_m - 0.5);
-        if (!(bin >= 0.0F) || !(bin < last_bin)) continue;
-        const double cosines = std::abs(out.dot(normal) * back.dot(normal)) / (out_m * back_m);
-        const std::size_t i = pair * num_cells_ + cell;
-        position_[i] = bin;
-        weight_[i] = static_cast<float>(cosines / std::pow(out_m * back_m, 2));
-    }
+    const Legs out(positions, geometry.illumination[pair] / unit_m_, normal);
+    const Legs back(positions, geometry.sensing[pair] / unit_m_, normal);
+    const auto before =
+        static_cast<float>((geometry.legs_m[pair] - geometry.opl_start_m) / unit_m_);
+    const auto per_bin = static_cast<float>(unit_m_ / geometry.bin_width_m);
+    const Eigen::ArrayXf bin = (out.length + back.length + before) * per_bin - 0.5F;
+    const Eigen::ArrayXf weight =
+        out.cosine.abs() * back.cosine.abs() / (out.length * back.length).square();
+    const auto is_inside = bin >= 0.0F && bin < static_cast<float>(num_bins_ - 1);
+    const std::size_t first = pair * num_cells_;
+    Eigen::ArrayXf::Map(position_.data() + first, bin.size()) = is_inside.select(bin, 0.0F);
+    Eigen::ArrayXf::Map(weight_.data() + first, bin.size()) = is_inside.select(weight, 0.0F);
 }
 
-std::vector<float> ScatterTransport::forward(const std::vector<double>& light) const {
+std::vector<float> ScatterTransport::forward(const std::vector<double>& light,
+                                             const PairSubset& subset) const {
     std::vector<float> model(num_pairs_ * num_bins_);
-    core::parallel_for(num_pairs_, [&](std::size_t pair) {
-        std::vector<double> row(num_bins_, 0.0);
+    const std::size_t count = (num_pairs_ - subset.first + subset.step - 1) / subset.step;
+    core::parallel_blocks(count, kPairsAtOnce, [&](std::size_t begin, std::size_t end) {
+        std::vector<double> rows(kPairsAtOnce * num_bins_, 0.0);
         for (std::size_t cell = 0; cell < num_cells_; ++cell) {
-            const std::size_t i = pair * num_cells_ + cell;
-            const auto bin = static_cast<std::size_t>(position_[i]);
-            const double value = light[cell] * static_cast<double>(weight_[i]);
-            const double late = static_cast<double>(position_[i]) - static_cast<double>(bin);
-            row[bin] += (1.0 - late) * value;
-            row[bin + 1] += late * value;
+            for (std::size_t lane = begin; lane < end; ++lane) {
+                const std::size_t i = (subset.first + lane * subset.step) * num_cells_ + cell;
+                const auto bin = static_cast<int>(position_[i]);
+                const double value = light[cell] * static_cast<double>(weight_[i]);
+                const double late = static_cast<double>(position_[i] - static_cast<float>(bin));
+                double* row = rows.data() + (lane - begin) * num_bins_ + bin;
+                row[0] += value - late * value;
+                row[1] += late * value;
+            }
         }
-        for (std::size_t bin = 0; bin < num_bins_; ++bin) {
-            const std::size_t i = pair * num_bins_ + bin;
-            model[i] = observed_[i] * static_cast<float>(row[bin]);
+        for (std::size_t lane = begin; lane < end; ++lane) {
+            const std::size_t first = (subset.first + lane * subset.step) * num_bins_;
+            for (std::size_t bin = 0; bin < num_bins_; ++bin) {
+                model[first + bin] = observed_[first + bin] *
+                                     static_cast<float>(rows[(lane - begin) * num_bins_ + bin]);
+            }
         }
     });
     return model;
 }
 
 CellReach ScatterTransport::backward(const std::vector<float>& ratio,
-                                     const std::vector<double>& gain) const {
+                                     const std::vector<double>& gain,
+                                     const PairSubset& subset) const {
     CellReach reach{std::vector<float>(num_cells_), std::vector<float>(num_cells_)};
     core::parallel_blocks(num_cells_, kBlock, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t pair = 0; pair < num_pairs_; ++pair) {
+        for (std::size_t pair = subset.first; pair < num_pairs_; pair += subset.step) {
             const float* seen = observed_.data() + pair * num_bins_;
             const float* rated = ratio.data() + pair * num_bins_;
             const auto pair_gain = static_cast<float>(gain[pair]);

@@ -1,11 +1,21 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "nlos/preparation/scatter_fit.h"
+#include "nlos/preparation/histogram_sample.h"
 
 #include <vector>
 
 namespace nlos {
+
+/// Where the light of a sample's histograms went, as a hypothesis has it.
+struct PathGeometry {
+    std::vector<core::Vec3> illumination;  ///< point of each pair [m]
+    std::vector<core::Vec3> sensing;       ///< point of each pair [m]
+    std::vector<double> legs_m;            ///< length of the device legs in each pair's axis
+    core::Transform world_from_wall = core::Transform::Identity();  ///< z towards the hidden side
+    double opl_start_m = 0.0;                                       ///< of the sample's bin 0
+    double bin_width_m = 0.0;  ///< of the sample; negative: time runs backwards
+};
 
 /// Cells of the space before the wall, in polar coordinates around the middle of its points.
 struct ScatterCells {
@@ -13,7 +23,7 @@ struct ScatterCells {
     using Cell = Eigen::Vector3d;
 
     std::vector<Cell> centers;
-    Cell size = Cell::Zero();
+    std::vector<Cell> sizes;
     std::vector<double> light;  ///< of each; empty: not fitted yet
     std::vector<float> reach;   ///< what each sends to the sample for unit light
 };
@@ -21,13 +31,20 @@ struct ScatterCells {
 /// Cells of all directions between two ranges.
 ScatterCells coarse_cells(double low_m, double high_m);
 
-/// The eighths of those cells that send nearly all light to the sample.
-ScatterCells halved_cells(const ScatterCells& cells);
+/// The eighths of the heaviest cells; the others stay whole, but for those that together send
+/// hardly any light to the sample.
+ScatterCells refined_cells(const ScatterCells& cells);
 
 /// Sums over all bins that cells reach.
 struct CellReach {
     std::vector<float> plain;
     std::vector<float> rated;  ///< every bin times a ratio
+};
+
+/// Every `step`-th pair of a sample, from `first` on.
+struct PairSubset {
+    std::size_t first = 0;
+    std::size_t step = 1;
 };
 
 /// How light of cells reaches the bins of a sample: a weight and a position between two bins for
@@ -38,21 +55,23 @@ class ScatterTransport {
                      const PathGeometry& geometry,
                      const ScatterCells& cells);
 
-    /// Histograms of the cells' light, [pair][bin]; 0 in bins that were not observed.
-    std::vector<float> forward(const std::vector<double>& light) const;
+    /// Histograms of the cells' light, [pair][bin]; 0 in bins that were not observed, and for pairs
+    /// outside the subset.
+    std::vector<float> forward(const std::vector<double>& light, const PairSubset& subset) const;
 
     /// What each cell sends to observed bins for unit light, each pair times its gain, and the same
     /// with every bin times `ratio` [pair][bin].
-    CellReach backward(const std::vector<float>& ratio, const std::vector<double>& gain) const;
+    CellReach backward(const std::vector<float>& ratio,
+                       const std::vector<double>& gain,
+                       const PairSubset& subset) const;
 
  private:
-    void fill(std::size_t pair,
-              const PathGeometry& geometry,
-              const std::vector<core::Vec3>& positions);
+    void fill(std::size_t pair, const PathGeometry& geometry, const Eigen::ArrayX3f& positions);
 
     std::size_t num_pairs_;
     std::size_t num_bins_;
     std::size_t num_cells_;
+    double unit_m_;                ///< of lengths in single precision
     std::vector<float> observed_;  ///< [pair][bin], 1 or 0
     std::vector<float> position_;  ///< [pair][cell], in bins
     std::vector<float> weight_;    ///< [pair][cell]; 0 outside the sample's bins

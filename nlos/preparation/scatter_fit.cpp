@@ -12,8 +12,9 @@ namespace {
 
 using core::Vec3;
 
-constexpr int kStages = 3;
-constexpr int kIterations = 8;       // of expectation maximisation per stage
+constexpr int kUpdates = 12;  // of the light, each by a subset of pairs
+constexpr std::size_t kMostSubsets = 4;
+constexpr std::size_t kSmallestSubset = 25;
 constexpr double kModelError = 0.1;  // of a value: cells are coarse, angles and shadows left out
 constexpr double kNearest = 0.02;    // of the farthest range; nearer cells see one point alone
 constexpr double kStray = 1e-3;      // of the mean value, everywhere: no bin is impossible
@@ -62,7 +63,8 @@ class FitData {
             if (sample_.observed[i] == 0.0F) continue;
             const double mean = expected(model, gain, i);
             const double difference = static_cast<double>(sample_.values[i]) - mean;
-            const double variance = mean + 1.0 + std::pow(kModelError * mean, 2);
+            const double larger = std::max(mean, static_cast<double>(sample_.values[i]));
+            const double variance = mean + 1.0 + std::pow(kModelError * larger, 2);
             sum += difference * difference / variance;
             if (sample_.has_poisson_noise) sum -= mean / variance;
         }
@@ -129,25 +131,35 @@ std::vector<double> even_light(const std::vector<float>& reach) {
     return light;
 }
 
-/// Fits the light of cells to a sample; returns the misfit.
+/// Improves the light of cells by what a subset of pairs saw.
+void improve(const FitData& data,
+             const ScatterTransport& transport,
+             const PairSubset& subset,
+             std::vector<double>& light) {
+    const std::vector<float> model = transport.forward(light, subset);
+    const std::vector<double> gains = data.gains(model);
+    const CellReach reach = transport.backward(data.ratios(model, gains), gains, subset);
+    for (std::size_t c = 0; c < light.size(); ++c) {
+        light[c] *=
+            reach.plain[c] > 0.0F ? static_cast<double>(reach.rated[c] / reach.plain[c]) : 1.0;
+    }
+}
+
+/// Fits the light of cells to a sample, in ordered subsets [Hudson1994]; returns the misfit.
 double fit_light(const HistogramSample& sample,
                  const FitData& data,
                  const ScatterTransport& transport,
                  ScatterCells& cells) {
+    const std::size_t num_pairs = sample.pairs.size();
     cells.reach =
-        transport.backward(sample.observed, std::vector<double>(sample.pairs.size(), 1.0)).plain;
+        transport.backward(sample.observed, std::vector<double>(num_pairs, 1.0), {}).plain;
     if (cells.light.empty()) cells.light = even_light(cells.reach);
-    std::vector<float> model = transport.forward(cells.light);
-    for (int i = 0; i < kIterations; ++i) {
-        const std::vector<double> gains = data.gains(model);
-        const CellReach reach = transport.backward(data.ratios(model, gains), gains);
-        for (std::size_t c = 0; c < cells.light.size(); ++c) {
-            cells.light[c] *=
-                reach.plain[c] > 0.0F ? static_cast<double>(reach.rated[c] / reach.plain[c]) : 0.0;
-        }
-        model = transport.forward(cells.light);
+    const std::size_t subsets =
+        std::clamp<std::size_t>(num_pairs / kSmallestSubset, 1, kMostSubsets);
+    for (std::size_t i = 0; i < kUpdates; ++i) {
+        improve(data, transport, {i % subsets, subsets}, cells.light);
     }
-    return data.misfit(model);
+    return data.misfit(transport.forward(cells.light, {}));
 }
 
 }  // namespace
@@ -158,22 +170,31 @@ bool has_structure(const HistogramSample& sample) {
     return FitData(sample).misfit_of_mean() > kSignificance * noise;
 }
 
-double unexplained_share(const HistogramSample& sample,
-                         const PathGeometry& geometry,
-                         double hopeless) {
-    const auto [low_m, high_m] = range_limits(sample, geometry);
-    if (!(high_m > low_m)) return 1.0;
-    const FitData data(sample);
-    ScatterCells cells = coarse_cells(low_m, high_m);
-    const double structure = std::max(data.misfit_of_mean(), 1e-30);
-    double share = 0.0;
-    for (int stage = 0; stage < kStages && !(share > hopeless); ++stage) {
-        if (stage > 0) cells = halved_cells(cells);
-        if (cells.centers.empty()) return 1.0;
-        const ScatterTransport transport(sample, geometry, cells);
-        share = fit_light(sample, data, transport, cells) / structure;
-    }
-    return std::isfinite(share) ? std::max(0.0, share) : 1.0;
+ScatterFit::ScatterFit(const HistogramSample& sample, PathGeometry geometry)
+    : sample_(&sample), geometry_(std::move(geometry)) {
+    const auto [low_m, high_m] = range_limits(sample, geometry_);
+    if (high_m > low_m) fit(coarse_cells(low_m, high_m));
+}
+
+void ScatterFit::refine() {
+    if (!cells_.centers.empty()) fit(refined_cells(cells_));
+}
+
+void ScatterFit::fit(ScatterCells cells) {
+    cells_ = std::move(cells);
+    unexplained_ = 1.0;
+    if (cells_.centers.empty()) return;
+    const FitData data(*sample_);
+    const ScatterTransport transport(*sample_, geometry_, cells_);
+    const double share =
+        fit_light(*sample_, data, transport, cells_) / std::max(data.misfit_of_mean(), 1e-30);
+    if (std::isfinite(share)) unexplained_ = std::max(0.0, share);
+}
+
+double unexplained_share(const HistogramSample& sample, const PathGeometry& geometry) {
+    ScatterFit fit(sample, geometry);
+    for (int i = 0; i < ScatterFit::kRefinements; ++i) fit.refine();
+    return fit.unexplained();
 }
 
 }  // namespace nlos

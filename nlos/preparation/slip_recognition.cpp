@@ -2,6 +2,7 @@
 #include "nlos/preparation/slip_recognition.h"
 
 #include "nlos/preparation/histogram_sample.h"
+#include "nlos/preparation/scatter_fit.h"
 #include "renderer/core/scan_extent.h"
 
 #include <algorithm>
@@ -14,36 +15,49 @@ constexpr double kWellExplained = 0.1;    // no questions are asked
 constexpr double kFullyExplained = 0.03;  // nor about axes, which change lengths little
 constexpr double kDecisive = 1.3;         // by which the description must explain less
 constexpr double kOverwhelming = 4.0;     // the same for a slip that leaves much itself
+constexpr double kReversal = 2.5;         // the same for reversed time
 constexpr double kMostUnexplained = 0.6;  // by a slip that is named
 constexpr double kBrief = 0.25;           // of how late it is, for a direct return to fade in
-constexpr double kHopeless = 2.0;         // share of a slip that is tried no further
-constexpr double kTie = 1.25;             // slips that explain so much alike are all named
+constexpr double kPromising = 3.0;        // times the least share, up to which fits are refined
+constexpr double kTie = 1.5;              // slips that explain so much alike are all named
 constexpr std::size_t kMostNamed = 2;
 
-class Trial {
- public:
-    Trial(const core::Capture& capture, const HistogramSample& sample)
-        : capture_(capture), sample_(sample) {}
+/// With the direct return where it belongs. The light of a plane that faces the wall is equally
+/// late everywhere, too, but takes as long to fade as the plane is far.
+CorrectionShare shifted(const DirectReturn& direct) {
+    CorrectionShare share;
+    share.correction.shift_m = -direct.offset_m;
+    share.is_seen = direct.fading_m < kBrief * std::abs(direct.offset_m);
+    return share;
+}
 
-    CorrectionShare operator()(const CaptureCorrection& correction) const {
-        const PathGeometry geometry = corrected_geometry(capture_, sample_, correction);
-        return {correction, unexplained_share(sample_, geometry, kHopeless)};
+/// Fits what `evidence` lists: to the end where a fit is nowhere far behind the best.
+void fit_corrections(const core::Capture& capture,
+                     const HistogramSample& sample,
+                     SlipEvidence& evidence) {
+    std::vector<ScatterFit> fits;
+    for (const CorrectionShare& tried : evidence.corrections) {
+        fits.emplace_back(sample, corrected_geometry(capture, sample, tried.correction));
     }
-
-    /// With the direct return where it belongs. The light of a plane that faces the wall is equally
-    /// late everywhere, too, but takes as long to fade as the plane is far.
-    CorrectionShare shifted(const DirectReturn& direct) const {
-        CaptureCorrection correction;
-        correction.shift_m = -direct.offset_m;
-        CorrectionShare share = (*this)(correction);
-        share.is_seen = direct.fading_m < kBrief * std::abs(direct.offset_m);
-        return share;
+    for (int i = 0; i < ScatterFit::kRefinements && !fits.empty(); ++i) {
+        const double least =
+            std::ranges::min_element(fits, {}, &ScatterFit::unexplained)->unexplained();
+        for (ScatterFit& fit : fits) {
+            if (fit.unexplained() <= kPromising * least) fit.refine();
+        }
     }
+    for (std::size_t i = 0; i < fits.size(); ++i) {
+        evidence.corrections[i].unexplained = fits[i].unexplained();
+    }
+}
 
- private:
-    const core::Capture& capture_;
-    const HistogramSample& sample_;
-};
+/// How many times as much the description must leave unexplained. Light that spreads from all
+/// around explains much of a plane's histograms backwards, so that only a great gain shows a
+/// reversal.
+double needed_gain(const CorrectionShare& share) {
+    if (share.unexplained >= kMostUnexplained) return kOverwhelming;
+    return share.correction.flip_t ? kReversal : kDecisive;
+}
 
 double extent_m(const core::Capture& capture) {
     const core::ScanExtent extent = core::scan_extent(capture.scan);
@@ -59,20 +73,21 @@ std::optional<SlipEvidence> slip_evidence(const core::Capture& capture,
     const auto sample = sample_histograms(capture, ambient, direct);
     if (!sample || !has_structure(*sample)) return std::nullopt;
 
-    const Trial trial(capture, *sample);
     SlipEvidence evidence;
     if (is_in_proportion(capture, *sample, {})) {
         evidence.given = unexplained_share(*sample, corrected_geometry(capture, *sample, {}));
     }
     if (direct && std::abs(direct->offset_m) > 2.0 * capture.time_axis.bin_width_m) {
-        evidence.corrections.push_back(trial.shifted(*direct));
+        evidence.corrections.push_back(shifted(*direct));
     }
-    if (evidence.given < kFullyExplained) return evidence;
-    for (const CaptureCorrection& correction : possible_corrections(capture, *sample)) {
-        const bool moves_axes = correction.swap_xy || correction.flip_x || correction.flip_y;
-        if (evidence.given < kWellExplained && !moves_axes) continue;
-        evidence.corrections.push_back(trial(correction));
+    if (evidence.given >= kFullyExplained) {
+        for (const CaptureCorrection& correction : possible_corrections(capture, *sample)) {
+            const bool moves_axes = correction.swap_xy || correction.flip_x || correction.flip_y;
+            if (evidence.given < kWellExplained && !moves_axes) continue;
+            evidence.corrections.push_back({.correction = correction});
+        }
     }
+    fit_corrections(capture, *sample, evidence);
     return evidence;
 }
 
@@ -84,11 +99,12 @@ std::vector<CaptureCorrection> recognise_slips(const SlipEvidence& evidence) {
         const bool fits = candidate.unexplained < std::max(kMostUnexplained, evidence.given);
         if (candidate.is_seen && fits) named.push_back(candidate.correction);
     }
-    if (best.empty() || evidence.given < kFullyExplained) return named;
-    const double least = best.front().unexplained;
-    const double decisive = least < kMostUnexplained ? kDecisive : kOverwhelming;
-    if (least > 1.0 || evidence.given < decisive * least) return named;
+    if (evidence.given < kFullyExplained) return named;
+    std::erase_if(best, [&](const CorrectionShare& c) {
+        return c.unexplained > 1.0 || evidence.given < needed_gain(c) * c.unexplained;
+    });
     for (const CorrectionShare& candidate : best) {
+        const double least = best.front().unexplained;
         if (candidate.unexplained > std::max(kTie * least, kFullyExplained)) break;
         if (!candidate.is_seen && named.size() < kMostNamed) named.push_back(candidate.correction);
     }

@@ -86,6 +86,8 @@ def _histogram_differences(expected: Capture, found: Capture, order: np.ndarray)
         elif not np.array_equal(wanted, got[..., order]):
             wrong = np.count_nonzero(wanted != got[..., order])
             differences.append(f"{name} differs in {wrong} of {wanted.size} values")
+    if expected.orders != found.orders:
+        differences.append(f"orders are {found.orders}, not {expected.orders}")
     return differences
 
 

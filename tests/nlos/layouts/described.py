@@ -16,6 +16,7 @@ from case import Case, Source, Written, extents_m, require, require_confocal_gri
 from matlab_files import write_v5
 
 ZARAGOZA_BOUNCES = 6
+ZARAGOZA_FIRST_ORDER = 2
 # A wall in the plane of x and z, as that data set has them: (x, y, z) becomes (x, -z, y).
 ZARAGOZA_FROM_OURS = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 
@@ -41,7 +42,8 @@ def _in_zaragoza_order(parts: np.ndarray, pattern: str) -> np.ndarray:
 def write_zaragoza(capture: Capture, folder: Path, reverse: bool, matlab: bool = False) -> Written:
     """data (y, x, bounce, t, colour), or with (y, x) of the laser and of the camera in front, or
     all of that in reverse; grids (y, x, 3) accordingly. The axis starts at t0 with bins of deltaT,
-    both metres, legs included. Bounces and colours are to be summed."""
+    both metres, legs included. Colours are to be summed; bounces are kept by order, from the two
+    that light takes from the laser's spot straight to another point of the wall."""
     require(capture.opl_origin == "device" and capture.sensing.ndim == 3, "zaragoza",
             "grids, and lengths that include the legs")
     parts = _in_parts(capture.H)
@@ -50,7 +52,10 @@ def write_zaragoza(capture: Capture, folder: Path, reverse: bool, matlab: bool =
     def stored(array: np.ndarray) -> np.ndarray:
         return array.T if reverse else array
 
-    turned = {"H": parts.sum(axis=(0, 1), dtype=np.float64).astype(np.float32)}
+    by_order = parts.sum(axis=1, dtype=np.float64).astype(np.float32)
+    lit = [i for i in range(ZARAGOZA_BOUNCES) if by_order[i].any()]
+    turned = {"H": by_order.sum(axis=0, dtype=np.float64).astype(np.float32),
+              "by_order": by_order[lit], "orders": [i + ZARAGOZA_FIRST_ORDER for i in lit]}
     fields = {"data": stored(data)}
     for device, points, normals, position in (
             ("camera", "sensing", "sensing_normals", "detector_m"),

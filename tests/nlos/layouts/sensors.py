@@ -75,10 +75,15 @@ def _wall(capture: Capture) -> str:
     return f"capture.wall_size_m=[{x_m!r},{y_m!r}]"
 
 
+def _distance(capture: Capture) -> str:
+    return f"capture.distance_m={float(capture.laser_m[2])!r}"
+
+
 def write_ams_tmf8829(capture: Capture, folder: Path) -> Written:
     """A log of Result_Set: per frame rows of zones with {"bin": 64 counts}. Neither the wall nor
-    the width of bins is in it."""
+    the width of bins is in it. Lengths start and end at the sensor."""
     require_confocal_grid(capture, "ams-tmf8829")
+    require(capture.opl_origin == "device", "ams-tmf8829", "lengths that include the legs")
     expected = replace(capture.as_counts(), start_m=0.0)
     frames = _frames(expected)
 
@@ -93,7 +98,29 @@ def write_ams_tmf8829(capture: Capture, folder: Path) -> Written:
     path = folder / "tmf8829_log.json"
     path.write_text(json.dumps(log, indent=2))
     return Written(path, replace(expected, frames=frames),
-                   (_wall(capture), f"capture.bin_width_m={capture.bin_width_m!r}"))
+                   (_wall(capture), _distance(capture),
+                    f"capture.bin_width_m={capture.bin_width_m!r}"))
+
+
+def write_ams_tmf882x_log(capture: Capture, folder: Path) -> Written:
+    """A list of measurements: hists of 9 zones, row by row from the top left, and the histogram of
+    the light inside the device, reference_hist, whose peak is time zero. Its largest single value
+    stands in another bin than the peak of all frames together. Where the device stands and what
+    its zones see of the wall is not in it."""
+    require_confocal_grid(capture, "ams-tmf882x-log")
+    require(capture.opl_origin == "device", "ams-tmf882x-log", "lengths that include the legs")
+    expected = replace(capture.as_counts(), start_m=TMF882X_START_M)
+    frames = _frames(expected)
+    reference = np.zeros((len(frames), expected.num_bins), int)
+    reference[:, TMF882X_PEAK - 1:TMF882X_PEAK + 2] = (300, 800, 250)
+    reference[0, TMF882X_PEAK + 5] = 900
+    log = [{"num_zones": 9, "num_bins": expected.num_bins, "tick": 1000 + number,
+            "temperature": 31, "depths_1": [400] * 9, "reference_hist": reference[number].tolist(),
+            "hists": _rows_down(frame).reshape(9, -1).astype(int).tolist()}
+           for number, frame in enumerate(frames)]
+    path = folder / "measurements.json"
+    path.write_text(json.dumps(log))
+    return Written(path, replace(expected, frames=frames), (_wall(capture), _distance(capture)))
 
 
 def write_ams_tmf882x(capture: Capture, folder: Path, suffix: str) -> Written:
@@ -128,8 +155,11 @@ CASES = [
                                 bin_width_m=picoseconds_m(KEYHOLE_BIN_PS)), write_keyhole_2020),
     Case("st-vl53l8", Source(points=(4, 4), num_bins=128, bin_width_m=picoseconds_m(ST_BIN_PS)),
          write_st_vl53l8),
-    Case("ams-tmf8829", Source(points=(16, 16), num_bins=TMF8829_BINS, bin_width_m=0.04),
-         write_ams_tmf8829),
+    Case("ams-tmf8829", Source(points=(16, 16), num_bins=TMF8829_BINS, bin_width_m=0.05,
+                               legs=True, device_m=0.4), write_ams_tmf8829),
+    Case("ams-tmf882x-log",
+         Source(points=(3, 3), num_bins=128, bin_width_m=picoseconds_m(TMF882X_BIN_PS),
+                start_m=TMF882X_START_M, legs=True, device_m=0.4), write_ams_tmf882x_log),
     *(Case(f"ams-tmf882x as {suffix}",
            Source(points=(3, 3), num_bins=128, bin_width_m=picoseconds_m(TMF882X_BIN_PS),
                   start_m=TMF882X_START_M, legs=True, device_m=0.4),
