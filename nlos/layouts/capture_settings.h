@@ -15,7 +15,7 @@ struct CaptureReadSettings {
     std::optional<int> zero_bins;       ///< leading bins that are dropped (Stanford: 600)
     std::optional<double> bin_width_m;  ///< replaces the file's bin width [m of path]
     std::optional<double> pitch_m;  ///< distance of grid neighbours, where only indices are stored
-    std::optional<double> distance_m;   ///< of a sensor from the wall that it faces
+    std::optional<double> distance_m;   ///< of a sensor before the wall z = 0; lengths start there
     std::optional<double> opl_shift_m;  ///< added to the axis start (time zero)
     std::optional<int> frame;           ///< the only frame to read of a sequence
     std::string layout;  ///< name or JSON file of a layout; empty: recognised by content
@@ -47,7 +47,8 @@ void for_each_field(CaptureReadSettings& s, Visitor&& visit) {
     visit("distance_m",
           s.distance_m,
           core::above(
-              0, "distance of a sensor from the wall that it faces, where the file lacks it [m]"));
+              0,
+              "distance of a sensor from the wall that it faces, where lengths start and end [m]"));
     visit("opl_shift_m",
           s.opl_shift_m,
           core::Ranged{"added to the start of the axis (time zero) [m]", {}});

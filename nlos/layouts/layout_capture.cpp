@@ -178,14 +178,13 @@ void read_devices(const LayoutFiles& files,
         scan.laser_position = scan.detector_position = Vec3(devices.position_m.data());
         known = true;
     }
-    if (devices.distance_m.is_given()) {
-        const double distance_m = settings.distance_m
-                                      ? *settings.distance_m
-                                      : *files.number(devices.distance_m, "capture.distance_m");
-        scan.laser_position = scan.detector_position = Vec3(0.0, 0.0, distance_m);
+    std::optional<double> distance_m = settings.distance_m;
+    if (!distance_m) distance_m = files.number(devices.distance_m, "capture.distance_m");
+    if (distance_m) {
+        scan.laser_position = scan.detector_position = Vec3(0.0, 0.0, *distance_m);
         known = true;
     }
-    bool included = devices.legs_included;
+    bool included = devices.legs_included || settings.distance_m;
     if (const auto excluded = files.number(devices.legs_excluded, "capture.opl_origin")) {
         included = *excluded == 0.0;
     }
