@@ -37,6 +37,9 @@ constexpr double kNearlyFewest = 1.05;
 // A reference has an error of its own, and the pairs of the pilot run are not all pairs.
 constexpr double kCaution = 1.5;
 
+// Of both sets of VisibilityCheck together over all pairs of a pilot run: rays.
+constexpr std::size_t kCheckRays = 65'536;
+
 // Errors of elements whose visibility is wrong add up; each may err by this share of the tolerance.
 constexpr double kNegligibleShare = 0.1;
 
@@ -64,7 +67,8 @@ double relative_difference(const Transient& a, const Transient& b) {
 struct Pilot {
     Transient transient;
     std::size_t num_elements = 0;
-    double shadow_error = 0.0;    ///< expected, absolute
+    double shadow_error = 0.0;      ///< expected, absolute
+    double visibility_error = 0.0;  ///< as found by checks, absolute
     std::optional<double> error;  ///< relative, once compared with a reference
     double cut_seconds = 0.0;     ///< for cutting the surfaces
     double seconds = 0.0;         ///< for integrating
@@ -97,12 +101,13 @@ class Integrator {
                                   const core::TimeAxis& axis,
                                   const ElementSet& elements,
                                   int level) const {
-        return {scene_,
-                scan,
-                axis,
-                elements,
-                kNegligibleShare * tolerance(level) * norm_per_pair_,
-                kShareOfMemory * static_cast<double>(core::available_memory_bytes())};
+        ScanRules rules;
+        rules.negligible_error = kNegligibleShare * tolerance(level) * norm_per_pair_;
+        rules.memory_bytes =
+            kShareOfMemory * static_cast<double>(core::available_memory_bytes());
+        rules.plan = plan_;
+        if (&scan == &pilot_scan_) rules.check_rays = kCheckRays / pilot_scan_.num_pairs();
+        return {scene_, scan, axis, elements, rules};
     }
     const Pilot& run_pilot(int level);
     double error_of(int level);
@@ -121,7 +126,8 @@ class Integrator {
     std::deque<std::pair<int, ElementSet>> cuts_;  ///< the latest
     bool stopped_ = false;                         ///< before all pilot runs were made
     double norm_per_pair_ = 0.0;
-    std::map<int, Pilot> pilots_;  ///< by level
+    ShadowRayPlan plan_ = std::getenv("EVERY") ? ShadowRayPlan::Everywhere : ShadowRayPlan::WhereNeighboursDisagree;
+    std::map<int, Pilot> pilots_;  ///< by level, all with this plan
     TracingCost cost_;
 };
 
@@ -151,6 +157,8 @@ const Pilot& Integrator::run_pilot(int level) {
         0, [](double) { return true; }, pilot.transient);
     pilot.seconds = watch.seconds();
     pilot.shadow_error = std::sqrt(integrator.squared_shadow_error());
+    pilot.visibility_error =
+        std::sqrt(std::max(0.0, integrator.squared_visibility_error()));
     cost_ += integrator.cost();
     if (norm_per_pair_ == 0.0) {
         norm_per_pair_ =
@@ -176,7 +184,9 @@ double Integrator::error_of(int level) {
     const double norm = std::sqrt(squared_norm(pilots_.at(finest).transient));
     // Shadow edges that both pilot runs leave uncertain do not show in their difference.
     const double shadows = norm > 0.0 ? pilot.shadow_error / norm : 0.0;
-    pilot.error = kCaution * std::hypot(difference, shadows);
+    const double missed = norm > 0.0 ? pilot.visibility_error / norm : 0.0;
+    if (std::getenv("DBG")) fmt::print("   plan {} level {} ref {} el {} diff {:.4f} shadows {:.4f} missed {:.4f} sec {:.3f} cut {:.3f}\n", int(plan_), level, finest, pilot.num_elements, difference, shadows, missed, pilot.seconds, pilot.cut_seconds);
+    pilot.error = kCaution * std::max(std::hypot(difference, shadows), missed);
     return *pilot.error;
 }
 

@@ -46,6 +46,7 @@ class TileTables {
     }
 
     const std::vector<PairEnd>& ends() const { return ends_; }
+    VisibilityCheck::End end(std::size_t i) const { return {points_[i], seen_[i]}; }
 
  private:
     std::vector<WallPoint> points_;
@@ -54,8 +55,8 @@ class TileTables {
     std::vector<PairEnd> ends_;
 };
 
-bool coincide(const WallPoint& a, const WallPoint& b) {
-    return a.position == b.position && a.normal == b.normal;
+double sum(const std::vector<double>& values) {
+    return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
 // True when no path of the two points through the block has a length within the axis.
@@ -75,25 +76,25 @@ ThirdBounceScan::ThirdBounceScan(const Scene& scene,
                                  const core::Scan& scan,
                                  const core::TimeAxis& axis,
                                  const ElementSet& elements,
-                                 double negligible_error,
-                                 double memory_bytes)
+                                 const ScanRules& rules)
     : scene_(scene),
       scan_(scan),
       axis_(axis),
       elements_(elements),
-      negligible_error_(negligible_error),
-      memory_bytes_(memory_bytes),
+      rules_(rules),
       lights_{scan.illumination,
               CoincidingPoints(scan).illumination,
               std::vector<double>(scan.illumination.size())},
       sensors_{
-          scan.sensing, CoincidingPoints(scan).sensing, std::vector<double>(scan.sensing.size())} {}
+          scan.sensing, CoincidingPoints(scan).sensing, std::vector<double>(scan.sensing.size())},
+      squared_visibility_errors_(scan.num_pairs()) {}
 
 double ThirdBounceScan::squared_shadow_error() const {
-    const auto sum = [](const std::vector<double>& values) {
-        return std::accumulate(values.begin(), values.end(), 0.0);
-    };
     return sum(sensors_.squared_errors) + sum(lights_.squared_errors);
+}
+
+double ThirdBounceScan::squared_visibility_error() const {
+    return sum(squared_visibility_errors_);
 }
 
 int ThirdBounceScan::integrate(int first_part,
@@ -136,6 +137,19 @@ core::TimeAxis ThirdBounceScan::axis_of_pair(std::size_t pair) const {
     return axis;
 }
 
+void ThirdBounceScan::check(VisibilityCheck& check,
+                            std::size_t pair,
+                            const VisibilityCheck::End& light,
+                            const VisibilityCheck::End& sensor) {
+    if (rules_.check_rays == 0) return;
+    squared_visibility_errors_[pair] =
+        check.squared_error(light,
+                            sensor,
+                            axis_of_pair(pair),
+                            rules_.check_rays,
+                            core::Rng(0, pair, /*sample=*/elements_.num_elements));
+}
+
 void ThirdBounceScan::add_costs(const VisibilityTracer& tracer) {
     num_rays_ += tracer.cost().num_rays;
     tracing_seconds_ += tracer.cost().seconds;
@@ -153,7 +167,8 @@ void ThirdBounceScan::integrate_confocal(std::size_t begin, std::size_t end) {
     const std::vector<WallPoint> points = sensors_.wall_points({begin, end}, elements_.origin);
     std::vector<core::TimeAxis> axes;
     VisibilityRules rules;
-    rules.negligible_error = negligible_error_;
+    rules.negligible_error = rules_.negligible_error;
+    rules.plan = rules_.plan;
     for (std::size_t pair = begin; pair < end; ++pair) {
         axes.push_back(axis_of_pair(pair));
         rules.opl.push_back({axes.back().opl_start_m, axes.back().opl_end_m()});
@@ -162,6 +177,10 @@ void ThirdBounceScan::integrate_confocal(std::size_t begin, std::size_t end) {
     VisibilityTracer tracer(scene_, elements_);
     tracer.trace(points, rules, seen);
     add_costs(tracer);
+    VisibilityCheck visibility(scene_, elements_);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        check(visibility, begin + i, {points[i], seen[i]}, {points[i], seen[i]});
+    }
     BlockTable table;
     const auto num_bins = static_cast<std::size_t>(axis_.num_bins);
     std::vector<double> histograms(points.size() * num_bins);
@@ -188,7 +207,8 @@ void ThirdBounceScan::integrate_confocal(std::size_t begin, std::size_t end) {
 // points, so that what a point sees does not depend on the tile that is worked on.
 VisibilityRules ThirdBounceScan::rules_towards(const Side& others, std::size_t num_points) const {
     VisibilityRules rules;
-    rules.negligible_error = negligible_error_;
+    rules.negligible_error = rules_.negligible_error;
+    rules.plan = rules_.plan;
     rules.pairs_per_point =
         static_cast<double>(scan_.num_pairs()) / static_cast<double>(num_points);
     const auto [min_legs, max_legs] = core::device_leg_range_m(scan_);
@@ -231,14 +251,14 @@ int ThirdBounceScan::integrate_pairs(int first_part,
                                      const std::function<bool(double share)>& go_on) {
     const auto bytes_per_point =
         static_cast<double>(elements_.blocks.size() * ElementBlock::kSize * sizeof(VisibilityMask));
-    const double fitting = memory_bytes_ / bytes_per_point;
+    const double fitting = rules_.memory_bytes / bytes_per_point;
     if (fitting < PairTiles::kMinPoints) {
         throw core::Failure(
             "third_bounce",
             fmt::format("visibility of {} elements needs {:.2f} GB, {:.2f} GB are free for it",
                         elements_.num_elements,
                         PairTiles::kMinPoints * bytes_per_point * 1e-9,
-                        memory_bytes_ * 1e-9));
+                        rules_.memory_bytes * 1e-9));
     }
     const std::size_t num_lights =
         scan_.pattern == core::ScanPattern::Single ? 1 : scan_.illumination.size();
@@ -300,6 +320,12 @@ void ThirdBounceScan::integrate_tile(const PairTiles::Tile& tile) {
                          axis,
                          std::span(histograms).subspan((l * num_sensors + s) * num_bins, num_bins));
             }
+        }
+    }
+    VisibilityCheck visibility(scene_, elements_);
+    for (std::size_t l = 0; l < tile.lights.size(); ++l) {
+        for (std::size_t s = 0; s < num_sensors; ++s) {
+            check(visibility, pair_of(l, s), lights.end(l), sensors.end(s));
         }
     }
     for (std::size_t i = 0; i < tile.lights.size() * num_sensors; ++i) {

@@ -51,9 +51,13 @@ void VisibilityTracer::trace(std::span<const WallPoint> points,
     pairs_per_point_ = rules.pairs_per_point;
     squared_errors_.fill(0.0);
     classify();
-    trace_groups();
-    open_mixed_groups();
-    refine_mixed_elements();
+    if (rules.plan == ShadowRayPlan::Everywhere) {
+        trace_all_parts();
+    } else {
+        trace_groups();
+        open_mixed_groups();
+        refine_mixed_elements();
+    }
     write(seen);
 }
 
@@ -237,11 +241,7 @@ void VisibilityTracer::refine_quarters() {
         const RelevantElements::Masses mass = relevant_.masses_of(element);
         points = common(points, points_that_matter(mass, kErrorFromQuarters));
         if (points == 0) continue;
-        const ElementKind kind = set_.blocks[element / ElementBlock::kSize].kind;
-        const double num_pairs = kind == ElementKind::Retroreflective ? 1.0 : pairs_per_point_;
-        for_each_bit(points, [&](std::size_t p) {
-            squared_errors_[p] += num_pairs * std::pow(kErrorFromSixteenths * mass.of_point[p], 2);
-        });
+        add_squared_error(refined_[i], points);
         const DrawnParts parts = rays_.drawn_parts(element);
         for (std::uint32_t bit = 0; bit < 16; ++bit) {
             PointMask unknown = 0;
@@ -254,6 +254,20 @@ void VisibilityTracer::refine_quarters() {
             refined_of_rays.push_back(i);
         }
     }
+    trace_sixteenths(refined_of_rays);
+}
+
+void VisibilityTracer::add_squared_error(const Refined& refined, PointMask points) {
+    const ElementKind kind = set_.blocks[refined.element / ElementBlock::kSize].kind;
+    const double num_pairs = kind == ElementKind::Retroreflective ? 1.0 : pairs_per_point_;
+    const RelevantElements::Masses mass = relevant_.masses_of(refined.element);
+    for_each_bit(points, [&](std::size_t p) {
+        squared_errors_[p] += num_pairs * std::pow(kErrorFromSixteenths * mass.of_point[p], 2);
+    });
+}
+
+// Traces shadow_rays_ to single parts of refined elements and notes what they see.
+void VisibilityTracer::trace_sixteenths(std::span<const std::size_t> refined_of_rays) {
     rays_.trace(shadow_rays_);
     for (std::size_t i = 0; i < shadow_rays_.size(); ++i) {
         auto& masks = refined_[refined_of_rays[i]].masks;
@@ -263,6 +277,40 @@ void VisibilityTracer::refine_quarters() {
             const bool is_seen = (shadow_rays_[i].seen >> p & 1U) != 0;
             masks[p] = static_cast<VisibilityMask>(is_seen ? masks[p] | bit : masks[p] & ~bit);
         });
+    }
+}
+
+void VisibilityTracer::trace_all_parts() {
+    refined_.clear();
+    std::vector<std::size_t> refined_of_rays;
+    for (const std::uint32_t block : active_blocks_) {
+        const auto begin = static_cast<std::uint32_t>(block * ElementBlock::kSize);
+        const std::size_t num_refined = refined_.size();
+        shadow_rays_.clear();
+        refined_of_rays.clear();
+        for (std::uint32_t element = begin; element < begin + ElementBlock::kSize; ++element) {
+            const PointMask points = elements_[element].relevant;
+            if (points == 0) continue;
+            for (std::uint32_t bit = 0; bit < 16; ++bit) {
+                shadow_rays_.push_back({element, points, ShadowRays::fixed(bit)});
+                refined_of_rays.push_back(refined_.size());
+            }
+            refined_.push_back({element, points, {}});
+        }
+        trace_sixteenths(refined_of_rays);
+        for (std::size_t i = num_refined; i < refined_.size(); ++i) {
+            const Refined& refined = refined_[i];
+            PointMask visible = 0;
+            PointMask partial = 0;
+            for_each_bit(refined.points, [&](std::size_t p) {
+                const VisibilityMask mask = refined.masks[p];
+                visible = static_cast<PointMask>(visible | std::uint32_t{mask != 0} << p);
+                const bool is_partial = mask != 0 && mask != kAllVisible;
+                partial = static_cast<PointMask>(partial | std::uint32_t{is_partial} << p);
+            });
+            elements_[refined.element].visible = visible;
+            add_squared_error(refined, partial);
+        }
     }
 }
 

@@ -27,7 +27,8 @@ struct VisibleElements {
 /// One ray goes from every point to each group, to a randomly drawn part of one of its elements.
 /// Where neighbouring groups disagree, each of their elements gets a ray; where neighbouring
 /// elements disagree, 4 and then 16 rays, each step only if the possible error of H is not
-/// negligible. The state of a group or element is one bit per point, so that one operation covers
+/// negligible. Shadows that fall between the rays to neighbours go unseen: ShadowRayPlan::Everywhere
+/// sends 16 rays to all elements instead. The state of a group or element is one bit per point, so that one operation covers
 /// all points.
 class VisibilityTracer {
  public:
@@ -70,6 +71,9 @@ class VisibilityTracer {
     void open_mixed_groups();
     void refine_mixed_elements();
     void refine_quarters();
+    void trace_all_parts();
+    void add_squared_error(const Refined& refined, PointMask points);
+    void trace_sixteenths(std::span<const std::size_t> refined_of_rays);
     static PointMask mixed_points(const AdjacencyLists& lists,
                                   std::uint32_t item,
                                   const std::vector<State>& states);

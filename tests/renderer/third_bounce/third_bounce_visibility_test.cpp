@@ -205,7 +205,7 @@ TEST(ThirdBounceScan, OtherEndsInOtherPlanesTakeNothingAway) {
         const core::TimeAxis axis{0.8, 0.02, 60};
         const renderer::ElementSet elements =
             renderer::SurfaceSubdivider(scene, scan, axis, 0.0).cut(0.01);
-        renderer::ThirdBounceScan integrator(scene, scan, axis, elements, 0.0, 1e9);
+        renderer::ThirdBounceScan integrator(scene, scan, axis, elements, {.memory_bytes = 1e9});
         core::Transient result(scan.num_pairs(), axis.num_bins);
         integrator.integrate(
             0, [](double) { return true; }, result);
