@@ -37,8 +37,14 @@ constexpr double kNearlyFewest = 1.05;
 // A reference has an error of its own, and the pairs of the pilot run are not all pairs.
 constexpr double kCaution = 1.5;
 
-// Of both sets of VisibilityCheck together over all pairs of a pilot run: rays.
-constexpr std::size_t kCheckRays = 65'536;
+// Rays of each set of a VisibilityCheck over all pairs of a pilot run, for a target of 1 %; smaller
+// targets take more, to know smaller errors from noise.
+constexpr double kCheckRays = 65'536.0;
+constexpr double kMostCheckRays = 4'194'304.0;
+
+// Where rays to random points find this many times the error that two cuts differ by, shadows are
+// finer than the elements of both.
+constexpr double kMissedByCuts = 1.5;
 
 // Errors of elements whose visibility is wrong add up; each may err by this share of the tolerance.
 constexpr double kNegligibleShare = 0.1;
@@ -67,8 +73,9 @@ double relative_difference(const Transient& a, const Transient& b) {
 struct Pilot {
     Transient transient;
     std::size_t num_elements = 0;
-    double shadow_error = 0.0;      ///< expected, absolute
-    double visibility_error = 0.0;  ///< as found by checks, absolute
+    double shadow_error = 0.0;    ///< expected, absolute
+    double missed_error = 0.0;    ///< as found by VisibilityCheck beyond its noise, absolute
+    bool misses_shadows = false;  ///< finer than the elements, once compared with a reference
     std::optional<double> error;  ///< relative, once compared with a reference
     double cut_seconds = 0.0;     ///< for cutting the surfaces
     double seconds = 0.0;         ///< for integrating
@@ -95,6 +102,7 @@ class Integrator {
     ThirdBounce run(const core::Progress& progress);
 
  private:
+    ThirdBounce integrate_all(const core::Progress& progress);
     double tolerance(int level) const { return target_ * std::exp2(level); }
     const ElementSet& cut(int level);
     ThirdBounceScan integrator_of(const core::Scan& scan,
@@ -103,14 +111,19 @@ class Integrator {
                                   int level) const {
         ScanRules rules;
         rules.negligible_error = kNegligibleShare * tolerance(level) * norm_per_pair_;
-        rules.memory_bytes =
-            kShareOfMemory * static_cast<double>(core::available_memory_bytes());
+        rules.memory_bytes = kShareOfMemory * static_cast<double>(core::available_memory_bytes());
         rules.plan = plan_;
-        if (&scan == &pilot_scan_) rules.check_rays = kCheckRays / pilot_scan_.num_pairs();
+        if (&scan == &pilot_scan_) rules.check_rays = check_rays_per_pair();
         return {scene_, scan, axis, elements, rules};
+    }
+    std::size_t check_rays_per_pair() const {
+        const double rays = kCheckRays * std::max(1.0, kDefaultTargetError / target_);
+        return static_cast<std::size_t>(std::min(rays, kMostCheckRays) /
+                                        static_cast<double>(pilot_scan_.num_pairs()));
     }
     const Pilot& run_pilot(int level);
     double error_of(int level);
+    double smallest_error() const;
     int choose_level(const core::Progress& progress);
     int finest_in_time(const core::Progress& progress);
     int integrate(int level, int first_part, const core::Progress& progress, ThirdBounce& result);
@@ -126,7 +139,7 @@ class Integrator {
     std::deque<std::pair<int, ElementSet>> cuts_;  ///< the latest
     bool stopped_ = false;                         ///< before all pilot runs were made
     double norm_per_pair_ = 0.0;
-    ShadowRayPlan plan_ = std::getenv("EVERY") ? ShadowRayPlan::Everywhere : ShadowRayPlan::WhereNeighboursDisagree;
+    ShadowRayPlan plan_ = ShadowRayPlan::WhereNeighboursDisagree;
     std::map<int, Pilot> pilots_;  ///< by level, all with this plan
     TracingCost cost_;
 };
@@ -157,8 +170,8 @@ const Pilot& Integrator::run_pilot(int level) {
         0, [](double) { return true; }, pilot.transient);
     pilot.seconds = watch.seconds();
     pilot.shadow_error = std::sqrt(integrator.squared_shadow_error());
-    pilot.visibility_error =
-        std::sqrt(std::max(0.0, integrator.squared_visibility_error()));
+    const SquaredError missed = integrator.squared_visibility_error();
+    pilot.missed_error = std::sqrt(std::max(0.0, missed.value - std::sqrt(missed.variance)));
     cost_ += integrator.cost();
     if (norm_per_pair_ == 0.0) {
         norm_per_pair_ =
@@ -184,9 +197,10 @@ double Integrator::error_of(int level) {
     const double norm = std::sqrt(squared_norm(pilots_.at(finest).transient));
     // Shadow edges that both pilot runs leave uncertain do not show in their difference.
     const double shadows = norm > 0.0 ? pilot.shadow_error / norm : 0.0;
-    const double missed = norm > 0.0 ? pilot.visibility_error / norm : 0.0;
-    if (std::getenv("DBG")) fmt::print("   plan {} level {} ref {} el {} diff {:.4f} shadows {:.4f} missed {:.4f} sec {:.3f} cut {:.3f}\n", int(plan_), level, finest, pilot.num_elements, difference, shadows, missed, pilot.seconds, pilot.cut_seconds);
-    pilot.error = kCaution * std::max(std::hypot(difference, shadows), missed);
+    const double missed = norm > 0.0 ? pilot.missed_error / norm : 0.0;
+    const double seen_by_cuts = std::hypot(difference, shadows);
+    pilot.misses_shadows = missed > kMissedByCuts * seen_by_cuts;
+    pilot.error = kCaution * std::max(seen_by_cuts, missed);
     return *pilot.error;
 }
 
@@ -223,14 +237,23 @@ int Integrator::choose_level(const core::Progress& progress) {
     // Fine enough as a reference for the next finer level, too. A coarser one would miss shadows
     // that both leave out.
     run_pilot(level - 1 - kReferenceSteps);
-    if (error_of(level) > target_) {
-        while (level > kFinest && error_of(--level) > target_) {
-            if (!progress.should_stop()) continue;
+    bool may_be_coarser = true;
+    while (error_of(level) > target_) {
+        if (progress.should_stop()) {
             stopped_ = true;
             return kCoarsest;
         }
-        return level;
+        if (pilots_.at(level).misses_shadows && plan_ != ShadowRayPlan::Everywhere) {
+            plan_ = ShadowRayPlan::Everywhere;
+            pilots_.clear();
+            may_be_coarser = true;
+            continue;
+        }
+        if (level == kFinest) return level;
+        --level;
+        may_be_coarser = false;
     }
+    if (!may_be_coarser) return level;
     const auto fewest = static_cast<double>(subdivider_.min_elements(tolerance(kCoarsest)));
     const auto can_be_coarser = [&] {
         return static_cast<double>(pilots_.at(level).num_elements) > kNearlyFewest * fewest;
@@ -262,7 +285,34 @@ int Integrator::integrate(int level,
     return part;
 }
 
+// Of the levels tried; infinite: none is known.
+double Integrator::smallest_error() const {
+    double smallest = std::numeric_limits<double>::infinity();
+    for (const auto& [level, pilot] : pilots_) {
+        if (pilot.error) smallest = std::min(smallest, *pilot.error);
+    }
+    return smallest;
+}
+
+// Rounded up, so that a run that aims at it has some room.
+double two_digits_above(double value) {
+    const double digit = std::pow(10.0, std::floor(std::log10(value)) - 1.0);
+    return (std::floor(1.05 * value / digit) + 1.0) * digit;
+}
+
 ThirdBounce Integrator::run(const core::Progress& progress) {
+    try {
+        return integrate_all(progress);
+    } catch (const core::Failure& failure) {
+        const double error = smallest_error();
+        if (!std::isfinite(error) || error <= target_) throw;
+        throw core::Failure(
+            failure.what(),
+            fmt::format("a target error of {:.2g} would do", two_digits_above(error)));
+    }
+}
+
+ThirdBounce Integrator::integrate_all(const core::Progress& progress) {
     ThirdBounce result;
     result.transient = Transient(scan_.num_pairs(), axis_.num_bins);
     const int part = integrate(choose_level(progress), 0, progress, result);

@@ -55,10 +55,6 @@ class TileTables {
     std::vector<PairEnd> ends_;
 };
 
-double sum(const std::vector<double>& values) {
-    return std::accumulate(values.begin(), values.end(), 0.0);
-}
-
 // True when no path of the two points through the block has a length within the axis.
 bool misses_axis(const BlockSphere& sphere,
                  const WallPoint& light,
@@ -90,11 +86,16 @@ ThirdBounceScan::ThirdBounceScan(const Scene& scene,
       squared_visibility_errors_(scan.num_pairs()) {}
 
 double ThirdBounceScan::squared_shadow_error() const {
+    const auto sum = [](const std::vector<double>& values) {
+        return std::accumulate(values.begin(), values.end(), 0.0);
+    };
     return sum(sensors_.squared_errors) + sum(lights_.squared_errors);
 }
 
-double ThirdBounceScan::squared_visibility_error() const {
-    return sum(squared_visibility_errors_);
+SquaredError ThirdBounceScan::squared_visibility_error() const {
+    SquaredError sum;
+    for (const SquaredError& of_pair : squared_visibility_errors_) sum += of_pair;
+    return sum;
 }
 
 int ThirdBounceScan::integrate(int first_part,

@@ -50,9 +50,8 @@ class ThirdBounceScan {
     TracingCost cost() const { return {num_rays_, tracing_seconds_}; }
     /// Expected squared error of all of H from shadow edges that elements are too coarse for.
     double squared_shadow_error() const;
-    /// Squared error of all of H from what is taken for visible, as checks have found; may fall
-    /// below 0 by chance.
-    double squared_visibility_error() const;
+    /// Squared error of all of H from what is taken for visible, as checks have found.
+    SquaredError squared_visibility_error() const;
 
  private:
     /// The illumination or the sensing points of the scan.
@@ -88,7 +87,7 @@ class ThirdBounceScan {
     core::Transient* result_ = nullptr;  ///< while integrate() runs
     Side lights_;
     Side sensors_;
-    std::vector<double> squared_visibility_errors_;  ///< per pair
+    std::vector<SquaredError> squared_visibility_errors_;  ///< per pair
     std::atomic<std::uint64_t> num_rays_{0};
     std::atomic<double> tracing_seconds_{0.0};
 };

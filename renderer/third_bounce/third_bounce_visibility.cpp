@@ -283,13 +283,20 @@ void VisibilityTracer::trace_sixteenths(std::span<const std::size_t> refined_of_
 void VisibilityTracer::trace_all_parts() {
     refined_.clear();
     std::vector<std::size_t> refined_of_rays;
+    std::vector<ShadowRays> singles;
     for (const std::uint32_t block : active_blocks_) {
         const auto begin = static_cast<std::uint32_t>(block * ElementBlock::kSize);
         const std::size_t num_refined = refined_.size();
         shadow_rays_.clear();
         refined_of_rays.clear();
+        singles.clear();
         for (std::uint32_t element = begin; element < begin + ElementBlock::kSize; ++element) {
-            const PointMask points = elements_[element].relevant;
+            const PointMask relevant = elements_[element].relevant;
+            if (relevant == 0) continue;
+            const PointMask points =
+                common(relevant, points_that_matter(relevant_.masses_of(element), kErrorFromOne));
+            const PointMask others = without(relevant, points);
+            if (others != 0) singles.push_back({element, others, ShadowRays::drawn(0)});
             if (points == 0) continue;
             for (std::uint32_t bit = 0; bit < 16; ++bit) {
                 shadow_rays_.push_back({element, points, ShadowRays::fixed(bit)});
@@ -310,6 +317,11 @@ void VisibilityTracer::trace_all_parts() {
             });
             elements_[refined.element].visible = visible;
             add_squared_error(refined, partial);
+        }
+        rays_.trace(singles);
+        for (const ShadowRays& rays : singles) {
+            PointMask& visible = elements_[rays.element].visible;
+            visible = combine(visible, rays.seen);
         }
     }
 }

@@ -27,9 +27,9 @@ struct VisibleElements {
 /// One ray goes from every point to each group, to a randomly drawn part of one of its elements.
 /// Where neighbouring groups disagree, each of their elements gets a ray; where neighbouring
 /// elements disagree, 4 and then 16 rays, each step only if the possible error of H is not
-/// negligible. Shadows that fall between the rays to neighbours go unseen: ShadowRayPlan::Everywhere
-/// sends 16 rays to all elements instead. The state of a group or element is one bit per point, so that one operation covers
-/// all points.
+/// negligible. Shadows that fall between the rays to neighbours go unseen:
+/// ShadowRayPlan::Everywhere sends 16 rays to all elements instead. The state of a group or element
+/// is one bit per point, so that one operation covers all points.
 class VisibilityTracer {
  public:
     /// scene, elements   must outlive the tracer

@@ -39,13 +39,13 @@ VisibilityMask mask_of(const VisibleElements& seen, std::uint32_t element) {
 VisibilityCheck::VisibilityCheck(const Scene& scene, const ElementSet& elements)
     : scene_(scene), set_(elements), mass_up_to_(elements.blocks.size() * ElementBlock::kSize) {}
 
-double VisibilityCheck::squared_error(const End& light,
-                                      const End& sensor,
-                                      const core::TimeAxis& axis,
-                                      std::size_t num_rays,
-                                      core::Rng rng) {
+SquaredError VisibilityCheck::squared_error(const End& light,
+                                            const End& sensor,
+                                            const core::TimeAxis& axis,
+                                            std::size_t num_rays,
+                                            core::Rng rng) {
     sum_masses(light.point, sensor.point);
-    if (mass_up_to_.empty() || !(mass_up_to_.back() > 0.0)) return 0.0;
+    if (mass_up_to_.empty() || !(mass_up_to_.back() > 0.0)) return {};
     std::array<std::vector<double>, 2> sets;
     for (std::vector<double>& set : sets) {
         draw_targets(num_rays, rng);
@@ -54,8 +54,11 @@ double VisibilityCheck::squared_error(const End& light,
         if (!coincide(light.point, sensor.point)) trace_from(sensor.point);
         set = differences(light, sensor, axis);
     }
-    double sum = 0.0;
-    for (std::size_t bin = 0; bin < sets[0].size(); ++bin) sum += sets[0][bin] * sets[1][bin];
+    SquaredError sum;
+    for (std::size_t bin = 0; bin < sets[0].size(); ++bin) {
+        const double product = sets[0][bin] * sets[1][bin];
+        sum += {product, product * product};
+    }
     return sum;
 }
 
@@ -173,8 +176,7 @@ std::vector<double> VisibilityCheck::differences(const End& light,
         if (!bin) continue;
         const ElementBlock& block = set_.blocks[element / ElementBlock::kSize];
         const std::size_t lane = element % ElementBlock::kSize;
-        const double mass =
-            mass_up_to_[element] - (element > 0 ? mass_up_to_[element - 1] : 0.0);
+        const double mass = mass_up_to_[element] - (element > 0 ? mass_up_to_[element - 1] : 0.0);
         const double per_target = mass_per_ray * block.area_m2[lane] / mass;
         sums[static_cast<std::size_t>(*bin)] +=
             per_target * weight_of(target, light.point, sensor.point) * difference;

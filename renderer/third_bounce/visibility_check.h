@@ -11,6 +11,18 @@
 
 namespace renderer {
 
+/// An estimate of a squared error; below 0 by chance only.
+struct SquaredError {
+    double value = 0.0;
+    double variance = 0.0;  ///< of `value`
+
+    SquaredError& operator+=(const SquaredError& other) {
+        value += other.value;
+        variance += other.variance;
+        return *this;
+    }
+};
+
 /// Compares what wall points are taken to see of the elements with what rays to random points find.
 ///
 /// The points are drawn by what the elements add to H. Where a ray contradicts the element's mask,
@@ -29,17 +41,17 @@ class VisibilityCheck {
     /// scene, elements   must outlive the check
     VisibilityCheck(const Scene& scene, const ElementSet& elements);
 
-    /// Squared error of a pair's histogram for wall albedos of pi; may fall below 0 by chance.
+    /// Squared error of a pair's histogram for wall albedos of pi.
     ///
     /// light, sensor   the same one twice for a confocal pair
     /// axis            of the histogram, its start reduced by the pair's device legs
     /// num_rays        in each set, from each end
     /// rng             of the pair
-    double squared_error(const End& light,
-                         const End& sensor,
-                         const core::TimeAxis& axis,
-                         std::size_t num_rays,
-                         core::Rng rng);
+    SquaredError squared_error(const End& light,
+                               const End& sensor,
+                               const core::TimeAxis& axis,
+                               std::size_t num_rays,
+                               core::Rng rng);
 
     std::uint64_t num_rays() const { return num_rays_; }
 

@@ -100,7 +100,8 @@ Path path_by_way_of(const Vec3& p, const Vec3& normal, const Vec3& light, const 
 // Up to kPacket points of a sheet and what every wall point sees of them.
 class PointPacket {
  public:
-    PointPacket(const renderer::Scene& scene, const Vec3& normal) : scene_(scene), normal_(normal) {}
+    PointPacket(const renderer::Scene& scene, const Vec3& normal)
+        : scene_(scene), normal_(normal) {}
 
     void add(const Vec3& point) {
         ends_.set(points_.size(), point, normal_);
@@ -123,8 +124,7 @@ class PointPacket {
                                                  normal_,
                                                  setup.scan.illumination.positions[l],
                                                  setup.scan.sensing.positions[s]);
-                const double bin =
-                    std::floor((path.opl_m - axis.opl_start_m) / axis.bin_width_m);
+                const double bin = std::floor((path.opl_m - axis.opl_start_m) / axis.bin_width_m);
                 if (path.weight == 0.0 || bin < 0.0 || bin >= axis.num_bins) continue;
                 sums[pair * static_cast<std::size_t>(axis.num_bins) +
                      static_cast<std::size_t>(bin)] += weight * path.weight;
@@ -167,8 +167,8 @@ void sample_sheet(const OccluderScene& setup,
     const int rows = 1 + static_cast<int>(sheet.v.norm() * per_m);
     const int columns =
         1 + static_cast<int>(points_per_m2 * area.norm() / static_cast<double>(rows));
-    const double weight = sheet.albedo * area.norm() /
-                          (std::pow(core::kPi, 3) * static_cast<double>(rows) * columns);
+    const double weight =
+        sheet.albedo * area.norm() / (std::pow(core::kPi, 3) * static_cast<double>(rows) * columns);
     PointPacket packet(scene, area.normalized());
     for (int i = 0; i < columns; ++i) {
         for (int j = 0; j < rows; ++j) {
@@ -192,8 +192,7 @@ std::vector<double> sampled_third_bounce(const OccluderScene& setup,
                              static_cast<std::size_t>(setup.axis.num_bins));
     for (std::size_t i = 0; i < setup.sheets.size(); ++i) {
         if (setup.sheets[i].albedo == 0.0) continue;
-        sample_sheet(
-            setup, scene, setup.sheets[i], num_points / area, core::Rng(seed, i, 0), sums);
+        sample_sheet(setup, scene, setup.sheets[i], num_points / area, core::Rng(seed, i, 0), sums);
     }
     return sums;
 }
@@ -223,13 +222,9 @@ OccluderScene random_occluder_scene(std::uint64_t number) {
     setup.axis = {0.8, bin_width, static_cast<int>(3.2 / bin_width)};
     const int num_hidden = 1 + static_cast<int>(between(rng, 0.0, 3.0));
     for (int i = 0; i < num_hidden; ++i) {
-        const Vec3 center(
-            between(rng, -0.4, 0.4), between(rng, -0.4, 0.4), between(rng, 0.7, 1.2));
-        setup.sheets.push_back(tilted_sheet(rng,
-                                            center,
-                                            between(rng, 0.15, 0.8),
-                                            between(rng, 0.15, 0.8),
-                                            between(rng, 0.3, 1.0)));
+        const Vec3 center(between(rng, -0.4, 0.4), between(rng, -0.4, 0.4), between(rng, 0.7, 1.2));
+        setup.sheets.push_back(tilted_sheet(
+            rng, center, between(rng, 0.15, 0.8), between(rng, 0.15, 0.8), between(rng, 0.3, 1.0)));
     }
     const double width = between_log(rng, 1e-3, 1.0);
     const double albedo = rng.uniform() < 0.75 ? 0.0 : 0.5;
@@ -246,11 +241,7 @@ OccluderScene random_occluder_scene(std::uint64_t number) {
     } else if (kind >= 0.6 && kind < 0.85) {
         kind_name = "dots";
         const double wanted = between(rng, 0.02, 0.5) * std::pow(size / width, 2);
-        add_dots(rng,
-                 frame,
-                 width,
-                 std::clamp(static_cast<int>(wanted), 1, 5000),
-                 setup.sheets);
+        add_dots(rng, frame, width, std::clamp(static_cast<int>(wanted), 1, 5000), setup.sheets);
     } else if (kind >= 0.85) {
         kind_name = "panels";
         add_dots(rng, frame, width, 1 + static_cast<int>(between(rng, 0.0, 5.0)), setup.sheets);
@@ -261,19 +252,15 @@ OccluderScene random_occluder_scene(std::uint64_t number) {
 
 OccluderScene comb_of_thin_slats() {
     OccluderScene setup = before_one_sheet("comb");
-    add_slats(
-        {{-0.4, -0.5, 0.4}, {0.8, 0.0, 0.0}, {0.0, 1.0, 0.0}, 0.0}, 2e-3, 4e-3, setup.sheets);
+    add_slats({{-0.4, -0.5, 0.4}, {0.8, 0.0, 0.0}, {0.0, 1.0, 0.0}, 0.0}, 2e-3, 4e-3, setup.sheets);
     return setup;
 }
 
 OccluderScene thousands_of_dots() {
     OccluderScene setup = before_one_sheet("dots");
     core::Rng rng(5'000, 0, 0);
-    add_dots(rng,
-             {{-0.4, -0.4, 0.4}, {0.8, 0.0, 0.0}, {0.0, 0.8, 0.0}, 0.0},
-             4e-3,
-             5000,
-             setup.sheets);
+    add_dots(
+        rng, {{-0.4, -0.4, 0.4}, {0.8, 0.0, 0.0}, {0.0, 0.8, 0.0}, 0.0}, 4e-3, 5000, setup.sheets);
     return setup;
 }
 
