@@ -17,7 +17,7 @@ int main(int argc, char** argv) {
     std::vector<double> targets{0.05, 0.02, 0.01};
     if (argc > 3) targets.clear();
     for (int i = 3; i < argc; ++i) targets.push_back(std::strtod(argv[i], nullptr));
-    constexpr double kNumPoints = 160'000;
+    constexpr double kNumPoints = 120'000;
     struct Tally {
         int all = 0, met = 0, nearly_met = 0, far_off = 0;
         double seconds = 0.0;

@@ -34,13 +34,16 @@ std::vector<Vec3> wall_grid(int points) {
     return positions;
 }
 
+// Up to 100 points, so that pilot runs see all of some scans and a part of others.
 core::Scan random_scan(core::Rng& rng) {
     const double kind = rng.uniform();
-    if (kind < 0.6) return confocal_scan(wall_grid(6));
+    const int points = static_cast<int>(between(rng, 6.0, 11.0));
+    if (kind < 0.6) return confocal_scan(wall_grid(points));
     if (kind < 0.8) {
-        return single_scan({between(rng, -0.4, 0.4), between(rng, -0.4, 0.4), 0.0}, wall_grid(6));
+        return single_scan({between(rng, -0.4, 0.4), between(rng, -0.4, 0.4), 0.0},
+                           wall_grid(points));
     }
-    return exhaustive_scan(wall_grid(2), wall_grid(4));
+    return exhaustive_scan(wall_grid(2), wall_grid(points / 2));
 }
 
 // A sheet about `center`, tilted by up to about 30 degrees.
