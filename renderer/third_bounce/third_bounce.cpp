@@ -47,6 +47,7 @@ class Integrator {
     int finest_in_time(const core::Progress& progress);
     int integrate(int level, int first_part, const core::Progress& progress, ThirdBounce& result);
     ThirdBounce integrate_all(const core::Progress& progress);
+    std::optional<double> error_within_reach();
 
     const Scene& scene_;
     const core::Scan& scan_;
@@ -148,11 +149,22 @@ ThirdBounce Integrator::run(const core::Progress& progress) {
     try {
         return integrate_all(progress);
     } catch (const core::Failure& failure) {
-        const std::optional<double> met = pilots_.smallest_error();
+        const std::optional<double> met = error_within_reach();
         if (!met || *met <= target_) throw;
-        throw core::Failure(
-            failure.what(),
-            fmt::format("a target error of {:.2g} would do", two_digits_above(*met)));
+        // Not the target itself, of which callers may give the third bounce a share.
+        throw core::Failure(failure.what(),
+                            fmt::format("a target error {:.2g} times as large would do",
+                                        two_digits_above(*met / target_)));
+    }
+}
+
+// The smallest error known after a failure, that of the coarsest level if there is none yet.
+std::optional<double> Integrator::error_within_reach() {
+    if (const auto known = pilots_.smallest_error()) return known;
+    try {
+        return pilots_.error_of(kCoarsest);
+    } catch (const core::Failure&) {
+        return std::nullopt;
     }
 }
 
