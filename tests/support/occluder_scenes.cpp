@@ -286,6 +286,7 @@ double error_against(const std::array<std::vector<double>, 2>& truths,
         squared_error += (value - truths[0][i]) * (value - truths[1][i]);
         squared_norm += truths[0][i] * truths[1][i];
     }
+    if (squared_norm == 0.0) return squared_error == 0.0 ? 0.0 : HUGE_VAL;  // nothing is lit
     return std::sqrt(std::max(0.0, squared_error) / squared_norm);
 }
 
