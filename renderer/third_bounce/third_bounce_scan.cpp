@@ -157,6 +157,7 @@ void ThirdBounceScan::integrate_confocal(std::size_t begin, std::size_t end) {
     for (std::size_t i = 0; i < points.size(); ++i) {
         check(visibility, begin + i, {points[i], seen[i]}, {points[i], seen[i]});
     }
+    num_rays_ += visibility.num_rays();
     BlockTable table;
     const auto num_bins = static_cast<std::size_t>(axis_.num_bins);
     std::vector<double> histograms(points.size() * num_bins);
@@ -304,6 +305,7 @@ void ThirdBounceScan::integrate_tile(const PairTiles::Tile& tile) {
             check(visibility, pair_of(l, s), lights.end(l), sensors.end(s));
         }
     }
+    num_rays_ += visibility.num_rays();
     for (std::size_t i = 0; i < tile.lights.size() * num_sensors; ++i) {
         store(pair_of(i / num_sensors, i % num_sensors),
               std::span(histograms).subspan(i * num_bins, num_bins));

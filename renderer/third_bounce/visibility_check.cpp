@@ -37,7 +37,7 @@ VisibilityMask mask_of(const VisibleElements& seen, std::uint32_t element) {
 }  // namespace
 
 VisibilityCheck::VisibilityCheck(const Scene& scene, const ElementSet& elements)
-    : scene_(scene), set_(elements), mass_up_to_(elements.blocks.size() * ElementBlock::kSize) {}
+    : scene_(scene), set_(elements) {}
 
 SquaredError VisibilityCheck::squared_error(const End& light,
                                             const End& sensor,
@@ -64,6 +64,7 @@ SquaredError VisibilityCheck::squared_error(const End& light,
 
 void VisibilityCheck::sum_masses(const WallPoint& light, const WallPoint& sensor) {
     const bool is_confocal = coincide(light, sensor);
+    mass_up_to_.resize(set_.blocks.size() * ElementBlock::kSize);
     double sum = 0.0;
     for (std::size_t b = 0; b < set_.blocks.size(); ++b) {
         const ElementBlock& block = set_.blocks[b];
