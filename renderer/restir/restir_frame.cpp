@@ -117,8 +117,11 @@ std::optional<double> shift_first(const PathReservoir& reservoir,
     const SurfacePoint start{reservoir.sample.first().position + from_moved, facet};
     const auto shifted = current.shift->shift_path(start, source, target, change, counts);
     if (!shifted) return std::nullopt;
-    // The vertex may have reached an object with another motion.
-    if (motion(*to.scene, current, shifted->point.facet) != to_moved) return std::nullopt;
+    // The vertex may have reached an object with another motion, from where it would be brought to
+    // another place on the way back.
+    const std::uint32_t reached = shifted->point.facet;
+    if (motion(*from.scene, current, reached) != from_moved) return std::nullopt;
+    if (motion(*to.scene, current, reached) != to_moved) return std::nullopt;
     x = shifted->point;
     x.position -= to_moved;
     return shifted->jacobian;

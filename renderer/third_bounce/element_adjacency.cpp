@@ -36,6 +36,10 @@ struct Mark {
     }
 };
 
+// More elements at one edge than this are paired in a chain: all pairs of thousands of coinciding
+// triangles would fill the memory.
+constexpr std::ptrdiff_t kMostAtAnEdge = 8;
+
 // Pairs up marks with equal keys; halves match whole edges only. Returns the whole edges that found
 // no partner.
 std::vector<Mark> pair_up(std::vector<Mark>& marks, Pairs& pairs) {
@@ -45,8 +49,9 @@ std::vector<Mark> pair_up(std::vector<Mark>& marks, Pairs& pairs) {
         auto end = begin;
         while (end != marks.end() && end->key == begin->key) ++end;
         if (end - begin == 1 && !begin->of_half) alone.push_back(*begin);
+        const std::ptrdiff_t reach = end - begin > kMostAtAnEdge ? 1 : kMostAtAnEdge;
         for (auto a = begin; a != end; ++a) {
-            for (auto b = a + 1; b != end; ++b) {
+            for (auto b = a + 1; b != end && b - a <= reach; ++b) {
                 if (a->element != b->element && !(a->of_half && b->of_half)) {
                     pairs.emplace_back(a->element, b->element);
                 }

@@ -17,9 +17,11 @@ constexpr int kPilotFewBins = 16;
 constexpr std::size_t kPilotPointsForFewBins = 128;
 constexpr std::size_t kPilotPointsPerSideForFewBins = 16;
 
-// `count` indices below `size`, spread evenly but not in step with the rows of a grid.
+// `count` indices below `size`, spread evenly but not in step with the rows of a grid; all of them
+// where these are few, since a single point whose shadow goes unseen then weighs much in the error.
 std::vector<std::size_t> spread_indices(std::size_t size, std::size_t count) {
     constexpr double kGolden = 0.6180339887498949;
+    if (size <= 2 * count) count = size;
     std::vector<std::size_t> indices;
     for (std::size_t i = 0; i < std::min(size, count); ++i) {
         const double share = (static_cast<double>(i) + 0.5) * kGolden;

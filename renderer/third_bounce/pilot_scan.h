@@ -7,9 +7,10 @@
 namespace renderer {
 
 /// The pairs on which the deterministic integrator finds the refinement level it needs: some points
-/// of each side, spread evenly but not in step with the rows of a grid, and more of them for few
-/// bins, where there is less to compare per pair. Where there are retroreflectors and the scan has
-/// confocal pairs, one of these is among them, since its light outshines everything else.
+/// of each side, spread evenly but not in step with the rows of a grid, or all where these are at
+/// most twice as many; more of them for few bins, where there is less to compare per pair. Where
+/// there are retroreflectors and the scan has confocal pairs, one of these is among them, since its
+/// light outshines everything else.
 core::Scan pilot_scan(const Scene& scene, const core::Scan& scan, int num_bins);
 
 /// The axis of pilot runs: bins begin at multiples of their width, so that shifting the axis by

@@ -12,6 +12,12 @@
 
 namespace renderer {
 
+/// Where shadow rays go.
+enum class ShadowRayPlan {
+    WhereNeighboursDisagree,  ///< one to each group of elements, more to edges of shadows
+    Everywhere                ///< one to every part of every element, for shadows finer than these
+};
+
 /// What is known of the paths from some wall points, and the error allowed.
 struct VisibilityRules {
     /// Path lengths within the axis without the device legs, per point or one for all.
@@ -23,6 +29,7 @@ struct VisibilityRules {
     double negligible_error = 0.0;  ///< error of a value of H below which no more rays are traced
     /// Number of pairs of each point; retroreflectors return light in one of them.
     double pairs_per_point = 1.0;
+    ShadowRayPlan plan = ShadowRayPlan::WhereNeighboursDisagree;
 
     const LengthBounds& opl_of(std::size_t point) const { return opl[opl.size() > 1 ? point : 0]; }
 };

@@ -3,7 +3,7 @@
 
 #include "renderer/core/parallel.h"
 #include "renderer/scene/coinciding_points.h"
-#include "renderer/third_bounce/third_bounce_pairs.h"
+#include "renderer/third_bounce/tile_tables.h"
 
 #include <fmt/core.h>
 
@@ -30,34 +30,6 @@ std::size_t begin_of_part(int part, std::size_t num_points) {
     return std::min(block * kPointsPerBlock, num_points);
 }
 
-// Tables of some wall points for one block, where they see anything of it.
-class TileTables {
- public:
-    TileTables(std::vector<WallPoint> points, std::span<const VisibleElements> seen)
-        : points_(std::move(points)), seen_(seen), tables_(points_.size()), ends_(points_.size()) {}
-
-    void compute(const ElementBlock& block, std::size_t block_index) {
-        for (std::size_t i = 0; i < points_.size(); ++i) {
-            compute_table(block, points_[i], seen_[i].simd_groups[block_index], tables_[i]);
-            ends_[i] = {&points_[i],
-                        &tables_[i],
-                        seen_[i].masks.data() + block_index * ElementBlock::kSize};
-        }
-    }
-
-    const std::vector<PairEnd>& ends() const { return ends_; }
-
- private:
-    std::vector<WallPoint> points_;
-    std::span<const VisibleElements> seen_;
-    std::vector<BlockTable> tables_;
-    std::vector<PairEnd> ends_;
-};
-
-bool coincide(const WallPoint& a, const WallPoint& b) {
-    return a.position == b.position && a.normal == b.normal;
-}
-
 // True when no path of the two points through the block has a length within the axis.
 bool misses_axis(const BlockSphere& sphere,
                  const WallPoint& light,
@@ -75,25 +47,30 @@ ThirdBounceScan::ThirdBounceScan(const Scene& scene,
                                  const core::Scan& scan,
                                  const core::TimeAxis& axis,
                                  const ElementSet& elements,
-                                 double negligible_error,
-                                 double memory_bytes)
+                                 const ScanRules& rules)
     : scene_(scene),
       scan_(scan),
       axis_(axis),
       elements_(elements),
-      negligible_error_(negligible_error),
-      memory_bytes_(memory_bytes),
+      rules_(rules),
       lights_{scan.illumination,
               CoincidingPoints(scan).illumination,
               std::vector<double>(scan.illumination.size())},
       sensors_{
-          scan.sensing, CoincidingPoints(scan).sensing, std::vector<double>(scan.sensing.size())} {}
+          scan.sensing, CoincidingPoints(scan).sensing, std::vector<double>(scan.sensing.size())},
+      squared_visibility_errors_(scan.num_pairs()) {}
 
 double ThirdBounceScan::squared_shadow_error() const {
     const auto sum = [](const std::vector<double>& values) {
         return std::accumulate(values.begin(), values.end(), 0.0);
     };
     return sum(sensors_.squared_errors) + sum(lights_.squared_errors);
+}
+
+SquaredError ThirdBounceScan::squared_visibility_error() const {
+    SquaredError sum;
+    for (const SquaredError& of_pair : squared_visibility_errors_) sum += of_pair;
+    return sum;
 }
 
 int ThirdBounceScan::integrate(int first_part,
@@ -136,6 +113,19 @@ core::TimeAxis ThirdBounceScan::axis_of_pair(std::size_t pair) const {
     return axis;
 }
 
+void ThirdBounceScan::check(VisibilityCheck& check,
+                            std::size_t pair,
+                            const VisibilityCheck::End& light,
+                            const VisibilityCheck::End& sensor) {
+    if (rules_.check_rays == 0) return;
+    squared_visibility_errors_[pair] =
+        check.squared_error(light,
+                            sensor,
+                            axis_of_pair(pair),
+                            rules_.check_rays,
+                            core::Rng(0, pair, /*sample=*/elements_.num_elements));
+}
+
 void ThirdBounceScan::add_costs(const VisibilityTracer& tracer) {
     num_rays_ += tracer.cost().num_rays;
     tracing_seconds_ += tracer.cost().seconds;
@@ -153,7 +143,8 @@ void ThirdBounceScan::integrate_confocal(std::size_t begin, std::size_t end) {
     const std::vector<WallPoint> points = sensors_.wall_points({begin, end}, elements_.origin);
     std::vector<core::TimeAxis> axes;
     VisibilityRules rules;
-    rules.negligible_error = negligible_error_;
+    rules.negligible_error = rules_.negligible_error;
+    rules.plan = rules_.plan;
     for (std::size_t pair = begin; pair < end; ++pair) {
         axes.push_back(axis_of_pair(pair));
         rules.opl.push_back({axes.back().opl_start_m, axes.back().opl_end_m()});
@@ -162,6 +153,11 @@ void ThirdBounceScan::integrate_confocal(std::size_t begin, std::size_t end) {
     VisibilityTracer tracer(scene_, elements_);
     tracer.trace(points, rules, seen);
     add_costs(tracer);
+    VisibilityCheck visibility(scene_, elements_);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        check(visibility, begin + i, {points[i], seen[i]}, {points[i], seen[i]});
+    }
+    num_rays_ += visibility.num_rays();
     BlockTable table;
     const auto num_bins = static_cast<std::size_t>(axis_.num_bins);
     std::vector<double> histograms(points.size() * num_bins);
@@ -188,7 +184,8 @@ void ThirdBounceScan::integrate_confocal(std::size_t begin, std::size_t end) {
 // points, so that what a point sees does not depend on the tile that is worked on.
 VisibilityRules ThirdBounceScan::rules_towards(const Side& others, std::size_t num_points) const {
     VisibilityRules rules;
-    rules.negligible_error = negligible_error_;
+    rules.negligible_error = rules_.negligible_error;
+    rules.plan = rules_.plan;
     rules.pairs_per_point =
         static_cast<double>(scan_.num_pairs()) / static_cast<double>(num_points);
     const auto [min_legs, max_legs] = core::device_leg_range_m(scan_);
@@ -231,14 +228,14 @@ int ThirdBounceScan::integrate_pairs(int first_part,
                                      const std::function<bool(double share)>& go_on) {
     const auto bytes_per_point =
         static_cast<double>(elements_.blocks.size() * ElementBlock::kSize * sizeof(VisibilityMask));
-    const double fitting = memory_bytes_ / bytes_per_point;
+    const double fitting = rules_.memory_bytes / bytes_per_point;
     if (fitting < PairTiles::kMinPoints) {
         throw core::Failure(
             "third_bounce",
             fmt::format("visibility of {} elements needs {:.2f} GB, {:.2f} GB are free for it",
                         elements_.num_elements,
                         PairTiles::kMinPoints * bytes_per_point * 1e-9,
-                        memory_bytes_ * 1e-9));
+                        rules_.memory_bytes * 1e-9));
     }
     const std::size_t num_lights =
         scan_.pattern == core::ScanPattern::Single ? 1 : scan_.illumination.size();
@@ -302,6 +299,13 @@ void ThirdBounceScan::integrate_tile(const PairTiles::Tile& tile) {
             }
         }
     }
+    VisibilityCheck visibility(scene_, elements_);
+    for (std::size_t l = 0; l < tile.lights.size(); ++l) {
+        for (std::size_t s = 0; s < num_sensors; ++s) {
+            check(visibility, pair_of(l, s), lights.end(l), sensors.end(s));
+        }
+    }
+    num_rays_ += visibility.num_rays();
     for (std::size_t i = 0; i < tile.lights.size() * num_sensors; ++i) {
         store(pair_of(i / num_sensors, i % num_sensors),
               std::span(histograms).subspan(i * num_bins, num_bins));

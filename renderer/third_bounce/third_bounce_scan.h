@@ -4,6 +4,7 @@
 #include "renderer/core/capture.h"
 #include "renderer/film/pair_tiles.h"
 #include "renderer/third_bounce/third_bounce_visibility.h"
+#include "renderer/third_bounce/visibility_check.h"
 
 #include <atomic>
 #include <cstdint>
@@ -13,21 +14,27 @@
 
 namespace renderer {
 
+/// How one cut of the surfaces is integrated.
+struct ScanRules {
+    double negligible_error = 0.0;  ///< as in VisibilityRules
+    /// That masks of a single or exhaustive scan may take; where those of all points do not fit,
+    /// visibility from some points is traced more than once.
+    double memory_bytes = 0.0;
+    ShadowRayPlan plan = ShadowRayPlan::WhereNeighboursDisagree;
+    std::size_t check_rays = 0;  ///< per pair, see VisibilityCheck; 0: none
+};
+
 /// Integrates one cut of the surfaces for all pairs of a scan.
 class ThirdBounceScan {
  public:
     /// All references must outlive this.
     ///
-    /// negligible_error   as in VisibilityRules
-    /// memory_bytes       that masks of a single or exhaustive scan may take; where those of all
-    ///                    points do not fit, visibility from some points is traced more than once
-    /// throws             core::Failure when those of PairTiles::kMinPoints points do not fit
+    /// throws   core::Failure when masks of PairTiles::kMinPoints points take too much memory
     ThirdBounceScan(const Scene& scene,
                     const core::Scan& scan,
                     const core::TimeAxis& axis,
                     const ElementSet& elements,
-                    double negligible_error,
-                    double memory_bytes);
+                    const ScanRules& rules);
 
     /// The pairs are integrated in this many parts, the last of which may be empty.
     static constexpr int kParts = 16;
@@ -43,6 +50,8 @@ class ThirdBounceScan {
     TracingCost cost() const { return {num_rays_, tracing_seconds_}; }
     /// Expected squared error of all of H from shadow edges that elements are too coarse for.
     double squared_shadow_error() const;
+    /// Squared error of all of H from what is taken for visible, as checks have found.
+    SquaredError squared_visibility_error() const;
 
  private:
     /// The illumination or the sensing points of the scan.
@@ -63,6 +72,10 @@ class ThirdBounceScan {
     VisibilityRules rules_towards(const Side& others, std::size_t num_points) const;
     void look_from(Side& side, const PointRange& range, const VisibilityRules& rules);
     void integrate_tile(const PairTiles::Tile& tile);
+    void check(VisibilityCheck& check,
+               std::size_t pair,
+               const VisibilityCheck::End& light,
+               const VisibilityCheck::End& sensor);
     void add_costs(const VisibilityTracer& tracer);
     void store(std::size_t pair, std::span<const double> histogram);
 
@@ -70,11 +83,11 @@ class ThirdBounceScan {
     const core::Scan& scan_;
     const core::TimeAxis& axis_;
     const ElementSet& elements_;
-    double negligible_error_;
-    double memory_bytes_;
+    ScanRules rules_;
     core::Transient* result_ = nullptr;  ///< while integrate() runs
     Side lights_;
     Side sensors_;
+    std::vector<SquaredError> squared_visibility_errors_;  ///< per pair
     std::atomic<std::uint64_t> num_rays_{0};
     std::atomic<double> tracing_seconds_{0.0};
 };

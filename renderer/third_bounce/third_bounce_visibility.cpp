@@ -8,13 +8,6 @@
 namespace renderer {
 namespace {
 
-// Standard deviation of the visible share of an element that a shadow's straight edge crosses,
-// known from one part drawn of 16, from one drawn in each quarter, and from all 16 [found by
-// simulation].
-constexpr double kErrorFromOne = 0.34;
-constexpr double kErrorFromQuarters = 0.12;
-constexpr double kErrorFromSixteenths = 0.03;
-
 // Elements [begin, end).
 struct BlockLanes {
     std::uint32_t begin;
@@ -25,10 +18,6 @@ BlockLanes elements_of(const VisibilityGroup& group) {
     const auto begin = static_cast<std::uint32_t>(group.block * ElementBlock::kSize) +
                        static_cast<std::uint32_t>(std::countr_zero(group.lanes));
     return {begin, begin + static_cast<std::uint32_t>(std::popcount(group.lanes))};
-}
-
-VisibilityMask quarter_mask(std::uint32_t quarter) {
-    return static_cast<VisibilityMask>(0xfU << (4 * quarter));
 }
 
 }  // namespace
@@ -51,9 +40,13 @@ void VisibilityTracer::trace(std::span<const WallPoint> points,
     pairs_per_point_ = rules.pairs_per_point;
     squared_errors_.fill(0.0);
     classify();
-    trace_groups();
-    open_mixed_groups();
-    refine_mixed_elements();
+    if (rules.plan == ShadowRayPlan::Everywhere) {
+        trace_all_parts();
+    } else {
+        trace_groups();
+        open_mixed_groups();
+        refine_mixed_elements();
+    }
     write(seen);
 }
 
@@ -183,86 +176,6 @@ void VisibilityTracer::open_mixed_groups() {
     for (const ShadowRays& rays : shadow_rays_) {
         PointMask& visible = elements_[rays.element].visible;
         visible = combine(without(visible, rays.points), rays.seen);
-    }
-}
-
-void VisibilityTracer::refine_mixed_elements() {
-    shadow_rays_.clear();
-    refined_.clear();
-    for (const auto& [element, opened] : opened_) {
-        PointMask points =
-            common(opened, mixed_points(set_.element_neighbours, element, elements_));
-        if (points == 0) continue;
-        points = common(points, points_that_matter(relevant_.masses_of(element), kErrorFromOne));
-        if (points == 0) continue;
-        refined_.push_back({element, points, {}});
-        for (std::uint32_t k = 1; k < 4; ++k) {
-            shadow_rays_.push_back({element, points, ShadowRays::drawn(k)});
-        }
-    }
-    rays_.trace(shadow_rays_);
-    for (std::size_t i = 0; i < refined_.size(); ++i) {
-        auto& [element, points, masks] = refined_[i];
-        const DrawnParts parts = rays_.drawn_parts(element);
-        const std::array<PointMask, 4> seen{elements_[element].visible,
-                                            shadow_rays_[3 * i].seen,
-                                            shadow_rays_[3 * i + 1].seen,
-                                            shadow_rays_[3 * i + 2].seen};
-        PointMask visible = 0;
-        for_each_bit(points, [&](std::size_t p) {
-            for (std::uint32_t k = 0; k < 4; ++k) {
-                if ((seen[k] >> p & 1U) == 0) continue;
-                masks[p] =
-                    static_cast<VisibilityMask>(masks[p] | quarter_mask(parts.quarter(p, k)));
-            }
-            visible = static_cast<PointMask>(visible | std::uint32_t{masks[p] != 0} << p);
-        });
-        elements_[element].visible = combine(without(elements_[element].visible, points), visible);
-    }
-    refine_quarters();
-}
-
-// Traces rays to all parts of elements of which only some quarters are visible.
-void VisibilityTracer::refine_quarters() {
-    shadow_rays_.clear();
-    std::vector<std::size_t> refined_of_rays;
-    for (std::size_t i = 0; i < refined_.size(); ++i) {
-        const auto& [element, refined, masks] = refined_[i];
-        PointMask points = 0;
-        for_each_bit(refined, [&, &masks = masks](std::size_t p) {
-            const bool is_partial = masks[p] != 0 && masks[p] != kAllVisible;
-            points = static_cast<PointMask>(points | std::uint32_t{is_partial} << p);
-        });
-        if (points == 0) continue;
-        const RelevantElements::Masses mass = relevant_.masses_of(element);
-        points = common(points, points_that_matter(mass, kErrorFromQuarters));
-        if (points == 0) continue;
-        const ElementKind kind = set_.blocks[element / ElementBlock::kSize].kind;
-        const double num_pairs = kind == ElementKind::Retroreflective ? 1.0 : pairs_per_point_;
-        for_each_bit(points, [&](std::size_t p) {
-            squared_errors_[p] += num_pairs * std::pow(kErrorFromSixteenths * mass.of_point[p], 2);
-        });
-        const DrawnParts parts = rays_.drawn_parts(element);
-        for (std::uint32_t bit = 0; bit < 16; ++bit) {
-            PointMask unknown = 0;
-            for_each_bit(points, [&](std::size_t p) {
-                const bool is_known = parts.bit(p, bit / 4) == bit;
-                unknown = static_cast<PointMask>(unknown | std::uint32_t{!is_known} << p);
-            });
-            if (unknown == 0) continue;
-            shadow_rays_.push_back({element, unknown, ShadowRays::fixed(bit)});
-            refined_of_rays.push_back(i);
-        }
-    }
-    rays_.trace(shadow_rays_);
-    for (std::size_t i = 0; i < shadow_rays_.size(); ++i) {
-        auto& masks = refined_[refined_of_rays[i]].masks;
-        const auto bit =
-            static_cast<VisibilityMask>(1U << (shadow_rays_[i].part - ShadowRays::kFirstFixed));
-        for_each_bit(shadow_rays_[i].points, [&](std::size_t p) {
-            const bool is_seen = (shadow_rays_[i].seen >> p & 1U) != 0;
-            masks[p] = static_cast<VisibilityMask>(is_seen ? masks[p] | bit : masks[p] & ~bit);
-        });
     }
 }
 

@@ -17,6 +17,10 @@ struct WallPoint {
     bool is_confocal = true;  ///< some pair has both its ends here, see CoincidingPoints
 };
 
+inline bool coincide(const WallPoint& a, const WallPoint& b) {
+    return a.position == b.position && a.normal == b.normal;
+}
+
 /// A set of wall points of a WallPointLanes: point p is bit p.
 using PointMask = std::uint16_t;
 

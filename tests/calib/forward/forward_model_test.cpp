@@ -171,8 +171,8 @@ TEST(ForwardModel, AgreesWithExactArcs) {
     }
 }
 
-TEST(ForwardModel, AgreesWithTheRendererBehindAnOccluder) {
-    const renderer::SceneGeometry geometry = two_objects();
+// Relative L2 over a confocal scan.
+double difference_from_renderer(const renderer::SceneGeometry& geometry, double spot_m2) {
     calib::FitSettings free;
     free.free.objects = {{"front", true, false, false, false, false}};
     free.free.ambient = false;
@@ -183,14 +183,15 @@ TEST(ForwardModel, AgreesWithTheRendererBehindAnOccluder) {
     settings.offset_m.assign(scan.num_pairs(), 0.0);
     settings.tolerance = 5e-3;
     settings.radiance_factor = std::pow(core::kPi, -3.0);
+    settings.spot_m2 = spot_m2;
     ForwardModel light(model, scan, calib::WallMotion(scan), settings);
     light.refresh(model.start());
     light.update(model.start(), Gradients::Without);
 
-    renderer::RelayWall wall;
-    const renderer::Scene scene(geometry, scan, wall);
+    const renderer::Scene scene(geometry, scan, renderer::RelayWall{});
     renderer::RenderSettings render_settings;
     render_settings.target_error = 3e-3;
+    render_settings.laser_spot_m2 = spot_m2;
     const auto rendered =
         renderer::render(scene, scan, settings.axis, render_settings, {}).capture.transient;
     double difference = 0.0;
@@ -204,8 +205,18 @@ TEST(ForwardModel, AgreesWithTheRendererBehindAnOccluder) {
             size += reference * reference;
         }
     }
-    EXPECT_LT(std::sqrt(difference / size),
-              0.03);  // shadow edges are known to quarters of elements
+    return std::sqrt(difference / size);
+}
+
+// Shadow edges are known to quarters of elements.
+TEST(ForwardModel, AgreesWithTheRendererBehindAnOccluder) {
+    EXPECT_LT(difference_from_renderer(two_objects(), 1e-4), 0.03);
+}
+
+TEST(ForwardModel, AgreesWithTheRendererOnARetroreflector) {
+    renderer::SceneGeometry geometry = two_objects();
+    geometry.objects.front().material.model = renderer::SurfaceModel::Retroreflective;
+    EXPECT_LT(difference_from_renderer(geometry, 3e-4), 0.03);
 }
 
 }  // namespace

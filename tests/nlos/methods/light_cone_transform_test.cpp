@@ -86,6 +86,18 @@ TEST(LightConeTransform, PlacesAPlaneWithinAQuarterOfABin) {
     EXPECT_NEAR(sum, 0.6, 0.002);
 }
 
+// Up to where bins and voxels happen to lie.
+TEST(LightConeTransform, EqualPointsAreEquallyBrightAtAnyDepth) {
+    const auto brightness = [](double depth) {
+        core::Capture capture =
+            confocal_capture(wall_grid({24, 24}, {0.04, 0.04}), {0.0, 0.016, 160});
+        nlos_test::add_scatterer(capture, Vec3(0.02, 0.02, depth), 4.0);
+        const Volume volume = transform(capture, {0.2, 1.1}, 225);
+        return *std::max_element(volume.values.begin(), volume.values.end());
+    };
+    EXPECT_NEAR(brightness(0.8) / brightness(0.4), 1.0, 0.2);
+}
+
 TEST(LightConeTransform, OfDarknessIsDark) {
     const core::Capture capture =
         confocal_capture(wall_grid({5, 7}, {0.05, 0.05}), {0.0, 0.02, 40});

@@ -138,8 +138,8 @@ TEST(ThirdBounceMemory, ChangesNothingButTheNumberOfRays) {
                                              setup.scan,
                                              setup.axis,
                                              setup.elements,
-                                             /*negligible_error=*/0.0,
-                                             static_cast<double>(points) * setup.bytes_per_point());
+                                             {.memory_bytes = static_cast<double>(points) *
+                                                              setup.bytes_per_point()});
         core::Transient result(setup.scan.num_pairs(), setup.axis.num_bins);
         EXPECT_EQ(integrator.integrate(
                       0, [](double) { return true; }, result),
@@ -160,7 +160,11 @@ TEST(ThirdBounceMemory, ChangesNothingButTheNumberOfRays) {
 TEST(ThirdBounceMemory, IsRefusedBelowTheFewestPoints) {
     const TwoSheets setup;
     renderer::ThirdBounceScan integrator(
-        setup.scene, setup.scan, setup.axis, setup.elements, 0.0, 31 * setup.bytes_per_point());
+        setup.scene,
+        setup.scan,
+        setup.axis,
+        setup.elements,
+        {.memory_bytes = 31 * setup.bytes_per_point()});
     core::Transient result(setup.scan.num_pairs(), setup.axis.num_bins);
     EXPECT_THROW(integrator.integrate(
                      0, [](double) { return true; }, result),

@@ -129,6 +129,27 @@ TEST(ElementClusters, OnlyNeighboursAreMerged) {
         1e-9);
 }
 
+// Every one has neighbours to compare with, and all hang together.
+TEST(ElementAdjacency, CoincidingTrianglesHaveFewNeighboursEach) {
+    constexpr std::uint32_t kCount = 20'000;
+    SurfaceElement triangle;
+    triangle.corners = {Vec3(-0.2, -0.2, 0.8), Vec3(0.2, -0.2, 0.8), Vec3(0.0, 0.2, 0.8)};
+    const auto pairs = renderer::adjacent_elements(std::vector<SurfaceElement>(kCount, triangle));
+    EXPECT_LE(pairs.size(), 3U * kCount);
+    const auto lists = renderer::adjacency_lists(kCount, pairs);
+    std::vector<bool> reached(kCount);
+    std::vector<std::uint32_t> open{0};
+    reached[0] = true;
+    for (std::size_t next = 0; next < open.size(); ++next) {
+        for (const std::uint32_t neighbour : lists.of(open[next])) {
+            if (reached[neighbour]) continue;
+            reached[neighbour] = true;
+            open.push_back(neighbour);
+        }
+    }
+    EXPECT_EQ(open.size(), kCount);
+}
+
 TEST(ElementClusters, ClustersKeepToTheirSizeTiltAndObject) {
     const auto scan = grid_scan();
     const auto scene = scene_of({test_support::sphere_object(Vec3(0, 0, 0.7), 0.2, 4, 0.5),

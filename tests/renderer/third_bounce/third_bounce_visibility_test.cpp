@@ -148,14 +148,20 @@ TEST(DrawnParts, AreUniformAndIndependent) {
     }
 }
 
-class VisibilityTracerTowards : public testing::TestWithParam<std::optional<WallPoint>> {};
+struct LookingTowards {
+    std::optional<WallPoint> other_end;
+    renderer::ShadowRayPlan plan;
+};
+
+class VisibilityTracerTowards : public testing::TestWithParam<LookingTowards> {};
 
 // With the same number of rays, too.
 TEST_P(VisibilityTracerTowards, PointsSeeTogetherWhatTheySeeAlone) {
     const HalfHiddenSheet setup;
     renderer::VisibilityTracer tracer(setup.scene, setup.elements);
     renderer::VisibilityRules rules;
-    rules.other_end = GetParam();
+    rules.other_end = GetParam().other_end;
+    rules.plan = GetParam().plan;
     const std::vector<WallPoint> points = setup.points(5, WallPointLanes::kSize);
     for (std::size_t p = 0; p < points.size(); ++p) {
         // Some gates, some that hold everything.
@@ -188,10 +194,15 @@ TEST_P(VisibilityTracerTowards, PointsSeeTogetherWhatTheySeeAlone) {
     EXPECT_GT(num_partial, 20U);
 }
 
-INSTANTIATE_TEST_SUITE_P(Ends,
-                         VisibilityTracerTowards,
-                         testing::Values(std::nullopt,
-                                         WallPoint{Vec3(0.1, 0.0, -0.4), Vec3::UnitZ(), 0}));
+const WallPoint kFarEnd{Vec3(0.1, 0.0, -0.4), Vec3::UnitZ(), 0};
+
+INSTANTIATE_TEST_SUITE_P(
+    Ends,
+    VisibilityTracerTowards,
+    testing::Values(LookingTowards{std::nullopt, renderer::ShadowRayPlan::WhereNeighboursDisagree},
+                    LookingTowards{kFarEnd, renderer::ShadowRayPlan::WhereNeighboursDisagree},
+                    LookingTowards{std::nullopt, renderer::ShadowRayPlan::Everywhere},
+                    LookingTowards{kFarEnd, renderer::ShadowRayPlan::Everywhere}));
 
 // The ends of a curved wall have no plane in common; one behind which the sheet lies takes nothing
 // from another one that sees it.
@@ -205,7 +216,7 @@ TEST(ThirdBounceScan, OtherEndsInOtherPlanesTakeNothingAway) {
         const core::TimeAxis axis{0.8, 0.02, 60};
         const renderer::ElementSet elements =
             renderer::SurfaceSubdivider(scene, scan, axis, 0.0).cut(0.01);
-        renderer::ThirdBounceScan integrator(scene, scan, axis, elements, 0.0, 1e9);
+        renderer::ThirdBounceScan integrator(scene, scan, axis, elements, {.memory_bytes = 1e9});
         core::Transient result(scan.num_pairs(), axis.num_bins);
         integrator.integrate(
             0, [](double) { return true; }, result);

@@ -109,6 +109,19 @@ TEST(BentTriangle, MatchesSampling) {
     }
 }
 
+// Flat to first order and strongly bent: after four splits, what is left bends over about two bins.
+TEST(BentTriangle, IsSplitInto256Parts) {
+    core::Rng rng(test_support::seed_of("BentTriangle.IsSplitInto256Parts"), 0, 0);
+    double sum2 = 0.0;
+    for (int trial = 0; trial < 6; ++trial) {
+        const BentTriangle triangle = random_triangle(rng, 0.0, 1.5);
+        const TimeAxis axis{0.7, 0.001, 301};
+        sum2 +=
+            std::pow(relative_l2(histogram_of(triangle, axis), sampled(triangle, axis, 2000)), 2);
+    }
+    EXPECT_LT(std::sqrt(sum2 / 6.0), 0.02);
+}
+
 TEST(BentTriangle, AllWeightArrivesAndNoBinIsNegative) {
     core::Rng rng(test_support::seed_of("BentTriangle.AllWeightArrives"), 0, 0);
     for (int trial = 0; trial < 2000; ++trial) {

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/third_bounce/pilot_runs.h"
+
+#include "renderer/core/process.h"
+#include "renderer/core/stopwatch.h"
+#include "renderer/third_bounce/pilot_scan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace renderer {
+namespace {
+
+using core::Transient;
+
+constexpr double kSuspiciousShare = 0.05;  // of the target: a difference too small to be believed
+constexpr double kFinerReference = 3.0;    // then: times as many elements
+
+// A reference has an error of its own, and the pairs of the pilot run are not all pairs.
+constexpr double kCaution = 1.5;
+
+// Rays of each of both sets of a VisibilityCheck over all pairs of a pilot run, down to this
+// target. The noise of what they find falls with their square root, as targets do with theirs.
+constexpr double kCheckRays = 65'536.0;
+constexpr double kCheckTarget = 0.01;
+constexpr double kMostCheckRays = 4'194'304.0;
+
+// Where rays to random points find this many times the error that two cuts differ by, shadows are
+// finer than the elements of both.
+constexpr double kMissedByCuts = 1.5;
+
+// Errors of elements whose visibility is wrong add up; each may err by this share of the tolerance.
+constexpr double kNegligibleShare = 0.1;
+
+// Share of the free memory that visibility may take.
+constexpr double kShareOfMemory = 0.5;
+
+double relative_difference(const Transient& a, const Transient& b) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < a.values().size(); ++i) {
+        const double difference = double{a.values()[i]} - double{b.values()[i]};
+        sum += difference * difference;
+    }
+    const double norm = squared_norm(b);
+    if (sum == 0.0) return 0.0;
+    return norm > 0.0 ? std::sqrt(sum / norm) : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+double squared_norm(const Transient& transient) {
+    double sum = 0.0;
+    for (const float value : transient.values()) sum += double{value} * double{value};
+    return sum;
+}
+
+PilotRuns::PilotRuns(const Scene& scene,
+                     const core::Scan& scan,
+                     const core::TimeAxis& axis,
+                     double target,
+                     double laser_spot_m2)
+    : scene_(scene),
+      pilot_scan_(pilot_scan(scene, scan, axis.num_bins)),
+      pilot_axis_(pilot_axis(axis)),
+      target_(target),
+      subdivider_(scene, scan, axis, laser_spot_m2) {}
+
+double PilotRuns::tolerance(int level) const {
+    return target_ * std::exp2(level);
+}
+
+// The level chosen is often the one before the last tried, which missed the target.
+const ElementSet& PilotRuns::cut(int level) {
+    constexpr std::size_t kMaxCuts = 2;
+    for (const auto& [cut_level, elements] : cuts_) {
+        if (cut_level == level) return elements;
+    }
+    if (cuts_.size() == kMaxCuts) cuts_.pop_front();
+    return cuts_.emplace_back(level, subdivider_.cut(tolerance(level))).second;
+}
+
+std::size_t PilotRuns::fewest_elements() const {
+    return subdivider_.min_elements(tolerance(kCoarsest));
+}
+
+ScanRules PilotRuns::rules(int level) const {
+    ScanRules rules;
+    rules.negligible_error = kNegligibleShare * tolerance(level) * norm_per_pair_;
+    rules.memory_bytes = kShareOfMemory * static_cast<double>(core::available_memory_bytes());
+    rules.plan = plan_;
+    return rules;
+}
+
+std::size_t PilotRuns::check_rays_per_pair() const {
+    const double rays = kCheckRays * std::max(1.0, kCheckTarget / target_);
+    return static_cast<std::size_t>(std::min(rays, kMostCheckRays) /
+                                    static_cast<double>(pilot_scan_.num_pairs()));
+}
+
+const Pilot& PilotRuns::run(int level) {
+    const auto found = pilots_.find(level);
+    if (found != pilots_.end()) return found->second;
+    Pilot pilot;
+    const core::Stopwatch cutting;
+    const ElementSet& elements = cut(level);
+    pilot.cut_seconds = cutting.seconds();
+    pilot.num_elements = elements.num_elements;
+    const core::Stopwatch watch;
+    ScanRules checked = rules(level);
+    checked.check_rays = check_rays_per_pair();
+    ThirdBounceScan integrator(scene_, pilot_scan_, pilot_axis_, elements, checked);
+    pilot.transient = Transient(pilot_scan_.num_pairs(), pilot_axis_.num_bins);
+    integrator.integrate(
+        0, [](double) { return true; }, pilot.transient);
+    pilot.seconds = watch.seconds();
+    pilot.shadow_error = std::sqrt(integrator.squared_shadow_error());
+    const SquaredError missed = integrator.squared_visibility_error();
+    pilot.missed_error = std::sqrt(std::max(0.0, missed.value - std::sqrt(missed.variance)));
+    cost_ += integrator.cost();
+    if (norm_per_pair_ == 0.0) {
+        norm_per_pair_ =
+            std::sqrt(squared_norm(pilot.transient) / static_cast<double>(pilot_scan_.num_pairs()));
+    }
+    return pilots_.emplace(level, std::move(pilot)).first->second;
+}
+
+// The reference is at least kReferenceSteps finer. Where facets are few and large, levels hardly
+// differ: what both leave out must not count as no error, and the reference becomes finer until it
+// has many more elements.
+double PilotRuns::error_of(int level) {
+    int finest = pilots_.empty() ? level : pilots_.begin()->first;
+    finest = std::min(finest, level - kReferenceSteps);
+    run(finest);
+    const auto elements = static_cast<double>(run(level).num_elements);
+    Pilot& pilot = pilots_.at(level);
+    double difference = relative_difference(pilot.transient, pilots_.at(finest).transient);
+    while (difference < kSuspiciousShare * target_ && finest > kFinest - kReferenceSteps &&
+           static_cast<double>(pilots_.at(finest).num_elements) < kFinerReference * elements) {
+        difference = relative_difference(pilot.transient, run(--finest).transient);
+    }
+    const double norm = std::sqrt(squared_norm(pilots_.at(finest).transient));
+    // Shadow edges that both pilot runs leave uncertain do not show in their difference.
+    const double shadows = norm > 0.0 ? pilot.shadow_error / norm : 0.0;
+    const double missed = norm > 0.0 ? pilot.missed_error / norm : 0.0;
+    const double seen_by_cuts = std::hypot(difference, shadows);
+    pilot.misses_shadows = missed > kMissedByCuts * seen_by_cuts;
+    pilot.error = kCaution * std::max(seen_by_cuts, missed);
+    return *pilot.error;
+}
+
+bool PilotRuns::look_everywhere() {
+    if (plan_ == ShadowRayPlan::Everywhere) return false;
+    plan_ = ShadowRayPlan::Everywhere;
+    pilots_.clear();
+    return true;
+}
+
+std::optional<double> PilotRuns::smallest_error() const {
+    std::optional<double> smallest;
+    for (const auto& [level, pilot] : pilots_) {
+        if (pilot.error && (!smallest || *pilot.error < *smallest)) smallest = pilot.error;
+    }
+    return smallest;
+}
+
+}  // namespace renderer

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/core/capture.h"
+#include "renderer/scene/scene.h"
+#include "renderer/third_bounce/surface_subdivider.h"
+#include "renderer/third_bounce/third_bounce_scan.h"
+
+#include <deque>
+#include <map>
+#include <optional>
+#include <utility>
+
+namespace renderer {
+
+/// A run on a few pairs at one refinement level.
+struct Pilot {
+    core::Transient transient;
+    std::size_t num_elements = 0;
+    double shadow_error = 0.0;    ///< expected, absolute
+    double missed_error = 0.0;    ///< as found by VisibilityCheck beyond its noise, absolute
+    std::optional<double> error;  ///< relative, once compared with a reference
+    bool misses_shadows = false;  ///< finer than the elements, once compared with a reference
+    double cut_seconds = 0.0;     ///< for cutting the surfaces
+    double seconds = 0.0;         ///< for integrating
+
+    double all_seconds() const { return seconds + cut_seconds; }
+};
+
+/// Tells how wrong third bounces are at refinement levels; level k has the tolerance target * 2^k.
+///
+/// The error of a level is the larger one of two estimates, with some caution. One is the
+/// difference from a much finer cut, and what shadow edges leave uncertain in both. The other comes
+/// from rays to random points (VisibilityCheck): it holds for shadows that both cuts miss, such as
+/// those of combs and dots finer than the elements, but knows nothing of errors that are not of
+/// visibility. Its price are 130,000 rays per pilot run at a target of 1 % or above, and more in
+/// proportion below.
+class PilotRuns {
+ public:
+    static constexpr int kCoarsest = 5;
+    static constexpr int kFinest = -10;
+    static constexpr int kReferenceSteps = 2;  ///< a reference is at least this much finer
+
+    /// scene, scan   must outlive the runs
+    /// target        relative L2 error over all of H
+    PilotRuns(const Scene& scene,
+              const core::Scan& scan,
+              const core::TimeAxis& axis,
+              double target,
+              double laser_spot_m2);
+
+    /// Valid until two others are asked for.
+    const ElementSet& cut(int level);
+    /// cut() makes at least this many elements at any level.
+    std::size_t fewest_elements() const;
+    /// How all of the scan is integrated at a level.
+    ScanRules rules(int level) const;
+
+    const Pilot& run(int level);
+    /// Estimates the error of a level against the finest run so far.
+    double error_of(int level);
+    /// All runs so far are forgotten, and the next ones send rays to all parts of all elements.
+    /// Returns false when they did so already.
+    bool look_everywhere();
+
+    const std::map<int, Pilot>& by_level() const { return pilots_; }
+    std::size_t num_pairs() const { return pilot_scan_.num_pairs(); }
+    /// Of the levels whose error is known, nothing where none is.
+    std::optional<double> smallest_error() const;
+    const TracingCost& cost() const { return cost_; }
+
+ private:
+    double tolerance(int level) const;
+    std::size_t check_rays_per_pair() const;
+
+    const Scene& scene_;
+    core::Scan pilot_scan_;
+    core::TimeAxis pilot_axis_;
+    double target_;
+    SurfaceSubdivider subdivider_;
+    std::deque<std::pair<int, ElementSet>> cuts_;  ///< the latest
+    double norm_per_pair_ = 0.0;
+    ShadowRayPlan plan_ = ShadowRayPlan::WhereNeighboursDisagree;
+    std::map<int, Pilot> pilots_;  ///< by level, all with this plan
+    TracingCost cost_;
+};
+
+/// Sum of all values squared.
+double squared_norm(const core::Transient& transient);
+
+}  // namespace renderer

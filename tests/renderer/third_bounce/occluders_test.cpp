@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+// What third bounces promise of their error, behind occluders of 1 mm to 1 m. The benchmark
+// occluder_stress does the same with more scenes and targets.
+#include "renderer/render.h"
+#include "tests/support/occluder_scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace {
+
+using core::Vec3;
+using test_support::OccluderScene;
+
+struct Promise {
+    double stated = 0.0;
+    double error = 0.0;
+};
+
+Promise promise_of(const OccluderScene& setup, double target) {
+    const renderer::Scene scene = setup.scene();
+    renderer::RenderSettings settings;
+    settings.method = renderer::Estimator::ThirdBounce;
+    settings.target_error = target;
+    const auto result = renderer::render(scene, setup.scan, {setup.axis, {}}, settings, {});
+    const auto truths = test_support::sampled_third_bounces(setup, scene, 50'000);
+    return {*result.estimated_error, test_support::error_against(truths, result.capture.transient)};
+}
+
+template <class Action>
+std::string failure_of(const Action& action) {
+    try {
+        action();
+    } catch (const core::Failure& failure) {
+        return failure.what();
+    }
+    return "none";
+}
+
+// Shadows finer than the elements: cuts of any size take one for brighter than it is by as much.
+TEST(ThirdBounceBehindOccluders, CombsAndDotsAreWithinTheTarget) {
+    for (const OccluderScene& setup :
+         {test_support::comb_of_thin_slats(), test_support::thousands_of_dots()}) {
+        for (const double target : {0.05, 0.02}) {
+            SCOPED_TRACE(testing::Message() << setup.name << " at " << target);
+            const Promise promise = promise_of(setup, target);
+            EXPECT_LE(promise.error, target);
+            EXPECT_LE(promise.stated, target);
+            EXPECT_LE(promise.error, 1.2 * promise.stated);
+        }
+    }
+}
+
+TEST(ThirdBounceBehindOccluders, RandomScenesAreWithinTheTarget) {
+    constexpr std::uint64_t kScenes = 24;
+    int above = 0;
+    for (std::uint64_t number = 1000; number < 1000 + kScenes; ++number) {
+        const OccluderScene setup = test_support::random_occluder_scene(number);
+        for (const double target : {0.05, 0.02}) {
+            const double error = promise_of(setup, target).error;
+            EXPECT_LE(error, 2.0 * target) << setup.name;
+            above += error > 1.2 * target;
+        }
+    }
+    EXPECT_LE(above, 1);
+}
+
+// A wide sheet, of which the first cut already has too many elements.
+TEST(ThirdBounceBehindOccluders, TargetsOutOfReachNameOneThatIsNot) {
+    const core::Scan scan = test_support::confocal_scan({Vec3(0.0, 0.0, 0.0)});
+    renderer::SceneGeometry geometry;
+    geometry.objects.push_back(test_support::parallelogram_object(
+        {Vec3(-0.5, -0.5, 0.5), Vec3(1.0, 0.0, 0.0), Vec3(0.0, 1.0, 0.0), 0.5}));
+    geometry.objects.push_back(test_support::parallelogram_object(
+        {Vec3(-0.05, -0.1, 0.3), Vec3(0.15, 0.0, 0.02), Vec3(0.02, 0.2, 0.0), 0.0}));
+    const renderer::Scene scene(std::move(geometry), scan, {});
+    renderer::RenderSettings settings;
+    settings.method = renderer::Estimator::ThirdBounce;
+    const core::TimeAxis axis{0.9, 0.05, 20};
+    settings.target_error = 2e-6;
+    const std::string message = failure_of([&] { render(scene, scan, {axis, {}}, settings, {}); });
+    const std::string begins =
+        "third_bounce: needs more than 8 million elements of surface: a target error ";
+    ASSERT_EQ(message.substr(0, begins.size()), begins) << message;
+    const double times = std::stod(message.substr(begins.size()));
+    EXPECT_GT(times, 1.0);
+    *settings.target_error *= times;
+    const auto result = render(scene, scan, {axis, {}}, settings, {});
+    EXPECT_LE(*result.estimated_error, *settings.target_error);
+}
+
+}  // namespace
