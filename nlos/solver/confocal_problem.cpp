@@ -192,8 +192,10 @@ std::vector<double> gaussian_precision(const ConfocalProblem& data, double power
     std::vector<double> precision;
     for (int bin = 0; bin < data.axis.num_bins; ++bin) {
         const double range = 0.5 * std::max(0.0, data.axis.bin_center_m(bin));
-        precision.push_back(std::max(1e-12, std::pow(std::pow(range, power) / noise, 2)));
+        precision.push_back(std::pow(std::pow(range, power) / noise, 2));
     }
+    const double least = 1e-12 * *std::ranges::max_element(precision);
+    for (double& value : precision) value = std::max(least, value);
     return precision;
 }
 

@@ -21,7 +21,7 @@ using core::Vec3;
 
 constexpr double kWallAlbedo = 0.8;
 constexpr double kSquareAlbedo = 0.5;
-const core::GaussianResponse kResponse{0.04};
+const core::GaussianResponse kRenderedResponse{0.04};
 const Vec3 kCenter(0.1, -0.06, 0.7);
 
 core::Capture render_square(const core::Scan& scan, double side_m, const core::TimeAxis& axis) {
@@ -41,7 +41,7 @@ core::Capture render_square(const core::Scan& scan, double side_m, const core::T
     capture.scan = scan;
     capture.time_axis = axis;
     capture.transient = core::apply_filter(
-        core::sample_response(kResponse, capture.time_axis.bin_width_m),
+        core::sample_response(kRenderedResponse, capture.time_axis.bin_width_m),
         renderer::render(scene, capture.scan, capture.time_axis, settings, {}).capture.transient);
     return capture;
 }
@@ -71,7 +71,8 @@ MethodInput input_of(const core::Capture& capture,
                      const core::Progress& progress) {
     MethodInput input{
         capture.scan, capture.time_axis, capture.transient, wall, axes, {0.6, 0.8}, progress};
-    input.measurement.response = core::sample_response(kResponse, capture.time_axis.bin_width_m);
+    input.measurement.response =
+        core::sample_response(kRenderedResponse, capture.time_axis.bin_width_m);
     return input;
 }
 
