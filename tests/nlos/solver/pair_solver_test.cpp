@@ -118,6 +118,19 @@ TEST(PairSolver, FindsTheGainsOfPointsWithTheScene) {
     EXPECT_LT(beside, 0.75 * (1.0 - share_on_plate(solve_plate(capture))));
 }
 
+// As much background in every bin as a tenth of the brightest one's light.
+TEST(PairSolver, ExplainsBackgroundAsBackground) {
+    core::Capture capture = plate_before_uneven_wall(100.0);
+    std::mt19937 generator(7);
+    std::poisson_distribution<int> background(10.0);
+    for (float& value : capture.transient.values()) {
+        value += static_cast<float>(background(generator));
+    }
+    const Reconstruction result = solve_plate(capture, {"noise_floor=10"});
+    EXPECT_GT(share_on_plate(result), 0.85);
+    EXPECT_LT(depth_error(result), 0.003);
+}
+
 TEST(PairSolver, TakesTheSameBitsForAnyNumberOfThreads) {
     const core::Capture capture = plate_before_uneven_wall(5.0);
     const auto values = [&](int threads) {
