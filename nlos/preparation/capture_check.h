@@ -30,8 +30,8 @@ namespace nlos {
 ///
 /// Only bins that were observed count, and first light only where it came after they began.
 ///
-/// costs     a look at all values, and for slips at most 196 histograms: one fit of 60 ms on one
-///           core where the description explains the data well, else some 10 to 25 of them
+/// costs     a look at all values, and for slips at most 196 histograms: one fit of a tenth of a
+///           second on one core where the description explains the data well, else some 10 to 25
 /// returns   empty when nothing does; nothing about timing for captures too small or dark to tell,
 ///           nor for images
 /// throws    nothing
