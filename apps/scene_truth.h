@@ -12,12 +12,14 @@ class SceneTruth {
  public:
     /// throws   core::Error as reading does, and when the scene has a camera and no relay wall
     explicit SceneTruth(const std::string& scene_path)
-        : description_(renderer::read_scene_description(scene_path, {})),
-          scene_(renderer::load_scene(description_, renderer::make_scan(description_))) {
-        if (!description_.camera) return;
-        throw core::Error(scene_path,
-                          "found a camera in place of a relay wall",
-                          "must have a relay wall, from which depth is seen");
+        : SceneTruth(renderer::read_scene_description(scene_path, {}), scene_path) {}
+
+    /// A scene that is described and has its geometry.
+    SceneTruth(renderer::SceneDescription description, renderer::SceneGeometry geometry)
+        : description_(std::move(description)),
+          scene_(renderer::make_scene(
+              std::move(geometry), description_, renderer::make_scan(description_))) {
+        require_wall("scene");
     }
 
     /// What the whole wall sees, at the scene's own resolution.
@@ -31,6 +33,19 @@ class SceneTruth {
     }
 
  private:
+    SceneTruth(renderer::SceneDescription description, const std::string& name)
+        : description_(std::move(description)),
+          scene_(renderer::load_scene(description_, renderer::make_scan(description_))) {
+        require_wall(name);
+    }
+
+    void require_wall(const std::string& name) const {
+        if (!description_.camera) return;
+        throw core::Error(name,
+                          "found a camera in place of a relay wall",
+                          "must have a relay wall, from which depth is seen");
+    }
+
     renderer::SceneDescription description_;
     renderer::Scene scene_;
 };

@@ -100,6 +100,7 @@ core::Progress ProgressBar::progress() {
         print("{}\n", text);
         flush_output();
     };
+    progress.warn = [](const std::string& text) { print_error("warning: {}\n", text); };
     progress.stop_requested = interrupt_requested;
     return progress;
 }

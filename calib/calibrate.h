@@ -85,6 +85,8 @@ struct AppliedCalibration {
     core::ResponseSettings response;
 };
 AppliedCalibration read_calibration(const std::string& path);
+/// The same from what calibration_json() gives; `where` is the prefix of messages.
+AppliedCalibration applied_calibration(const core::Json& json, const std::string& where);
 
 /// Path length of each pair beside that between wall points: half of both points' offsets.
 std::vector<double> pair_offsets(const AppliedCalibration& calibration, const core::Scan& scan);

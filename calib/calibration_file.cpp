@@ -82,26 +82,29 @@ Json calibration_json(const Calibration& calibration) {
 }
 
 AppliedCalibration read_calibration(const std::string& path) {
-    const Json json = core::read_json_file(path);
+    return applied_calibration(core::read_json_file(path), path);
+}
+
+AppliedCalibration applied_calibration(const Json& json, const std::string& where) {
     AppliedCalibration result;
     for (const char* key : {"points_m", "normals", "opl_offset_m", "response"}) {
         if (json.is_object() && json.contains(key)) continue;
-        throw core::Error(path, std::string("has no ") + key, "must be what nlos calibrate wrote");
+        throw core::Error(where, std::string("has no ") + key, "must be what nlos calibrate wrote");
     }
-    core::read_value(json["points_m"], path + ": points_m", result.points_m);
-    core::read_value(json["normals"], path + ": normals", result.normals);
-    core::read_value(json["opl_offset_m"], path + ": opl_offset_m", result.opl_offset_m);
+    core::read_value(json["points_m"], where + ": points_m", result.points_m);
+    core::read_value(json["normals"], where + ": normals", result.normals);
+    core::read_value(json["opl_offset_m"], where + ": opl_offset_m", result.opl_offset_m);
     if (result.points_m.size() != result.normals.size() ||
         result.points_m.size() != result.opl_offset_m.size() || result.points_m.empty()) {
-        throw core::Error(path, "has lists of different lengths", "must have one item per point");
+        throw core::Error(where, "has lists of different lengths", "must have one item per point");
     }
     const Json& response = json["response"];
-    if (!response.is_object()) core::throw_wrong_type(path + ": response", response, "an object");
+    if (!response.is_object()) core::throw_wrong_type(where + ": response", response, "an object");
     for (const auto& [key, target] :
          {std::pair<const char*, double*>{"jitter_fwhm_ps", &result.response.jitter_fwhm_ps},
           std::pair<const char*, double*>{"tail_ps", &result.response.tail_ps}}) {
         if (response.contains(key)) {
-            core::read_value(response[key], path + ": response." + key, *target);
+            core::read_value(response[key], where + ": response." + key, *target);
         }
     }
     return result;

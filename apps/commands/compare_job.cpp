@@ -22,22 +22,13 @@ namespace {
 
 constexpr std::size_t kSurfaceSamples = 100'000;
 constexpr std::uint64_t kSurfaceSeed = 0;
-constexpr double kDefaultThreshold_m = 0.01;
 
 core::PointCloud points_of_file(const std::string& path) {
-    core::TriangleMesh mesh;
-    if (std::filesystem::path(path).extension() == ".ply") {
-        mesh = nlos::read_ply(path);
-        if (mesh.triangles.empty()) return {mesh.vertices, mesh.normals};
-    } else {
-        for (const renderer::Object& object : renderer::load_geometry(path).objects) {
-            const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
-            for (const auto& vertex : object.mesh.vertices) mesh.vertices.push_back(vertex);
-            for (const auto& [v0, v1, v2] : object.mesh.triangles) {
-                mesh.triangles.push_back({base + v0, base + v1, base + v2});
-            }
-        }
+    if (std::filesystem::path(path).extension() != ".ply") {
+        return surface_samples(renderer::load_geometry(path));
     }
+    const core::TriangleMesh mesh = nlos::read_ply(path);
+    if (mesh.triangles.empty()) return {mesh.vertices, mesh.normals};
     return core::sample_surface(mesh, kSurfaceSamples, kSurfaceSeed);
 }
 
@@ -54,33 +45,25 @@ nlos::Metrics compare_volume_to_scene(const std::string& a,
     return nlos::compare_to_truth(result, truth, threshold_m);
 }
 
-// A fit's poses and, beside them, its surfaces as samples; `b` is a scene, or a fit and its scene.
+// `b` is a scene, or a fit with its scene beside it.
 nlos::Metrics compare_fit_to_scene(const std::string& a,
                                    const std::string& b,
                                    const std::string& picture_path,
                                    double threshold_m) {
-    const calib::FitResult fit = calib::read_fit(a);
     const bool is_fit = kind_of_file(b) == FileKind::Fit;
     const renderer::SceneDescription scene =
         renderer::read_scene_description(is_fit ? with_suffix(b, ".scene.json") : b, {});
-    const calib::FitErrors errors =
-        calib::compare_fit(fit,
-                           renderer::load_geometry(with_suffix(a, ".glb")),
-                           renderer::load_geometry(scene),
-                           is_fit ? calib::read_fit(b).points : std::vector<calib::FittedPoint>());
-    nlos::Metrics metrics;
-    if (!errors.fitted_points.positions.empty()) {
-        metrics = nlos::compare_points(errors.fitted_points, errors.true_points, threshold_m);
-    }
-    const std::vector<nlos::Panel> overlay = overlay_panels(errors);
+    std::vector<nlos::Panel> overlay;
+    const nlos::Metrics metrics =
+        score_fit(calib::read_fit(a),
+                  renderer::load_geometry(with_suffix(a, ".glb")),
+                  renderer::load_geometry(scene),
+                  is_fit ? calib::read_fit(b).points : std::vector<calib::FittedPoint>(),
+                  threshold_m,
+                  &overlay);
     if (!picture_path.empty() && !overlay.empty()) {
         nlos::write_panels_png(picture_path, overlay, 3);
     }
-    metrics.position_error_m = errors.position_m;
-    metrics.rotation_error_deg = errors.rotation_deg;
-    metrics.size_error = errors.size;
-    metrics.albedo_error = errors.albedo;
-    metrics.seconds = fit.seconds;
     return metrics;
 }
 
@@ -128,6 +111,38 @@ Comparison compare_kinds(const std::string& a,
 }
 
 }  // namespace
+
+core::PointCloud surface_samples(const renderer::SceneGeometry& geometry) {
+    core::TriangleMesh mesh;
+    for (const renderer::Object& object : geometry.objects) {
+        const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
+        for (const auto& vertex : object.mesh.vertices) mesh.vertices.push_back(vertex);
+        for (const auto& [v0, v1, v2] : object.mesh.triangles) {
+            mesh.triangles.push_back({base + v0, base + v1, base + v2});
+        }
+    }
+    return core::sample_surface(mesh, kSurfaceSamples, kSurfaceSeed);
+}
+
+nlos::Metrics score_fit(const calib::FitResult& fit,
+                        const renderer::SceneGeometry& fitted,
+                        const renderer::SceneGeometry& truth,
+                        const std::vector<calib::FittedPoint>& true_points,
+                        double threshold_m,
+                        std::vector<nlos::Panel>* overlay) {
+    const calib::FitErrors errors = calib::compare_fit(fit, fitted, truth, true_points);
+    nlos::Metrics metrics;
+    if (!errors.fitted_points.positions.empty()) {
+        metrics = nlos::compare_points(errors.fitted_points, errors.true_points, threshold_m);
+    }
+    if (overlay != nullptr) *overlay = overlay_panels(errors);
+    metrics.position_error_m = errors.position_m;
+    metrics.rotation_error_deg = errors.rotation_deg;
+    metrics.size_error = errors.size;
+    metrics.albedo_error = errors.albedo;
+    metrics.seconds = fit.seconds;
+    return metrics;
+}
 
 Comparison compare_files(const std::string& a,
                          const std::string& b,

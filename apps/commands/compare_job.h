@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "calib/fit/fit_result.h"
 #include "nlos/compare/compare.h"
 #include "nlos/layouts/capture_settings.h"
+#include "nlos/pictures/panel.h"
+#include "renderer/material/scene_geometry.h"
 
 #include <optional>
 #include <string>
@@ -15,6 +18,24 @@ struct Comparison {
     nlos::Metrics metrics;
     std::vector<std::string> warnings;
 };
+
+/// Distance that counts as a match of points, unless told otherwise [m].
+inline constexpr double kDefaultThreshold_m = 0.01;
+
+/// A geometry as one surface, sampled evenly to be compared with others.
+core::PointCloud surface_samples(const renderer::SceneGeometry& geometry);
+
+/// Scores a fit's poses and, beside them, its surfaces.
+///
+/// fitted        geometry of the fit, posed
+/// true_points   point scatterers of the truth, beside its surfaces
+/// overlay       gets the panels of a picture of both; null: none wanted
+nlos::Metrics score_fit(const calib::FitResult& fit,
+                        const renderer::SceneGeometry& fitted,
+                        const renderer::SceneGeometry& truth,
+                        const std::vector<calib::FittedPoint>& true_points,
+                        double threshold_m,
+                        std::vector<nlos::Panel>* overlay = nullptr);
 
 /// Scores file A against file B: a volume, mesh, point cloud or fit against a scene.json (its
 /// ray-traced truth; for a fit, its objects), or a volume, mesh, point cloud or capture against

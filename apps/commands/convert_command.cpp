@@ -58,8 +58,7 @@ void run(const ConvertArguments& arguments) {
         capture = nlos::gated_capture(capture, arguments.gate_m[0], arguments.gate_m[1]);
     }
     for (const std::string& note : capture.notes) print("read: {}\n", note);
-    for (const std::string& loss :
-         nlos::write_capture(output, capture, arguments.write)) {
+    for (const std::string& loss : nlos::write_capture(output, capture, arguments.write)) {
         print("not kept: {}\n", loss);
     }
     print("wrote {} ({} pairs x {} bins, {})\n",

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "apps/commands/describe_scene.h"
 
-#include "apps/terminal.h"
 #include "renderer/light_range.h"
 #include "renderer/scene/load_geometry.h"
 
@@ -21,10 +20,10 @@ std::string describe_material(const renderer::Material& material) {
     return text;
 }
 
-void print_object(const renderer::Object& object) {
+void print_object(Description& out, const renderer::Object& object) {
     Eigen::AlignedBox3d box;
     for (const core::Vec3& vertex : object.mesh.vertices) box.extend(vertex);
-    print(
+    out.print(
         "object {}: {} triangles, role {}, {}, x {:.4g} to {:.4g}, y {:.4g} to {:.4g}, "
         "z {:.4g} to {:.4g} m{}\n",
         object.name.empty() ? "(unnamed)" : object.name,
@@ -42,7 +41,7 @@ void print_object(const renderer::Object& object) {
             : "");
 }
 
-void print_size(const renderer::SceneGeometry& geometry) {
+void print_size(Description& out, const renderer::SceneGeometry& geometry) {
     Eigen::AlignedBox3d box;
     std::size_t triangles = 0;
     for (const renderer::Object& object : geometry.objects) {
@@ -50,98 +49,104 @@ void print_size(const renderer::SceneGeometry& geometry) {
         triangles += object.mesh.triangles.size();
     }
     const core::Vec3 size = box.sizes();
-    print("size: {} objects, {} triangles, {:.4g} x {:.4g} x {:.4g} m\n",
-          geometry.objects.size(),
-          triangles,
-          size.x(),
-          size.y(),
-          size.z());
+    out.print("size: {} objects, {} triangles, {:.4g} x {:.4g} x {:.4g} m\n",
+              geometry.objects.size(),
+              triangles,
+              size.x(),
+              size.y(),
+              size.z());
 }
 
-void print_warnings(const std::vector<std::string>& warnings) {
-    for (const std::string& text : warnings) print("warning: {}\n", text);
+void print_warnings(Description& out, const std::vector<std::string>& warnings) {
+    for (const std::string& text : warnings) out.print("warning: {}\n", text);
 }
 
 // "key: value" lines, with the full key, of what differs from `usual`.
-void print_differences(const core::Json& json, const core::Json& usual, const std::string& prefix) {
+void print_differences(Description& out,
+                       const core::Json& json,
+                       const core::Json& usual,
+                       const std::string& prefix) {
     for (const auto& [key, value] : json.items()) {
         const core::Json other = usual.is_object() ? usual.value(key, core::Json()) : core::Json();
         if (value == other) continue;
         if (value.is_object()) {
-            print_differences(value, other, prefix + key + ".");
+            print_differences(out, value, other, prefix + key + ".");
         } else if (value.is_array() && value.flatten().size() > 4) {
-            print("  {}{}: {} items\n", prefix, key, value.size());
+            out.print("  {}{}: {} items\n", prefix, key, value.size());
         } else {
-            print("  {}{}: {}\n",
-                  prefix,
-                  key,
-                  value.dump(-1, ' ', false, core::Json::error_handler_t::replace));
+            out.print("  {}{}: {}\n",
+                      prefix,
+                      key,
+                      value.dump(-1, ' ', false, core::Json::error_handler_t::replace));
         }
     }
 }
 
-void print_measurement(const renderer::SceneDescription& description, const core::Scan& scan) {
+void print_measurement(Description& out,
+                       const renderer::SceneDescription& description,
+                       const core::Scan& scan) {
     if (scan.camera) {
-        print("camera: {} x {} pixels\n", scan.camera->width(), scan.camera->height());
+        out.print("camera: {} x {} pixels\n", scan.camera->width(), scan.camera->height());
         return;
     }
-    print("scan: {}, {} sensing points, {} illumination points, wall {:.4g} x {:.4g} m\n",
-          core::enum_name(scan.pattern),
-          scan.sensing.size(),
-          scan.illumination.size(),
-          description.relay_wall.size_m[0],
-          description.relay_wall.size_m[1]);
+    out.print("scan: {}, {} sensing points, {} illumination points, wall {:.4g} x {:.4g} m\n",
+              core::enum_name(scan.pattern),
+              scan.sensing.size(),
+              scan.illumination.size(),
+              description.relay_wall.size_m[0],
+              description.relay_wall.size_m[1]);
 }
 
-void print_light(const renderer::Scene& scene,
+void print_light(Description& out,
+                 const renderer::Scene& scene,
                  const core::Scan& scan,
                  const renderer::SceneDescription& description) {
     const auto range = renderer::find_light_range(scene, scan, description.render);
     core::TimeAxis axis = description.time_axis;
     if (range && !range->is_dark()) {
         const auto [first, last] = range->without_tails(0.001);
-        print("light: from {:.4g} to {:.4g} m of path length (99.8 % of it)\n", first, last);
+        out.print("light: from {:.4g} to {:.4g} m of path length (99.8 % of it)\n", first, last);
         if (description.time_axis.automatic) {
             axis = renderer::choose_time_axis(range, scene, scan, description);
         }
     }
-    print("time axis: {:.4g} to {:.4g} m, {} bins of {:.4g} m{}\n",
-          axis.opl_start_m,
-          axis.opl_end_m(),
-          axis.num_bins,
-          axis.bin_width_m,
-          description.time_axis.automatic ? " (auto)" : "");
+    out.print("time axis: {:.4g} to {:.4g} m, {} bins of {:.4g} m{}\n",
+              axis.opl_start_m,
+              axis.opl_end_m(),
+              axis.num_bins,
+              axis.bin_width_m,
+              description.time_axis.automatic ? " (auto)" : "");
     if (!range) return;
-    print_warnings(renderer::axis_warnings(*range, axis, description.frames));
+    print_warnings(out, renderer::axis_warnings(*range, axis, description.frames));
 }
 
 }  // namespace
 
-void describe_geometry(const std::string& path) {
+void describe_geometry(Description& out, const std::string& path) {
     const renderer::SceneGeometry geometry = renderer::load_geometry(path);
-    print("format: {}\n", renderer::geometry_format(path));
+    out.print("format: {}\n", renderer::geometry_format(path));
     renderer::SceneDescription alone;
     alone.geometry = path;
-    for (const std::string& line : renderer::describe_frame(alone)) print("{}\n", line);
-    print_size(geometry);
-    for (const renderer::Object& object : geometry.objects) print_object(object);
-    print_warnings(geometry.warnings);
+    for (const std::string& line : renderer::describe_frame(alone)) out.print("{}\n", line);
+    print_size(out, geometry);
+    for (const renderer::Object& object : geometry.objects) print_object(out, object);
+    print_warnings(out, geometry.warnings);
 }
 
-void describe_scene(const std::string& path) {
+void describe_scene(Description& out, const std::string& path) {
     const renderer::SceneDescription description = renderer::read_scene_description(path, {});
     const core::Scan scan = renderer::make_scan(description);
     const renderer::Scene scene = renderer::load_scene(description, scan);
-    print("format: scene description\ngeometry: {}\n", description.geometry);
-    for (const std::string& line : renderer::describe_frame(description)) print("{}\n", line);
-    for (const renderer::Object& object : scene.objects()) print_object(object);
-    print_warnings(scene.warnings());
-    print_measurement(description, scan);
-    print_light(scene, scan, description);
-    print("settings that differ from the defaults (nlos render --help lists all):\n");
+    out.print("format: scene description\ngeometry: {}\n", description.geometry);
+    for (const std::string& line : renderer::describe_frame(description)) out.print("{}\n", line);
+    for (const renderer::Object& object : scene.objects()) print_object(out, object);
+    print_warnings(out, scene.warnings());
+    print_measurement(out, description, scan);
+    print_light(out, scene, scan, description);
+    out.print("settings that differ from the defaults (nlos render --help lists all):\n");
     core::Json settings = core::write_value(description);
     settings.erase("geometry");
-    print_differences(settings, core::write_value(renderer::SceneDescription{}), "");
+    print_differences(out, settings, core::write_value(renderer::SceneDescription{}), "");
 }
 
 }  // namespace apps

@@ -21,6 +21,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
+void refuse_camera(const calib::FitInput& input) {
+    if (!input.capture.scan.camera && !input.scene.camera) return;
+    throw core::Error(input.scene.camera ? input.settings.scene : "capture",
+                      "has a camera in place of a relay wall",
+                      "must be a scan of a relay wall");
+}
+
 calib::FitInput make_input(const std::string& capture_path,
                            const std::string& model_path,
                            std::vector<std::string> overrides) {
@@ -30,11 +37,6 @@ calib::FitInput make_input(const std::string& capture_path,
     input.capture = nlos::read_capture(capture_path, options.capture);
     input.scene = renderer::read_scene_description(input.settings.scene, {});
     input.geometry = renderer::load_geometry(input.scene);
-    if (input.capture.scan.camera || input.scene.camera) {
-        throw core::Error(input.scene.camera ? input.settings.scene : capture_path,
-                          "has a camera in place of a relay wall",
-                          "must be a scan of a relay wall");
-    }
     if (input.settings.start != "given" && input.settings.start != "search") {
         if (!fs::exists(input.settings.start)) {
             throw core::Error(model_path + ": start",
@@ -46,6 +48,8 @@ calib::FitInput make_input(const std::string& capture_path,
     return input;
 }
 
+}  // namespace
+
 // The data stay as they are: offsets go into the model, where they cost no light.
 void use_calibration(const calib::AppliedCalibration& calibration, calib::FitInput& input) {
     calib::replace_points(calibration, input.capture.scan);
@@ -53,9 +57,18 @@ void use_calibration(const calib::AppliedCalibration& calibration, calib::FitInp
     if (!core::is_stated(input.settings.response)) input.settings.response = calibration.response;
 }
 
-void write_results(const calib::FitInput& input,
-                   const calib::FitResult& result,
-                   const std::string& fit_path) {
+calib::FitResult fit_input(const calib::FitInput& input, const core::Progress& progress) {
+    refuse_camera(input);
+    calib::FitResult result = calib::fit_scene(input, progress);
+    for (std::string& text : nlos::capture_warnings(input.capture)) {
+        result.warnings.push_back(std::move(text));
+    }
+    return result;
+}
+
+void write_fit(const calib::FitInput& input,
+               const calib::FitResult& result,
+               const std::string& fit_path) {
     const std::string stem = fs::path(fit_path).replace_extension().string();
     renderer::write_gltf(stem + ".glb", result.geometry);
     const std::string geometry = fs::path(stem + ".glb").filename().string();
@@ -68,8 +81,6 @@ void write_results(const calib::FitInput& input,
     json["settings"] = core::write_value(input.settings);
     core::write_text_file(fit_path, core::json_text(json));
 }
-
-}  // namespace
 
 calib::FitResult fit_to_file(const std::string& capture_path,
                              const std::string& model_path,
@@ -90,11 +101,8 @@ calib::FitResult fit_to_file(const std::string& capture_path,
                          input.settings.start});
     if (!calibration.empty()) use_calibration(calib::read_calibration(calibration), input);
     ProgressBar bar("fit");
-    calib::FitResult result = calib::fit_scene(input, bar.progress());
-    for (std::string& text : nlos::capture_warnings(input.capture)) {
-        result.warnings.push_back(std::move(text));
-    }
-    write_results(input, result, fit_path);
+    const calib::FitResult result = fit_input(input, bar.progress());
+    write_fit(input, result, fit_path);
     return result;
 }
 

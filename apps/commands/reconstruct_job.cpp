@@ -51,9 +51,10 @@ nlos::Reconstruction reconstruct_to_file(const std::vector<std::string>& capture
 
     ProgressBar bar("reconstruct");
     nlos::Reconstruction result = nlos::reconstruct(capture, options.reconstruct, bar.progress());
-    result.provenance = {{"program", version_text()},
-                         {"command", command_line()},
-                         {"capture", core::printable(fmt::format("{}", fmt::join(capture_paths, " ")))}};
+    result.provenance = {
+        {"program", version_text()},
+        {"command", command_line()},
+        {"capture", core::printable(fmt::format("{}", fmt::join(capture_paths, " ")))}};
     nlos::write_volume(volume_path, result);
     nlos::write_panels_png(with_suffix(volume_path, ".png"), nlos::volume_panels(result), 2);
     if (!ply_path.empty()) nlos::write_ply(ply_path, result.points);

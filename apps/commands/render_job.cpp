@@ -39,14 +39,13 @@ core::Json resampling_of(const renderer::RenderResult& result) {
     return info;
 }
 
-core::Json provenance(const std::string& scene_path,
+core::Json provenance(const std::string& scene_name,
                       const renderer::SceneDescription& description,
                       const renderer::RenderResult& result) {
     core::Json info;
     info["program"] = version_text();
     info["command"] = command_line();
-    info["scene"] =
-        core::printable(std::filesystem::absolute(scene_path).lexically_normal().string());
+    info["scene"] = core::printable(scene_name);
     const std::string names = estimator_names(result);
     info["estimator"] = names;
     for (const renderer::OrderSource& source : result.sources) {
@@ -119,16 +118,15 @@ void report_darkness(renderer::RenderResult& result) {
     if (result.capture.transient.is_dark()) result.estimated_error.reset();
 }
 
-void print_light(const renderer::LightRange& light, const core::TimeAxis& axis) {
-    print(
+std::string light_text(const renderer::LightRange& light, const core::TimeAxis& axis) {
+    return fmt::format(
         "paths of {:.4g} to {:.4g} m are possible; the time axis, {:.4g} to {:.4g} m, holds "
-        "{:.3g} % of the light\n",
+        "{:.3g} % of the light",
         light.possible_m[0],
         light.possible_m[1],
         axis.opl_start_m,
         axis.opl_end_m(),
         100.0 * light.share_between(axis.opl_start_m, axis.opl_end_m()));
-    flush_output();
 }
 
 core::Json write_light(const renderer::LightRange& light, const core::TimeAxis& axis) {
@@ -148,60 +146,76 @@ std::string estimator_names(const renderer::RenderResult& result) {
     return names.empty() ? "closed form" : names;
 }
 
+void use_calibration(calib::AppliedCalibration calibration, RenderInput& input) {
+    if (input.scan.camera || input.description.frames || input.description.velocity_axis) {
+        throw core::Error("calibration",
+                          "found a camera, frames or a velocity axis",
+                          "must be a scan without these");
+    }
+    calib::replace_points(calibration, input.scan);
+    input.calibration = std::move(calibration);
+}
+
+renderer::RenderResult render_input(RenderInput input, const core::Progress& progress) {
+    renderer::SceneDescription& description = input.description;
+    const auto light = renderer::find_light_range(*input.scene, input.scan, description.render);
+    if (description.time_axis.automatic) {
+        core::TimeAxis axis =
+            renderer::choose_time_axis(light, *input.scene, input.scan, description);
+        description.time_axis = {input.calibration ? axis_of_device(*input.calibration, axis)
+                                                   : axis};
+        renderer::validate(description, input.scene_name + ": ");
+    }
+    renderer::SceneDescription rendered = description;
+    if (input.calibration) {
+        rendered.time_axis = {calib::axis_to_render(*input.calibration, description.time_axis)};
+    }
+    std::vector<std::string> doubts = input.scene->warnings();
+    if (light) {
+        const auto texts = renderer::axis_warnings(*light, rendered.time_axis, description.frames);
+        doubts.insert(doubts.end(), texts.begin(), texts.end());
+    }
+    if (light && !light->is_dark() && progress.announce) {
+        progress.announce(light_text(*light, rendered.time_axis));
+    }
+    for (const std::string& doubt : doubts) {
+        if (progress.warn) progress.warn(doubt);
+    }
+
+    renderer::RenderResult result = run(input.scene, rendered, input.scan, progress);
+    if (input.calibration) {
+        result.capture =
+            calib::record_with(*input.calibration, result.capture, description.time_axis);
+    }
+    report_darkness(result);
+    result.capture.scene_info = provenance(input.scene_name, description, result);
+    if (light) result.capture.scene_info["light"] = write_light(*light, rendered.time_axis);
+    for (const std::string& doubt : doubts) result.capture.scene_info["warnings"].push_back(doubt);
+    return result;
+}
+
 renderer::RenderResult render_to_file(const std::string& scene_path,
                                       const std::vector<std::string>& overrides,
                                       const std::string& capture_path,
                                       const std::string& calibration_path) {
     nlos::check_capture_suffix(capture_path);
     core::check_targets({capture_path}, {scene_path, calibration_path});
-    renderer::SceneDescription description =
-        renderer::read_scene_description(scene_path, overrides);
-    core::Scan scan = renderer::make_scan(description);
-    std::optional<calib::AppliedCalibration> calibration;
-    if (!calibration_path.empty()) {
-        if (scan.camera || description.frames || description.velocity_axis) {
-            throw core::Error("--calibration",
-                              "found a camera, frames or a velocity axis",
-                              "must be a scan without these");
-        }
-        calibration = calib::read_calibration(calibration_path);
-        calib::replace_points(*calibration, scan);
-    }
-    const auto scene =
-        std::make_shared<const renderer::Scene>(renderer::load_scene(description, scan));
-    const auto light = renderer::find_light_range(*scene, scan, description.render);
-    if (description.time_axis.automatic) {
-        core::TimeAxis axis = renderer::choose_time_axis(light, *scene, scan, description);
-        description.time_axis = {calibration ? axis_of_device(*calibration, axis) : axis};
-        renderer::validate(description, scene_path + ": ");
-    }
-    renderer::SceneDescription rendered = description;
-    if (calibration) {
-        rendered.time_axis = {calib::axis_to_render(*calibration, description.time_axis)};
-    }
-    std::vector<std::string> doubts = scene->warnings();
-    if (light) {
-        const auto texts = renderer::axis_warnings(*light, rendered.time_axis, description.frames);
-        doubts.insert(doubts.end(), texts.begin(), texts.end());
-    }
-    if (light && !light->is_dark()) print_light(*light, rendered.time_axis);
-    for (const std::string& doubt : doubts) print_error("warning: {}\n", doubt);
+    RenderInput input;
+    input.scene_name = std::filesystem::absolute(scene_path).lexically_normal().string();
+    input.description = renderer::read_scene_description(scene_path, overrides);
+    input.scan = renderer::make_scan(input.description);
+    if (!calibration_path.empty())
+        use_calibration(calib::read_calibration(calibration_path), input);
+    input.scene = std::make_shared<const renderer::Scene>(
+        renderer::load_scene(input.description, input.scan));
 
     ProgressBar bar("render");
-    renderer::RenderResult result = run(scene, rendered, scan, bar.progress());
-    if (calibration) {
-        result.capture = calib::record_with(*calibration, result.capture, description.time_axis);
-    }
-    report_darkness(result);
-    result.capture.scene_info = provenance(scene_path, description, result);
-    if (light) result.capture.scene_info["light"] = write_light(*light, rendered.time_axis);
-    for (const std::string& doubt : doubts) result.capture.scene_info["warnings"].push_back(doubt);
+    renderer::RenderResult result = render_input(std::move(input), bar.progress());
     const std::vector<std::string> left_out = nlos::write_capture(capture_path, result.capture);
-    if (scan.camera) {
+    if (result.capture.scan.camera) {
         core::write_text_file(with_suffix(capture_path, ".png"),
                               nlos::encode_preview_png(result.capture));
     }
-
     result.warnings.insert(result.warnings.end(), left_out.begin(), left_out.end());
     return result;
 }

@@ -17,7 +17,19 @@ std::string printable(std::string_view text);
 class Error : public std::runtime_error {
  public:
     Error(const std::string& where, const std::string& found, const std::string& allowed)
-        : std::runtime_error(printable(where + ": " + found + "; " + allowed)) {}
+        : std::runtime_error(printable(where + ": " + found + "; " + allowed)),
+          where_(printable(where)),
+          found_(printable(found)),
+          allowed_(printable(allowed)) {}
+
+    const std::string& where() const { return where_; }
+    const std::string& found() const { return found_; }
+    const std::string& allowed() const { return allowed_; }
+
+ private:
+    std::string where_;
+    std::string found_;
+    std::string allowed_;
 };
 
 /// The input is fine and the work still cannot be done (too little memory, disk full, interrupted).

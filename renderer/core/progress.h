@@ -11,6 +11,9 @@ struct Progress {
     /// Called before long work starts, with what it will do and need. May be empty.
     std::function<void(const std::string& text)> announce;
 
+    /// Called likewise, with what casts doubt on the result. May be empty.
+    std::function<void(const std::string& text)> warn;
+
     /// Called regularly from the calling thread: the share done in [0, 1] and a short text such
     /// as the rate. May be empty.
     std::function<void(double share, const std::string& detail)> report;

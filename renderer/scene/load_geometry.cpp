@@ -24,25 +24,6 @@ void apply(const ObjectSettings& settings, Object& object) {
     object.ellipsoidal_exclude = settings.ellipsoidal_exclude.value_or(object.ellipsoidal_exclude);
 }
 
-void apply_objects(const SceneDescription& description, SceneGeometry& geometry) {
-    for (const auto& [name, settings] : description.objects) {
-        bool is_there = false;
-        std::string known;
-        for (Object& object : geometry.objects) {
-            if (object.name == name) {
-                apply(settings, object);
-                is_there = true;
-            } else if (("," + known + ",").find("," + object.name + ",") == std::string::npos) {
-                known += (known.empty() ? "" : ",") + object.name;
-            }
-        }
-        if (is_there) continue;
-        throw core::Error("objects." + name,
-                          "is not in " + description.geometry,
-                          "must be one of " + known.substr(0, 500));
-    }
-}
-
 double diagonal_m(const SceneGeometry& geometry) {
     Eigen::AlignedBox3d box;
     for (const Object& object : geometry.objects) {
@@ -73,6 +54,25 @@ void warn_of_size(const SceneDescription& description, SceneGeometry& geometry) 
 }
 
 }  // namespace
+
+void apply_objects(const SceneDescription& description, SceneGeometry& geometry) {
+    for (const auto& [name, settings] : description.objects) {
+        bool is_there = false;
+        std::string known;
+        for (Object& object : geometry.objects) {
+            if (object.name == name) {
+                apply(settings, object);
+                is_there = true;
+            } else if (("," + known + ",").find("," + object.name + ",") == std::string::npos) {
+                known += (known.empty() ? "" : ",") + object.name;
+            }
+        }
+        if (is_there) continue;
+        throw core::Error("objects." + name,
+                          "is not in " + description.geometry,
+                          "must be one of " + known.substr(0, 500));
+    }
+}
 
 SceneGeometry load_geometry(const SceneDescription& description) {
     SceneGeometry geometry;

@@ -15,6 +15,10 @@ namespace renderer {
 /// throws   core::Error naming the file, or the object that it lacks
 SceneGeometry load_geometry(const SceneDescription& description);
 
+/// Replaces what a geometry says of its objects by what the description says.
+/// throws   core::Error for an object that the geometry lacks
+void apply_objects(const SceneDescription& description, SceneGeometry& geometry);
+
 /// Reads a glTF file, or a mesh file in metres with y up.
 SceneGeometry load_geometry(const std::string& path);
 

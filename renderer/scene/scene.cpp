@@ -177,8 +177,9 @@ std::optional<SurfacePoint> Scene::first_hit(const Vec3& from,
     return SurfacePoint{from + hit->distance_m * direction, hit->triangle};
 }
 
-Scene load_scene(const SceneDescription& description, const core::Scan& scan) {
-    SceneGeometry geometry = load_geometry(description);
+Scene make_scene(SceneGeometry geometry,
+                 const SceneDescription& description,
+                 const core::Scan& scan) {
     for (Object& object : geometry.objects) {
         if (!description.render.dielectric_specular) break;
         Material& material = object.material;
@@ -216,6 +217,10 @@ Scene load_scene(const SceneDescription& description, const core::Scan& scan) {
         }
     }
     return scene;
+}
+
+Scene load_scene(const SceneDescription& description, const core::Scan& scan) {
+    return make_scene(load_geometry(description), description, scan);
 }
 
 }  // namespace renderer

@@ -84,10 +84,16 @@ class Scene {
     RayCaster rays_;
 };
 
-/// Loads the description's geometry and sets the scene up for its scan.
+/// Sets a scene up for the scan of its description.
 ///
+/// geometry   with the description's objects applied
 /// throws   core::Error for a bad file, when all hidden geometry lies behind the scan's points, or
 ///          when a grid of points does not lie on the mesh that is the relay wall
+Scene make_scene(SceneGeometry geometry,
+                 const SceneDescription& description,
+                 const core::Scan& scan);
+
+/// The same with the geometry that the description names.
 Scene load_scene(const SceneDescription& description, const core::Scan& scan);
 
 }  // namespace renderer

@@ -166,14 +166,16 @@ core::Scan image_of(const core::PinholeCamera& camera) {
     return scan;
 }
 
-// Takes pose and angle of view from the glTF camera of the given name.
-void look_up_camera(const std::string& geometry, const std::string& where, CameraSettings& camera) {
-    if (is_mesh_file(geometry)) {
+// Takes pose and angle of view from the glTF camera that is named, if any is.
+void look_up_camera(const std::string& where, SceneDescription& scene) {
+    if (!scene.camera || scene.camera->name.empty()) return;
+    CameraSettings& camera = *scene.camera;
+    if (is_mesh_file(scene.geometry)) {
         throw Error(
             where, "found \"" + camera.name + "\"", "must be an object: the geometry is no glTF");
     }
     std::string known;
-    for (const Camera& candidate : load_gltf(geometry).cameras) {
+    for (const Camera& candidate : load_gltf(scene.geometry).cameras) {
         known += (known.empty() ? "" : ", ") + candidate.name;
         if (candidate.name != camera.name && candidate.lens_name != camera.name) continue;
         camera.position_m = candidate.position;
@@ -182,10 +184,10 @@ void look_up_camera(const std::string& geometry, const std::string& where, Camer
         camera.fov_y_deg = candidate.fov_y_rad * core::kDegreesPerRadian;
         return;
     }
-    throw Error(
-        where,
-        fmt::format("found \"{}\"", camera.name),
-        known.empty() ? geometry + " must have perspective cameras" : "must be one of " + known);
+    throw Error(where,
+                fmt::format("found \"{}\"", camera.name),
+                known.empty() ? scene.geometry + " must have perspective cameras"
+                              : "must be one of " + known);
 }
 
 // A camera measures instead of wall and scan; a file that names both means something else.
@@ -262,11 +264,16 @@ SceneDescription read_scene_description(const std::string& path,
                     "must name a .glb, .gltf, .obj, .ply or .stl file");
     }
     scene.geometry = (std::filesystem::path(path).parent_path() / scene.geometry).string();
-    if (scene.camera && !scene.camera->name.empty()) {
-        look_up_camera(scene.geometry, path + ": camera", *scene.camera);
-    }
+    look_up_camera(path + ": camera", scene);
     validate(scene, path + ": ");
     return scene;
+}
+
+void change_description(SceneDescription& scene, const core::Json& changes) {
+    core::read_value(changes, "", scene);
+    refuse_two_setups(changes, "");
+    if (changes.contains("camera")) look_up_camera("camera", scene);
+    validate(scene, "");
 }
 
 void validate(const SceneDescription& scene, const std::string& where) {

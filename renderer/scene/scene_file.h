@@ -199,6 +199,10 @@ void for_each_field(SceneDescription& scene, Visitor&& visit) {
 SceneDescription read_scene_description(const std::string& path,
                                         const std::vector<std::string>& overrides);
 
+/// Changes a description, valid or of defaults, by keys of scene.json with new values.
+/// throws   core::Error naming key, what was found and what is allowed
+void change_description(SceneDescription& scene, const core::Json& changes);
+
 /// Throws core::Error naming the key that is out of range.
 void validate(const SceneDescription& scene, const std::string& where);
 

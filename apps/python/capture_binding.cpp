@@ -1,0 +1,314 @@
+// SPDX-License-Identifier: MIT
+#include "apps/python/bindings.h"
+#include "apps/python/capture_histograms.h"
+#include "nlos/formats/capture_file.h"
+#include "nlos/pictures/picture.h"
+#include "nlos/pictures/pictures.h"
+
+#include <fmt/ranges.h>
+#include <nanobind/stl/map.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <filesystem>
+
+namespace python {
+namespace {
+
+namespace nb = nanobind;
+using core::Capture;
+
+/// What a capture that is made from arrays says of itself beside them.
+struct CaptureFields {
+    double bin_width_m = 0.0;
+    double opl_start_m = 0.0;
+    std::optional<core::ScanPattern> pattern;
+    core::OplOrigin opl_origin = core::OplOrigin::RelayWall;
+    std::optional<core::Vec3> laser_m;
+    std::optional<core::Vec3> detector_m;
+    core::TransientUnit unit = core::TransientUnit::Radiance;
+    std::optional<double> counts_per_radiance;
+};
+
+template <class Visitor>
+void for_each_field(CaptureFields& s, Visitor&& visit) {
+    visit("bin_width_m", s.bin_width_m, core::above(0, "width of a bin in path length [m]"));
+    visit("opl_start_m", s.opl_start_m, core::Ranged{"path length at the start of bin 0 [m]", {}});
+    visit("pattern", s.pattern, "how illumination and sensing points pair up");
+    visit("opl_origin", s.opl_origin, "where path lengths start and end");
+    visit("laser_m", s.laser_m, "laser position, world [m]");
+    visit("detector_m", s.detector_m, "detector position, world [m]");
+    visit("unit", s.unit, "what the numbers of H are");
+    visit("counts_per_radiance", s.counts_per_radiance, core::above(0, "of counts"));
+}
+
+core::WallPoints points_from(nb::handle positions, nb::handle normals, const std::string& name) {
+    core::WallPoints points;
+    points.positions = vectors_from(positions, name + "_points_m");
+    const Extents shape = shape_of(doubles_from(positions, name + "_points_m"));
+    if (shape.size() == 3) points.grid = {shape[0], shape[1]};
+    points.normals = normals.is_none() ? std::vector<core::Vec3>(points.size(), core::Vec3::UnitZ())
+                                       : vectors_from(normals, name + "_normals");
+    for (core::Vec3& normal : points.normals) {
+        if (normal.norm() > 1e-6) normal.normalize();
+    }
+    return points;
+}
+
+core::ScanPattern pattern_of(const Capture& capture) {
+    const core::Scan& scan = capture.scan;
+    if (scan.illumination.size() == 0) return core::ScanPattern::Confocal;
+    return scan.illumination.size() == 1 && capture.transient.num_pairs() == scan.sensing.size()
+               ? core::ScanPattern::Single
+               : core::ScanPattern::Exhaustive;
+}
+
+Capture capture_from_arrays(nb::handle values,
+                            nb::handle sensing,
+                            nb::handle sensing_normals,
+                            nb::handle illumination,
+                            nb::handle illumination_normals,
+                            const nb::dict& keywords) {
+    const auto fields = settings_from_python<CaptureFields>(keywords);
+    core::check_ranges(fields, "");
+    Capture capture;
+    capture.scan.sensing = points_from(sensing, sensing_normals, "sensing");
+    if (!illumination.is_none()) {
+        capture.scan.illumination = points_from(illumination, illumination_normals, "illumination");
+    }
+    const HistogramArray histograms = histograms_from(values, "H");
+    capture.transient = transient_from(histograms);
+    capture.scan.pattern = fields.pattern ? *fields.pattern : pattern_of(capture);
+    if (capture.scan.pattern == core::ScanPattern::Confocal) {
+        capture.scan.illumination = capture.scan.sensing;
+    }
+    capture.time_axis = {
+        fields.opl_start_m, fields.bin_width_m, static_cast<int>(capture.transient.num_bins())};
+    capture.scan.opl_origin = fields.opl_origin;
+    if (fields.opl_origin == core::OplOrigin::Device && (!fields.laser_m || !fields.detector_m)) {
+        throw core::Error("opl_origin",
+                          "found device without laser_m and detector_m",
+                          "must be relay_wall, or both positions given");
+    }
+    capture.scan.laser_position = fields.laser_m.value_or(core::Vec3::Zero());
+    capture.scan.detector_position = fields.detector_m.value_or(core::Vec3::Zero());
+    capture.unit = fields.unit;
+    capture.counts_per_radiance = fields.counts_per_radiance;
+    Extents expected = pair_shape(capture.scan);
+    expected.insert(expected.begin(), capture.transient.num_bins());
+    if (shape_of(histograms) != expected) {
+        throw core::Error("H",
+                          "has shape " + shape_text(shape_of(histograms)),
+                          fmt::format("must have shape {}: time, then the points of this {} scan",
+                                      shape_text(expected),
+                                      core::enum_name(capture.scan.pattern)));
+    }
+    core::validate(capture, "capture");
+    return capture;
+}
+
+Capture read_capture(const std::vector<std::string>& paths, const nb::dict& settings) {
+    const auto options = settings_from_python<nlos::CaptureReadSettings>(settings);
+    return with_files([&] { return nlos::read_capture(paths, options); });
+}
+
+std::vector<std::string> write_capture(const Capture& capture,
+                                       const std::string& path,
+                                       const std::string& layout,
+                                       bool for_ytal) {
+    return with_files([&] {
+        core::validate(capture, "capture");
+        return nlos::write_capture(path, capture, {for_ytal, layout});
+    });
+}
+
+nb::bytes picture_of(const Capture& capture) {
+    const std::string png = nlos::encode_panels_png(nlos::capture_panels(capture), 3);
+    return nb::bytes(png.data(), png.size());
+}
+
+// Views of points in the shape of their list or grid.
+nb::object points_view(nb::handle self,
+                       core::WallPoints core::Scan::*list,
+                       std::vector<core::Vec3> core::WallPoints::*vectors) {
+    core::WallPoints& points = nb::cast<Capture&>(self).scan.*list;
+    Extents shape{points.size()};
+    if (points.grid) shape = {(*points.grid)[0], (*points.grid)[1]};
+    return array_view(points.*vectors, shape, self);
+}
+
+template <auto List, auto Vectors>
+nb::object points_property(nb::handle self) {
+    return points_view(self, List, Vectors);
+}
+
+nb::object observed_bins(const Capture& capture) {
+    if (!capture.observed) return nb::none();
+    std::vector<std::int32_t> ranges;
+    for (const core::BinRange& range : *capture.observed) {
+        ranges.insert(ranges.end(), {range.begin, range.end});
+    }
+    return array_of(std::move(ranges), {capture.observed->size(), 2});
+}
+
+nb::list frames_of(nb::handle self) {
+    auto& capture = nb::cast<Capture&>(self);
+    nb::list frames;
+    if (!capture.sequence) return frames;
+    for (core::Transient& frame : capture.sequence->frames) {
+        frames.append(histogram_view(frame, capture.scan, self));
+    }
+    return frames;
+}
+
+nb::dict orders_of(nb::handle self) {
+    auto& capture = nb::cast<Capture&>(self);
+    nb::dict orders;
+    for (std::size_t i = 0; i < capture.orders.size(); ++i) {
+        orders[nb::int_(capture.orders[i])] =
+            histogram_view(capture.by_order[i], capture.scan, self);
+    }
+    return orders;
+}
+
+std::string text_of(const Capture& capture) {
+    return fmt::format("{}", fmt::join(nlos::describe_capture(capture), "\n"));
+}
+
+template <class T, class Enum>
+auto name_of(Enum T::*member) {
+    return [member](const T& holder) { return std::string(core::enum_name(holder.*member)); };
+}
+
+void bind_arrays(nb::class_<Capture>& binding) {
+    using core::Scan;
+    using core::WallPoints;
+    binding
+        .def_prop_ro(
+            "H",
+            [](nb::handle self) {
+                auto& capture = nb::cast<Capture&>(self);
+                return histogram_view(capture.transient, capture.scan, self);
+            },
+            "float32 histograms in the capture's own memory: (T, Sx, Sy) or (T, S), exhaustive "
+            "(T, Lx, Ly, Sx, Sy) or (T, L, S), of cameras (T, width, height)")
+        .def_prop_ro(
+            "variance",
+            [](nb::handle self) -> nb::object {
+                auto& capture = nb::cast<Capture&>(self);
+                if (!capture.variance) return nb::none();
+                return histogram_view(*capture.variance, capture.scan, self);
+            },
+            "of each value of H, where known, else None")
+        .def_prop_ro("frames", &frames_of, "list of arrays like H; empty unless a sequence")
+        .def_prop_ro("by_order", &orders_of, "dict of bounce order: array like H")
+        .def_prop_ro("sensing_points_m",
+                     &points_property<&Scan::sensing, &WallPoints::positions>,
+                     "(Sx, Sy, 3) or (S, 3) float64, world [m]")
+        .def_prop_ro("sensing_normals", &points_property<&Scan::sensing, &WallPoints::normals>)
+        .def_prop_ro("illumination_points_m",
+                     &points_property<&Scan::illumination, &WallPoints::positions>,
+                     "(Lx, Ly, 3) or (L, 3) float64, world [m]; confocal: the sensing points")
+        .def_prop_ro("illumination_normals",
+                     &points_property<&Scan::illumination, &WallPoints::normals>)
+        .def_prop_ro("observed_bins",
+                     &observed_bins,
+                     "(pairs, 2) int32, first bin and end of what was observed; None: all");
+}
+
+void bind_facts(nb::class_<Capture>& binding) {
+    binding
+        .def_prop_rw(
+            "opl_start_m",
+            [](const Capture& c) { return c.time_axis.opl_start_m; },
+            [](Capture& c, double value) { c.time_axis.opl_start_m = value; },
+            "path length at the start of bin 0 [m]")
+        .def_prop_rw(
+            "bin_width_m",
+            [](const Capture& c) { return c.time_axis.bin_width_m; },
+            [](Capture& c, double value) { c.time_axis.bin_width_m = value; },
+            "width of a bin in path length [m]")
+        .def_prop_ro("num_bins", [](const Capture& c) { return c.time_axis.num_bins; })
+        .def_prop_ro(
+            "axis",
+            [](Capture& c) { return python_from_json(core::write_value(c.time_axis)); },
+            "dict of opl_start_m, bin_width_m, num_bins")
+        .def_prop_ro("pattern",
+                     [](const Capture& c) { return std::string(core::enum_name(c.scan.pattern)); })
+        .def_prop_ro(
+            "opl_origin",
+            [](const Capture& c) { return std::string(core::enum_name(c.scan.opl_origin)); })
+        .def_prop_ro("unit", name_of(&Capture::unit), "radiance or counts")
+        .def_prop_ro("laser_m",
+                     [](const Capture& c) {
+                         return python_from_json(core::write_value(c.scan.laser_position));
+                     })
+        .def_prop_ro("detector_m",
+                     [](const Capture& c) {
+                         return python_from_json(core::write_value(c.scan.detector_position));
+                     })
+        .def_prop_ro("is_image", [](const Capture& c) { return c.scan.camera.has_value(); })
+        .def_prop_ro("counts_per_radiance", [](const Capture& c) { return c.counts_per_radiance; })
+        .def_prop_rw(
+            "scene_info",
+            [](const Capture& c) { return python_from_json(c.scene_info); },
+            [](Capture& c, const nb::dict& info) {
+                c.scene_info = json_from_python(info, "scene_info");
+            },
+            "free dict that is stored with the capture; what is read is a copy")
+        .def_ro("notes", &Capture::notes, "what the reader assumed or changed");
+}
+
+}  // namespace
+
+void bind_capture(nb::module_& module) {
+    nb::class_<Capture> binding(
+        module, "Capture", nb::is_weak_referenceable(), "Transients and where they belong.");
+    binding.def(
+        "__init__",
+        [](Capture* self,
+           nb::handle histograms,
+           nb::handle sensing,
+           nb::handle sensing_normals,
+           nb::handle illumination,
+           nb::handle illumination_normals,
+           const nb::kwargs& fields) {
+            new (self) Capture(capture_from_arrays(histograms,
+                                                   sensing,
+                                                   sensing_normals,
+                                                   illumination,
+                                                   illumination_normals,
+                                                   nb::dict(fields)));
+        },
+        nb::arg("H"),
+        nb::arg("sensing_points_m"),
+        nb::arg("sensing_normals").none() = nb::none(),
+        nb::arg("illumination_points_m").none() = nb::none(),
+        nb::arg("illumination_normals").none() = nb::none(),
+        nb::arg("fields"));
+    bind_arrays(binding);
+    bind_facts(binding);
+    binding
+        .def("write",
+             &write_capture,
+             nb::arg("path"),
+             nb::arg("layout") = "",
+             nb::arg("for_ytal") = false,
+             "Writes the capture by its suffix (.h5, .npz, .exr, .mat) or in a layout; returns "
+             "what that does not keep, a sentence each.")
+        .def(
+            "copy", [](const Capture& c) { return c; }, "A capture with memory of its own.")
+        .def(
+            "to_xarray",
+            [](const nb::object& self) {
+                return nb::module_::import_("nlos.neighbours").attr("to_xarray")(self);
+            },
+            "H as an xarray.DataArray with named axes and units, in the same memory.")
+        .def("picture", &picture_of, "PNG: streak image, light over the wall, mean transient.")
+        .def("_repr_png_", &picture_of)
+        .def("__repr__", &text_of);
+    module.def("read_capture", &read_capture, nb::arg("paths"), nb::arg("settings"));
+}
+
+}  // namespace python

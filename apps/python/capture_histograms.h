@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "apps/python/arrays.h"
+#include "renderer/core/capture.h"
+
+namespace python {
+
+/// Histograms with time as first axis; read and written in place.
+using HistogramArray = nanobind::ndarray<float, nanobind::device::cpu>;
+
+/// The axes of H that stand for a capture's pairs: (Sx, Sy), (S), (Lx, Ly, Sx, Sy), (L, S) or
+/// (width, height).
+Extents pair_shape(const core::Scan& scan);
+
+/// Histograms as NumPy sees them: time first, then pair_shape(), in the memory they have.
+nanobind::object histogram_view(core::Transient& transient,
+                                const core::Scan& scan,
+                                nanobind::handle owner);
+
+/// Histograms that NumPy makes of numbers: what is float32 and may be written is taken as it is.
+/// throws   core::Error naming the argument when they are no real numbers
+HistogramArray histograms_from(nanobind::handle value, const std::string& name);
+
+/// Histograms of an array (T, ...) whose other axes number the pairs, last index fastest. An array
+/// whose time axis is the fastest one in memory is borrowed, any other copied.
+core::Transient transient_from(const HistogramArray& array);
+
+}  // namespace python

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+#include "apps/commands/fit_job.h"
+#include "apps/commands/fit_pictures.h"
+#include "apps/python/bindings.h"
+#include "apps/python/fit_object.h"
+#include "calib/fit_file.h"
+#include "nlos/pictures/picture.h"
+#include "renderer/scene/load_geometry.h"
+
+#include <fmt/core.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+namespace python {
+namespace {
+
+namespace nb = nanobind;
+
+calib::FitInput make_input(const core::Capture& capture,
+                           const SceneObject& scene,
+                           const nb::dict& settings) {
+    calib::FitInput input;
+    input.settings.scene = scene.name;
+    core::read_value(json_from_python(settings, ""), "", input.settings);
+    calib::validate(input.settings, "");
+    input.capture = capture;
+    input.scene = scene.description;
+    input.geometry = scene.geometry;
+    return input;
+}
+
+FitObject fit(const core::Capture& capture,
+              const SceneObject& scene,
+              const nb::dict& settings,
+              const nb::object& calibration,
+              nb::handle start_points,
+              const nb::object& progress,
+              int threads) {
+    core::validate(capture, "capture");
+    FitObject fitted;
+    fitted.input = make_input(capture, scene, settings);
+    fitted.input.start_points = vectors_from(start_points, "start");
+    if (!calibration.is_none()) {
+        const core::Json json = json_from_python(calibration, "calibration");
+        apps::use_calibration(calib::applied_calibration(json, "calibration"), fitted.input);
+    }
+    fitted.result = run_long(progress, threads, [&](const core::Progress& report) {
+        return apps::fit_input(fitted.input, report);
+    });
+    return fitted;
+}
+
+nb::object histograms(nb::handle self, std::vector<double> calib::FitAgreement::*values) {
+    auto& result = nb::cast<FitObject&>(self).result;
+    auto& numbers = result.*values;
+    const auto bins = static_cast<std::size_t>(result.axis.num_bins);
+    return array_view(numbers.data(), {numbers.size() / bins, bins}, self);
+}
+
+SceneObject scene_of(const FitObject& fitted) {
+    SceneObject scene;
+    scene.name = "fit";
+    scene.description = fitted.input.scene;
+    scene.description.objects.clear();  // the geometry holds what they said
+    scene.geometry = fitted.result.geometry;
+    return scene;
+}
+
+nb::bytes picture_of(const FitObject& fitted) {
+    const std::string png = nlos::encode_panels_png(apps::fit_panels(fitted.result), 3);
+    return nb::bytes(png.data(), png.size());
+}
+
+std::string text_of(const FitObject& fitted) {
+    const calib::FitResult& result = fitted.result;
+    return fmt::format("Fit{}: {} objects, deviance {:.4g} of {:.4g} expected, {} iterations",
+                       result.converged ? "" : " that did not converge",
+                       result.objects.size(),
+                       result.deviance,
+                       result.expected_deviance,
+                       result.iterations);
+}
+
+nb::object covariance_of(const FitObject& fitted) {
+    const Eigen::MatrixXd& matrix = fitted.result.covariance;
+    return array_of(
+        std::vector<double>(matrix.data(), matrix.data() + matrix.size()),
+        {static_cast<std::size_t>(matrix.rows()), static_cast<std::size_t>(matrix.cols())});
+}
+
+}  // namespace
+
+void bind_fit(nb::module_& module) {
+    nb::class_<FitObject>(module, "FitResult", "What fit() found, with its uncertainty.")
+        .def_prop_ro(
+            "values",
+            [](const FitObject& f) { return python_from_json(calib::fit_json(f.result)); },
+            "all fitted quantities and, under `sigma`, their standard deviations, as FIT.json")
+        .def_prop_ro("scene", &scene_of, "Scene with the fitted objects")
+        .def_prop_ro("converged", [](const FitObject& f) { return f.result.converged; })
+        .def_prop_ro("message", [](const FitObject& f) { return f.result.message; })
+        .def_prop_ro("deviance", [](const FitObject& f) { return f.result.deviance; })
+        .def_prop_ro("expected_deviance",
+                     [](const FitObject& f) { return f.result.expected_deviance; })
+        .def_prop_ro("parameters", [](const FitObject& f) { return f.result.parameters; })
+        .def_prop_ro("covariance", &covariance_of, "(P, P) of `parameters`")
+        .def_prop_ro("unidentifiable", [](const FitObject& f) { return f.result.unidentifiable; })
+        .def_prop_ro("warnings", [](const FitObject& f) { return f.result.warnings; })
+        .def_prop_ro("seconds", [](const FitObject& f) { return f.result.seconds; })
+        .def_prop_ro(
+            "data",
+            [](nb::handle self) { return histograms(self, &calib::FitAgreement::data); },
+            "(pairs, bins) float64, as the fit used them")
+        .def_prop_ro(
+            "model",
+            [](nb::handle self) { return histograms(self, &calib::FitAgreement::model); },
+            "(pairs, bins) float64, what the fitted scene explains")
+        .def(
+            "write",
+            [](const FitObject& f, const std::string& path) {
+                with_files([&] {
+                    apps::write_fit(f.input, f.result, path);
+                    return 0;
+                });
+            },
+            nb::arg("path"),
+            "Writes FIT.json and, beside it, the fitted scene and a picture.")
+        .def("picture", &picture_of, "PNG: data, model and their difference.")
+        .def("_repr_png_", &picture_of)
+        .def("__repr__", &text_of);
+    module.def("fit",
+               &fit,
+               nb::arg("capture"),
+               nb::arg("scene"),
+               nb::arg("settings"),
+               nb::arg("calibration").none(),
+               nb::arg("start_points"),
+               nb::arg("progress").none(),
+               nb::arg("threads"));
+}
+
+}  // namespace python

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+#include "apps/python/bindings.h"
+#include "nlos/formats/ply_file.h"
+#include "nlos/formats/volume_file.h"
+#include "nlos/pictures/picture.h"
+#include "nlos/pictures/pictures.h"
+#include "nlos/reconstruction/surface_mesh.h"
+
+#include <fmt/core.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+namespace python {
+namespace {
+
+namespace nb = nanobind;
+using nlos::Reconstruction;
+
+Extents columns_of(const Reconstruction& result) {
+    return {result.volume.axes.x_m.size(), result.volume.axes.y_m.size()};
+}
+
+nb::object volume_view(nb::handle self) {
+    auto& volume = nb::cast<Reconstruction&>(self).volume;
+    const nlos::VolumeAxes& axes = volume.axes;
+    return array_view(
+        volume.values.data(), {axes.x_m.size(), axes.y_m.size(), axes.z_m.size()}, self);
+}
+
+template <auto Axis>
+nb::object axis_view(nb::handle self) {
+    auto& values = nb::cast<Reconstruction&>(self).volume.axes.*Axis;
+    return array_view(values.data(), {values.size()}, self);
+}
+
+// Of what is stated per column, where it is.
+nb::object column_view(nb::handle self, std::vector<double>& values) {
+    if (values.empty()) return nb::none();
+    return array_view(values.data(), columns_of(nb::cast<Reconstruction&>(self)), self);
+}
+
+nb::object world_from_wall(Reconstruction& result) {
+    const Eigen::Matrix<double, 4, 4, Eigen::RowMajor> matrix =
+        result.volume.axes.world_from_wall.matrix();
+    return array_of(std::vector<double>(matrix.data(), matrix.data() + 16), {4, 4});
+}
+
+nb::tuple mesh_of(const Reconstruction& result) {
+    core::TriangleMesh mesh = nlos::surface_mesh(result.depth);
+    std::vector<double> vertices;
+    for (const core::Vec3& v : mesh.vertices)
+        vertices.insert(vertices.end(), {v.x(), v.y(), v.z()});
+    std::vector<std::uint32_t> faces;
+    for (const auto& t : mesh.triangles) faces.insert(faces.end(), t.begin(), t.end());
+    return nb::make_tuple(array_of(std::move(vertices), {mesh.vertices.size(), 3}),
+                          array_of(std::move(faces), {mesh.triangles.size(), 3}));
+}
+
+void write(const Reconstruction& result, const std::string& path) {
+    with_files([&] {
+        if (path.ends_with(".ply")) {
+            nlos::write_ply(path, result.points);
+        } else {
+            nlos::write_volume(path, result);
+        }
+        return 0;
+    });
+}
+
+nb::bytes picture_of(const Reconstruction& result) {
+    const std::string png = nlos::encode_panels_png(nlos::volume_panels(result), 2);
+    return nb::bytes(png.data(), png.size());
+}
+
+std::string text_of(const Reconstruction& result) {
+    const nlos::VolumeAxes& axes = result.volume.axes;
+    return fmt::format("Reconstruction by {}: {} x {} x {} voxels, {} surface points, {:.2f} s",
+                       result.method,
+                       axes.x_m.size(),
+                       axes.y_m.size(),
+                       axes.z_m.size(),
+                       result.points.positions.size(),
+                       result.seconds);
+}
+
+void bind_arrays(nb::class_<Reconstruction>& binding) {
+    using nlos::VolumeAxes;
+    binding.def_prop_ro("volume", &volume_view, "(X, Y, Z) float32, in the result's own memory")
+        .def_prop_ro("x_m", &axis_view<&VolumeAxes::x_m>, "(X,) voxel centres along the wall [m]")
+        .def_prop_ro("y_m", &axis_view<&VolumeAxes::y_m>, "(Y,) voxel centres along the wall [m]")
+        .def_prop_ro("z_m", &axis_view<&VolumeAxes::z_m>, "(Z,) along the wall's normal [m]")
+        .def_prop_ro("world_from_wall", &world_from_wall, "(4, 4) float64")
+        .def_prop_ro(
+            "depth_m",
+            [](nb::handle self) {
+                return column_view(self, nb::cast<Reconstruction&>(self).depth.depth_m);
+            },
+            "(X, Y) float64 depth of the surface [m]; NaN: background")
+        .def_prop_ro(
+            "depth_sigma_m",
+            [](nb::handle self) {
+                return column_view(self, nb::cast<Reconstruction&>(self).depth_sigma_m);
+            },
+            "(X, Y) standard deviation of depth_m [m]; None where the noise is not known")
+        .def_prop_ro(
+            "surface_probability",
+            [](nb::handle self) {
+                return column_view(self, nb::cast<Reconstruction&>(self).surface_probability);
+            },
+            "(X, Y) probability that a column holds a surface; None: not stated")
+        .def_prop_ro(
+            "normals",
+            [](nb::handle self) -> nb::object {
+                auto& result = nb::cast<Reconstruction&>(self);
+                if (result.depth.normals.empty()) return nb::none();
+                return array_view(result.depth.normals, columns_of(result), self);
+            },
+            "(X, Y, 3) float64, world, unit; None: not known")
+        .def_prop_ro(
+            "points_m",
+            [](nb::handle self) {
+                auto& points = nb::cast<Reconstruction&>(self).points.positions;
+                return array_view(points, {points.size()}, self);
+            },
+            "(N, 3) float64 surface points, world [m]");
+}
+
+}  // namespace
+
+void bind_reconstruction(nb::module_& module) {
+    nb::class_<Reconstruction> binding(module,
+                                       "Reconstruction",
+                                       nb::is_weak_referenceable(),
+                                       "What reconstruct() found, and what it took.");
+    bind_arrays(binding);
+    binding.def_ro("method", &Reconstruction::method, "the one that ran")
+        .def_ro("reason", &Reconstruction::reason, "why `auto` took it")
+        .def_ro("findings", &Reconstruction::findings, "what `auto` found, a line each")
+        .def_ro("warnings", &Reconstruction::warnings)
+        .def_ro("seconds", &Reconstruction::seconds)
+        .def_prop_ro(
+            "settings",
+            [](const Reconstruction& r) { return python_from_json(core::write_value(r.settings)); },
+            "with every choice filled in")
+        .def("mesh",
+             &mesh_of,
+             "The surface as (vertices (N, 3) float64, world [m]; faces (M, 3) uint32).")
+        .def("write", &write, nb::arg("path"), "Writes the volume (.h5) or its points (.ply).")
+        .def("picture", &picture_of, "PNG: projections, depth, and what is stated about it.")
+        .def("_repr_png_", &picture_of)
+        .def("__repr__", &text_of);
+    module.def(
+        "read_volume",
+        [](const std::string& path) { return with_files([&] { return nlos::read_volume(path); }); },
+        nb::arg("path"));
+}
+
+}  // namespace python

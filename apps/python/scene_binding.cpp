@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: MIT
+#include "apps/python/bindings.h"
+#include "apps/python/scene_object.h"
+#include "apps/scene_truth.h"
+#include "renderer/core/output_file.h"
+#include "renderer/gltf/gltf.h"
+#include "renderer/scene/load_geometry.h"
+
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <filesystem>
+
+namespace python {
+namespace {
+
+namespace nb = nanobind;
+
+std::vector<std::array<std::uint32_t, 3>> faces_from(nb::handle value, std::size_t num_vertices) {
+    const auto faces = nb::cast<IndexArray>(numbers_from(value, "int64", "faces"));
+    if (faces.ndim() != 2 || faces.shape(1) != 3) {
+        throw core::Error(
+            "faces", "has shape " + shape_text(shape_of(faces)), "must have shape (M, 3)");
+    }
+    std::vector<std::array<std::uint32_t, 3>> triangles(faces.shape(0));
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+        const std::int64_t vertex = faces.data()[i];
+        if (vertex < 0 || vertex >= static_cast<std::int64_t>(num_vertices)) {
+            throw core::Error("faces",
+                              "found vertex " + std::to_string(vertex),
+                              "must be from 0 to " + std::to_string(num_vertices) + " - 1");
+        }
+        triangles[i / 3][i % 3] = static_cast<std::uint32_t>(vertex);
+    }
+    return triangles;
+}
+
+void drop_triangles_without_area(core::TriangleMesh& mesh) {
+    std::erase_if(mesh.triangles, [&](const std::array<std::uint32_t, 3>& t) {
+        const core::Vec3& corner = mesh.vertices[t[0]];
+        return !core::has_area(mesh.vertices[t[1]] - corner, mesh.vertices[t[2]] - corner);
+    });
+    if (mesh.triangles.empty()) {
+        throw core::Error("faces", "holds no triangle with an area", "must hold one");
+    }
+}
+
+/// How an object that is made from arrays reflects and moves.
+struct ObjectFields {
+    std::string name = "object";
+    double albedo = 1.0;
+    renderer::SurfaceModel surface = renderer::SurfaceModel::Lambertian;
+    double roughness = 1.0;
+    renderer::Role role = renderer::Role::Hidden;
+    core::Vec3 velocity_m_per_s = core::Vec3::Zero();
+};
+
+template <class Visitor>
+void for_each_field(ObjectFields& s, Visitor&& visit) {
+    visit("name", s.name, "of the object");
+    visit("albedo", s.albedo, core::between(0, 1, "share of light that is reflected"));
+    visit("surface", s.surface, "how it reflects");
+    visit("roughness", s.roughness, core::between(0, 1, "of GGX surfaces"));
+    visit("role", s.role, "what it is to the measurement");
+    visit("velocity_m_per_s", s.velocity_m_per_s, "world [m/s]");
+}
+
+renderer::Object make_object(nb::handle vertices, nb::handle faces, const nb::dict& keywords) {
+    const auto fields = settings_from_python<ObjectFields>(keywords);
+    core::check_ranges(fields, "");
+    renderer::Object object;
+    object.mesh.vertices = vectors_from(vertices, "vertices");
+    object.mesh.triangles = faces_from(faces, object.mesh.vertices.size());
+    drop_triangles_without_area(object.mesh);
+    object.name = fields.name;
+    object.material.model = fields.surface;
+    object.material.albedo = fields.albedo;
+    object.material.roughness = fields.roughness;
+    object.role = fields.role;
+    object.velocity_m_per_s = fields.velocity_m_per_s;
+    return object;
+}
+
+SceneObject make_scene(const std::vector<renderer::Object>& objects, const nb::dict& settings) {
+    if (objects.empty()) throw core::Error("objects", "found none", "must be one at least");
+    SceneObject scene;
+    scene.name = "scene";
+    scene.description.geometry = "objects";  // as messages call what is no file
+    scene.geometry.objects = objects;
+    change_scene(scene, json_from_python(settings, ""));
+    return scene;
+}
+
+SceneObject load_scene(const std::string& path, const nb::dict& settings) {
+    SceneObject scene;
+    scene.name = std::filesystem::absolute(path).lexically_normal().string();
+    const core::Json changes = json_from_python(settings, "");
+    with_files([&] {
+        scene.description = renderer::read_scene_description(path, {});
+        scene.geometry = renderer::load_geometry(scene.description);
+        return 0;
+    });
+    change_scene(scene, changes);
+    return scene;
+}
+
+nb::dict depth_map(const SceneObject& scene) {
+    core::DepthMap map = run_long(nb::none(), 0, [&](const core::Progress&) {
+        return apps::SceneTruth(scene.description, scene.geometry).depth_map();
+    });
+    const Extents shape{map.x_m.size(), map.y_m.size()};
+    nb::dict result;
+    result["x_m"] = array_of(std::move(map.x_m), {shape[0]});
+    result["y_m"] = array_of(std::move(map.y_m), {shape[1]});
+    result["depth_m"] = array_of(std::move(map.depth_m), shape);
+    if (!map.albedo.empty()) result["albedo"] = array_of(std::move(map.albedo), shape);
+    return result;
+}
+
+void write_scene(const SceneObject& scene, const std::string& path) {
+    const auto geometry = std::filesystem::path(path).replace_extension(".glb");
+    core::check_targets({path, geometry.string()}, {});
+    renderer::SceneDescription description = scene.description;
+    description.geometry = geometry.filename().string();
+    description.geometry_unit_m.reset();
+    description.geometry_up.reset();
+    description.objects.clear();
+    core::Json json = core::write_value(description);
+    if (description.camera) {
+        json.erase("relay_wall");
+        json.erase("scan");
+    }
+    renderer::write_gltf(geometry.string(), scene.geometry);
+    core::write_text_file(path, core::json_text(json));
+}
+
+nb::object faces_of(const renderer::Object& object) {
+    std::vector<std::uint32_t> faces;
+    for (const auto& triangle : object.mesh.triangles) {
+        faces.insert(faces.end(), triangle.begin(), triangle.end());
+    }
+    return array_of(std::move(faces), {object.mesh.triangles.size(), 3});
+}
+
+void bind_object(nb::module_& module) {
+    nb::class_<renderer::Object>(module, "Object", "A triangle mesh of one material.")
+        .def(
+            "__init__",
+            [](renderer::Object* self,
+               nb::handle vertices,
+               nb::handle faces,
+               const nb::kwargs& fields) {
+                new (self) renderer::Object(make_object(vertices, faces, nb::dict(fields)));
+            },
+            nb::arg("vertices"),
+            nb::arg("faces"),
+            nb::arg("fields"))
+        .def_ro("name", &renderer::Object::name)
+        .def_prop_ro(
+            "vertices",
+            [](nb::handle self) {
+                auto& vertices = nb::cast<renderer::Object&>(self).mesh.vertices;
+                return array_view(vertices, {vertices.size()}, self);
+            },
+            "(N, 3) float64, world [m]")
+        .def_prop_ro("faces", &faces_of, "(M, 3) uint32, indices of vertices")
+        .def_prop_ro("albedo", [](const renderer::Object& o) { return o.material.albedo; })
+        .def_prop_ro("surface",
+                     [](const renderer::Object& o) {
+                         return std::string(core::enum_name(o.material.model));
+                     })
+        .def_prop_ro(
+            "role", [](const renderer::Object& o) { return std::string(core::enum_name(o.role)); });
+}
+
+}  // namespace
+
+void change_scene(SceneObject& scene, const core::Json& changes) {
+    renderer::change_description(scene.description, changes);
+    renderer::apply_objects(scene.description, scene.geometry);
+}
+
+void bind_scene(nb::module_& module) {
+    bind_object(module);
+    nb::class_<SceneObject>(module, "Scene", "Objects, a relay wall or camera, and how to render.")
+        .def(
+            "__init__",
+            [](SceneObject* self,
+               const std::vector<renderer::Object>& objects,
+               const nb::kwargs& settings) {
+                new (self) SceneObject(make_scene(objects, nb::dict(settings)));
+            },
+            nb::arg("objects"),
+            nb::arg("settings"))
+        .def_prop_ro(
+            "objects",
+            [](const SceneObject& scene) { return scene.geometry.objects; },
+            "list of Object; copies")
+        .def_prop_ro(
+            "settings",
+            [](const SceneObject& scene) {
+                return python_from_json(core::write_value(scene.description));
+            },
+            "all keys of scene.json with their values")
+        .def_ro("name", &SceneObject::name)
+        .def(
+            "changed",
+            [](const SceneObject& scene, const nb::kwargs& settings) {
+                SceneObject changed = scene;
+                change_scene(changed, json_from_python(nb::dict(settings), ""));
+                return changed;
+            },
+            nb::arg("settings"),
+            "A copy with other settings.")
+        .def("depth_map",
+             &depth_map,
+             "What the relay wall sees: dict of x_m (X,), y_m (Y,), depth_m (X, Y) with NaN for "
+             "background, and albedo (X, Y) where known.")
+        .def("write",
+             &write_scene,
+             nb::arg("path"),
+             "Writes scene.json, and the geometry beside it (.glb), for the program.");
+    module.def("load_scene", &load_scene, nb::arg("path"), nb::arg("settings"));
+}
+
+}  // namespace python

@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: MIT
+// The program's commands as functions from objects to objects.
+#include "apps/capture_options.h"
+#include "apps/commands/compare_job.h"
+#include "apps/commands/describe_file.h"
+#include "apps/commands/reconstruct_job.h"
+#include "apps/commands/render_job.h"
+#include "apps/python/bindings.h"
+#include "apps/python/fit_object.h"
+#include "apps/report/report.h"
+#include "apps/scene_truth.h"
+#include "apps/version.h"
+#include "nlos/compare/compare.h"
+#include "nlos/detector/detector.h"
+#include "nlos/formats/capture_file.h"
+#include "nlos/formats/ply_file.h"
+
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+namespace python {
+namespace {
+
+namespace nb = nanobind;
+
+// Keywords of render() are keys below `render`, or of scene.json.
+core::Json scene_changes(const nb::dict& keywords) {
+    const core::Json given = json_from_python(keywords, "");
+    const core::Json known = core::write_value(renderer::RenderSettings{});
+    core::Json changes = core::Json::object();
+    for (const auto& [key, value] : given.items()) {
+        if (!known.contains(key)) changes[key] = value;
+    }
+    for (const auto& [key, value] : given.items()) {
+        if (known.contains(key)) changes["render"][key] = value;
+    }
+    return changes;
+}
+
+core::Capture render(const SceneObject& scene,
+                     const nb::object& scan,
+                     const nb::object& axis,
+                     const nb::object& calibration,
+                     const nb::dict& settings,
+                     const nb::object& progress,
+                     int threads) {
+    core::Json changes = scene_changes(settings);
+    const core::Capture* like = nullptr;
+    if (nb::isinstance<core::Capture>(scan)) {
+        like = &nb::cast<core::Capture&>(scan);
+    } else if (!scan.is_none()) {
+        changes["scan"] = json_from_python(scan, "scan");
+    }
+    if (!axis.is_none()) changes["time_axis"] = json_from_python(axis, "axis");
+    SceneObject changed = scene;
+    change_scene(changed, changes);
+    apps::RenderInput input{changed.name, changed.description, {}, nullptr};
+    if (like != nullptr) {
+        if (!like->scan.camera) describe_scan(like->scan, input.description.scan);
+        if (axis.is_none()) input.description.time_axis = {like->time_axis};
+    }
+    input.scan = like != nullptr ? like->scan : renderer::make_scan(input.description);
+    if (!calibration.is_none()) {
+        const core::Json json = json_from_python(calibration, "calibration");
+        apps::use_calibration(calib::applied_calibration(json, "calibration"), input);
+    }
+    return run_long(progress, threads, [&](const core::Progress& report) {
+        input.scene = std::make_shared<const renderer::Scene>(
+            renderer::make_scene(std::move(changed.geometry), input.description, input.scan));
+        renderer::RenderResult result = apps::render_input(std::move(input), report);
+        for (const std::string& text : result.warnings) report.warn(text);
+        return std::move(result.capture);
+    });
+}
+
+nlos::Reconstruction reconstruct(const core::Capture& capture,
+                                 const nb::dict& keywords,
+                                 const nb::object& calibration,
+                                 const nb::object& progress,
+                                 int threads) {
+    const auto settings = settings_from_python<nlos::ReconstructSettings>(keywords);
+    std::optional<calib::AppliedCalibration> applied;
+    if (!calibration.is_none()) {
+        applied =
+            calib::applied_calibration(json_from_python(calibration, "calibration"), "calibration");
+    }
+    return run_long(progress, threads, [&](const core::Progress& report) {
+        core::validate(capture, "capture");
+        nlos::Reconstruction result = nlos::reconstruct(
+            applied ? calib::apply_calibration(*applied, capture) : capture, settings, report);
+        result.provenance = {{"program", apps::version_text()}, {"command", "nlos.reconstruct"}};
+        for (const std::string& text : result.warnings) report.warn(text);
+        return result;
+    });
+}
+
+core::Capture simulate_noise(const core::Capture& capture, const nb::dict& keywords, int threads) {
+    const auto settings = settings_from_python<nlos::DetectorSettings>(keywords);
+    return run_long(nb::none(), threads, [&](const core::Progress& report) {
+        core::validate(capture, "capture");
+        if (const auto text = nlos::coarse_bins_warning(capture, settings)) report.warn(*text);
+        core::Capture noisy = nlos::detect(capture, settings);
+        noisy.scene_info["detector"]["program"] = apps::version_text();
+        noisy.scene_info["detector"]["command"] = "nlos.simulate_noise";
+        return noisy;
+    });
+}
+
+nb::object scores(const nlos::Metrics& metrics) {
+    const core::Json all = core::write_value(metrics);
+    core::Json json = core::Json::object();
+    for (const auto& [name, value] : all.items()) {
+        if (!value.is_null()) json[name] = value;
+    }
+    return python_from_json(json);
+}
+
+nb::object calibrate(const std::string& path, const nb::dict& changes) {
+    const core::Json json = json_from_python(changes, "");
+    const core::Json calibration = run_long(nb::none(), 0, [&](const core::Progress&) {
+        calib::SetupSettings settings = calib::read_setup(path, {});
+        core::read_value(json, "", settings);
+        return calib::calibration_json(
+            calib::calibrate(settings, nlos::read_capture(settings.direct_returns)));
+    });
+    return python_from_json(calibration);
+}
+
+nb::list help_of(const std::vector<core::SettingHelp>& lines) {
+    nb::list list;
+    for (const core::SettingHelp& line : lines) {
+        list.append(nb::make_tuple(line.key, line.default_value, line.meaning));
+    }
+    return list;
+}
+
+nb::list settings_of(const std::string& function) {
+    if (function == "render") return help_of(core::settings_help(renderer::SceneDescription{}));
+    if (function == "reconstruct") return help_of(core::settings_help(nlos::ReconstructSettings{}));
+    if (function == "simulate_noise") return help_of(core::settings_help(nlos::DetectorSettings{}));
+    if (function == "fit") return help_of(core::settings_help(calib::FitSettings{}));
+    if (function == "read") return help_of(core::settings_help(nlos::CaptureReadSettings{}));
+    throw core::Error("function",
+                      "found '" + function + "'",
+                      "must be one of render, reconstruct, simulate_noise, fit, read");
+}
+
+void bind_scores(nb::module_& module) {
+    using Threshold = std::optional<double>;
+    module.def("compare",
+               [](const nlos::Reconstruction& a, const SceneObject& b, const Threshold& threshold) {
+                   return scores(run_long(nb::none(), 0, [&](const core::Progress&) {
+                       const nlos::VolumeAxes& axes = a.volume.axes;
+                       const apps::SceneTruth truth(b.description, b.geometry);
+                       return nlos::compare_to_truth(
+                           a, truth.depth_map(axes.world_from_wall, axes.x_m, axes.y_m), threshold);
+                   }));
+               });
+    module.def(
+        "compare",
+        [](const nlos::Reconstruction& a,
+           const nlos::Reconstruction& b,
+           const Threshold& threshold) { return scores(nlos::compare_volumes(a, b, threshold)); });
+    module.def("compare", [](const core::Capture& a, const core::Capture& b, const Threshold&) {
+        return scores(run_long(nb::none(), 0, [&](const core::Progress& report) {
+            for (const std::string& text : nlos::comparison_warnings(a, b)) report.warn(text);
+            return nlos::compare_captures(a, b);
+        }));
+    });
+    module.def("compare", [](const FitObject& a, const SceneObject& b, const Threshold& threshold) {
+        return scores(apps::score_fit(a.result,
+                                      a.result.geometry,
+                                      b.geometry,
+                                      {},
+                                      threshold.value_or(apps::kDefaultThreshold_m)));
+    });
+    module.def(
+        "compare", [](const SceneObject& a, const SceneObject& b, const Threshold& threshold) {
+            const apps::SceneTruth truth(b.description, b.geometry);
+            return scores(nlos::compare_points(apps::surface_samples(a.geometry),
+                                               core::surface_points(truth.depth_map()),
+                                               threshold.value_or(apps::kDefaultThreshold_m)));
+        });
+    module.def("compare_files",
+               [](const std::string& a, const std::string& b, const Threshold& threshold) {
+                   return scores(with_files(
+                       [&] { return apps::compare_files(a, b, "", threshold).metrics; }));
+               });
+}
+
+}  // namespace
+
+void describe_scan(const core::Scan& scan, renderer::ScanSettings& settings) {
+    settings.pattern = scan.pattern;
+    settings.sensing_points_m = scan.sensing.positions;
+    settings.sensing_normals = scan.sensing.normals;
+    const bool has_own_lights = scan.pattern != core::ScanPattern::Confocal;
+    settings.illumination_points_m =
+        has_own_lights ? scan.illumination.positions : std::vector<core::Vec3>();
+    settings.illumination_normals =
+        has_own_lights ? scan.illumination.normals : std::vector<core::Vec3>();
+    settings.opl_origin = scan.opl_origin;
+    if (scan.opl_origin == core::OplOrigin::Device) {
+        settings.laser_m = scan.laser_position;
+        settings.detector_m = scan.detector_position;
+    }
+}
+
+void bind_work(nb::module_& module) {
+    module.def("render",
+               &render,
+               nb::arg("scene"),
+               nb::arg("scan").none(),
+               nb::arg("axis").none(),
+               nb::arg("calibration").none(),
+               nb::arg("settings"),
+               nb::arg("progress").none(),
+               nb::arg("threads"));
+    module.def("reconstruct",
+               &reconstruct,
+               nb::arg("capture"),
+               nb::arg("settings"),
+               nb::arg("calibration").none(),
+               nb::arg("progress").none(),
+               nb::arg("threads"));
+    module.def("simulate_noise",
+               &simulate_noise,
+               nb::arg("capture"),
+               nb::arg("settings"),
+               nb::arg("threads"));
+    module.def("calibrate", &calibrate, nb::arg("setup"), nb::arg("changes"));
+    module.def("settings", &settings_of, nb::arg("function"));
+    module.def(
+        "info",
+        [](const std::vector<std::string>& paths, const nb::dict& settings) {
+            const auto options = settings_from_python<nlos::CaptureReadSettings>(settings);
+            return with_files([&] { return apps::describe_files(paths, options); });
+        },
+        nb::arg("paths"),
+        nb::arg("settings"));
+    module.def(
+        "report",
+        [](const std::string& folder, const std::string& path) {
+            with_files([&] {
+                apps::write_report(folder, path);
+                return 0;
+            });
+        },
+        nb::arg("folder"),
+        nb::arg("path"));
+    bind_scores(module);
+}
+
+}  // namespace python
