@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "calib/setup/boards.h"
 
+#include "calib/setup/photograph.h"
 #include "renderer/core/error.h"
 
 #include <Eigen/Dense>
 #include <fmt/core.h>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core/eigen.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include <algorithm>
@@ -45,8 +45,8 @@ void start_at_dark_end(const cv::Mat& image,
 std::vector<cv::Point2f> find_corners(const std::string& path,
                                       const cv::Size& inner,
                                       cv::Size& image_size) {
-    const cv::Mat image = cv::imread(path, cv::IMREAD_GRAYSCALE);
-    if (image.empty()) throw core::Error(path, "cannot be read", "must be a picture of the board");
+    Photograph photograph = read_photograph(path);
+    const cv::Mat image(photograph.height, photograph.width, CV_8UC1, photograph.grey.data());
     if (image_size.area() > 0 && image.size() != image_size) {
         throw core::Error(path,
                           fmt::format("has {} x {} pixels", image.cols, image.rows),

@@ -19,7 +19,7 @@ struct BoardSettings {
 
 template <class Visitor>
 void for_each_field(BoardSettings& s, Visitor&& visit) {
-    visit("images", s.images, "photographs of the board in several poses");
+    visit("images", s.images, "PNG or JPEG photographs of the board in several poses");
     visit("inner_corners", s.inner_corners, "corners between four squares, per row and per column");
     visit("square_m", s.square_m, "edge of a square [m]");
     visit("wall_image", s.wall_image, "the image whose board lies on the wall, from 0");
@@ -58,7 +58,7 @@ struct CameraCalibration {
 /// camera. Of a board with an odd and an even number of inner corners, the first corner is the one
 /// at a dark outer square; with others it may be either end, so avoid those.
 ///
-/// images    8-bit grey or colour photographs of one size
+/// images    PNG or JPEG photographs of one size (read_photograph)
 /// throws    core::Error naming an image that cannot be read or shows no board
 /// source    [Zhang2000] as OpenCV implements it
 CameraCalibration calibrate_camera(const BoardSettings& settings);

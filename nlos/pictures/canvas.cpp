@@ -3,8 +3,8 @@
 
 #include "renderer/core/error.h"
 
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <png.h>
 
 #include <cassert>
 #include <cmath>
@@ -167,11 +167,21 @@ void Canvas::image(const PixelBox& box, int columns, int rows, const std::vector
 }
 
 std::string Canvas::encode_png() const {
-    std::vector<unsigned char> bytes;
-    if (!cv::imencode(".png", pixels_->image, bytes, {cv::IMWRITE_PNG_COMPRESSION, 6})) {
-        throw core::Failure("picture", "cannot be encoded as PNG");
+    const cv::Mat& pixels = pixels_->image;
+    png_image picture{};
+    picture.version = PNG_IMAGE_VERSION;
+    picture.width = static_cast<png_uint_32>(pixels.cols);
+    picture.height = static_cast<png_uint_32>(pixels.rows);
+    picture.format = PNG_FORMAT_BGR;
+    png_alloc_size_t count = PNG_IMAGE_PNG_SIZE_MAX(picture);
+    std::string bytes(count, '\0');
+    const auto row_bytes = static_cast<png_int_32>(pixels.step[0]);
+    if (!png_image_write_to_memory(
+            &picture, bytes.data(), &count, 0, pixels.data, row_bytes, nullptr)) {
+        throw core::Failure("picture", std::string("cannot be encoded as PNG: ") + picture.message);
     }
-    return {bytes.begin(), bytes.end()};
+    bytes.resize(count);
+    return bytes;
 }
 
 }  // namespace nlos

@@ -118,6 +118,30 @@ TEST_F(HostileInput, PipesAndDevicesAreNoGeometry) {
         "is no regular file");
 }
 
+TEST_F(HostileInput, PhotographsAreCheckedBeforeTheyAreDecoded) {
+    core::Json setup = core::read_json_file(NLOS_SOURCE_DIR "/data/setup.json");
+    setup["direct_returns"] = NLOS_SOURCE_DIR "/data/direct_returns.h5";
+    setup["spots_px"] = setup["commands"];
+    const auto expect_refused = [&](const std::string& name, const std::string& part) {
+        setup["boards"]["images"] = {name, name, name};
+        write_file_bytes(file("setup.json"), setup.dump());
+        expect_bad_input("calibrate " + file("setup.json") + " -o " + file("c.json"), part);
+    };
+    fs::create_directory(file("folder.png"));
+    ASSERT_EQ(::mkfifo(file("pipe.png").c_str(), 0600), 0);
+    write_file_bytes(file("picture.tif"), "II*");
+    std::string claim = file_bytes(NLOS_SOURCE_DIR "/scenes/letter/reconstruction.png");
+    // 100,000 x 100,000 pixels, 8-bit colours, and the checksum of that.
+    claim.replace(16, 17, std::string("\0\1\206\240\0\1\206\240\10\2\0\0\0\047\060\234\237", 17));
+    write_file_bytes(file("claim.png"), claim);
+    write_file_bytes(file("cut.jpg"), "\xff\xd8\xff\xe0");
+    expect_refused("folder.png", "is a folder");
+    expect_refused("pipe.png", "is no regular file");
+    expect_refused("picture.tif", "is neither a PNG nor a JPEG file");
+    expect_refused("claim.png", "has 100000 x 100000 pixels");
+    expect_refused("cut.jpg", "cannot be decoded");
+}
+
 TEST_F(HostileInput, HolesAreNoContents) {
     for (const std::string name :
          {"s.json", "s.glb", "s.ply", "s.obj", "s.stl", "s.xml", "s.yaml"}) {
