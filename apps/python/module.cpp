@@ -55,4 +55,5 @@ NB_MODULE(_core, module) {
     python::bind_reconstruction(module);
     python::bind_fit(module);
     python::bind_work(module);
+    python::bind_operators(module);
 }

@@ -29,14 +29,15 @@ import os
 from typing import Any, Callable, Mapping, Sequence, Union
 
 from . import _core
-from ._core import Capture, FitResult, Object, Reconstruction, Scene
+from ._core import (Capture, FitResult, LightConeOperator, Object, PairOperator, Reconstruction, Scene)
 from ._errors import Error, Failure
 from ._inputs import paths_of, show_progress, thread_count
 from .neighbours import from_mitransient, from_tal, from_trimesh, to_tal
 
 __version__ = _core.version.split()[1]
 __all__ = [
-    "Capture", "Error", "Failure", "FitResult", "Object", "Reconstruction", "Scene",
+    "Capture", "Error", "Failure", "FitResult", "LightConeOperator", "Object", "PairOperator",
+    "Reconstruction", "Scene",
     "calibrate", "compare", "fit", "from_mitransient", "from_tal", "from_trimesh", "info",
     "load_scene", "read", "read_volume", "reconstruct", "render", "report", "settings",
     "simulate_noise", "to_tal",
