@@ -171,7 +171,7 @@ class LightCone {
         nlos::ConeField field(volume.size());
         for_each_voxel(
             [&](std::size_t stored, std::size_t shown) { field[stored] = volume[shown]; });
-        nlos::ConeField light;
+        nlos::ConeField light(volume.size());
         convolve([&] { convolution_.forward(field, light); });
         core::Transient result(place_->scan.num_pairs(), place_->axis.num_bins);
         for_each_row([&](std::size_t x, std::vector<float>& time) {
@@ -191,7 +191,7 @@ class LightCone {
             time_.apply_adjoint(
                 time.data(), at_wall.data() + x * cone_.num_v() * cone_.ny, cone_.ny);
         });
-        nlos::ConeField field;
+        nlos::ConeField field(at_wall.size());
         convolve([&] { convolution_.adjoint(at_wall, field); });
         std::vector<float> volume(field.size());
         for_each_voxel(
