@@ -17,7 +17,7 @@ nb::object numbers_from(nb::handle value, const char* dtype, const std::string& 
     if (!is_empty && !is_whole && (wants_whole || kind != "f")) {
         throw core::Error(
             name,
-            "holds values of type " + nb::cast<std::string>(nb::str(array.attr("dtype"))),
+            "holds values of type " + nb::cast<std::string>(array.attr("dtype").attr("__str__")()),
             wants_whole ? "must be whole numbers" : "must be real numbers");
     }
     return array.attr("astype")(dtype, nb::arg("copy") = false);

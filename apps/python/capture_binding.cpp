@@ -114,12 +114,13 @@ Capture read_capture(const std::vector<std::string>& paths, const nb::dict& sett
 }
 
 std::vector<std::string> write_capture(const Capture& capture,
-                                       const std::string& path,
+                                       nb::handle path,
                                        const std::string& layout,
                                        bool for_ytal) {
+    const std::string target = path_from(path);
     return with_files([&] {
         core::validate(capture, "capture");
-        return nlos::write_capture(path, capture, {for_ytal, layout});
+        return nlos::write_capture(target, capture, {for_ytal, layout});
     });
 }
 
@@ -281,8 +282,8 @@ void bind_capture(nb::module_& module) {
                                                    illumination_normals,
                                                    nb::dict(fields)));
         },
-        nb::arg("H"),
-        nb::arg("sensing_points_m"),
+        nb::arg("H").none(),
+        nb::arg("sensing_points_m").none(),
         nb::arg("sensing_normals").none() = nb::none(),
         nb::arg("illumination_points_m").none() = nb::none(),
         nb::arg("illumination_normals").none() = nb::none(),
@@ -292,7 +293,7 @@ void bind_capture(nb::module_& module) {
     binding
         .def("write",
              &write_capture,
-             nb::arg("path"),
+             nb::arg("path").none(),
              nb::arg("layout") = "",
              nb::arg("for_ytal") = false,
              "Writes the capture by its suffix (.h5, .npz, .exr, .mat) or in a layout; returns "

@@ -117,13 +117,14 @@ void bind_fit(nb::module_& module) {
             "(pairs, bins) float64, what the fitted scene explains")
         .def(
             "write",
-            [](const FitObject& f, const std::string& path) {
+            [](const FitObject& f, nb::handle target) {
+                const std::string path = path_from(target);
                 with_files([&] {
                     apps::write_fit(f.input, f.result, path);
                     return 0;
                 });
             },
-            nb::arg("path"),
+            nb::arg("path").none(),
             "Writes FIT.json and, beside it, the fitted scene and a picture.")
         .def("picture", &picture_of, "PNG: data, model and their difference.")
         .def("_repr_png_", &picture_of)

@@ -74,7 +74,7 @@ Json from_python(nb::handle value, const std::string& where, int depth) {
     }
     throw core::Error(
         where,
-        "found an object of type " + nb::cast<std::string>(nb::str(value.type().attr("__name__"))),
+        "found an object of type " + nb::cast<std::string>(value.type().attr("__name__")),
         "must be a number, text, list or dictionary");
 }
 
@@ -82,6 +82,12 @@ Json from_python(nb::handle value, const std::string& where, int depth) {
 
 Json json_from_python(nb::handle value, const std::string& where) {
     return from_python(value, where, 0);
+}
+
+std::string path_from(nb::handle value) {
+    const Json json = json_from_python(value, "path");
+    if (!json.is_string()) core::throw_wrong_type("path", json, "a path");
+    return json.get<std::string>();
 }
 
 nb::object python_from_json(const Json& json) {

@@ -16,6 +16,10 @@ namespace python {
 /// throws   core::Error naming the part that is something else or no finite number
 core::Json json_from_python(nanobind::handle value, const std::string& where);
 
+/// A path, as a text or anything with __fspath__.
+/// throws   core::Error naming the argument `path`
+std::string path_from(nanobind::handle value);
+
 /// JSON as dictionaries, lists, texts and numbers.
 nanobind::object python_from_json(const core::Json& json);
 

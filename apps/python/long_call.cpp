@@ -25,6 +25,11 @@ core::ThreadLimit limit_threads(int threads) {
     return core::ThreadLimit(g_is_forked ? 1 : threads);
 }
 
+std::mutex& file_mutex() {
+    static std::mutex mutex;
+    return mutex;
+}
+
 template <class Call>
 void CallProgress::call_python(const Call& call) {
     const nb::gil_scoped_acquire acquired;

@@ -72,12 +72,15 @@ auto run_long(const nanobind::object& callback, int threads, Work&& work) {
     }
 }
 
-/// Reads or writes a file without Python's lock; one at a time, since HDF5 keeps state of its own.
+/// Held while files are read or written. Readers fork a process, which must not happen while
+/// another thread is within HDF5: the child would wait for a lock that nobody holds.
+std::mutex& file_mutex();
+
+/// Reads or writes a file without Python's lock; one at a time.
 template <class Work>
 auto with_files(Work&& work) {
-    static std::mutex one_at_a_time;
     const nanobind::gil_scoped_release released;
-    const std::lock_guard lock(one_at_a_time);
+    const std::lock_guard lock(file_mutex());
     return work();
 }
 

@@ -44,6 +44,7 @@ void translate(const std::exception_ptr& thrown, void*) {
 }  // namespace
 
 NB_MODULE(_core, module) {
+    nb::set_leak_warnings(false);  // objects that live to the end of the process are no leak
     const nb::module_ errors = nb::module_::import_("nlos._errors");
     g_error = errors.attr("Error").inc_ref();  // as long as the process
     g_failure = errors.attr("Failure").inc_ref();

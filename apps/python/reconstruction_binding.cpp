@@ -56,7 +56,8 @@ nb::tuple mesh_of(const Reconstruction& result) {
                           array_of(std::move(faces), {mesh.triangles.size(), 3}));
 }
 
-void write(const Reconstruction& result, const std::string& path) {
+void write(const Reconstruction& result, nb::handle target) {
+    const std::string path = path_from(target);
     with_files([&] {
         if (path.ends_with(".ply")) {
             nlos::write_ply(path, result.points);
@@ -145,7 +146,7 @@ void bind_reconstruction(nb::module_& module) {
         .def("mesh",
              &mesh_of,
              "The surface as (vertices (N, 3) float64, world [m]; faces (M, 3) uint32).")
-        .def("write", &write, nb::arg("path"), "Writes the volume (.h5) or its points (.ply).")
+        .def("write", &write, nb::arg("path").none(), "Writes the volume (.h5) or its points (.ply).")
         .def("picture", &picture_of, "PNG: projections, depth, and what is stated about it.")
         .def("_repr_png_", &picture_of)
         .def("__repr__", &text_of);

@@ -118,7 +118,8 @@ nb::dict depth_map(const SceneObject& scene) {
     return result;
 }
 
-void write_scene(const SceneObject& scene, const std::string& path) {
+void write_scene(const SceneObject& scene, nb::handle target) {
+    const std::string path = path_from(target);
     const auto geometry = std::filesystem::path(path).replace_extension(".glb");
     core::check_targets({path, geometry.string()}, {});
     renderer::SceneDescription description = scene.description;
@@ -153,8 +154,8 @@ void bind_object(nb::module_& module) {
                const nb::kwargs& fields) {
                 new (self) renderer::Object(make_object(vertices, faces, nb::dict(fields)));
             },
-            nb::arg("vertices"),
-            nb::arg("faces"),
+            nb::arg("vertices").none(),
+            nb::arg("faces").none(),
             nb::arg("fields"))
         .def_ro("name", &renderer::Object::name)
         .def_prop_ro(
@@ -219,7 +220,7 @@ void bind_scene(nb::module_& module) {
              "background, and albedo (X, Y) where known.")
         .def("write",
              &write_scene,
-             nb::arg("path"),
+             nb::arg("path").none(),
              "Writes scene.json, and the geometry beside it (.glb), for the program.");
     module.def("load_scene", &load_scene, nb::arg("path"), nb::arg("settings"));
 }

@@ -100,18 +100,30 @@ std::uint64_t used_address_space() {
     return pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
 }
 
-void bound_resources(std::uint64_t file_bytes) {
+/// CPU time that reading a file may take [s].
+std::uint64_t cpu_limit_s(std::uint64_t file_bytes) {
     constexpr std::uint64_t kSeconds = 5;
     constexpr std::uint64_t kBytesPerSecond = 250'000;  // slower than to inflate a file of zeros
+    return kSeconds + file_bytes / kBytesPerSecond;
+}
+
+/// What a request may take by the clock [s], on a machine that is shared with many: a child that
+/// another thread's lock came along with would wait for ever.
+unsigned request_limit_s(std::uint64_t file_bytes) {
+    constexpr std::uint64_t kLongest = 100'000;
+    return static_cast<unsigned>(std::min(kLongest, 30 * cpu_limit_s(file_bytes)));
+}
+
+void bound_resources(std::uint64_t file_bytes) {
     limit(RLIMIT_CORE, 0);
-    limit(RLIMIT_CPU, kSeconds + file_bytes / kBytesPerSecond);
+    limit(RLIMIT_CPU, cpu_limit_s(file_bytes));
     bound_memory(available_memory_bytes());
 }
 
 /// A crash is silent and ends the child; to be interrupted is left to the parent.
 void isolate() {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-    for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGXCPU}) {
+    for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGXCPU, SIGALRM}) {
         std::signal(signal, SIG_DFL);
     }
     for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, SIG_IGN);
@@ -129,6 +141,7 @@ void isolate() {
     bound_resources(file_bytes);
     while (const std::optional<Message> request = receive_message(socket)) {
         bool is_sent = false;
+        ::alarm(request_limit_s(file_bytes));
         try {
             is_sent = send_message(socket, Kind::Bytes, serve(request->bytes));
         } catch (const Error& error) {
@@ -141,6 +154,7 @@ void isolate() {
             break;  // as a crash
         }
         if (!is_sent) break;
+        ::alarm(0);
     }
     ::_exit(0);  // nothing of the parent's is cleaned up here
 }
@@ -203,7 +217,8 @@ void SandboxedProcess::throw_ended() {
     int status = 0;
     if (process_ >= 0) ::waitpid(process_, &status, 0);
     process_ = -1;
-    const bool took_too_long = WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU;
+    const bool took_too_long =
+        WIFSIGNALED(status) && (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGALRM);
     throw Error(path_,
                 took_too_long ? "is damaged: reading it does not end"
                               : "is damaged: reading it crashes the library for its format",

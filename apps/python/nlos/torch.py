@@ -14,13 +14,13 @@ class _Linear(torch.autograd.Function):
     """One linear function forwards, its transpose for gradients."""
 
     @staticmethod
-    def forward(ctx: Any, values: torch.Tensor, apply: Any, transpose: Any) -> torch.Tensor:
-        ctx.apply, ctx.transpose = apply, transpose
-        return _tensor(apply(_array(values)), values)
+    def forward(ctx: Any, values: torch.Tensor, map_: Any, transpose: Any) -> torch.Tensor:
+        ctx.maps = transpose, map_
+        return _tensor(map_(_array(values)), values)
 
     @staticmethod
     def backward(ctx: Any, gradient: torch.Tensor) -> tuple[torch.Tensor, None, None]:
-        return _Linear.apply(gradient, ctx.transpose, ctx.apply), None, None
+        return _Linear.apply(gradient, *ctx.maps), None, None
 
 
 def light_cone(volume: torch.Tensor, operator: _core.LightConeOperator | _core.PairOperator) -> torch.Tensor:
