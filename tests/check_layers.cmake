@@ -26,7 +26,7 @@ set(floors_nlos
 set(floors_calib
     "calib/statistics|calib/model"
     "calib/forward|calib/setup"
-    "calib/fit"
+    "calib/fit|calib/adjoint"
     "calib")
 set(floors_apps
     "apps"

@@ -15,6 +15,12 @@ struct KnotChange {
     std::array<double, 3> weight;
 };
 
+/// Gradients by path lengths and weights at the nodes of an element.
+struct NodeGradients {
+    std::array<double, 6> opl;
+    std::array<double, 6> weight;
+};
+
 /// Mean of three of six nodes: of the corners (first = 0) or of the midpoints (3).
 inline double mean3(const std::array<double, 6>& values, std::size_t first) {
     return (values[first] + values[first + 1] + values[first + 2]) / 3.0;
@@ -57,6 +63,36 @@ class KnotFit {
             result.weight[j] = mean + spread * (weight[j] - corner_mean) +
                                spread_change * (corners_[j] - corner_mean_);
         }
+        return result;
+    }
+
+    /// The transpose of change(): gradients by the nodes from those by the knots.
+    NodeGradients pull(const KnotChange& by_knots) const {
+        double opl_sum = 0.0;
+        double weight_sum = 0.0;
+        double by_spread = 0.0;  // per change of the spread
+        for (std::size_t j = 0; j < 3; ++j) {
+            opl_sum += by_knots.opl[j];
+            weight_sum += by_knots.weight[j];
+            by_spread += by_knots.weight[j] * (corners_[j] - corner_mean_);
+        }
+        double spread = 1.0;
+        double per_depth = 0.0;
+        if (is_clamped_) {
+            const double depth = corner_mean_ - corners_[lowest_];
+            spread = mean_ / depth;
+            per_depth = by_spread / depth;
+        }
+        const double by_mean = weight_sum + per_depth;
+        const double by_corner_mean = -spread * by_mean;
+        NodeGradients result;
+        for (std::size_t j = 0; j < 3; ++j) {
+            result.opl[j] = by_knots.opl[j] - opl_sum / 3.0;
+            result.opl[3 + j] = opl_sum / 3.0;
+            result.weight[j] = spread * by_knots.weight[j] + by_corner_mean / 3.0;
+            result.weight[3 + j] = by_mean / 3.0;
+        }
+        if (is_clamped_) result.weight[lowest_] += spread * per_depth;
         return result;
     }
 

@@ -33,6 +33,53 @@ double nearest_wall_point(const core::Scan& scan, const Vec3& point) {
 
 }  // namespace
 
+void append_elements(const std::array<Vec3, 3>& corners,
+                     std::uint32_t facet,
+                     const core::Scan& scan,
+                     double sigma_m,
+                     double tolerance,
+                     std::vector<ModelElement>& elements) {
+    const auto position = [&](const Vec3& weights) {
+        return Vec3(weights[0] * corners[0] + weights[1] * corners[1] + weights[2] * corners[2]);
+    };
+    std::vector<SplitElement> stack{
+        {{facet, {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()}, 1.0}, 0}};
+    while (!stack.empty()) {
+        const SplitElement candidate = stack.back();
+        stack.pop_back();
+        const auto& shares = candidate.element.barycentric;
+        std::size_t longest = 0;
+        std::array<double, 3> squared{};
+        for (std::size_t i = 0; i < 3; ++i) {
+            squared[i] = (position(shares[(i + 1) % 3]) - position(shares[i])).squaredNorm();
+            if (squared[i] > squared[longest]) longest = i;
+        }
+        const double distance =
+            nearest_wall_point(scan, position((shares[0] + shares[1] + shares[2]) / 3.0));
+        const double kappa = squared[longest] / (8.0 * distance * 0.5 * sigma_m);
+        const bool is_small =
+            kErrorPerKappa * kappa <= tolerance &&
+            squared[longest] <= kSquaredAspectPerTolerance * tolerance * distance * distance;
+        if (is_small || candidate.depth == kMaxBisections) {
+            elements.push_back(candidate.element);
+            if (elements.size() > kMaxPieces) {
+                throw core::Failure("surface elements",
+                                    "the model needs more than 200,000 elements");
+            }
+            continue;
+        }
+        const Vec3 middle = 0.5 * (shares[longest] + shares[(longest + 1) % 3]);
+        SplitElement first = candidate;
+        first.depth = candidate.depth + 1;
+        first.element.area_share = 0.5 * candidate.element.area_share;
+        SplitElement second = first;
+        first.element.barycentric[(longest + 1) % 3] = middle;
+        second.element.barycentric[longest] = middle;
+        stack.push_back(second);
+        stack.push_back(first);
+    }
+}
+
 std::vector<ModelElement> cut_elements(const SceneModel& model,
                                        const SceneState& state,
                                        const core::Scan& scan,
@@ -40,46 +87,7 @@ std::vector<ModelElement> cut_elements(const SceneModel& model,
                                        double tolerance) {
     std::vector<ModelElement> elements;
     for (std::uint32_t f = 0; f < model.facets().size(); ++f) {
-        const FacetMotion motion = model.motion(state, f);
-        const auto position = [&](const Vec3& weights) {
-            return Vec3(weights[0] * motion.corners[0] + weights[1] * motion.corners[1] +
-                        weights[2] * motion.corners[2]);
-        };
-        std::vector<SplitElement> stack{
-            {{f, {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()}, 1.0}, 0}};
-        while (!stack.empty()) {
-            const SplitElement candidate = stack.back();
-            stack.pop_back();
-            const auto& corners = candidate.element.barycentric;
-            std::size_t longest = 0;
-            std::array<double, 3> squared{};
-            for (std::size_t i = 0; i < 3; ++i) {
-                squared[i] = (position(corners[(i + 1) % 3]) - position(corners[i])).squaredNorm();
-                if (squared[i] > squared[longest]) longest = i;
-            }
-            const double distance =
-                nearest_wall_point(scan, position((corners[0] + corners[1] + corners[2]) / 3.0));
-            const double kappa = squared[longest] / (8.0 * distance * 0.5 * sigma_m);
-            const bool is_small =
-                kErrorPerKappa * kappa <= tolerance &&
-                squared[longest] <= kSquaredAspectPerTolerance * tolerance * distance * distance;
-            if (is_small || candidate.depth == kMaxBisections) {
-                elements.push_back(candidate.element);
-                if (elements.size() > kMaxPieces) {
-                    throw core::Failure("fit", "the model needs more than 200,000 elements");
-                }
-                continue;
-            }
-            const Vec3 middle = 0.5 * (corners[longest] + corners[(longest + 1) % 3]);
-            SplitElement first = candidate;
-            first.depth = candidate.depth + 1;
-            first.element.area_share = 0.5 * candidate.element.area_share;
-            SplitElement second = first;
-            first.element.barycentric[(longest + 1) % 3] = middle;
-            second.element.barycentric[longest] = middle;
-            stack.push_back(second);
-            stack.push_back(first);
-        }
+        append_elements(model.motion(state, f).corners, f, scan, sigma_m, tolerance, elements);
     }
     return elements;
 }

@@ -18,15 +18,23 @@ struct ModelElement {
     double area_share = 1.0;  ///< of the facet
 };
 
-/// Cuts the model's facets by bisection of their longest edges.
+/// Cuts a triangle by bisection of its longest edges and appends its elements.
 ///
 /// The Gaussian kernel's relative L2 error is at most 0.05 h^2 / (8 r s), h the longest edge, r the
 /// distance and s the response's width in range; without a response half a bin stands for s.
 ///
-/// state       where the facets are while being cut
-/// sigma_m     standard deviation of the response in path length [m], or the bin's width
+/// sigma_m     standard deviation of the response in path length [m], or half the bin's width
 /// tolerance   relative L2 error aimed at
+/// throws      core::Failure beyond 200,000 elements
 /// source      rule measured, see README.md
+void append_elements(const std::array<core::Vec3, 3>& corners,
+                     std::uint32_t facet,
+                     const core::Scan& scan,
+                     double sigma_m,
+                     double tolerance,
+                     std::vector<ModelElement>& elements);
+
+/// The elements of all facets of a model, where the state puts them.
 std::vector<ModelElement> cut_elements(const SceneModel& model,
                                        const SceneState& state,
                                        const core::Scan& scan,

@@ -132,20 +132,23 @@ std::array<double, 2> device_leg_range_m(const Scan& scan) {
     return range;
 }
 
+void validate(const Scan& scan, const std::string& where) {
+    if (scan.camera) {
+        validate(*scan.camera, where + ": camera");
+    } else {
+        validate_points(scan.sensing, where + ": sensing points");
+        validate_points(scan.illumination, where + ": illumination points");
+    }
+    require(
+        scan.pattern != ScanPattern::Confocal || scan.illumination.size() == scan.sensing.size(),
+        where + ": illumination points",
+        fmt::format("{}", scan.illumination.size()),
+        fmt::format("as many as the {} sensing points of a confocal scan", scan.sensing.size()));
+}
+
 void validate(const Capture& capture, const std::string& where) {
     validate(capture.time_axis, where + ": time axis");
-    if (capture.scan.camera) {
-        validate(*capture.scan.camera, where + ": camera");
-    } else {
-        validate_points(capture.scan.sensing, where + ": sensing points");
-        validate_points(capture.scan.illumination, where + ": illumination points");
-    }
-    require(capture.scan.pattern != ScanPattern::Confocal ||
-                capture.scan.illumination.size() == capture.scan.sensing.size(),
-            where + ": illumination points",
-            fmt::format("{}", capture.scan.illumination.size()),
-            fmt::format("as many as the {} sensing points of a confocal scan",
-                        capture.scan.sensing.size()));
+    validate(capture.scan, where);
     const int num_bins = capture.time_axis.num_bins;
     validate_histograms(capture, capture.transient, num_bins, where + ": H");
     if (capture.velocity) {

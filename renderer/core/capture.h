@@ -124,6 +124,11 @@ struct Capture {
     }
 };
 
+/// Throws Error unless a scan has points, each with a normal, all of them finite, or a camera.
+///
+/// where   prefix of messages
+void validate(const Scan& scan, const std::string& where);
+
 /// Throws Error unless points, pairs, bins and normals agree, every value is finite, and bins that
 /// were not observed hold 0.
 ///
