@@ -17,11 +17,9 @@ void bind_reconstruction(nanobind::module_& module);
 void bind_fit(nanobind::module_& module);
 void bind_work(nanobind::module_& module);
 void bind_operators(nanobind::module_& module);
+void bind_gradients(nanobind::module_& module);
 
 /// Changes a scene by keys of scene.json.
 void change_scene(SceneObject& scene, const core::Json& changes);
-
-/// Puts a capture's points and path lengths in the place of a description's.
-void describe_scan(const core::Scan& scan, renderer::ScanSettings& settings);
 
 }  // namespace python

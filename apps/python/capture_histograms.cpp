@@ -66,18 +66,6 @@ Extents pair_shape(const core::Scan& scan) {
     return shape;
 }
 
-nb::object histogram_view(core::Transient& transient, const core::Scan& scan, nb::handle owner) {
-    Extents shape = pair_shape(scan);
-    Extents strides(shape.size());
-    std::size_t stride = transient.num_bins();
-    for (std::size_t axis = shape.size(); axis-- > 0; stride *= shape[axis]) {
-        strides[axis] = stride;
-    }
-    shape.insert(shape.begin(), transient.num_bins());
-    strides.insert(strides.begin(), 1);
-    return array_view(transient.values().data(), shape, owner, strides);
-}
-
 HistogramArray histograms_from(nb::handle value, const std::string& name) {
     nb::object array = numbers_from(value, "float32", name);
     if (!nb::cast<bool>(array.attr("flags").attr("writeable"))) array = array.attr("copy")();

@@ -14,9 +14,26 @@ using HistogramArray = nanobind::ndarray<float, nanobind::device::cpu>;
 Extents pair_shape(const core::Scan& scan);
 
 /// Histograms as NumPy sees them: time first, then pair_shape(), in the memory they have.
-nanobind::object histogram_view(core::Transient& transient,
+template <class T>
+nanobind::object histogram_view(T* values,
+                                std::size_t num_bins,
                                 const core::Scan& scan,
-                                nanobind::handle owner);
+                                nanobind::handle owner) {
+    Extents shape = pair_shape(scan);
+    Extents strides(shape.size());
+    std::size_t stride = num_bins;
+    for (std::size_t axis = shape.size(); axis-- > 0; stride *= shape[axis]) {
+        strides[axis] = stride;
+    }
+    shape.insert(shape.begin(), num_bins);
+    strides.insert(strides.begin(), 1);
+    return array_view(values, shape, owner, strides);
+}
+inline nanobind::object histogram_view(core::Transient& transient,
+                                       const core::Scan& scan,
+                                       nanobind::handle owner) {
+    return histogram_view(transient.values().data(), transient.num_bins(), scan, owner);
+}
 
 /// Histograms that NumPy makes of numbers: what is float32 and may be written is taken as it is.
 /// throws   core::Error naming the argument when they are no real numbers

@@ -57,4 +57,5 @@ NB_MODULE(_core, module) {
     python::bind_fit(module);
     python::bind_work(module);
     python::bind_operators(module);
+    python::bind_gradients(module);
 }

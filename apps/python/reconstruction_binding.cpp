@@ -146,7 +146,10 @@ void bind_reconstruction(nb::module_& module) {
         .def("mesh",
              &mesh_of,
              "The surface as (vertices (N, 3) float64, world [m]; faces (M, 3) uint32).")
-        .def("write", &write, nb::arg("path").none(), "Writes the volume (.h5) or its points (.ply).")
+        .def("write",
+             &write,
+             nb::arg("path").none(),
+             "Writes the volume (.h5) or its points (.ply).")
         .def("picture", &picture_of, "PNG: projections, depth, and what is stated about it.")
         .def("_repr_png_", &picture_of)
         .def("__repr__", &text_of);

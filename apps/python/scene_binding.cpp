@@ -214,6 +214,18 @@ void bind_scene(nb::module_& module) {
             },
             nb::arg("settings"),
             "A copy with other settings.")
+        .def(
+            "with_objects",
+            [](const SceneObject& scene, const std::vector<renderer::Object>& objects) {
+                if (objects.empty())
+                    throw core::Error("objects", "found none", "must be one at least");
+                SceneObject changed = scene;
+                changed.description.objects.clear();  // objects say themselves what they are
+                changed.geometry.objects = objects;
+                return changed;
+            },
+            nb::arg("objects"),
+            "A copy with other objects.")
         .def("depth_map",
              &depth_map,
              "What the relay wall sees: dict of x_m (X,), y_m (Y,), depth_m (X, Y) with NaN for "

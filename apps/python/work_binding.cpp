@@ -7,6 +7,7 @@
 #include "apps/commands/render_job.h"
 #include "apps/python/bindings.h"
 #include "apps/python/fit_object.h"
+#include "apps/python/scanned_scene.h"
 #include "apps/report/report.h"
 #include "apps/scene_truth.h"
 #include "apps/version.h"
@@ -45,29 +46,16 @@ core::Capture render(const SceneObject& scene,
                      const nb::dict& settings,
                      const nb::object& progress,
                      int threads) {
-    core::Json changes = scene_changes(settings);
-    const core::Capture* like = nullptr;
-    if (nb::isinstance<core::Capture>(scan)) {
-        like = &nb::cast<core::Capture&>(scan);
-    } else if (!scan.is_none()) {
-        changes["scan"] = json_from_python(scan, "scan");
-    }
-    if (!axis.is_none()) changes["time_axis"] = json_from_python(axis, "axis");
-    SceneObject changed = scene;
-    change_scene(changed, changes);
-    apps::RenderInput input{changed.name, changed.description, {}, nullptr};
-    if (like != nullptr) {
-        if (!like->scan.camera) describe_scan(like->scan, input.description.scan);
-        if (axis.is_none()) input.description.time_axis = {like->time_axis};
-    }
-    input.scan = like != nullptr ? like->scan : renderer::make_scan(input.description);
+    ScannedScene scanned = scan_scene(scene, scan, axis, scene_changes(settings));
+    apps::RenderInput input{
+        scene.name, std::move(scanned.scene.description), std::move(scanned.scan), nullptr};
     if (!calibration.is_none()) {
         const core::Json json = json_from_python(calibration, "calibration");
         apps::use_calibration(calib::applied_calibration(json, "calibration"), input);
     }
     return run_long(progress, threads, [&](const core::Progress& report) {
         input.scene = std::make_shared<const renderer::Scene>(
-            renderer::make_scene(std::move(changed.geometry), input.description, input.scan));
+            renderer::make_scene(std::move(scanned.scene.geometry), input.description, input.scan));
         renderer::RenderResult result = apps::render_input(std::move(input), report);
         for (const std::string& text : result.warnings) report.warn(text);
         return std::move(result.capture);
@@ -190,22 +178,6 @@ void bind_scores(nb::module_& module) {
 }
 
 }  // namespace
-
-void describe_scan(const core::Scan& scan, renderer::ScanSettings& settings) {
-    settings.pattern = scan.pattern;
-    settings.sensing_points_m = scan.sensing.positions;
-    settings.sensing_normals = scan.sensing.normals;
-    const bool has_own_lights = scan.pattern != core::ScanPattern::Confocal;
-    settings.illumination_points_m =
-        has_own_lights ? scan.illumination.positions : std::vector<core::Vec3>();
-    settings.illumination_normals =
-        has_own_lights ? scan.illumination.normals : std::vector<core::Vec3>();
-    settings.opl_origin = scan.opl_origin;
-    if (scan.opl_origin == core::OplOrigin::Device) {
-        settings.laser_m = scan.laser_position;
-        settings.detector_m = scan.detector_position;
-    }
-}
 
 void bind_work(nb::module_& module) {
     module.def("render",

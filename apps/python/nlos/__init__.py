@@ -28,6 +28,8 @@ from __future__ import annotations
 import os
 from typing import Any, Callable, Mapping, Sequence, Union
 
+import numpy as np
+
 from . import _core
 from ._core import (Capture, FitResult, LightConeOperator, Object, PairOperator, Reconstruction, Scene)
 from ._errors import Error, Failure
@@ -40,7 +42,7 @@ __all__ = [
     "Reconstruction", "Scene",
     "calibrate", "compare", "fit", "from_mitransient", "from_tal", "from_trimesh", "info",
     "load_scene", "read", "read_volume", "reconstruct", "render", "report", "settings",
-    "simulate_noise", "to_tal",
+    "simulate_noise", "third_bounce_vjp", "to_tal",
 ]
 
 Path = Union[str, "os.PathLike[str]"]
@@ -194,6 +196,26 @@ def compare(
         raise Error("result", f"found {type(result).__name__} against {type(reference).__name__}",
                     "must be a Reconstruction, FitResult or Scene against a Scene, or two of one kind")
     return _core.compare(result, reference, fscore_threshold_m)
+
+
+def third_bounce_vjp(
+    scene: Scene | Path,
+    scan: Mapping[str, Any] | Capture | None = None,
+    axis: Mapping[str, Any] | None = None,
+    **settings: Any,
+) -> tuple[np.ndarray, Callable[[Any], list[tuple[np.ndarray, float]]]]:
+    """The third bounce of a scene, and the way back from a loss by H to one by the scene.
+
+    scene     Scene of Lambertian objects, or path of one; scan and axis as of render()
+    settings  tolerance: relative L2 error that surfaces are cut for (0.02; gradients are those of
+              the H returned, to rounding, and as far from those of the exact one as several times
+              its error); sigma_m: standard deviation of a Gaussian response in path length
+    returns   (H, pullback): H is float64 in the shape of Capture.H; pullback(dL/dH) gives a list of
+              (dL/dvertices (N, 3), dL/dalbedo), one per object. The edges of shadows are found
+              exactly, so that gradients count how they move.
+    """
+    pullback = _core.third_bounce_pullback(_scene(scene), scan, axis, settings)
+    return pullback.H, pullback
 
 
 def info(path: Path | Sequence[Path], **settings: Any) -> str:

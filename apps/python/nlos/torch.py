@@ -3,11 +3,12 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Sequence
 
 import torch
 
-from . import _core
+from . import Object, Scene, _core, third_bounce_vjp
+from ._errors import Error
 
 
 class _Linear(torch.autograd.Function):
@@ -21,6 +22,54 @@ class _Linear(torch.autograd.Function):
     @staticmethod
     def backward(ctx: Any, gradient: torch.Tensor) -> tuple[torch.Tensor, None, None]:
         return _Linear.apply(gradient, *ctx.maps), None, None
+
+
+class _ThirdBounce(torch.autograd.Function):
+    """H of the vertices and albedos of a scene's objects, in turns."""
+
+    @staticmethod
+    def forward(ctx: Any, scene: Any, scan: Any, axis: Any, settings: Any, *values: torch.Tensor) -> torch.Tensor:
+        objects = [
+            Object(_array(vertices), old.faces, name=old.name, role=old.role, albedo=float(albedo))
+            for old, vertices, albedo in zip(scene.objects, values[::2], values[1::2])
+        ]
+        H, ctx.pullback = third_bounce_vjp(scene.with_objects(objects), scan, axis, **settings)
+        ctx.like = values
+        return _tensor(H, values[0])
+
+    @staticmethod
+    def backward(ctx: Any, gradient: torch.Tensor) -> tuple[Any, ...]:
+        gradients: list[Any] = [None] * 4
+        for (vertices, albedo), like in zip(ctx.pullback(_array(gradient)), ctx.like[::2]):
+            gradients += [_tensor(vertices, like), torch.tensor(albedo, dtype=like.dtype, device=like.device)]
+        return tuple(gradients)
+
+
+def third_bounce(
+    scene: Scene,
+    vertices: torch.Tensor | Sequence[torch.Tensor],
+    albedo: torch.Tensor | Sequence[torch.Tensor] | None = None,
+    *,
+    scan: Any = None,
+    axis: Any = None,
+    **settings: Any,
+) -> torch.Tensor:
+    """H (T, Sx, Sy) of a scene whose objects have other vertices and albedos, with gradients by both.
+
+    scene     Scene of Lambertian objects; its faces, wall, scan and axis are kept
+    vertices  (N, 3) of its object [m], or a list with one tensor per object
+    albedo    scalar of its object, or a list; None: the scene's
+    settings  of third_bounce_vjp()
+    """
+    objects = scene.objects
+    moved = [vertices] if isinstance(vertices, torch.Tensor) else list(vertices)
+    if albedo is None:
+        albedo = [torch.tensor(o.albedo, dtype=moved[0].dtype) for o in objects]
+    albedos = [albedo] if isinstance(albedo, torch.Tensor) else list(albedo)
+    if len(moved) != len(objects) or len(albedos) != len(objects):
+        raise Error("vertices", f"found {len(moved)} tensors and {len(albedos)} albedos",
+                    f"must be one of each of the scene's {len(objects)} objects")
+    return _ThirdBounce.apply(scene, scan, axis, settings, *(t for pair in zip(moved, albedos) for t in pair))
 
 
 def light_cone(volume: torch.Tensor, operator: _core.LightConeOperator | _core.PairOperator) -> torch.Tensor:

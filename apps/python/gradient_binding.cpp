@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: MIT
+// Third bounces of all objects of a scene, and the way back from a loss by H to one by the objects.
+#include "apps/python/bindings.h"
+#include "apps/python/capture_histograms.h"
+#include "apps/python/scanned_scene.h"
+#include "calib/third_bounce_vjp.h"
+
+#include <nanobind/stl/string.h>
+
+#include <memory>
+
+namespace python {
+namespace {
+
+namespace nb = nanobind;
+
+/// The facets of all hidden objects in one mesh, and where each object's begin.
+struct JoinedObjects {
+    core::TriangleMesh mesh;
+    std::vector<double> albedo;  ///< per facet
+    std::vector<std::size_t> first_vertex{0};
+    std::vector<std::size_t> first_facet{0};
+};
+
+JoinedObjects join(const renderer::SceneGeometry& geometry) {
+    JoinedObjects joined;
+    for (const renderer::Object& object : geometry.objects) {
+        if (object.material.model != renderer::SurfaceModel::Lambertian ||
+            object.material.albedo_texture || object.role == renderer::Role::RelayWall) {
+            throw core::Error("scene: object " + object.name,
+                              "is textured, no Lambertian surface, or the relay wall",
+                              "must be Lambertian with one albedo, and hidden");
+        }
+        const auto base = static_cast<std::uint32_t>(joined.mesh.vertices.size());
+        joined.mesh.vertices.insert(
+            joined.mesh.vertices.end(), object.mesh.vertices.begin(), object.mesh.vertices.end());
+        for (const auto& [a, b, c] : object.mesh.triangles) {
+            joined.mesh.triangles.push_back({base + a, base + b, base + c});
+            joined.albedo.push_back(object.material.albedo);
+        }
+        joined.first_vertex.push_back(joined.mesh.vertices.size());
+        joined.first_facet.push_back(joined.mesh.triangles.size());
+    }
+    return joined;
+}
+
+/// What third_bounce_vjp() returns beside H.
+class ThirdBouncePullback {
+ public:
+    ThirdBouncePullback(JoinedObjects joined,
+                        const core::Scan& scan,
+                        std::unique_ptr<const calib::ThirdBounceVjp> vjp)
+        : joined_(std::move(joined)), scan_(scan), vjp_(std::move(vjp)) {}
+
+    nb::object histograms(nb::handle self) const {
+        const auto num_pairs = scan_.num_pairs();
+        const std::size_t num_bins = vjp_->histograms().size() / num_pairs;
+        return histogram_view(vjp_->histograms().data(), num_bins, scan_, self);
+    }
+
+    nb::list pullback(nb::handle gradient) const {
+        const auto by_value = values_from(gradient);
+        calib::MeshGradients gradients = run_long(nb::none(), 0, [&](const core::Progress& report) {
+            return vjp_->pullback(by_value, report);
+        });
+        nb::list objects;
+        for (std::size_t i = 0; i + 1 < joined_.first_vertex.size(); ++i) {
+            objects.append(
+                nb::make_tuple(vertex_gradients(gradients, i), albedo_gradient(gradients, i)));
+        }
+        return objects;
+    }
+
+ private:
+    // dL/dH as [pair][bin].
+    std::vector<double> values_from(nb::handle gradient) const {
+        const auto array = doubles_from(gradient, "gradient");
+        Extents expected = pair_shape(scan_);
+        const std::size_t num_pairs = scan_.num_pairs();
+        const std::size_t num_bins = vjp_->histograms().size() / num_pairs;
+        expected.insert(expected.begin(), num_bins);
+        if (shape_of(array) != expected) {
+            throw core::Error("gradient",
+                              "has shape " + shape_text(shape_of(array)),
+                              "must have the shape of H, " + shape_text(expected));
+        }
+        std::vector<double> values(array.size());
+        for (std::size_t bin = 0; bin < num_bins; ++bin) {
+            for (std::size_t pair = 0; pair < num_pairs; ++pair) {
+                values[pair * num_bins + bin] = array.data()[bin * num_pairs + pair];
+            }
+        }
+        return values;
+    }
+
+    nb::object vertex_gradients(const calib::MeshGradients& gradients, std::size_t object) const {
+        const std::size_t begin = joined_.first_vertex[object];
+        const std::size_t end = joined_.first_vertex[object + 1];
+        std::vector<double> values;
+        for (std::size_t v = begin; v < end; ++v) {
+            const core::Vec3& g = gradients.vertices[v];
+            values.insert(values.end(), {g.x(), g.y(), g.z()});
+        }
+        return array_of(std::move(values), {end - begin, 3});
+    }
+
+    double albedo_gradient(const calib::MeshGradients& gradients, std::size_t object) const {
+        double sum = 0.0;
+        for (std::size_t f = joined_.first_facet[object]; f < joined_.first_facet[object + 1];
+             ++f) {
+            sum += gradients.albedo[f];
+        }
+        return sum;
+    }
+
+    JoinedObjects joined_;
+    core::Scan scan_;
+    std::unique_ptr<const calib::ThirdBounceVjp> vjp_;
+};
+
+ThirdBouncePullback make_pullback(const SceneObject& scene,
+                                  const nb::object& scan,
+                                  const nb::object& axis,
+                                  const nb::dict& keywords) {
+    auto settings = settings_from_python<calib::ThirdBounceVjpSettings>(keywords);
+    ScannedScene scanned = scan_scene(scene, scan, axis, core::Json::object());
+    if (scanned.scan.camera) {
+        throw core::Error("scene", "has a camera in place of a relay wall", "must have a wall");
+    }
+    const renderer::SceneDescription& description = scanned.scene.description;
+    if (description.time_axis.automatic) {
+        throw core::Error("axis", "found auto", "must be opl_start_m, bin_width_m and num_bins");
+    }
+    settings.wall_albedo = description.relay_wall.albedo;
+    JoinedObjects joined = join(scanned.scene.geometry);
+    auto vjp = run_long(nb::none(), 0, [&](const core::Progress& report) {
+        return std::make_unique<const calib::ThirdBounceVjp>(
+            joined.mesh, joined.albedo, scanned.scan, description.time_axis, settings, report);
+    });
+    return {std::move(joined), scanned.scan, std::move(vjp)};
+}
+
+}  // namespace
+
+void bind_gradients(nb::module_& module) {
+    nb::class_<ThirdBouncePullback>(
+        module, "ThirdBouncePullback", "From dL/dH to dL/d(vertices, albedo) of every object.")
+        .def_prop_ro(
+            "H",
+            [](nb::handle self) {
+                return nb::cast<const ThirdBouncePullback&>(self).histograms(self);
+            },
+            "float64, in the shape of Capture.H")
+        .def("__call__",
+             &ThirdBouncePullback::pullback,
+             nb::arg("gradient").none(),
+             "dL/dH to a list of (dL/dvertices (N, 3), dL/dalbedo) per object.");
+    module.def("third_bounce_pullback",
+               &make_pullback,
+               nb::arg("scene"),
+               nb::arg("scan").none(),
+               nb::arg("axis").none(),
+               nb::arg("settings"));
+}
+
+}  // namespace python
