@@ -32,7 +32,8 @@ set(floors_apps
     "apps"
     "apps/bench|apps/report"
     "apps/bench/render|apps/bench/reconstruct|apps/bench/fit"
-    "apps/commands")
+    "apps/commands"
+    "apps/python")
 
 # What lies below a whole top folder.
 set(below_renderer "")
@@ -58,6 +59,7 @@ set(third_calib/forward "ceres/")
 set(third_calib/fit "ceres/")
 set(third_apps "CLI/")
 set(third_apps/bench "CLI/")
+set(third_apps/python "nanobind/|pthread\\.h")
 
 get_filename_component(ROOT ${ROOT} ABSOLUTE)
 set(errors "")

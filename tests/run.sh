@@ -1,12 +1,19 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds with warnings as errors, and runs every test.
 #   bash tests/run.sh [PRESET] [CTEST ARGUMENTS ...]      PRESET: check (default), dev or sanitize
+# The Python module is built and tested too, but not by sanitize: Python itself lacks the sanitizers.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 preset=${1:-check}
 [ $# -gt 0 ] && shift
 bash apps/setup.sh python3-h5py python3-numpy python3-scipy  # they write the layouts of other groups
-cmake --preset "$preset" >/dev/null
+module=()
+if [ "$preset" != sanitize ]; then
+    bash tests/python.sh
+    module=(-DNLOS_PYTHON=ON "-DPython_EXECUTABLE=$PWD/build/python/bin/python")
+fi
+cmake --preset "$preset" "${module[@]}" >/dev/null
 cmake --build --preset "$preset"
+[ "$preset" != check ] || bash tests/python.sh install
 ctest --preset "$preset" "$@"

@@ -16,36 +16,35 @@ namespace python {
 /// Sizes, or strides, of an array along its axes.
 using Extents = std::vector<std::size_t>;
 
-/// A NumPy array that shows memory of `owner`, which lives as long as the array.
+/// A NumPy array as the stubs know it.
+template <class T>
+using Array = nanobind::ndarray<nanobind::numpy, T>;
+
+/// An array that shows memory of `owner`, which lives as long as the array.
 ///
 /// strides   in elements; empty: last index fastest
 template <class T>
-nanobind::object array_view(T* data,
-                            const Extents& shape,
-                            nanobind::handle owner,
-                            const Extents& strides = {}) {
+Array<T> array_view(T* data,
+                    const Extents& shape,
+                    nanobind::handle owner,
+                    const Extents& strides = {}) {
     const std::vector<std::int64_t> signed_strides(strides.begin(), strides.end());
-    return nanobind::cast(
-        nanobind::ndarray<nanobind::numpy, T>(data,
-                                              shape.size(),
-                                              shape.data(),
-                                              owner,
-                                              strides.empty() ? nullptr : signed_strides.data()),
-        nanobind::rv_policy::reference);
+    return {
+        data, shape.size(), shape.data(), owner, strides.empty() ? nullptr : signed_strides.data()};
 }
 
 /// The same of points or directions, with the three coordinates last.
-inline nanobind::object array_view(std::vector<core::Vec3>& vectors,
-                                   Extents shape,
-                                   nanobind::handle owner) {
+inline Array<double> array_view(std::vector<core::Vec3>& vectors,
+                                Extents shape,
+                                nanobind::handle owner) {
     static_assert(sizeof(core::Vec3) == 3 * sizeof(double));
     shape.push_back(3);
     return array_view(vectors.empty() ? nullptr : vectors.front().data(), shape, owner);
 }
 
-/// A NumPy array of its own.
+/// An array of its own.
 template <class T>
-nanobind::object array_of(std::vector<T> values, const Extents& shape) {
+Array<T> array_of(std::vector<T> values, const Extents& shape) {
     auto* const owned = new std::vector<T>(std::move(values));
     const nanobind::capsule owner(owned,
                                   [](void* p) noexcept { delete static_cast<std::vector<T>*>(p); });

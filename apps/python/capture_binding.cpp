@@ -130,9 +130,9 @@ nb::bytes picture_of(const Capture& capture) {
 }
 
 // Views of points in the shape of their list or grid.
-nb::object points_view(nb::handle self,
-                       core::WallPoints core::Scan::*list,
-                       std::vector<core::Vec3> core::WallPoints::*vectors) {
+Array<double> points_view(nb::handle self,
+                          core::WallPoints core::Scan::*list,
+                          std::vector<core::Vec3> core::WallPoints::*vectors) {
     core::WallPoints& points = nb::cast<Capture&>(self).scan.*list;
     Extents shape{points.size()};
     if (points.grid) shape = {(*points.grid)[0], (*points.grid)[1]};
@@ -140,12 +140,12 @@ nb::object points_view(nb::handle self,
 }
 
 template <auto List, auto Vectors>
-nb::object points_property(nb::handle self) {
+Array<double> points_property(nb::handle self) {
     return points_view(self, List, Vectors);
 }
 
-nb::object observed_bins(const Capture& capture) {
-    if (!capture.observed) return nb::none();
+std::optional<Array<std::int32_t>> observed_bins(const Capture& capture) {
+    if (!capture.observed) return std::nullopt;
     std::vector<std::int32_t> ranges;
     for (const core::BinRange& range : *capture.observed) {
         ranges.insert(ranges.end(), {range.begin, range.end});
@@ -196,9 +196,9 @@ void bind_arrays(nb::class_<Capture>& binding) {
             "(T, Lx, Ly, Sx, Sy) or (T, L, S), of cameras (T, width, height)")
         .def_prop_ro(
             "variance",
-            [](nb::handle self) -> nb::object {
+            [](nb::handle self) -> std::optional<Array<float>> {
                 auto& capture = nb::cast<Capture&>(self);
-                if (!capture.variance) return nb::none();
+                if (!capture.variance) return std::nullopt;
                 return histogram_view(*capture.variance, capture.scan, self);
             },
             "of each value of H, where known, else None")

@@ -15,10 +15,10 @@ Extents pair_shape(const core::Scan& scan);
 
 /// Histograms as NumPy sees them: time first, then pair_shape(), in the memory they have.
 template <class T>
-nanobind::object histogram_view(T* values,
-                                std::size_t num_bins,
-                                const core::Scan& scan,
-                                nanobind::handle owner) {
+Array<T> histogram_view(T* values,
+                        std::size_t num_bins,
+                        const core::Scan& scan,
+                        nanobind::handle owner) {
     Extents shape = pair_shape(scan);
     Extents strides(shape.size());
     std::size_t stride = num_bins;
@@ -29,9 +29,9 @@ nanobind::object histogram_view(T* values,
     strides.insert(strides.begin(), 1);
     return array_view(values, shape, owner, strides);
 }
-inline nanobind::object histogram_view(core::Transient& transient,
-                                       const core::Scan& scan,
-                                       nanobind::handle owner) {
+inline Array<float> histogram_view(core::Transient& transient,
+                                   const core::Scan& scan,
+                                   nanobind::handle owner) {
     return histogram_view(transient.values().data(), transient.num_bins(), scan, owner);
 }
 

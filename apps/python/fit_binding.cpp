@@ -50,7 +50,7 @@ FitObject fit(const core::Capture& capture,
     return fitted;
 }
 
-nb::object histograms(nb::handle self, std::vector<double> calib::FitAgreement::*values) {
+Array<double> histograms(nb::handle self, std::vector<double> calib::FitAgreement::*values) {
     auto& result = nb::cast<FitObject&>(self).result;
     auto& numbers = result.*values;
     const auto bins = static_cast<std::size_t>(result.axis.num_bins);
@@ -81,7 +81,7 @@ std::string text_of(const FitObject& fitted) {
                        result.iterations);
 }
 
-nb::object covariance_of(const FitObject& fitted) {
+Array<double> covariance_of(const FitObject& fitted) {
     const Eigen::MatrixXd& matrix = fitted.result.covariance;
     return array_of(
         std::vector<double>(matrix.data(), matrix.data() + matrix.size()),

@@ -52,7 +52,7 @@ class ThirdBouncePullback {
                         std::unique_ptr<const calib::ThirdBounceVjp> vjp)
         : joined_(std::move(joined)), scan_(scan), vjp_(std::move(vjp)) {}
 
-    nb::object histograms(nb::handle self) const {
+    Array<const double> histograms(nb::handle self) const {
         const auto num_pairs = scan_.num_pairs();
         const std::size_t num_bins = vjp_->histograms().size() / num_pairs;
         return histogram_view(vjp_->histograms().data(), num_bins, scan_, self);
@@ -93,7 +93,8 @@ class ThirdBouncePullback {
         return values;
     }
 
-    nb::object vertex_gradients(const calib::MeshGradients& gradients, std::size_t object) const {
+    Array<double> vertex_gradients(const calib::MeshGradients& gradients,
+                                   std::size_t object) const {
         const std::size_t begin = joined_.first_vertex[object];
         const std::size_t end = joined_.first_vertex[object + 1];
         std::vector<double> values;

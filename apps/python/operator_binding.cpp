@@ -99,7 +99,7 @@ core::Transient light_from(nb::handle value, const Extents& shape) {
 }
 
 /// Histograms of one's own as an array with time first.
-nb::object as_array(core::Transient light, const core::Scan& scan) {
+Array<float> as_array(core::Transient light, const core::Scan& scan) {
     auto* const owned = new core::Transient(std::move(light));
     const nb::capsule owner(owned,
                             [](void* p) noexcept { delete static_cast<core::Transient*>(p); });

@@ -7,6 +7,7 @@
 #include "nlos/reconstruction/surface_mesh.h"
 
 #include <fmt/core.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
@@ -20,7 +21,7 @@ Extents columns_of(const Reconstruction& result) {
     return {result.volume.axes.x_m.size(), result.volume.axes.y_m.size()};
 }
 
-nb::object volume_view(nb::handle self) {
+Array<float> volume_view(nb::handle self) {
     auto& volume = nb::cast<Reconstruction&>(self).volume;
     const nlos::VolumeAxes& axes = volume.axes;
     return array_view(
@@ -28,18 +29,18 @@ nb::object volume_view(nb::handle self) {
 }
 
 template <auto Axis>
-nb::object axis_view(nb::handle self) {
+Array<double> axis_view(nb::handle self) {
     auto& values = nb::cast<Reconstruction&>(self).volume.axes.*Axis;
     return array_view(values.data(), {values.size()}, self);
 }
 
 // Of what is stated per column, where it is.
-nb::object column_view(nb::handle self, std::vector<double>& values) {
-    if (values.empty()) return nb::none();
+std::optional<Array<double>> column_view(nb::handle self, std::vector<double>& values) {
+    if (values.empty()) return std::nullopt;
     return array_view(values.data(), columns_of(nb::cast<Reconstruction&>(self)), self);
 }
 
-nb::object world_from_wall(Reconstruction& result) {
+Array<double> world_from_wall(Reconstruction& result) {
     const Eigen::Matrix<double, 4, 4, Eigen::RowMajor> matrix =
         result.volume.axes.world_from_wall.matrix();
     return array_of(std::vector<double>(matrix.data(), matrix.data() + 16), {4, 4});
@@ -111,9 +112,9 @@ void bind_arrays(nb::class_<Reconstruction>& binding) {
             "(X, Y) probability that a column holds a surface; None: not stated")
         .def_prop_ro(
             "normals",
-            [](nb::handle self) -> nb::object {
+            [](nb::handle self) -> std::optional<Array<double>> {
                 auto& result = nb::cast<Reconstruction&>(self);
-                if (result.depth.normals.empty()) return nb::none();
+                if (result.depth.normals.empty()) return std::nullopt;
                 return array_view(result.depth.normals, columns_of(result), self);
             },
             "(X, Y, 3) float64, world, unit; None: not known")

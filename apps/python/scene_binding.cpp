@@ -136,7 +136,7 @@ void write_scene(const SceneObject& scene, nb::handle target) {
     core::write_text_file(path, core::json_text(json));
 }
 
-nb::object faces_of(const renderer::Object& object) {
+Array<std::uint32_t> faces_of(const renderer::Object& object) {
     std::vector<std::uint32_t> faces;
     for (const auto& triangle : object.mesh.triangles) {
         faces.insert(faces.end(), triangle.begin(), triangle.end());

@@ -33,10 +33,10 @@ def works(folder):
     program("simulate-noise", capture, "-o", noisy, "--photons-per-point", "200")
     model = folder / "model.json"
     model.write_text(json.dumps({"scene": LETTER, "free": {"letter": ["pose", "albedo"]}}))
-    samples = {"method": "path", "samples": 64, "threads": 1}
+    samples = {"method": "path", "samples": 1024, "threads": 1}
 
     def render_theirs():
-        program("render", LETTER, "-o", capture, "--method", "path", "--samples", "64", "--threads", "1")
+        program("render", LETTER, "-o", capture, "--method", "path", "--samples", "1024", "--threads", "1")
         return nlos.read(capture).scene_info["seconds"]
 
     def fit_theirs():
