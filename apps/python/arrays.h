@@ -42,6 +42,9 @@ inline Array<double> array_view(std::vector<core::Vec3>& vectors,
     return array_view(vectors.empty() ? nullptr : vectors.front().data(), shape, owner);
 }
 
+/// How properties return what array_of() makes; by default they would tie it to their object.
+inline constexpr nanobind::rv_policy kOwnArray = nanobind::rv_policy::reference;
+
 /// An array of its own.
 template <class T>
 Array<T> array_of(std::vector<T> values, const Extents& shape) {

@@ -301,17 +301,24 @@ void bind_application(nb::class_<Operator>& binding) {
         .def_prop_ro(
             "volume_shape",
             [](const Operator& self) { return nb::tuple(nb::cast(self.place().volume_shape())); })
-        .def_prop_ro("x_m",
-                     [](const Operator& self) {
-                         return array_of(self.place().axes.x_m, {self.place().axes.x_m.size()});
-                     })
-        .def_prop_ro("y_m",
-                     [](const Operator& self) {
-                         return array_of(self.place().axes.y_m, {self.place().axes.y_m.size()});
-                     })
-        .def_prop_ro("z_m", [](const Operator& self) {
-            return array_of(self.place().axes.z_m, {self.place().axes.z_m.size()});
-        });
+        .def_prop_ro(
+            "x_m",
+            [](const Operator& self) {
+                return array_of(self.place().axes.x_m, {self.place().axes.x_m.size()});
+            },
+            kOwnArray)
+        .def_prop_ro(
+            "y_m",
+            [](const Operator& self) {
+                return array_of(self.place().axes.y_m, {self.place().axes.y_m.size()});
+            },
+            kOwnArray)
+        .def_prop_ro(
+            "z_m",
+            [](const Operator& self) {
+                return array_of(self.place().axes.z_m, {self.place().axes.z_m.size()});
+            },
+            kOwnArray);
 }
 
 std::vector<double> centres_from(nb::handle value, const std::string& name) {
