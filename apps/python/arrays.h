@@ -42,10 +42,8 @@ inline Array<double> array_view(std::vector<core::Vec3>& vectors,
     return array_view(vectors.empty() ? nullptr : vectors.front().data(), shape, owner);
 }
 
-/// How properties return what array_of() makes; by default they would tie it to their object.
-inline constexpr nanobind::rv_policy kOwnArray = nanobind::rv_policy::reference;
-
-/// An array of its own.
+/// An array of its own. Properties return it by rv_policy::reference: by default they would tie it
+/// to their object.
 template <class T>
 Array<T> array_of(std::vector<T> values, const Extents& shape) {
     auto* const owned = new std::vector<T>(std::move(values));

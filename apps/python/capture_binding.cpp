@@ -215,7 +215,7 @@ void bind_arrays(nb::class_<Capture>& binding) {
                      &points_property<&Scan::illumination, &WallPoints::normals>)
         .def_prop_ro("observed_bins",
                      &observed_bins,
-                     kOwnArray,
+                     nb::rv_policy::reference,
                      "(pairs, 2) int32, first bin and end of what was observed; None: all");
 }
 

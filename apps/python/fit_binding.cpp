@@ -103,7 +103,8 @@ void bind_fit(nb::module_& module) {
         .def_prop_ro("expected_deviance",
                      [](const FitObject& f) { return f.result.expected_deviance; })
         .def_prop_ro("parameters", [](const FitObject& f) { return f.result.parameters; })
-        .def_prop_ro("covariance", &covariance_of, kOwnArray, "(P, P) of `parameters`")
+        .def_prop_ro(
+            "covariance", &covariance_of, nb::rv_policy::reference, "(P, P) of `parameters`")
         .def_prop_ro("unidentifiable", [](const FitObject& f) { return f.result.unidentifiable; })
         .def_prop_ro("warnings", [](const FitObject& f) { return f.result.warnings; })
         .def_prop_ro("seconds", [](const FitObject& f) { return f.result.seconds; })

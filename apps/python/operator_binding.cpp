@@ -306,19 +306,19 @@ void bind_application(nb::class_<Operator>& binding) {
             [](const Operator& self) {
                 return array_of(self.place().axes.x_m, {self.place().axes.x_m.size()});
             },
-            kOwnArray)
+            nb::rv_policy::reference)
         .def_prop_ro(
             "y_m",
             [](const Operator& self) {
                 return array_of(self.place().axes.y_m, {self.place().axes.y_m.size()});
             },
-            kOwnArray)
+            nb::rv_policy::reference)
         .def_prop_ro(
             "z_m",
             [](const Operator& self) {
                 return array_of(self.place().axes.z_m, {self.place().axes.z_m.size()});
             },
-            kOwnArray);
+            nb::rv_policy::reference);
 }
 
 std::vector<double> centres_from(nb::handle value, const std::string& name) {

@@ -91,7 +91,8 @@ void bind_arrays(nb::class_<Reconstruction>& binding) {
         .def_prop_ro("x_m", &axis_view<&VolumeAxes::x_m>, "(X,) voxel centres along the wall [m]")
         .def_prop_ro("y_m", &axis_view<&VolumeAxes::y_m>, "(Y,) voxel centres along the wall [m]")
         .def_prop_ro("z_m", &axis_view<&VolumeAxes::z_m>, "(Z,) along the wall's normal [m]")
-        .def_prop_ro("world_from_wall", &world_from_wall, kOwnArray, "(4, 4) float64")
+        .def_prop_ro(
+            "world_from_wall", &world_from_wall, nb::rv_policy::reference, "(4, 4) float64")
         .def_prop_ro(
             "depth_m",
             [](nb::handle self) {

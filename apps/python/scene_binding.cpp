@@ -165,7 +165,8 @@ void bind_object(nb::module_& module) {
                 return array_view(vertices, {vertices.size()}, self);
             },
             "(N, 3) float64, world [m]")
-        .def_prop_ro("faces", &faces_of, kOwnArray, "(M, 3) uint32, indices of vertices")
+        .def_prop_ro(
+            "faces", &faces_of, nb::rv_policy::reference, "(M, 3) uint32, indices of vertices")
         .def_prop_ro("albedo", [](const renderer::Object& o) { return o.material.albedo; })
         .def_prop_ro("surface",
                      [](const renderer::Object& o) {
