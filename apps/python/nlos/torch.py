@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from typing import Any, Sequence
 
+import numpy as np
 import torch
 
 from . import Object, Scene, _core, third_bounce_vjp
@@ -90,4 +91,4 @@ def _array(values: torch.Tensor) -> Any:
 
 
 def _tensor(array: Any, like: torch.Tensor) -> torch.Tensor:
-    return torch.from_numpy(array).to(device=like.device, dtype=like.dtype)
+    return torch.from_numpy(np.array(array)).to(device=like.device, dtype=like.dtype)
