@@ -11,25 +11,42 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <memory>
+
 namespace python {
 namespace {
 
 namespace nb = nanobind;
 
-calib::FitInput make_input(const core::Capture& capture,
+/// What a fit needs of a capture; the histograms stay where they are.
+core::Capture borrowed(core::Capture& capture) {
+    core::Capture view;
+    view.scan = capture.scan;
+    view.time_axis = capture.time_axis;
+    view.transient = core::Transient(capture.transient.num_pairs(),
+                                     capture.transient.values(),
+                                     std::shared_ptr<void>(&capture, [](void*) {}));
+    view.observed = capture.observed;
+    view.unit = capture.unit;
+    view.counts_per_radiance = capture.counts_per_radiance;
+    view.scene_info = capture.scene_info;
+    return view;
+}
+
+calib::FitInput make_input(core::Capture& capture,
                            const SceneObject& scene,
                            const nb::dict& settings) {
     calib::FitInput input;
     input.settings.scene = scene.name;
     core::read_value(json_from_python(settings, ""), "", input.settings);
     calib::validate(input.settings, "");
-    input.capture = capture;
+    input.capture = borrowed(capture);
     input.scene = scene.description;
     input.geometry = scene.geometry;
     return input;
 }
 
-FitObject fit(const core::Capture& capture,
+FitObject fit(core::Capture& capture,
               const SceneObject& scene,
               const nb::dict& settings,
               const nb::object& calibration,
@@ -47,6 +64,7 @@ FitObject fit(const core::Capture& capture,
     fitted.result = run_long(progress, threads, [&](const core::Progress& report) {
         return apps::fit_input(fitted.input, report);
     });
+    fitted.input.capture.transient = {};  // it is the caller's
     return fitted;
 }
 

@@ -76,12 +76,18 @@ auto run_long(const nanobind::object& callback, int threads, Work&& work) {
 /// another thread is within HDF5: the child would wait for a lock that nobody holds.
 std::mutex& file_mutex();
 
-/// Reads or writes a file without Python's lock; one at a time.
+/// Reads or writes a file where Python's lock is released already; one at a time.
+template <class Work>
+auto with_files_locked(Work&& work) {
+    const std::lock_guard lock(file_mutex());
+    return work();
+}
+
+/// The same, and releases Python's lock.
 template <class Work>
 auto with_files(Work&& work) {
     const nanobind::gil_scoped_release released;
-    const std::lock_guard lock(file_mutex());
-    return work();
+    return with_files_locked(work);
 }
 
 }  // namespace python

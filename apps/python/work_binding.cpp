@@ -75,8 +75,10 @@ nlos::Reconstruction reconstruct(const core::Capture& capture,
     }
     return run_long(progress, threads, [&](const core::Progress& report) {
         core::validate(capture, "capture");
-        nlos::Reconstruction result = nlos::reconstruct(
-            applied ? calib::apply_calibration(*applied, capture) : capture, settings, report);
+        std::optional<core::Capture> calibrated;
+        if (applied) calibrated = calib::apply_calibration(*applied, capture);
+        nlos::Reconstruction result =
+            nlos::reconstruct(calibrated ? *calibrated : capture, settings, report);
         result.provenance = {{"program", apps::version_text()}, {"command", "nlos.reconstruct"}};
         for (const std::string& text : result.warnings) report.warn(text);
         return result;
@@ -109,8 +111,9 @@ nb::object calibrate(const std::string& path, const nb::dict& changes) {
     const core::Json calibration = run_long(nb::none(), 0, [&](const core::Progress&) {
         calib::SetupSettings settings = calib::read_setup(path, {});
         core::read_value(json, "", settings);
-        return calib::calibration_json(
-            calib::calibrate(settings, nlos::read_capture(settings.direct_returns)));
+        const core::Capture capture =
+            with_files_locked([&] { return nlos::read_capture(settings.direct_returns); });
+        return calib::calibration_json(calib::calibrate(settings, capture));
     });
     return python_from_json(calibration);
 }
