@@ -1,0 +1,29 @@
+#!/usr/bin/env bash
+# Makes a virtual environment for mitransient_and_ytal.ipynb: mitransient, y-tal, what they need, and
+# what runs a notebook. `nlos` itself comes from PYTHONPATH, or from `DIR/bin/pip install .` afterwards.
+#   bash apps/guide/notebooks/install_peers.sh DIR [PYTHON]
+set -euo pipefail
+[ $# -ge 1 ] || { sed -n '2,4s/^# //p' "$0" >&2; exit 2; }
+folder=$1
+python=${2:-python3}
+
+# Dr.Jit compiles by LLVM, of which Debian 12 has a version that it works with under this name.
+if [ ! -e /usr/lib/x86_64-linux-gnu/libLLVM.so.19.1 ]; then
+    as_root=()
+    [ "$(id -u)" -eq 0 ] || as_root=(sudo)
+    "${as_root[@]}" apt-get update -qq
+    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+        apt-get install -y -qq --no-install-recommends libllvm19 python3-venv >/dev/null
+fi
+
+[ -x "$folder/bin/python" ] || "$python" -m venv "$folder"
+"$folder/bin/python" -m pip install --quiet --disable-pip-version-check \
+    mitsuba==3.9.1 drjit==1.5.0 mitransient==1.3.1 y-tal==0.20.0 pyfftw==0.15.1 \
+    numpy==1.26.4 scipy==1.17.1 h5py==3.16.0 matplotlib==3.11.2 numba==0.68.1 llvmlite==0.50.0 \
+    pillow==10.3.0 nbclient==0.11.0 nbformat==5.11.1 ipykernel==7.4.0
+"$folder/bin/python" - <<'PYTHON'
+import mitsuba
+mitsuba.set_variant("llvm_ad_rgb")
+import mitransient, pyfftw, tal
+print("mitsuba", mitsuba.__version__, "mitransient", mitransient.__version__, "y-tal", tal.__version__)
+PYTHON
