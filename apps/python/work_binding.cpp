@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The program's commands as functions from objects to objects.
+#include "apps/capture_options.h"
 #include "apps/commands/compare_job.h"
 #include "apps/commands/describe_file.h"
 #include "apps/commands/reconstruct_job.h"
@@ -13,6 +14,7 @@
 #include "nlos/compare/compare.h"
 #include "nlos/detector/detector.h"
 #include "nlos/formats/capture_file.h"
+#include "nlos/formats/ply_file.h"
 
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
