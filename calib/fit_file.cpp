@@ -140,24 +140,9 @@ bool is_fit_file(const std::string& path) {
 
 Json fitted_scene_json(const FitInput& input, const std::string& geometry_file) {
     renderer::SceneDescription scene = input.scene;
-    const core::Capture& capture = input.capture;
-    scene.geometry = geometry_file;  // which is in metres and holds what objects were set to
-    scene.geometry_unit_m.reset();
-    scene.geometry_up.reset();
-    scene.objects.clear();
-    scene.time_axis = {capture.time_axis};
-    scene.scan.pattern = capture.scan.pattern;
-    scene.scan.sensing_points_m = capture.scan.sensing.positions;
-    scene.scan.sensing_normals = capture.scan.sensing.normals;
-    scene.scan.opl_origin = capture.scan.opl_origin;
-    if (capture.scan.opl_origin == core::OplOrigin::Device) {
-        scene.scan.laser_m = capture.scan.laser_position;
-        scene.scan.detector_m = capture.scan.detector_position;
-    }
-    if (capture.scan.pattern != core::ScanPattern::Confocal) {
-        scene.scan.illumination_points_m = capture.scan.illumination.positions;
-        scene.scan.illumination_normals = capture.scan.illumination.normals;
-    }
+    renderer::refer_to_gltf(geometry_file, scene);
+    renderer::describe_scan(input.capture.scan, scene.scan);
+    scene.time_axis = {input.capture.time_axis};
     return core::write_value(scene);
 }
 

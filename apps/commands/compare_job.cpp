@@ -114,13 +114,7 @@ Comparison compare_kinds(const std::string& a,
 
 core::PointCloud surface_samples(const renderer::SceneGeometry& geometry) {
     core::TriangleMesh mesh;
-    for (const renderer::Object& object : geometry.objects) {
-        const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
-        for (const auto& vertex : object.mesh.vertices) mesh.vertices.push_back(vertex);
-        for (const auto& [v0, v1, v2] : object.mesh.triangles) {
-            mesh.triangles.push_back({base + v0, base + v1, base + v2});
-        }
-    }
+    for (const renderer::Object& object : geometry.objects) core::append_mesh(object.mesh, mesh);
     return core::sample_surface(mesh, kSurfaceSamples, kSurfaceSeed);
 }
 

@@ -30,22 +30,22 @@ void print_range(Description& out, const char* axis, const std::vector<double>& 
 // or two, since files from elsewhere may hold anything.
 class KeyPrinter {
  public:
-    explicit KeyPrinter(Description& description) : out(description) {}
+    explicit KeyPrinter(Description& description) : out_(description) {}
 
     void print_keys(const core::Json& json, const std::string& indent) {
         for (const auto& [key, value] : json.items()) {
             if (lines_left_ == 0) {
-                out.print("{}... and more\n", indent);
+                out_.print("{}... and more\n", indent);
                 return;
             }
             --lines_left_;
             if (value.is_object() && !value.empty() && key != "settings") {
-                out.print("{}{}:\n", indent, key);
+                out_.print("{}{}:\n", indent, key);
                 print_keys(value, indent + "  ");
             } else if (value.is_array() && (value.size() > 4 || value.flatten().size() > 4)) {
-                out.print("{}{}: {} items\n", indent, key, value.size());
+                out_.print("{}{}: {} items\n", indent, key, value.size());
             } else if (!value.is_null()) {
-                out.print("{}{}: {}\n", indent, key, text_of(value));
+                out_.print("{}{}: {}\n", indent, key, text_of(value));
             }
         }
     }
@@ -60,7 +60,7 @@ class KeyPrinter {
         return text;
     }
 
-    Description& out;
+    Description& out_;
     int lines_left_ = 100;
 };
 

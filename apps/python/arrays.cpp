@@ -27,6 +27,12 @@ std::string shape_text(const Extents& shape) {
     return fmt::format("({})", fmt::join(shape, ", "));
 }
 
+void require_shape(const Extents& found, const Extents& wanted, const std::string& name) {
+    if (found == wanted) return;
+    throw core::Error(
+        name, "has shape " + shape_text(found), "must have shape " + shape_text(wanted));
+}
+
 std::vector<core::Vec3> vectors_from(nb::handle value, const std::string& name) {
     const auto array = doubles_from(value, name);
     if (array.size() > 0 && (array.ndim() < 1 || array.shape(array.ndim() - 1) != 3)) {

@@ -72,6 +72,8 @@ std::vector<core::Vec3> vectors_from(nanobind::handle value, const std::string& 
 
 /// Sizes as Python writes them.
 std::string shape_text(const Extents& shape);
+/// Throws core::Error naming the argument unless it has the shape wanted.
+void require_shape(const Extents& found, const Extents& wanted, const std::string& name);
 template <class Array>
 Extents shape_of(const Array& array) {
     return {array.shape_ptr(), array.shape_ptr() + array.ndim()};

@@ -95,8 +95,7 @@ Capture capture_from_arrays(nb::handle values,
     capture.scan.detector_position = fields.detector_m.value_or(core::Vec3::Zero());
     capture.unit = fields.unit;
     capture.counts_per_radiance = fields.counts_per_radiance;
-    Extents expected = pair_shape(capture.scan);
-    expected.insert(expected.begin(), capture.transient.num_bins());
+    const Extents expected = histogram_shape(capture.scan, capture.transient.num_bins());
     if (shape_of(histograms) != expected) {
         throw core::Error("H",
                           "has shape " + shape_text(shape_of(histograms)),

@@ -66,6 +66,12 @@ Extents pair_shape(const core::Scan& scan) {
     return shape;
 }
 
+Extents histogram_shape(const core::Scan& scan, std::size_t num_bins) {
+    Extents shape = pair_shape(scan);
+    shape.insert(shape.begin(), num_bins);
+    return shape;
+}
+
 HistogramArray histograms_from(nb::handle value, const std::string& name) {
     nb::object array = numbers_from(value, "float32", name);
     if (!nb::cast<bool>(array.attr("flags").attr("writeable"))) array = array.attr("copy")();

@@ -13,20 +13,21 @@ using HistogramArray = nanobind::ndarray<float, nanobind::device::cpu>;
 /// (width, height).
 Extents pair_shape(const core::Scan& scan);
 
+/// Time, then pair_shape().
+Extents histogram_shape(const core::Scan& scan, std::size_t num_bins);
+
 /// Histograms as NumPy sees them: time first, then pair_shape(), in the memory they have.
 template <class T>
 Array<T> histogram_view(T* values,
                         std::size_t num_bins,
                         const core::Scan& scan,
                         nanobind::handle owner) {
-    Extents shape = pair_shape(scan);
-    Extents strides(shape.size());
+    const Extents shape = histogram_shape(scan, num_bins);
+    Extents strides(shape.size(), 1);
     std::size_t stride = num_bins;
-    for (std::size_t axis = shape.size(); axis-- > 0; stride *= shape[axis]) {
+    for (std::size_t axis = shape.size(); --axis > 0; stride *= shape[axis]) {
         strides[axis] = stride;
     }
-    shape.insert(shape.begin(), num_bins);
-    strides.insert(strides.begin(), 1);
     return array_view(values, shape, owner, strides);
 }
 inline Array<float> histogram_view(core::Transient& transient,

@@ -31,13 +31,8 @@ JoinedObjects join(const renderer::SceneGeometry& geometry) {
                               "is textured, no Lambertian surface, or the relay wall",
                               "must be Lambertian with one albedo, and hidden");
         }
-        const auto base = static_cast<std::uint32_t>(joined.mesh.vertices.size());
-        joined.mesh.vertices.insert(
-            joined.mesh.vertices.end(), object.mesh.vertices.begin(), object.mesh.vertices.end());
-        for (const auto& [a, b, c] : object.mesh.triangles) {
-            joined.mesh.triangles.push_back({base + a, base + b, base + c});
-            joined.albedo.push_back(object.material.albedo);
-        }
+        core::append_mesh(object.mesh, joined.mesh);
+        joined.albedo.resize(joined.mesh.triangles.size(), object.material.albedo);
         joined.first_vertex.push_back(joined.mesh.vertices.size());
         joined.first_facet.push_back(joined.mesh.triangles.size());
     }
@@ -75,15 +70,9 @@ class ThirdBouncePullback {
     // dL/dH as [pair][bin].
     std::vector<double> values_from(nb::handle gradient) const {
         const auto array = doubles_from(gradient, "gradient");
-        Extents expected = pair_shape(scan_);
         const std::size_t num_pairs = scan_.num_pairs();
         const std::size_t num_bins = vjp_->histograms().size() / num_pairs;
-        expected.insert(expected.begin(), num_bins);
-        if (shape_of(array) != expected) {
-            throw core::Error("gradient",
-                              "has shape " + shape_text(shape_of(array)),
-                              "must have the shape of H, " + shape_text(expected));
-        }
+        require_shape(shape_of(array), histogram_shape(scan_, num_bins), "gradient");
         std::vector<double> values(array.size());
         for (std::size_t bin = 0; bin < num_bins; ++bin) {
             for (std::size_t pair = 0; pair < num_pairs; ++pair) {

@@ -19,9 +19,6 @@ core::ThreadLimit limit_threads(int threads) {
     // Registered once; the handler of the child sets a flag and does nothing else.
     static const int registered = ::pthread_atfork(nullptr, nullptr, [] { g_is_forked = true; });
     static_cast<void>(registered);
-    if (threads < 0 || threads > 1024) {
-        throw core::Error("threads", "found " + std::to_string(threads), "must be from 0 to 1024");
-    }
     return core::ThreadLimit(g_is_forked ? 1 : threads);
 }
 
@@ -75,12 +72,10 @@ void CallProgress::raise_pending() {
     if (raised_) std::rethrow_exception(raised_);
 }
 
-void CallProgress::warn_of(const std::vector<std::string>& texts) {
-    doubts_.insert(doubts_.end(), texts.begin(), texts.end());
+void CallProgress::give_warnings() {
     for (const std::string& text : doubts_) {
         if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 2) != 0) throw nb::python_error();
     }
-    doubts_.clear();
 }
 
 }  // namespace python

@@ -30,7 +30,7 @@ class CallProgress {
     /// Needs Python's lock.
     void raise_pending();
     /// Hands what was doubted to Python's `warnings`. Needs Python's lock.
-    void warn_of(const std::vector<std::string>& texts);
+    void give_warnings();
 
  private:
     using Clock = std::chrono::steady_clock;
@@ -64,7 +64,7 @@ auto run_long(const nanobind::object& callback, int threads, Work&& work) {
     try {
         auto result = run();
         reporter.raise_pending();
-        reporter.warn_of({});
+        reporter.give_warnings();
         return result;
     } catch (const core::Failure&) {
         reporter.raise_pending();

@@ -73,18 +73,10 @@ struct OperatorPlace {
         return input;
     }
     Extents volume_shape() const { return {axes.x_m.size(), axes.y_m.size(), axes.z_m.size()}; }
-    Extents histogram_shape() const {
-        Extents shape = pair_shape(scan);
-        shape.insert(shape.begin(), static_cast<std::size_t>(axis.num_bins));
-        return shape;
+    Extents light_shape() const {
+        return histogram_shape(scan, static_cast<std::size_t>(axis.num_bins));
     }
 };
-
-void require_shape(const Extents& found, const Extents& wanted, const std::string& name) {
-    if (found == wanted) return;
-    throw core::Error(
-        name, "has shape " + shape_text(found), "must have shape " + shape_text(wanted));
-}
 
 std::vector<float> volume_from(nb::handle value, const Extents& shape) {
     const auto array = nb::cast<VolumeArray>(numbers_from(value, "float32", "volume"));
@@ -273,6 +265,12 @@ class LightCone {
     std::mutex one_at_a_time_;
 };
 
+template <auto Axis, class Operator>
+Array<double> axis_of(const Operator& self) {
+    const std::vector<double>& centres = self.place().axes.*Axis;
+    return array_of(centres, {centres.size()});
+}
+
 template <class Operator>
 void bind_application(nb::class_<Operator>& binding) {
     binding
@@ -290,7 +288,7 @@ void bind_application(nb::class_<Operator>& binding) {
         .def(
             "adjoint",
             [](Operator& self, nb::handle histograms) {
-                const auto light = light_from(histograms, self.place().histogram_shape());
+                const auto light = light_from(histograms, self.place().light_shape());
                 return array_of(
                     run_long(
                         nb::none(), 0, [&](const core::Progress&) { return self.adjoint(light); }),
@@ -301,24 +299,9 @@ void bind_application(nb::class_<Operator>& binding) {
         .def_prop_ro(
             "volume_shape",
             [](const Operator& self) { return nb::tuple(nb::cast(self.place().volume_shape())); })
-        .def_prop_ro(
-            "x_m",
-            [](const Operator& self) {
-                return array_of(self.place().axes.x_m, {self.place().axes.x_m.size()});
-            },
-            nb::rv_policy::reference)
-        .def_prop_ro(
-            "y_m",
-            [](const Operator& self) {
-                return array_of(self.place().axes.y_m, {self.place().axes.y_m.size()});
-            },
-            nb::rv_policy::reference)
-        .def_prop_ro(
-            "z_m",
-            [](const Operator& self) {
-                return array_of(self.place().axes.z_m, {self.place().axes.z_m.size()});
-            },
-            nb::rv_policy::reference);
+        .def_prop_ro("x_m", &axis_of<&nlos::VolumeAxes::x_m, Operator>, nb::rv_policy::reference)
+        .def_prop_ro("y_m", &axis_of<&nlos::VolumeAxes::y_m, Operator>, nb::rv_policy::reference)
+        .def_prop_ro("z_m", &axis_of<&nlos::VolumeAxes::z_m, Operator>, nb::rv_policy::reference);
 }
 
 std::vector<double> centres_from(nb::handle value, const std::string& name) {

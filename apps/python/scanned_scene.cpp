@@ -4,28 +4,8 @@
 #include "apps/python/bindings.h"
 
 namespace python {
-namespace {
 
 namespace nb = nanobind;
-
-// The description of a scan by its points, for provenance.
-void describe_scan(const core::Scan& scan, renderer::ScanSettings& settings) {
-    settings.pattern = scan.pattern;
-    settings.sensing_points_m = scan.sensing.positions;
-    settings.sensing_normals = scan.sensing.normals;
-    const bool has_own_lights = scan.pattern != core::ScanPattern::Confocal;
-    settings.illumination_points_m =
-        has_own_lights ? scan.illumination.positions : std::vector<core::Vec3>();
-    settings.illumination_normals =
-        has_own_lights ? scan.illumination.normals : std::vector<core::Vec3>();
-    settings.opl_origin = scan.opl_origin;
-    if (scan.opl_origin == core::OplOrigin::Device) {
-        settings.laser_m = scan.laser_position;
-        settings.detector_m = scan.detector_position;
-    }
-}
-
-}  // namespace
 
 ScannedScene scan_scene(const SceneObject& scene,
                         const nb::object& scan,
@@ -45,7 +25,7 @@ ScannedScene scan_scene(const SceneObject& scene,
         return scanned;
     }
     scanned.scan = like->scan;
-    if (!like->scan.camera) describe_scan(like->scan, scanned.scene.description.scan);
+    if (!like->scan.camera) renderer::describe_scan(like->scan, scanned.scene.description.scan);
     if (axis.is_none()) scanned.scene.description.time_axis = {like->time_axis};
     return scanned;
 }

@@ -123,10 +123,7 @@ void write_scene(const SceneObject& scene, nb::handle target) {
     const auto geometry = std::filesystem::path(path).replace_extension(".glb");
     core::check_targets({path, geometry.string()}, {});
     renderer::SceneDescription description = scene.description;
-    description.geometry = geometry.filename().string();
-    description.geometry_unit_m.reset();
-    description.geometry_up.reset();
-    description.objects.clear();
+    renderer::refer_to_gltf(geometry.filename().string(), description);
     core::Json json = core::write_value(description);
     if (description.camera) {
         json.erase("relay_wall");

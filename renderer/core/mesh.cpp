@@ -9,6 +9,14 @@
 
 namespace core {
 
+void append_mesh(const TriangleMesh& mesh, TriangleMesh& target) {
+    const auto base = static_cast<std::uint32_t>(target.vertices.size());
+    target.vertices.insert(target.vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
+    for (const auto& [a, b, c] : mesh.triangles) {
+        target.triangles.push_back({base + a, base + b, base + c});
+    }
+}
+
 bool has_area(const Vec3& ab, const Vec3& ac) {
     constexpr double kSmallestAspect = 1e-12;  // far above rounding, far below any real sliver
     const double longest = std::max({ab.norm(), ac.norm(), (ac - ab).norm()});

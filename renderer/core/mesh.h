@@ -16,6 +16,9 @@ struct TriangleMesh {
     std::vector<Vec3> normals;  ///< per vertex, unit; empty when unknown
 };
 
+/// Adds the vertices and triangles of a mesh to another, behind its own; normals are left out.
+void append_mesh(const TriangleMesh& mesh, TriangleMesh& target);
+
 /// Area vector of a triangle: half the cross product of its edges; its norm is the area [m^2].
 inline Vec3 triangle_area_vector(const Vec3& a, const Vec3& b, const Vec3& c) {
     return 0.5 * (b - a).cross(c - a);

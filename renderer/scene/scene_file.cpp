@@ -315,6 +315,30 @@ core::Scan make_scan(const SceneDescription& scene) {
     return scan;
 }
 
+void describe_scan(const core::Scan& scan, ScanSettings& settings) {
+    settings.pattern = scan.pattern;
+    settings.sensing_points_m = scan.sensing.positions;
+    settings.sensing_normals = scan.sensing.normals;
+    settings.illumination_points_m.clear();
+    settings.illumination_normals.clear();
+    if (scan.pattern != core::ScanPattern::Confocal) {
+        settings.illumination_points_m = scan.illumination.positions;
+        settings.illumination_normals = scan.illumination.normals;
+    }
+    settings.opl_origin = scan.opl_origin;
+    if (scan.opl_origin == core::OplOrigin::Device) {
+        settings.laser_m = scan.laser_position;
+        settings.detector_m = scan.detector_position;
+    }
+}
+
+void refer_to_gltf(const std::string& file_name, SceneDescription& scene) {
+    scene.geometry = file_name;
+    scene.geometry_unit_m.reset();
+    scene.geometry_up.reset();
+    scene.objects.clear();
+}
+
 bool rectangle_carries_scan(const RelayWall& wall, const core::Scan& scan) {
     const core::Transform wall_from_world = wall.world_from_wall().inverse();
     const double tolerance = 1e-6 * (wall.size_m[0] + wall.size_m[1]);
