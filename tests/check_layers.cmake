@@ -30,7 +30,7 @@ set(floors_calib
     "calib")
 set(floors_apps
     "apps"
-    "apps/bench|apps/report"
+    "apps/batch|apps/bench|apps/report"
     "apps/bench/render|apps/bench/reconstruct|apps/bench/fit"
     "apps/commands"
     "apps/python")
