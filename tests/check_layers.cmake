@@ -30,8 +30,9 @@ set(floors_calib
     "calib")
 set(floors_apps
     "apps"
-    "apps/batch|apps/bench|apps/report"
-    "apps/bench/render|apps/bench/reconstruct|apps/bench/fit"
+    "apps/batch|apps/shapes"
+    "apps/bench|apps/dataset"
+    "apps/report|apps/bench/render|apps/bench/reconstruct|apps/bench/fit"
     "apps/commands"
     "apps/python")
 
@@ -51,13 +52,14 @@ set(third_renderer/gltf "tiny_gltf")
 set(third_renderer/mesh_file "assimp/")
 set(third_renderer/scene "embree3/")
 set(third_renderer/scene_import "pugixml\\.hpp|yaml-cpp/")
-set(third_nlos/containers "hdf5\\.h|matio\\.h|zip\\.h|OpenEXR/")
+set(third_nlos/containers "zlib\\.h|hdf5\\.h|matio\\.h|zip\\.h|OpenEXR/")
 set(third_nlos/fourier "fftw3\\.h")
 set(third_nlos/pictures "opencv2/|png\\.h")
 set(third_calib/setup "ceres/|opencv2/|png\\.h|turbojpeg\\.h")
 set(third_calib/forward "ceres/")
 set(third_calib/fit "ceres/")
 set(third_apps "CLI/")
+set(third_apps/dataset "meshoptimizer\\.h|xxhash\\.h")
 set(third_apps/bench "CLI/")
 set(third_apps/python "nanobind/|pthread\\.h")
 

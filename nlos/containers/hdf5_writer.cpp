@@ -34,6 +34,46 @@ Hdf5Handle utf8_type() {
     return type;
 }
 
+/// IEEE 754 half precision, which the library has no name for, as h5py stores it.
+Hdf5Handle half_type() {
+    constexpr std::size_t kSign = 15;
+    constexpr std::size_t kExponentBits = 5;
+    constexpr std::size_t kMantissaBits = 10;
+    Hdf5Handle type(H5Tcopy(H5T_IEEE_F32LE), H5Tclose);
+    H5Tset_fields(type.id(), kSign, kMantissaBits, kExponentBits, 0, kMantissaBits);
+    H5Tset_size(type.id(), 2);
+    H5Tset_ebias(type.id(), 15);
+    return type;
+}
+
+Hdf5Handle stored_type(StoredNumber number) {
+    switch (number) {
+        case StoredNumber::Int8:
+            return {H5Tcopy(H5T_NATIVE_INT8), H5Tclose};
+        case StoredNumber::UInt8:
+            return {H5Tcopy(H5T_NATIVE_UINT8), H5Tclose};
+        case StoredNumber::Int16:
+            return {H5Tcopy(H5T_NATIVE_INT16), H5Tclose};
+        case StoredNumber::UInt16:
+            return {H5Tcopy(H5T_NATIVE_UINT16), H5Tclose};
+        case StoredNumber::Int32:
+            return {H5Tcopy(H5T_NATIVE_INT32), H5Tclose};
+        case StoredNumber::UInt32:
+            return {H5Tcopy(H5T_NATIVE_UINT32), H5Tclose};
+        case StoredNumber::Int64:
+            return {H5Tcopy(H5T_NATIVE_INT64), H5Tclose};
+        case StoredNumber::UInt64:
+            return {H5Tcopy(H5T_NATIVE_UINT64), H5Tclose};
+        case StoredNumber::Float16:
+            return half_type();
+        case StoredNumber::Float32:
+            return {H5Tcopy(H5T_NATIVE_FLOAT), H5Tclose};
+        case StoredNumber::Float64:
+            return {H5Tcopy(H5T_NATIVE_DOUBLE), H5Tclose};
+    }
+    return {};
+}
+
 }  // namespace
 
 Hdf5Writer::Hdf5Writer(std::string target, std::string user_block)
@@ -64,9 +104,11 @@ void Hdf5Writer::create_group(const std::string& name) {
 Hdf5Handle Hdf5Writer::create_dataset(const std::string& name,
                                       std::int64_t type,
                                       const Hdf5Handle& space) {
+    const Hdf5Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+    H5Pset_obj_track_times(creation.id(), false);  // the same values give the same bytes
     Hdf5Handle dataset(
         H5Dcreate2(
-            file_.id(), name.c_str(), type, space.id(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+            file_.id(), name.c_str(), type, space.id(), H5P_DEFAULT, creation.id(), H5P_DEFAULT),
         H5Dclose);
     check(dataset.is_valid());
     return dataset;
@@ -150,6 +192,61 @@ void Hdf5Writer::write_row_range(const Hdf5Handle& dataset,
         0);
 }
 
+void Hdf5Writer::create_rows(const std::string& name,
+                             StoredNumber number,
+                             std::size_t rows,
+                             const Shape& row_shape,
+                             int level) {
+    std::vector<hsize_t> chunk(row_shape.begin(), row_shape.end());
+    chunk.insert(chunk.begin(), 1);
+    Shape shape = row_shape;
+    shape.insert(shape.begin(), rows);
+    const Hdf5Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+    H5Pset_obj_track_times(creation.id(), false);
+    H5Pset_chunk(creation.id(), static_cast<int>(chunk.size()), chunk.data());
+    if (level > 0) {
+        H5Pset_shuffle(creation.id());
+        H5Pset_deflate(creation.id(), static_cast<unsigned>(level));
+    }
+    const Hdf5Handle space = create_space(shape);
+    const Hdf5Handle type = stored_type(number);
+    Hdf5Handle dataset(H5Dcreate2(file_.id(),
+                                  name.c_str(),
+                                  type.id(),
+                                  space.id(),
+                                  H5P_DEFAULT,
+                                  creation.id(),
+                                  H5P_DEFAULT),
+                       H5Dclose);
+    check(dataset.is_valid());
+    row_datasets_[name] = std::move(dataset);
+}
+
+void Hdf5Writer::write_packed_row(const std::string& name,
+                                  std::size_t row,
+                                  const std::string& chunk) {
+    const Hdf5Handle& dataset = row_datasets_.at(name);
+    const Hdf5Handle space(H5Dget_space(dataset.id()), H5Sclose);
+    std::vector<hsize_t> offset(static_cast<std::size_t>(H5Sget_simple_extent_ndims(space.id())));
+    offset[0] = row;
+    check(H5Dwrite_chunk(dataset.id(), H5P_DEFAULT, 0, offset.data(), chunk.size(), chunk.data()) >=
+          0);
+}
+
+void Hdf5Writer::write_numbers(const std::string& name,
+                               StoredNumber number,
+                               const Shape& shape,
+                               const std::string& bytes) {
+    assert(bytes.size() == count_values(shape) * bytes_of(number));
+    write_dataset(name, stored_type(number).id(), create_space(shape), bytes.data());
+}
+
+void Hdf5Writer::write_texts(const std::string& name, const std::vector<std::string>& texts) {
+    std::vector<const char*> characters;
+    for (const std::string& text : texts) characters.push_back(text.c_str());
+    write_dataset(name, utf8_type().id(), create_space({texts.size()}), characters.data());
+}
+
 void Hdf5Writer::write_attribute(const std::string& object,
                                  const std::string& name,
                                  const std::string& text) {
@@ -200,6 +297,7 @@ void Hdf5Writer::write_user_block() {
 }
 
 void Hdf5Writer::finish() {
+    for (auto& [name, dataset] : row_datasets_) check(dataset.close());
     check(H5Fflush(file_.id(), H5F_SCOPE_LOCAL) >= 0);
     check(file_.close());
     if (!user_block_.empty()) write_user_block();

@@ -3,10 +3,12 @@
 
 #include "nlos/containers/hdf5_handle.h"
 #include "nlos/containers/shape.h"
+#include "nlos/containers/stored_number.h"
 #include "renderer/core/output_file.h"
 
 #include <algorithm>
 #include <cstdint>
+#include <map>
 #include <span>
 #include <string>
 #include <utility>
@@ -57,6 +59,25 @@ class Hdf5Writer {
         }
     }
 
+    /// A dataset whose rows, along the slowest index, are written one by one, each as a chunk.
+    ///
+    /// row_shape   of each row
+    /// level       of deflate, as in pack_chunk()
+    void create_rows(const std::string& name,
+                     StoredNumber number,
+                     std::size_t rows,
+                     const Shape& row_shape,
+                     int level);
+    /// A row of it, packed by pack_chunk() at its level.
+    void write_packed_row(const std::string& name, std::size_t row, const std::string& chunk);
+
+    /// The numbers of a dataset as they lie in memory.
+    void write_numbers(const std::string& name,
+                       StoredNumber number,
+                       const Shape& shape,
+                       const std::string& bytes);
+    void write_texts(const std::string& name, const std::vector<std::string>& texts);  ///< UTF-8
+
     /// Attributes of an object ("/" is the file itself).
     void write_attribute(const std::string& object,
                          const std::string& name,
@@ -103,6 +124,7 @@ class Hdf5Writer {
     std::string user_block_;
     core::OutputFile output_;
     Hdf5Handle file_;
+    std::map<std::string, Hdf5Handle> row_datasets_;  ///< of create_rows()
 };
 
 }  // namespace nlos

@@ -37,6 +37,14 @@ std::string npy_header(const std::string& type, const Shape& shape) {
     return header + dictionary;
 }
 
+/// How NumPy names a type: byte order, kind and bytes.
+std::string npy_type(StoredNumber number) {
+    const std::size_t bytes = bytes_of(number);
+    const std::string name = type_name(number);
+    const char kind = name[0];  // of int, uint and float
+    return fmt::format("{}{}{}", bytes == 1 ? '|' : '<', kind, bytes);
+}
+
 template <class T>
 std::string to_bytes(std::span<const T> values) {
     return {reinterpret_cast<const char*>(values.data()), values.size_bytes()};
@@ -161,13 +169,26 @@ class RowMember {
 
 NpzWriter::NpzWriter(std::string target)
     : target_(std::move(target)),
-      output_(target_),
-      archive_(zip_open(output_.temporary().c_str(), ZIP_CREATE | ZIP_TRUNCATE, nullptr),
+      output_(std::in_place, target_),
+      archive_(zip_open(output_->temporary().c_str(), ZIP_CREATE | ZIP_TRUNCATE, nullptr),
                zip_discard) {
     check(archive_ != nullptr);
 }
 
-NpzWriter::~NpzWriter() = default;
+NpzWriter::NpzWriter()
+    : target_("archive in memory"),
+      memory_(zip_source_buffer_create(nullptr, 0, 0, nullptr)),
+      archive_(nullptr, zip_discard) {
+    check(memory_ != nullptr);
+    zip_source_keep(memory_);
+    archive_.reset(zip_open_from_source(memory_, ZIP_TRUNCATE, nullptr));
+    check(archive_ != nullptr);
+}
+
+NpzWriter::~NpzWriter() {
+    archive_.reset();
+    if (memory_ != nullptr) zip_source_free(memory_);
+}
 
 void NpzWriter::check(bool ok) const {
     if (!ok) throw core::Failure(target_, "cannot be written (disk full?)");
@@ -181,6 +202,14 @@ void NpzWriter::write(const std::string& name, const Shape& shape, std::span<con
 void NpzWriter::write(const std::string& name, const Shape& shape, std::span<const int> values) {
     assert(values.size() == count_values(shape));
     add_member(name, npy_header("<i4", shape), to_bytes(values));
+}
+
+void NpzWriter::write_numbers(const std::string& name,
+                              StoredNumber number,
+                              const Shape& shape,
+                              const std::string& bytes) {
+    assert(bytes.size() == count_values(shape) * bytes_of(number));
+    add_member(name, npy_header(npy_type(number), shape), bytes);
 }
 
 void NpzWriter::write_real(const std::string& name, double value) {
@@ -226,10 +255,26 @@ void NpzWriter::add_source(const std::string& name, zip_source_t* source) {
     check(zip_file_set_dostime(archive_.get(), member, 0, kFirstOfJanuary1980, 0) == 0);
 }
 
-void NpzWriter::finish() {
+void NpzWriter::close() {
     check(zip_close(archive_.get()) == 0);
     static_cast<void>(archive_.release());  // closed
-    output_.commit();
+}
+
+void NpzWriter::finish() {
+    close();
+    output_->commit();
+}
+
+std::string NpzWriter::finish_in_memory() {
+    close();
+    zip_stat_t stat;
+    zip_stat_init(&stat);
+    check(zip_source_stat(memory_, &stat) == 0 && zip_source_open(memory_) == 0);
+    std::string bytes(stat.size, '\0');
+    const zip_int64_t read = zip_source_read(memory_, bytes.data(), bytes.size());
+    zip_source_close(memory_);
+    check(read == static_cast<zip_int64_t>(bytes.size()));
+    return bytes;
 }
 
 }  // namespace nlos

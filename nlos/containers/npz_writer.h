@@ -2,10 +2,12 @@
 #pragma once
 
 #include "nlos/containers/shape.h"
+#include "nlos/containers/stored_number.h"
 #include "renderer/core/output_file.h"
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -28,10 +30,17 @@ class NpzWriter {
 
     /// Throws core::Error when the target's folder does not exist or cannot be written.
     explicit NpzWriter(std::string target);
+    /// Writes to memory, see finish_in_memory().
+    NpzWriter();
     ~NpzWriter();
 
     void write(const std::string& name, const Shape& shape, std::span<const double> values);
     void write(const std::string& name, const Shape& shape, std::span<const int> values);
+    /// Numbers as they lie in memory.
+    void write_numbers(const std::string& name,
+                       StoredNumber number,
+                       const Shape& shape,
+                       const std::string& bytes);
     void write_real(const std::string& name, double value);             ///< of shape ()
     void write_text(const std::string& name, const std::string& text);  ///< UTF-8; of shape ()
 
@@ -40,14 +49,18 @@ class NpzWriter {
     void write_rows(const std::string& name, const Shape& shape, Fill fill);
 
     void finish();
+    /// The bytes of what was written to memory.
+    std::string finish_in_memory();
 
  private:
     void add_member(const std::string& name, const std::string& header, std::string bytes);
     void add_source(const std::string& name, zip_source* source);
+    void close();
     void check(bool ok) const;
 
     std::string target_;
-    core::OutputFile output_;
+    std::optional<core::OutputFile> output_;
+    zip_source* memory_ = nullptr;  ///< what is written to memory; one reference is ours
     std::unique_ptr<zip, void (*)(zip*)> archive_;
 };
 

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -17,9 +18,10 @@ namespace core {
 struct DepthMap {
     std::vector<double> x_m;
     std::vector<double> y_m;
-    std::vector<double> depth_m;  ///< NaN = background
-    std::vector<Vec3> normals;    ///< world, unit, towards the wall; empty when unknown
-    std::vector<double> albedo;   ///< of the surface seen; empty when unknown
+    std::vector<double> depth_m;        ///< NaN = background
+    std::vector<Vec3> normals;          ///< world, unit, towards the wall; empty when unknown
+    std::vector<double> albedo;         ///< of the surface seen; empty when unknown
+    std::vector<std::uint32_t> object;  ///< whose surface is seen; empty when unknown
     Transform world_from_wall = Transform::Identity();
 
     DepthMap() = default;

@@ -3,8 +3,11 @@
 
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_pipeline.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <atomic>
 #include <thread>
 
 namespace core {
@@ -20,6 +23,40 @@ void parallel_blocks(std::size_t count,
     tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t i) {
         body(i * block, std::min(count, (i + 1) * block));
     });
+}
+
+bool parallel_pointers_in_order(std::size_t count,
+                                const std::function<std::shared_ptr<void>(std::size_t)>& make,
+                                const std::function<bool(std::size_t, void*)>& use) {
+    struct Made {
+        std::size_t index = 0;
+        std::shared_ptr<void> result{};
+    };
+    std::atomic<bool> is_ended = false;
+    std::size_t next = 0;
+    std::size_t used = 0;
+    tbb::parallel_pipeline(
+        2 * static_cast<std::size_t>(thread_count()),
+        tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order,
+                                            [&](tbb::flow_control& control) {
+                                                if (next < count && !is_ended) return next++;
+                                                control.stop();
+                                                return count;
+                                            }) &
+            tbb::make_filter<std::size_t, Made>(tbb::filter_mode::parallel,
+                                                [&](std::size_t i) {
+                                                    return is_ended ? Made{i} : Made{i, make(i)};
+                                                }) &
+            tbb::make_filter<Made, void>(tbb::filter_mode::serial_in_order, [&](const Made& made) {
+                if (is_ended) return;
+                is_ended = !use(made.index, made.result.get());
+                ++used;
+            }));
+    return used == count;
+}
+
+void run_on_one_thread(const std::function<void()>& body) {
+    tbb::task_arena(1).execute(body);
 }
 
 ThreadLimit::ThreadLimit(int count)

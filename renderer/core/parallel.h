@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace core {
@@ -34,6 +35,29 @@ T parallel_sum(std::size_t count, T zero, const std::function<T(std::size_t)>& t
     for (const T& sum : partial) total += sum;
     return total;
 }
+
+/// Calls `make(i)` for i from 0 to count - 1 on all threads allowed, and `use(i, result)` for the
+/// results one by one, in order, while later ones are still being made. No more than two results
+/// per thread exist at a time.
+///
+/// use       returns false to end the work early
+/// returns   whether all results were used
+bool parallel_pointers_in_order(std::size_t count,
+                                const std::function<std::shared_ptr<void>(std::size_t)>& make,
+                                const std::function<bool(std::size_t, void*)>& use);
+template <class T>
+bool parallel_in_order(std::size_t count,
+                       const std::function<T(std::size_t)>& make,
+                       const std::function<bool(std::size_t, T)>& use) {
+    return parallel_pointers_in_order(
+        count,
+        [&](std::size_t i) -> std::shared_ptr<void> { return std::make_shared<T>(make(i)); },
+        [&](std::size_t i, void* result) { return use(i, std::move(*static_cast<T*>(result))); });
+}
+
+/// Runs `body` on the calling thread alone: parallel loops inside it are serial. For work of which
+/// many pieces run side by side.
+void run_on_one_thread(const std::function<void()>& body);
 
 /// Limits parallel loops to `count` threads while it (or a copy) lives; 0 means all processors.
 class ThreadLimit {

@@ -236,6 +236,12 @@ requires SettingsStruct<S> Json write_value(S settings) {
 /// Throws Error unless a number is finite and in a range, each number of a list, and that of an
 /// optional if it has one; `where` is the full key.
 void check_range(double value, const Range& range, const std::string& where);
+inline void check_range(std::uint64_t value, const Range& range, const std::string& where) {
+    check_range(static_cast<double>(value), range, where);
+}
+inline void check_range(int value, const Range& range, const std::string& where) {
+    check_range(static_cast<double>(value), range, where);
+}
 
 template <class T, std::size_t N>
 void check_range(const std::array<T, N>& values, const Range& range, const std::string& where) {

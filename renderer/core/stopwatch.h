@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <ctime>
 
 namespace core {
 
@@ -13,6 +14,20 @@ class Stopwatch {
  private:
     using Clock = std::chrono::steady_clock;
     Clock::time_point start_ = Clock::now();
+};
+
+/// Measures the processor time of its thread from its construction on.
+class ThreadStopwatch {
+ public:
+    double seconds() const { return now() - start_; }
+
+ private:
+    static double now() {
+        timespec time{};
+        ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+        return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+    }
+    double start_ = now();
 };
 
 }  // namespace core

@@ -39,6 +39,7 @@ core::DepthMap trace_depth_map(const Scene& scene,
     map.world_from_wall = world_from_wall;
     map.normals.assign(map.depth_m.size(), Vec3::Zero());
     map.albedo.assign(map.depth_m.size(), 0.0);
+    map.object.assign(map.depth_m.size(), 0);
     const Vec3 direction = world_from_wall.linear().col(2);
     core::parallel_for(map.x_m.size(), [&](std::size_t ix) {
         for (std::size_t iy = 0; iy < map.y_m.size(); ++iy) {
@@ -50,6 +51,7 @@ core::DepthMap trace_depth_map(const Scene& scene,
             map.depth_m[i] = (hit->position - start).dot(direction);
             map.normals[i] = normal.dot(direction) > 0.0 ? Vec3(-normal) : normal;
             map.albedo[i] = albedo_of(scene.bsdf_at(*hit));
+            map.object[i] = scene.facet(hit->facet).object;
         }
     });
     return map;

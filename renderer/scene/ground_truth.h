@@ -8,7 +8,8 @@
 
 namespace renderer {
 
-/// Traces what the relay wall sees along its normal: depth, normals and albedo of the hidden scene.
+/// Traces what the relay wall sees along its normal: depth, normals, albedo
+/// and objects of the hidden scene.
 ///
 /// world_from_wall   frame of the view; rays start in its plane z = 0 and run along +z
 /// x_m, y_m          columns in that frame [m]

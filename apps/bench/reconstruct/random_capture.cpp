@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/bench/reconstruct/random_capture.h"
 
-#include "apps/bench/meshes.h"
+#include "apps/shapes/grid_mesh.h"
 #include "nlos/detector/detector.h"
 #include "renderer/core/random.h"
 #include "renderer/render.h"

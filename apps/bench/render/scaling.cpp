@@ -2,7 +2,7 @@
 #include "apps/bench/render/scaling.h"
 
 #include "apps/bench/lower_bounds.h"
-#include "apps/bench/meshes.h"
+#include "apps/shapes/grid_mesh.h"
 #include "apps/bench/power_law.h"
 #include "renderer/core/parallel.h"
 #include "renderer/core/process.h"

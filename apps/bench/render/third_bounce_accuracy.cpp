@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/bench/render/third_bounce_accuracy.h"
 
-#include "apps/bench/meshes.h"
+#include "apps/shapes/grid_mesh.h"
 #include "apps/bench/scene.h"
 #include "renderer/core/random.h"
 #include "renderer/third_bounce/third_bounce.h"

@@ -2,7 +2,7 @@
 // What `nlos bench render --part accuracy` measures, on fewer scenes.
 #include "apps/bench/render/third_bounce_accuracy.h"
 
-#include "apps/bench/meshes.h"
+#include "apps/shapes/grid_mesh.h"
 
 #include <gtest/gtest.h>
 

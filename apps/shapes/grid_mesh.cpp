@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "apps/bench/meshes.h"
+#include "apps/shapes/grid_mesh.h"
 
 #include <cmath>
 

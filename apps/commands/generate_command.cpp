@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: MIT
+#include "apps/arguments.h"
+#include "apps/batch/work_share.h"
+#include "apps/commands.h"
+#include "apps/dataset/dataset_index.h"
+#include "apps/dataset/generate.h"
+#include "apps/terminal.h"
+#include "apps/version.h"
+#include "renderer/core/parallel.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <memory>
+#include <numeric>
+
+namespace apps {
+namespace {
+
+struct GenerateArguments {
+    std::string recipe;
+    std::string folder;
+    std::string shard;
+    std::string items;
+    std::string verify;
+    std::string merge;
+    std::vector<std::string> overrides;
+    std::vector<std::string> shorthands;
+    int slurm_tasks = 0;
+    int threads = 0;
+};
+
+constexpr std::array<Shorthand, 1> kGenerateShorthands{
+    {{"--format", "format", "NAME", "How shards are stored: hdf5 (default) or webdataset"}}};
+
+ItemRange read_range(const std::string& text) {
+    ItemRange range;
+    const char* end = text.data() + text.size();
+    const auto first = std::from_chars(text.data(), end, range.begin);
+    bool is_range = first.ec == std::errc{} && first.ptr != end && *first.ptr == ':';
+    if (is_range) {
+        const auto second = std::from_chars(first.ptr + 1, end, range.end);
+        is_range = second.ec == std::errc{} && second.ptr == end && range.begin < range.end;
+    }
+    if (is_range) return range;
+    throw core::Error("--items", "found " + text, "must be A:B, the items from A to B - 1");
+}
+
+std::string shares_of(const ItemProfile& profile) {
+    const double total = std::accumulate(profile.begin(), profile.end(), 0.0);
+    std::string text;
+    for (const auto& [step, name] : core::EnumNames<ItemStep>::value) {
+        const double share = profile[static_cast<std::size_t>(step)] / total;
+        text += fmt::format(
+            "{}{} {:.0f} %", text.empty() ? "" : ", ", name, total > 0.0 ? 100.0 * share : 0.0);
+    }
+    return text;
+}
+
+void warn_of_oddities(const GenerateResult& result) {
+    for (const auto& [name, reason] : result.broken_meshes) {
+        print_error("warning: {} was skipped: {}\n", name, reason);
+    }
+    if (result.dark_items > 0) {
+        print_error("warning: {} items hold no light: all their values are 0\n", result.dark_items);
+    }
+    if (result.clipped_counts > 0) {
+        print_error("warning: {} counts were clipped to what storage.histograms can hold\n",
+                    result.clipped_counts);
+    }
+}
+
+void print_script(const GenerateArguments& arguments, const Dataset& dataset) {
+    ArrayJob job;
+    job.name = "nlos-generate";
+    job.folder = std::filesystem::absolute(arguments.folder).string();
+    job.num_tasks = std::min<std::size_t>(static_cast<std::size_t>(arguments.slurm_tasks),
+                                          dataset.num_shards());
+    job.cpus_per_task = std::max(1, arguments.threads);
+    job.command = fmt::format("nlos generate {} -o {} --threads {}",
+                              shell_word(std::filesystem::absolute(arguments.recipe).string()),
+                              shell_word(job.folder),
+                              job.cpus_per_task);
+    for (const auto* list : {&arguments.shorthands, &arguments.overrides}) {
+        for (const std::string& text : *list) job.command += " --set " + shell_word(text);
+    }
+    write_output(slurm_script(job));
+}
+
+void make(const GenerateArguments& arguments) {
+    const core::ThreadLimit threads(arguments.threads);
+    std::vector<std::string> overrides = arguments.overrides;
+    overrides.insert(overrides.end(), arguments.shorthands.begin(), arguments.shorthands.end());
+    Dataset dataset(read_recipe(arguments.recipe, overrides), arguments.folder);
+    if (arguments.slurm_tasks > 0) return print_script(arguments, dataset);
+    std::optional<ItemRange> items;
+    if (!arguments.items.empty()) items = read_range(arguments.items);
+    ProgressBar bar("generate");
+    const GenerateResult result =
+        generate(dataset, read_work_share(arguments.shard), items, version_text(), bar.progress());
+    warn_of_oddities(result);
+    if (result.interrupted) {
+        throw core::Failure("generate",
+                            fmt::format("interrupted after {} shards; the same command goes on",
+                                        result.shards_written));
+    }
+    const double cpu_seconds = std::accumulate(result.profile.begin(), result.profile.end(), 0.0);
+    const auto made = static_cast<double>(std::max<std::uint64_t>(1, result.items_written));
+    print(
+        "wrote {} ({} shards, {} items, {} shards were there; {:.2f} s, {:.3f} CPU s an item: "
+        "{})\n",
+        arguments.folder,
+        result.shards_written,
+        result.items_written,
+        result.shards_there,
+        result.seconds,
+        cpu_seconds / made,
+        shares_of(result.profile));
+}
+
+void verify(const std::string& folder) {
+    const DatasetIndex index = read_dataset(folder, ShardCheck::Contents);
+    for (const std::string& problem : index.problems) print("{}\n", problem);
+    if (!index.problems.empty()) {
+        throw core::Failure(folder, fmt::format("has {} problems", index.problems.size()));
+    }
+    print("{} is whole: {} items in {} shards\n", folder, index.items, index.shards.size());
+}
+
+void merge(const std::string& folder) {
+    const DatasetIndex index = read_dataset(folder, ShardCheck::ManifestOnly);
+    const std::string path = write_index(index, folder);
+    print("wrote {} ({} items in {} shards)\n", path, index.items, index.shards.size());
+}
+
+void run(const GenerateArguments& arguments) {
+    if (!arguments.verify.empty()) return verify(arguments.verify);
+    if (!arguments.merge.empty()) return merge(arguments.merge);
+    if (arguments.recipe.empty() || arguments.folder.empty()) {
+        throw core::Error("nlos generate",
+                          "found no RECIPE or no -o",
+                          "must have both, or --verify DIR or --merge DIR");
+    }
+    make(arguments);
+}
+
+}  // namespace
+
+void add_generate_command(CLI::App& app) {
+    CLI::App* command =
+        app.add_subcommand("generate", "Make a data set of captures of random scenes");
+    const auto arguments = std::make_shared<GenerateArguments>();
+    command->add_option("RECIPE", arguments->recipe, "What is drawn and stored (.json)");
+    add_output_option(*command, arguments->folder, "Folder of the data set");
+    command->add_option("--shard",
+                        arguments->shard,
+                        "I/N: make the part I of N, from 0 to N - 1; without it, the part of the "
+                        "present task of a Slurm array, or everything");
+    command->add_option("--items", arguments->items, "A:B: make only the items from A to B - 1");
+    add_shorthands(*command, kGenerateShorthands, arguments->shorthands);
+    command->add_option("--verify", arguments->verify, "Check every shard of this folder");
+    command->add_option("--merge", arguments->merge, "Write index.json of this folder");
+    command
+        ->add_option("--slurm",
+                     arguments->slurm_tasks,
+                     "Print the script of a Slurm array of so many tasks, each with --threads "
+                     "processors (default 1), and do nothing else")
+        ->check(CLI::PositiveNumber);
+    add_threads_option(*command, arguments->threads);
+    add_set_option(*command, arguments->overrides);
+    command->footer(settings_footer(core::settings_help(Recipe{}),
+                                    "nlos generate data/recipes/shapes.json -o shapes"));
+    command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace apps

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: MIT
+#include "apps/dataset/dataset_index.h"
+
+#include "renderer/core/output_file.h"
+#include "renderer/core/parallel.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+#include <set>
+
+namespace apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kHistogramBins = 32;
+
+/// The shard of some number, or what is wrong with it.
+struct ShardState {
+    std::optional<Manifest> manifest;
+    std::optional<std::string> problem;
+};
+
+ShardState inspect(const DatasetIndex& index,
+                   const std::string& folder,
+                   std::uint64_t shard,
+                   const ItemRange& wanted,
+                   ShardCheck check) {
+    ShardState state{read_manifest(manifest_path(folder, shard)), std::nullopt};
+    const std::string name = shard_name(shard);
+    if (!state.manifest) {
+        state.problem = name + " is missing";
+    } else if (state.manifest->fingerprint != index.fingerprint) {
+        state.problem = name + " belongs to another recipe";
+    } else if (!(state.manifest->items == wanted)) {
+        const ItemRange& items = state.manifest->items;
+        state.problem = fmt::format("{} holds the items {} to {} instead of {} to {}",
+                                    name,
+                                    items.begin,
+                                    items.end - 1,
+                                    wanted.begin,
+                                    wanted.end - 1);
+    } else if (check == ShardCheck::Contents) {
+        state.problem = find_damage(*state.manifest, folder);
+    }
+    return state;
+}
+
+void add_programs(DatasetIndex& index) {
+    std::set<std::string> programs;
+    for (const Manifest& shard : index.shards) programs.insert(shard.program);
+    if (programs.size() < 2) return;
+    std::string text = "shards of several versions are mixed:";
+    for (const std::string& program : programs) text += " " + program + ";";
+    text.back() = ' ';
+    index.problems.push_back(text + "their items may differ in the last bits");
+}
+
+core::Json describe_shard(const Manifest& shard) {
+    return {{"file", shard.file},
+            {"items", {shard.items.begin, shard.items.end}},
+            {"bytes", shard.bytes},
+            {"xxh128", shard.checksum}};
+}
+
+}  // namespace
+
+DatasetIndex read_dataset(const std::string& folder, ShardCheck check) {
+    const std::string path = (fs::path(folder) / "recipe.json").string();
+    std::error_code ignored;
+    if (!fs::exists(path, ignored)) {
+        throw core::Error(folder, "holds no recipe.json", "must be a folder of nlos generate");
+    }
+    DatasetIndex index;
+    const core::Json json = core::read_json_file(path);
+    std::uint64_t per_shard = 0;
+    try {
+        index.recipe = json.at("recipe");
+        json.at("fingerprint").get_to(index.fingerprint);
+        index.recipe.at("items").get_to(index.items);
+        index.recipe.at("items_per_shard").get_to(per_shard);
+    } catch (const core::Json::exception&) {
+        per_shard = 0;
+    }
+    if (per_shard == 0) {
+        throw core::Error(path, "is no recipe of a data set", "must be what nlos generate wrote");
+    }
+    const std::uint64_t count = (index.items + per_shard - 1) / per_shard;
+    std::vector<ShardState> states(count);
+    core::parallel_for(count, [&](std::size_t shard) {
+        const ItemRange wanted{shard * per_shard, std::min(index.items, (shard + 1) * per_shard)};
+        states[shard] = inspect(index, folder, shard, wanted, check);
+    });
+    for (ShardState& state : states) {
+        if (state.problem) index.problems.push_back(core::printable(*state.problem));
+        if (state.manifest) index.shards.push_back(std::move(*state.manifest));
+    }
+    add_programs(index);
+    return index;
+}
+
+ItemProfile total_profile(const DatasetIndex& index) {
+    ItemProfile total{};
+    for (const Manifest& shard : index.shards) {
+        for (std::size_t i = 0; i < total.size(); ++i) total[i] += shard.profile[i];
+    }
+    return total;
+}
+
+std::map<std::string, DrawnHistogram> drawn_histograms(const DatasetIndex& index) {
+    std::map<std::string, DrawnHistogram> histograms;
+    for (const Manifest& shard : index.shards) {
+        for (const auto& [key, values] : shard.drawn) {
+            auto& histogram =
+                histograms
+                    .try_emplace(key,
+                                 DrawnHistogram{std::numeric_limits<double>::infinity(),
+                                                -std::numeric_limits<double>::infinity(),
+                                                std::vector<std::size_t>(kHistogramBins)})
+                    .first->second;
+            for (const double value : values) {
+                histogram.low = std::min(histogram.low, value);
+                histogram.high = std::max(histogram.high, value);
+            }
+        }
+    }
+    for (const Manifest& shard : index.shards) {
+        for (const auto& [key, values] : shard.drawn) {
+            DrawnHistogram& histogram = histograms.at(key);
+            const double width = histogram.high - histogram.low;
+            for (const double value : values) {
+                const double place = width > 0.0 ? (value - histogram.low) / width : 0.0;
+                const auto bin = static_cast<std::size_t>(place * kHistogramBins);
+                ++histogram.counts[std::min(bin, kHistogramBins - 1)];
+            }
+        }
+    }
+    return histograms;
+}
+
+std::string write_index(const DatasetIndex& index, const std::string& folder) {
+    if (!index.problems.empty()) {
+        throw core::Failure(
+            folder,
+            fmt::format("is not whole: {}{}",
+                        index.problems.front(),
+                        index.problems.size() > 1
+                            ? fmt::format(", and {} more", index.problems.size() - 1)
+                            : ""));
+    }
+    core::Json json = {{"fingerprint", index.fingerprint},
+                       {"recipe", index.recipe},
+                       {"program", index.shards.front().program},
+                       {"items", index.items},
+                       {"shards", core::Json::array()}};
+    std::map<std::string, std::string> broken;
+    std::size_t dark = 0;
+    std::size_t clipped = 0;
+    for (const Manifest& shard : index.shards) {
+        json["shards"].push_back(describe_shard(shard));
+        broken.insert(shard.broken_meshes.begin(), shard.broken_meshes.end());
+        dark += shard.dark_items;
+        clipped += shard.clipped_counts;
+    }
+    json["broken_meshes"] = broken;
+    json["dark_items"] = dark;
+    json["clipped_counts"] = clipped;
+    const ItemProfile profile = total_profile(index);
+    for (const auto& [step, name] : core::EnumNames<ItemStep>::value) {
+        json["cpu_seconds"][std::string(name)] = profile[static_cast<std::size_t>(step)];
+    }
+    for (const auto& [key, histogram] : drawn_histograms(index)) {
+        json["drawn"][key] = {
+            {"low", histogram.low}, {"high", histogram.high}, {"counts", histogram.counts}};
+    }
+    std::string path = (fs::path(folder) / "index.json").string();
+    core::write_text_file(path, core::json_text(json));
+    return path;
+}
+
+}  // namespace apps

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "apps/dataset/manifest.h"
+
+#include <string>
+#include <vector>
+
+namespace apps {
+
+/// All shards of a data set, as their manifests describe them.
+struct DatasetIndex {
+    core::Json recipe;
+    std::string fingerprint;
+    std::uint64_t items = 0;  ///< that the recipe asks for
+    std::vector<Manifest> shards;
+    std::vector<std::string> problems;  ///< what is missing or damaged; one printable line each
+};
+
+/// Reads what a data set's folder holds.
+///
+/// check    also reads every shard and compares its checksum
+/// throws   core::Error when the folder holds no data set
+enum class ShardCheck { ManifestOnly, Contents };
+DatasetIndex read_dataset(const std::string& folder, ShardCheck check);
+
+/// Writes index.json: the recipe, every shard with its items, bytes and checksum, where the time
+/// went, meshes that were skipped, and histograms of what was drawn.
+///
+/// throws   core::Failure when the index has problems
+/// returns  the path
+std::string write_index(const DatasetIndex& index, const std::string& folder);
+
+/// Processor seconds per step, over all shards.
+ItemProfile total_profile(const DatasetIndex& index);
+
+/// A histogram of numbers between the least and the greatest.
+struct DrawnHistogram {
+    double low = 0.0;
+    double high = 0.0;
+    std::vector<std::size_t> counts;
+};
+std::map<std::string, DrawnHistogram> drawn_histograms(const DatasetIndex& index);
+
+}  // namespace apps

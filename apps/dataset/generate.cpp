@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: MIT
+#include "apps/dataset/generate.h"
+
+#include "renderer/core/output_file.h"
+#include "renderer/core/parallel.h"
+#include "renderer/core/stopwatch.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <filesystem>
+
+namespace apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kRecipeFile = "recipe.json";
+
+std::string file_name(const Recipe& recipe, std::uint64_t shard) {
+    return shard_name(shard) + (recipe.format == DatasetFormat::Hdf5 ? ".h5" : ".tar");
+}
+
+/// Numbers among the drawn values and those of objects, by key.
+void note_drawn(const core::Json& parameters, std::map<std::string, std::vector<double>>& drawn) {
+    const auto note = [&](const std::string& key, const core::Json& value) {
+        if (value.is_number()) drawn[key].push_back(value.get<double>());
+    };
+    for (const auto& [key, value] : parameters.at("drawn").items()) note(key, value);
+    const core::Json& objects = parameters.at("objects");
+    note("objects.count", objects.size());
+    for (const core::Json& object : objects) {
+        note("objects.albedo", object.at("albedo"));
+        for (const std::size_t axis : {0, 1, 2}) {
+            note(fmt::format("objects.{}_m", "xyz"[axis]), object.at("position_m")[axis]);
+        }
+    }
+}
+
+/// An item that was computed and waits for its turn.
+struct MadeItem {
+    Item item;
+    PackedItem packed;
+};
+
+MadeItem make_packed(Dataset& dataset, std::uint64_t number) {
+    MadeItem made;
+    core::run_on_one_thread([&] {
+        made.item = make_item(dataset.recipe(), dataset.meshes(), number);
+        const core::ThreadStopwatch clock;
+        made.packed = pack_item(dataset.recipe(), made.item);
+        made.item.profile[static_cast<std::size_t>(ItemStep::Packing)] += clock.seconds();
+    });
+    return made;
+}
+
+void note_item(Dataset& dataset, const Item& item, Manifest& manifest) {
+    for (std::size_t step = 0; step < kNumItemSteps; ++step) {
+        manifest.profile[step] += item.profile[step];
+    }
+    for (const std::size_t index : item.broken_meshes) {
+        manifest.broken_meshes[dataset.meshes().name(index)] = dataset.meshes().why_broken(index);
+    }
+    manifest.dark_items += item.is_dark ? 1 : 0;
+    manifest.clipped_counts += item.clipped_counts;
+    note_drawn(item.parameters, manifest.drawn);
+}
+
+/// Computes items side by side and writes them in their order.
+/// returns   nothing when the run was asked to stop
+std::optional<Manifest> make_shard(Dataset& dataset,
+                                   std::uint64_t shard,
+                                   const ItemRange& items,
+                                   const std::string& program,
+                                   const std::function<bool()>& next_item) {
+    const core::Stopwatch clock;
+    Manifest manifest;
+    manifest.fingerprint = dataset.fingerprint();
+    manifest.program = program;
+    manifest.file = file_name(dataset.recipe(), shard);
+    manifest.items = items;
+    const std::string path = (fs::path(dataset.folder()) / manifest.file).string();
+    const auto writer = make_shard_writer(dataset.recipe(), path, items, program);
+    const bool is_whole = core::parallel_in_order<MadeItem>(
+        items.size(),
+        [&](std::size_t i) { return make_packed(dataset, items.begin + i); },
+        [&](std::size_t, MadeItem made) {
+            const core::ThreadStopwatch writing;
+            writer->add(std::move(made.packed));
+            note_item(dataset, made.item, manifest);
+            manifest.profile[static_cast<std::size_t>(ItemStep::Packing)] += writing.seconds();
+            return next_item();
+        });
+    if (!is_whole) return std::nullopt;
+    writer->finish();
+    manifest.bytes = fs::file_size(path);
+    manifest.checksum = file_checksum(path).value_or("");
+    manifest.seconds = clock.seconds();
+    return manifest;
+}
+
+/// A shard that is not all there, and what of it shall be.
+struct MissingShard {
+    std::uint64_t shard;
+    ItemRange items;
+};
+
+std::vector<MissingShard> find_missing(const Dataset& dataset,
+                                       const WorkShare& share,
+                                       const ItemRange& wanted,
+                                       std::uint64_t& shards_there) {
+    std::vector<MissingShard> missing;
+    for (std::uint64_t shard = 0; shard < dataset.num_shards(); ++shard) {
+        if (!share.takes(shard)) continue;
+        const ItemRange all = dataset.items_of(shard);
+        ItemRange items{std::max(all.begin, wanted.begin), std::min(all.end, wanted.end)};
+        if (items.begin >= items.end) continue;
+        const auto manifest = read_manifest(manifest_path(dataset.folder(), shard));
+        if (manifest && manifest->fingerprint == dataset.fingerprint() &&
+            !find_damage(*manifest, dataset.folder())) {
+            if (manifest->items.contains(items)) {
+                ++shards_there;
+                continue;
+            }
+            items = {std::min(items.begin, manifest->items.begin),
+                     std::max(items.end, manifest->items.end)};
+        }
+        missing.push_back({shard, items});
+    }
+    return missing;
+}
+
+void add_to_result(const Manifest& manifest, GenerateResult& result) {
+    ++result.shards_written;
+    result.items_written += manifest.items.size();
+    for (std::size_t i = 0; i < kNumItemSteps; ++i) result.profile[i] += manifest.profile[i];
+    result.broken_meshes.insert(manifest.broken_meshes.begin(), manifest.broken_meshes.end());
+    result.dark_items += manifest.dark_items;
+    result.clipped_counts += manifest.clipped_counts;
+}
+
+}  // namespace
+
+Dataset::Dataset(Recipe recipe, std::string folder)
+    : recipe_(std::move(recipe)),
+      folder_(std::move(folder)),
+      meshes_(recipe_),
+      fingerprint_(text_checksum(write_identity(recipe_).dump() + meshes_.listing().dump())) {}
+
+std::uint64_t Dataset::num_shards() const {
+    return (recipe_.items + recipe_.items_per_shard - 1) / recipe_.items_per_shard;
+}
+
+ItemRange Dataset::items_of(std::uint64_t shard) const {
+    const std::uint64_t begin = shard * recipe_.items_per_shard;
+    return {begin, std::min(recipe_.items, begin + recipe_.items_per_shard)};
+}
+
+void Dataset::claim_folder() const {
+    std::error_code error;
+    fs::create_directories(folder_, error);
+    const std::string path = (fs::path(folder_) / kRecipeFile).string();
+    if (fs::exists(path, error)) {
+        const core::Json there = core::read_json_file(path);
+        const auto fingerprint = there.find("fingerprint");
+        if (fingerprint == there.end() || *fingerprint != fingerprint_) {
+            throw core::Error(folder_,
+                              "holds the data set of another recipe",
+                              "must be a new folder, or that of this recipe and these meshes");
+        }
+    }
+    core::write_text_file(
+        path,
+        core::json_text({{"fingerprint", fingerprint_}, {"recipe", core::write_value(recipe_)}}));
+}
+
+GenerateResult generate(Dataset& dataset,
+                        const WorkShare& share,
+                        const std::optional<ItemRange>& items,
+                        const std::string& program,
+                        const core::Progress& progress) {
+    const core::Stopwatch clock;
+    dataset.claim_folder();
+    GenerateResult result;
+    const auto missing = find_missing(
+        dataset, share, items.value_or(ItemRange{0, dataset.recipe().items}), result.shards_there);
+    std::uint64_t total = 0;
+    for (const MissingShard& shard : missing) total += shard.items.size();
+    std::uint64_t done = 0;
+    for (const MissingShard& shard : missing) {
+        const auto manifest = make_shard(dataset, shard.shard, shard.items, program, [&] {
+            ++done;
+            progress.update(
+                static_cast<double>(done) / static_cast<double>(total),
+                fmt::format("{:.3g} items/s", static_cast<double>(done) / clock.seconds()));
+            return !progress.should_stop();
+        });
+        if (!manifest) {
+            result.interrupted = true;
+            break;
+        }
+        write_manifest(*manifest, manifest_path(dataset.folder(), shard.shard));
+        add_to_result(*manifest, result);
+    }
+    result.seconds = clock.seconds();
+    return result;
+}
+
+}  // namespace apps

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: MIT
+#include "apps/dataset/item.h"
+
+#include "apps/dataset/stored_histogram.h"
+#include "nlos/formats/capture_arrays.h"
+#include "renderer/core/stopwatch.h"
+#include "renderer/render.h"
+#include "renderer/scene/ground_truth.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace apps {
+namespace {
+
+using core::DepthMap;
+using core::Vec3;
+using nlos::StoredNumber;
+
+/// Adds the processor time of this thread, from its construction on, to a step.
+class StepClock {
+ public:
+    StepClock(ItemProfile& profile, ItemStep step)
+        : seconds_(profile[static_cast<std::size_t>(step)]) {}
+    ~StepClock() { seconds_ += clock_.seconds(); }
+    StepClock(const StepClock&) = delete;
+    StepClock& operator=(const StepClock&) = delete;
+
+ private:
+    double& seconds_;
+    core::ThreadStopwatch clock_;
+};
+
+/// One number per column of a depth map.
+template <class T, class Value>
+ItemArray column_array(const DepthMap& map,
+                       const char* name,
+                       StoredNumber number,
+                       const Value& value) {
+    std::vector<T> values;
+    for (std::size_t i = 0; i < map.depth_m.size(); ++i) values.push_back(value(i));
+    return make_item_array<T>(name, {map.x_m.size(), map.y_m.size()}, number, values);
+}
+
+ItemArray normal_array(const DepthMap& map) {
+    std::vector<float> values;
+    for (const Vec3& normal : map.normals) {
+        for (const double coordinate : normal) values.push_back(static_cast<float>(coordinate));
+    }
+    return make_item_array<float>(
+        "normals", {map.x_m.size(), map.y_m.size(), 3}, StoredNumber::Float32, values);
+}
+
+ItemArray pose_array(const Recipe& recipe, const ItemPlan& plan) {
+    std::size_t most = 1;
+    for (const core::Json& count : extremes(recipe.objects.count)) {
+        most = std::max(most, static_cast<std::size_t>(std::lround(count.get<double>())));
+    }
+    std::vector<double> values(16 * most, std::numeric_limits<double>::quiet_NaN());
+    for (std::size_t i = 0; i < plan.objects.size(); ++i) {
+        using RowMajor = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
+        Eigen::Map<RowMajor> pose(&values[16 * i]);
+        pose = plan.objects[i].world_from_mesh.matrix();
+    }
+    return make_item_array<double>("poses", {most, 4, 4}, StoredNumber::Float64, values);
+}
+
+ItemArray truth_array(Truth truth,
+                      const Recipe& recipe,
+                      const ItemPlan& plan,
+                      const DepthMap& map) {
+    switch (truth) {
+        case Truth::Normals:
+            return normal_array(map);
+        case Truth::Albedo:
+            return column_array<float>(map, "albedo", StoredNumber::Float32, [&](std::size_t i) {
+                return static_cast<float>(map.albedo[i]);
+            });
+        case Truth::Mask:
+            return column_array<std::uint8_t>(map, "mask", StoredNumber::UInt8, [&](std::size_t i) {
+                return static_cast<std::uint8_t>(map.is_foreground(i));
+            });
+        case Truth::ObjectIds:
+            return column_array<std::int16_t>(
+                map, "object_ids", StoredNumber::Int16, [&](std::size_t i) {
+                    return static_cast<std::int16_t>(map.is_foreground(i) ? map.object[i] : -1);
+                });
+        case Truth::Poses:
+            return pose_array(recipe, plan);
+        default:
+            return column_array<float>(map, "depth", StoredNumber::Float32, [&](std::size_t i) {
+                return static_cast<float>(map.depth_m[i]);
+            });
+    }
+}
+
+bool needs_depth_map(const Recipe& recipe) {
+    return std::any_of(recipe.truths.begin(), recipe.truths.end(), [](Truth truth) {
+        return truth != Truth::Poses && truth != Truth::CleanHistograms;
+    });
+}
+
+void add_truths(const Recipe& recipe,
+                const ItemPlan& plan,
+                const renderer::Scene& scene,
+                const core::Capture& clean,
+                Item& item) {
+    DepthMap map;
+    if (needs_depth_map(recipe)) {
+        map = renderer::trace_ground_truth(scene, plan.settings.scene);
+    }
+    for (const Truth truth : recipe.truths) {
+        if (truth == Truth::CleanHistograms) {
+            add_histograms("clean", clean, HistogramStorage::Float32, item);
+        } else {
+            item.arrays.push_back(truth_array(truth, recipe, plan, map));
+        }
+    }
+}
+
+}  // namespace
+
+Item make_item(const Recipe& recipe, MeshLibrary& meshes, std::uint64_t number) {
+    Item item;
+    const auto clock = [&](ItemStep step) { return StepClock(item.profile, step); };
+    const ItemPlan plan = [&] {
+        const StepClock timed = clock(ItemStep::Meshes);
+        return plan_item(recipe, meshes, number);
+    }();
+    item.parameters = plan.parameters;
+    item.broken_meshes = plan.broken;
+    const renderer::SceneDescription& description = plan.settings.scene;
+    const core::Scan scan = renderer::make_scan(description);
+    const auto [scene, result] = [&] {
+        const StepClock timed = clock(ItemStep::Render);
+        auto set_up = std::make_unique<renderer::Scene>(
+            renderer::make_scene(geometry_of(plan), description, scan));
+        auto rendered = renderer::render(
+            *set_up, scan, {description.time_axis, std::nullopt}, description.render, {});
+        return std::pair(std::move(set_up), std::move(rendered));
+    }();
+    item.is_dark = result.capture.transient.is_dark();
+    if (result.estimated_error && !item.is_dark) {
+        item.parameters["estimated_error"] = *result.estimated_error;
+    }
+    {
+        const StepClock timed = clock(ItemStep::Detector);
+        const bool counts = plan.settings.detector && !item.is_dark;
+        add_histograms(
+            "H",
+            counts ? nlos::detect(result.capture, *plan.settings.detector) : result.capture,
+            recipe.storage.histograms,
+            item);
+    }
+    const StepClock timed = clock(ItemStep::Truths);
+    add_truths(recipe, plan, *scene, result.capture, item);
+    return item;
+}
+
+}  // namespace apps

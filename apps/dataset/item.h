@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "apps/dataset/item_array.h"
+#include "apps/dataset/item_plan.h"
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace apps {
+
+/// Where the time of an item goes.
+enum class ItemStep { Meshes, Render, Detector, Truths, Packing };
+inline constexpr std::size_t kNumItemSteps = 5;
+
+/// Processor seconds per step.
+using ItemProfile = std::array<double, kNumItemSteps>;
+
+/// One capture of a data set, with what is known of its scene, as it is stored.
+struct Item {
+    std::vector<ItemArray> arrays;
+    core::Json parameters;
+    std::set<std::size_t> broken_meshes;
+    std::size_t clipped_counts = 0;  ///< beyond what the type of the histograms can hold
+    bool is_dark = false;            ///< no light of the scene lies within the time axis
+    ItemProfile profile{};
+};
+
+/// Draws and computes an item. Of a dark one no counts are drawn: its histograms are 0.
+///
+/// Arrays: H, shaped as in a capture file, in W/(m^2 sr) per bin or counts; with float16 also
+/// H_scale, by which H has to be multiplied; clean, what H is without the detector; depth [m, NaN
+/// where nothing is], normals [world], albedo, mask and object_ids (-1 where nothing is), all over
+/// the wall (X, Y) at scene.ground_truth.depth_resolution; poses (M, 4, 4), world from a mesh whose
+/// longest side is 1, of the most objects that an item can have, NaN for those it has not.
+///
+/// throws   core::Error, core::Failure as renderer::render() and nlos::detect() do
+Item make_item(const Recipe& recipe, MeshLibrary& meshes, std::uint64_t item);
+
+}  // namespace apps
+
+template <>
+struct core::EnumNames<apps::ItemStep> {
+    static constexpr auto value =
+        names_from_zero<apps::ItemStep>("meshes", "render", "detector", "truths", "packing");
+};

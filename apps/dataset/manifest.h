@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "apps/dataset/item.h"
+#include "apps/dataset/shard_writer.h"
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace apps {
+
+/// What stands beside a shard and says that it is whole: written after it.
+struct Manifest {
+    std::string fingerprint;  ///< of the recipe and its meshes
+    std::string program;
+    std::string file;  ///< name of the shard, in the same folder
+    ItemRange items;
+    std::uint64_t bytes = 0;
+    std::string checksum;   ///< XXH3 of 128 bits, as `xxh128sum` prints it
+    double seconds = 0.0;   ///< of the wall clock
+    ItemProfile profile{};  ///< processor seconds of all its items
+    std::map<std::string, std::string> broken_meshes;  ///< drawn, and why they were skipped
+    std::size_t dark_items = 0;
+    std::size_t clipped_counts = 0;
+    std::map<std::string, std::vector<double>> drawn;  ///< numbers drawn, per item, by key
+};
+
+/// The name of a shard, without suffix.
+std::string shard_name(std::uint64_t shard);
+
+/// The path of the manifest that stands beside shard `shard`.
+std::string manifest_path(const std::string& folder, std::uint64_t shard);
+
+void write_manifest(const Manifest& manifest, const std::string& path);
+
+/// Nothing when there is none, or it is not one of ours.
+std::optional<Manifest> read_manifest(const std::string& path);
+
+/// The checksum of a file as `xxh128sum` prints it; nothing when the file cannot be read.
+std::optional<std::string> file_checksum(const std::string& path);
+/// The same of a text.
+std::string text_checksum(const std::string& text);
+
+/// What is wrong with a shard that its manifest describes; nothing when it checks out.
+std::optional<std::string> find_damage(const Manifest& manifest, const std::string& folder);
+
+}  // namespace apps

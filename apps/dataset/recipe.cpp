@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: MIT
+#include "apps/dataset/recipe.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+namespace apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+void validate_meshes(const MeshSource& meshes, const std::string& where) {
+    const bool is_empty = meshes.folder.empty() && meshes.files.empty() && meshes.shapes.empty();
+    if (!is_empty) return;
+    throw core::Error(where, "found no source", "must have a folder, files or shapes");
+}
+
+/// Setting keys whose value decides about the shape of an array.
+bool changes_shapes(const std::string& key) {
+    static const std::set<std::string> keys{"scene.scan.pattern",
+                                            "scene.scan.sensing_points",
+                                            "scene.scan.illumination_points",
+                                            "scene.scan.sensing_points_m",
+                                            "scene.scan.illumination_points_m",
+                                            "scene.time_axis.num_bins",
+                                            "scene.ground_truth.depth_resolution"};
+    return keys.contains(key);
+}
+
+void validate_scene(const Recipe& recipe, const std::string& where) {
+    const renderer::SceneDescription& scene = recipe.scene;
+    const auto refuse = [&](const char* key, const char* reason) {
+        throw core::Error(where + "scene." + key, "found in a recipe", reason);
+    };
+    if (!scene.geometry.empty()) refuse("geometry", "must be left out: meshes says what is drawn");
+    if (!scene.objects.empty()) refuse("objects", "must be left out: objects are drawn");
+    if (scene.camera) refuse("camera", "must be left out: items are scans of a relay wall");
+    if (scene.frames) refuse("frames", "must be left out: items are single captures");
+    if (scene.velocity_axis) refuse("velocity_axis", "must be left out: objects are at rest");
+    if (scene.time_axis.automatic) refuse("time_axis", "must be an object, the same for all items");
+}
+
+void validate_item(const ItemSettings& settings, const std::string& where) {
+    renderer::validate(settings.scene, where + "scene.");
+    if (!settings.detector) return;
+    core::check_ranges(*settings.detector, where + "detector");
+    const nlos::DetectorSettings& detector = *settings.detector;
+    if (!detector.photons && !detector.photons_per_point && !detector.exposure_s) {
+        throw core::Error(where + "detector",
+                          "found no amount of light",
+                          "must have photons, photons_per_point or exposure_s");
+    }
+}
+
+/// What every item may get, key by key, so that no run of hours ends at a bad draw.
+void validate_draws(const Recipe& recipe, const std::string& where) {
+    for (const auto& [key, distribution] : recipe.draw) {
+        const std::string full_key = where + "draw." + key;
+        for (const core::Json& value : extremes(distribution)) {
+            ItemSettings settings = recipe;
+            try {
+                apply_values({{key, value}}, settings);
+                validate_item(settings, "");
+            } catch (const core::Error& error) {
+                throw core::Error(full_key + ": " + error.where(), error.found(), error.allowed());
+            }
+        }
+        if (recipe.format == DatasetFormat::Hdf5 && changes_shapes(key)) {
+            throw core::Error(full_key,
+                              "found a shape that differs between items",
+                              "must be fixed in HDF5; format webdataset allows it");
+        }
+    }
+}
+
+void validate_storage(const Recipe& recipe, const std::string& where) {
+    core::check_ranges(recipe.storage, where + "storage");
+    const bool whole = recipe.storage.histograms == HistogramStorage::Uint8 ||
+                       recipe.storage.histograms == HistogramStorage::Uint16;
+    if (whole && (!recipe.detector || recipe.detector->expected)) {
+        throw core::Error(where + "storage.histograms",
+                          fmt::format("found {}", core::enum_name(recipe.storage.histograms)),
+                          "must be float32 or float16 unless a detector draws counts");
+    }
+    for (std::size_t i = 0; i < recipe.truths.size(); ++i) {
+        const auto& truths = recipe.truths;
+        const auto begin = truths.begin();
+        if (std::find(begin, begin + static_cast<std::ptrdiff_t>(i), truths[i]) ==
+            begin + static_cast<std::ptrdiff_t>(i)) {
+            continue;
+        }
+        throw core::Error(where + "truths",
+                          fmt::format("found {} twice", core::enum_name(truths[i])),
+                          "must name each once");
+    }
+}
+
+void validate(const Recipe& recipe, const std::string& where) {
+    core::check_ranges(recipe, where);
+    core::check_ranges(recipe.objects, where + "objects");
+    validate_meshes(recipe.meshes, where + "meshes");
+    validate_scene(recipe, where);
+    validate_item(recipe, where);
+    validate_draws(recipe, where);
+    validate_storage(recipe, where);
+}
+
+}  // namespace
+
+core::Json write_identity(const Recipe& recipe) {
+    core::Json json = core::write_value(recipe);
+    json.erase("items");
+    json["meshes"].erase("folder");
+    json["meshes"].erase("files");
+    return json;
+}
+
+void apply_values(const core::Json& values, ItemSettings& settings) {
+    core::Json changes = core::Json::object();
+    for (const auto& [key, value] : values.items()) {
+        core::Json* place = &changes;
+        std::size_t begin = 0;
+        for (std::size_t dot; (dot = key.find('.', begin)) != std::string::npos; begin = dot + 1) {
+            place = &(*place)[key.substr(begin, dot - begin)];
+        }
+        (*place)[key.substr(begin)] = value;
+    }
+    core::read_value(changes, "", settings);
+}
+
+std::uint64_t stream_of(std::string_view name) {
+    std::uint64_t hash = 0xcbf29ce484222325ULL;  // FNV-1a [Fowler1991]
+    for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
+    return hash;
+}
+
+Recipe read_recipe(const std::string& path, const std::vector<std::string>& overrides) {
+    Recipe recipe;
+    core::read_value(core::read_json_file(path), path + ": ", recipe);
+    const fs::path folder = fs::path(path).parent_path();
+    const auto beside_recipe = [&](std::string& file) {
+        if (!file.empty()) file = (folder / file).string();
+    };
+    beside_recipe(recipe.meshes.folder);
+    for (std::string& file : recipe.meshes.files) beside_recipe(file);
+    for (const std::string& text : overrides) core::apply_override(recipe, text);
+    validate(recipe, path + ": ");
+    return recipe;
+}
+
+}  // namespace apps
