@@ -17,8 +17,6 @@ using core::Vec3;
 
 constexpr int kCellsOfShape = 48;
 constexpr std::size_t kMostKeptBytes = std::size_t{1} << 30;
-/// Share of a bin by which simplified surfaces may lie aside: path lengths change by twice that.
-constexpr double kShareOfBin = 1.0 / 16.0;
 
 bool is_mesh(const fs::path& path) {
     std::string suffix = path.extension().string();
@@ -52,12 +50,12 @@ std::vector<std::string> meshes_in(const std::string& folder) {
 
 /// How far a surface may move in the largest object of a recipe before a bin tells.
 std::optional<double> tolerance_of(const Recipe& recipe) {
-    if (!recipe.meshes.simplify) return std::nullopt;
+    if (recipe.meshes.tolerance_bins == 0.0) return std::nullopt;
     double largest = 0.0;
     for (const core::Json& size : extremes(recipe.objects.size_m)) {
         largest = std::max(largest, size.get<double>());
     }
-    return kShareOfBin * recipe.scene.time_axis.bin_width_m / largest;
+    return recipe.meshes.tolerance_bins * recipe.scene.time_axis.bin_width_m / largest;
 }
 
 core::TriangleMesh one_mesh(const renderer::SceneGeometry& geometry) {

@@ -13,6 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 
 void validate_meshes(const MeshSource& meshes, const std::string& where) {
+    core::check_ranges(meshes, where);
     const bool is_empty = meshes.folder.empty() && meshes.files.empty() && meshes.shapes.empty();
     if (!is_empty) return;
     throw core::Error(where, "found no source", "must have a folder, files or shapes");

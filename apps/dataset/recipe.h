@@ -27,7 +27,7 @@ struct MeshSource {
     std::string folder;              ///< all its .glb, .gltf, .obj, .ply and .stl files
     std::vector<std::string> files;  ///< beside those of the folder
     std::vector<BasicShape> shapes;  ///< beside the files
-    bool simplify = true;
+    double tolerance_bins = 0.1;
 };
 
 /// How the objects of an item are drawn.
@@ -79,7 +79,11 @@ void for_each_field(MeshSource& s, Visitor&& visit) {
           s.shapes,
           "surfaces made by formula, beside the files: sphere, box, plate, cylinder, cone, torus, "
           "blob");
-    visit("simplify", s.simplify, "take away triangles that the bins cannot tell apart");
+    visit("tolerance_bins",
+          s.tolerance_bins,
+          core::at_least(0,
+                         "triangles are taken away as long as the surface of the largest object "
+                         "moves by less than this share of a bin; 0: all are kept"));
 }
 
 template <class Visitor>

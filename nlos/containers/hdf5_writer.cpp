@@ -81,6 +81,7 @@ Hdf5Writer::Hdf5Writer(std::string target, std::string user_block)
     prepare_hdf5();
     const Hdf5Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
     check(H5Pset_userblock(creation.id(), user_block_.size()) >= 0);
+    H5Pset_obj_track_times(creation.id(), false);  // the same values give the same bytes
     const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
     H5Pset_fclose_degree(access.id(), H5F_CLOSE_STRONG);
     // The format of HDF5 1.8 guards its headers by checksums, so that damage is noticed when read.
@@ -105,7 +106,7 @@ Hdf5Handle Hdf5Writer::create_dataset(const std::string& name,
                                       std::int64_t type,
                                       const Hdf5Handle& space) {
     const Hdf5Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-    H5Pset_obj_track_times(creation.id(), false);  // the same values give the same bytes
+    H5Pset_obj_track_times(creation.id(), false);
     Hdf5Handle dataset(
         H5Dcreate2(
             file_.id(), name.c_str(), type, space.id(), H5P_DEFAULT, creation.id(), H5P_DEFAULT),
