@@ -135,7 +135,12 @@ RenderResult integrate_and_trace(const RenderTask& task, double left_out) {
     RenderResult result = trace_paths(tracing, scope, precomputed);
     add(third.transient, result.capture.transient);
     if (task.settings.by_order) add(third.transient, result.capture.by_order[2]);
-    if (is_all) result.estimated_error = std::hypot(third.estimated_error, left_out);
+    result.element_tolerance = third.element_tolerance;
+    if (!third.estimated_error) {
+        result.estimated_error.reset();
+    } else if (is_all) {
+        result.estimated_error = std::hypot(*third.estimated_error, left_out);
+    }
     std::vector<OrderSource> sources{{3, 3, Estimator::ThirdBounce, "all"}};
     if (surfaces.narrow_lobes) {
         sources[0].surfaces = "all but narrow glossy lobes and dielectrics";

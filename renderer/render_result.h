@@ -34,6 +34,7 @@ struct RenderResult {
     core::Capture capture;
     std::vector<OrderSource> sources;       ///< orders 1 and 2 need no estimator
     std::optional<double> estimated_error;  ///< relative L2 over all of H; empty: not known
+    std::optional<double> element_tolerance;  ///< of third bounces, see RenderSettings
     std::optional<LeftOutOrders> left_out;  ///< counts as part of the error
     std::uint64_t samples_per_pair = 0;     ///< candidate paths used, whole passes
     std::uint64_t num_rays = 0;

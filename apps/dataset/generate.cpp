@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "apps/dataset/generate.h"
 
+#include "apps/dataset/item_preview.h"
+#include "nlos/pictures/picture.h"
 #include "renderer/core/output_file.h"
 #include "renderer/core/parallel.h"
 #include "renderer/core/stopwatch.h"
@@ -9,6 +11,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 
 namespace apps {
 namespace {
@@ -41,12 +44,16 @@ void note_drawn(const core::Json& parameters, std::map<std::string, std::vector<
 struct MadeItem {
     Item item;
     PackedItem packed;
+    std::vector<nlos::Panel> preview;  ///< of the first few of the data set
 };
+
+constexpr std::uint64_t kPreviewItems = 6;
 
 MadeItem make_packed(Dataset& dataset, std::uint64_t number) {
     MadeItem made;
     core::run_on_one_thread([&] {
         made.item = make_item(dataset.recipe(), dataset.meshes(), number);
+        if (number < kPreviewItems) made.preview = preview_panels(dataset.recipe(), made.item);
         const core::ThreadStopwatch clock;
         made.packed = pack_item(dataset.recipe(), made.item);
         made.item.profile[static_cast<std::size_t>(ItemStep::Packing)] += clock.seconds();
@@ -80,6 +87,8 @@ std::optional<Manifest> make_shard(Dataset& dataset,
     manifest.file = file_name(dataset.recipe(), shard);
     manifest.items = items;
     const std::string path = (fs::path(dataset.folder()) / manifest.file).string();
+    std::vector<nlos::Panel> preview;
+    std::size_t preview_columns = 0;
     const auto writer = make_shard_writer(dataset.recipe(), path, items, program);
     const bool is_whole = core::parallel_in_order<MadeItem>(
         items.size(),
@@ -88,11 +97,17 @@ std::optional<Manifest> make_shard(Dataset& dataset,
             const core::ThreadStopwatch writing;
             writer->add(std::move(made.packed));
             note_item(dataset, made.item, manifest);
+            if (!made.preview.empty()) preview_columns = made.preview.size();
+            std::move(made.preview.begin(), made.preview.end(), std::back_inserter(preview));
             manifest.profile[static_cast<std::size_t>(ItemStep::Packing)] += writing.seconds();
             return next_item();
         });
     if (!is_whole) return std::nullopt;
     writer->finish();
+    if (!preview.empty()) {
+        nlos::write_panels_png(
+            preview_path(dataset.folder()), preview, static_cast<int>(preview_columns));
+    }
     manifest.bytes = fs::file_size(path);
     manifest.checksum = file_checksum(path).value_or("");
     manifest.seconds = clock.seconds();

@@ -64,6 +64,10 @@ std::string manifest_path(const std::string& folder, std::uint64_t shard) {
     return (fs::path(folder) / (shard_name(shard) + ".json")).string();
 }
 
+std::string preview_path(const std::string& folder) {
+    return (fs::path(folder) / "preview.png").string();
+}
+
 void write_manifest(const Manifest& manifest, const std::string& path) {
     const core::Json json = {{"fingerprint", manifest.fingerprint},
                              {"program", manifest.program},

@@ -33,6 +33,9 @@ std::string shard_name(std::uint64_t shard);
 /// The path of the manifest that stands beside shard `shard`.
 std::string manifest_path(const std::string& folder, std::uint64_t shard);
 
+/// The picture of the first items, beside the first shard.
+std::string preview_path(const std::string& folder);
+
 void write_manifest(const Manifest& manifest, const std::string& path);
 
 /// Nothing when there is none, or it is not one of ours.

@@ -16,6 +16,7 @@ void bind_capture(nanobind::module_& module);
 void bind_reconstruction(nanobind::module_& module);
 void bind_fit(nanobind::module_& module);
 void bind_work(nanobind::module_& module);
+void bind_dataset(nanobind::module_& module);
 void bind_operators(nanobind::module_& module);
 void bind_gradients(nanobind::module_& module);
 

@@ -88,6 +88,16 @@ std::string cards_html(const std::vector<ResultCard>& cards, const std::string& 
     return html;
 }
 
+std::string dataset_html(const std::optional<DatasetCard>& dataset) {
+    if (!dataset) return "";
+    std::string html = card_html(dataset->card, "First items");
+    if (!dataset->histograms_png.empty()) {
+        html += figure_html(embedded_image(dataset->histograms_png, kPng, "Histograms"),
+                            "What was drawn, over all items.");
+    }
+    return html;
+}
+
 enum class FigureKind { Truth, Other };
 
 FigureKind kind_of(const Figure& figure) {
@@ -132,6 +142,7 @@ std::string contents_text(const ResultsFolder& results) {
         text +=
             fmt::format("{}{} {}{}", text.empty() ? "" : ", ", count, thing, count == 1 ? "" : "s");
     };
+    add(results.dataset ? 1 : 0, "data set");
     add(results.captures.size(), "capture");
     add(results.volumes.size(), "reconstruction");
     add(results.fits.size(), "fit");
@@ -159,6 +170,7 @@ std::string render_report(const ResultsFolder& results) {
     html += fmt::format("<title>{} - nlos report</title>\n", escape_html(results.name));
     html += std::string("<style>") + kReportStyle + "</style>\n</head>\n<body>\n";
     html += header_html(results) + "<main>\n";
+    html += section_html("dataset", "Data set", dataset_html(results.dataset));
     html += section_html("scores", "Scores", scores_html(results.scores));
     html += section_html("truth", "Ground truth", figures_html(results.figures, FigureKind::Truth));
     html += section_html("captures", "Captures", cards_html(results.captures, "Streak image"));

@@ -58,7 +58,8 @@ std::vector<fs::path> visible_files(const fs::path& folder) {
 }
 
 bool is_measurement(const std::string& suffix) {
-    static const std::set<std::string> suffixes{".h5", ".hdf5", ".mat", ".exr", ".npz", ".npy", ".ti"};
+    static const std::set<std::string> suffixes{
+        ".h5", ".hdf5", ".mat", ".exr", ".npz", ".npy", ".ti"};
     return suffixes.contains(suffix);
 }
 
@@ -122,7 +123,9 @@ ResultsFolder read_results_folder(const std::string& folder) {
     }
     ResultsFolder results;
     results.name = fs::canonical(folder).filename().string();
+    if (is_dataset(folder)) results.dataset = dataset_card(folder);
     for (const fs::path& path : visible_files(folder)) {
+        if (results.dataset && belongs_to_dataset(path.filename().string())) continue;
         try {
             read_file(path, results);
         } catch (const std::exception& failure) {

@@ -2,10 +2,12 @@
 #pragma once
 
 #include "apps/report/bench_cards.h"
+#include "apps/report/dataset_card.h"
 #include "apps/report/result_cards.h"
 #include "nlos/compare/compare.h"
 #include "renderer/core/settings.h"
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -31,6 +33,7 @@ struct JsonDocument {
 /// What lies in a results folder, in the order of the files' names.
 struct ResultsFolder {
     std::string name;
+    std::optional<DatasetCard> dataset;  ///< when the folder holds one
     std::vector<ScoredResult> scores;
     std::vector<ResultCard> captures;
     std::vector<ResultCard> volumes;
@@ -42,7 +45,7 @@ struct ResultsFolder {
     std::vector<Fact> unreadable;  ///< file and what is wrong with it
 
     bool empty() const {
-        return scores.empty() && captures.empty() && volumes.empty() && fits.empty() &&
+        return !dataset && scores.empty() && captures.empty() && volumes.empty() && fits.empty() &&
                benches.empty() && hard_cases.empty() && figures.empty() && documents.empty() &&
                unreadable.empty();
     }

@@ -8,6 +8,11 @@ namespace renderer {
 void validate(const RenderSettings& settings, const std::string& where) {
     core::check_ranges(settings, where);
     core::check_ranges(settings.restir, where + ".restir");
+    if (settings.element_tolerance && (settings.target_error || settings.seconds)) {
+        throw core::Error(where + ".element_tolerance",
+                          "found beside target_error or seconds",
+                          "must stand instead of them");
+    }
     if (settings.method == Estimator::ThirdBounce) {
         core::require(settings.max_bounces <= 3,
                       where + ".max_bounces",

@@ -29,6 +29,7 @@ struct RenderSettings {
     int samples = 256;
     std::optional<double> seconds;
     std::optional<double> target_error;
+    std::optional<double> element_tolerance;
     std::uint64_t seed = 0;
     GateShape gate = GateShape::Box;
     Exclusion exclude = Exclusion::Mis;
@@ -56,6 +57,12 @@ void for_each_field(RenderSettings& s, Visitor&& visit) {
           core::above(0,
                       "relative L2 error over all of H to stay below, instead of a number of "
                       "samples; null: 0.01 for third_bounce"));
+    visit("element_tolerance",
+          s.element_tolerance,
+          core::above(0,
+                      "third_bounce: relative error that the size of elements aims at, instead of "
+                      "an error that pilot runs estimate; spares these, and the error stays "
+                      "unknown"));
     visit("seed", s.seed, "seed of the random numbers");
     visit("gate", s.gate, "shape of the gate of a one-bin axis");
     visit("exclude",

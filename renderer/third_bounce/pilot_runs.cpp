@@ -61,7 +61,7 @@ PilotRuns::PilotRuns(const Scene& scene,
                      double target,
                      double laser_spot_m2)
     : scene_(scene),
-      pilot_scan_(pilot_scan(scene, scan, axis.num_bins)),
+      pilot_scan_(pilot_scan_for(scene, scan, axis.num_bins)),
       pilot_axis_(pilot_axis(axis)),
       target_(target),
       subdivider_(scene, scan, axis, laser_spot_m2) {}
@@ -96,6 +96,17 @@ std::size_t PilotRuns::check_rays_per_pair() const {
     const double rays = kCheckRays * std::max(1.0, kCheckTarget / target_);
     return static_cast<std::size_t>(std::min(rays, kMostCheckRays) /
                                     static_cast<double>(pilot_scan_.num_pairs()));
+}
+
+void PilotRuns::estimate_norm(int level) {
+    constexpr std::size_t kPoints = 4;
+    const core::Scan few = pilot_scan(scene_, pilot_scan_, kPoints);
+    ThirdBounceScan integrator(scene_, few, pilot_axis_, cut(level), rules(level));
+    Transient transient(few.num_pairs(), pilot_axis_.num_bins);
+    integrator.integrate(
+        0, [](double) { return true; }, transient);
+    cost_ += integrator.cost();
+    norm_per_pair_ = std::sqrt(squared_norm(transient) / static_cast<double>(few.num_pairs()));
 }
 
 const Pilot& PilotRuns::run(int level) {

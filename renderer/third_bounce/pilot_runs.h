@@ -56,6 +56,9 @@ class PilotRuns {
     /// How all of the scan is integrated at a level.
     ScanRules rules(int level) const;
 
+    /// Estimates how much light a pair has, at a level, for rules(); cheaper than run().
+    void estimate_norm(int level);
+
     const Pilot& run(int level);
     /// Estimates the error of a level against the finest run so far.
     double error_of(int level);
@@ -63,6 +66,7 @@ class PilotRuns {
     /// Returns false when they did so already.
     bool look_everywhere();
 
+    double tolerance(int level) const;
     const std::map<int, Pilot>& by_level() const { return pilots_; }
     std::size_t num_pairs() const { return pilot_scan_.num_pairs(); }
     /// Of the levels whose error is known, nothing where none is.
@@ -70,7 +74,6 @@ class PilotRuns {
     const TracingCost& cost() const { return cost_; }
 
  private:
-    double tolerance(int level) const;
     std::size_t check_rays_per_pair() const;
 
     const Scene& scene_;

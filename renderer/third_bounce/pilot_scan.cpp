@@ -65,14 +65,21 @@ void add_confocal_pair(const core::Scan& scan, core::Scan& pilot) {
 
 }  // namespace
 
-core::Scan pilot_scan(const Scene& scene, const core::Scan& scan, int num_bins) {
-    core::Scan pilot = scan;
-    const bool exhaustive = scan.pattern == core::ScanPattern::Exhaustive;
+core::Scan pilot_scan_for(const Scene& scene, const core::Scan& scan, int num_bins) {
     const bool few_bins = num_bins < kPilotFewBins;
-    const std::size_t num_points = few_bins ? kPilotPointsForFewBins : kPilotPoints;
-    const std::size_t per_side = few_bins ? kPilotPointsPerSideForFewBins : kPilotPointsPerSide;
-    pilot.sensing = subset(scan.sensing, exhaustive ? per_side : num_points);
-    if (exhaustive) pilot.illumination = subset(scan.illumination, per_side);
+    if (scan.pattern == core::ScanPattern::Exhaustive) {
+        return pilot_scan(
+            scene, scan, few_bins ? kPilotPointsPerSideForFewBins : kPilotPointsPerSide);
+    }
+    return pilot_scan(scene, scan, few_bins ? kPilotPointsForFewBins : kPilotPoints);
+}
+
+core::Scan pilot_scan(const Scene& scene, const core::Scan& scan, std::size_t num_points) {
+    core::Scan pilot = scan;
+    pilot.sensing = subset(scan.sensing, num_points);
+    if (scan.pattern == core::ScanPattern::Exhaustive) {
+        pilot.illumination = subset(scan.illumination, num_points);
+    }
     if (scan.pattern == core::ScanPattern::Confocal) pilot.illumination = pilot.sensing;
     const bool has_retroreflectors = std::ranges::any_of(scene.objects(), [](const Object& object) {
         return kind_of(object.material) == ElementKind::Retroreflective;

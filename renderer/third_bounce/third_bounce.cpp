@@ -36,8 +36,10 @@ class Integrator {
         : scene_(scene),
           scan_(scan),
           axis_(axis),
-          target_(settings.target_error.value_or(kDefaultTargetError)),
+          target_(settings.element_tolerance.value_or(
+              settings.target_error.value_or(kDefaultTargetError))),
           seconds_(settings.seconds),
+          has_fixed_tolerance_(settings.element_tolerance),
           pilots_(scene, scan, axis, target_, settings.laser_spot_m2) {}
 
     ThirdBounce run(const core::Progress& progress);
@@ -54,6 +56,7 @@ class Integrator {
     core::TimeAxis axis_;
     double target_;
     std::optional<double> seconds_;
+    bool has_fixed_tolerance_;
     PilotRuns pilots_;
     bool stopped_ = false;  ///< before all pilot runs were made
     TracingCost cost_;
@@ -88,6 +91,10 @@ int Integrator::finest_in_time(const core::Progress& progress) {
 // to stop. Where shadows are finer than elements, finer ones help little, and more rays to each of
 // them much: 16 rays to elements of a given size find what one ray finds at a sixteenth of it.
 int Integrator::choose_level(const core::Progress& progress) {
+    if (has_fixed_tolerance_) {
+        pilots_.estimate_norm(0);
+        return 0;
+    }
     if (seconds_) return finest_in_time(progress);
     int level = kFirst;
     // Fine enough as a reference for the next finer level, too. A coarser one would miss shadows
@@ -132,10 +139,12 @@ int Integrator::integrate(int level,
     const int part = scan.integrate(first_part, go_on, result.transient);
     result.num_elements = std::max(result.num_elements, elements.num_elements);
     cost_ += scan.cost();
+    result.element_tolerance = std::max(result.element_tolerance, pilots_.tolerance(level));
+    if (has_fixed_tolerance_) return part;
     const auto pilot = pilots_.by_level().find(level);
     const bool is_known = pilot != pilots_.by_level().end() && pilot->second.error;
-    result.estimated_error =
-        std::max(result.estimated_error, is_known ? *pilot->second.error : pilots_.error_of(level));
+    result.estimated_error = std::max(result.estimated_error.value_or(0.0),
+                                      is_known ? *pilot->second.error : pilots_.error_of(level));
     return part;
 }
 
@@ -184,7 +193,7 @@ ThirdBounce Integrator::integrate_all(const core::Progress& progress) {
     const double wall = scene_.wall_albedo() / core::kPi;
     for (float& value : result.transient.values()) value = static_cast<float>(value * wall * wall);
     const double norm = squared_norm(result.transient);
-    if (norm > 0.0) result.squared_error = std::pow(result.estimated_error, 2) * norm;
+    if (norm > 0.0) result.squared_error = std::pow(result.estimated_error.value_or(0.0), 2) * norm;
     return result;
 }
 

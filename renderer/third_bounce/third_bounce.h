@@ -7,15 +7,17 @@
 #include "renderer/settings/render_settings.h"
 
 #include <cstdint>
+#include <optional>
 
 namespace renderer {
 
 /// Third bounces, and how well they are known.
 struct ThirdBounce {
     core::Transient transient;
-    double estimated_error = 0.0;  ///< relative L2 over all of H
-    double squared_error = 0.0;    ///< the same, absolute, squared
-    std::size_t num_elements = 0;  ///< of the subdivided surfaces
+    std::optional<double> estimated_error;  ///< relative L2 over all of H; empty: not estimated
+    double squared_error = 0.0;             ///< the same, absolute, squared; 0 where not estimated
+    double element_tolerance = 0.0;         ///< of the cut that was used
+    std::size_t num_elements = 0;           ///< of the subdivided surfaces
     std::uint64_t num_rays = 0;
     double tracing_seconds = 0.0;  ///< for aiming and tracing them, summed over all threads
     double seconds = 0.0;
@@ -30,8 +32,8 @@ struct ThirdBounce {
 /// for every wall point and element; every pair then only combines two tables. Pilot runs of a few
 /// pairs at several refinement levels find the coarsest level that meets the target.
 ///
-/// settings   target_error; or seconds, for the finest level that this time allows; laser_spot_m2;
-///            the gate is a box
+/// settings   target_error; or element_tolerance, for no pilot runs but one of a few pairs; or
+///            seconds, for the finest level that this time allows; laser_spot_m2; the gate is a box
 /// progress   asked now and then whether to stop; the remaining pairs are then integrated at the
 ///            coarsest level, so that every pair has a result
 /// returns    the radiance of order 3 that comes from surfaces with is_integrable() materials

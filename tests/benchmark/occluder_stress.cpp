@@ -43,7 +43,7 @@ int main(int argc, char** argv) {
             fmt::print("{:<32} {:8.4f} {:8.4f} {:8.4f} {:9} {:8.2f}\n",
                        setup.name,
                        targets[t],
-                       result.estimated_error,
+                       *result.estimated_error,
                        error,
                        result.num_elements,
                        result.seconds);

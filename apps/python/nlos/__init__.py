@@ -40,7 +40,8 @@ __version__ = _core.version.split()[1]
 __all__ = [
     "Capture", "Error", "Failure", "FitResult", "LightConeOperator", "Object", "PairOperator",
     "Reconstruction", "Scene",
-    "calibrate", "compare", "fit", "from_mitransient", "from_tal", "from_trimesh", "info",
+    "calibrate", "compare", "fit", "from_mitransient", "from_tal", "from_trimesh", "generate",
+    "info",
     "load_scene", "read", "read_volume", "reconstruct", "render", "report", "settings",
     "simulate_noise", "third_bounce_vjp", "to_tal",
 ]
@@ -234,6 +235,29 @@ def settings(function: str) -> dict[str, tuple[str, str]]:
     returns   dict of dotted key: (default, meaning)
     """
     return {key: (default, meaning) for key, default, meaning in _core.settings(function)}
+
+
+def generate(
+    recipe: Path,
+    folder: Path,
+    *,
+    shard: tuple[int, int] | None = None,
+    items: tuple[int, int] | None = None,
+    progress: Progress = None,
+    threads: int = 0,
+    **settings: Any,
+) -> dict[str, Any]:
+    """Makes a data set of captures of random scenes, or a part of it; what is there is kept.
+
+    recipe    path of a recipe (.json)
+    folder    of the data set; several processes may work in it
+    shard     (i, n): make the part i of n, from 0 to n - 1
+    items     (a, b): make only the items from a to b - 1
+    settings  keys of the recipe with other values
+    returns   dict with shards_written, shards_there, items_written, dark_items, seconds, interrupted
+    """
+    return _core.generate(_path(recipe, "recipe"), _path(folder, "folder"), shard, items, settings,
+                          show_progress(progress, "generate"), thread_count(threads))
 
 
 def _is_path(value: Any) -> bool:

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cmath>
 #include <stdexcept>
+#include <thread>
 
 namespace {
 
@@ -47,6 +48,60 @@ TEST(Parallel, ExceptionsReachTheCaller) {
                                         if (i == 50) throw std::runtime_error("here");
                                     }),
                  std::runtime_error);
+}
+
+TEST(Parallel, ResultsAreUsedInOrderAndFewExistAtATime) {
+    for (const int threads : {1, 7}) {
+        const core::ThreadLimit limit(threads);
+        std::atomic<int> alive{0};
+        std::atomic<int> most{0};
+        std::vector<std::size_t> used;
+        const bool all = core::parallel_in_order<std::size_t>(
+            500,
+            [&](std::size_t i) {
+                const int now = ++alive;
+                for (int seen = most; seen < now && !most.compare_exchange_weak(seen, now);) {
+                }
+                return i * i;
+            },
+            [&](std::size_t i, std::size_t square) {
+                --alive;
+                EXPECT_EQ(square, i * i);
+                used.push_back(i);
+                return true;
+            });
+        EXPECT_TRUE(all);
+        ASSERT_EQ(used.size(), 500U);
+        for (std::size_t i = 0; i < used.size(); ++i) EXPECT_EQ(used[i], i);
+        EXPECT_LE(most, 2 * threads);
+    }
+}
+
+TEST(Parallel, WorkInOrderEndsEarlyWhenTheUserOfResultsSaysSo) {
+    const core::ThreadLimit limit(7);
+    int used = 0;
+    EXPECT_FALSE(core::parallel_in_order<int>(
+        1000, [](std::size_t) { return 1; }, [&](std::size_t, int) { return ++used < 10; }));
+    EXPECT_EQ(used, 10);
+    EXPECT_THROW(core::parallel_in_order<int>(
+                     100,
+                     [](std::size_t i) -> int {
+                         if (i == 20) throw std::runtime_error("made");
+                         return 1;
+                     },
+                     [](std::size_t, int) { return true; }),
+                 std::runtime_error);
+}
+
+TEST(Parallel, LoopsInsideWorkOnOneThreadStayOnIt) {
+    const core::ThreadLimit limit(7);
+    core::parallel_for(20, [](std::size_t) {
+        core::run_on_one_thread([] {
+            const auto self = std::this_thread::get_id();
+            core::parallel_for(
+                100, [&](std::size_t) { EXPECT_EQ(std::this_thread::get_id(), self); });
+        });
+    });
 }
 
 }  // namespace

@@ -78,7 +78,7 @@ TEST(Retroreflectors, AreTriedInAPairThatSeesThem) {
     std::vector<Vec3> points;
     for (int i = 0; i < 200; ++i) points.emplace_back(0.005 * i - 0.5, 0.0, 0.0);
     const auto is_tried = [](const core::Scan& scan) {
-        return CoincidingPoints(renderer::pilot_scan(scene_of(scan), scan, kRetroAxis.num_bins))
+        return CoincidingPoints(renderer::pilot_scan_for(scene_of(scan), scan, kRetroAxis.num_bins))
             .any();
     };
     for (const std::size_t light : {0U, 17U, 199U}) {

@@ -1,0 +1,338 @@
+// SPDX-License-Identifier: MIT
+#include "apps/dataset/dataset_index.h"
+#include "apps/dataset/generate.h"
+#include "nlos/containers/array_reader.h"
+#include "nlos/formats/capture_arrays.h"
+#include "renderer/core/parallel.h"
+#include "renderer/render.h"
+#include "tests/support/error_message.h"
+#include "tests/support/file_bytes.h"
+#include "tests/support/temporary_folder.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+using apps::Dataset;
+using apps::ItemRange;
+using apps::Recipe;
+using test_support::file_bytes;
+using test_support::TemporaryFolder;
+
+/// A recipe whose items take milliseconds, with `changes` merged into it.
+core::Json tiny_recipe(const core::Json& changes = core::Json::object()) {
+    core::Json recipe = {
+        {"items", 10},
+        {"items_per_shard", 4},
+        {"seed", 5},
+        {"meshes", {{"shapes", {"plate", "box"}}}},
+        {"objects", {{"count", {{"integers", {1, 2}}}}}},
+        {"scene",
+         {{"scan", {{"sensing_points", {4, 4}}}},
+          {"time_axis", {{"opl_start_m", 0.6}, {"bin_width_m", 0.03}, {"num_bins", 96}}},
+          {"render", {{"target_error", 0.1}}},
+          {"ground_truth", {{"depth_resolution", {8, 8}}}}}},
+        {"detector", {{"photons_per_point", 200}}},
+        {"draw", {{"scene.relay_wall.albedo", {{"uniform", {0.4, 0.9}}}}}},
+        {"truths", {"depth", "normals", "albedo", "mask", "object_ids", "poses", "clean"}}};
+    recipe.merge_patch(changes);
+    return recipe;
+}
+
+Recipe read(const TemporaryFolder& folder, const core::Json& recipe) {
+    test_support::write_file_bytes(folder.file("recipe_in.json"), recipe.dump());
+    return apps::read_recipe(folder.file("recipe_in.json"), {});
+}
+
+apps::GenerateResult run(const TemporaryFolder& folder,
+                         const core::Json& recipe,
+                         const std::string& name,
+                         const apps::WorkShare& share = {},
+                         const std::optional<ItemRange>& items = std::nullopt) {
+    Dataset dataset(read(folder, recipe), folder.file(name));
+    return apps::generate(dataset, share, items, "test", {});
+}
+
+/// The bytes of all shards, in order.
+std::vector<std::string> shards(const TemporaryFolder& folder, const std::string& name) {
+    std::vector<std::string> bytes;
+    for (const char* suffix : {".h5", ".tar"}) {
+        for (std::uint64_t shard = 0; shard < 10; ++shard) {
+            const std::string path = folder.file(name + "/" + apps::shard_name(shard) + suffix);
+            if (fs::exists(path)) bytes.push_back(file_bytes(path));
+        }
+    }
+    return bytes;
+}
+
+std::vector<std::string> problems(const TemporaryFolder& folder, const std::string& name) {
+    return apps::read_dataset(folder.file(name), apps::ShardCheck::Contents).problems;
+}
+
+TEST(Dataset, HasTheSameBytesForAnyThreadsSharesAndOrder) {
+    const TemporaryFolder folder;
+    for (const char* format : {"hdf5", "webdataset"}) {
+        const core::Json recipe = tiny_recipe({{"format", format}});
+        const std::string whole = std::string("whole_") + format;
+        {
+            const core::ThreadLimit one(1);
+            EXPECT_EQ(run(folder, recipe, whole).items_written, 10u);
+        }
+        const std::string parts = std::string("parts_") + format;
+        const core::ThreadLimit seven(7);
+        run(folder, recipe, parts, {2, 3});
+        run(folder, recipe, parts, {}, ItemRange{1, 2});
+        run(folder, recipe, parts, {0, 3});
+        run(folder, recipe, parts, {1, 3});
+        EXPECT_EQ(shards(folder, whole).size(), 3u);
+        EXPECT_EQ(shards(folder, whole), shards(folder, parts)) << format;
+        EXPECT_EQ(problems(folder, parts), std::vector<std::string>{});
+    }
+}
+
+TEST(Dataset, DiffersWithTheSeedAndBetweenItems) {
+    const TemporaryFolder folder;
+    run(folder, tiny_recipe(), "a");
+    run(folder, tiny_recipe({{"seed", 6}}), "b");
+    EXPECT_NE(shards(folder, "a")[0], shards(folder, "b")[0]);
+    const nlos::ArrayReader reader(folder.file("a/shard-00000.h5"));
+    const std::vector<float> values = reader.read_floats("clean", {4, 96, 4, 4});
+    const std::size_t item = values.size() / 4;
+    EXPECT_FALSE(std::equal(
+        values.begin(), values.begin() + static_cast<std::ptrdiff_t>(item), &values[item]));
+}
+
+TEST(Dataset, ItemsAreWhatTheRendererAndTheDetectorGiveForTheirPlan) {
+    const TemporaryFolder folder;
+    const Recipe recipe = read(folder, tiny_recipe());
+    apps::MeshLibrary meshes(recipe);
+    for (const std::uint64_t number : {0, 3, 7}) {
+        const apps::Item item = apps::make_item(recipe, meshes, number);
+        const apps::ItemPlan plan = apps::plan_item(recipe, meshes, number);
+        const renderer::SceneDescription& description = plan.settings.scene;
+        const double albedo = item.parameters["drawn"]["scene.relay_wall.albedo"];
+        EXPECT_EQ(description.relay_wall.albedo, albedo);
+        const core::Scan scan = renderer::make_scan(description);
+        const renderer::Scene scene =
+            renderer::make_scene(apps::geometry_of(plan), description, scan);
+        const core::Capture clean =
+            renderer::render(
+                scene, scan, {description.time_axis, std::nullopt}, description.render, {})
+                .capture;
+        const core::Capture counts = nlos::detect(clean, *plan.settings.detector);
+        std::vector<float> expected(clean.transient.values().size());
+        nlos::copy_rows(clean.transient, 0, 96, expected.data());
+        const auto bytes_of = [&](const char* name) {
+            for (const apps::ItemArray& array : item.arrays) {
+                if (array.name == name) return array.bytes;
+            }
+            return std::string();
+        };
+        const auto as_bytes = [&] {
+            return std::string(reinterpret_cast<const char*>(expected.data()),
+                               expected.size() * sizeof(float));
+        };
+        EXPECT_EQ(bytes_of("clean"), as_bytes());
+        nlos::copy_rows(counts.transient, 0, 96, expected.data());
+        EXPECT_EQ(bytes_of("H"), as_bytes());
+    }
+}
+
+TEST(Dataset, ObjectsStandApartInFrontOfTheWallAndFillTheirBoxes) {
+    const TemporaryFolder folder;
+    const Recipe recipe = read(folder,
+                               tiny_recipe({{"objects",
+                                             {{"count", 3},
+                                              {"size_m", {{"uniform", {0.1, 0.4}}}},
+                                              {"z_m", {{"uniform", {0.1, 0.8}}}},
+                                              {"stretch", {{"uniform", {0.5, 1.0}}}}}}}));
+    apps::MeshLibrary meshes(recipe);
+    for (std::uint64_t number = 0; number < 50; ++number) {
+        const apps::ItemPlan plan = apps::plan_item(recipe, meshes, number);
+        const renderer::SceneGeometry geometry = apps::geometry_of(plan);
+        const auto left_out = plan.parameters["objects_left_out"].get<std::size_t>();
+        EXPECT_EQ(geometry.objects.size() + left_out, 3u);
+        for (const renderer::Object& a : geometry.objects) {
+            for (const core::Vec3& p : a.mesh.vertices) EXPECT_GT(p.z(), 0.0);
+            for (const renderer::Object& b : geometry.objects) {
+                if (&a == &b) continue;
+                for (const core::Vec3& p : a.mesh.vertices) {
+                    for (const core::Vec3& q : b.mesh.vertices) ASSERT_GT((p - q).norm(), 0.009);
+                }
+            }
+        }
+        for (const core::Json& object : plan.parameters["objects"]) {
+            double longest = 0.0;
+            for (const core::Json& side : object["scale_m"]) {
+                longest = std::max(longest, side.get<double>());
+            }
+            EXPECT_GE(longest, 0.1 - 1e-12);
+        }
+    }
+}
+
+TEST(Dataset, MissingAndDamagedShardsAreMadeAgainAndNothingElse) {
+    const TemporaryFolder folder;
+    run(folder, tiny_recipe(), "set");
+    const std::vector<std::string> before = shards(folder, "set");
+    fs::remove(folder.file("set/shard-00000.json"));
+    std::string damaged = before[1];
+    damaged[damaged.size() / 2] = static_cast<char>(damaged[damaged.size() / 2] ^ 1);
+    test_support::write_file_bytes(folder.file("set/shard-00001.h5"), damaged);
+    EXPECT_EQ(problems(folder, "set").size(), 2u);
+    const apps::GenerateResult again = run(folder, tiny_recipe(), "set");
+    EXPECT_EQ(again.shards_written, 2u);
+    EXPECT_EQ(again.shards_there, 1u);
+    EXPECT_EQ(shards(folder, "set"), before);
+    fs::resize_file(folder.file("set/shard-00002.h5"), 100);
+    EXPECT_EQ(run(folder, tiny_recipe(), "set").shards_written, 1u);
+    EXPECT_EQ(shards(folder, "set"), before);
+}
+
+TEST(Dataset, GrowsWithTheNumberOfItemsAndKeepsWhatIsThere) {
+    const TemporaryFolder folder;
+    run(folder, tiny_recipe(), "small");
+    const apps::GenerateResult grown = run(folder, tiny_recipe({{"items", 13}}), "small");
+    EXPECT_EQ(grown.shards_there, 2u);
+    EXPECT_EQ(grown.shards_written, 2u);  // the last one had two items of four
+    run(folder, tiny_recipe({{"items", 13}}), "large");
+    EXPECT_EQ(shards(folder, "small"), shards(folder, "large"));
+}
+
+TEST(Dataset, StopsBetweenItemsAndGoesOn) {
+    const TemporaryFolder folder;
+    Dataset dataset(read(folder, tiny_recipe()), folder.file("set"));
+    int asked = 0;
+    core::Progress progress;
+    progress.stop_requested = [&] { return ++asked > 5; };
+    const apps::GenerateResult stopped = apps::generate(dataset, {}, std::nullopt, "t", progress);
+    EXPECT_TRUE(stopped.interrupted);
+    EXPECT_EQ(stopped.shards_written, 1u);
+    for (const auto& entry : fs::directory_iterator(folder.file("set"))) {
+        EXPECT_EQ(entry.path().string().find(".partial"), std::string::npos) << entry.path();
+    }
+    EXPECT_EQ(run(folder, tiny_recipe(), "set").shards_written, 2u);
+    EXPECT_EQ(problems(folder, "set"), std::vector<std::string>{});
+}
+
+TEST(Dataset, RefusesTheFolderOfAnotherRecipe) {
+    const TemporaryFolder folder;
+    run(folder, tiny_recipe(), "set");
+    EXPECT_ERROR_WITH(run(folder, tiny_recipe({{"seed", 9}}), "set"), "data set of another recipe");
+}
+
+TEST(Dataset, IndexNamesEveryShardAndIsRefusedWhileSomeAreMissing) {
+    const TemporaryFolder folder;
+    run(folder, tiny_recipe(), "set", {0, 2});
+    const apps::DatasetIndex part =
+        apps::read_dataset(folder.file("set"), apps::ShardCheck::ManifestOnly);
+    EXPECT_EQ(part.problems, std::vector<std::string>{"shard-00001 is missing"});
+    EXPECT_THROW(apps::write_index(part, folder.file("set")), core::Failure);
+    run(folder, tiny_recipe(), "set", {1, 2});
+    const std::string path = apps::write_index(
+        apps::read_dataset(folder.file("set"), apps::ShardCheck::Contents), folder.file("set"));
+    const core::Json index = core::read_json_file(path);
+    std::uint64_t next = 0;
+    for (const core::Json& shard : index["shards"]) {
+        EXPECT_EQ(shard["items"][0], next);
+        next = shard["items"][1];
+        EXPECT_EQ(*apps::file_checksum(folder.file("set/" + shard["file"].get<std::string>())),
+                  shard["xxh128"]);
+    }
+    EXPECT_EQ(next, 10u);
+    std::size_t drawn = 0;
+    for (const auto& count : index["drawn"]["scene.relay_wall.albedo"]["counts"]) {
+        drawn += count.get<std::size_t>();
+    }
+    EXPECT_EQ(drawn, 10u);
+}
+
+TEST(Dataset, SkipsBrokenMeshesAndNamesThem) {
+    const TemporaryFolder folder;
+    fs::create_directory(folder.file("meshes"));
+    const auto write = [&](const char* name, const std::string& bytes) {
+        test_support::write_file_bytes(folder.file(std::string("meshes/") + name), bytes);
+    };
+    write("good.obj", "v 0 0 0\nv 2 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\n");
+    write("no_faces.obj", "v 0 0 0\n");
+    write("garbage.glb", std::string(1000, '\x7f'));
+    write("empty.stl", "");
+    write("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
+    const core::Json recipe =
+        tiny_recipe({{"meshes", {{"folder", "meshes"}, {"shapes", core::Json::array()}}}});
+    const apps::GenerateResult result = run(folder, recipe, "set");
+    EXPECT_EQ(result.items_written, 10u);
+    EXPECT_GE(result.broken_meshes.size(), 3u);
+    EXPECT_FALSE(result.broken_meshes.contains("good.obj"));
+    for (const auto& [name, reason] : result.broken_meshes) EXPECT_FALSE(reason.empty()) << name;
+    fs::remove(folder.file("meshes/good.obj"));
+    EXPECT_ERROR_WITH(run(folder, recipe, "none"), "none can be used");
+}
+
+TEST(Dataset, HalvesKeepElevenBitsOfRadianceAndCountsAreClipped) {
+    const TemporaryFolder folder;
+    core::Json recipe = tiny_recipe({{"storage", {{"histograms", "float16"}}}});
+    recipe["detector"] = nullptr;
+    Dataset halves(read(folder, recipe), folder.file("halves"));
+    const apps::Item item = apps::make_item(halves.recipe(), halves.meshes(), 2);
+    std::vector<Eigen::half> stored;
+    std::vector<float> clean;
+    float scale = 0.0F;
+    const auto copy = [](const apps::ItemArray& array, auto& values) {
+        values.resize(array.bytes.size() / sizeof(values[0]));
+        std::memcpy(values.data(), array.bytes.data(), array.bytes.size());
+    };
+    for (const apps::ItemArray& array : item.arrays) {
+        if (array.name == "H") copy(array, stored);
+        if (array.name == "clean") copy(array, clean);
+        if (array.name == "H_scale") std::memcpy(&scale, array.bytes.data(), sizeof(scale));
+    }
+    ASSERT_EQ(stored.size(), clean.size());
+    const float most = *std::max_element(clean.begin(), clean.end());
+    ASSERT_GT(most, 0.0F);
+    for (std::size_t i = 0; i < clean.size(); ++i) {
+        const float back = static_cast<float>(stored[i]) * scale;
+        EXPECT_NEAR(back, clean[i], 0.0005F * clean[i] + 1e-9F * most);
+    }
+    const Recipe bright = read(folder,
+                               tiny_recipe({{"storage", {{"histograms", "uint8"}}},
+                                            {"detector", {{"photons_per_point", 1e5}}}}));
+    apps::MeshLibrary meshes(bright);
+    EXPECT_GT(apps::make_item(bright, meshes, 0).clipped_counts, 0u);
+}
+
+TEST(Recipe, ErrorsNameKeyAndWhatIsAllowed) {
+    const TemporaryFolder folder;
+    const auto expect = [&](const core::Json& changes, const char* part) {
+        EXPECT_ERROR_WITH(read(folder, tiny_recipe(changes)), part);
+    };
+    expect({{"items", 0}}, "items: found 0");
+    expect({{"item", 5}}, "items_per_shard");
+    expect({{"meshes", {{"shapes", {"cube"}}}}}, "sphere|box");
+    expect({{"meshes", {{"shapes", core::Json::array()}}}}, "meshes: found no source");
+    expect({{"objects", {{"albedo", {{"uniform", {0.5, 1.5}}}}}}}, "objects.albedo: found 1.5");
+    expect({{"objects", {{"count", 0}}}}, "objects.count: found 0");
+    expect({{"scene", {{"geometry", "x.glb"}}}}, "scene.geometry");
+    expect({{"scene", {{"time_axis", "auto"}}}}, "scene.time_axis");
+    expect({{"scene", {{"camera", {{"fov_y_deg", 40}}}}}}, "scene.camera");
+    expect({{"draw", {{"scene.wall", 1}}}}, "draw.scene.wall");
+    expect({{"draw", {{"scene.relay_wall.albedo", {{"uniform", {0.5, 2.0}}}}}}},
+           "draw.scene.relay_wall.albedo");
+    expect({{"draw", {{"scene.scan.sensing_points", {{"choices", {{4, 4}, {8, 8}}}}}}}},
+           "format webdataset");
+    expect({{"detector", {{"photons_per_point", nullptr}}}}, "amount of light");
+    expect({{"detector", {{"photons_per_point", -1}}}}, "detector.photons_per_point");
+    expect({{"detector", nullptr}, {"storage", {{"histograms", "uint8"}}}}, "float32 or float16");
+    expect({{"truths", {"depth", "depth"}}}, "depth twice");
+    expect({{"meshes", {{"folder", "nowhere"}}}, {"seed", -1}}, "seed");
+    EXPECT_ERROR_WITH(run(folder, tiny_recipe({{"meshes", {{"folder", "nowhere"}}}}), "x"),
+                      "is no folder");
+    EXPECT_ERROR_WITH(run(folder, tiny_recipe({{"meshes", {{"files", {"a.obj"}}}}}), "x"),
+                      "is no file");
+}
+
+}  // namespace
