@@ -33,7 +33,7 @@ set(floors_apps
     "apps/batch|apps/bench|apps/report"
     "apps/bench/render|apps/bench/reconstruct|apps/bench/fit"
     "apps/commands"
-    "apps/python")
+    "apps/python|apps/sweep")
 
 # What lies below a whole top folder.
 set(below_renderer "")

@@ -262,7 +262,8 @@ TEST_F(CommandLine, HelpOnEveryLevelEndsWithAnExampleThatWorks) {
                                    "convert",
                                    "info",
                                    "bench",
-                                   "report"}) {
+                                   "report",
+                                   "sweep"}) {
         const Outcome help = run(name + " --help");
         EXPECT_EQ(help.status, 0) << name;
         const std::string start = "Example:\n  nlos ";
