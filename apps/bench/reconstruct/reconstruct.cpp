@@ -16,8 +16,8 @@ PlotLine scaling_line(const ReconstructScaling& curve, double ScalingPoint::*val
 }
 
 Plot scaling_plot(const ReconstructBench& bench,
-                     const std::string& title,
-                     double ScalingPoint::*value) {
+                  const std::string& title,
+                  double ScalingPoint::*value) {
     Plot plot{title + " against size", "values of the capture, or voxels", title, {}};
     for (const ReconstructScaling& curve : bench.scaling) {
         plot.lines.push_back(scaling_line(curve, value));

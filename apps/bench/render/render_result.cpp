@@ -69,9 +69,9 @@ std::vector<Target> targets_of(const RenderBench& bench) {
 
 Plot gate_plot(const GateTable& table) {
     Plot plot{fmt::format("Equal time, {}, {} bounces", table.scene, table.max_bounces),
-                 "gate width [mm]",
-                 "relative MSE after 1 s",
-                 {}};
+              "gate width [mm]",
+              "relative MSE after 1 s",
+              {}};
     for (const GateBench& gate : table.gates) {
         if (gate.gate_mm == 0.0) continue;
         const auto same =
