@@ -75,7 +75,7 @@ std::string failures_html(const Json& content) {
 }  // namespace
 
 bool is_sweep(const Json& json) {
-    if (!json.is_object()) return false;
+    if (!json.is_object() || !json.contains("sweep") || !json["sweep"].is_object()) return false;
     for (const char* key : {"headline", "plots", "runs"}) {
         if (!json.contains(key) || !json[key].is_array()) return false;
     }

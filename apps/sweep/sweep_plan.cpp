@@ -140,7 +140,7 @@ Json SweepPlan::changes_of(const char* part, const Json& values) const {
         all[part] = *it;
     }
     for (const auto& [key, value] : values.items()) {
-        if (belongs_to(key, part)) all.update(nested_value(key, value), true);
+        if (belongs_to(key, part)) merge_values(nested_value(key, value), all);
     }
     return all.value(part, Json::object());
 }

@@ -103,7 +103,7 @@ void check_grid(const SweepSettings& sweep, const std::string& where) {
                                   is_fixed ? "found among fixed as well" : "found twice",
                                   "must be set in one place");
             }
-            seen.update(nested_value(key, 0), true);
+            merge_values(nested_value(key, 0), seen);
         }
     }
     core::require(num_runs <= kMostRuns,
@@ -123,6 +123,14 @@ core::Json nested_value(const std::string& key, core::Json value) {
     core::Json outer = core::Json::object();
     outer[dot == std::string::npos ? key : key.substr(dot + 1)] = std::move(value);
     return dot == std::string::npos ? outer : nested_value(key.substr(0, dot), std::move(outer));
+}
+
+void merge_values(const core::Json& changes, core::Json& values) {
+    if (!changes.is_object() || !values.is_object()) {
+        values = changes;
+        return;
+    }
+    for (const auto& [key, change] : changes.items()) merge_values(change, values[key]);
 }
 
 void read_value(const core::Json& json, const std::string& where, SweepPlot& plot) {
@@ -176,9 +184,9 @@ void read_value(const core::Json& json, const std::string& where, SweepFixed& fi
             throw core::Error(
                 core::join_key(where, key), "found twice", "must be set in one place");
         }
-        given.update(nested, true);
+        merge_values(nested, given);
     }
-    fixed.values.update(given, true);
+    merge_values(given, fixed.values);
 }
 
 core::Json write_value(const SweepFixed& fixed) {

@@ -78,6 +78,9 @@ core::Json write_value(const SweepFixed& fixed);
 /// A value as an object of objects, one for every part of the dotted key.
 core::Json nested_value(const std::string& key, core::Json value);
 
+/// Takes changes over: objects key by key, everything else in place of what was there.
+void merge_values(const core::Json& changes, core::Json& values);
+
 /// Reads a sweep file and applies `--set key.path=value` texts to it. `scene` then is a path that
 /// can be opened. What the values mean to scene, detector and method is left to SweepPlan.
 ///

@@ -79,6 +79,14 @@ TEST_F(SweepPlanTest, OverridesReachTheSweepsOwnKeys) {
     EXPECT_EQ(plan.run(4).noise->photons_per_point, 2.0);
     EXPECT_EQ(plan.run(4).noise->ambient, 0.5);
     EXPECT_EQ(plan.run(4).reconstruct.snr, 5.0);
+    const SweepPlan automatic(make_sweep(),
+                              {"fixed.scene.time_axis=auto",
+                               "fixed.scene.time_axis.num_bins=9",
+                               "fixed.noise.response.tail_ps=7",
+                               "fixed.noise.response.jitter_fwhm_ps=8"});
+    EXPECT_EQ(automatic.run(0).scene.time_axis.num_bins, 9) << "the last one counts";
+    EXPECT_EQ(automatic.run(0).noise->response.tail_ps, 7.0);
+    EXPECT_EQ(automatic.run(0).noise->response.jitter_fwhm_ps, 8.0);
 }
 
 TEST_F(SweepPlanTest, PiecesHoldEveryRunOnceAndOneCaptureEach) {
