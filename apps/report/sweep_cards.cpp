@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <set>
+#include <utility>
 
 namespace apps {
 namespace {
@@ -60,14 +61,25 @@ std::string runs_table(const Json& content) {
     return html + "<p class=\"hint\">" + more + "scores stand in sweep.csv.</p>\n";
 }
 
+/// Why runs failed, each reason once.
 std::string failures_html(const Json& content) {
-    std::string html;
+    std::vector<std::pair<std::string, std::string>> reasons;  // and numbers of runs
     for (const Json& row : content["runs"]) {
         const auto it = row.find("failed");
         if (it == row.end() || !it->is_string()) continue;
-        html += fmt::format("<li><b>Run {}</b> failed: {}</li>",
-                            escape_html(text_of_cell(row.value("run", Json()))),
-                            escape_html(it->get<std::string>()));
+        const auto reason = it->get<std::string>();
+        const std::string number = text_of_cell(row.value("run", Json()));
+        const auto same = std::ranges::find(reasons, reason, &decltype(reasons)::value_type::first);
+        if (same == reasons.end()) {
+            reasons.emplace_back(reason, number);
+        } else {
+            same->second += ", " + number;
+        }
+    }
+    std::string html;
+    for (const auto& [reason, numbers] : reasons) {
+        html += fmt::format(
+            "<li><b>Run {}</b> failed: {}</li>", escape_html(numbers), escape_html(reason));
     }
     return html.empty() ? "" : "<ul class=\"errors\">" + html + "</ul>\n";
 }

@@ -140,7 +140,7 @@ std::vector<Picture> pictures_of(const SweepSettings& sweep,
     const OtherAxes others = other_axes(sweep, plot.against);
     std::vector<Picture> pictures;
     for (const Json& row : rows) {
-        const Json& y = row[plot.metric];
+        const Json y = row.value(plot.metric, Json());
         if (!y.is_number()) continue;
         const std::string title = values_text(row, others.of_pictures);
         auto picture = std::ranges::find(pictures, title, &Picture::title);
@@ -193,7 +193,7 @@ AxisScale y_scale_for(const std::string& metric, const std::vector<PlotLine>& li
     return scale_for(values);
 }
 
-/// Nothing without a point to draw.
+/// Nothing where no two numbers along x have results.
 std::optional<Plot> plot_of(const Picture& picture, const SweepPlot& wanted) {
     std::vector<double> x;
     for (const Curve& curve : picture.curves) {
@@ -201,9 +201,9 @@ std::optional<Plot> plot_of(const Picture& picture, const SweepPlot& wanted) {
             if (point.x) x.push_back(*point.x);
         }
     }
-    if (x.empty()) return std::nullopt;
     std::ranges::sort(x);
     x.erase(std::unique(x.begin(), x.end()), x.end());
+    if (x.size() < 2) return std::nullopt;
     Plot plot;
     plot.title = picture.title;
     plot.x_label = last_part(wanted.against);

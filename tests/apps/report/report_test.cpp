@@ -72,7 +72,9 @@ core::Json small_sweep() {
             {"plots", {"sweep_plot"}},
             {"runs",
              {{{"run", 0}, {"noise.<photons>", nullptr}, {"fscore", 0.25}, {"failed", nullptr}},
-              {{"run", 1}, {"noise.<photons>", "<b>"}, {"failed", "no <light>"}}}}};
+              {{"run", 1}, {"noise.<photons>", "<b>"}, {"failed", "no <light>"}},
+              {{"run", 2}, {"failed", "no memory"}},
+              {{"run", 3}, {"failed", "no <light>"}}}}};
 }
 
 TEST(Report, ShowsSweepsWithTheirPlotsAndFailures) {
@@ -89,7 +91,7 @@ TEST(Report, ShowsSweepsWithTheirPlotsAndFailures) {
     const std::string html = render_report(results);
     EXPECT_TRUE(contains(html, "<th>&lt;photons&gt;<small>noise</small></th>"));
     EXPECT_TRUE(contains(html, "<td>none</td><td>0.25</td>"));
-    EXPECT_TRUE(contains(html, "<b>Run 1</b> failed: no &lt;light&gt;"));
+    EXPECT_TRUE(contains(html, "<b>Run 1, 3</b> failed: no &lt;light&gt;"));
     EXPECT_FALSE(contains(html, "<light>"));
     EXPECT_FALSE(contains(html, "<td><b>"));
 }

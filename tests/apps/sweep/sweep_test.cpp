@@ -196,6 +196,17 @@ TEST(SweepPlots, DrawMeansOverRepeatsAgainstNumbers) {
     EXPECT_EQ(plot.lines[3].y, (std::vector<double>{3.5, 3.5}));
 }
 
+TEST(SweepPlots, NeedResultsAtTwoNumbers) {
+    apps::SweepSettings sweep;
+    core::read_value(
+        core::parse_json(R"({"grid": {"noise.photons": [1, 2]}})", "sweep"), "", sweep);
+    Json rows = Json::array({{{"noise.photons", 1}, {"seconds", 0.5}, {"depth_mae_m", 0.5}},
+                             {{"noise.photons", 2}, {"seconds", 0.5}, {"depth_mae_m", nullptr}}});
+    const auto plots = apps::plots_of(sweep, rows);
+    ASSERT_EQ(plots.size(), 1U) << "scores that no run has are not drawn either";
+    EXPECT_EQ(plots.begin()->first, "sweep_seconds_by_noise_photons");
+}
+
 TEST(SweepPlots, SpreadManyCurvesOverPictures) {
     apps::SweepSettings sweep;
     core::read_value(
