@@ -23,6 +23,7 @@ FileKind kind_of_json(const std::string& path) {
     if (has("scene", "free")) return FileKind::Model;
     if (has("direct_returns", "commands")) return FileKind::Setup;
     if (has("points_m", "opl_offset_m")) return FileKind::Calibration;
+    if (has("scene", "grid") || has("headline", "runs")) return FileKind::Sweep;
     const bool is_scene = json.is_object() && (json.contains("geometry") || json.contains("scan"));
     if (!is_scene && nlos::capture_format(path)) return FileKind::Capture;
     return FileKind::Scene;

@@ -12,6 +12,7 @@ enum class FileKind {
     Model,
     Setup,
     Calibration,
+    Sweep,
     Volume,
     Geometry,
     PointCloud,

@@ -34,7 +34,7 @@ set(floors_apps
     "apps/bench|apps/dataset"
     "apps/report|apps/bench/render|apps/bench/reconstruct|apps/bench/fit"
     "apps/commands"
-    "apps/python")
+    "apps/python|apps/sweep")
 
 # What lies below a whole top folder.
 set(below_renderer "")

@@ -5,7 +5,7 @@
 #include "renderer/core/output_file.h"
 
 #include <fcntl.h>
-#include <fmt/core.h>
+#include <fmt/ranges.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -32,13 +32,18 @@ std::string quoted(const std::string& text) {
 
 // The text of a gnuplot script. Data stand in it, so nothing is left beside the pictures; the
 // picture goes to standard output, so no name of a file does.
-std::string script_of(const LogPlot& plot, const std::string& terminal) {
+std::string script_of(const Plot& plot, const std::string& terminal) {
     std::string script = fmt::format(
-        "set terminal {}\nset logscale xy\nset grid\nset key below reverse Left "
+        "set terminal {}\n{}{}{}set grid\nset key below height 1 reverse Left "
         "samplen 3\n"
         "set linetype 9 lc rgb '#999999'\nset linetype 10 lc rgb '#8b4513'\nset linetype cycle 10\n"
         "set title {}\nset xlabel {}\nset ylabel {}\nset format '%g'\n",
         terminal,
+        plot.x_scale == AxisScale::Logarithmic ? "set logscale x\n" : "",
+        plot.y_scale == AxisScale::Logarithmic ? "set logscale y\n" : "",
+        plot.x_ticks.empty() ? ""
+                             : fmt::format("set offsets graph 0.03, graph 0.03\nset xtics ({})\n",
+                                           fmt::join(plot.x_ticks, ", ")),
         quoted(plot.title),
         quoted(plot.x_label),
         quoted(plot.y_label));
@@ -89,7 +94,7 @@ bool run_gnuplot(const std::string& script, const std::string& picture) {
     return error == 0 && ::waitpid(process, &status, 0) == process && status == 0;
 }
 
-bool draw_as(const LogPlot& plot, const std::string& terminal, const std::string& target) {
+bool draw_as(const Plot& plot, const std::string& terminal, const std::string& target) {
     core::OutputFile output(target);
     if (!run_gnuplot(script_of(plot, terminal), output.temporary())) return false;
     output.commit();
@@ -113,7 +118,7 @@ PlotLine pareto_front(const std::vector<PlotLine>& lines) {
     return front;
 }
 
-bool draw_plot(const LogPlot& plot, const std::string& path) {
+bool draw_plot(const Plot& plot, const std::string& path) {
     return draw_as(plot, "svg size 800,500 dynamic noenhanced", path + ".svg") &&
            draw_as(plot, "pngcairo size 1200,750 fontscale 1.3 noenhanced", path + ".png");
 }

@@ -20,12 +20,17 @@ struct PlotLine {
     int limit_of = -1;  ///< the line of the plot whose limit this is and whose colour it takes
 };
 
-/// A plot with logarithmic axes.
-struct LogPlot {
+enum class AxisScale { Logarithmic, Linear };
+
+/// Lines over two axes.
+struct Plot {
     std::string title;
     std::string x_label;
     std::string y_label;
     std::vector<PlotLine> lines;
+    std::vector<double> x_ticks{};  ///< where numbers stand along x; empty: where gnuplot likes
+    AxisScale x_scale = AxisScale::Logarithmic;
+    AxisScale y_scale = AxisScale::Logarithmic;
 };
 
 /// The points of all lines that no other point beats in both coordinates, by rising x.
@@ -33,6 +38,6 @@ PlotLine pareto_front(const std::vector<PlotLine>& lines);
 
 /// Draws `plot` as path.svg and path.png by gnuplot.
 /// returns   false when gnuplot is not installed or fails; nothing is written then
-bool draw_plot(const LogPlot& plot, const std::string& path);
+bool draw_plot(const Plot& plot, const std::string& path);
 
 }  // namespace apps

@@ -31,7 +31,7 @@ NLOS_FIGURES(Target, name, target, ours, holds);
 /// What a benchmark found.
 struct BenchResult {
     core::Json figures;                             ///< an object; tables.h makes tables of it
-    std::map<std::string, LogPlot> plots{};         ///< by the end of their file's name
+    std::map<std::string, Plot> plots{};            ///< by the end of their file's name
     std::map<std::string, std::string> pictures{};  ///< bytes of PNG files, likewise
 };
 

@@ -189,6 +189,9 @@ void describe_one(Description& out,
         case FileKind::Calibration:
             describe_json(out, path, "calibration");
             break;
+        case FileKind::Sweep:
+            describe_json(out, path, "sweep over settings");
+            break;
         case FileKind::Geometry:
             describe_geometry(out, path);
             break;

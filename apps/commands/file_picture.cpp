@@ -34,6 +34,7 @@ void write_picture(const std::vector<std::string>& paths,
         case FileKind::Model:
         case FileKind::Setup:
         case FileKind::Calibration:
+        case FileKind::Sweep:
         case FileKind::Geometry:
         case FileKind::PointCloud:
             break;

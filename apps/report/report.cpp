@@ -148,6 +148,7 @@ std::string contents_text(const ResultsFolder& results) {
     add(results.fits.size(), "fit");
     add(results.scores.size(), "comparison");
     add(results.benches.size(), "benchmark");
+    add(results.sweeps.size(), "sweep");
     add(results.unreadable.size(), "unreadable file");
     return text;
 }
@@ -180,6 +181,7 @@ std::string render_report(const ResultsFolder& results) {
     html +=
         section_html("comparisons", "Comparison with the truth", comparisons_html(results.scores));
     html += section_html("benchmarks", "Speed against error", benches_html(results.benches));
+    html += section_html("sweeps", "Sweeps over settings", sweeps_html(results.sweeps));
     html += section_html("hard-cases", "Hard cases", hard_cases_html(results.hard_cases));
     html += section_html("figures", "Figures", figures_html(results.figures, FigureKind::Other));
     html += section_html("files", "Other files", documents_html(results.documents));

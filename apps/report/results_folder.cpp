@@ -80,6 +80,8 @@ void read_file(const fs::path& path, ResultsFolder& results) {
             results.fits.push_back(fit_card(path.string(), json));
         } else if (is_bench(json)) {
             results.benches.push_back(read_bench_card(path.string(), json));
+        } else if (is_sweep(json)) {
+            results.sweeps.push_back({name, std::move(json), {}});
         } else if (json.contains("hard_cases")) {
             results.hard_cases = json["hard_cases"];
         } else if (!is_collection_of_benches(json)) {
@@ -135,6 +137,7 @@ ResultsFolder read_results_folder(const std::string& folder) {
     }
     drop_accompanying_figures(results);
     give_figures_to_benches(results.figures, results.benches);
+    give_figures_to_sweeps(results.figures, results.sweeps);
     if (results.empty()) {
         throw core::Error(folder,
                           "holds no result",

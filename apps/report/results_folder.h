@@ -4,6 +4,7 @@
 #include "apps/report/bench_cards.h"
 #include "apps/report/dataset_card.h"
 #include "apps/report/result_cards.h"
+#include "apps/report/sweep_cards.h"
 #include "nlos/compare/compare.h"
 #include "renderer/core/settings.h"
 
@@ -39,6 +40,7 @@ struct ResultsFolder {
     std::vector<ResultCard> volumes;
     std::vector<ResultCard> fits;
     std::vector<BenchCard> benches;
+    std::vector<SweepCard> sweeps;
     core::Json hard_cases;        ///< the table that hard_cases_tests --report writes; null: none
     std::vector<Figure> figures;  ///< but for those that belong to a file shown
     std::vector<JsonDocument> documents;
@@ -46,8 +48,8 @@ struct ResultsFolder {
 
     bool empty() const {
         return !dataset && scores.empty() && captures.empty() && volumes.empty() && fits.empty() &&
-               benches.empty() && hard_cases.empty() && figures.empty() && documents.empty() &&
-               unreadable.empty();
+               benches.empty() && sweeps.empty() && hard_cases.empty() && figures.empty() &&
+               documents.empty() && unreadable.empty();
     }
 };
 

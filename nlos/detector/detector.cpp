@@ -26,29 +26,6 @@ bool is_blind_at_times(const DetectorSettings& s) {
     return s.pile_up || s.dead_time_ns > 0.0;
 }
 
-void validate(const DetectorSettings& s) {
-    core::check_ranges(s, "");
-    core::check_ranges(s.radiometry, "radiometry");
-    if (s.photons && s.photons_per_point) {
-        throw core::Error("photons", "found beside photons_per_point", "must be one of the two");
-    }
-    if (!s.photons && !s.photons_per_point && !s.exposure_s) {
-        throw core::Error("photons",
-                          "found neither photons, photons_per_point nor exposure_s",
-                          "must be one of them");
-    }
-    const double pulses = s.repetition_hz * s.exposure_s.value_or(1.0);
-    require(pulses <= kMaxPulses,
-            "exposure_s",
-            s.exposure_s.value_or(1.0),
-            fmt::format("at most {:g}: 1e15 pulses", kMaxPulses / s.repetition_hz));
-    const double blind_periods = 1e-9 * s.dead_time_ns * s.repetition_hz;
-    require(blind_periods <= kLongestBlindPeriods,
-            "dead_time_ns",
-            s.dead_time_ns,
-            fmt::format("at most {} periods of repetition_hz", kLongestBlindPeriods));
-}
-
 double sum_of(const core::Capture& capture) {
     double sum = 0.0;
     for (const float value : capture.transient.values()) {
@@ -179,6 +156,29 @@ void record(const Detector& detector,
 }
 
 }  // namespace
+
+void validate(const DetectorSettings& settings) {
+    core::check_ranges(settings, "");
+    core::check_ranges(settings.radiometry, "radiometry");
+    if (settings.photons && settings.photons_per_point) {
+        throw core::Error("photons", "found beside photons_per_point", "must be one of the two");
+    }
+    if (!settings.photons && !settings.photons_per_point && !settings.exposure_s) {
+        throw core::Error("photons",
+                          "found neither photons, photons_per_point nor exposure_s",
+                          "must be one of them");
+    }
+    const double pulses = settings.repetition_hz * settings.exposure_s.value_or(1.0);
+    require(pulses <= kMaxPulses,
+            "exposure_s",
+            settings.exposure_s.value_or(1.0),
+            fmt::format("at most {:g}: 1e15 pulses", kMaxPulses / settings.repetition_hz));
+    const double blind_periods = 1e-9 * settings.dead_time_ns * settings.repetition_hz;
+    require(blind_periods <= kLongestBlindPeriods,
+            "dead_time_ns",
+            settings.dead_time_ns,
+            fmt::format("at most {} periods of repetition_hz", kLongestBlindPeriods));
+}
 
 std::optional<std::string> coarse_bins_warning(const core::Capture& capture,
                                                const DetectorSettings& settings) {

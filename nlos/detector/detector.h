@@ -74,6 +74,10 @@ void for_each_field(DetectorSettings& s, Visitor&& visit) {
     visit("seed", s.seed, "seed of the random numbers");
 }
 
+/// Throws core::Error naming the first setting that is out of range, and unless one of `photons`,
+/// `photons_per_point` and `exposure_s` says how much light there is.
+void validate(const DetectorSettings& settings);
+
 /// Why counts of a capture would differ from those of the light that it was binned from: bins that
 /// are wide beside the response lose where within them light arrives, so that sharp edges come out
 /// narrower than the response, in variance by up to a twelfth of a squared bin. For people.

@@ -161,8 +161,7 @@ TEST_F(CommandLine, ResponsesOfCapturesAreOffered) {
     // auto takes what the file states; a method that is asked for does when it is told so.
     ASSERT_EQ(run("reconstruct " + counts + " -o " + file("v.h5")).status, 0);
     EXPECT_EQ(nlos::read_volume(file("v.h5")).settings.response.jitter_fwhm_ps, 100.0);
-    const std::string reconstruct =
-        "reconstruct " + counts + " --method lct -o " + file("v.h5");
+    const std::string reconstruct = "reconstruct " + counts + " --method lct -o " + file("v.h5");
     const Outcome ignored = run(reconstruct);
     EXPECT_NE(ignored.err.find("response=capture"), std::string::npos) << ignored.err;
     const Outcome used = run(reconstruct + " --set response=capture");
@@ -262,7 +261,8 @@ TEST_F(CommandLine, HelpOnEveryLevelEndsWithAnExampleThatWorks) {
                                    "convert",
                                    "info",
                                    "bench",
-                                   "report"}) {
+                                   "report",
+                                   "sweep"}) {
         const Outcome help = run(name + " --help");
         EXPECT_EQ(help.status, 0) << name;
         const std::string start = "Example:\n  nlos ";

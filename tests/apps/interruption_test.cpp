@@ -5,6 +5,7 @@
 #include "tests/support/command_line.h"
 
 #include <fcntl.h>
+#include <fmt/core.h>
 #include <spawn.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -146,6 +147,46 @@ TEST_F(Interruption, KilledAtAnyTimeNothingIsLostOrLeft) {
     }
     ASSERT_EQ(run("reconstruct " + file("in.npz") + " -o " + file("out.h5")).status, 0);
     EXPECT_TRUE(partial_files().empty()) << "the next run of the same names removes them";
+}
+
+// Stopped again and again, a sweep comes to its end.
+TEST_F(Interruption, ASweepKeepsWholeRunsAndGoesOn) {
+    make_scene("scene.json", {{"time_axis", {{"num_bins", 256}}}});
+    core::Json sweep{{"scene", "scene.json"}, {"fixed", {{"scene.scan.sensing_points", {8, 8}}}}};
+    for (int photons = 1; photons <= 20; ++photons) {
+        sweep["grid"]["noise.photons_per_point"].push_back(50 * photons);
+    }
+    write_file_bytes(file("sweep.json"), sweep.dump());
+    const std::vector<std::string> command{"sweep", file("sweep.json"), "-o", file("out")};
+    const auto num_files = [&] {
+        std::error_code missing;
+        fs::directory_iterator entries(file("out/runs"), missing);
+        return std::count_if(begin(entries), end(entries), [](const auto& entry) {
+            return !entry.path().filename().string().starts_with('.');
+        });
+    };
+    std::ptrdiff_t num_kept = 0;
+    for (const int signal : {SIGTERM, SIGINT, SIGKILL}) {
+        const pid_t process = start(command);
+        for (int i = 0; i < 3000 && num_files() < num_kept + 3; ++i) wait_for(0.005);
+        ::kill(process, signal);
+        const Outcome outcome = finish(process);
+        ASSERT_LT(num_files(), 20) << "the sweep was interrupted before its end";
+        EXPECT_GE(num_files(), num_kept + 3);
+        num_kept = num_files();
+        EXPECT_FALSE(fs::exists(file("out/sweep.json")));
+        if (signal == SIGKILL) continue;
+        EXPECT_EQ(outcome.status, 1);
+        EXPECT_EQ(
+            outcome.err,
+            fmt::format("sweep: interrupted; {} of 20 runs are done, and the same command goes "
+                        "on with the others\n",
+                        num_kept));
+    }
+    EXPECT_EQ(run("sweep " + file("sweep.json") + " -o " + file("out")).status, 0);
+    for (const core::Json& row : core::read_json_file(file("out/sweep.json"))["runs"]) {
+        EXPECT_TRUE(row["failed"].is_null()) << "a run that was given up is no failure";
+    }
 }
 
 TEST_F(Interruption, FilesBeyondTheLimitAreOneLine) {

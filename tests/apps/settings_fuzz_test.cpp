@@ -3,6 +3,7 @@
 // one line for what is refused, no crash.
 #include "apps/capture_options.h"
 #include "apps/commands/reconstruct_job.h"
+#include "apps/sweep/sweep_settings.h"
 #include "calib/calibrate.h"
 #include "calib/fit.h"
 #include "renderer/scene/scene_file.h"
@@ -103,6 +104,25 @@ TEST_F(SettingsFuzz, OfCaptures) {
                      20,
                      13);
     }
+}
+
+// The description alone is read: a script is printed, and nothing runs.
+TEST_F(SettingsFuzz, OfSweep) {
+    std::vector<core::SettingHelp> settings = core::settings_help(apps::SweepSettings{});
+    for (const std::string key : {"scene.time_axis",
+                                  "scene.scan.sensing_points",
+                                  "scene.geometry",
+                                  "scene.camera",
+                                  "noise.response",
+                                  "noise.seed",
+                                  "reconstruct.method",
+                                  "reconstruct.volume.voxels",
+                                  "scene",
+                                  "a,b"}) {
+        settings.push_back({"grid." + key, "", ""});
+        settings.push_back({"fixed." + key, "", ""});
+    }
+    try_settings("sweep data/sweep.json -o " + file("out") + " --slurm", settings, 120, 16);
 }
 
 TEST_F(SettingsFuzz, OfFitAndCalibrate) {

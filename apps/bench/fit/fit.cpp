@@ -281,7 +281,7 @@ BenchResult measure_fit(const FitBenchSettings& settings, const core::Progress& 
     }
     BenchResult result{core::write_value(bench)};
     if (bench.points.empty()) return result;
-    LogPlot plot{"Error against time of fits", "CPU time [s]", "position error [m]", {}};
+    Plot plot{"Error against time of fits", "CPU time [s]", "position error [m]", {}};
     for (const FitBenchPoint& point : bench.points) {
         plot.lines.push_back({point.choice, {point.cpu_seconds}, {point.position_rms_m}});
     }

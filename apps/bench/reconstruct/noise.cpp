@@ -114,8 +114,8 @@ SnrSearch search_snr(const Range& range, double peak_counts, int repeats) {
     return search;
 }
 
-LogPlot plot_of(const NoiseBench& bench, const std::string& title, double NoiseScore::*value) {
-    LogPlot plot{title + ", " + bench.scene, "counts in the brightest bin", title, {}};
+Plot plot_of(const NoiseBench& bench, const std::string& title, double NoiseScore::*value) {
+    Plot plot{title + ", " + bench.scene, "counts in the brightest bin", title, {}};
     for (const NoiseCurve& curve : bench.curves) {
         PlotLine& line = plot.lines.emplace_back();
         line.title = curve.method;

@@ -15,17 +15,17 @@ PlotLine scaling_line(const ReconstructScaling& curve, double ScalingPoint::*val
     return line;
 }
 
-LogPlot scaling_plot(const ReconstructBench& bench,
-                     const std::string& title,
-                     double ScalingPoint::*value) {
-    LogPlot plot{title + " against size", "values of the capture, or voxels", title, {}};
+Plot scaling_plot(const ReconstructBench& bench,
+                  const std::string& title,
+                  double ScalingPoint::*value) {
+    Plot plot{title + " against size", "values of the capture, or voxels", title, {}};
     for (const ReconstructScaling& curve : bench.scaling) {
         plot.lines.push_back(scaling_line(curve, value));
     }
     return plot;
 }
 
-void add_limits(const ReconstructBench& bench, LogPlot& plot) {
+void add_limits(const ReconstructBench& bench, Plot& plot) {
     for (std::size_t i = 0; i < bench.scaling.size(); ++i) {
         PlotLine& line =
             plot.lines.emplace_back(scaling_line(bench.scaling[i], &ScalingPoint::limit_seconds));
@@ -51,7 +51,7 @@ BenchResult measure_reconstruct(const ReconstructBenchSettings& settings,
     if (wants("scaling")) bench.scaling = measure_scaling(settings, progress.part(0.6, 1.0));
     BenchResult result{core::write_value(bench)};
     if (!bench.scaling.empty()) {
-        LogPlot& time = result.plots["_time"];
+        Plot& time = result.plots["_time"];
         time = scaling_plot(bench, "CPU time [s]", &ScalingPoint::cpu_seconds);
         add_limits(bench, time);
         result.plots["_memory"] = scaling_plot(bench, "memory [bytes]", &ScalingPoint::bytes);

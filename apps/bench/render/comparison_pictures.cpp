@@ -132,8 +132,8 @@ std::vector<Panel> progress_panels(const Comparison& comparison) {
     return panels;
 }
 
-LogPlot progress_plot(const Comparison& comparison) {
-    LogPlot plot{"Equal time per frame, " + comparison.scene, "frame", "relative MSE", {}};
+Plot progress_plot(const Comparison& comparison) {
+    Plot plot{"Equal time per frame, " + comparison.scene, "frame", "relative MSE", {}};
     for (const MethodComparison& method : comparison.methods) {
         PlotLine& line = plot.lines.emplace_back();
         line.title = method.method;

@@ -19,6 +19,6 @@ std::vector<nlos::Panel> error_panels(const Comparison& comparison);
 std::vector<nlos::Panel> progress_panels(const Comparison& comparison);
 
 /// Error against the number of frames.
-LogPlot progress_plot(const Comparison& comparison);
+Plot progress_plot(const Comparison& comparison);
 
 }  // namespace apps

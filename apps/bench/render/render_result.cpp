@@ -67,11 +67,11 @@ std::vector<Target> targets_of(const RenderBench& bench) {
     return targets;
 }
 
-LogPlot gate_plot(const GateTable& table) {
-    LogPlot plot{fmt::format("Equal time, {}, {} bounces", table.scene, table.max_bounces),
-                 "gate width [mm]",
-                 "relative MSE after 1 s",
-                 {}};
+Plot gate_plot(const GateTable& table) {
+    Plot plot{fmt::format("Equal time, {}, {} bounces", table.scene, table.max_bounces),
+              "gate width [mm]",
+              "relative MSE after 1 s",
+              {}};
     for (const GateBench& gate : table.gates) {
         if (gate.gate_mm == 0.0) continue;
         const auto same =
@@ -87,8 +87,8 @@ LogPlot gate_plot(const GateTable& table) {
     return plot;
 }
 
-LogPlot scaling_plot(const RenderBench& bench) {
-    LogPlot plot{"Scaling", "triangles, wall points, bins, bounces, threads", "time [s]", {}};
+Plot scaling_plot(const RenderBench& bench) {
+    Plot plot{"Scaling", "triangles, wall points, bins, bounces, threads", "time [s]", {}};
     for (const RenderScaling& scaling : bench.scaling) {
         const std::string title = fmt::format("{}, {}", scaling.method, scaling.of);
         plot.lines.push_back({title, scaling.sizes, scaling.cpu_seconds});
@@ -102,8 +102,8 @@ LogPlot scaling_plot(const RenderBench& bench) {
     return plot;
 }
 
-LogPlot curves_plot(const RenderBench& bench) {
-    LogPlot plot{"Error against time, " + bench.scene, "CPU time [s]", "relative L2 error", {}};
+Plot curves_plot(const RenderBench& bench) {
+    Plot plot{"Error against time, " + bench.scene, "CPU time [s]", "relative L2 error", {}};
     for (const BenchCurve& curve : bench.curves) {
         PlotLine& line = plot.lines.emplace_back();
         line.title = curve.method;

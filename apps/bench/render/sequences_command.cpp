@@ -16,11 +16,11 @@ struct SequenceArguments {
 };
 
 // Error over frames, a plot per sequence.
-void add_plot(const SequenceBench& bench, std::map<std::string, LogPlot>& plots) {
+void add_plot(const SequenceBench& bench, std::map<std::string, Plot>& plots) {
     std::string suffix = "_" + bench.sequence;
     std::replace_if(
         suffix.begin(), suffix.end(), [](char c) { return std::isalnum(c) == 0; }, '_');
-    LogPlot& plot = plots[suffix];
+    Plot& plot = plots[suffix];
     plot.title = bench.sequence;
     plot.x_label = "frame";
     plot.y_label = "relative MSE";

@@ -18,7 +18,7 @@ TEST(Gnuplot, TextsAndFileNamesRunNoCommands) {
     const std::string mark = folder.file("mark");
     const std::string touch = "touch " + mark;
     const std::string quote = "q'; system('" + touch + "'); print '";
-    LogPlot plot;
+    Plot plot;
     plot.title = quote;
     plot.x_label = "`" + touch + "`";
     plot.y_label = "a\nsystem('" + touch + "')\nset title '";

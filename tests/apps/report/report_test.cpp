@@ -65,6 +65,50 @@ void fill(const TemporaryFolder& folder) {
     core::write_text_file(folder.file("scene.json"), R"({"geometry": "<scene>.glb"})");
 }
 
+core::Json small_sweep() {
+    return {{"program", "nlos <0>"},
+            {"sweep", {{"scene", "<scene>.json"}}},
+            {"headline", {"run", "noise.<photons>", "fscore", "failed"}},
+            {"plots", {"sweep_plot"}},
+            {"runs",
+             {{{"run", 0}, {"noise.<photons>", nullptr}, {"fscore", 0.25}, {"failed", nullptr}},
+              {{"run", 1}, {"noise.<photons>", "<b>"}, {"failed", "no <light>"}},
+              {{"run", 2}, {"failed", "no memory"}},
+              {{"run", 3}, {"failed", "no <light>"}}}}};
+}
+
+TEST(Report, ShowsSweepsWithTheirPlotsAndFailures) {
+    const TemporaryFolder folder;
+    core::write_text_file(folder.file("sweep.json"), small_sweep().dump());
+    for (const std::string name : {"sweep_plot.svg", "other.svg"}) {
+        core::write_text_file(folder.file(name), "<svg xmlns='http://www.w3.org/2000/svg'/>");
+    }
+    const ResultsFolder results = read_results_folder(folder.path().string());
+    ASSERT_EQ(results.sweeps.size(), 1U);
+    EXPECT_TRUE(results.documents.empty());
+    ASSERT_EQ(results.sweeps[0].figures.size(), 1U);
+    EXPECT_EQ(results.figures.size(), 1U) << "other.svg is nobody's";
+    const std::string html = render_report(results);
+    EXPECT_TRUE(contains(html, "<th>&lt;photons&gt;<small>noise</small></th>"));
+    EXPECT_TRUE(contains(html, "<td>none</td><td>0.25</td>"));
+    EXPECT_TRUE(contains(html, "<b>Run 1, 3</b> failed: no &lt;light&gt;"));
+    EXPECT_FALSE(contains(html, "<light>"));
+    EXPECT_FALSE(contains(html, "<td><b>"));
+}
+
+TEST(Report, WhatIsNoWholeSweepIsADocument) {
+    for (const std::string key : {"sweep", "headline", "plots", "runs"}) {
+        const TemporaryFolder folder;
+        core::Json json = small_sweep();
+        json[key] = 3;
+        core::write_text_file(folder.file("sweep.json"), json.dump());
+        EXPECT_EQ(read_results_folder(folder.path().string()).documents.size(), 1U) << key;
+        json.erase(key);
+        core::write_text_file(folder.file("sweep.json"), json.dump());
+        EXPECT_EQ(read_results_folder(folder.path().string()).documents.size(), 1U) << key;
+    }
+}
+
 TEST(Report, ShowsFitsWithTheirErrorsAndDoubts) {
     const TemporaryFolder folder;
     calib::FitResult fit;

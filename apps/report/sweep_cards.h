@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "apps/report/bench_cards.h"
+#include "renderer/core/settings.h"
+
+#include <string>
+#include <vector>
+
+namespace apps {
+
+/// What a sweep over settings found, see sweep/sweep_summary.h.
+struct SweepCard {
+    std::string file;
+    core::Json content;
+    std::vector<Figure> figures;
+};
+
+/// Whether a JSON file is what a sweep writes.
+bool is_sweep(const core::Json& json);
+
+/// Moves the figures that a sweep drew to it, one format of each.
+void give_figures_to_sweeps(std::vector<Figure>& figures, std::vector<SweepCard>& sweeps);
+
+/// The sweeps as HTML: plots, table, runs that failed.
+std::string sweeps_html(const std::vector<SweepCard>& sweeps);
+
+}  // namespace apps

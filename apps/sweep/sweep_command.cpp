@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+#include "apps/arguments.h"
+#include "apps/commands.h"
+#include "apps/sweep/sweep.h"
+#include "apps/sweep/sweep_summary.h"
+#include "apps/terminal.h"
+#include "renderer/core/parallel.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <memory>
+
+namespace apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct SweepArguments {
+    std::string sweep;
+    std::string folder;
+    std::string shard;
+    std::vector<std::string> slurm;  ///< none or one
+    std::vector<std::string> overrides;
+    int threads = 0;
+};
+
+constexpr std::size_t kMostTasks = 1000;  // of an array, as Slurm has it unless told otherwise
+constexpr std::size_t kMostPrinted = 60;
+constexpr int kCpusPerTask = 4;
+
+std::string absolute(const std::string& path) {
+    return fs::absolute(path).lexically_normal().string();
+}
+
+std::size_t num_tasks(const SweepArguments& arguments, const SweepPlan& plan) {
+    const std::string text = arguments.slurm.empty() ? "" : arguments.slurm.front();
+    if (text.empty()) return std::min(kMostTasks, plan.pieces(1).size());
+    std::size_t number = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    core::require(error == std::errc{} && end == text.data() + text.size() && number > 0,
+                  "--slurm",
+                  text,
+                  "a number of tasks, at least 1");
+    return number;
+}
+
+void print_script(const SweepArguments& arguments, const SweepPlan& plan) {
+    const int threads = arguments.threads > 0 ? arguments.threads : kCpusPerTask;
+    ArrayJob job;
+    job.name = "nlos-sweep";
+    job.folder = absolute(arguments.folder);
+    job.num_tasks = num_tasks(arguments, plan);
+    job.cpus_per_task = threads;
+    job.command = fmt::format("{} sweep {} -o {} --threads {}",
+                              shell_word(fs::read_symlink("/proc/self/exe").string()),
+                              shell_word(absolute(arguments.sweep)),
+                              shell_word(job.folder),
+                              threads);
+    for (const std::string& text : arguments.overrides) {
+        job.command += " --set " + shell_word(text);
+    }
+    write_output(slurm_script(job));
+    if (!fs::is_directory(job.folder)) {
+        print_error("note: make the folder {} before the script runs, Slurm writes there\n",
+                    job.folder);
+    }
+}
+
+void print_summary(const SweepPlan& plan, const core::Json& rows, const SweepArguments& arguments) {
+    const SweepSummary summary = write_summary(plan, rows, arguments.folder);
+    if (rows.size() <= kMostPrinted) {
+        write_output(plain_text({headline_table(plan.settings(), rows)}));
+    }
+    for (const std::string& text : summary.warnings) print_error("warning: {}\n", text);
+    if (!summary.has_plots) {
+        print_error("warning: gnuplot is not there, so no plot was drawn\n");
+    }
+    print("wrote {} and sweep.csv ({} runs{})\n",
+          (fs::path(arguments.folder) / "sweep.json").string(),
+          rows.size(),
+          summary.num_failed > 0 ? fmt::format(", {} of them failed", summary.num_failed) : "");
+}
+
+void run(const SweepArguments& arguments, bool wants_script) {
+    const WorkShare share = read_work_share(arguments.shard);
+    const core::ThreadLimit threads(arguments.threads);
+    const SweepPlan plan(arguments.sweep, arguments.overrides);
+    if (wants_script) return print_script(arguments, plan);
+    const SweepResults results(plan, arguments.folder);
+    SweepProgress done;
+    {
+        ProgressBar bar("sweep");
+        done = do_share(plan, results, share, bar.progress());
+    }
+    if (done.interrupted) {
+        throw core::Failure("sweep",
+                            fmt::format("interrupted; {} of {} runs are done, and the same command "
+                                        "goes on with the others",
+                                        results.num_done(),
+                                        plan.num_runs()));
+    }
+    if (const auto rows = results.rows()) return print_summary(plan, *rows, arguments);
+    print("wrote {} runs to {}; {} of {} are done, other shards do the rest\n",
+          done.num_new,
+          (fs::path(arguments.folder) / "runs").string(),
+          results.num_done(),
+          plan.num_runs());
+}
+
+}  // namespace
+
+void add_sweep_command(CLI::App& app) {
+    CLI::App* command =
+        app.add_subcommand("sweep", "Render, reconstruct and compare over a grid of settings");
+    const auto arguments = std::make_shared<SweepArguments>();
+    command->add_option("SWEEP", arguments->sweep, "Scene and grid of settings (.json)")
+        ->required();
+    add_output_option(*command,
+                      arguments->folder,
+                      "Folder of results; what it holds of this sweep is not done again")
+        ->required();
+    command->add_option("--shard",
+                        arguments->shard,
+                        "I/N: do part I, from 0, of N (default: that of the Slurm array task, or "
+                        "all)");
+    CLI::Option* slurm =
+        command->add_option("--slurm",
+                            arguments->slurm,
+                            "Only print a script for sbatch, an array of TASKS (default: one per "
+                            "capture)");
+    slurm->type_name("TASKS")->expected(0, 1);
+    add_threads_option(*command, arguments->threads);
+    add_set_option(*command, arguments->overrides);
+    command->footer(settings_footer(core::settings_help(SweepSettings{}),
+                                    "nlos sweep data/sweep.json -o out/sweep"));
+    command->callback([arguments, slurm] { run(*arguments, slurm->count() > 0); });
+}
+
+}  // namespace apps

@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: MIT
+#include "apps/sweep/sweep_plots.h"
+
+#include "apps/sweep/sweep_runner.h"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <optional>
+
+namespace apps {
+namespace {
+
+using core::Json;
+
+constexpr std::size_t kMostCurves = 10;  // as many as gnuplot has colours
+constexpr std::size_t kMostTicks = 12;
+constexpr double kWideRange = 5.0;
+
+/// What a value is along an axis: a number, or the first of a list of numbers.
+std::optional<double> number_of(const Json& value) {
+    if (value.is_number()) return value.get<double>();
+    if (value.is_array() && !value.empty() && value.front().is_number()) {
+        return value.front().get<double>();
+    }
+    return std::nullopt;
+}
+
+/// The index of a key among those of an axis, when the axis has two different numbers there and
+/// otherwise at most null.
+bool is_numeric(const SweepAxis& axis, std::size_t key) {
+    std::vector<double> numbers;
+    for (const auto& values : axis.values) {
+        const auto number = number_of(values[key]);
+        if (!number && !values[key].is_null()) return false;
+        if (number) numbers.push_back(*number);
+    }
+    std::ranges::sort(numbers);
+    return numbers.size() > 1 && std::ranges::adjacent_find(numbers) == numbers.end();
+}
+
+std::vector<SweepPlot> wanted_plots(const SweepSettings& sweep) {
+    if (sweep.plots) return *sweep.plots;
+    std::vector<SweepPlot> plots;
+    for (const SweepAxis& axis : sweep.grid.axes) {
+        std::size_t key = 0;
+        while (key < axis.keys.size() && !is_numeric(axis, key)) ++key;
+        if (key == axis.keys.size()) continue;
+        for (const char* metric : {"depth_mae_m", "mask_iou_best", "seconds"}) {
+            plots.push_back({metric, axis.keys[key]});
+        }
+    }
+    return plots;
+}
+
+/// The names of scores and times.
+std::vector<std::string> known_metrics() {
+    std::vector<std::string> names;
+    nlos::Metrics metrics;
+    for_each_field(metrics,
+                   [&](const char* name, auto&, const char*) { names.emplace_back(name); });
+    SweepResult result;
+    for_each_field(result, [&](const std::string& name, auto&, const char*) {
+        if (name.starts_with("seconds")) names.push_back(name);
+    });
+    return names;
+}
+
+std::string last_part(const std::string& key) {
+    return key.substr(key.rfind('.') + 1);
+}
+
+std::string text_of_value(const Json& value) {
+    if (value.is_null()) return "none";
+    return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
+/// A row's values of some axes, by the first key of each.
+std::string values_text(const Json& row, const std::vector<const SweepAxis*>& axes) {
+    std::string text;
+    for (const SweepAxis* axis : axes) {
+        const std::string& key = axis->keys.front();
+        text += fmt::format(
+            "{}{} {}", text.empty() ? "" : ", ", last_part(key), text_of_value(row[key]));
+    }
+    return text;
+}
+
+/// Means along x of the rows of one curve; nothing as x: null.
+struct Curve {
+    struct Point {
+        std::optional<double> x;
+        double sum = 0.0;
+        int count = 0;
+    };
+    std::string title;
+    std::vector<Point> points{};
+
+    void add(const std::optional<double>& x, double y) {
+        auto point = std::ranges::find(points, x, &Point::x);
+        if (point == points.end()) point = points.insert(points.end(), {x});
+        point->sum += y;
+        ++point->count;
+    }
+};
+
+/// One picture: the curves of the rows that agree in the values that `title` states.
+struct Picture {
+    std::string title;
+    std::vector<Curve> curves{};
+
+    Curve& curve(const std::string& name) {
+        const auto it = std::ranges::find(curves, name, &Curve::title);
+        return it != curves.end() ? *it : curves.emplace_back(Curve{name});
+    }
+};
+
+/// The axes beside that of x which vary, those of the curves apart from those of pictures.
+struct OtherAxes {
+    std::vector<const SweepAxis*> of_pictures;
+    std::vector<const SweepAxis*> of_curves;
+};
+
+OtherAxes other_axes(const SweepSettings& sweep, const std::string& against) {
+    OtherAxes others;
+    std::size_t num_curves = 1;
+    for (auto axis = sweep.grid.axes.rbegin(); axis != sweep.grid.axes.rend(); ++axis) {
+        if (axis->values.size() < 2 || std::ranges::count(axis->keys, against) > 0) continue;
+        num_curves *= axis->values.size();
+        const bool fits = num_curves <= kMostCurves || others.of_curves.empty();
+        auto& place = fits ? others.of_curves : others.of_pictures;
+        place.insert(place.begin(), &*axis);
+    }
+    return others;
+}
+
+std::vector<Picture> pictures_of(const SweepSettings& sweep,
+                                 const Json& rows,
+                                 const SweepPlot& plot) {
+    const OtherAxes others = other_axes(sweep, plot.against);
+    std::vector<Picture> pictures;
+    for (const Json& row : rows) {
+        const Json y = row.value(plot.metric, Json());
+        if (!y.is_number()) continue;
+        const std::string title = values_text(row, others.of_pictures);
+        auto picture = std::ranges::find(pictures, title, &Picture::title);
+        if (picture == pictures.end()) picture = pictures.insert(pictures.end(), {title});
+        picture->curve(values_text(row, others.of_curves))
+            .add(number_of(row[plot.against]), y.get<double>());
+    }
+    return pictures;
+}
+
+/// The means by rising x, without that of null.
+PlotLine line_of(const Curve& curve) {
+    PlotLine line{curve.title, {}, {}};
+    auto points = curve.points;
+    std::ranges::sort(points, {}, &Curve::Point::x);
+    for (const Curve::Point& point : points) {
+        if (!point.x) continue;
+        line.x.push_back(*point.x);
+        line.y.push_back(point.sum / point.count);
+    }
+    return line;
+}
+
+/// The lines of all curves and, dashed across all of x, what null gives each.
+std::vector<PlotLine> lines_of(const std::vector<Curve>& curves, double least_x, double most_x) {
+    std::vector<PlotLine> lines;
+    for (const Curve& curve : curves) lines.push_back(line_of(curve));
+    for (std::size_t i = 0; i < curves.size(); ++i) {
+        const std::optional<double> none;
+        const auto point = std::ranges::find(curves[i].points, none, &Curve::Point::x);
+        if (point == curves[i].points.end()) continue;
+        const double mean = point->sum / point->count;
+        lines.push_back(
+            {"", {least_x, most_x}, {mean, mean}, LineStyle::Limit, static_cast<int>(i)});
+    }
+    return lines;
+}
+
+/// Logarithmic for what is positive and spans a wide range.
+AxisScale scale_for(std::vector<double> values) {
+    const auto [least, most] = std::ranges::minmax(values);
+    return least > 0.0 && most > kWideRange * least ? AxisScale::Logarithmic : AxisScale::Linear;
+}
+
+/// Lengths and times differ by factors; shares, decibels and angles by differences.
+AxisScale y_scale_for(const std::string& metric, const std::vector<PlotLine>& lines) {
+    if (!metric.ends_with("_m") && !metric.starts_with("seconds")) return AxisScale::Linear;
+    std::vector<double> values;
+    for (const PlotLine& line : lines) values.insert(values.end(), line.y.begin(), line.y.end());
+    return scale_for(values);
+}
+
+/// Nothing where no two numbers along x have results.
+std::optional<Plot> plot_of(const Picture& picture, const SweepPlot& wanted) {
+    std::vector<double> x;
+    for (const Curve& curve : picture.curves) {
+        for (const Curve::Point& point : curve.points) {
+            if (point.x) x.push_back(*point.x);
+        }
+    }
+    std::ranges::sort(x);
+    x.erase(std::unique(x.begin(), x.end()), x.end());
+    if (x.size() < 2) return std::nullopt;
+    Plot plot;
+    plot.title = picture.title;
+    plot.x_label = last_part(wanted.against);
+    plot.y_label = wanted.metric;
+    plot.lines = lines_of(picture.curves, x.front(), x.back());
+    if (plot.lines.size() > picture.curves.size()) plot.x_label += " (dashed: none)";
+    plot.x_scale = scale_for(x);
+    plot.y_scale = y_scale_for(wanted.metric, plot.lines);
+    if (x.size() <= kMostTicks) plot.x_ticks = x;
+    return plot;
+}
+
+}  // namespace
+
+void check_plots(const SweepSettings& sweep, const std::string& where) {
+    const std::vector<std::string> metrics = known_metrics();
+    for (const SweepPlot& plot : sweep.plots.value_or(std::vector<SweepPlot>())) {
+        core::require(std::ranges::count(metrics, plot.metric) > 0,
+                      where + "plots.metric",
+                      plot.metric,
+                      fmt::format("one of {}", fmt::join(metrics, ", ")));
+        bool is_drawable = false;
+        for (const SweepAxis& axis : sweep.grid.axes) {
+            for (std::size_t key = 0; key < axis.keys.size(); ++key) {
+                is_drawable |= axis.keys[key] == plot.against && is_numeric(axis, key);
+            }
+        }
+        core::require(is_drawable,
+                      where + "plots.against",
+                      plot.against,
+                      "a key of the grid with at least two different numbers");
+    }
+}
+
+std::map<std::string, Plot> plots_of(const SweepSettings& sweep, const Json& rows) {
+    std::map<std::string, Plot> plots;
+    for (const SweepPlot& wanted : wanted_plots(sweep)) {
+        std::string name = fmt::format("sweep_{}_by_{}", wanted.metric, wanted.against);
+        std::ranges::replace(name, '.', '_');
+        const std::vector<Picture> pictures = pictures_of(sweep, rows, wanted);
+        for (std::size_t i = 0; i < pictures.size(); ++i) {
+            const auto plot = plot_of(pictures[i], wanted);
+            if (!plot) continue;
+            plots[pictures.size() == 1 ? name : fmt::format("{}_{:02}", name, i + 1)] = *plot;
+        }
+    }
+    return plots;
+}
+
+}  // namespace apps
