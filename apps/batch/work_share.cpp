@@ -9,6 +9,7 @@
 #include <cctype>
 #include <charconv>
 #include <cstdlib>
+#include <filesystem>
 #include <optional>
 #include <string_view>
 
@@ -59,24 +60,32 @@ WorkShare read_work_share(const std::string& text) {
 }
 
 std::string slurm_script(const ArrayJob& job) {
+    std::string command = shell_word(std::filesystem::read_symlink("/proc/self/exe").string());
+    for (const std::string& word : job.words) command += " " + shell_word(word);
     return fmt::format(
         "#!/bin/bash\n"
-        "#SBATCH --job-name={}\n"
-        "#SBATCH --array=0-{}\n"
-        "#SBATCH --ntasks=1 --cpus-per-task={}\n"
+        "#SBATCH --job-name={0}\n"
+        "#SBATCH --array=0-{1}\n"
+        "#SBATCH --ntasks=1 --cpus-per-task={2}\n"
         "#SBATCH --requeue --open-mode=append\n"
         "#SBATCH --signal=TERM@60\n"
-        "#SBATCH --output={}/slurm-%A_%a.log\n"
+        "#SBATCH --output={0}-%A_%a.log\n"
         "# Each task does its part of the work. What is finished is kept: submitting the script "
         "once\n"
         "# more, or single tasks of it by --array=3,7, does what is left.\n"
-        "exec srun {} --shard \"$SLURM_ARRAY_TASK_ID/{}\"\n",
+        "exec srun {3} --threads {2} --shard \"$SLURM_ARRAY_TASK_ID/{4}\"\n",
         job.name,
         job.num_tasks - 1,
         job.cpus_per_task,
-        job.folder,
-        job.command,
+        command,
         job.num_tasks);
+}
+
+std::size_t read_task_count(const std::string& text, std::size_t otherwise) {
+    if (text.empty()) return otherwise;
+    const auto number = whole_number(text);
+    core::require(number && *number > 0, "--slurm", text, "a number of tasks, at least 1");
+    return *number;
 }
 
 std::string shell_word(const std::string& text) {

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <string>
+#include <vector>
 
 namespace apps {
 
@@ -25,16 +26,20 @@ WorkShare read_work_share(const std::string& text);
 
 /// How a batch script asks Slurm for a job array.
 struct ArrayJob {
-    std::string name;     ///< of the job
-    std::string command;  ///< one line of shell, to which task I of N adds `--shard I/N`
-    std::string folder;   ///< where the logs of the tasks go
+    std::string name;                ///< of the job
+    std::vector<std::string> words;  ///< of the command, after the name of this program
     std::size_t num_tasks = 1;
     int cpus_per_task = 1;
 };
 
-/// The script, for `sbatch`: tasks that are preempted get SIGTERM a minute before the end of their
-/// time, and are started again.
+/// The script, for `sbatch`: task I of N runs the command with `--shard I/N` and as many threads as
+/// it has processors. Tasks get SIGTERM a minute before their time ends; preempted ones are started
+/// again. Logs go where the script is submitted.
 std::string slurm_script(const ArrayJob& job);
+
+/// The number of tasks that `--slurm` asks for; `otherwise` where it names none.
+/// throws   core::Error unless it is a number of at least 1
+std::size_t read_task_count(const std::string& text, std::size_t otherwise);
 
 /// A text as one word of a shell's command line.
 std::string shell_word(const std::string& text);

@@ -28,7 +28,7 @@ struct GenerateArguments {
     std::string merge;
     std::vector<std::string> overrides;
     std::vector<std::string> shorthands;
-    int slurm_tasks = 0;
+    std::vector<std::string> slurm;  ///< none or one
     int threads = 0;
 };
 
@@ -73,28 +73,27 @@ void warn_of_oddities(const GenerateResult& result) {
 }
 
 void print_script(const GenerateArguments& arguments, const Dataset& dataset) {
-    ArrayJob job;
-    job.name = "nlos-generate";
-    job.folder = std::filesystem::absolute(arguments.folder).string();
-    job.num_tasks = std::min<std::size_t>(static_cast<std::size_t>(arguments.slurm_tasks),
-                                          dataset.num_shards());
-    job.cpus_per_task = std::max(1, arguments.threads);
-    job.command = fmt::format("nlos generate {} -o {} --threads {}",
-                              shell_word(std::filesystem::absolute(arguments.recipe).string()),
-                              shell_word(job.folder),
-                              job.cpus_per_task);
+    constexpr std::uint64_t kMostTasks = 100;
+    const auto absolute = [](const std::string& path) {
+        return std::filesystem::absolute(path).lexically_normal().string();
+    };
+    ArrayJob job{"nlos-generate",
+                 {"generate", absolute(arguments.recipe), "-o", absolute(arguments.folder)},
+                 read_task_count(arguments.slurm.empty() ? "" : arguments.slurm.front(),
+                                 std::min(kMostTasks, dataset.num_shards())),
+                 std::max(1, arguments.threads)};
     for (const auto* list : {&arguments.shorthands, &arguments.overrides}) {
-        for (const std::string& text : *list) job.command += " --set " + shell_word(text);
+        for (const std::string& text : *list) job.words.insert(job.words.end(), {"--set", text});
     }
     write_output(slurm_script(job));
 }
 
-void make(const GenerateArguments& arguments) {
+void make(const GenerateArguments& arguments, bool prints_script) {
     const core::ThreadLimit threads(arguments.threads);
     std::vector<std::string> overrides = arguments.overrides;
     overrides.insert(overrides.end(), arguments.shorthands.begin(), arguments.shorthands.end());
     Dataset dataset(read_recipe(arguments.recipe, overrides), arguments.folder);
-    if (arguments.slurm_tasks > 0) return print_script(arguments, dataset);
+    if (prints_script) return print_script(arguments, dataset);
     std::optional<ItemRange> items;
     if (!arguments.items.empty()) items = read_range(arguments.items);
     ProgressBar bar("generate");
@@ -135,7 +134,7 @@ void merge(const std::string& folder) {
     print("wrote {} ({} items in {} shards)\n", path, index.items, index.shards.size());
 }
 
-void run(const GenerateArguments& arguments) {
+void run(const GenerateArguments& arguments, bool prints_script) {
     if (!arguments.verify.empty()) return verify(arguments.verify);
     if (!arguments.merge.empty()) return merge(arguments.merge);
     if (arguments.recipe.empty() || arguments.folder.empty()) {
@@ -143,7 +142,7 @@ void run(const GenerateArguments& arguments) {
                           "found no RECIPE or no -o",
                           "must have both, or --verify DIR or --merge DIR");
     }
-    make(arguments);
+    make(arguments, prints_script);
 }
 
 }  // namespace
@@ -162,17 +161,17 @@ void add_generate_command(CLI::App& app) {
     add_shorthands(*command, kGenerateShorthands, arguments->shorthands);
     command->add_option("--verify", arguments->verify, "Check every shard of this folder");
     command->add_option("--merge", arguments->merge, "Write index.json of this folder");
-    command
-        ->add_option("--slurm",
-                     arguments->slurm_tasks,
-                     "Print the script of a Slurm array of so many tasks, each with --threads "
-                     "processors (default 1), and do nothing else")
-        ->check(CLI::PositiveNumber);
+    CLI::Option* slurm =
+        command->add_option("--slurm",
+                            arguments->slurm,
+                            "Only print a script for sbatch, an array of TASKS (default: one per "
+                            "shard, at most 100) with --threads processors each");
+    slurm->type_name("TASKS")->expected(0, 1);
     add_threads_option(*command, arguments->threads);
     add_set_option(*command, arguments->overrides);
     command->footer(settings_footer(core::settings_help(Recipe{}),
                                     "nlos generate data/recipes/shapes.json -o shapes"));
-    command->callback([arguments] { run(*arguments); });
+    command->callback([arguments, slurm] { run(*arguments, slurm->count() > 0); });
 }
 
 }  // namespace apps

@@ -46,7 +46,7 @@ void read_two_numbers(const core::Json& json,
     distribution.second = second;
 }
 
-/// Box and Muller's [BoxMuller1958].
+/// Box and Muller's [Box1958].
 double draw_normal(core::Rng& rng) {
     for (;;) {
         const double radius = std::sqrt(-2.0 * std::log(1.0 - rng.uniform()));

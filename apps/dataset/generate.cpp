@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/dataset/generate.h"
 
+#include "apps/dataset/element_tolerance.h"
 #include "apps/dataset/item_preview.h"
 #include "nlos/pictures/picture.h"
 #include "renderer/core/output_file.h"
@@ -52,7 +53,7 @@ constexpr std::uint64_t kPreviewItems = 6;
 MadeItem make_packed(Dataset& dataset, std::uint64_t number) {
     MadeItem made;
     core::run_on_one_thread([&] {
-        made.item = make_item(dataset.recipe(), dataset.meshes(), number);
+        made.item = make_item(dataset.item_recipe(), dataset.meshes(), number);
         if (number < kPreviewItems) made.preview = preview_panels(dataset.recipe(), made.item);
         const core::ThreadStopwatch clock;
         made.packed = pack_item(dataset.recipe(), made.item);
@@ -158,6 +159,7 @@ void add_to_result(const Manifest& manifest, GenerateResult& result) {
 
 Dataset::Dataset(Recipe recipe, std::string folder)
     : recipe_(std::move(recipe)),
+      item_recipe_(recipe_),
       folder_(std::move(folder)),
       meshes_(recipe_),
       fingerprint_(text_checksum(write_identity(recipe_).dump() + meshes_.listing().dump())) {}
@@ -171,22 +173,33 @@ ItemRange Dataset::items_of(std::uint64_t shard) const {
     return {begin, std::min(recipe_.items, begin + recipe_.items_per_shard)};
 }
 
-void Dataset::claim_folder() const {
+void Dataset::claim_folder() {
     std::error_code error;
     fs::create_directories(folder_, error);
     const std::string path = (fs::path(folder_) / kRecipeFile).string();
+    std::optional<double> tolerance;
+    bool is_known = false;
     if (fs::exists(path, error)) {
         const core::Json there = core::read_json_file(path);
         const auto fingerprint = there.find("fingerprint");
-        if (fingerprint == there.end() || *fingerprint != fingerprint_) {
+        const auto known = there.find("element_tolerance");
+        if (fingerprint == there.end() || *fingerprint != fingerprint_ || known == there.end()) {
             throw core::Error(folder_,
                               "holds the data set of another recipe",
                               "must be a new folder, or that of this recipe and these meshes");
         }
+        core::read_value(*known, path + ": element_tolerance", tolerance);
+        is_known = true;
     }
-    core::write_text_file(
-        path,
-        core::json_text({{"fingerprint", fingerprint_}, {"recipe", core::write_value(recipe_)}}));
+    if (!is_known) tolerance = find_element_tolerance(recipe_, meshes_);
+    if (tolerance) {
+        item_recipe_.scene.render.element_tolerance = tolerance;
+        item_recipe_.scene.render.target_error.reset();
+    }
+    core::write_text_file(path,
+                          core::json_text({{"fingerprint", fingerprint_},
+                                           {"element_tolerance", core::write_value(tolerance)},
+                                           {"recipe", core::write_value(recipe_)}}));
 }
 
 GenerateResult generate(Dataset& dataset,

@@ -20,6 +20,9 @@ class Dataset {
     Dataset(Recipe recipe, std::string folder);
 
     const Recipe& recipe() const { return recipe_; }
+    /// The recipe as items are computed: after claim_folder(), with the tolerance of elements found
+    /// for all of them.
+    const Recipe& item_recipe() const { return item_recipe_; }
     const std::string& folder() const { return folder_; }
     /// Tells data sets apart: of everything that items follow from, their number left out.
     const std::string& fingerprint() const { return fingerprint_; }
@@ -27,14 +30,16 @@ class Dataset {
     /// The items that a shard has when it is whole.
     ItemRange items_of(std::uint64_t shard) const;
 
-    /// Writes the recipe into the folder, which it makes.
+    /// Writes the recipe, and what find_element_tolerance() says of it, into the folder, which it
+    /// makes; a folder that was claimed before is asked instead.
     /// throws   core::Error when the folder holds another data set
-    void claim_folder() const;
+    void claim_folder();
 
     MeshLibrary& meshes() { return meshes_; }
 
  private:
     Recipe recipe_;
+    Recipe item_recipe_;
     std::string folder_;
     MeshLibrary meshes_;
     std::string fingerprint_;
@@ -61,8 +66,8 @@ struct GenerateResult {
 /// share      shards that this process makes
 /// items      only these, if given; a shard of which others are there already keeps them
 /// program    what makes them, for people
-/// progress   asked after every item whether to stop: the shard in work is then given up
-/// throws     core::Error, core::Failure as make_item() does, naming the item
+/// progress   announced to before the work; asked after every item whether to stop: the shard in
+/// work is then given up throws     core::Error, core::Failure as make_item() does, naming the item
 GenerateResult generate(Dataset& dataset,
                         const WorkShare& share,
                         const std::optional<ItemRange>& items,

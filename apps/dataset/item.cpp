@@ -143,6 +143,8 @@ Item make_item(const Recipe& recipe, MeshLibrary& meshes, std::uint64_t number) 
     item.is_dark = result.capture.transient.is_dark();
     if (result.estimated_error && !item.is_dark) {
         item.parameters["estimated_error"] = *result.estimated_error;
+    }
+    if (result.element_tolerance) {
         item.parameters["element_tolerance"] = *result.element_tolerance;
     }
     {

@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 using core::Vec3;
 
-constexpr int kCellsOfShape = 48;
+constexpr int kCellsOfShape = 100;
 constexpr std::size_t kMostKeptBytes = std::size_t{1} << 30;
 
 bool is_mesh(const fs::path& path) {

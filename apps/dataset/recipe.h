@@ -61,6 +61,7 @@ struct Recipe : ItemSettings {
     std::uint64_t items = 1000;
     std::uint64_t items_per_shard = 100;
     std::uint64_t seed = 0;
+    std::uint64_t calibration_items = 8;
     DatasetFormat format = DatasetFormat::Hdf5;
     MeshSource meshes;
     ObjectDistributions objects;
@@ -121,6 +122,10 @@ void for_each_field(Recipe& s, Visitor&& visit) {
     visit("items", s.items, core::at_least(1, "captures of the whole data set"));
     visit("items_per_shard", s.items_per_shard, core::at_least(1, "captures of a file"));
     visit("seed", s.seed, "seed of the random numbers");
+    visit("calibration_items",
+          s.calibration_items,
+          "first items that tell, once, how finely surfaces must be cut for "
+          "scene.render.target_error; 0: every item finds that out for itself, in longer time");
     visit("format", s.format, "how a shard is stored");
     visit("meshes", s.meshes, "where surfaces come from");
     visit("objects", s.objects, "how objects are drawn");

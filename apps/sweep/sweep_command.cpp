@@ -9,7 +9,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 #include <memory>
 
@@ -29,44 +28,21 @@ struct SweepArguments {
 
 constexpr std::size_t kMostTasks = 1000;  // of an array, as Slurm has it unless told otherwise
 constexpr std::size_t kMostPrinted = 60;
-constexpr int kCpusPerTask = 4;
 
 std::string absolute(const std::string& path) {
     return fs::absolute(path).lexically_normal().string();
 }
 
-std::size_t num_tasks(const SweepArguments& arguments, const SweepPlan& plan) {
-    const std::string text = arguments.slurm.empty() ? "" : arguments.slurm.front();
-    if (text.empty()) return std::min(kMostTasks, plan.pieces(1).size());
-    std::size_t number = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    core::require(error == std::errc{} && end == text.data() + text.size() && number > 0,
-                  "--slurm",
-                  text,
-                  "a number of tasks, at least 1");
-    return number;
-}
-
 void print_script(const SweepArguments& arguments, const SweepPlan& plan) {
-    const int threads = arguments.threads > 0 ? arguments.threads : kCpusPerTask;
-    ArrayJob job;
-    job.name = "nlos-sweep";
-    job.folder = absolute(arguments.folder);
-    job.num_tasks = num_tasks(arguments, plan);
-    job.cpus_per_task = threads;
-    job.command = fmt::format("{} sweep {} -o {} --threads {}",
-                              shell_word(fs::read_symlink("/proc/self/exe").string()),
-                              shell_word(absolute(arguments.sweep)),
-                              shell_word(job.folder),
-                              threads);
+    ArrayJob job{"nlos-sweep",
+                 {"sweep", absolute(arguments.sweep), "-o", absolute(arguments.folder)},
+                 read_task_count(arguments.slurm.empty() ? "" : arguments.slurm.front(),
+                                 std::min(kMostTasks, plan.pieces(1).size())),
+                 std::max(1, arguments.threads)};
     for (const std::string& text : arguments.overrides) {
-        job.command += " --set " + shell_word(text);
+        job.words.insert(job.words.end(), {"--set", text});
     }
     write_output(slurm_script(job));
-    if (!fs::is_directory(job.folder)) {
-        print_error("note: make the folder {} before the script runs, Slurm writes there\n",
-                    job.folder);
-    }
 }
 
 void print_summary(const SweepPlan& plan, const core::Json& rows, const SweepArguments& arguments) {

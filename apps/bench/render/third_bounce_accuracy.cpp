@@ -107,7 +107,7 @@ std::vector<TargetError> try_targets(int number) {
         error.pattern = core::enum_name(pattern);
         error.target_error = target;
         error.rel_l2 = relative_l2(capture_of(scan, axis, result.transient), reference);
-        error.stated = result.estimated_error;
+        error.stated = result.estimated_error.value();
         error.elements = result.num_elements;
         error.is_coarsest = result.num_elements == min_elements;
         error.met = error.rel_l2 <= target;

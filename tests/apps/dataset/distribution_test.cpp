@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "apps/dataset/distribution.h"
+
 #include "tests/support/error_message.h"
 
 #include <gtest/gtest.h>
@@ -96,8 +97,8 @@ TEST(Distribution, ErrorsNameKeyAndWhatIsAllowed) {
     EXPECT_ERROR_WITH(parse(R"({"gamma": [1, 2]})"), "log_uniform");
     EXPECT_ERROR_WITH(parse(R"({"uniform": [1, 2], "normal": [0, 1]})"), "log_uniform");
     EXPECT_ERROR_WITH(parse(R"({"uniform": [1]})"), "key.uniform");
-    EXPECT_ERROR_WITH(
-        check_range(parse(R"({"choices": [1, "x"]})"), core::Range{}, "key"), "a number");
+    EXPECT_ERROR_WITH(check_range(parse(R"({"choices": [1, "x"]})"), core::Range{}, "key"),
+                      "a number");
     EXPECT_ERROR_WITH(
         check_range(parse(R"({"normal": [0.5, 0.2]})"), core::between(0, 1, "").range, "key"),
         "key: found -0.1");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "apps/dataset/mesh_library.h"
+
 #include "apps/shapes/grid_mesh.h"
 #include "tests/support/error_message.h"
 

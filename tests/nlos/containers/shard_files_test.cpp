@@ -7,10 +7,9 @@
 #include "tests/support/file_bytes.h"
 #include "tests/support/temporary_folder.h"
 
+#include <Eigen/Core>
 #include <gtest/gtest.h>
 #include <unistd.h>
-
-#include <Eigen/Core>
 
 #include <numeric>
 

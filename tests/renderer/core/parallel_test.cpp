@@ -98,8 +98,8 @@ TEST(Parallel, LoopsInsideWorkOnOneThreadStayOnIt) {
     core::parallel_for(20, [](std::size_t) {
         core::run_on_one_thread([] {
             const auto self = std::this_thread::get_id();
-            core::parallel_for(
-                100, [&](std::size_t) { EXPECT_EQ(std::this_thread::get_id(), self); });
+            core::parallel_for(100,
+                               [&](std::size_t) { EXPECT_EQ(std::this_thread::get_id(), self); });
         });
     });
 }

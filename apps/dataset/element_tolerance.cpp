@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+#include "apps/dataset/element_tolerance.h"
+
+#include "renderer/core/parallel.h"
+#include "renderer/render.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace apps {
+namespace {
+
+constexpr std::array kTolerances{32.0, 16.0, 8.0, 4.0, 2.0, 1.0, 0.5};  // by target error
+constexpr double kReferenceShare = 0.2;
+constexpr double kAllowedShare = 0.75;
+constexpr int kMostPointsPerSide = 6;
+
+using Errors = std::array<double, kTolerances.size()>;
+
+bool may_calibrate(const Recipe& recipe) {
+    const renderer::RenderSettings& render = recipe.scene.render;
+    const bool has_method = render.method == renderer::Estimator::Auto ||
+                            render.method == renderer::Estimator::ThirdBounce;
+    const bool draws_render =
+        std::any_of(recipe.draw.begin(), recipe.draw.end(), [](const auto& entry) {
+            return entry.first.starts_with("scene.render");
+        });
+    return recipe.calibration_items > 0 && render.target_error && has_method &&
+           render.max_bounces == 3 && !draws_render;
+}
+
+core::Transient render_with(const renderer::Scene& scene,
+                            const core::Scan& scan,
+                            const renderer::SceneDescription& description,
+                            std::optional<double> target_error,
+                            std::optional<double> element_tolerance) {
+    renderer::RenderSettings settings = description.render;
+    settings.target_error = target_error;
+    settings.element_tolerance = element_tolerance;
+    return renderer::render(scene, scan, {description.time_axis, std::nullopt}, settings, {})
+        .capture.transient;
+}
+
+double relative_l2(const core::Transient& values, const core::Transient& reference) {
+    double difference = 0.0;
+    double norm = 0.0;
+    for (std::size_t i = 0; i < values.values().size(); ++i) {
+        const double expected = reference.values()[i];
+        difference += std::pow(double{values.values()[i]} - expected, 2);
+        norm += expected * expected;
+    }
+    return norm > 0.0 ? std::sqrt(difference / norm) : 0.0;
+}
+
+Errors errors_of_item(const Recipe& recipe, MeshLibrary& meshes, std::uint64_t item) {
+    ItemPlan plan = plan_item(recipe, meshes, item);
+    renderer::SceneDescription& description = plan.settings.scene;
+    for (int& count : description.scan.sensing_points) count = std::min(count, kMostPointsPerSide);
+    const core::Scan scan = renderer::make_scan(description);
+    const renderer::Scene scene = renderer::make_scene(geometry_of(plan), description, scan);
+    const double target = *recipe.scene.render.target_error;
+    const core::Transient reference =
+        render_with(scene, scan, description, kReferenceShare * target, std::nullopt);
+    Errors errors{};
+    for (std::size_t i = 0; i < kTolerances.size(); ++i) {
+        errors[i] = relative_l2(
+            render_with(scene, scan, description, std::nullopt, kTolerances[i] * target),
+            reference);
+    }
+    return errors;
+}
+
+}  // namespace
+
+std::optional<double> find_element_tolerance(const Recipe& recipe, MeshLibrary& meshes) {
+    if (!may_calibrate(recipe)) return std::nullopt;
+    std::vector<Errors> errors(recipe.calibration_items);
+    core::parallel_for(errors.size(), [&](std::size_t item) {
+        core::run_on_one_thread([&] { errors[item] = errors_of_item(recipe, meshes, item); });
+    });
+    const double target = *recipe.scene.render.target_error;
+    for (std::size_t i = 0; i < kTolerances.size(); ++i) {
+        const bool holds = std::all_of(errors.begin(), errors.end(), [&](const Errors& of_item) {
+            return of_item[i] <= kAllowedShare * target;
+        });
+        if (holds) return kTolerances[i] * target;
+    }
+    return std::nullopt;
+}
+
+}  // namespace apps
