@@ -121,6 +121,7 @@ void make(const GenerateArguments& arguments, bool prints_script) {
 
 void verify(const std::string& folder) {
     const DatasetIndex index = read_dataset(folder, ShardCheck::Contents);
+    for (const std::string& doubt : index.doubts) print_error("warning: {}\n", doubt);
     for (const std::string& problem : index.problems) print("{}\n", problem);
     if (!index.problems.empty()) {
         throw core::Failure(folder, fmt::format("has {} problems", index.problems.size()));

@@ -56,7 +56,7 @@ void add_programs(DatasetIndex& index) {
     std::string text = "shards of several versions are mixed:";
     for (const std::string& program : programs) text += " " + program + ";";
     text.back() = ' ';
-    index.problems.push_back(text + "their items may differ in the last bits");
+    index.doubts.push_back(text + "their items may differ in the last bits");
 }
 
 core::Json describe_shard(const Manifest& shard) {

@@ -15,6 +15,7 @@ struct DatasetIndex {
     std::uint64_t items = 0;  ///< that the recipe asks for
     std::vector<Manifest> shards;
     std::vector<std::string> problems;  ///< what is missing or damaged; one printable line each
+    std::vector<std::string> doubts;    ///< what else a user should know
 };
 
 /// Reads what a data set's folder holds.

@@ -88,6 +88,7 @@ DatasetCard dataset_card(const std::string& folder) {
     result.card.facts = dataset_facts(index);
     result.card.settings = index.recipe;
     result.card.notes = index.problems;
+    result.card.notes.insert(result.card.notes.end(), index.doubts.begin(), index.doubts.end());
     std::map<std::string, std::string> broken;
     for (const Manifest& shard : index.shards) {
         broken.insert(shard.broken_meshes.begin(), shard.broken_meshes.end());

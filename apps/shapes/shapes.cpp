@@ -62,7 +62,8 @@ core::TriangleMesh make_box(int cells) {
                                              [&](double u, double v) {
                                                  Vec3 point;
                                                  point[axis] = side;
-                                                 point[next] = u;
+                                                 point[next] =
+                                                     side * u;  // so that all faces look outwards
                                                  point[3 - axis - next] = v;
                                                  point.z() *= kDepthOverWidth;
                                                  return point;

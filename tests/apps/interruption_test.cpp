@@ -149,6 +149,48 @@ TEST_F(Interruption, KilledAtAnyTimeNothingIsLostOrLeft) {
     EXPECT_TRUE(partial_files().empty()) << "the next run of the same names removes them";
 }
 
+// Every command with work of minutes: either signal ends it with one line, and nothing half is
+// left.
+TEST_F(Interruption, LongCommandsEndWithOneLineOnEitherSignal) {
+    const std::string source = NLOS_SOURCE_DIR;
+    const std::string recipe = source + "/data/recipes/confocal_32.json";
+    ASSERT_EQ(run("render scenes/letter/scene.json -o " + file("in.h5")).status, 0);
+    write_file_bytes(file("model.json"),
+                     core::Json{{"scene", source + "/scenes/letter/scene.json"},
+                                {"start", "search"},
+                                {"free", {{"letter", {"pose", "albedo"}}}}}
+                         .dump());
+    const std::vector<std::vector<std::string>> commands{
+        {"generate", recipe, "-o", file("set")},
+        {"fit", file("in.h5"), file("model.json"), "-o", file("fit.json")},
+        {"reconstruct",
+         file("in.h5"),
+         "-o",
+         file("v.h5"),
+         "--method",
+         "bp",
+         "--set",
+         "volume.voxels=[512,512,512]"},
+        {"bench", "reconstruct", "-o", file("bench"), "--scenes", source + "/scenes"}};
+    for (const std::vector<std::string>& command : commands) {
+        for (const int signal : {SIGTERM, SIGINT}) {
+            const pid_t process = start(command);
+            wait_for(1.5);
+            ::kill(process, signal);
+            const Outcome outcome = finish(process);
+            EXPECT_EQ(outcome.status, 1) << command[0] << outcome.out;
+            EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1)
+                << command[0] << ": " << outcome.err;
+            EXPECT_NE(outcome.err.find("interrupted"), std::string::npos) << outcome.err;
+            EXPECT_TRUE(partial_files().empty()) << command[0];
+        }
+    }
+    for (const auto& entry : fs::directory_iterator(file("set"))) {
+        EXPECT_EQ(entry.path().string().find(".partial"), std::string::npos) << entry.path();
+    }
+    EXPECT_FALSE(fs::exists(file("v.h5")));
+}
+
 // Stopped again and again, a sweep comes to its end.
 TEST_F(Interruption, ASweepKeepsWholeRunsAndGoesOn) {
     make_scene("scene.json", {{"time_axis", {{"num_bins", 256}}}});

@@ -383,6 +383,32 @@ TEST(ThirdBounceScenes, RenderInterruptedBeforeItBeginsSaysSo) {
               0.0);
 }
 
+TEST(ThirdBounceScenes, AGivenToleranceSparesPilotRunsAndLeavesTheErrorUnknown) {
+    const core::Scan scan = test_support::confocal_scan(kThreeWallPoints);
+    const auto expected = test_support::third_bounce_by_quadrature(
+        kTiltedPanel, kNoOccluder, scan, kAxis, kWallAlbedo, /*steps=*/2000);
+    const renderer::Scene scene = scene_of(geometry_of({kTiltedPanel}), scan);
+    const auto render = [&](std::optional<double> target, std::optional<double> tolerance) {
+        renderer::RenderSettings settings = settings_for(0.02);
+        settings.target_error = target;
+        settings.element_tolerance = tolerance;
+        return renderer::render(scene, scan, kAxis, settings, {});
+    };
+    const renderer::RenderResult aimed = render(0.02, std::nullopt);
+    ASSERT_TRUE(aimed.element_tolerance);
+    for (const double tolerance : {*aimed.element_tolerance, 0.25 * *aimed.element_tolerance}) {
+        const renderer::RenderResult given = render(std::nullopt, tolerance);
+        EXPECT_FALSE(given.estimated_error);
+        EXPECT_EQ(given.element_tolerance, tolerance);
+        EXPECT_LT(given.num_rays, aimed.num_rays);
+        const auto values = given.capture.transient.values();
+        EXPECT_LT(test_support::relative_l2({values.begin(), values.end()}, expected), 0.02);
+    }
+    renderer::RenderSettings both = settings_for(0.02);
+    both.element_tolerance = 0.1;
+    EXPECT_ERROR_WITH(renderer::validate(both, "render"), "render.element_tolerance: found beside");
+}
+
 TEST(ThirdBounceScenes, MethodNamesWhatItCannotDo) {
     renderer::RenderSettings settings = settings_for(0.01);
     settings.max_bounces = 4;
