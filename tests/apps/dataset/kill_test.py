@@ -53,15 +53,17 @@ def main() -> int:
         begin = time.monotonic()
         generate(options.program, recipe, "-o", folder / "undisturbed")
         whole_s = time.monotonic() - begin
-        longest_s = 4 * whole_s / options.shards  # a killed run finishes two shards in the mean
+        # A killed run finishes two shards in the mean; the first takes longer, for the preview.
+        longest_s = {"from nothing": whole_s, "going on": 4 * whole_s / options.shards}
 
         kills = sets = resumed = 0
         disturbed = folder / "disturbed"
         command = [options.program, "generate", str(recipe), "-o", str(disturbed)]
         while True:
-            were_there = len(shards_of(disturbed)) if disturbed.exists() else 0
-            resumed += 1 if 0 < were_there < options.shards else 0
-            if kills < options.kills and run_until(command, rng.uniform(0, longest_s)):
+            goes_on = disturbed.exists() and 0 < len(shards_of(disturbed)) < options.shards
+            resumed += goes_on
+            longest = longest_s["going on" if goes_on else "from nothing"]
+            if kills < options.kills and run_until(command, rng.uniform(0, longest)):
                 kills += 1
                 continue
             generate(*command[:1], *command[2:])

@@ -32,8 +32,8 @@ TIMEOUT_S = 900
 ROUNDS = 10
 
 
-def slurm(*command: str) -> str:
-    done = subprocess.run(command, capture_output=True, text=True, timeout=60)
+def slurm(*command: str, **where: Path) -> str:
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60, **where)
     if done.returncode != 0:
         raise SystemExit(f"{' '.join(command)}: {done.stderr}")
     return done.stdout.strip()
@@ -150,12 +150,11 @@ def run_array(program: str, recipe: Path, folder: Path, options: argparse.Namesp
     script = folder.parent / "script.sh"
     script.write_text(
         generate(program, recipe, "-o", folder, "--slurm", options.tasks), encoding="utf-8")
-    folder.mkdir()  # where the script puts the logs
     disturber = Disturber(program, folder, options.tasks, options.shards)
     problems = []
     for turn in range(ROUNDS):
         there = {path: path.stat().st_mtime_ns for path in shards_of(folder)}
-        job = slurm("sbatch", "--parsable", str(script))
+        job = slurm("sbatch", "--parsable", str(script), cwd=folder.parent)
         if turn < options.disturbed:
             disturber.follow(job)
         while active_tasks(job):
@@ -187,9 +186,6 @@ def main() -> int:
         return 77
     folder = Path(tempfile.mkdtemp(prefix="slurm_"))
     os.chmod(folder, 0o755)  # munged wants a path that others may enter
-    (folder / "bin").mkdir()
-    os.symlink(options.program, folder / "bin" / "nlos")
-    os.environ["PATH"] = f"{folder / 'bin'}:{os.environ['PATH']}"
     recipe = write_recipe(folder / "recipe.json", options.items, options.shards, options.samples)
     print(generate(options.program, recipe, "-o", folder / "one_process"), end="", flush=True)
     with OneNodeSlurm(folder / "slurm", options.tasks):
