@@ -10,11 +10,15 @@ it runs, and so on. Then the script is submitted again until `--verify` says tha
 first --disturbed of these submissions are disturbed. All shards must have the bytes of an undisturbed
 run in one process, and those that were there before a kill must not have been made again.
 
+The same, smaller, for `nlos sweep --slurm`: one task is killed, and in the end all runs have the
+results of a sweep in one process, times apart.
+
 Exit status 77 where Slurm cannot be installed: elsewhere than on Debian, and without root.
 """
 from __future__ import annotations
 
 import argparse
+import json
 import os
 import shutil
 import signal
@@ -172,6 +176,64 @@ def run_array(program: str, recipe: Path, folder: Path, options: argparse.Namesp
     return problems
 
 
+def write_sweep(folder: Path) -> Path:
+    scene = Path(__file__).resolve().parents[3] / "scenes" / "letter" / "scene.json"
+    grid = {"scene.scan.sensing_points": [[16, 16], [24, 24], [32, 32]],
+            "noise.photons_per_point": [10, 100, 1000], "reconstruct.method": ["lct", "fk"]}
+    axis = {"opl_start_m": 1.2, "bin_width_m": 0.008, "num_bins": 128}
+    path = folder / "sweep.json"
+    path.write_text(json.dumps({"scene": str(scene), "fixed": {"scene.time_axis": axis},
+                                "grid": grid, "plots": []}), encoding="utf-8")
+    return path
+
+
+def sweep(program: str, *arguments: object) -> str:
+    done = subprocess.run([program, "sweep", *map(str, arguments)], capture_output=True, text=True,
+                          timeout=TIMEOUT_S)
+    if done.returncode != 0:
+        raise SystemExit(f"nlos sweep {' '.join(map(str, arguments))}: {done.stderr[-2000:]}")
+    return done.stdout
+
+
+def without_costs(value: object) -> object:
+    """A result without what differs from run to run: times and memory."""
+    if isinstance(value, list):
+        return [without_costs(part) for part in value]
+    if not isinstance(value, dict):
+        return value
+    return {key: without_costs(part) for key, part in value.items()
+            if "seconds" not in key and key != "peak_rss_bytes"}
+
+
+def results_of(folder: Path) -> dict[str, object]:
+    return {path.name: without_costs(json.loads(path.read_text(encoding="utf-8")))
+            for path in sorted((folder / "runs").glob("*.json"))}
+
+
+def check_sweep(program: str, folder: Path) -> list[str]:
+    """Sweeps by an array of which a task is killed; returns what is wrong."""
+    path = write_sweep(folder)
+    one_process, array = folder / "sweep_one_process", folder / "sweep_array"
+    sweep(program, path, "-o", one_process)
+    expected = results_of(one_process)
+    script = folder / "sweep.sh"
+    script.write_text(sweep(program, path, "-o", array, "--slurm", 2), encoding="utf-8")
+    kills = submissions = 0
+    while len(results_of(array)) < len(expected) and submissions < ROUNDS:
+        job = slurm("sbatch", "--parsable", str(script), cwd=folder)
+        submissions += 1
+        while active_tasks(job):
+            process = process_of_task(program, job, 0) if kills == 0 else None
+            if process is not None and results_of(array):
+                os.kill(process, signal.SIGKILL)
+                kills += 1
+            time.sleep(0.02)
+    sweep(program, path, "-o", array)
+    print(f"sweep: {submissions} submissions, {kills} kill, {len(expected)} runs")
+    problems = [] if results_of(array) == expected else ["results of the sweep differ"]
+    return problems if kills and submissions > 1 else [*problems, "no kill stopped the sweep"]
+
+
 def main() -> int:
     parser = argparse.ArgumentParser()
     parser.add_argument("program", type=os.path.abspath)
@@ -190,6 +252,7 @@ def main() -> int:
     print(generate(options.program, recipe, "-o", folder / "one_process"), end="", flush=True)
     with OneNodeSlurm(folder / "slurm", options.tasks):
         problems = run_array(options.program, recipe, folder / "array", options)
+        problems += check_sweep(options.program, folder)
     problems += differences(folder / "one_process", folder / "array")
     if problems:
         print("\n".join(problems), f"everything is in {folder}", sep="\n")
