@@ -4,9 +4,9 @@
 
     kill_test.py NLOS [--items N] [--shards N] [--kills N] [--format hdf5|webdataset] [--seed N]
 
-A data set is made once undisturbed. Then the same command is started and killed by SIGKILL over and
-over; whenever a data set is whole before the kills are used up, it is compared byte for byte and the
-next one begun.
+A data set is made once undisturbed. Then the same command is started and killed by SIGKILL over
+and over; whenever a data set is whole before the kills are used up, it is compared byte for byte
+and the next one begun.
 """
 from __future__ import annotations
 
@@ -78,8 +78,8 @@ def main() -> int:
                 break
             shutil.rmtree(disturbed)
         print(f"{kills} kills over {sets} data sets of {options.items} items in {options.shards} "
-              f"shards ({whole_s:.1f} s undisturbed): {resumed} runs went on from shards of earlier "
-              "ones, all bytes as undisturbed")
+              f"shards ({whole_s:.1f} s undisturbed): {resumed} runs went on from shards of "
+              "earlier ones, all bytes as undisturbed")
         if resumed == 0:
             print("no run was killed between its first and its last shard: nothing was tested")
             return 1

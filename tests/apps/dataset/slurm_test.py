@@ -5,10 +5,10 @@
     slurm_test.py NLOS [--items N] [--shards N] [--tasks N] [--samples N] [--disturbed N]
 
 The script that the program prints is submitted. Once each task has finished a shard, the first is
-cancelled by scancel, the second killed by SIGKILL, the third sent SIGTERM, the fourth requeued while
-it runs, and so on. Then the script is submitted again until `--verify` says that all is there; the
-first --disturbed of these submissions are disturbed. All shards must have the bytes of an undisturbed
-run in one process, and those that were there before a kill must not have been made again.
+cancelled by scancel, the second killed by SIGKILL, the third sent SIGTERM, the fourth requeued
+while it runs, and so on. Then the script is submitted again until `--verify` says that all is
+there; the first --disturbed of these submissions are disturbed. All shards must have the bytes of
+an undisturbed run in one process, and those that were there must not have been made again.
 
 The same, smaller, for `nlos sweep --slurm`: one task is killed, and in the end all runs have the
 results of a sweep in one process, times apart.

@@ -11,7 +11,7 @@ TIMEOUT_S = 600
 
 
 def write_recipe(path: Path, items: int, shards: int, samples: int = 64, **changes: object) -> Path:
-    """Plates and boxes before 4 x 4 points with 64 bins; an item of 1,000 samples takes about 5 ms."""
+    """Plates and boxes before 4 x 4 points with 64 bins; 1,000 samples take about 5 ms."""
     recipe = {
         "items": items,
         "items_per_shard": -(-items // shards),
@@ -55,7 +55,7 @@ def shards_of(folder: Path) -> list[Path]:
 
 
 def differences(expected: Path, found: Path) -> list[str]:
-    """What of two data sets differs: shards by their bytes, manifests by their items, other files."""
+    """What differs: bytes of shards, items of manifests, files of killed runs."""
     names = [path.name for path in shards_of(expected)]
     problems = []
     if [path.name for path in shards_of(found)] != names:
