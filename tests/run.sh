@@ -7,7 +7,8 @@ cd "$(dirname "$0")/.."
 
 preset=${1:-check}
 [ $# -gt 0 ] && shift
-bash apps/setup.sh python3-h5py python3-numpy python3-scipy  # they write the layouts of other groups
+# They write the layouts of other groups, and read data sets.
+bash apps/setup.sh python3-h5py python3-numpy python3-scipy python3-torch
 module=()
 if [ "$preset" != sanitize ]; then
     bash tests/python.sh

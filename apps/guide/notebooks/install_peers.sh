@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # Makes a virtual environment for mitransient_and_ytal.ipynb: mitransient, y-tal, what they need, and
-# what runs a notebook. `nlos` itself comes from PYTHONPATH, or from `DIR/bin/pip install .` afterwards.
+# what runs a notebook; and Ray for generate_with_ray.py. `nlos` itself comes from PYTHONPATH, or from
+# `DIR/bin/pip install .` afterwards.
 #   bash apps/guide/notebooks/install_peers.sh DIR [PYTHON]
 set -euo pipefail
-[ $# -ge 1 ] || { sed -n '2,4s/^# //p' "$0" >&2; exit 2; }
+[ $# -ge 1 ] || { sed -n '2,5s/^# //p' "$0" >&2; exit 2; }
 folder=$1
 python=${2:-python3}
 
@@ -20,7 +21,7 @@ fi
 "$folder/bin/python" -m pip install --quiet --disable-pip-version-check \
     mitsuba==3.9.1 drjit==1.5.0 mitransient==1.3.1 y-tal==0.20.0 pyfftw==0.15.1 \
     numpy==1.26.4 scipy==1.17.1 h5py==3.16.0 matplotlib==3.11.2 numba==0.68.1 llvmlite==0.50.0 \
-    pillow==10.3.0 nbclient==0.11.0 nbformat==5.11.1 ipykernel==7.4.0
+    pillow==10.3.0 nbclient==0.11.0 nbformat==5.11.1 ipykernel==7.4.0 ray==2.60.0
 "$folder/bin/python" - <<'PYTHON'
 import mitsuba
 mitsuba.set_variant("llvm_ad_rgb")
