@@ -73,7 +73,7 @@ std::string slurm_script(const ArrayJob& job) {
         "# Each task does its part of the work. What is finished is kept: submitting the script "
         "once\n"
         "# more, or single tasks of it by --array=3,7, does what is left.\n"
-        "exec srun {3} --threads {2} --shard \"$SLURM_ARRAY_TASK_ID/{4}\"\n",
+        "exec srun --cpus-per-task={2} {3} --threads {2} --shard \"$SLURM_ARRAY_TASK_ID/{4}\"\n",
         job.name,
         job.num_tasks - 1,
         job.cpus_per_task,

@@ -93,7 +93,13 @@ void make(const GenerateArguments& arguments, bool prints_script) {
     std::vector<std::string> overrides = arguments.overrides;
     overrides.insert(overrides.end(), arguments.shorthands.begin(), arguments.shorthands.end());
     Dataset dataset(read_recipe(arguments.recipe, overrides), arguments.folder);
-    if (prints_script) return print_script(arguments, dataset);
+    if (prints_script) {
+        core::require(arguments.items.empty() && arguments.shard.empty(),
+                      "--slurm",
+                      "found beside --items or --shard",
+                      "alone: tasks get their shares by --shard");
+        return print_script(arguments, dataset);
+    }
     std::optional<ItemRange> items;
     if (!arguments.items.empty()) items = read_range(arguments.items);
     ProgressBar bar("generate");

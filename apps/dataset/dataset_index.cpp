@@ -43,8 +43,9 @@ ShardState inspect(const DatasetIndex& index,
                                     items.end - 1,
                                     wanted.begin,
                                     wanted.end - 1);
-    } else if (check == ShardCheck::Contents) {
-        state.problem = find_damage(*state.manifest, folder);
+    } else {
+        state.problem = check == ShardCheck::Contents ? find_damage(*state.manifest, folder)
+                                                      : find_wrong_size(*state.manifest, folder);
     }
     return state;
 }
@@ -80,12 +81,13 @@ DatasetIndex read_dataset(const std::string& folder, ShardCheck check) {
     try {
         index.recipe = json.at("recipe");
         json.at("fingerprint").get_to(index.fingerprint);
-        index.recipe.at("items").get_to(index.items);
-        index.recipe.at("items_per_shard").get_to(per_shard);
+        core::read_value(index.recipe.at("items"), path + ": items", index.items);
+        core::read_value(index.recipe.at("items_per_shard"), path, per_shard);
     } catch (const core::Json::exception&) {
         per_shard = 0;
     }
-    if (per_shard == 0) {
+    constexpr std::uint64_t kMostShards = 1'000'000;  // as recipes allow
+    if (per_shard == 0 || index.items == 0 || index.items / per_shard > kMostShards) {
         throw core::Error(path, "is no recipe of a data set", "must be what nlos generate wrote");
     }
     const std::uint64_t count = (index.items + per_shard - 1) / per_shard;

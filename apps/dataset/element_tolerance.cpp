@@ -73,12 +73,18 @@ Errors errors_of_item(const Recipe& recipe, MeshLibrary& meshes, std::uint64_t i
 
 }  // namespace
 
-std::optional<double> find_element_tolerance(const Recipe& recipe, MeshLibrary& meshes) {
+std::optional<double> find_element_tolerance(const Recipe& recipe,
+                                             MeshLibrary& meshes,
+                                             const core::Progress& progress) {
     if (!may_calibrate(recipe)) return std::nullopt;
     std::vector<Errors> errors(recipe.calibration_items);
     core::parallel_for(errors.size(), [&](std::size_t item) {
+        if (progress.should_stop()) return;
         core::run_on_one_thread([&] { errors[item] = errors_of_item(recipe, meshes, item); });
     });
+    if (progress.should_stop()) {
+        throw core::Failure("generate", "interrupted before the first item");
+    }
     const double target = *recipe.scene.render.target_error;
     for (std::size_t i = 0; i < kTolerances.size(); ++i) {
         const bool holds = std::all_of(errors.begin(), errors.end(), [&](const Errors& of_item) {

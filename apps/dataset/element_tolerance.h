@@ -2,6 +2,7 @@
 #pragma once
 
 #include "apps/dataset/item_plan.h"
+#include "renderer/core/progress.h"
 
 #include <optional>
 
@@ -14,8 +15,12 @@ namespace apps {
 /// and, as a reference, to a fifth of the error. The coarsest tolerance counts that keeps all of
 /// them within three quarters of scene.render.target_error; the rest is for items that are worse.
 ///
+/// progress  asked whether to stop
+/// throws    core::Failure when it is to stop
 /// returns   nothing where items have to find their own: without calibration items or a target
 ///           error, with draws of render settings, or when no tolerance does
-std::optional<double> find_element_tolerance(const Recipe& recipe, MeshLibrary& meshes);
+std::optional<double> find_element_tolerance(const Recipe& recipe,
+                                             MeshLibrary& meshes,
+                                             const core::Progress& progress);
 
 }  // namespace apps

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/dataset/generate.h"
 
+#include "apps/dataset/checksum.h"
 #include "apps/dataset/element_tolerance.h"
 #include "apps/dataset/item_preview.h"
 #include "nlos/pictures/picture.h"
@@ -9,6 +10,7 @@
 #include "renderer/core/stopwatch.h"
 
 #include <fmt/core.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -50,11 +52,12 @@ struct MadeItem {
 
 constexpr std::uint64_t kPreviewItems = 6;
 
-MadeItem make_packed(Dataset& dataset, std::uint64_t number) {
+MadeItem make_packed(Dataset& dataset, std::uint64_t number, const core::Progress& progress) {
     MadeItem made;
     core::run_on_one_thread([&] {
-        made.item = make_item(dataset.item_recipe(), dataset.meshes(), number);
-        if (number < kPreviewItems) made.preview = preview_panels(dataset.recipe(), made.item);
+        made.item = make_item(dataset.item_recipe(), dataset.meshes(), number, progress);
+        if (number < std::min(kPreviewItems, dataset.recipe().items_per_shard))
+            made.preview = preview_panels(dataset.recipe(), made.item);
         const core::ThreadStopwatch clock;
         made.packed = pack_item(dataset.recipe(), made.item);
         made.item.profile[static_cast<std::size_t>(ItemStep::Packing)] += clock.seconds();
@@ -80,6 +83,7 @@ std::optional<Manifest> make_shard(Dataset& dataset,
                                    std::uint64_t shard,
                                    const ItemRange& items,
                                    const std::string& program,
+                                   const core::Progress& progress,
                                    const std::function<bool()>& next_item) {
     const core::Stopwatch clock;
     Manifest manifest;
@@ -93,8 +97,9 @@ std::optional<Manifest> make_shard(Dataset& dataset,
     const auto writer = make_shard_writer(dataset.recipe(), path, items, program);
     const bool is_whole = core::parallel_in_order<MadeItem>(
         items.size(),
-        [&](std::size_t i) { return make_packed(dataset, items.begin + i); },
+        [&](std::size_t i) { return make_packed(dataset, items.begin + i, progress); },
         [&](std::size_t, MadeItem made) {
+            if (made.item.interrupted) return false;
             const core::ThreadStopwatch writing;
             writer->add(std::move(made.packed));
             note_item(dataset, made.item, manifest);
@@ -173,33 +178,59 @@ ItemRange Dataset::items_of(std::uint64_t shard) const {
     return {begin, std::min(recipe_.items, begin + recipe_.items_per_shard)};
 }
 
-void Dataset::claim_folder() {
+void Dataset::claim_folder(const core::Progress& progress) {
     std::error_code error;
     fs::create_directories(folder_, error);
+    if (error) throw core::Error(folder_, error.message(), "must be a folder, or a place for one");
     const std::string path = (fs::path(folder_) / kRecipeFile).string();
+    if (!fs::exists(path, error)) {
+        use_tolerance(find_element_tolerance(recipe_, meshes_, progress));
+        write_claim(path);
+    }
+    // Another process may have been faster, with this recipe or another one.
+    const core::Json there = core::read_json_file(path);
+    const auto fingerprint = there.find("fingerprint");
+    const auto known = there.find("element_tolerance");
+    if (fingerprint == there.end() || *fingerprint != fingerprint_ || known == there.end()) {
+        throw core::Error(folder_,
+                          "holds the data set of another recipe",
+                          "must be a new folder, or that of this recipe and these meshes");
+    }
     std::optional<double> tolerance;
-    bool is_known = false;
-    if (fs::exists(path, error)) {
-        const core::Json there = core::read_json_file(path);
-        const auto fingerprint = there.find("fingerprint");
-        const auto known = there.find("element_tolerance");
-        if (fingerprint == there.end() || *fingerprint != fingerprint_ || known == there.end()) {
-            throw core::Error(folder_,
-                              "holds the data set of another recipe",
-                              "must be a new folder, or that of this recipe and these meshes");
-        }
-        core::read_value(*known, path + ": element_tolerance", tolerance);
-        is_known = true;
+    core::read_value(*known, path + ": element_tolerance", tolerance);
+    use_tolerance(tolerance);
+    const std::uint64_t items = there.at("recipe").at("items").get<std::uint64_t>();
+    if (items > recipe_.items) {
+        throw core::Error(folder_,
+                          fmt::format("holds the data set of {} items", items),
+                          "must be that of at most as many as are asked for: they can only grow");
     }
-    if (!is_known) tolerance = find_element_tolerance(recipe_, meshes_);
-    if (tolerance) {
-        item_recipe_.scene.render.element_tolerance = tolerance;
-        item_recipe_.scene.render.target_error.reset();
-    }
-    core::write_text_file(path,
-                          core::json_text({{"fingerprint", fingerprint_},
-                                           {"element_tolerance", core::write_value(tolerance)},
-                                           {"recipe", core::write_value(recipe_)}}));
+    if (items < recipe_.items) core::write_text_file(path, claim());
+}
+
+std::string Dataset::claim() const {
+    return core::json_text(
+        {{"fingerprint", fingerprint_},
+         {"element_tolerance", core::write_value(item_recipe_.scene.render.element_tolerance)},
+         {"recipe", core::write_value(recipe_)}});
+}
+
+void Dataset::use_tolerance(const std::optional<double>& tolerance) {
+    item_recipe_ = recipe_;
+    if (!tolerance) return;
+    item_recipe_.scene.render.element_tolerance = tolerance;
+    item_recipe_.scene.render.target_error.reset();
+}
+
+/// Writes the recipe unless somebody else has done so: of two that try at once, one succeeds.
+void Dataset::write_claim(const std::string& path) const {
+    const std::string own = path + fmt::format(".{}", ::getpid());
+    core::write_text_file(own, claim());
+    std::error_code taken;
+    fs::create_hard_link(own, path, taken);
+    std::error_code ignored;
+    if (taken && !fs::exists(path, ignored)) fs::rename(own, path);  // without hard links
+    fs::remove(own, ignored);
 }
 
 GenerateResult generate(Dataset& dataset,
@@ -208,15 +239,23 @@ GenerateResult generate(Dataset& dataset,
                         const std::string& program,
                         const core::Progress& progress) {
     const core::Stopwatch clock;
-    dataset.claim_folder();
+    dataset.claim_folder(progress);
     GenerateResult result;
-    const auto missing = find_missing(
-        dataset, share, items.value_or(ItemRange{0, dataset.recipe().items}), result.shards_there);
+    const ItemRange all{0, dataset.recipe().items};
+    const ItemRange wanted = items.value_or(all);
+    if (wanted.begin >= wanted.end || !all.contains(wanted)) {
+        throw core::Error("items",
+                          fmt::format("found {} to {}", wanted.begin, wanted.end),
+                          fmt::format("must rise within 0 to {}", all.end));
+    }
+    const auto missing = find_missing(dataset, share, wanted, result.shards_there);
     std::uint64_t total = 0;
     for (const MissingShard& shard : missing) total += shard.items.size();
     std::uint64_t done = 0;
+    core::Progress stopping;
+    stopping.stop_requested = progress.stop_requested;
     for (const MissingShard& shard : missing) {
-        const auto manifest = make_shard(dataset, shard.shard, shard.items, program, [&] {
+        const auto manifest = make_shard(dataset, shard.shard, shard.items, program, stopping, [&] {
             ++done;
             progress.update(
                 static_cast<double>(done) / static_cast<double>(total),

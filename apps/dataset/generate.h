@@ -32,12 +32,18 @@ class Dataset {
 
     /// Writes the recipe, and what find_element_tolerance() says of it, into the folder, which it
     /// makes; a folder that was claimed before is asked instead.
-    /// throws   core::Error when the folder holds another data set
-    void claim_folder();
+    ///
+    /// throws   core::Error when the folder holds another data set, or one of more items;
+    ///          core::Failure when asked to stop
+    void claim_folder(const core::Progress& progress);
 
     MeshLibrary& meshes() { return meshes_; }
 
  private:
+    std::string claim() const;
+    void use_tolerance(const std::optional<double>& tolerance);
+    void write_claim(const std::string& path) const;
+
     Recipe recipe_;
     Recipe item_recipe_;
     std::string folder_;

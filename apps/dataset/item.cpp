@@ -119,9 +119,25 @@ void add_truths(const Recipe& recipe,
     }
 }
 
+/// Darkness cannot be scaled to a number of photons.
+core::Capture record(const core::Capture& capture,
+                     std::optional<nlos::DetectorSettings> detector,
+                     bool is_dark) {
+    if (!detector) return capture;
+    if (is_dark) {
+        detector->photons.reset();
+        detector->photons_per_point.reset();
+        if (!detector->exposure_s) detector->exposure_s = 1.0;
+    }
+    return nlos::detect(capture, *detector);
+}
+
 }  // namespace
 
-Item make_item(const Recipe& recipe, MeshLibrary& meshes, std::uint64_t number) {
+Item make_item(const Recipe& recipe,
+               MeshLibrary& meshes,
+               std::uint64_t number,
+               const core::Progress& progress) {
     Item item;
     const auto clock = [&](ItemStep step) { return StepClock(item.profile, step); };
     const ItemPlan plan = [&] {
@@ -137,9 +153,11 @@ Item make_item(const Recipe& recipe, MeshLibrary& meshes, std::uint64_t number) 
         auto set_up = std::make_unique<renderer::Scene>(
             renderer::make_scene(geometry_of(plan), description, scan));
         auto rendered = renderer::render(
-            *set_up, scan, {description.time_axis, std::nullopt}, description.render, {});
+            *set_up, scan, {description.time_axis, std::nullopt}, description.render, progress);
         return std::pair(std::move(set_up), std::move(rendered));
     }();
+    item.interrupted = result.interrupted;
+    if (item.interrupted) return item;
     item.is_dark = result.capture.transient.is_dark();
     if (result.estimated_error && !item.is_dark) {
         item.parameters["estimated_error"] = *result.estimated_error;
@@ -149,12 +167,10 @@ Item make_item(const Recipe& recipe, MeshLibrary& meshes, std::uint64_t number) 
     }
     {
         const StepClock timed = clock(ItemStep::Detector);
-        const bool counts = plan.settings.detector && !item.is_dark;
-        add_histograms(
-            "H",
-            counts ? nlos::detect(result.capture, *plan.settings.detector) : result.capture,
-            recipe.storage.histograms,
-            item);
+        add_histograms("H",
+                       record(result.capture, plan.settings.detector, item.is_dark),
+                       recipe.storage.histograms,
+                       item);
     }
     const StepClock timed = clock(ItemStep::Truths);
     add_truths(recipe, plan, *scene, result.capture, item);

@@ -3,6 +3,7 @@
 
 #include "apps/dataset/item_array.h"
 #include "apps/dataset/item_plan.h"
+#include "renderer/core/progress.h"
 
 #include <array>
 #include <string>
@@ -23,11 +24,13 @@ struct Item {
     core::Json parameters;
     std::set<std::size_t> broken_meshes;
     std::size_t clipped_counts = 0;  ///< beyond what the type of the histograms can hold
+    bool interrupted = false;        ///< and then of no use
     bool is_dark = false;            ///< no light of the scene lies within the time axis
     ItemProfile profile{};
 };
 
-/// Draws and computes an item. Of a dark one no counts are drawn: its histograms are 0.
+/// Draws and computes an item. In a dark one the detector counts for its exposure_s, or 1 s, what
+/// is not signal.
 ///
 /// Arrays: H, shaped as in a capture file, in W/(m^2 sr) per bin or counts; with float16 also
 /// H_scale, by which H has to be multiplied; clean, what H is without the detector; depth [m, NaN
@@ -35,8 +38,12 @@ struct Item {
 /// the wall (X, Y) at scene.ground_truth.depth_resolution; poses (M, 4, 4), world from a mesh whose
 /// longest side is 1, of the most objects that an item can have, NaN for those it has not.
 ///
-/// throws   core::Error, core::Failure as renderer::render() and nlos::detect() do
-Item make_item(const Recipe& recipe, MeshLibrary& meshes, std::uint64_t item);
+/// progress   asked whether to stop
+/// throws     core::Error, core::Failure as renderer::render() and nlos::detect() do
+Item make_item(const Recipe& recipe,
+               MeshLibrary& meshes,
+               std::uint64_t item,
+               const core::Progress& progress);
 
 }  // namespace apps
 

@@ -1,24 +1,19 @@
 // SPDX-License-Identifier: MIT
 #include "apps/dataset/manifest.h"
 
+#include "apps/dataset/checksum.h"
 #include "renderer/core/output_file.h"
 
 #include <fmt/core.h>
-#include <xxhash.h>
 
 #include <filesystem>
 #include <fstream>
-#include <memory>
 #include <sstream>
 
 namespace apps {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string hexadecimal(const XXH128_hash_t& hash) {
-    return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
-}
 
 core::Json write_profile(const ItemProfile& profile) {
     core::Json json;
@@ -97,26 +92,7 @@ std::optional<Manifest> read_manifest(const std::string& path) {
     }
 }
 
-std::optional<std::string> file_checksum(const std::string& path) {
-    constexpr std::size_t kBytesAtOnce = std::size_t{1} << 20;
-    std::ifstream file(path, std::ios::binary);
-    if (!file) return std::nullopt;
-    const std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> state(XXH3_createState(),
-                                                                                XXH3_freeState);
-    XXH3_128bits_reset(state.get());
-    std::string bytes(kBytesAtOnce, '\0');
-    while (file.read(bytes.data(), kBytesAtOnce) || file.gcount() > 0) {
-        XXH3_128bits_update(state.get(), bytes.data(), static_cast<std::size_t>(file.gcount()));
-    }
-    if (file.bad()) return std::nullopt;
-    return hexadecimal(XXH3_128bits_digest(state.get()));
-}
-
-std::string text_checksum(const std::string& text) {
-    return hexadecimal(XXH3_128bits(text.data(), text.size()));
-}
-
-std::optional<std::string> find_damage(const Manifest& manifest, const std::string& folder) {
+std::optional<std::string> find_wrong_size(const Manifest& manifest, const std::string& folder) {
     const fs::path path = fs::path(folder) / manifest.file;
     std::error_code error;
     const std::uint64_t bytes = fs::file_size(path, error);
@@ -124,7 +100,12 @@ std::optional<std::string> find_damage(const Manifest& manifest, const std::stri
     if (bytes != manifest.bytes) {
         return fmt::format("{} has {} bytes instead of {}", manifest.file, bytes, manifest.bytes);
     }
-    const auto checksum = file_checksum(path.string());
+    return std::nullopt;
+}
+
+std::optional<std::string> find_damage(const Manifest& manifest, const std::string& folder) {
+    if (auto wrong = find_wrong_size(manifest, folder)) return wrong;
+    const auto checksum = file_checksum((fs::path(folder) / manifest.file).string());
     if (!checksum) return manifest.file + " cannot be read";
     if (*checksum != manifest.checksum) return manifest.file + " is damaged: its checksum differs";
     return std::nullopt;

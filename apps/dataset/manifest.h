@@ -41,10 +41,8 @@ void write_manifest(const Manifest& manifest, const std::string& path);
 /// Nothing when there is none, or it is not one of ours.
 std::optional<Manifest> read_manifest(const std::string& path);
 
-/// The checksum of a file as `xxh128sum` prints it; nothing when the file cannot be read.
-std::optional<std::string> file_checksum(const std::string& path);
-/// The same of a text.
-std::string text_checksum(const std::string& text);
+/// Says so when the file of a shard is missing or has another size than its manifest says.
+std::optional<std::string> find_wrong_size(const Manifest& manifest, const std::string& folder);
 
 /// What is wrong with a shard that its manifest describes; nothing when it checks out.
 std::optional<std::string> find_damage(const Manifest& manifest, const std::string& folder);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/dataset/mesh_library.h"
 
+#include "apps/dataset/checksum.h"
 #include "renderer/mesh_file/mesh_file.h"
 #include "renderer/scene/load_geometry.h"
 
@@ -114,7 +115,9 @@ core::TriangleMesh normalise_mesh(const core::TriangleMesh& mesh, const std::str
 }
 
 MeshLibrary::MeshLibrary(const Recipe& recipe)
-    : shapes_(recipe.meshes.shapes), tolerance_(tolerance_of(recipe)) {
+    : folder_(recipe.meshes.folder),
+      shapes_(recipe.meshes.shapes),
+      tolerance_(tolerance_of(recipe)) {
     if (!recipe.meshes.folder.empty()) files_ = meshes_in(recipe.meshes.folder);
     for (const std::string& file : recipe.meshes.files) {
         std::error_code ignored;
@@ -126,17 +129,30 @@ MeshLibrary::MeshLibrary(const Recipe& recipe)
 }
 
 core::Json MeshLibrary::listing() const {
+    constexpr std::uint64_t kMostBytesRead = std::uint64_t{1} << 30;
+    constexpr std::uint64_t kBeginning = std::uint64_t{1} << 14;
+    std::vector<std::uint64_t> sizes;
+    std::uint64_t total = 0;
+    for (const std::string& file : files_) {
+        std::error_code ignored;
+        sizes.push_back(fs::file_size(file, ignored));
+        total += sizes.back();
+    }
     core::Json list = core::Json::array();
     for (std::size_t i = 0; i < files_.size(); ++i) {
-        std::error_code ignored;
-        list.push_back({name(i), fs::file_size(files_[i], ignored)});
+        const std::uint64_t read = total <= kMostBytesRead ? sizes[i] : kBeginning;
+        list.push_back({name(i), sizes[i], file_checksum(files_[i], read).value_or("")});
     }
     for (std::size_t i = files_.size(); i < size(); ++i) list.push_back(name(i));
     return list;
 }
 
 std::string MeshLibrary::name(std::size_t index) const {
-    if (index < files_.size()) return fs::path(files_[index]).filename().string();
+    if (index < files_.size()) {
+        const fs::path file(files_[index]);
+        const bool is_inside = !folder_.empty() && files_[index].starts_with(folder_);
+        return is_inside ? file.lexically_relative(folder_).string() : file.filename().string();
+    }
     return std::string(core::enum_name(shapes_[index - files_.size()]));
 }
 

@@ -37,13 +37,14 @@ class MeshLibrary {
     explicit MeshLibrary(const Recipe& recipe);
 
     std::size_t size() const { return files_.size() + shapes_.size(); }
-    /// What the meshes are, for the recipe's fingerprint: names and sizes of files.
+    /// What the meshes are, for the recipe's fingerprint: names, sizes and checksums of files; of
+    /// collections above a gigabyte, checksums of their files' beginnings.
     core::Json listing() const;
 
     /// The mesh with an index below size(); null when it is broken, the same whenever it is asked
     /// for. A mesh is broken when its file is, or holds no surface.
     std::shared_ptr<const UnitMesh> mesh(std::size_t index);
-    /// The name of a mesh: that of its file, or of its shape.
+    /// The name of a mesh: the path of its file below the folder, or that of its shape.
     std::string name(std::size_t index) const;
     /// Why mesh() gave null for an index.
     std::string why_broken(std::size_t index) const;
@@ -58,6 +59,7 @@ class MeshLibrary {
     UnitMesh load(std::size_t index) const;
     void forget_oldest();
 
+    std::string folder_;
     std::vector<std::string> files_;  ///< paths, sorted by name
     std::vector<BasicShape> shapes_;
     std::optional<double> tolerance_;  ///< of simplification, for a longest side of 1; none: never

@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <set>
 
@@ -31,17 +32,21 @@ bool changes_shapes(const std::string& key) {
     return keys.contains(key);
 }
 
-void validate_scene(const Recipe& recipe, const std::string& where) {
-    const renderer::SceneDescription& scene = recipe.scene;
+void validate_scene(const renderer::SceneDescription& scene, const std::string& where) {
     const auto refuse = [&](const char* key, const char* reason) {
         throw core::Error(where + "scene." + key, "found in a recipe", reason);
     };
+    const renderer::RenderSettings& render = scene.render;
     if (!scene.geometry.empty()) refuse("geometry", "must be left out: meshes says what is drawn");
     if (!scene.objects.empty()) refuse("objects", "must be left out: objects are drawn");
     if (scene.camera) refuse("camera", "must be left out: items are scans of a relay wall");
     if (scene.frames) refuse("frames", "must be left out: items are single captures");
     if (scene.velocity_axis) refuse("velocity_axis", "must be left out: objects are at rest");
     if (scene.time_axis.automatic) refuse("time_axis", "must be an object, the same for all items");
+    if (render.seconds) refuse("render.seconds", "must be left out: times differ from run to run");
+    if (render.variance) refuse("render.variance", "must be false: variances are not stored");
+    if (render.by_order) refuse("render.by_order", "must be false: orders are not stored apart");
+    if (render.seed != 0) refuse("render.seed", "must be left out: seed says all");
 }
 
 void validate_item(const ItemSettings& settings, const std::string& where) {
@@ -56,36 +61,18 @@ void validate_item(const ItemSettings& settings, const std::string& where) {
     }
 }
 
-/// What every item may get, key by key, so that no run of hours ends at a bad draw.
-void validate_draws(const Recipe& recipe, const std::string& where) {
-    for (const auto& [key, distribution] : recipe.draw) {
-        const std::string full_key = where + "draw." + key;
-        for (const core::Json& value : extremes(distribution)) {
-            ItemSettings settings = recipe;
-            try {
-                apply_values({{key, value}}, settings);
-                validate_item(settings, "");
-            } catch (const core::Error& error) {
-                throw core::Error(full_key + ": " + error.where(), error.found(), error.allowed());
-            }
-        }
-        if (recipe.format == DatasetFormat::Hdf5 && changes_shapes(key)) {
-            throw core::Error(full_key,
-                              "found a shape that differs between items",
-                              "must be fixed in HDF5; format webdataset allows it");
-        }
-    }
-}
-
-void validate_storage(const Recipe& recipe, const std::string& where) {
+void validate_storage(const Recipe& recipe, const ItemSettings& item, const std::string& where) {
     core::check_ranges(recipe.storage, where + "storage");
     const bool whole = recipe.storage.histograms == HistogramStorage::Uint8 ||
                        recipe.storage.histograms == HistogramStorage::Uint16;
-    if (whole && (!recipe.detector || recipe.detector->expected)) {
+    if (whole && (!item.detector || item.detector->expected)) {
         throw core::Error(where + "storage.histograms",
                           fmt::format("found {}", core::enum_name(recipe.storage.histograms)),
                           "must be float32 or float16 unless a detector draws counts");
     }
+}
+
+void validate_truths(const Recipe& recipe, const std::string& where) {
     for (std::size_t i = 0; i < recipe.truths.size(); ++i) {
         const auto& truths = recipe.truths;
         const auto begin = truths.begin();
@@ -99,14 +86,72 @@ void validate_storage(const Recipe& recipe, const std::string& where) {
     }
 }
 
+/// One value must not be drawn by two entries.
+void validate_keys(const DrawTable& draws, const std::string& where) {
+    for (const auto& [key, distribution] : draws) {
+        const auto inner = draws.lower_bound(key + ".");
+        if (inner == draws.end() || !inner->first.starts_with(key + ".")) continue;
+        throw core::Error(
+            where + "draw." + inner->first, "found beside " + key, "must be in one of the two");
+    }
+}
+
+void validate_all(const Recipe& recipe, const ItemSettings& item, const std::string& where) {
+    validate_scene(item.scene, where);
+    validate_item(item, where);
+    validate_storage(recipe, item, where);
+}
+
+/// What every item may get, key by key, so that no run of hours ends at a bad draw.
+void validate_draws(const Recipe& recipe, const std::string& where) {
+    validate_keys(recipe.draw, where);
+    for (const auto& [key, distribution] : recipe.draw) {
+        const std::string full_key = where + "draw." + key;
+        for (const core::Json& value : extremes(distribution)) {
+            ItemSettings settings = recipe;
+            try {
+                apply_values({{key, value}}, settings);
+                validate_all(recipe, settings, "");
+            } catch (const core::Error& error) {
+                throw core::Error(full_key + ": " + error.where(), error.found(), error.allowed());
+            }
+        }
+        if (recipe.format == DatasetFormat::Hdf5 && changes_shapes(key)) {
+            throw core::Error(full_key,
+                              "found a shape that differs between items",
+                              "must be fixed in HDF5; format webdataset allows it");
+        }
+    }
+}
+
+void validate_counts(const Recipe& recipe, const std::string& where) {
+    constexpr double kMostShards = 1e6;
+    const double shards =
+        static_cast<double>(recipe.items) / static_cast<double>(recipe.items_per_shard);
+    core::require(shards <= kMostShards,
+                  where + "items_per_shard",
+                  static_cast<double>(recipe.items_per_shard),
+                  fmt::format("at least {:.0f} for so many items",
+                              static_cast<double>(recipe.items) / kMostShards));
+    const Distribution& count = recipe.objects.count;
+    for (const core::Json& value : extremes(count)) {
+        const double number = value.get<double>();
+        const bool whole =
+            number == std::floor(number) && (count.kind == Distribution::Kind::Integers ||
+                                             count.kind == Distribution::Kind::Constant ||
+                                             count.kind == Distribution::Kind::Choices);
+        core::require(whole, where + "objects.count", write_value(count).dump(), "whole numbers");
+    }
+}
+
 void validate(const Recipe& recipe, const std::string& where) {
     core::check_ranges(recipe, where);
     core::check_ranges(recipe.objects, where + "objects");
+    validate_counts(recipe, where);
     validate_meshes(recipe.meshes, where + "meshes");
-    validate_scene(recipe, where);
-    validate_item(recipe, where);
+    validate_truths(recipe, where);
+    validate_all(recipe, recipe, where);
     validate_draws(recipe, where);
-    validate_storage(recipe, where);
 }
 
 }  // namespace

@@ -61,7 +61,7 @@ struct Recipe : ItemSettings {
     std::uint64_t items = 1000;
     std::uint64_t items_per_shard = 100;
     std::uint64_t seed = 0;
-    std::uint64_t calibration_items = 8;
+    std::uint64_t calibration_items = 0;
     DatasetFormat format = DatasetFormat::Hdf5;
     MeshSource meshes;
     ObjectDistributions objects;
@@ -89,9 +89,11 @@ void for_each_field(MeshSource& s, Visitor&& visit) {
 
 template <class Visitor>
 void for_each_field(ObjectDistributions& s, Visitor&& visit) {
-    visit("count", s.count, core::at_least(1, "objects of an item"));
-    visit("size_m", s.size_m, core::above(0, "longest side of an object's box [m]"));
-    visit("stretch", s.stretch, core::above(0, "factor along each axis, before it is turned"));
+    visit("count", s.count, core::between(1, 100, "objects of an item"));
+    visit("size_m", s.size_m, core::between(0.001, 1000, "longest side of an object's box [m]"));
+    visit("stretch",
+          s.stretch,
+          core::between(0.001, 1000, "factor along each axis, before it is turned"));
     visit("x_m", s.x_m, "centre of an object, along the wall [m]");
     visit("y_m", s.y_m, "likewise, up [m]");
     visit("z_m", s.z_m, "likewise, distance from the wall [m]");
@@ -119,13 +121,19 @@ void for_each_field(StorageSettings& s, Visitor&& visit) {
 
 template <class Visitor>
 void for_each_field(Recipe& s, Visitor&& visit) {
-    visit("items", s.items, core::at_least(1, "captures of the whole data set"));
-    visit("items_per_shard", s.items_per_shard, core::at_least(1, "captures of a file"));
+    visit("items", s.items, core::between(1, 1e12, "captures of the whole data set"));
+    visit("items_per_shard",
+          s.items_per_shard,
+          core::between(1, 1e6, "captures of a file; at most a million files"));
     visit("seed", s.seed, "seed of the random numbers");
-    visit("calibration_items",
-          s.calibration_items,
-          "first items that tell, once, how finely surfaces must be cut for "
-          "scene.render.target_error; 0: every item finds that out for itself, in longer time");
+    visit(
+        "calibration_items",
+        s.calibration_items,
+        core::between(
+            0,
+            1000,
+            "for large data sets: first items that tell, once, how finely surfaces must be cut for "
+            "scene.render.target_error; 0: every item finds that out for itself, in longer time"));
     visit("format", s.format, "how a shard is stored");
     visit("meshes", s.meshes, "where surfaces come from");
     visit("objects", s.objects, "how objects are drawn");

@@ -105,6 +105,7 @@ void Hdf5Writer::create_group(const std::string& name) {
 Hdf5Handle Hdf5Writer::create_dataset(const std::string& name,
                                       std::int64_t type,
                                       const Hdf5Handle& space) {
+    prepare_hdf5();
     const Hdf5Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
     H5Pset_obj_track_times(creation.id(), false);
     Hdf5Handle dataset(
@@ -226,6 +227,7 @@ void Hdf5Writer::create_rows(const std::string& name,
 void Hdf5Writer::write_packed_row(const std::string& name,
                                   std::size_t row,
                                   const std::string& chunk) {
+    prepare_hdf5();  // on the thread that writes, which may be another every time
     const Hdf5Handle& dataset = row_datasets_.at(name);
     const Hdf5Handle space(H5Dget_space(dataset.id()), H5Sclose);
     std::vector<hsize_t> offset(static_cast<std::size_t>(H5Sget_simple_extent_ndims(space.id())));
@@ -298,6 +300,7 @@ void Hdf5Writer::write_user_block() {
 }
 
 void Hdf5Writer::finish() {
+    prepare_hdf5();
     for (auto& [name, dataset] : row_datasets_) check(dataset.close());
     check(H5Fflush(file_.id(), H5F_SCOPE_LOCAL) >= 0);
     check(file_.close());

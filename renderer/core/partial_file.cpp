@@ -11,11 +11,13 @@
 #include <atomic>
 #include <cerrno>
 #include <charconv>
+#include <chrono>
 #include <climits>
 #include <csignal>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
+#include <mutex>
 #include <optional>
 
 namespace core {
@@ -62,15 +64,33 @@ fs::path folder_of(const fs::path& target) {
     return target.has_parent_path() ? target.parent_path() : fs::path(".");
 }
 
-/// The process that a file of this name is from; nothing for other names.
-std::optional<pid_t> process_of(const std::string& file, const PartialName& name) {
-    if (!file.starts_with(name.begin) || !file.ends_with(name.end)) return std::nullopt;
-    if (file.size() <= name.begin.size() + name.end.size()) return std::nullopt;
-    const char* const last = file.data() + file.size() - name.end.size();
+/// The process that a partial file of any target is from; nothing for other names.
+std::optional<pid_t> process_of(const std::string& file) {
+    const std::size_t mark = file.rfind("-" + machine_tag() + ".partial");
+    if (!file.starts_with('.') || mark == std::string::npos) return std::nullopt;
+    const std::size_t dot = file.rfind('.', mark);
+    if (dot == 0) return std::nullopt;
     pid_t process = 0;
-    const auto [end, error] = std::from_chars(file.data() + name.begin.size(), last, process);
+    const char* const last = file.data() + mark;
+    const auto [end, error] = std::from_chars(file.data() + dot + 1, last, process);
     if (error != std::errc() || end != last || process <= 0) return std::nullopt;
     return process;
+}
+
+/// True at most every few seconds for one folder: who writes thousands of files into it does not
+/// list it thousands of times.
+bool is_time_to_list(const fs::path& folder) {
+    using Clock = std::chrono::steady_clock;
+    constexpr std::chrono::seconds kPause(5);
+    static std::mutex mutex;
+    static fs::path last_folder;
+    static Clock::time_point last_time;
+    const std::lock_guard lock(mutex);
+    const auto now = Clock::now();
+    if (folder == last_folder && now - last_time < kPause) return false;
+    last_folder = folder;
+    last_time = now;
+    return true;
 }
 
 bool has_ended(pid_t process) {
@@ -85,12 +105,13 @@ std::string partial_file_of(const std::string& target) {
 }
 
 void remove_stale_partial_files(const std::string& target) {
-    const PartialName name = partial_name_of(target);
+    const fs::path folder = folder_of(target);
+    if (!is_time_to_list(folder)) return;
     std::error_code error;
     std::error_code ignored;
-    for (fs::directory_iterator entry(folder_of(target), error), end; !error && entry != end;
+    for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
          entry.increment(error)) {
-        const auto process = process_of(entry->path().filename().string(), name);
+        const auto process = process_of(entry->path().filename().string());
         if (process && has_ended(*process)) fs::remove(entry->path(), ignored);
     }
 }

@@ -2,6 +2,7 @@
 // How the bookkeeping of a data set grows with its shards: manifests and small files in place of
 // real shards, then what a resumed run, --verify and --merge do with them.
 //   dataset_bookkeeping [SHARDS ...]      default: 100 1000 10000
+#include "apps/dataset/checksum.h"
 #include "apps/dataset/dataset_index.h"
 #include "apps/dataset/generate.h"
 #include "renderer/core/stopwatch.h"
@@ -59,7 +60,7 @@ int main(int argc, char** argv) {
     for (const std::uint64_t count : counts) {
         const test_support::TemporaryFolder folder;
         apps::Dataset dataset(recipe_of(count), folder.path().string());
-        dataset.claim_folder();
+        dataset.claim_folder({});
         const core::Stopwatch writing;
         write_shards(dataset);
         const double written = writing.seconds();

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "apps/dataset/checksum.h"
 #include "apps/dataset/dataset_index.h"
 #include "apps/dataset/generate.h"
 #include "nlos/containers/array_reader.h"
@@ -11,6 +12,9 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <cmath>
+#include <cstring>
 #include <filesystem>
 
 namespace {
@@ -111,7 +115,7 @@ TEST(Dataset, ItemsAreWhatTheRendererAndTheDetectorGiveForTheirPlan) {
     const Recipe recipe = read(folder, tiny_recipe());
     apps::MeshLibrary meshes(recipe);
     for (const std::uint64_t number : {0, 3, 7}) {
-        const apps::Item item = apps::make_item(recipe, meshes, number);
+        const apps::Item item = apps::make_item(recipe, meshes, number, {});
         const apps::ItemPlan plan = apps::plan_item(recipe, meshes, number);
         const renderer::SceneDescription& description = plan.settings.scene;
         const double albedo = item.parameters["drawn"]["scene.relay_wall.albedo"];
@@ -206,9 +210,11 @@ TEST(Dataset, GrowsWithTheNumberOfItemsAndKeepsWhatIsThere) {
 TEST(Dataset, StopsBetweenItemsAndGoesOn) {
     const TemporaryFolder folder;
     Dataset dataset(read(folder, tiny_recipe()), folder.file("set"));
-    int asked = 0;
+    std::atomic<bool> stop = false;
+    int items = 0;
     core::Progress progress;
-    progress.stop_requested = [&] { return ++asked > 5; };
+    progress.report = [&](double, const std::string&) { stop = ++items > 5; };
+    progress.stop_requested = [&] { return stop.load(); };
     const apps::GenerateResult stopped = apps::generate(dataset, {}, std::nullopt, "t", progress);
     EXPECT_TRUE(stopped.interrupted);
     EXPECT_EQ(stopped.shards_written, 1u);
@@ -221,6 +227,94 @@ TEST(Dataset, StopsBetweenItemsAndGoesOn) {
     EXPECT_EQ(index.problems, std::vector<std::string>{});
     ASSERT_EQ(index.doubts.size(), 1u) << "two programs made it";
     EXPECT_NE(index.doubts[0].find("several versions"), std::string::npos);
+}
+
+TEST(Dataset, DarkItemsHoldWhatIsNotSignal) {
+    const TemporaryFolder folder;
+    const Recipe recipe =
+        read(folder,
+             tiny_recipe({{"scene", {{"time_axis", {{"opl_start_m", 50.0}}}}},
+                          {"detector", {{"photons_per_point", 100}, {"ambient", 3.0}}}}));
+    apps::MeshLibrary meshes(recipe);
+    const apps::Item item = apps::make_item(recipe, meshes, 0, {});
+    EXPECT_TRUE(item.is_dark);
+    std::vector<float> counts(96 * 16);
+    ASSERT_EQ(item.arrays.front().bytes.size(), counts.size() * sizeof(float));
+    std::memcpy(counts.data(), item.arrays.front().bytes.data(), item.arrays.front().bytes.size());
+    double sum = 0.0;
+    for (const float count : counts) sum += count;
+    const double mean = sum / static_cast<double>(counts.size());
+    EXPECT_NEAR(mean, 3.0, 5.0 * std::sqrt(3.0 / static_cast<double>(counts.size())));
+}
+
+TEST(Dataset, OneToleranceOfElementsServesAllItemsAndIsRemembered) {
+    const TemporaryFolder folder;
+    core::Json recipe = tiny_recipe({{"calibration_items", 2}});
+    recipe["scene"]["render"]["target_error"] = 0.05;
+    run(folder, recipe, "set");
+    const core::Json claim = core::read_json_file(folder.file("set/recipe.json"));
+    ASSERT_TRUE(claim["element_tolerance"].is_number());
+    core::Json exact = recipe;
+    exact["calibration_items"] = 0;
+    exact["scene"]["render"]["target_error"] = 0.005;
+    run(folder, exact, "exact");
+    const auto clean = [&](const char* name) {
+        return nlos::ArrayReader(folder.file(name)).read_floats("clean", {4, 96, 4, 4});
+    };
+    const std::vector<float> values = clean("set/shard-00000.h5");
+    const std::vector<float> truth = clean("exact/shard-00000.h5");
+    for (std::size_t item = 0; item < 4; ++item) {
+        double difference = 0.0;
+        double norm = 0.0;
+        for (std::size_t i = item * 96 * 16; i < (item + 1) * 96 * 16; ++i) {
+            difference += std::pow(values[i] - truth[i], 2);
+            norm += std::pow(truth[i], 2);
+        }
+        EXPECT_LT(std::sqrt(difference / norm), 0.06) << item;
+    }
+    const std::vector<std::string> before = shards(folder, "set");
+    fs::remove(folder.file("set/shard-00001.json"));
+    run(folder, recipe, "set");
+    EXPECT_EQ(shards(folder, "set"), before);
+}
+
+TEST(Dataset, MeshesOfOtherContentAreAnotherDataSet) {
+    const TemporaryFolder folder;
+    fs::create_directories(folder.file("meshes/sub"));
+    const auto write = [&](const char* bytes) {
+        test_support::write_file_bytes(folder.file("meshes/sub/a.obj"), bytes);
+    };
+    write("v 0 0 0\nv 2 0 0\nv 0 1 0\nf 1 2 3\n");
+    const core::Json recipe =
+        tiny_recipe({{"meshes", {{"folder", "meshes"}, {"shapes", core::Json::array()}}}});
+    run(folder, recipe, "set");
+    EXPECT_EQ(apps::MeshLibrary(read(folder, recipe)).name(0), "sub/a.obj");
+    write("v 0 0 0\nv 3 0 0\nv 0 1 0\nf 1 2 3\n");
+    EXPECT_ERROR_WITH(run(folder, recipe, "set"), "data set of another recipe");
+}
+
+TEST(Dataset, CanOnlyGrow) {
+    const TemporaryFolder folder;
+    run(folder, tiny_recipe(), "set");
+    EXPECT_ERROR_WITH(run(folder, tiny_recipe({{"items", 5}}), "set"), "of 10 items");
+    EXPECT_ERROR_WITH(run(folder, tiny_recipe(), "set", {}, ItemRange{8, 11}), "0 to 10");
+    EXPECT_EQ(problems(folder, "set"), std::vector<std::string>{});
+}
+
+TEST(Dataset, IndexOfASetWithALostShardIsRefused) {
+    const TemporaryFolder folder;
+    run(folder, tiny_recipe(), "set");
+    fs::remove(folder.file("set/shard-00001.h5"));
+    EXPECT_EQ(apps::read_dataset(folder.file("set"), apps::ShardCheck::ManifestOnly).problems,
+              std::vector<std::string>{"shard-00001.h5 is missing"});
+    core::Json claim = core::read_json_file(folder.file("set/recipe.json"));
+    for (const char* items : {"0", "-3", "1e18", "3.7", "\"x\""}) {
+        claim["recipe"]["items"] = core::Json::parse(items);
+        test_support::write_file_bytes(folder.file("set/recipe.json"), claim.dump());
+        EXPECT_THROW(apps::read_dataset(folder.file("set"), apps::ShardCheck::ManifestOnly),
+                     core::Error)
+            << items;
+    }
 }
 
 TEST(Dataset, RefusesTheFolderOfAnotherRecipe) {
@@ -282,7 +376,7 @@ TEST(Dataset, HalvesKeepElevenBitsOfRadianceAndCountsAreClipped) {
     core::Json recipe = tiny_recipe({{"storage", {{"histograms", "float16"}}}});
     recipe["detector"] = nullptr;
     Dataset halves(read(folder, recipe), folder.file("halves"));
-    const apps::Item item = apps::make_item(halves.recipe(), halves.meshes(), 2);
+    const apps::Item item = apps::make_item(halves.recipe(), halves.meshes(), 2, {});
     std::vector<Eigen::half> stored;
     std::vector<float> clean;
     float scale = 0.0F;
@@ -306,7 +400,7 @@ TEST(Dataset, HalvesKeepElevenBitsOfRadianceAndCountsAreClipped) {
                                tiny_recipe({{"storage", {{"histograms", "uint8"}}},
                                             {"detector", {{"photons_per_point", 1e5}}}}));
     apps::MeshLibrary meshes(bright);
-    EXPECT_GT(apps::make_item(bright, meshes, 0).clipped_counts, 0u);
+    EXPECT_GT(apps::make_item(bright, meshes, 0, {}).clipped_counts, 0u);
 }
 
 TEST(Recipe, ErrorsNameKeyAndWhatIsAllowed) {
@@ -333,6 +427,22 @@ TEST(Recipe, ErrorsNameKeyAndWhatIsAllowed) {
     expect({{"detector", nullptr}, {"storage", {{"histograms", "uint8"}}}}, "float32 or float16");
     expect({{"truths", {"depth", "depth"}}}, "depth twice");
     expect({{"meshes", {{"folder", "nowhere"}}}, {"seed", -1}}, "seed");
+    expect({{"items", 1e13}}, "items");
+    expect({{"items", 100000000}, {"items_per_shard", 1}}, "items_per_shard: found 1");
+    expect({{"objects", {{"count", 1.5}}}}, "whole numbers");
+    expect({{"objects", {{"count", {{"integers", nullptr}, {"uniform", {1, 3}}}}}}},
+           "whole numbers");
+    expect({{"objects", {{"count", 1000000}}}}, "objects.count");
+    expect({{"objects", {{"size_m", 1e-300}}}}, "objects.size_m");
+    expect({{"scene", {{"render", {{"seconds", 1}, {"target_error", nullptr}}}}}},
+           "render.seconds");
+    expect({{"scene", {{"render", {{"variance", true}}}}}}, "render.variance");
+    expect({{"draw", {{"scene.frames", {{"choices", {{{"count", 2}}}}}}}}}, "draw.scene.frames");
+    expect({{"draw", {{"scene.relay_wall", {{"choices", {{{"albedo", 0.5}}}}}}}}},
+           "found beside scene.relay_wall");
+    expect({{"draw", {{"detector.expected", {{"choices", {true}}}}}},
+            {"storage", {{"histograms", "uint16"}}}},
+           "draw.detector.expected: storage.histograms");
     EXPECT_ERROR_WITH(run(folder, tiny_recipe({{"meshes", {{"folder", "nowhere"}}}}), "x"),
                       "is no folder");
     EXPECT_ERROR_WITH(run(folder, tiny_recipe({{"meshes", {{"files", {"a.obj"}}}}}), "x"),
