@@ -164,7 +164,10 @@ void add_generate_command(CLI::App& app) {
                         arguments->shard,
                         "I/N: make the part I of N, from 0 to N - 1; without it, the part of the "
                         "present task of a Slurm array, or everything");
-    command->add_option("--items", arguments->items, "A:B: make only the items from A to B - 1");
+    command->add_option(
+        "--items",
+        arguments->items,
+        "A:B: make only the items from A to B - 1; not by two processes at once within a shard");
     add_shorthands(*command, kGenerateShorthands, arguments->shorthands);
     command->add_option("--verify", arguments->verify, "Check every shard of this folder");
     command->add_option("--merge", arguments->merge, "Write index.json of this folder");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/dataset/generate.h"
 
-#include "apps/dataset/checksum.h"
+#include "apps/batch/checksum.h"
 #include "apps/dataset/element_tolerance.h"
 #include "apps/dataset/item_preview.h"
 #include "nlos/pictures/picture.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/dataset/manifest.h"
 
-#include "apps/dataset/checksum.h"
+#include "apps/batch/checksum.h"
 #include "renderer/core/output_file.h"
 
 #include <fmt/core.h>

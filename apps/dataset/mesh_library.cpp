@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/dataset/mesh_library.h"
 
-#include "apps/dataset/checksum.h"
+#include "apps/batch/checksum.h"
 #include "renderer/mesh_file/mesh_file.h"
 #include "renderer/scene/load_geometry.h"
 

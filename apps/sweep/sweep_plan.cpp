@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/sweep/sweep_plan.h"
 
+#include "apps/batch/checksum.h"
 #include "apps/sweep/sweep_plots.h"
 #include "renderer/core/instrument_response.h"
 #include "renderer/core/mapped_file.h"
@@ -51,21 +52,6 @@ void check_response(const core::ResponseSettings& response) {
     if (core::is_stated(response) && !response.of_capture)
         core::make_response(response, "response");
 }
-
-/// A 64-bit hash that goes on from text to text (FNV-1a).
-class Hash {
- public:
-    void add(std::string_view text) {
-        for (const char c : text) add_byte(static_cast<unsigned char>(c));
-        add_byte(0xffU);  // ends a text: no UTF-8 has it
-    }
-    std::string text() const { return fmt::format("{:016x}", hash_); }
-
- private:
-    void add_byte(unsigned char byte) { hash_ = (hash_ ^ byte) * 0x100000001b3ULL; }
-
-    std::uint64_t hash_ = 0xcbf29ce484222325ULL;
-};
 
 }  // namespace
 
@@ -218,15 +204,16 @@ void SweepPlan::check_parts() const {
 }
 
 void SweepPlan::take_fingerprint() {
-    Hash hash;
+    std::string checksums;
+    const auto add = [&](std::string_view text) { checksums += text_checksum(text); };
     SweepSettings sweep = settings_;
     sweep.scene.clear();  // a folder that is moved stays the same sweep
     sweep.plots.reset();
-    hash.add(compact(core::write_value(sweep)));
-    hash.add(core::MappedFile(settings_.scene).bytes());
+    add(compact(core::write_value(sweep)));
+    add(core::MappedFile(settings_.scene).bytes());
     std::set<std::string> files;
     const auto add_file = [&](const std::string& path) {
-        if (!path.empty() && files.insert(path).second) hash.add(core::MappedFile(path).bytes());
+        if (!path.empty() && files.insert(path).second) add(core::MappedFile(path).bytes());
     };
     const auto repeats = static_cast<std::size_t>(settings_.repeats);
     for (std::size_t number = 0; number < num_runs_; number += repeats) {
@@ -238,7 +225,7 @@ void SweepPlan::take_fingerprint() {
             if (response.is_object()) add_file(response.value("curve", ""));
         }
     }
-    fingerprint_ = hash.text();
+    fingerprint_ = text_checksum(checksums);
 }
 
 }  // namespace apps

@@ -2,7 +2,7 @@
 // How the bookkeeping of a data set grows with its shards: manifests and small files in place of
 // real shards, then what a resumed run, --verify and --merge do with them.
 //   dataset_bookkeeping [SHARDS ...]      default: 100 1000 10000
-#include "apps/dataset/checksum.h"
+#include "apps/batch/checksum.h"
 #include "apps/dataset/dataset_index.h"
 #include "apps/dataset/generate.h"
 #include "renderer/core/stopwatch.h"

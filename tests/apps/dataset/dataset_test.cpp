@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "apps/dataset/checksum.h"
+#include "apps/batch/checksum.h"
 #include "apps/dataset/dataset_index.h"
 #include "apps/dataset/generate.h"
 #include "nlos/containers/array_reader.h"

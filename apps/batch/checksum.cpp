@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "apps/dataset/checksum.h"
+#include "apps/batch/checksum.h"
 
 #include <fmt/core.h>
 #include <xxhash.h>
@@ -37,7 +37,7 @@ std::optional<std::string> file_checksum(const std::string& path, std::uint64_t 
     return hexadecimal(XXH3_128bits_digest(state.get()));
 }
 
-std::string text_checksum(const std::string& text) {
+std::string text_checksum(std::string_view text) {
     return hexadecimal(XXH3_128bits(text.data(), text.size()));
 }
 

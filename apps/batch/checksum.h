@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
 
 namespace apps {
 
@@ -14,6 +15,6 @@ std::optional<std::string> file_checksum(
     const std::string& path, std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max());
 
 /// The same of a text.
-std::string text_checksum(const std::string& text);
+std::string text_checksum(std::string_view text);
 
 }  // namespace apps
