@@ -2,6 +2,7 @@
 #include "apps/batch/work_share.h"
 
 #include "renderer/core/error.h"
+#include "renderer/core/settings.h"
 
 #include <fmt/core.h>
 

@@ -64,7 +64,7 @@ void warn_of_oddities(const GenerateResult& result) {
         print_error("warning: {} was skipped: {}\n", name, reason);
     }
     if (result.dark_items > 0) {
-        print_error("warning: {} items hold no light: all their values are 0\n", result.dark_items);
+        print_error("warning: {} items hold no light of their scene\n", result.dark_items);
     }
     if (result.clipped_counts > 0) {
         print_error("warning: {} counts were clipped to what storage.histograms can hold\n",

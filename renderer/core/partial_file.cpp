@@ -2,6 +2,7 @@
 #include "renderer/core/partial_file.h"
 
 #include "renderer/core/output_file.h"
+#include "renderer/core/stopwatch.h"
 
 #include <fmt/core.h>
 #include <unistd.h>
@@ -64,38 +65,46 @@ fs::path folder_of(const fs::path& target) {
     return target.has_parent_path() ? target.parent_path() : fs::path(".");
 }
 
-/// The process that a partial file of any target is from; nothing for other names.
-std::optional<pid_t> process_of(const std::string& file) {
-    const std::size_t mark = file.rfind("-" + machine_tag() + ".partial");
-    if (!file.starts_with('.') || mark == std::string::npos) return std::nullopt;
-    const std::size_t dot = file.rfind('.', mark);
-    if (dot == 0) return std::nullopt;
+/// The process that a file of this name is from; nothing for other names.
+std::optional<pid_t> process_of(const std::string& file, const PartialName& name) {
+    if (!file.starts_with(name.begin) || !file.ends_with(name.end)) return std::nullopt;
+    if (file.size() <= name.begin.size() + name.end.size()) return std::nullopt;
+    const char* const last = file.data() + file.size() - name.end.size();
     pid_t process = 0;
-    const char* const last = file.data() + mark;
-    const auto [end, error] = std::from_chars(file.data() + dot + 1, last, process);
+    const auto [end, error] = std::from_chars(file.data() + name.begin.size(), last, process);
     if (error != std::errc() || end != last || process <= 0) return std::nullopt;
     return process;
-}
-
-/// True at most every few seconds for one folder: who writes thousands of files into it does not
-/// list it thousands of times.
-bool is_time_to_list(const fs::path& folder) {
-    using Clock = std::chrono::steady_clock;
-    constexpr std::chrono::seconds kPause(5);
-    static std::mutex mutex;
-    static fs::path last_folder;
-    static Clock::time_point last_time;
-    const std::lock_guard lock(mutex);
-    const auto now = Clock::now();
-    if (folder == last_folder && now - last_time < kPause) return false;
-    last_folder = folder;
-    last_time = now;
-    return true;
 }
 
 bool has_ended(pid_t process) {
     return ::kill(process, 0) != 0 && errno == ESRCH;
 }
+
+/// Rests from listing a folder for many times as long as it took, when that was long: who writes
+/// thousands of files into it spends little time on its leftovers.
+class ListingPause {
+ public:
+    bool is_over(const fs::path& folder) {
+        const std::lock_guard lock(mutex_);
+        return folder != folder_ || Clock::now() >= end_;
+    }
+    void begin(const fs::path& folder, double listing_seconds) {
+        constexpr double kShort_s = 1e-3;
+        constexpr double kTimesAsLong = 50.0;
+        const std::lock_guard lock(mutex_);
+        folder_ = folder;
+        end_ = Clock::now();
+        if (listing_seconds < kShort_s) return;
+        end_ += std::chrono::duration_cast<Clock::duration>(
+            std::chrono::duration<double>(kTimesAsLong * listing_seconds));
+    }
+
+ private:
+    using Clock = std::chrono::steady_clock;
+    std::mutex mutex_;
+    fs::path folder_;
+    Clock::time_point end_;
+};
 
 }  // namespace
 
@@ -105,15 +114,19 @@ std::string partial_file_of(const std::string& target) {
 }
 
 void remove_stale_partial_files(const std::string& target) {
+    const PartialName name = partial_name_of(target);
     const fs::path folder = folder_of(target);
-    if (!is_time_to_list(folder)) return;
+    static ListingPause pause;
+    if (!pause.is_over(folder)) return;
+    const Stopwatch clock;
     std::error_code error;
     std::error_code ignored;
     for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
          entry.increment(error)) {
-        const auto process = process_of(entry->path().filename().string());
+        const auto process = process_of(entry->path().filename().string(), name);
         if (process && has_ended(*process)) fs::remove(entry->path(), ignored);
     }
+    pause.begin(folder, clock.seconds());
 }
 
 void announce_partial_file(const std::string& path) {

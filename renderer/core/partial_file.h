@@ -10,9 +10,9 @@ namespace core {
 /// The file that this process writes on the way to `target`; ends in the target's suffix.
 std::string partial_file_of(const std::string& target);
 
-/// Removes partial files in the folder of `target` whose process has ended on this machine, unless
-/// it did so seconds ago; not those of other machines or containers that share the folder, which
-/// may live.
+/// Removes the partial files of `target` whose process has ended on this machine; not those of
+/// other machines or containers that share the folder, which may live. A folder that takes long to
+/// list is not looked at every time.
 void remove_stale_partial_files(const std::string& target);
 
 /// Until forgotten, remove_partial_files() removes the file.
