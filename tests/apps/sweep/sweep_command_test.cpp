@@ -113,7 +113,7 @@ TEST_F(SweepCommand, SlurmGetsAScriptAndNothingRuns) {
     EXPECT_TRUE(outcome.out.starts_with("#!/bin/bash\n")) << outcome.out;
     EXPECT_NE(outcome.out.find("--array=0-1\n"), std::string::npos) << "a task for each capture";
     EXPECT_NE(outcome.out.find("--cpus-per-task=3\n"), std::string::npos);
-    EXPECT_NE(outcome.out.find(" --threads 3 --set repeats=2 --shard "), std::string::npos);
+    EXPECT_NE(outcome.out.find(" --set repeats=2 --threads 3 --shard "), std::string::npos);
     EXPECT_NE(outcome.out.find("'" + file("two words") + "'"), std::string::npos);
     EXPECT_FALSE(fs::exists(file("two words")));
     EXPECT_NE(run(sweep + " 5").out.find("--array=0-4\n"), std::string::npos);
