@@ -62,7 +62,7 @@ void bind_dataset(nb::module_& module) {
                nb::arg("recipe"),
                nb::arg("folder"),
                nb::arg("shard").none(),
-               nb::arg("items").none(),
+               nb::arg("item_range").none(),
                nb::arg("settings"),
                nb::arg("progress").none(),
                nb::arg("threads"));

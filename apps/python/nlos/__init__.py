@@ -242,21 +242,21 @@ def generate(
     folder: Path,
     *,
     shard: tuple[int, int] | None = None,
-    items: tuple[int, int] | None = None,
+    item_range: tuple[int, int] | None = None,
     progress: Progress = None,
     threads: int = 0,
     **settings: Any,
 ) -> dict[str, Any]:
     """Makes a data set of captures of random scenes, or a part of it; what is there is kept.
 
-    recipe    path of a recipe (.json)
-    folder    of the data set; several processes may work in it
-    shard     (i, n): make the part i of n, from 0 to n - 1
-    items     (a, b): make only the items from a to b - 1
-    settings  keys of the recipe with other values
-    returns   dict with shards_written, shards_there, items_written, dark_items, seconds, interrupted
+    recipe      path of a recipe (.json)
+    folder      of the data set; several processes may work in it
+    shard       (i, n): make the part i of n, from 0 to n - 1
+    item_range  (a, b): make only the items from a to b - 1
+    settings    keys of the recipe with other values
+    returns     dict with shards_written, shards_there, items_written, dark_items, seconds, interrupted
     """
-    return _core.generate(_path(recipe, "recipe"), _path(folder, "folder"), shard, items, settings,
+    return _core.generate(_path(recipe, "recipe"), _path(folder, "folder"), shard, item_range, settings,
                           show_progress(progress, "generate"), thread_count(threads))
 
 
