@@ -14,7 +14,6 @@
 #include <charconv>
 #include <filesystem>
 #include <memory>
-#include <numeric>
 
 namespace apps {
 namespace {
@@ -46,17 +45,6 @@ ItemRange read_range(const std::string& text) {
     }
     if (is_range) return range;
     throw core::Error("--items", "found " + text, "must be A:B, the items from A to B - 1");
-}
-
-std::string shares_of(const ItemProfile& profile) {
-    const double total = std::accumulate(profile.begin(), profile.end(), 0.0);
-    std::string text;
-    for (const auto& [step, name] : core::EnumNames<ItemStep>::value) {
-        const double share = profile[static_cast<std::size_t>(step)] / total;
-        text += fmt::format(
-            "{}{} {:.0f} %", text.empty() ? "" : ", ", name, total > 0.0 ? 100.0 * share : 0.0);
-    }
-    return text;
 }
 
 void warn_of_oddities(const GenerateResult& result) {
@@ -111,7 +99,6 @@ void make(const GenerateArguments& arguments, bool prints_script) {
                             fmt::format("interrupted after {} shards; the same command goes on",
                                         result.shards_written));
     }
-    const double cpu_seconds = std::accumulate(result.profile.begin(), result.profile.end(), 0.0);
     const auto made = static_cast<double>(std::max<std::uint64_t>(1, result.items_written));
     print(
         "wrote {} ({} shards, {} items, {} shards were there; {:.2f} s, {:.3f} CPU s an item: "
@@ -121,8 +108,8 @@ void make(const GenerateArguments& arguments, bool prints_script) {
         result.items_written,
         result.shards_there,
         result.seconds,
-        cpu_seconds / made,
-        shares_of(result.profile));
+        total_seconds(result.profile) / made,
+        shares_text(result.profile));
 }
 
 void verify(const std::string& folder) {

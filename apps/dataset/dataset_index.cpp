@@ -104,12 +104,17 @@ DatasetIndex read_dataset(const std::string& folder, ShardCheck check) {
     return index;
 }
 
-ItemProfile total_profile(const DatasetIndex& index) {
-    ItemProfile total{};
+DatasetTotals totals_of(const DatasetIndex& index) {
+    DatasetTotals totals;
     for (const Manifest& shard : index.shards) {
-        for (std::size_t i = 0; i < total.size(); ++i) total[i] += shard.profile[i];
+        totals.items += shard.items.size();
+        totals.bytes += shard.bytes;
+        for (std::size_t i = 0; i < kNumItemSteps; ++i) totals.profile[i] += shard.profile[i];
+        totals.broken_meshes.insert(shard.broken_meshes.begin(), shard.broken_meshes.end());
+        totals.dark_items += shard.dark_items;
+        totals.clipped_counts += shard.clipped_counts;
     }
-    return total;
+    return totals;
 }
 
 std::map<std::string, DrawnHistogram> drawn_histograms(const DatasetIndex& index) {
@@ -158,21 +163,13 @@ std::string write_index(const DatasetIndex& index, const std::string& folder) {
                        {"program", index.shards.front().program},
                        {"items", index.items},
                        {"shards", core::Json::array()}};
-    std::map<std::string, std::string> broken;
-    std::size_t dark = 0;
-    std::size_t clipped = 0;
-    for (const Manifest& shard : index.shards) {
-        json["shards"].push_back(describe_shard(shard));
-        broken.insert(shard.broken_meshes.begin(), shard.broken_meshes.end());
-        dark += shard.dark_items;
-        clipped += shard.clipped_counts;
-    }
-    json["broken_meshes"] = broken;
-    json["dark_items"] = dark;
-    json["clipped_counts"] = clipped;
-    const ItemProfile profile = total_profile(index);
+    for (const Manifest& shard : index.shards) json["shards"].push_back(describe_shard(shard));
+    const DatasetTotals totals = totals_of(index);
+    json["broken_meshes"] = totals.broken_meshes;
+    json["dark_items"] = totals.dark_items;
+    json["clipped_counts"] = totals.clipped_counts;
     for (const auto& [step, name] : core::EnumNames<ItemStep>::value) {
-        json["cpu_seconds"][std::string(name)] = profile[static_cast<std::size_t>(step)];
+        json["cpu_seconds"][std::string(name)] = totals.profile[static_cast<std::size_t>(step)];
     }
     for (const auto& [key, histogram] : drawn_histograms(index)) {
         json["drawn"][key] = {

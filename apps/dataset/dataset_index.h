@@ -32,8 +32,16 @@ DatasetIndex read_dataset(const std::string& folder, ShardCheck check);
 /// returns  the path
 std::string write_index(const DatasetIndex& index, const std::string& folder);
 
-/// Processor seconds per step, over all shards.
-ItemProfile total_profile(const DatasetIndex& index);
+/// What all shards together say.
+struct DatasetTotals {
+    std::uint64_t items = 0;
+    std::uint64_t bytes = 0;
+    ItemProfile profile{};
+    std::map<std::string, std::string> broken_meshes;
+    std::size_t dark_items = 0;
+    std::size_t clipped_counts = 0;
+};
+DatasetTotals totals_of(const DatasetIndex& index);
 
 /// A histogram of numbers between the least and the greatest.
 struct DrawnHistogram {

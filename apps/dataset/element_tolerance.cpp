@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "apps/dataset/element_tolerance.h"
 
+#include "nlos/compare/compare.h"
 #include "renderer/core/parallel.h"
 #include "renderer/render.h"
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 namespace apps {
 namespace {
@@ -30,27 +30,16 @@ bool may_calibrate(const Recipe& recipe) {
            render.max_bounces == 3 && !draws_render;
 }
 
-core::Transient render_with(const renderer::Scene& scene,
-                            const core::Scan& scan,
-                            const renderer::SceneDescription& description,
-                            std::optional<double> target_error,
-                            std::optional<double> element_tolerance) {
+core::Capture render_with(const renderer::Scene& scene,
+                          const core::Scan& scan,
+                          const renderer::SceneDescription& description,
+                          std::optional<double> target_error,
+                          std::optional<double> element_tolerance) {
     renderer::RenderSettings settings = description.render;
     settings.target_error = target_error;
     settings.element_tolerance = element_tolerance;
     return renderer::render(scene, scan, {description.time_axis, std::nullopt}, settings, {})
-        .capture.transient;
-}
-
-double relative_l2(const core::Transient& values, const core::Transient& reference) {
-    double difference = 0.0;
-    double norm = 0.0;
-    for (std::size_t i = 0; i < values.values().size(); ++i) {
-        const double expected = reference.values()[i];
-        difference += std::pow(double{values.values()[i]} - expected, 2);
-        norm += expected * expected;
-    }
-    return norm > 0.0 ? std::sqrt(difference / norm) : 0.0;
+        .capture;
 }
 
 Errors errors_of_item(const Recipe& recipe, MeshLibrary& meshes, std::uint64_t item) {
@@ -60,13 +49,13 @@ Errors errors_of_item(const Recipe& recipe, MeshLibrary& meshes, std::uint64_t i
     const core::Scan scan = renderer::make_scan(description);
     const renderer::Scene scene = renderer::make_scene(geometry_of(plan), description, scan);
     const double target = *recipe.scene.render.target_error;
-    const core::Transient reference =
+    const core::Capture reference =
         render_with(scene, scan, description, kReferenceShare * target, std::nullopt);
     Errors errors{};
     for (std::size_t i = 0; i < kTolerances.size(); ++i) {
-        errors[i] = relative_l2(
-            render_with(scene, scan, description, std::nullopt, kTolerances[i] * target),
-            reference);
+        const core::Capture capture =
+            render_with(scene, scan, description, std::nullopt, kTolerances[i] * target);
+        errors[i] = nlos::compare_captures(capture, reference).rel_l2.value_or(0.0);  // none: dark
     }
     return errors;
 }

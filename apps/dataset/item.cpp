@@ -7,9 +7,12 @@
 #include "renderer/render.h"
 #include "renderer/scene/ground_truth.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace apps {
 namespace {
@@ -133,6 +136,20 @@ core::Capture record(const core::Capture& capture,
 }
 
 }  // namespace
+
+double total_seconds(const ItemProfile& profile) {
+    return std::accumulate(profile.begin(), profile.end(), 0.0);
+}
+
+std::string shares_text(const ItemProfile& profile) {
+    const double total = total_seconds(profile);
+    std::string text;
+    for (const auto& [step, name] : core::EnumNames<ItemStep>::value) {
+        const double share = total > 0.0 ? profile[static_cast<std::size_t>(step)] / total : 0.0;
+        text += fmt::format("{}{} {:.1f} %", text.empty() ? "" : ", ", name, 100.0 * share);
+    }
+    return text;
+}
 
 Item make_item(const Recipe& recipe,
                MeshLibrary& meshes,

@@ -18,6 +18,11 @@ inline constexpr std::size_t kNumItemSteps = 5;
 /// Processor seconds per step.
 using ItemProfile = std::array<double, kNumItemSteps>;
 
+/// The sum of all steps [s].
+double total_seconds(const ItemProfile& profile);
+/// The share of each step, for people.
+std::string shares_text(const ItemProfile& profile);
+
 /// One capture of a data set, with what is known of its scene, as it is stored.
 struct Item {
     std::vector<ItemArray> arrays;

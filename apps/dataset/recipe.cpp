@@ -52,12 +52,16 @@ void validate_scene(const renderer::SceneDescription& scene, const std::string& 
 void validate_item(const ItemSettings& settings, const std::string& where) {
     renderer::validate(settings.scene, where + "scene.");
     if (!settings.detector) return;
-    core::check_ranges(*settings.detector, where + "detector");
     const nlos::DetectorSettings& detector = *settings.detector;
     if (!detector.photons && !detector.photons_per_point && !detector.exposure_s) {
         throw core::Error(where + "detector",
                           "found no amount of light",
                           "must have photons, photons_per_point or exposure_s");
+    }
+    try {
+        nlos::validate(detector);
+    } catch (const core::Error& error) {
+        throw core::Error(where + "detector." + error.where(), error.found(), error.allowed());
     }
 }
 

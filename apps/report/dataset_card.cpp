@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <numeric>
 
 namespace apps {
 namespace {
@@ -32,37 +31,20 @@ nlos::CurvePanel outline(const std::string& key, const DrawnHistogram& histogram
     return panel;
 }
 
-std::string steps_text(const ItemProfile& profile, double total) {
-    std::string text;
-    for (const auto& [step, name] : core::EnumNames<ItemStep>::value) {
-        const double share = total > 0.0 ? profile[static_cast<std::size_t>(step)] / total : 0.0;
-        text += fmt::format("{}{} {:.1f} %", text.empty() ? "" : ", ", name, 100.0 * share);
-    }
-    return text;
-}
-
-std::vector<Fact> dataset_facts(const DatasetIndex& index) {
-    std::uint64_t items = 0;
-    double bytes = 0.0;
-    std::size_t dark = 0;
-    std::size_t clipped = 0;
-    for (const Manifest& shard : index.shards) {
-        items += shard.items.size();
-        bytes += static_cast<double>(shard.bytes);
-        dark += shard.dark_items;
-        clipped += shard.clipped_counts;
-    }
-    const ItemProfile profile = total_profile(index);
-    const double seconds = std::accumulate(profile.begin(), profile.end(), 0.0);
+std::vector<Fact> dataset_facts(const DatasetIndex& index, const DatasetTotals& totals) {
+    const auto items = static_cast<double>(std::max<std::uint64_t>(1, totals.items));
     std::vector<Fact> facts{
-        {"Items", fmt::format("{} of {}", items, index.items)},
+        {"Items", fmt::format("{} of {}", totals.items, index.items)},
         {"Shards", fmt::format("{}", index.shards.size())},
-        {"Size", short_number(bytes / 1e6) + " MB"},
-        {"Processor time of an item",
-         short_number(seconds / static_cast<double>(std::max<std::uint64_t>(1, items))) + " s"},
-        {"Of that", steps_text(profile, seconds)}};
-    if (dark > 0) facts.emplace_back("Items without light", fmt::format("{}", dark));
-    if (clipped > 0) facts.emplace_back("Clipped counts", fmt::format("{}", clipped));
+        {"Size", short_number(static_cast<double>(totals.bytes) / 1e6) + " MB"},
+        {"Processor time of an item", short_number(total_seconds(totals.profile) / items) + " s"},
+        {"Of that", shares_text(totals.profile)}};
+    if (totals.dark_items > 0) {
+        facts.emplace_back("Items without light", fmt::format("{}", totals.dark_items));
+    }
+    if (totals.clipped_counts > 0) {
+        facts.emplace_back("Clipped counts", fmt::format("{}", totals.clipped_counts));
+    }
     return facts;
 }
 
@@ -85,15 +67,12 @@ DatasetCard dataset_card(const std::string& folder) {
     const DatasetIndex index = read_dataset(folder, ShardCheck::ManifestOnly);
     DatasetCard result;
     result.card.file = "data set";
-    result.card.facts = dataset_facts(index);
+    const DatasetTotals totals = totals_of(index);
+    result.card.facts = dataset_facts(index, totals);
     result.card.settings = index.recipe;
     result.card.notes = index.problems;
     result.card.notes.insert(result.card.notes.end(), index.doubts.begin(), index.doubts.end());
-    std::map<std::string, std::string> broken;
-    for (const Manifest& shard : index.shards) {
-        broken.insert(shard.broken_meshes.begin(), shard.broken_meshes.end());
-    }
-    for (const auto& [name, reason] : broken) {
+    for (const auto& [name, reason] : totals.broken_meshes) {
         result.card.notes.push_back(name + " was skipped: " + reason);
     }
     std::error_code ignored;

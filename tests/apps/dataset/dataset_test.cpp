@@ -6,6 +6,7 @@
 #include "nlos/formats/capture_arrays.h"
 #include "renderer/core/parallel.h"
 #include "renderer/render.h"
+#include "tests/apps/dataset/tiny_recipe.h"
 #include "tests/support/error_message.h"
 #include "tests/support/file_bytes.h"
 #include "tests/support/temporary_folder.h"
@@ -25,32 +26,9 @@ using apps::Dataset;
 using apps::ItemRange;
 using apps::Recipe;
 using test_support::file_bytes;
+using test_support::read;
 using test_support::TemporaryFolder;
-
-/// A recipe whose items take milliseconds, with `changes` merged into it.
-core::Json tiny_recipe(const core::Json& changes = core::Json::object()) {
-    core::Json recipe = {
-        {"items", 10},
-        {"items_per_shard", 4},
-        {"seed", 5},
-        {"meshes", {{"shapes", {"plate", "box"}}}},
-        {"objects", {{"count", {{"integers", {1, 2}}}}}},
-        {"scene",
-         {{"scan", {{"sensing_points", {4, 4}}}},
-          {"time_axis", {{"opl_start_m", 0.6}, {"bin_width_m", 0.03}, {"num_bins", 96}}},
-          {"render", {{"target_error", 0.1}}},
-          {"ground_truth", {{"depth_resolution", {8, 8}}}}}},
-        {"detector", {{"photons_per_point", 200}}},
-        {"draw", {{"scene.relay_wall.albedo", {{"uniform", {0.4, 0.9}}}}}},
-        {"truths", {"depth", "normals", "albedo", "mask", "object_ids", "poses", "clean"}}};
-    recipe.merge_patch(changes);
-    return recipe;
-}
-
-Recipe read(const TemporaryFolder& folder, const core::Json& recipe) {
-    test_support::write_file_bytes(folder.file("recipe_in.json"), recipe.dump());
-    return apps::read_recipe(folder.file("recipe_in.json"), {});
-}
+using test_support::tiny_recipe;
 
 apps::GenerateResult run(const TemporaryFolder& folder,
                          const core::Json& recipe,
@@ -403,46 +381,8 @@ TEST(Dataset, HalvesKeepElevenBitsOfRadianceAndCountsAreClipped) {
     EXPECT_GT(apps::make_item(bright, meshes, 0, {}).clipped_counts, 0u);
 }
 
-TEST(Recipe, ErrorsNameKeyAndWhatIsAllowed) {
+TEST(Dataset, NamesMeshesThatAreMissing) {
     const TemporaryFolder folder;
-    const auto expect = [&](const core::Json& changes, const char* part) {
-        EXPECT_ERROR_WITH(read(folder, tiny_recipe(changes)), part);
-    };
-    expect({{"items", 0}}, "items: found 0");
-    expect({{"item", 5}}, "items_per_shard");
-    expect({{"meshes", {{"shapes", {"cube"}}}}}, "sphere|box");
-    expect({{"meshes", {{"shapes", core::Json::array()}}}}, "meshes: found no source");
-    expect({{"objects", {{"albedo", {{"uniform", {0.5, 1.5}}}}}}}, "objects.albedo: found 1.5");
-    expect({{"objects", {{"count", 0}}}}, "objects.count: found 0");
-    expect({{"scene", {{"geometry", "x.glb"}}}}, "scene.geometry");
-    expect({{"scene", {{"time_axis", "auto"}}}}, "scene.time_axis");
-    expect({{"scene", {{"camera", {{"fov_y_deg", 40}}}}}}, "scene.camera");
-    expect({{"draw", {{"scene.wall", 1}}}}, "draw.scene.wall");
-    expect({{"draw", {{"scene.relay_wall.albedo", {{"uniform", {0.5, 2.0}}}}}}},
-           "draw.scene.relay_wall.albedo");
-    expect({{"draw", {{"scene.scan.sensing_points", {{"choices", {{4, 4}, {8, 8}}}}}}}},
-           "format webdataset");
-    expect({{"detector", {{"photons_per_point", nullptr}}}}, "amount of light");
-    expect({{"detector", {{"photons_per_point", -1}}}}, "detector.photons_per_point");
-    expect({{"detector", nullptr}, {"storage", {{"histograms", "uint8"}}}}, "float32 or float16");
-    expect({{"truths", {"depth", "depth"}}}, "depth twice");
-    expect({{"meshes", {{"folder", "nowhere"}}}, {"seed", -1}}, "seed");
-    expect({{"items", 1e13}}, "items");
-    expect({{"items", 100000000}, {"items_per_shard", 1}}, "items_per_shard: found 1");
-    expect({{"objects", {{"count", 1.5}}}}, "whole numbers");
-    expect({{"objects", {{"count", {{"integers", nullptr}, {"uniform", {1, 3}}}}}}},
-           "whole numbers");
-    expect({{"objects", {{"count", 1000000}}}}, "objects.count");
-    expect({{"objects", {{"size_m", 1e-300}}}}, "objects.size_m");
-    expect({{"scene", {{"render", {{"seconds", 1}, {"target_error", nullptr}}}}}},
-           "render.seconds");
-    expect({{"scene", {{"render", {{"variance", true}}}}}}, "render.variance");
-    expect({{"draw", {{"scene.frames", {{"choices", {{{"count", 2}}}}}}}}}, "draw.scene.frames");
-    expect({{"draw", {{"scene.relay_wall", {{"choices", {{{"albedo", 0.5}}}}}}}}},
-           "found beside scene.relay_wall");
-    expect({{"draw", {{"detector.expected", {{"choices", {true}}}}}},
-            {"storage", {{"histograms", "uint16"}}}},
-           "draw.detector.expected: storage.histograms");
     EXPECT_ERROR_WITH(run(folder, tiny_recipe({{"meshes", {{"folder", "nowhere"}}}}), "x"),
                       "is no folder");
     EXPECT_ERROR_WITH(run(folder, tiny_recipe({{"meshes", {{"files", {"a.obj"}}}}}), "x"),
