@@ -56,6 +56,7 @@ MadeItem make_packed(Dataset& dataset, std::uint64_t number, const core::Progres
     MadeItem made;
     core::run_on_one_thread([&] {
         made.item = make_item(dataset.item_recipe(), dataset.meshes(), number, progress);
+        if (made.item.interrupted) return;
         if (number < std::min(kPreviewItems, dataset.recipe().items_per_shard))
             made.preview = preview_panels(dataset.recipe(), made.item);
         const core::ThreadStopwatch clock;

@@ -8,6 +8,7 @@
 #include "renderer/core/instrument_response.h"
 #include "renderer/core/parallel.h"
 #include "renderer/core/progress.h"
+#include "renderer/core/stopwatch.h"
 
 #include <algorithm>
 #include <array>
@@ -77,25 +78,25 @@ struct ProgressSpan {
     const char* detail = "";
 };
 
-/// Calls `body(begin, end)` for blocks of [0, count) in parallel, reporting and listening in
-/// between. The blocks depend on `count` and `block` only.
+/// Calls `body(begin, end)` for blocks of [0, count) in parallel, reporting and listening a few
+/// times per second in between. The blocks depend on `count` and `block` only.
 inline void parallel_blocks_with_progress(
     std::size_t count,
     std::size_t block,
     const ProgressSpan& span,
     const std::function<void(std::size_t begin, std::size_t end)>& body) {
-    constexpr std::size_t kReports = 16;
-    const std::size_t num_blocks = (count + block - 1) / block;
-    const std::size_t stage =
-        block * std::max<std::size_t>(1, (num_blocks + kReports - 1) / kReports);
-    for (std::size_t done = 0; done < count; done += stage) {
+    constexpr double kStageSeconds = 0.2;
+    std::size_t stage = block * static_cast<std::size_t>(core::thread_count());
+    for (std::size_t done = 0; done < count;) {
         check_stop(span.progress);
-        core::parallel_blocks(
-            std::min(stage, count - done), block, [&](std::size_t begin, std::size_t end) {
-                body(done + begin, done + end);
-            });
-        const double share =
-            static_cast<double>(std::min(count, done + stage)) / static_cast<double>(count);
+        const core::Stopwatch watch;
+        const std::size_t size = std::min(stage, count - done);
+        core::parallel_blocks(size, block, [&](std::size_t begin, std::size_t end) {
+            body(done + begin, done + end);
+        });
+        if (watch.seconds() < kStageSeconds) stage *= 2;
+        done += size;
+        const double share = static_cast<double>(done) / static_cast<double>(count);
         span.progress.update(span.begin + share * (span.end - span.begin), span.detail);
     }
 }
