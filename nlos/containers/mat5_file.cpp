@@ -147,7 +147,8 @@ void list_fields(matvar_t& variable, const std::string& name, ArrayNames& found)
     for (std::size_t element = 0; element < count && found.is_complete; ++element) {
         const std::string owner = count == 1 ? name : fmt::format("{}({})", name, element);
         for (unsigned i = 0; i < num_fields && found.is_complete; ++i) {
-            const std::string field = fields[i] == nullptr ? "" : fields[i];
+            if (fields == nullptr || fields[i] == nullptr) continue;
+            const std::string field = fields[i];
             list(field_of(variable, field, element), owner + "." + field, found);
         }
     }

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <exception>
 #include <thread>
 
 namespace core {
@@ -28,13 +29,33 @@ void parallel_blocks(std::size_t count,
 bool parallel_pointers_in_order(std::size_t count,
                                 const std::function<std::shared_ptr<void>(std::size_t)>& make,
                                 const std::function<bool(std::size_t, void*)>& use) {
+    // What is thrown in a pipeline leaves behind what is on its way, so that nothing may be.
     struct Made {
         std::size_t index = 0;
         std::shared_ptr<void> result{};
+        std::exception_ptr error{};
+    };
+    const auto try_to_make = [&](std::size_t i) -> Made {
+        try {
+            return {i, make(i)};
+        } catch (...) {
+            return {i, nullptr, std::current_exception()};
+        }
     };
     std::atomic<bool> is_ended = false;
+    std::exception_ptr error;
     std::size_t next = 0;
     std::size_t used = 0;
+    const auto try_to_use = [&](const Made& made) {
+        try {
+            if (made.error) std::rethrow_exception(made.error);
+            is_ended = !use(made.index, made.result.get());
+            ++used;
+        } catch (...) {
+            error = std::current_exception();
+            is_ended = true;
+        }
+    };
     tbb::parallel_pipeline(
         2 * static_cast<std::size_t>(thread_count()),
         tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order,
@@ -43,15 +64,13 @@ bool parallel_pointers_in_order(std::size_t count,
                                                 control.stop();
                                                 return count;
                                             }) &
-            tbb::make_filter<std::size_t, Made>(tbb::filter_mode::parallel,
-                                                [&](std::size_t i) {
-                                                    return is_ended ? Made{i} : Made{i, make(i)};
-                                                }) &
+            tbb::make_filter<std::size_t, Made>(
+                tbb::filter_mode::parallel,
+                [&](std::size_t i) { return is_ended ? Made{i} : try_to_make(i); }) &
             tbb::make_filter<Made, void>(tbb::filter_mode::serial_in_order, [&](const Made& made) {
-                if (is_ended) return;
-                is_ended = !use(made.index, made.result.get());
-                ++used;
+                if (!is_ended) try_to_use(made);
             }));
+    if (error) std::rethrow_exception(error);
     return used == count;
 }
 
