@@ -226,7 +226,8 @@ TEST_F(Interruption, ASweepKeepsWholeRunsAndGoesOn) {
                         num_kept));
     }
     EXPECT_EQ(run("sweep " + file("sweep.json") + " -o " + file("out")).status, 0);
-    for (const core::Json& row : core::read_json_file(file("out/sweep.json"))["runs"]) {
+    const core::Json result = core::read_json_file(file("out/sweep.json"));
+    for (const core::Json& row : result["runs"]) {
         EXPECT_TRUE(row["failed"].is_null()) << "a run that was given up is no failure";
     }
 }

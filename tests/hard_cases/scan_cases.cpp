@@ -130,7 +130,7 @@ double light_on_curved_and_irregular_walls() {
     // Points on a bowl of 2 m radius, with its normals, each of them twice; then all pairs.
     std::vector<Vec3> positions;
     const Vec3 middle(0.0, 0.0, 2.0);
-    for (int i = 0; i < 12; ++i) {
+    for (int i = 0; i < 6; ++i) {
         const Vec3 aside = test_support::random_point(rng);
         positions.push_back(middle - 2.0 * Vec3(aside.x(), aside.y(), 2.5).normalized());
     }
