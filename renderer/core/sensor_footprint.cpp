@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/core/sensor_footprint.h"
 
+#include "renderer/core/capture.h"
+
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -13,12 +15,12 @@ namespace {
 /// The sensor's rays in its own frame, and the wall that they may hit.
 class Rays {
  public:
-    Rays(const SensorSetup& setup, const SensorPose& pose)
-        : wall_from_world_(setup.wall.world_from_wall().inverse()),
-          world_from_wall_(setup.wall.world_from_wall()),
-          world_from_sensor_(pose.world_from_sensor()),
-          half_width_(0.5 * setup.wall.size_m[0]),
-          half_height_(0.5 * setup.wall.size_m[1]) {}
+    Rays(const RelayWall& wall, const Mat3& world_from_sensor)
+        : wall_from_world_(wall.world_from_wall().inverse()),
+          world_from_wall_(wall.world_from_wall()),
+          world_from_sensor_(world_from_sensor),
+          half_width_(0.5 * wall.size_m[0]),
+          half_height_(0.5 * wall.size_m[1]) {}
 
     /// Where a ray meets the wall's front; nothing when it does not.
     std::optional<Vec3> hit(const Vec3& origin, const Vec2& tangents) const {
@@ -42,27 +44,50 @@ class Rays {
     double half_height_;
 };
 
-/// Tangents of the angles at which the zones' rectangles lie in the sensor's image.
-class ZoneGrid {
- public:
-    explicit ZoneGrid(const SensorModel& model)
-        : columns_(model.zones[0]),
-          rows_(model.zones[1]),
-          half_x_(std::tan(0.5 * model.fov_deg[0] / kDegreesPerRadian)),
-          half_y_(std::tan(0.5 * model.fov_deg[1] / kDegreesPerRadian)) {}
+/// Solid angle of the rectangle between the axis and the tangents x and y [sr].
+double corner_solid_angle(double x, double y) {
+    return std::atan(x * y / std::sqrt(1.0 + x * x + y * y));
+}
 
-    /// column and row   from the image's top left, with fractions
-    Vec2 tangents(double column, double row) const {
-        return {half_x_ * (2.0 * column / columns_ - 1.0), half_y_ * (1.0 - 2.0 * row / rows_)};
+/// The same with the cosine to the axis in the integrand.
+double corner_etendue(double x, double y) {
+    const double a = std::sqrt(1.0 + x * x);
+    const double b = std::sqrt(1.0 + y * y);
+    return 0.5 * (x / a * std::atan(y / a) + y / b * std::atan(x / b));
+}
+
+/// A rectangle of the sensor's image, by the tangents of its sides.
+struct ImageRectangle {
+    Vec2 low;
+    Vec2 high;
+
+    Vec2 center() const { return 0.5 * (low + high); }
+    bool holds(const Vec2& p) const {
+        return (p.array() >= low.array()).all() && (p.array() <= high.array()).all();
     }
-    double zone_area() const { return 4.0 * half_x_ * half_y_ / (columns_ * rows_); }
+    double solid_angle() const { return between_corners(corner_solid_angle); }
+    double etendue() const { return between_corners(corner_etendue); }
+
+    /// Part i of n along x, j along y, of n x n equal ones, from the top left.
+    ImageRectangle part(int i, int j, int columns, int rows) const {
+        const Vec2 step = (high - low).cwiseQuotient(Vec2(columns, rows));
+        const Vec2 corner(low.x() + i * step.x(), high.y() - (j + 1) * step.y());
+        return {corner, corner + step};
+    }
 
  private:
-    int columns_;
-    int rows_;
-    double half_x_;
-    double half_y_;
+    template <class Integral>
+    double between_corners(Integral&& integral) const {
+        return integral(high.x(), high.y()) - integral(low.x(), high.y()) -
+               integral(high.x(), low.y()) + integral(low.x(), low.y());
+    }
 };
+
+ImageRectangle field_of(const SensorModel& model) {
+    const Vec2 half(std::tan(0.5 * model.fov_deg[0] / kDegreesPerRadian),
+                    std::tan(0.5 * model.fov_deg[1] / kDegreesPerRadian));
+    return {-half, half};
+}
 
 void add_point(const std::optional<Vec3>& point,
                const Vec3& origin,
@@ -74,8 +99,46 @@ void add_point(const std::optional<Vec3>& point,
     points.device_m.push_back((*point - origin).norm());
 }
 
-void scale(double factor, std::vector<double>& values) {
-    for (double& value : values) value *= factor;
+/// The laser as the wall sees it.
+struct Laser {
+    Vec3 position;
+    Mat3 sensor_from_world;
+    Vec3 wall_normal;
+
+    /// Irradiance of the wall per watt that is spread evenly over a rectangle of the image [1/m^2].
+    double irradiance(const Vec3& point, const ImageRectangle& lit) const {
+        const Vec3 way = point - position;
+        const Vec3 seen = sensor_from_world * way;
+        if (!(seen.z() < 0.0) || !lit.holds(Vec2(seen.x(), seen.y()) / -seen.z())) return 0.0;
+        const double cosine = -wall_normal.dot(way) / way.norm();
+        return std::max(0.0, cosine) / (lit.solid_angle() * way.squaredNorm());
+    }
+};
+
+/// Where a zone's middle looks; else the mean of what it sees.
+std::optional<Vec3> center_of(const std::optional<Vec3>& middle, const PatchPoints& seen) {
+    if (middle || seen.positions.empty()) return middle;
+    return Vec3(std::accumulate(seen.positions.begin(), seen.positions.end(), Vec3(Vec3::Zero())) /
+                static_cast<double>(seen.size()));
+}
+
+void require_any_seen(const SensorFootprints& footprints,
+                      const SensorPose& pose,
+                      std::size_t frame) {
+    if (footprints.num_dead() < footprints.zones.size()) return;
+    const Vec3& p = pose.position_m;
+    const Vec3& f = pose.forward;
+    throw Error(
+        fmt::format("pose of frame {}", frame),
+        fmt::format("found ({:.4g}, {:.4g}, {:.4g}) looking along ({:.4g}, {:.4g}, {:.4g}), from "
+                    "where no zone sees the relay wall",
+                    p.x(),
+                    p.y(),
+                    p.z(),
+                    f.x(),
+                    f.y(),
+                    f.z()),
+        "must look at the front of the wall, within its size_m");
 }
 
 }  // namespace
@@ -116,70 +179,39 @@ void validate(const SensorSetup& setup, const std::string& where) {
 SensorFootprints make_footprints(const SensorSetup& setup, std::size_t frame) {
     const SensorModel& model = setup.model;
     const SensorPose& pose = setup.pose_of_frame(frame);
-    const Rays rays(setup, pose);
-    const ZoneGrid grid(model);
+    const Mat3 world_from_sensor = pose.world_from_sensor();
+    const Rays rays(setup.wall, world_from_sensor);
+    const ImageRectangle field = field_of(model);
     SensorFootprints result;
     result.receiver_m = pose.position_m;
-    result.laser_m = pose.position_m +
-                     pose.world_from_sensor() * Vec3(model.emitter_m[0], model.emitter_m[1], 0.0);
+    result.laser_m =
+        pose.position_m + world_from_sensor * Vec3(model.emitter_m[0], model.emitter_m[1], 0.0);
     result.normal = setup.wall.normal.normalized();
+    result.zone_etendue_sr = field.etendue() / model.num_zones();
+    const Laser laser{result.laser_m, world_from_sensor.transpose(), result.normal};
     const int n = setup.subsamples;
-    double field_sr = 0.0;  // in units of a subsample's area
-    double etendue = 0.0;
-    for (int row = 0; row < model.zones[1]; ++row) {
-        for (int column = 0; column < model.zones[0]; ++column) {
-            ZoneFootprint& zone = result.zones.emplace_back();
-            double zone_sr = 0.0;
-            for (int j = 0; j < n; ++j) {
-                for (int i = 0; i < n; ++i) {
-                    const Vec2 tangents =
-                        grid.tangents(column + (i + 0.5) / n, row + (j + 0.5) / n);
-                    const double cosine = 1.0 / std::sqrt(1.0 + tangents.squaredNorm());
-                    const double solid_angle = std::pow(cosine, 3);
-                    add_point(
-                        rays.hit(result.laser_m, tangents), result.laser_m, solid_angle, zone.lit);
-                    add_point(rays.hit(result.receiver_m, tangents),
-                              result.receiver_m,
-                              solid_angle * cosine,
-                              zone.seen);
-                    zone_sr += solid_angle;
-                    etendue += solid_angle * cosine;
-                }
-            }
-            field_sr += zone_sr;
-            if (model.illumination == SensorIllumination::Zones) {
-                scale(1.0 / zone_sr, zone.lit.weights);
-            }
-            zone.center_m = rays.hit(result.receiver_m, grid.tangents(column + 0.5, row + 0.5));
-            if (!zone.center_m && !zone.is_dead()) {
-                const auto& points = zone.seen.positions;
-                zone.center_m = std::accumulate(points.begin(), points.end(), Vec3(Vec3::Zero())) /
-                                static_cast<double>(points.size());
-            }
+    for (int index = 0; index < model.num_zones(); ++index) {
+        const ImageRectangle image = field.part(
+            index % model.zones[0], index / model.zones[0], model.zones[0], model.zones[1]);
+        const ImageRectangle& lit = model.illumination == SensorIllumination::Flood ? field : image;
+        ZoneFootprint& zone = result.zones.emplace_back();
+        for (int k = 0; k < n * n; ++k) {
+            const ImageRectangle cell = image.part(k % n, k / n, n, n);
+            add_point(rays.hit(result.laser_m, cell.center()),
+                      result.laser_m,
+                      cell.solid_angle() / lit.solid_angle(),
+                      zone.lit);
+            add_point(rays.hit(result.receiver_m, cell.center()),
+                      result.receiver_m,
+                      cell.etendue() / result.zone_etendue_sr,
+                      zone.seen);
         }
-    }
-    const double mean_etendue = etendue / model.num_zones();
-    for (ZoneFootprint& zone : result.zones) {
-        scale(1.0 / mean_etendue, zone.seen.weights);
-        if (model.illumination == SensorIllumination::Flood) {
-            scale(1.0 / field_sr, zone.lit.weights);
+        for (const Vec3& point : zone.seen.positions) {
+            zone.seen_irradiance.push_back(laser.irradiance(point, lit));
         }
+        zone.center_m = center_of(rays.hit(result.receiver_m, image.center()), zone.seen);
     }
-    result.zone_etendue_sr = mean_etendue * grid.zone_area() / (n * n);
-    if (result.num_dead() == result.zones.size()) {
-        const Vec3& p = pose.position_m;
-        const Vec3& f = pose.forward;
-        throw Error(fmt::format("pose of frame {}", frame),
-                    fmt::format("at ({:.4g}, {:.4g}, {:.4g}) looking along ({:.4g}, {:.4g}, "
-                                "{:.4g}) no zone sees the relay wall",
-                                p.x(),
-                                p.y(),
-                                p.z(),
-                                f.x(),
-                                f.y(),
-                                f.z()),
-                    "must look at the wall's front");
-    }
+    require_any_seen(result, pose, frame);
     return result;
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/core/capture.h"
 #include "renderer/core/relay_wall.h"
 #include "renderer/core/sensor_model.h"
 #include "renderer/core/types.h"
@@ -12,6 +11,8 @@
 #include <vector>
 
 namespace core {
+
+struct Capture;
 
 /// Where a sensor is and looks; its position is that of the receiving lens.
 struct SensorPose {
@@ -72,6 +73,10 @@ struct ZoneFootprint {
     /// zones add up to their number if every ray hits the wall.
     PatchPoints seen;
 
+    /// Of the wall at the points of `seen`, per watt of laser power while the zone measures
+    /// [1/m^2]: what the direct return and retroreflectors send back to the same point.
+    std::vector<double> seen_irradiance;
+
     std::optional<Vec3> center_m;  ///< where the zone's middle looks, else the mean point seen
 
     /// Sees nothing of the wall, so that its histogram stays dark.
@@ -100,6 +105,11 @@ void validate(const SensorSetup& setup, const std::string& where);
 /// 1 W on l,
 ///
 ///     H[zone] = sum over s in seen(zone), l in lit of weight(s) weight(l) H(l, s)
+///
+/// plus, with R(s) the radiance that leaves s for an irradiance of 1 W/m^2 that comes back to the
+/// same point (its own return and retroreflectors),
+///
+///     sum over s in seen(zone) of weight(s) seen_irradiance(s) R(s)
 ///
 /// with l in lit(zone) alone where zones light their own spots and in lit of all zones for flood
 /// light; path lengths include the legs `device_m` of both.
