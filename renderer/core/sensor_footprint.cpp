@@ -215,7 +215,41 @@ SensorFootprints make_footprints(const SensorSetup& setup, std::size_t frame) {
     return result;
 }
 
+Scan scan_of_zones(const SensorSetup& setup, std::size_t frame) {
+    const SensorFootprints footprints = make_footprints(setup, frame);
+    Scan scan;
+    for (const ZoneFootprint& zone : footprints.zones) {
+        scan.sensing.positions.push_back(zone.center_m.value_or(setup.wall.center_m));
+        scan.sensing.normals.push_back(footprints.normal);
+    }
+    scan.illumination = scan.sensing;
+    scan.opl_origin = OplOrigin::Device;
+    scan.laser_position = footprints.laser_m;
+    scan.detector_position = footprints.receiver_m;
+    scan.sensor = std::make_shared<const SensorSetup>(setup);
+    return scan;
+}
+
+void observe_live_zones(const SensorSetup& setup, Capture& capture) {
+    capture.observed = {};
+    std::vector<bool> is_dead(static_cast<std::size_t>(setup.model.num_zones()), true);
+    const std::size_t num_frames = capture.sequence ? capture.sequence->frames.size() : 1;
+    for (std::size_t frame = 0; frame < (setup.poses.empty() ? 1 : num_frames); ++frame) {
+        const SensorFootprints footprints = make_footprints(setup, frame);
+        for (std::size_t zone = 0; zone < is_dead.size(); ++zone) {
+            if (!footprints.zones[zone].is_dead()) is_dead[zone] = false;
+        }
+    }
+    if (std::none_of(is_dead.begin(), is_dead.end(), [](bool dead) { return dead; })) return;
+    std::vector<BinRange> ranges;
+    for (const bool dead : is_dead) {
+        ranges.push_back({0, dead ? 0 : capture.time_axis.num_bins});
+    }
+    restrict_observed(capture, ranges);
+}
+
 std::optional<SensorSetup> recorded_sensor(const Capture& capture) {
+    if (capture.scan.sensor) return *capture.scan.sensor;
     if (!capture.scene_info.is_object()) return std::nullopt;
     const auto found = capture.scene_info.find("sensor");
     if (found == capture.scene_info.end() || !found->is_object()) return std::nullopt;
