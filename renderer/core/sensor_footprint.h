@@ -89,11 +89,13 @@ struct SensorFootprints {
     Vec3 laser_m;                      ///< world
     Vec3 receiver_m;                   ///< world
     Vec3 normal;                       ///< of the wall, unit
-    double zone_etendue_sr = 0.0;      ///< mean of a zone: solid angle times the cosine at the lens
     std::vector<ZoneFootprint> zones;  ///< as the model numbers them
 
     std::size_t num_dead() const;
 };
+
+/// Solid angle that a zone sees times the cosine at the lens, mean over the zones [sr].
+double zone_etendue_sr(const SensorModel& model);
 
 /// Throws Error naming the value that is out of range.
 void validate(const SensorPose& pose, const std::string& where);
@@ -118,6 +120,9 @@ void validate(const SensorSetup& setup, const std::string& where);
 /// setup    validated
 /// throws   Error when no zone sees the wall
 SensorFootprints make_footprints(const SensorSetup& setup, std::size_t frame = 0);
+
+/// What it is and where it looks, for people: lines of text.
+std::vector<std::string> describe_sensor(const SensorSetup& setup);
 
 /// A confocal scan of the points that the middles of the zones look at, with the legs of laser and
 /// receiver. Dead zones stand at the wall's centre.
