@@ -77,8 +77,8 @@ void require_zones(const core::SensorSetup& setup, const core::Capture& capture)
     const auto zones = static_cast<std::size_t>(setup.model.num_zones());
     core::require(capture.scan.num_pairs() == zones,
                   "sensor",
-                  fmt::format("found {} pairs for {} zones", capture.scan.num_pairs(), zones),
-                  "must be a capture of one pair per zone");
+                  fmt::format("{} pairs for {} zones", capture.scan.num_pairs(), zones),
+                  "a capture of one pair per zone");
 }
 
 }  // namespace
@@ -106,8 +106,8 @@ void add_crosstalk(const core::SensorSetup& setup, core::Capture& capture) {
     core::require(
         sensor.cover_glass_crosstalk == 0.0 || capture.unit == core::TransientUnit::Radiance,
         "sensor",
-        "found a cover glass to add to counts",
-        "must be a capture of radiance");
+        "a cover glass to add to counts",
+        "a capture of radiance");
     for_each_frame(capture, [&](std::size_t, core::Transient& zones, const core::TimeAxis& axis) {
         mix(setup.model, zones);
         add_glass(setup, axis, zones);

@@ -39,8 +39,8 @@ void validate(const SensorModel& model, const std::string& where) {
     constexpr int kMostZones = 4096;
     require(model.num_zones() <= kMostZones,
             join_key(where, "zones"),
-            fmt::format("found {} zones", model.num_zones()),
-            fmt::format("must be at most {}", kMostZones));
+            fmt::format("{} zones", model.num_zones()),
+            fmt::format("at most {}", kMostZones));
 }
 
 std::vector<std::string> shipped_sensors() {
@@ -58,8 +58,8 @@ SensorModel read_sensor_model(const std::string& name_or_path, const std::string
     const bool is_file = std::filesystem::path(name_or_path).extension() == ".json";
     require(known != shipped.end() || is_file,
             where,
-            "found \"" + name_or_path + "\"",
-            fmt::format("must be one of {} or a .json file", fmt::join(shipped_sensors(), ", ")));
+            "\"" + name_or_path + "\"",
+            fmt::format("one of {} or a .json file", fmt::join(shipped_sensors(), ", ")));
     const std::string prefix = name_or_path + ": ";
     const Json json = known != shipped.end() ? parse_json(known->second, name_or_path)
                                              : read_json_file(name_or_path);

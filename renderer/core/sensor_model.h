@@ -24,16 +24,16 @@ struct SensorDetector {
     double pulse_fwhm_ps = 0.0;
     double jitter_fwhm_ps = 0.0;
     double wavelength_nm = 940.0;
-    double laser_w = 0.0;
-    double repetition_hz = 0.0;
-    double aperture_mm2 = 0.0;
-    double efficiency = 0.0;
+    double laser_w = 0.02;
+    double repetition_hz = 2.5e7;
+    double aperture_mm2 = 0.5;
+    double efficiency = 0.02;
     double dark_counts_hz = 0.0;
     double dead_time_ns = 0.0;
     bool pile_up = false;
     double zone_crosstalk = 0.0;
     double cover_glass_crosstalk = 0.0;
-    double frame_s = 0.0;
+    double frame_s = 0.0333;
     int cut_after_direct_bins = 0;
 
     /// Width of pulse and jitter together [ps], both taken for Gaussian.

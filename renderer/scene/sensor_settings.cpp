@@ -55,14 +55,14 @@ void validate_sensor(const ScanSettings& scan, const std::string& where) {
         const char* key = scan.sensor ? "sensor" : scan.pose ? "pose" : "poses";
         require(!scan.sensor && !scan.pose && scan.poses.empty(),
                 fmt::format("{}.{}", where, key),
-                fmt::format("found with pattern {}", core::enum_name(scan.pattern.pattern)),
-                "must stand with pattern sensor");
+                fmt::format("a value with pattern {}", core::enum_name(scan.pattern.pattern)),
+                "left out, or pattern be sensor");
         return;
     }
     require(scan.sensor.has_value(),
             where + ".sensor",
-            "found none with pattern sensor",
-            fmt::format("must be one of {}, a .json file or an object",
+            "none with pattern sensor",
+            fmt::format("one of {}, a .json file or an object",
                         fmt::join(core::shipped_sensors(), ", ")));
     core::validate(static_cast<const core::SensorModel&>(*scan.sensor), where + ".sensor");
     if (!scan.sensing_points_m.empty() || !scan.illumination_points_m.empty()) {
@@ -72,8 +72,8 @@ void validate_sensor(const ScanSettings& scan, const std::string& where) {
     }
     require(scan.pose.has_value() != !scan.poses.empty(),
             where + ".pose",
-            scan.pose ? "found together with poses" : "found neither pose nor poses",
-            "must be one of them");
+            scan.pose ? "it together with poses" : "neither pose nor poses",
+            "one of them");
     if (scan.pose) core::validate(*scan.pose, where + ".pose");
     for (std::size_t i = 0; i < scan.poses.size(); ++i) {
         core::validate(scan.poses[i], fmt::format("{}.poses[{}]", where, i));
@@ -85,8 +85,8 @@ void validate_poses(const SceneDescription& scene, const std::string& where) {
     const std::size_t frames = scene.frames ? static_cast<std::size_t>(scene.frames->count) : 1;
     require(scene.scan.poses.size() == frames,
             where + "scan.poses",
-            fmt::format("found {}", scene.scan.poses.size()),
-            fmt::format("must be as many as frames.count, {}", frames));
+            fmt::format("{} poses", scene.scan.poses.size()),
+            fmt::format("as many as frames.count, {}", frames));
 }
 
 core::SensorSetup make_sensor_setup(const SceneDescription& scene) {

@@ -33,12 +33,12 @@ SensorSetup oblique_setup() {
     return setup;
 }
 
-double sum(const std::vector<double>& values) {
+double sum_of_weights(const std::vector<double>& values) {
     return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
 // Of a pyramid with these full angles, by the formula for its apex.
-double solid_angle(double a_deg, double b_deg) {
+double pyramid_solid_angle(double a_deg, double b_deg) {
     return 4.0 * std::asin(std::sin(0.5 * a_deg / core::kDegreesPerRadian) *
                            std::sin(0.5 * b_deg / core::kDegreesPerRadian));
 }
@@ -70,13 +70,14 @@ TEST(SensorFootprint, LightIsSpreadEvenlyOverTheSolidAngle) {
     setup.subsamples = 1;
     const SensorFootprints one = core::make_footprints(setup);
     EXPECT_NEAR(one.zones[0].lit.weights[0], 1.0, 1e-12);
-    EXPECT_NEAR(one.zones[0].seen_irradiance[0], 1.0 / (solid_angle(40, 30) * 1.44), 1e-9);
+    EXPECT_NEAR(one.zones[0].seen_irradiance[0], 1.0 / (pyramid_solid_angle(40, 30) * 1.44), 1e-9);
     for (const SensorSetup& many : {straight_setup(), oblique_setup()}) {
         double lit = 0.0;
         double seen = 0.0;
-        for (const auto& zone : core::make_footprints(many).zones) {
-            lit += sum(zone.lit.weights);
-            seen += sum(zone.seen.weights);
+        const SensorFootprints footprints = core::make_footprints(many);
+        for (const auto& zone : footprints.zones) {
+            lit += sum_of_weights(zone.lit.weights);
+            seen += sum_of_weights(zone.seen.weights);
         }
         EXPECT_NEAR(lit, 1.0, 1e-12);
         EXPECT_NEAR(seen, 6.0, 1e-12);
@@ -89,8 +90,8 @@ TEST(SensorFootprint, ZoneOfItsOwnLightGetsAllOfIt) {
     setup.model.illumination = core::SensorIllumination::Zones;
     const SensorFootprints own = core::make_footprints(setup);
     for (std::size_t zone = 0; zone < 6; ++zone) {
-        const double share = sum(flood.zones[zone].lit.weights);
-        EXPECT_NEAR(sum(own.zones[zone].lit.weights), 1.0, 1e-12);
+        const double share = sum_of_weights(flood.zones[zone].lit.weights);
+        EXPECT_NEAR(sum_of_weights(own.zones[zone].lit.weights), 1.0, 1e-12);
         EXPECT_NEAR(
             flood.zones[zone].seen_irradiance[5] / share, own.zones[zone].seen_irradiance[5], 1e-9);
     }
@@ -102,8 +103,8 @@ TEST(SensorFootprint, IrradianceIsLightPerArea) {
     setup.subsamples = 40;
     SensorSetup fine = setup;
     fine.subsamples = 80;  // its points 2i and 2i + 1 span half a part of the coarse grid
-    const auto& zone = core::make_footprints(setup).zones[1];
-    const auto& points = core::make_footprints(fine).zones[1].seen.positions;
+    const core::ZoneFootprint zone = core::make_footprints(setup).zones[1];
+    const std::vector<Vec3> points = core::make_footprints(fine).zones[1].seen.positions;
     for (const std::size_t i : {0U, 17U, 39U}) {
         const std::size_t corner = 2 * 80 * 5 + 2 * i;
         const Vec3 u = points[corner + 1] - points[corner];
@@ -115,14 +116,13 @@ TEST(SensorFootprint, IrradianceIsLightPerArea) {
 }
 
 TEST(SensorFootprint, EtendueFallsOffWithTheCosine) {
-    // A sensor straight ahead sees a disc of half-angle a with pi sin^2 a; a field of 2 x 89.9
-    // degrees comes close to the hemisphere's pi.
+    // All of a hemisphere is pi; a field of 170 x 170 degrees comes close to it.
     core::SensorModel model;
     model.fov_deg = {170.0, 170.0};
     model.zones = {1, 1};
     EXPECT_NEAR(core::zone_etendue_sr(model), core::kPi, 0.03);
     model.fov_deg = {2.0, 2.0};
-    EXPECT_NEAR(core::zone_etendue_sr(model), solid_angle(2, 2), 1e-6);
+    EXPECT_NEAR(core::zone_etendue_sr(model), pyramid_solid_angle(2, 2), 1e-6);
 }
 
 TEST(SensorFootprint, RotatesWithTheWorld) {

@@ -16,7 +16,7 @@ core::Json json_of(const std::string& name) {
 }
 
 // The model read from a file that differs from a shipped one in what is given.
-core::SensorModel model_with(const core::Json& changes) {
+core::SensorModel shipped_model_with(const core::Json& changes) {
     const test_support::TemporaryFolder folder;
     core::Json json = json_of("vl53l8");
     json.merge_patch(changes);
@@ -55,7 +55,7 @@ TEST(SensorModel, BinsAreThoseOfPathLength) {
 }
 
 TEST(SensorModel, FilesAreReadAndWrittenUnchanged) {
-    const core::SensorModel model = model_with({{"zones", {8, 8}}, {"name", "mine"}});
+    const core::SensorModel model = shipped_model_with({{"zones", {8, 8}}, {"name", "mine"}});
     EXPECT_EQ(model.num_zones(), 64);
     EXPECT_EQ(model.name, "mine");
     EXPECT_EQ(model.sources, core::read_sensor_model("vl53l8").sources);
@@ -66,14 +66,16 @@ TEST(SensorModel, MessagesNameFileKeyAndRange) {
         core::read_sensor_model("vl53l9", "scan.sensor"),
         "scan.sensor: found \"vl53l9\"; must be one of vl53l8, tmf8828, tmf8829 or a");
     EXPECT_ERROR_WITH(core::read_sensor_model("nowhere.json"), "nowhere.json");
-    EXPECT_ERROR_WITH(model_with({{"zones", {0, 4}}}), "other.json: zones");
-    EXPECT_ERROR_WITH(model_with({{"zones", {128, 128}}}), "16384 zones");
-    EXPECT_ERROR_WITH(model_with({{"fov_deg", {45, 180}}}), "fov_deg");
-    EXPECT_ERROR_WITH(model_with({{"illumination", "scanned"}}), "flood|zones");
-    EXPECT_ERROR_WITH(model_with({{"detector", {{"efficiency", 1.5}}}}), "detector.efficiency");
-    EXPECT_ERROR_WITH(model_with({{"detector", {{"zone_crosstalk", 0.3}}}}), "zone_crosstalk");
-    EXPECT_ERROR_WITH(model_with({{"bin_width_ps", 250}}), "bin_width_ps");
-    EXPECT_ERROR_WITH(model_with({{"sources", {{"zones", 3}}}}), "sources.zones");
+    EXPECT_ERROR_WITH(shipped_model_with({{"zones", {0, 4}}}), "other.json: zones");
+    EXPECT_ERROR_WITH(shipped_model_with({{"zones", {128, 128}}}), "16384 zones");
+    EXPECT_ERROR_WITH(shipped_model_with({{"fov_deg", {45, 180}}}), "fov_deg");
+    EXPECT_ERROR_WITH(shipped_model_with({{"illumination", "scanned"}}), "flood|zones");
+    EXPECT_ERROR_WITH(shipped_model_with({{"detector", {{"efficiency", 1.5}}}}),
+                      "detector.efficiency");
+    EXPECT_ERROR_WITH(shipped_model_with({{"detector", {{"zone_crosstalk", 0.3}}}}),
+                      "zone_crosstalk");
+    EXPECT_ERROR_WITH(shipped_model_with({{"bin_width_ps", 250}}), "bin_width_ps");
+    EXPECT_ERROR_WITH(shipped_model_with({{"sources", {{"zones", 3}}}}), "sources.zones");
 }
 
 }  // namespace
