@@ -124,12 +124,12 @@ std::optional<Vec3> center_of(const std::optional<Vec3>& middle, const PatchPoin
 
 void require_any_seen(const SensorFootprints& footprints,
                       const SensorPose& pose,
-                      std::size_t frame) {
+                      const std::string& where) {
     if (footprints.num_dead() < footprints.zones.size()) return;
     const Vec3& p = pose.position_m;
     const Vec3& f = pose.forward;
     throw Error(
-        fmt::format("pose of frame {}", frame),
+        where,
         fmt::format("found ({:.4g}, {:.4g}, {:.4g}) looking along ({:.4g}, {:.4g}, {:.4g}), from "
                     "where no zone sees the relay wall",
                     p.x(),
@@ -215,7 +215,7 @@ SensorFootprints make_footprints(const SensorSetup& setup, std::size_t frame) {
         }
         zone.center_m = center_of(rays.hit(result.receiver_m, image.center()), zone.seen);
     }
-    require_any_seen(result, pose, frame);
+    require_any_seen(result, pose, setup.poses.empty() ? "pose" : fmt::format("poses[{}]", frame));
     return result;
 }
 

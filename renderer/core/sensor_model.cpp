@@ -33,6 +33,12 @@ Json write_value(const SourceTable& sources) {
     return json;
 }
 
+Json write_value(const SensorModel& model) {
+    Json json = write_value<SensorModel>(model);
+    json.erase("sources");
+    return json;
+}
+
 void validate(const SensorModel& model, const std::string& where) {
     check_ranges(model, where);
     check_ranges(model.detector, join_key(where, "detector"));

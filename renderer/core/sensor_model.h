@@ -124,6 +124,9 @@ void for_each_field(SensorModel& s, Visitor&& visit) {
     visit("sources", s.sources, "by key: where its number comes from");
 }
 
+/// All but the sources, which stay with the description.
+Json write_value(const SensorModel& model);
+
 /// Throws Error naming the value that is out of range.
 void validate(const SensorModel& model, const std::string& where);
 

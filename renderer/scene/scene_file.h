@@ -114,6 +114,7 @@ void for_each_field(SensorSettings& sensor, Visitor&& visit) {
 
 /// A sensor is an object with fields, or a name.
 void read_value(const core::Json& json, const std::string& where, SensorSettings& sensor);
+core::Json write_value(const SensorSettings& sensor);
 
 template <class Visitor>
 void for_each_field(ScanSettings& scan, Visitor&& visit) {

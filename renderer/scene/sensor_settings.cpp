@@ -41,6 +41,10 @@ void read_value(const core::Json& json, const std::string& where, SensorSettings
     }
 }
 
+core::Json write_value(const SensorSettings& sensor) {
+    return core::write_value(static_cast<const core::SensorModel&>(sensor));
+}
+
 void read_sensor(const std::string& folder, const std::string& where, SensorSettings& sensor) {
     if (sensor.source.empty()) return;
     namespace fs = std::filesystem;
