@@ -186,18 +186,6 @@ void look_up_camera(const std::string& where, SceneDescription& scene) {
                               : "must be one of " + known);
 }
 
-// Reads what a sensor's name stands for, and takes the sensor's bins where no others are given.
-void look_up_sensor(const std::string& folder,
-                    const std::string& where,
-                    const core::Json& keys,
-                    SceneDescription& scene) {
-    if (scene.scan.sensor) read_sensor(folder, where + "scan.sensor", *scene.scan.sensor);
-    if (!scene.scan.pattern.of_sensor || !scene.scan.sensor) return;
-    if (scene.time_axis.automatic || !keys.contains("time_axis")) {
-        scene.time_axis = {scene.scan.sensor->time_axis()};
-    }
-}
-
 // A camera measures instead of wall and scan; a file that names both means something else.
 void refuse_two_setups(const core::Json& keys, const std::string& where) {
     if (!keys.contains("camera") || keys["camera"].is_null()) return;

@@ -54,6 +54,17 @@ void read_sensor(const std::string& folder, const std::string& where, SensorSett
     sensor = {core::read_sensor_model(source, where), ""};
 }
 
+void look_up_sensor(const std::string& folder,
+                    const std::string& where,
+                    const core::Json& keys,
+                    SceneDescription& scene) {
+    if (scene.scan.sensor) read_sensor(folder, where + "scan.sensor", *scene.scan.sensor);
+    if (!scene.scan.pattern.of_sensor || !scene.scan.sensor) return;
+    if (scene.time_axis.automatic || !keys.contains("time_axis")) {
+        scene.time_axis = {scene.scan.sensor->time_axis()};
+    }
+}
+
 void validate_sensor(const ScanSettings& scan, const std::string& where) {
     if (!scan.pattern.of_sensor) {
         const char* key = scan.sensor ? "sensor" : scan.pose ? "pose" : "poses";

@@ -14,6 +14,13 @@ namespace renderer {
 /// throws   core::Error naming file and key, or the known names
 void read_sensor(const std::string& folder, const std::string& where, SensorSettings& sensor);
 
+/// Does so for the sensor of a scene, and takes its bins where `keys`, those of scene.json, hold no
+/// others.
+void look_up_sensor(const std::string& folder,
+                    const std::string& where,
+                    const core::Json& keys,
+                    SceneDescription& scene);
+
 /// Throws core::Error unless a scan has a sensor with a pose if and only if its pattern says so.
 void validate_sensor(const ScanSettings& scan, const std::string& where);
 
