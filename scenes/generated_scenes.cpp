@@ -26,7 +26,8 @@ std::vector<GeneratedScene> generated_scenes() {
             make_box_room(),
             make_diffuse_room(),
             make_relief_room(),
-            make_traffic()};
+            make_traffic(),
+            make_visitor()};
 }
 
 void write_scene(const GeneratedScene& scene, const std::string& folder) {

@@ -31,6 +31,7 @@ GeneratedScene make_box_room();      ///< a room with a mirror-like ball and a g
 GeneratedScene make_diffuse_room();  ///< the same room, all diffuse, with a wavy ball
 GeneratedScene make_relief_room();   ///< a room, one half of it in fine wavy meshes
 GeneratedScene make_traffic();       ///< a road with three things that move
+GeneratedScene make_visitor();       ///< somebody in a reflective vest who walks by
 
 std::vector<GeneratedScene> generated_scenes();
 

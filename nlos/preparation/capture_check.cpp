@@ -4,6 +4,7 @@
 #include "nlos/preparation/first_light.h"
 #include "nlos/preparation/histogram_preparation.h"
 #include "nlos/preparation/slip_recognition.h"
+#include "renderer/core/sensor_footprint.h"
 
 #include <fmt/format.h>
 
@@ -44,9 +45,11 @@ std::vector<double> ambient_of(const core::Capture& capture) {
     return std::vector<double>(capture.scan.num_pairs(), 0.0);
 }
 
-/// Light, above the background, in bins that end before the shortest possible path.
+/// Light, above the background, in bins that end before the shortest possible path. That of a patch
+/// of the wall, which a sensor's zone sees, is not known here.
 std::optional<std::string> early_light(const core::Capture& capture,
                                        const std::vector<double>& ambient) {
+    if (core::recorded_sensor(capture)) return std::nullopt;
     const core::TimeAxis& axis = capture.time_axis;
     double early = 0.0;
     double total = 0.0;

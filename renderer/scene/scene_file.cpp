@@ -3,6 +3,7 @@
 
 #include "renderer/core/process.h"
 #include "renderer/gltf/gltf.h"
+#include "renderer/scene/sensor_settings.h"
 
 #include <fmt/core.h>
 
@@ -36,15 +37,6 @@ void validate_geometry(const SceneDescription& scene, const std::string& where) 
     }
 }
 
-void validate_wall(const RelayWall& wall, const std::string& where) {
-    require(wall.normal.norm() > 1e-9, where + ".normal length", wall.normal.norm(), "above 0");
-    require(wall.up.cross(wall.normal.normalized()).norm() > 1e-9 * (1.0 + wall.up.norm()),
-            where + ".up part across the normal",
-            0.0,
-            "above 0");
-    core::check_ranges(wall, where);
-}
-
 void validate_normals(const std::vector<Vec3>& points,
                       const std::vector<Vec3>& normals,
                       const std::string& where) {
@@ -59,6 +51,8 @@ void validate_normals(const std::vector<Vec3>& points,
 
 void validate_scan(const ScanSettings& scan, const std::string& where) {
     core::check_ranges(scan, where);
+    validate_sensor(scan, where);
+    if (scan.pattern.of_sensor) return;
     validate_normals(scan.sensing_points_m, scan.sensing_normals, where + ".sensing_normals");
     validate_normals(
         scan.illumination_points_m, scan.illumination_normals, where + ".illumination_normals");
@@ -85,7 +79,9 @@ void validate_size(const SceneDescription& scene, const std::string& where) {
                               : static_cast<double>(points.size());
     };
     double pairs = count(scan.sensing_points_m, scan.sensing_points);
-    if (scene.camera) {
+    if (scan.pattern.of_sensor) {
+        pairs = scan.sensor->num_zones();
+    } else if (scene.camera) {
         pairs = static_cast<double>(scene.camera->num_pixels());
     } else if (scan.pattern == core::ScanPattern::Exhaustive) {
         pairs *= count(scan.illumination_points_m, scan.illumination_points);
@@ -237,22 +233,13 @@ void read_value(const core::Json& json, const std::string& where, CameraSettings
     }
 }
 
-core::Transform RelayWall::world_from_wall() const {
-    const Vec3 z = normal.normalized();
-    const Vec3 x = up.cross(z).normalized();
-    core::Transform transform = core::Transform::Identity();
-    transform.linear().col(0) = x;
-    transform.linear().col(1) = z.cross(x);
-    transform.linear().col(2) = z;
-    transform.translation() = center_m;
-    return transform;
-}
-
 SceneDescription read_scene_description(const std::string& path,
                                         const std::vector<std::string>& overrides) {
     SceneDescription scene;
     core::Json keys = core::read_json_file(path);
     core::read_value(keys, path + ": ", scene);
+    const std::string folder = std::filesystem::path(path).parent_path().string();
+    if (scene.scan.sensor) read_sensor(folder, path + ": scan.sensor", *scene.scan.sensor);
     for (const std::string& text : overrides) {
         core::apply_override(scene, text);
         keys.update(core::parse_override(text));
@@ -263,8 +250,9 @@ SceneDescription read_scene_description(const std::string& path,
                     "found nothing",
                     "must name a .glb, .gltf, .obj, .ply or .stl file");
     }
-    scene.geometry = (std::filesystem::path(path).parent_path() / scene.geometry).string();
+    scene.geometry = (std::filesystem::path(folder) / scene.geometry).string();
     look_up_camera(path + ": camera", scene);
+    look_up_sensor(folder, path + ": ", keys, scene);
     validate(scene, path + ": ");
     return scene;
 }
@@ -273,6 +261,7 @@ void change_description(SceneDescription& scene, const core::Json& changes) {
     core::read_value(changes, "", scene);
     refuse_two_setups(changes, "");
     if (changes.contains("camera")) look_up_camera("camera", scene);
+    look_up_sensor("", "", {{"time_axis", nullptr}}, scene);
     validate(scene, "");
 }
 
@@ -285,12 +274,13 @@ void validate(const SceneDescription& scene, const std::string& where) {
                 fmt::format("{} with camera.light_spot_m", scene.render.max_bounces),
                 "at least 2: the lit spot counts as a bounce");
     } else {
-        validate_wall(scene.relay_wall, where + "relay_wall");
+        core::validate(scene.relay_wall, where + "relay_wall");
         validate_scan(scene.scan, where + "scan");
     }
     if (!scene.time_axis.automatic) core::validate(scene.time_axis, where + "time_axis");
     if (scene.velocity_axis) core::validate(*scene.velocity_axis, where + "velocity_axis");
     if (scene.frames) core::check_ranges(*scene.frames, where + "frames");
+    validate_poses(scene, where);
     validate(scene.render, where + "render");
     core::check_ranges(scene.ground_truth, where + "ground_truth");
     validate_size(scene, where);
@@ -303,6 +293,7 @@ void validate(const SceneDescription& scene, const std::string& where) {
 
 core::Scan make_scan(const SceneDescription& scene) {
     if (scene.camera) return image_of(*scene.camera);
+    if (scene.scan.pattern.of_sensor) return core::scan_of_zones(make_sensor_setup(scene));
     core::Scan scan;
     scan.pattern = scene.scan.pattern;
     scan.sensing = scene.scan.sensing_points_m.empty()
