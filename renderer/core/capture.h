@@ -10,12 +10,15 @@
 #include "renderer/core/velocity_axis.h"
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace core {
+
+struct SensorSetup;
 
 /// How illumination and sensing points pair up.
 enum class ScanPattern { Single, Confocal, Exhaustive };
@@ -64,6 +67,10 @@ struct Scan {
     /// When set, its pixels and its light are what is measured; both lists of points are empty,
     /// `pattern` is Single, and the devices are the camera and its light.
     std::optional<PinholeCamera> camera;
+
+    /// When set, its zones are what is measured: `pattern` is Confocal, and the points are those
+    /// that the middles of the zones look at.
+    std::shared_ptr<const SensorSetup> sensor;
 
     std::size_t num_pairs() const {
         if (camera) return camera->num_pixels();

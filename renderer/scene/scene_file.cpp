@@ -36,15 +36,6 @@ void validate_geometry(const SceneDescription& scene, const std::string& where) 
     }
 }
 
-void validate_wall(const RelayWall& wall, const std::string& where) {
-    require(wall.normal.norm() > 1e-9, where + ".normal length", wall.normal.norm(), "above 0");
-    require(wall.up.cross(wall.normal.normalized()).norm() > 1e-9 * (1.0 + wall.up.norm()),
-            where + ".up part across the normal",
-            0.0,
-            "above 0");
-    core::check_ranges(wall, where);
-}
-
 void validate_normals(const std::vector<Vec3>& points,
                       const std::vector<Vec3>& normals,
                       const std::string& where) {
@@ -237,17 +228,6 @@ void read_value(const core::Json& json, const std::string& where, CameraSettings
     }
 }
 
-core::Transform RelayWall::world_from_wall() const {
-    const Vec3 z = normal.normalized();
-    const Vec3 x = up.cross(z).normalized();
-    core::Transform transform = core::Transform::Identity();
-    transform.linear().col(0) = x;
-    transform.linear().col(1) = z.cross(x);
-    transform.linear().col(2) = z;
-    transform.translation() = center_m;
-    return transform;
-}
-
 SceneDescription read_scene_description(const std::string& path,
                                         const std::vector<std::string>& overrides) {
     SceneDescription scene;
@@ -285,7 +265,7 @@ void validate(const SceneDescription& scene, const std::string& where) {
                 fmt::format("{} with camera.light_spot_m", scene.render.max_bounces),
                 "at least 2: the lit spot counts as a bounce");
     } else {
-        validate_wall(scene.relay_wall, where + "relay_wall");
+        core::validate(scene.relay_wall, where + "relay_wall");
         validate_scan(scene.scan, where + "scan");
     }
     if (!scene.time_axis.automatic) core::validate(scene.time_axis, where + "time_axis");

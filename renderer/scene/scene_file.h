@@ -2,6 +2,7 @@
 #pragma once
 
 #include "renderer/core/capture.h"
+#include "renderer/core/relay_wall.h"
 #include "renderer/material/scene_geometry.h"
 #include "renderer/mesh_file/mesh_file.h"
 #include "renderer/settings/render_settings.h"
@@ -14,17 +15,7 @@
 
 namespace renderer {
 
-/// The rectangle that laser and detector are aimed at.
-struct RelayWall {
-    core::Vec3 center_m = core::Vec3::Zero();
-    core::Vec3 normal = core::Vec3::UnitZ();
-    core::Vec3 up = core::Vec3::UnitY();
-    std::array<double, 2> size_m{1.0, 1.0};
-    double albedo = 1.0;
-
-    /// x along up x normal, y up within the wall, z along the normal.
-    core::Transform world_from_wall() const;
-};
+using core::RelayWall;
 
 /// Which wall points are illuminated and sensed. Explicit points replace the grids.
 struct ScanSettings {
@@ -90,15 +81,6 @@ struct SceneDescription {
     RenderSettings render;
     GroundTruthSettings ground_truth;
 };
-
-template <class Visitor>
-void for_each_field(RelayWall& wall, Visitor&& visit) {
-    visit("center_m", wall.center_m, "centre of the relay wall, world [m]");
-    visit("normal", wall.normal, "towards the hidden side");
-    visit("up", wall.up, "the wall's y axis, up to its part along the normal");
-    visit("size_m", wall.size_m, core::above(0, "width and height [m]"));
-    visit("albedo", wall.albedo, core::between(0, 1, "diffuse albedo of the wall"));
-}
 
 template <class Visitor>
 void for_each_field(ScanSettings& scan, Visitor&& visit) {

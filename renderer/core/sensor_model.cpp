@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/core/sensor_model.h"
+
+#include "renderer/core/shipped_sensors.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+namespace core {
+
+double SensorDetector::response_fwhm_ps() const {
+    return std::hypot(pulse_fwhm_ps, jitter_fwhm_ps);
+}
+
+TimeAxis SensorModel::time_axis() const {
+    return {opl_from_seconds(first_bin_s), opl_from_seconds(bin_width_s), num_bins};
+}
+
+void read_value(const Json& json, const std::string& where, SourceTable& sources) {
+    if (!json.is_object()) throw_wrong_type(where, json, "an object with one text per key");
+    for (const auto& [key, text] : json.items()) {
+        read_value(text, join_key(where, key), sources[key]);
+    }
+}
+
+Json write_value(const SourceTable& sources) {
+    Json json = Json::object();
+    for (const auto& [key, text] : sources) json[key] = text;
+    return json;
+}
+
+void validate(const SensorModel& model, const std::string& where) {
+    check_ranges(model, where);
+    check_ranges(model.detector, join_key(where, "detector"));
+    constexpr int kMostZones = 4096;
+    require(model.num_zones() <= kMostZones,
+            join_key(where, "zones"),
+            fmt::format("found {} zones", model.num_zones()),
+            fmt::format("must be at most {}", kMostZones));
+}
+
+std::vector<std::string> shipped_sensors() {
+    std::vector<std::string> names;
+    for (const auto& [name, text] : shipped_sensor_texts()) names.emplace_back(name);
+    return names;
+}
+
+SensorModel read_sensor_model(const std::string& name_or_path) {
+    SensorModel model;
+    std::string where = name_or_path;
+    const auto& shipped = shipped_sensor_texts();
+    const auto known = std::find_if(shipped.begin(), shipped.end(), [&](const auto& entry) {
+        return entry.first == name_or_path;
+    });
+    if (known != shipped.end()) {
+        read_value(parse_json(known->second, where), where + ": ", model);
+    } else {
+        require(
+            std::filesystem::path(name_or_path).extension() == ".json",
+            "sensor",
+            "found \"" + name_or_path + "\"",
+            fmt::format("must be one of {} or a .json file", fmt::join(shipped_sensors(), ", ")));
+        read_value(read_json_file(name_or_path), where + ": ", model);
+    }
+    validate(model, where + ": ");
+    return model;
+}
+
+}  // namespace core
