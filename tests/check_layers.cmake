@@ -25,7 +25,7 @@ set(floors_nlos
     "nlos")
 set(floors_calib
     "calib/statistics|calib/model"
-    "calib/forward|calib/setup"
+    "calib/forward|calib/setup|calib/track"
     "calib/fit|calib/adjoint"
     "calib")
 set(floors_apps

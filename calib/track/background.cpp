@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "calib/track/background.h"
 
+#include "calib/statistics/median.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,12 +13,6 @@ namespace {
 constexpr double kOutlierSigmas = 4.0;
 // A bin that has never counted may still count one day: half a count in all frames seen.
 constexpr double kPriorCounts = 0.5;
-
-double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 }  // namespace
 
@@ -91,9 +87,7 @@ void Background::follow(std::span<const double> counts,
                         std::span<const double> signal) {
     frames_seen_ = std::min(frames_seen_ + 1.0, static_cast<double>(settings_.memory_frames));
     const double gain = 1.0 / frames_seen_;
-    const auto share = [&](std::size_t i) {
-        return counts[i] * mean_[i] / (mean_[i] + signal[i]);
-    };
+    const auto share = [&](std::size_t i) { return counts[i] * mean_[i] / (mean_[i] + signal[i]); };
     for (std::size_t begin = 0; begin < mean_.size(); begin += num_bins_) {
         double sum = 0.0;
         double count = 0.0;

@@ -47,7 +47,8 @@ class Problem {
 
     VectorXd start() const {
         VectorXd state(size());
-        for (std::size_t t = 0; t < targets_.size(); ++t) state.segment<kSeen>(at(t)) = prior_means_[t];
+        for (std::size_t t = 0; t < targets_.size(); ++t)
+            state.segment<kSeen>(at(t)) = prior_means_[t];
         return state;
     }
     Eigen::Index size() const { return kSeen * static_cast<Eigen::Index>(targets_.size()); }
@@ -60,12 +61,11 @@ class Problem {
             Contribution& target = targets_[t];
             std::fill(target.unit.begin(), target.unit.end(), 0.0);
             std::fill(target.gradient.begin(), target.gradient.end(), Vec3::Zero());
-            target.windows = response_.evaluate(
-                state.segment<3>(at(t)), target.unit, target.gradient);
+            target.windows =
+                response_.evaluate(state.segment<3>(at(t)), target.unit, target.gradient);
             target.strength = std::exp(state[at(t) + kSeen - 1]);
-            for_bins_of(target, [&](std::size_t i) {
-                signal_[i] += target.strength * target.unit[i];
-            });
+            for_bins_of(target,
+                        [&](std::size_t i) { signal_[i] += target.strength * target.unit[i]; });
         }
         log_likelihood_ = gain_over_background();
         double value = log_likelihood_;
@@ -159,7 +159,8 @@ VectorXd bounded(VectorXd step) {
         const double move = step.segment<3>(t).norm();
         if (move > kLongestMove_m) scale = std::min(scale, kLongestMove_m / move);
         const double strength = std::abs(step[t + kSeen - 1]);
-        if (strength > kLargestStrengthStep) scale = std::min(scale, kLargestStrengthStep / strength);
+        if (strength > kLargestStrengthStep)
+            scale = std::min(scale, kLargestStrengthStep / strength);
     }
     return scale * step;
 }
@@ -204,13 +205,12 @@ JointUpdate update_jointly(const TargetResponse& response,
         if (!improved || length < kSmallStep) break;
     }
     JointUpdate result;
-    const MatrixXd covariance = information.ldlt().solve(
-        MatrixXd::Identity(problem.size(), problem.size()));
+    const MatrixXd covariance =
+        information.ldlt().solve(MatrixXd::Identity(problem.size(), problem.size()));
     for (std::size_t t = 0; t < priors.size(); ++t) {
         const Eigen::Index at = Problem::at(t);
-        result.targets.push_back(condition(priors[t],
-                                           state.segment<kSeen>(at),
-                                           covariance.block<kSeen, kSeen>(at, at)));
+        result.targets.push_back(
+            condition(priors[t], state.segment<kSeen>(at), covariance.block<kSeen, kSeen>(at, at)));
         result.log_evidence.push_back(problem.log_evidence(state, information, t));
     }
     result.log_likelihood = problem.log_likelihood();

@@ -55,16 +55,19 @@ TargetResponse::TargetResponse(const core::SensorFootprints& footprints,
                                const core::TimeAxis& axis,
                                const TargetSettings& target,
                                core::SensorIllumination illumination,
+                               core::OplOrigin opl_origin,
                                double sigma_m)
     : axis_(axis),
       normal_(footprints.normal),
       kind_(target.kind),
       pulse_(response_sigma_m(sigma_m, target.radius_m, axis.bin_width_m), axis.bin_width_m),
       sigma_m_(response_sigma_m(sigma_m, target.radius_m, axis.bin_width_m)) {
-    const auto legs = [](const core::PatchPoints& points) {
+    const double with_legs = opl_origin == core::OplOrigin::Device ? 1.0 : 0.0;
+    const auto legs = [&](const core::PatchPoints& points) {
         std::vector<Leg> list;
         for (std::size_t i = 0; i < points.size(); ++i) {
-            list.push_back({points.positions[i], points.weights[i], points.device_m[i]});
+            list.push_back(
+                {points.positions[i], points.weights[i], with_legs * points.device_m[i]});
         }
         return list;
     };
@@ -73,15 +76,11 @@ TargetResponse::TargetResponse(const core::SensorFootprints& footprints,
         zone.seen = legs(footprint.seen);
         const std::vector<Leg> lit = legs(footprint.lit);
         if (kind_ == TargetKind::Retroreflective) {
-            // Laser and lens stand side by side: what a point seen gets is what the point lit
-            // beside it gets.
-            const bool paired = lit.size() == zone.seen.size();
             for (std::size_t i = 0; i < zone.seen.size(); ++i) {
-                const Leg& there = paired ? lit[i] : zone.seen[i];
-                const Leg& back = zone.seen[i];
-                zone.there_and_back.push_back({back.position_m,
-                                               there.weight * back.weight,
-                                               there.device_m + back.device_m});
+                Leg point = zone.seen[i];
+                point.weight *= footprint.seen_irradiance[i];
+                point.device_m += with_legs * (point.position_m - footprints.laser_m).norm();
+                zone.there_and_back.push_back(point);
             }
             zone.seen.clear();
         } else if (illumination == core::SensorIllumination::Zones) {
@@ -115,7 +114,8 @@ TargetResponse::Window TargetResponse::bins_around(double first_m,
         return std::clamp(position, -1.0, static_cast<double>(axis_.num_bins));
     };
     const int begin = std::max(0, static_cast<int>(std::ceil(bin(first_m - margin_m))));
-    const int end = std::min(axis_.num_bins, static_cast<int>(std::floor(bin(last_m + margin_m))) + 1);
+    const int end =
+        std::min(axis_.num_bins, static_cast<int>(std::floor(bin(last_m + margin_m))) + 1);
     return {begin, std::max(begin, end)};
 }
 
@@ -206,10 +206,13 @@ TargetResponse::Window TargetResponse::add_diffuse(const Zone& zone,
         Vec3 slope = Vec3::Zero();
         for (const Reach& r : reaches) {
             const double position = (axis_.bin_center_m(i) - r.opl_m - lit.start_m) * lit.per_m;
-            if (!(position >= 0.0) || position >= static_cast<double>(lit.share.size() - 1)) continue;
+            if (!(position >= 0.0) || position >= static_cast<double>(lit.share.size() - 1))
+                continue;
             const auto j = static_cast<std::size_t>(position);
             const double f = position - static_cast<double>(j);
-            const auto between = [&](const auto& a, const auto& b) { return (1.0 - f) * a + f * b; };
+            const auto between = [&](const auto& a, const auto& b) {
+                return (1.0 - f) * a + f * b;
+            };
             const double share = between(lit.share[j], lit.share[j + 1]);
             value += r.weight * share;
             if (gradient.empty()) continue;
@@ -233,7 +236,8 @@ std::vector<TargetResponse::Window> TargetResponse::evaluate(const Vec3& positio
     if (flooded) lit = lit_pulse(flood_, position_m);
     for (std::size_t z = 0; z < zones_.size(); ++z) {
         const auto part = values.subspan(z * num_bins(), num_bins());
-        const auto slope = gradient.empty() ? gradient : gradient.subspan(z * num_bins(), num_bins());
+        const auto slope =
+            gradient.empty() ? gradient : gradient.subspan(z * num_bins(), num_bins());
         if (kind_ == TargetKind::Retroreflective) {
             windows.push_back(add_retroreflective(zones_[z], position_m, part, slope));
         } else {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "calib/track/track_settings.h"
+#include "renderer/core/capture.h"
 #include "renderer/core/sensor_footprint.h"
 #include "renderer/core/time_axis.h"
 #include "renderer/core/types.h"
@@ -54,11 +55,13 @@ class TargetResponse {
  public:
     /// footprints   what zones light and see; of one frame
     /// axis         of the histograms; a target at path length l falls into the bin of l
+    /// opl_origin   whether path lengths include the legs between devices and wall
     /// sigma_m      standard deviation of pulse and jitter in path length [m]
     TargetResponse(const core::SensorFootprints& footprints,
                    const core::TimeAxis& axis,
                    const TargetSettings& target,
                    core::SensorIllumination illumination,
+                   core::OplOrigin opl_origin,
                    double sigma_m);
 
     std::size_t num_zones() const { return zones_.size(); }

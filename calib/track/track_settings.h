@@ -125,8 +125,7 @@ void for_each_field(MotionSettings& s, Visitor&& visit) {
           core::above(0, "random walk: spread after a second along each axis [m/s^0.5]"));
     visit("acceleration",
           s.acceleration,
-          core::above(
-              0, "constant velocity: its spread after a second along each axis [m/s^1.5]"));
+          core::above(0, "constant velocity: its spread after a second along each axis [m/s^1.5]"));
     visit("speed_m_per_s",
           s.speed_m_per_s,
           core::above(0, "spread of the first velocity along each axis [m/s]"));
@@ -175,10 +174,12 @@ template <class Visitor>
 void for_each_field(SearchSettings& s, Visitor&& visit) {
     visit("x_range_m",
           s.x_range_m,
-          core::Ranged{"where targets may be, in the wall's frame; null: as far from the spots as "
-                       "z_range_m reaches [m]",
-                       {}});
-    visit("y_range_m", s.y_range_m, core::Ranged{"the same along y; null: 1 m beyond the spots", {}});
+          core::Ranged{
+              "where targets may appear, in the wall's frame; null: up to 1 m beyond what the "
+              "sensor sees [m]",
+              {}});
+    visit(
+        "y_range_m", s.y_range_m, core::Ranged{"the same along y; null: up to 0.75 m beyond", {}});
     visit("z_range_m", s.z_range_m, core::above(0, "distances from the wall [m]"));
     visit("cell_m", s.cell_m, core::above(0, "pitch of the grid on which targets are found [m]"));
 }
@@ -191,18 +192,16 @@ void for_each_field(TrackSettings& s, Visitor&& visit) {
     visit("pose", s.pose, "where the sensor is and looks");
     visit("poses", s.poses, "its poses frame by frame, in place of pose");
     visit("wall", s.wall, "the wall; null: the plane through the frames' wall points, or z = 0");
-    visit("subsamples",
-          s.subsamples,
-          core::Ranged{"points per zone and axis", {1, true, 64, true}});
+    visit(
+        "subsamples", s.subsamples, core::Ranged{"points per zone and axis", {1, true, 64, true}});
     visit("response_fwhm_ps",
           s.response_fwhm_ps,
           core::above(0, "width of pulse and jitter; null: the sensor's, else 400 [ps]"));
-    visit("time_zero_m",
-          s.time_zero_m,
-          core::Ranged{"true path length = axis - this [m]", {}});
+    visit("time_zero_m", s.time_zero_m, core::Ranged{"true path length = axis - this [m]", {}});
     visit("frame_s",
           s.frame_s,
-          core::above(0, "time from frame to frame; null: the frames' or the sensor's, else 0.1 [s]"));
+          core::above(0,
+                      "time from frame to frame; null: the frames' or the sensor's, else 0.1 [s]"));
     visit("target", s.target, "what is tracked");
     visit("motion", s.motion, "how it moves");
     visit("background", s.background, "light that no target sends");
