@@ -2,6 +2,7 @@
 #include "renderer/frame_sequence.h"
 
 #include "renderer/core/random.h"
+#include "renderer/core/sensor_footprint.h"
 #include "renderer/render.h"
 #include "renderer/restir_render.h"
 
@@ -25,12 +26,23 @@ std::uint64_t seed_of_frame(std::uint64_t seed, int frame) {
     return core::Rng(seed, 0, static_cast<std::uint64_t>(frame)).next_bits();
 }
 
+// What the sensor of a scan sees in a frame; other scans stay what they are.
+core::Scan pose_sensor(const core::Scan& scan, int frame) {
+    if (!scan.sensor || scan.sensor->poses.empty()) return scan;
+    core::SensorSetup setup = *scan.sensor;
+    setup.pose = setup.pose_of_frame(static_cast<std::size_t>(frame));
+    setup.poses.clear();
+    return core::scan_of_zones(setup);
+}
+
 }  // namespace
 
 FrameRenderer make_frame_renderer(const core::Scan& scan, const RenderSettings& settings) {
-    if (settings.method == Estimator::Restir) return make_restir_frame_renderer(scan, settings);
+    if (settings.method == Estimator::Restir && !scan.sensor)
+        return make_restir_frame_renderer(scan, settings);
     return [](const Frame& frame, const core::Scan& frame_scan, const core::Progress& progress) {
-        return render(*frame.scene, frame_scan, frame.axes, frame.settings, progress);
+        const core::Scan posed = pose_sensor(frame_scan, frame.index);
+        return render(*frame.scene, posed, frame.axes, frame.settings, progress);
     };
 }
 
@@ -73,6 +85,10 @@ RenderResult render_frames(std::shared_ptr<const Scene> scene,
         if (i + 1 < frames.count && progress.should_stop()) sequence.interrupted = true;
     }
     sequence.capture.sequence = std::move(recorded);
+    if (scan.sensor) {
+        sequence.capture.scan.sensor = scan.sensor;
+        core::observe_live_zones(*scan.sensor, sequence.capture);
+    }
     return sequence;
 }
 

@@ -6,6 +6,7 @@
 #include "renderer/pass_render.h"
 #include "renderer/path/path_tracer.h"
 #include "renderer/restir_render.h"
+#include "renderer/sensor_render.h"
 #include "renderer/third_bounce/third_bounce.h"
 
 #include <fmt/core.h>
@@ -160,6 +161,15 @@ RenderResult render(const Scene& scene,
                     const core::HistogramAxes& axes,
                     const RenderSettings& settings,
                     const core::Progress& progress) {
+    if (scan.sensor) {
+        const auto render_points = [&](const Scene& part,
+                                       const core::Scan& points,
+                                       const RenderSettings& of_part,
+                                       const core::Progress& of_points) {
+            return render(part, points, axes, of_part, of_points);
+        };
+        return render_zones(scene, scan, axes, settings, render_points, progress);
+    }
     RenderTask task{scene, scan, axes, settings, progress};
     require_possible(task);
     if (settings.method == Estimator::Ellipsoidal) return render_ellipsoidal(task);

@@ -10,7 +10,7 @@ namespace renderer {
 
 /// Renders the transients that a scan, or a camera, records of a scene.
 ///
-/// scan       wall points with unit normals, or a camera
+/// scan       wall points with unit normals, a camera, or the zones of a sensor (sensor_render.h)
 /// axes       bins of optical path length and, if asked for, of path velocity: the same light by
 ///            how fast its paths change their length, within the time axis
 /// settings   validated; `samples` is rounded up to whole passes; method `auto` integrates third

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/commands/describe_scene.h"
 
+#include "renderer/core/sensor_footprint.h"
 #include "renderer/light_range.h"
 #include "renderer/scene/load_geometry.h"
 
@@ -87,6 +88,12 @@ void print_measurement(Description& out,
                        const core::Scan& scan) {
     if (scan.camera) {
         out.print("camera: {} x {} pixels\n", scan.camera->width(), scan.camera->height());
+        return;
+    }
+    if (scan.sensor) {
+        for (const std::string& line : core::describe_sensor(*scan.sensor)) {
+            out.print("{}\n", line);
+        }
         return;
     }
     out.print("scan: {}, {} sensing points, {} illumination points, wall {:.4g} x {:.4g} m\n",

@@ -84,7 +84,9 @@ void run(const RenderArguments& arguments) {
           frames,
           capture.scan.num_pairs(),
           capture.time_axis.num_bins,
-          capture.scan.camera ? "camera" : core::enum_name(capture.scan.pattern),
+          capture.scan.camera   ? "camera"
+          : capture.scan.sensor ? "sensor"
+                                : core::enum_name(capture.scan.pattern),
           estimator_names(result),
           effort,
           result.seconds);

@@ -8,6 +8,7 @@
 #include "nlos/formats/capture_file.h"
 #include "nlos/pictures/pictures.h"
 #include "renderer/core/output_file.h"
+#include "renderer/core/sensor_footprint.h"
 #include "renderer/frame_sequence.h"
 #include "renderer/light_range.h"
 #include "renderer/render.h"
@@ -147,9 +148,10 @@ std::string estimator_names(const renderer::RenderResult& result) {
 }
 
 void use_calibration(calib::AppliedCalibration calibration, RenderInput& input) {
-    if (input.scan.camera || input.description.frames || input.description.velocity_axis) {
+    if (input.scan.camera || input.scan.sensor || input.description.frames ||
+        input.description.velocity_axis) {
         throw core::Error("calibration",
-                          "found a camera, frames or a velocity axis",
+                          "found a camera, a sensor, frames or a velocity axis",
                           "must be a scan without these");
     }
     calib::replace_points(calibration, input.scan);
@@ -189,6 +191,9 @@ renderer::RenderResult render_input(RenderInput input, const core::Progress& pro
     }
     report_darkness(result);
     result.capture.scene_info = provenance(input.scene_name, description, result);
+    if (const auto sensor = core::recorded_sensor(result.capture)) {
+        result.capture.scene_info["sensor"] = core::write_value(*sensor);
+    }
     if (light) result.capture.scene_info["light"] = write_light(*light, rendered.time_axis);
     for (const std::string& doubt : doubts) result.capture.scene_info["warnings"].push_back(doubt);
     return result;

@@ -5,15 +5,18 @@
 #include "apps/terminal.h"
 #include "apps/version.h"
 #include "nlos/detector/detector.h"
+#include "nlos/detector/sensor_counts.h"
 #include "nlos/formats/capture_file.h"
 #include "renderer/core/output_file.h"
 #include "renderer/core/parallel.h"
+#include "renderer/core/sensor_footprint.h"
 
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <memory>
 #include <numeric>
+#include <optional>
 
 namespace apps {
 namespace {
@@ -23,6 +26,7 @@ struct NoiseArguments {
     std::string output;
     std::vector<std::string> overrides;
     std::vector<std::string> shorthands;
+    bool of_sensor = false;
     int threads = 0;
 };
 
@@ -54,19 +58,49 @@ constexpr std::array kNoiseShorthands{
     Shorthand{"--expected", "expected", "", "Write expected counts instead of random ones"},
     Shorthand{"--seed", "seed", "N", "Seed of the random numbers"}};
 
+void apply(const NoiseArguments& arguments, NoiseOptions& options) {
+    for (const auto* texts : {&arguments.overrides, &arguments.shorthands}) {
+        for (const std::string& text : *texts) core::apply_override(options, text);
+    }
+}
+
+/// The sensor whose detector is asked for; one that is there and left aside is named.
+std::optional<core::SensorSetup> sensor_of(const NoiseArguments& arguments,
+                                           const core::Capture& capture) {
+    std::optional<core::SensorSetup> setup = core::recorded_sensor(capture);
+    if (arguments.of_sensor && !setup) {
+        throw core::Error(arguments.capture,
+                          "states no sensor that --sensor could take the detector of",
+                          "must come from a scan of pattern sensor");
+    }
+    if (setup && !arguments.of_sensor) {
+        print("the capture is of the sensor {}; --sensor takes its detector\n", setup->model.title);
+        setup.reset();
+    }
+    return setup;
+}
+
 void run(const NoiseArguments& arguments) {
     const core::ThreadLimit threads(arguments.threads);
     nlos::check_capture_suffix(arguments.output);
     core::check_targets({arguments.output}, {arguments.capture});
     NoiseOptions options;
-    for (const auto* texts : {&arguments.overrides, &arguments.shorthands}) {
-        for (const std::string& text : *texts) core::apply_override(options, text);
+    apply(arguments, options);
+    core::Capture capture = nlos::read_capture(arguments.capture, options.capture);
+    const std::optional<core::SensorSetup> sensor = sensor_of(arguments, capture);
+    if (sensor) {
+        options.detector = nlos::detector_of(*sensor);
+        apply(arguments, options);
+        nlos::add_crosstalk(*sensor, capture);
     }
-    const core::Capture capture = nlos::read_capture(arguments.capture, options.capture);
     if (const auto warning = nlos::coarse_bins_warning(capture, options.detector)) {
         print_error("warning: {}\n", *warning);
     }
     core::Capture noisy = nlos::detect(capture, options.detector);
+    if (sensor) {
+        nlos::cut_direct_return(*sensor, noisy);
+        noisy.scene_info["detector"]["sensor"] = sensor->model.name;
+    }
     noisy.scene_info["detector"]["program"] = version_text();
     noisy.scene_info["detector"]["command"] = command_line();
     for (const std::string& loss : nlos::write_capture(arguments.output, noisy)) {
@@ -95,6 +129,10 @@ void add_simulate_noise_command(CLI::App& app) {
     add_output_option(*command, arguments->output, "Capture to write (.h5, .npz, .exr, .mat)")
         ->required();
     add_shorthands(*command, kNoiseShorthands, arguments->shorthands);
+    command->add_flag("--sensor",
+                      arguments->of_sensor,
+                      "Start from the detector of the capture's sensor, its crosstalk and what its "
+                      "firmware cuts included");
     add_threads_option(*command, arguments->threads);
     add_capture_options(*command, arguments->overrides);
     command->footer(settings_footer(core::settings_help(NoiseOptions{}),

@@ -26,15 +26,23 @@ bool is_blind_at_times(const DetectorSettings& s) {
     return s.pile_up || s.dead_time_ns > 0.0;
 }
 
-double sum_of(const core::Capture& capture) {
+double sum_of(const core::Transient& transient) {
     double sum = 0.0;
-    for (const float value : capture.transient.values()) {
+    for (const float value : transient.values()) {
         if (!(value >= 0.0F)) {
             throw core::Error("capture", fmt::format("found {}", value), "must not be negative");
         }
         sum += static_cast<double>(value);
     }
     return sum;
+}
+
+// Of a frame, on average.
+double sum_of(const core::Capture& capture) {
+    if (!capture.sequence) return sum_of(capture.transient);
+    double sum = 0.0;
+    for (const core::Transient& frame : capture.sequence->frames) sum += sum_of(frame);
+    return sum / static_cast<double>(capture.sequence->frames.size());
 }
 
 std::size_t num_observed_pairs(const core::Capture& capture) {
@@ -127,6 +135,7 @@ Detector make_detector(const core::Capture& capture, const DetectorSettings& s) 
 /// nothing, so that nothing blinds it either.
 void record(const Detector& detector,
             std::size_t pair,
+            std::size_t frame,
             const core::BinRange& observed,
             std::span<const float> input,
             std::span<float> output) {
@@ -137,7 +146,7 @@ void record(const Detector& detector,
         double& mean = means[static_cast<std::size_t>(bin)];
         mean = observed.holds(bin) ? mean * detector.counts_per_value + detector.background : 0.0;
     }
-    core::Rng rng(detector.seed, pair, 0);
+    core::Rng rng(detector.seed, pair, frame);
     if (detector.is_blind_at_times) {
         for (double& mean : means) mean /= static_cast<double>(detector.train.pulses);
         PulseTrain train = detector.train;
@@ -215,14 +224,27 @@ core::Capture detect(const core::Capture& capture, const DetectorSettings& setti
     result.notes = capture.notes;
 
     result.observed = capture.observed;
-    result.transient = core::Transient(capture.scan.num_pairs(), capture.time_axis.num_bins);
-    core::parallel_for(capture.scan.num_pairs(), [&](std::size_t pair) {
-        record(detector,
-               pair,
-               capture.observed_range(pair),
-               capture.transient.histogram(pair),
-               result.transient.histogram(pair));
-    });
+    const auto record_frame = [&](std::size_t frame, const core::Transient& light) {
+        core::Transient counts(capture.scan.num_pairs(), capture.time_axis.num_bins);
+        core::parallel_for(capture.scan.num_pairs(), [&](std::size_t pair) {
+            record(detector,
+                   pair,
+                   frame,
+                   capture.observed_range(pair),
+                   light.histogram(pair),
+                   counts.histogram(pair));
+        });
+        return counts;
+    };
+    if (!capture.sequence) {
+        result.transient = record_frame(0, capture.transient);
+        return result;
+    }
+    result.sequence = {{}, capture.sequence->gate_step_m, capture.sequence->frame_s};
+    for (const core::Transient& light : capture.sequence->frames) {
+        result.sequence->frames.push_back(record_frame(result.sequence->frames.size(), light));
+    }
+    result.transient = result.sequence->frames.back();
     return result;
 }
 

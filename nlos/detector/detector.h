@@ -92,10 +92,12 @@ std::optional<std::string> coarse_bins_warning(const core::Capture& capture,
 /// always armed unless blind, between two pulses too, and carries its blindness into later pulses.
 /// A dead time is rounded to whole bins. Nothing is detected in bins that were not observed, nor
 /// between the pulses of a pair that has such bins: its detector is gated.
+/// Frames are recorded one by one, each for the whole exposure; a number of photons is then that of
+/// a frame, on average.
 ///
 /// capture    radiance, or counts to be scaled to another number of photons; not negative
-/// returns    scan and observed bins of `capture` with unit counts; `counts_per_radiance` and the
-///            settings are recorded; variance, orders of bounces and frames are dropped. The same
+/// returns    scan, observed bins and frames of `capture` with unit counts; `counts_per_radiance`
+///            and the settings are recorded; variance and orders of bounces are dropped. The same
 ///            for any number of threads.
 /// throws     core::Error for settings or captures that do not fit
 /// source     first photon of a pulse [Coates1968]

@@ -6,6 +6,7 @@
 #include "nlos/layouts/layout_capture.h"
 #include "nlos/layouts/layout_guess.h"
 #include "renderer/core/error.h"
+#include "renderer/core/sensor_footprint.h"
 
 #include <fmt/core.h>
 
@@ -303,6 +304,10 @@ std::vector<std::string> describe_capture(const core::Capture& capture) {
     const core::TimeAxis& axis = capture.time_axis;
     std::vector<std::string> lines =
         scan.camera ? describe_camera(*scan.camera) : describe_points(scan);
+    if (const auto sensor = core::recorded_sensor(capture)) {
+        const std::vector<std::string> of_sensor = core::describe_sensor(*sensor);
+        lines.insert(lines.end(), of_sensor.begin(), of_sensor.end());
+    }
     lines.push_back(
         fmt::format("time axis: {} bins of {:.6g} m of path length, from {:.6g} to {:.6g} m",
                     axis.num_bins,

@@ -157,6 +157,10 @@ std::size_t SensorFootprints::num_dead() const {
         zones.begin(), zones.end(), [](const ZoneFootprint& zone) { return zone.is_dead(); }));
 }
 
+double zone_etendue_sr(const SensorModel& model) {
+    return field_of(model).etendue() / model.num_zones();
+}
+
 void validate(const SensorPose& pose, const std::string& where) {
     const double length = pose.forward.norm();
     require(length > 1e-9, join_key(where, "forward length"), length, "above 0");
@@ -187,7 +191,7 @@ SensorFootprints make_footprints(const SensorSetup& setup, std::size_t frame) {
     result.laser_m =
         pose.position_m + world_from_sensor * Vec3(model.emitter_m[0], model.emitter_m[1], 0.0);
     result.normal = setup.wall.normal.normalized();
-    result.zone_etendue_sr = field.etendue() / model.num_zones();
+    const double mean_etendue = zone_etendue_sr(model);
     const Laser laser{result.laser_m, world_from_sensor.transpose(), result.normal};
     const int n = setup.subsamples;
     for (int index = 0; index < model.num_zones(); ++index) {
@@ -203,7 +207,7 @@ SensorFootprints make_footprints(const SensorSetup& setup, std::size_t frame) {
                       zone.lit);
             add_point(rays.hit(result.receiver_m, cell.center()),
                       result.receiver_m,
-                      cell.etendue() / result.zone_etendue_sr,
+                      cell.etendue() / mean_etendue,
                       zone.seen);
         }
         for (const Vec3& point : zone.seen.positions) {
@@ -215,7 +219,74 @@ SensorFootprints make_footprints(const SensorSetup& setup, std::size_t frame) {
     return result;
 }
 
+std::vector<std::string> describe_sensor(const SensorSetup& setup) {
+    const SensorModel& model = setup.model;
+    const SensorPose& pose = setup.pose_of_frame(0);
+    const Vec3& p = pose.position_m;
+    const Vec3 f = pose.forward.normalized();
+    const std::size_t dead = make_footprints(setup).num_dead();
+    const bool floods = model.illumination == SensorIllumination::Flood;
+    return {
+        fmt::format("sensor: {}, {} x {} zones over {:.4g} x {:.4g} degrees, {}, {} x {} points "
+                    "per zone",
+                    model.title.empty() ? model.name : model.title,
+                    model.zones[0],
+                    model.zones[1],
+                    model.fov_deg[0],
+                    model.fov_deg[1],
+                    floods ? "flood light" : "each zone lights its own spot",
+                    setup.subsamples,
+                    setup.subsamples),
+        fmt::format("sensor at ({:.4g}, {:.4g}, {:.4g}) m, looking along ({:.4g}, {:.4g}, "
+                    "{:.4g}){}; {} of {} zones see the wall",
+                    p.x(),
+                    p.y(),
+                    p.z(),
+                    f.x(),
+                    f.y(),
+                    f.z(),
+                    setup.poses.size() > 1
+                        ? fmt::format(" in the first of {} poses", setup.poses.size())
+                        : "",
+                    static_cast<std::size_t>(model.num_zones()) - dead,
+                    model.num_zones())};
+}
+
+Scan scan_of_zones(const SensorSetup& setup, std::size_t frame) {
+    const SensorFootprints footprints = make_footprints(setup, frame);
+    Scan scan;
+    for (const ZoneFootprint& zone : footprints.zones) {
+        scan.sensing.positions.push_back(zone.center_m.value_or(setup.wall.center_m));
+        scan.sensing.normals.push_back(footprints.normal);
+    }
+    scan.illumination = scan.sensing;
+    scan.opl_origin = OplOrigin::Device;
+    scan.laser_position = footprints.laser_m;
+    scan.detector_position = footprints.receiver_m;
+    scan.sensor = std::make_shared<const SensorSetup>(setup);
+    return scan;
+}
+
+void observe_live_zones(const SensorSetup& setup, Capture& capture) {
+    capture.observed = {};
+    std::vector<bool> is_dead(static_cast<std::size_t>(setup.model.num_zones()), true);
+    const std::size_t num_frames = capture.sequence ? capture.sequence->frames.size() : 1;
+    for (std::size_t frame = 0; frame < (setup.poses.empty() ? 1 : num_frames); ++frame) {
+        const SensorFootprints footprints = make_footprints(setup, frame);
+        for (std::size_t zone = 0; zone < is_dead.size(); ++zone) {
+            if (!footprints.zones[zone].is_dead()) is_dead[zone] = false;
+        }
+    }
+    if (std::none_of(is_dead.begin(), is_dead.end(), [](bool dead) { return dead; })) return;
+    std::vector<BinRange> ranges;
+    for (const bool dead : is_dead) {
+        ranges.push_back({0, dead ? 0 : capture.time_axis.num_bins});
+    }
+    restrict_observed(capture, ranges);
+}
+
 std::optional<SensorSetup> recorded_sensor(const Capture& capture) {
+    if (capture.scan.sensor) return *capture.scan.sensor;
     if (!capture.scene_info.is_object()) return std::nullopt;
     const auto found = capture.scene_info.find("sensor");
     if (found == capture.scene_info.end() || !found->is_object()) return std::nullopt;

@@ -13,6 +13,7 @@
 namespace core {
 
 struct Capture;
+struct Scan;
 
 /// Where a sensor is and looks; its position is that of the receiving lens.
 struct SensorPose {
@@ -88,11 +89,13 @@ struct SensorFootprints {
     Vec3 laser_m;                      ///< world
     Vec3 receiver_m;                   ///< world
     Vec3 normal;                       ///< of the wall, unit
-    double zone_etendue_sr = 0.0;      ///< mean of a zone: solid angle times the cosine at the lens
     std::vector<ZoneFootprint> zones;  ///< as the model numbers them
 
     std::size_t num_dead() const;
 };
+
+/// Solid angle that a zone sees times the cosine at the lens, mean over the zones [sr].
+double zone_etendue_sr(const SensorModel& model);
 
 /// Throws Error naming the value that is out of range.
 void validate(const SensorPose& pose, const std::string& where);
@@ -118,8 +121,22 @@ void validate(const SensorSetup& setup, const std::string& where);
 /// throws   Error when no zone sees the wall
 SensorFootprints make_footprints(const SensorSetup& setup, std::size_t frame = 0);
 
-/// The set-up that a capture's provenance states (scene_info, key `sensor`), as `nlos render`
-/// writes it; nothing when it says nothing of the kind.
+/// What it is and where it looks, for people: lines of text.
+std::vector<std::string> describe_sensor(const SensorSetup& setup);
+
+/// A confocal scan of the points that the middles of the zones look at, with the legs of laser and
+/// receiver. Dead zones stand at the wall's centre.
+///
+/// throws   as make_footprints()
+Scan scan_of_zones(const SensorSetup& setup, std::size_t frame = 0);
+
+/// States in a capture of zones which of them see the wall in no frame: these are not observed.
+///
+/// setup    that the capture is of, with as many poses as the capture has frames or none
+void observe_live_zones(const SensorSetup& setup, Capture& capture);
+
+/// The set-up that a capture is of: its scan's, else what its provenance states (scene_info, key
+/// `sensor`), as `nlos render` writes it; nothing when it says nothing of the kind.
 std::optional<SensorSetup> recorded_sensor(const Capture& capture);
 
 }  // namespace core

@@ -3,7 +3,8 @@
 
 #include "renderer/core/shipped_sensors.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -48,24 +49,22 @@ std::vector<std::string> shipped_sensors() {
     return names;
 }
 
-SensorModel read_sensor_model(const std::string& name_or_path) {
+SensorModel read_sensor_model(const std::string& name_or_path, const std::string& where) {
     SensorModel model;
-    std::string where = name_or_path;
     const auto& shipped = shipped_sensor_texts();
     const auto known = std::find_if(shipped.begin(), shipped.end(), [&](const auto& entry) {
         return entry.first == name_or_path;
     });
-    if (known != shipped.end()) {
-        read_value(parse_json(known->second, where), where + ": ", model);
-    } else {
-        require(
-            std::filesystem::path(name_or_path).extension() == ".json",
-            "sensor",
+    const bool is_file = std::filesystem::path(name_or_path).extension() == ".json";
+    require(known != shipped.end() || is_file,
+            where,
             "found \"" + name_or_path + "\"",
             fmt::format("must be one of {} or a .json file", fmt::join(shipped_sensors(), ", ")));
-        read_value(read_json_file(name_or_path), where + ": ", model);
-    }
-    validate(model, where + ": ");
+    const std::string prefix = name_or_path + ": ";
+    const Json json = known != shipped.end() ? parse_json(known->second, name_or_path)
+                                             : read_json_file(name_or_path);
+    read_value(json, prefix, model);
+    validate(model, prefix);
     return model;
 }
 

@@ -132,7 +132,8 @@ std::vector<std::string> shipped_sensors();
 
 /// A sensor of the program's own by its name, or one that a JSON file describes.
 ///
+/// where    names the setting in messages about an unknown name
 /// throws   Error naming file and key, or the known names
-SensorModel read_sensor_model(const std::string& name_or_path);
+SensorModel read_sensor_model(const std::string& name_or_path, const std::string& where = "sensor");
 
 }  // namespace core

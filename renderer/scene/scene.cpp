@@ -206,6 +206,11 @@ Scene make_scene(SceneGeometry geometry,
                      : ""));
     }
     const bool has_wall_mesh = relay_wall_mesh(geometry) != nullptr;
+    if (has_wall_mesh && scan.sensor) {
+        throw core::Error(description.geometry,
+                          "found a mesh with the role relay_wall and a scan of pattern sensor",
+                          "must have none: a sensor looks at the rectangle relay_wall");
+    }
     Scene scene(std::move(geometry), scan, description.relay_wall);
     if (has_wall_mesh && !scan.camera) {
         const ScanSettings& asked = description.scan;

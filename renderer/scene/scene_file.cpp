@@ -3,6 +3,7 @@
 
 #include "renderer/core/process.h"
 #include "renderer/gltf/gltf.h"
+#include "renderer/scene/sensor_settings.h"
 
 #include <fmt/core.h>
 
@@ -50,6 +51,8 @@ void validate_normals(const std::vector<Vec3>& points,
 
 void validate_scan(const ScanSettings& scan, const std::string& where) {
     core::check_ranges(scan, where);
+    validate_sensor(scan, where);
+    if (scan.pattern.of_sensor) return;
     validate_normals(scan.sensing_points_m, scan.sensing_normals, where + ".sensing_normals");
     validate_normals(
         scan.illumination_points_m, scan.illumination_normals, where + ".illumination_normals");
@@ -76,7 +79,9 @@ void validate_size(const SceneDescription& scene, const std::string& where) {
                               : static_cast<double>(points.size());
     };
     double pairs = count(scan.sensing_points_m, scan.sensing_points);
-    if (scene.camera) {
+    if (scan.pattern.of_sensor) {
+        pairs = scan.sensor->num_zones();
+    } else if (scene.camera) {
         pairs = static_cast<double>(scene.camera->num_pixels());
     } else if (scan.pattern == core::ScanPattern::Exhaustive) {
         pairs *= count(scan.illumination_points_m, scan.illumination_points);
@@ -181,6 +186,18 @@ void look_up_camera(const std::string& where, SceneDescription& scene) {
                               : "must be one of " + known);
 }
 
+// Reads what a sensor's name stands for, and takes the sensor's bins where no others are given.
+void look_up_sensor(const std::string& folder,
+                    const std::string& where,
+                    const core::Json& keys,
+                    SceneDescription& scene) {
+    if (scene.scan.sensor) read_sensor(folder, where + "scan.sensor", *scene.scan.sensor);
+    if (!scene.scan.pattern.of_sensor || !scene.scan.sensor) return;
+    if (scene.time_axis.automatic || !keys.contains("time_axis")) {
+        scene.time_axis = {scene.scan.sensor->time_axis()};
+    }
+}
+
 // A camera measures instead of wall and scan; a file that names both means something else.
 void refuse_two_setups(const core::Json& keys, const std::string& where) {
     if (!keys.contains("camera") || keys["camera"].is_null()) return;
@@ -233,6 +250,8 @@ SceneDescription read_scene_description(const std::string& path,
     SceneDescription scene;
     core::Json keys = core::read_json_file(path);
     core::read_value(keys, path + ": ", scene);
+    const std::string folder = std::filesystem::path(path).parent_path().string();
+    if (scene.scan.sensor) read_sensor(folder, path + ": scan.sensor", *scene.scan.sensor);
     for (const std::string& text : overrides) {
         core::apply_override(scene, text);
         keys.update(core::parse_override(text));
@@ -243,8 +262,9 @@ SceneDescription read_scene_description(const std::string& path,
                     "found nothing",
                     "must name a .glb, .gltf, .obj, .ply or .stl file");
     }
-    scene.geometry = (std::filesystem::path(path).parent_path() / scene.geometry).string();
+    scene.geometry = (std::filesystem::path(folder) / scene.geometry).string();
     look_up_camera(path + ": camera", scene);
+    look_up_sensor(folder, path + ": ", keys, scene);
     validate(scene, path + ": ");
     return scene;
 }
@@ -253,6 +273,7 @@ void change_description(SceneDescription& scene, const core::Json& changes) {
     core::read_value(changes, "", scene);
     refuse_two_setups(changes, "");
     if (changes.contains("camera")) look_up_camera("camera", scene);
+    look_up_sensor("", "", {{"time_axis", nullptr}}, scene);
     validate(scene, "");
 }
 
@@ -271,6 +292,7 @@ void validate(const SceneDescription& scene, const std::string& where) {
     if (!scene.time_axis.automatic) core::validate(scene.time_axis, where + "time_axis");
     if (scene.velocity_axis) core::validate(*scene.velocity_axis, where + "velocity_axis");
     if (scene.frames) core::check_ranges(*scene.frames, where + "frames");
+    validate_poses(scene, where);
     validate(scene.render, where + "render");
     core::check_ranges(scene.ground_truth, where + "ground_truth");
     validate_size(scene, where);
@@ -283,6 +305,7 @@ void validate(const SceneDescription& scene, const std::string& where) {
 
 core::Scan make_scan(const SceneDescription& scene) {
     if (scene.camera) return image_of(*scene.camera);
+    if (scene.scan.pattern.of_sensor) return core::scan_of_zones(make_sensor_setup(scene));
     core::Scan scan;
     scan.pattern = scene.scan.pattern;
     scan.sensing = scene.scan.sensing_points_m.empty()

@@ -3,6 +3,7 @@
 
 #include "renderer/core/capture.h"
 #include "renderer/core/relay_wall.h"
+#include "renderer/core/sensor_footprint.h"
 #include "renderer/material/scene_geometry.h"
 #include "renderer/mesh_file/mesh_file.h"
 #include "renderer/settings/render_settings.h"
@@ -17,9 +18,25 @@ namespace renderer {
 
 using core::RelayWall;
 
-/// Which wall points are illuminated and sensed. Explicit points replace the grids.
-struct ScanSettings {
+/// How points pair up, or the text `sensor`, which leaves points and pairs to a sensor's zones.
+struct ScanPatternSetting {
     core::ScanPattern pattern = core::ScanPattern::Confocal;
+    bool of_sensor = false;
+
+    ScanPatternSetting() = default;
+    ScanPatternSetting(core::ScanPattern points) : pattern(points) {}
+    operator core::ScanPattern() const { return pattern; }
+};
+
+/// A sensor: an object, or as text the name of one that comes with the program or of a file.
+struct SensorSettings : core::SensorModel {
+    std::string source;  ///< the text, until it has been read
+};
+
+/// Which wall points are illuminated and sensed. Explicit points replace the grids, and a sensor
+/// replaces both.
+struct ScanSettings {
+    ScanPatternSetting pattern;
     std::array<int, 2> sensing_points{64, 64};
     std::optional<core::Vec3> illumination_m;
     std::array<int, 2> illumination_points{16, 16};
@@ -30,6 +47,10 @@ struct ScanSettings {
     std::vector<core::Vec3> sensing_normals;
     std::vector<core::Vec3> illumination_points_m;
     std::vector<core::Vec3> illumination_normals;
+    std::optional<SensorSettings> sensor;
+    std::optional<core::SensorPose> pose;
+    std::vector<core::SensorPose> poses;
+    int subsamples = 3;
 };
 
 /// The camera that takes the place of relay wall and scan: an object, or as text the name alone.
@@ -82,9 +103,23 @@ struct SceneDescription {
     GroundTruthSettings ground_truth;
 };
 
+/// A pattern is a text.
+void read_value(const core::Json& json, const std::string& where, ScanPatternSetting& pattern);
+core::Json write_value(const ScanPatternSetting& pattern);
+
+template <class Visitor>
+void for_each_field(SensorSettings& sensor, Visitor&& visit) {
+    for_each_field(static_cast<core::SensorModel&>(sensor), visit);
+}
+
+/// A sensor is an object with fields, or a name.
+void read_value(const core::Json& json, const std::string& where, SensorSettings& sensor);
+
 template <class Visitor>
 void for_each_field(ScanSettings& scan, Visitor&& visit) {
-    visit("pattern", scan.pattern, "how illumination and sensing points pair up");
+    visit("pattern",
+          scan.pattern,
+          "how illumination and sensing points pair up (single|confocal|exhaustive), or sensor");
     visit("sensing_points",
           scan.sensing_points,
           core::at_least(1, "grid of sensing points at cell centres, x by y"));
@@ -99,6 +134,15 @@ void for_each_field(ScanSettings& scan, Visitor&& visit) {
     visit("sensing_normals", scan.sensing_normals, "their normals, towards the hidden side");
     visit("illumination_points_m", scan.illumination_points_m, "explicit laser spots, world [m]");
     visit("illumination_normals", scan.illumination_normals, "their normals");
+    visit("sensor",
+          scan.sensor,
+          "sensor: vl53l8, tmf8828, tmf8829, a .json file, or an object such as these hold");
+    visit("pose", scan.pose, "sensor: where it is and looks; position_m, forward, up");
+    visit("poses", scan.poses, "sensor: a pose per frame instead");
+    visit("subsamples",
+          scan.subsamples,
+          core::Ranged{"sensor: points per zone and axis that are lit and sensed",
+                       {1, true, 64, true}});
 }
 
 template <class Visitor>
@@ -191,6 +235,10 @@ void validate(const SceneDescription& scene, const std::string& where);
 /// The wall points, with unit normals, or the camera that the description asks for.
 /// scene   a validated description
 core::Scan make_scan(const SceneDescription& scene);
+
+/// The sensor of a description whose pattern is `sensor`, in front of its wall.
+/// scene   a validated description
+core::SensorSetup make_sensor_setup(const SceneDescription& scene);
 
 /// The inverse for a scan of wall points, which are stated one by one.
 void describe_scan(const core::Scan& scan, ScanSettings& settings);

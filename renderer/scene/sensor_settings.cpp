@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/scene/sensor_settings.h"
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
+
+namespace renderer {
+
+using core::Error;
+using core::require;
+
+void read_value(const core::Json& json, const std::string& where, ScanPatternSetting& pattern) {
+    pattern.of_sensor = json == "sensor";
+    if (pattern.of_sensor) {
+        pattern.pattern = core::ScanPattern::Confocal;
+        return;
+    }
+    const auto& names = core::EnumNames<core::ScanPattern>::value;
+    const bool is_known = json.is_string() && std::ranges::any_of(names, [&](const auto& entry) {
+                              return json.get_ref<const std::string&>() == entry.second;
+                          });
+    if (!is_known) {
+        core::throw_wrong_type(
+            where, json, "one of " + core::enum_choices<core::ScanPattern>() + "|sensor");
+    }
+    core::read_value(json, where, pattern.pattern);
+}
+
+core::Json write_value(const ScanPatternSetting& pattern) {
+    return pattern.of_sensor ? core::Json("sensor") : core::write_value(pattern.pattern);
+}
+
+void read_value(const core::Json& json, const std::string& where, SensorSettings& sensor) {
+    if (json.is_string()) {
+        sensor.source = json.get<std::string>();
+    } else {
+        core::read_value<SensorSettings>(json, where, sensor);
+    }
+}
+
+void read_sensor(const std::string& folder, const std::string& where, SensorSettings& sensor) {
+    if (sensor.source.empty()) return;
+    namespace fs = std::filesystem;
+    const bool is_file = fs::path(sensor.source).extension() == ".json";
+    const std::string source =
+        is_file ? (fs::path(folder) / sensor.source).string() : sensor.source;
+    sensor = {core::read_sensor_model(source, where), ""};
+}
+
+void validate_sensor(const ScanSettings& scan, const std::string& where) {
+    if (!scan.pattern.of_sensor) {
+        const char* key = scan.sensor ? "sensor" : scan.pose ? "pose" : "poses";
+        require(!scan.sensor && !scan.pose && scan.poses.empty(),
+                fmt::format("{}.{}", where, key),
+                fmt::format("found with pattern {}", core::enum_name(scan.pattern.pattern)),
+                "must stand with pattern sensor");
+        return;
+    }
+    require(scan.sensor.has_value(),
+            where + ".sensor",
+            "found none with pattern sensor",
+            fmt::format("must be one of {}, a .json file or an object",
+                        fmt::join(core::shipped_sensors(), ", ")));
+    core::validate(static_cast<const core::SensorModel&>(*scan.sensor), where + ".sensor");
+    if (!scan.sensing_points_m.empty() || !scan.illumination_points_m.empty()) {
+        throw Error(where + ".sensing_points_m",
+                    "found points with pattern sensor",
+                    "must be left out: the sensor's zones say where it looks");
+    }
+    require(scan.pose.has_value() != !scan.poses.empty(),
+            where + ".pose",
+            scan.pose ? "found together with poses" : "found neither pose nor poses",
+            "must be one of them");
+    if (scan.pose) core::validate(*scan.pose, where + ".pose");
+    for (std::size_t i = 0; i < scan.poses.size(); ++i) {
+        core::validate(scan.poses[i], fmt::format("{}.poses[{}]", where, i));
+    }
+}
+
+void validate_poses(const SceneDescription& scene, const std::string& where) {
+    if (scene.camera || scene.scan.poses.empty()) return;
+    const std::size_t frames = scene.frames ? static_cast<std::size_t>(scene.frames->count) : 1;
+    require(scene.scan.poses.size() == frames,
+            where + "scan.poses",
+            fmt::format("found {}", scene.scan.poses.size()),
+            fmt::format("must be as many as frames.count, {}", frames));
+}
+
+core::SensorSetup make_sensor_setup(const SceneDescription& scene) {
+    core::SensorSetup setup;
+    setup.model = *scene.scan.sensor;
+    setup.poses = scene.scan.poses;
+    setup.pose =
+        scene.scan.pose.value_or(setup.poses.empty() ? core::SensorPose{} : setup.poses.front());
+    setup.subsamples = scene.scan.subsamples;
+    setup.wall = scene.relay_wall;
+    return setup;
+}
+
+}  // namespace renderer
