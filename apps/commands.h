@@ -34,5 +34,6 @@ void add_bench_render_command(CLI::App& bench);
 void add_bench_fit_command(CLI::App& bench);
 void add_bench_comparisons_command(CLI::App& bench);
 void add_bench_reconstruct_command(CLI::App& bench);
+void add_bench_track_command(CLI::App& bench);
 
 }  // namespace apps

@@ -32,7 +32,7 @@ set(floors_apps
     "apps"
     "apps/batch|apps/shapes"
     "apps/bench|apps/dataset"
-    "apps/report|apps/bench/render|apps/bench/reconstruct|apps/bench/fit"
+    "apps/report|apps/bench/render|apps/bench/reconstruct|apps/bench/fit|apps/bench/track"
     "apps/commands"
     "apps/python|apps/sweep")
 

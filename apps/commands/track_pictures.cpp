@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "apps/commands/track_pictures.h"
 
-#include <Eigen/Dense>
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -67,18 +66,19 @@ class Plan {
     }
 
     void mark(const Point& p, double radius_m, nlos::Colour colour) {
-        line(circle(p, radius_m * core::Mat3::Identity().topLeftCorner<2, 2>()), colour, 2, 0.9);
+        line(circle(p, radius_m * Eigen::Matrix2d::Identity()), colour, 2, 0.9);
     }
 
     void ellipse(const Vec3& world, const core::Mat3& covariance, nlos::Colour colour) {
         const core::Mat3 turned =
             wall_from_world_.linear() * covariance * wall_from_world_.linear().transpose();
-        Eigen::Matrix2d part;
-        part << turned(view_.across, view_.across), turned(view_.across, view_.up),
-            turned(view_.up, view_.across), turned(view_.up, view_.up);
-        const Eigen::Matrix2d root =
-            std::sqrt(kChi2_95_2d) *
-            Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(part).operatorSqrt();
+        // A root of the view's part, by Cholesky: its circle is the ellipse.
+        const double a = std::sqrt(turned(view_.across, view_.across));
+        const double b = turned(view_.across, view_.up) / a;
+        const double c = std::sqrt(std::max(0.0, turned(view_.up, view_.up) - b * b));
+        Eigen::Matrix2d root;
+        root << a, 0.0, b, c;
+        root *= std::sqrt(kChi2_95_2d);
         line(circle(place(world), root), colour, 1, 0.08);
     }
 
