@@ -22,7 +22,7 @@ using calib::TrackSensor;
 using calib::TrackSettings;
 using core::Json;
 
-constexpr double kUsualFwhm_ps = 400.0;
+constexpr double kUsualFwhm_ps = 1000.0;
 constexpr double kUsualFrame_s = 0.1;
 constexpr double kWideWall_m = 20.0;
 

@@ -15,6 +15,7 @@ struct FrameCounts {
     std::span<const double> counts;
     std::span<const double> background;  ///< positive
     std::span<const double> weights;     ///< 1 / dispersion; 0 where a bin says nothing
+    double model_error = 0.0;            ///< relative, of what a target is expected to add to a bin
 };
 
 /// What targets became in the light of a frame.

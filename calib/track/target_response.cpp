@@ -56,10 +56,12 @@ TargetResponse::TargetResponse(const core::SensorFootprints& footprints,
                                const TargetSettings& target,
                                core::SensorIllumination illumination,
                                core::OplOrigin opl_origin,
-                               double sigma_m)
+                               double sigma_m,
+                               const ZoneCrosstalk& crosstalk)
     : axis_(axis),
       normal_(footprints.normal),
       kind_(target.kind),
+      crosstalk_(crosstalk),
       pulse_(response_sigma_m(sigma_m, target.radius_m, axis.bin_width_m), axis.bin_width_m),
       sigma_m_(response_sigma_m(sigma_m, target.radius_m, axis.bin_width_m)) {
     const double with_legs = opl_origin == core::OplOrigin::Device ? 1.0 : 0.0;
@@ -245,7 +247,56 @@ std::vector<TargetResponse::Window> TargetResponse::evaluate(const Vec3& positio
             windows.push_back(add_diffuse(zones_[z], lit, position_m, part, slope));
         }
     }
+    if (crosstalk_.share > 0.0) mix_zones(windows, values, gradient);
     return windows;
+}
+
+// All zones then have values in the bins that any had.
+void TargetResponse::mix_zones(std::vector<Window>& windows,
+                               std::span<double> values,
+                               std::span<Vec3> gradient) const {
+    Window all{axis_.num_bins, 0};
+    for (const Window& window : windows) {
+        if (window.begin >= window.end) continue;
+        all = {std::min(all.begin, window.begin), std::max(all.end, window.end)};
+    }
+    if (all.begin >= all.end) return;
+    const auto size = static_cast<std::size_t>(all.end - all.begin);
+    const auto mix = [&](auto kind, auto stored) {
+        using Value = decltype(kind);
+        std::vector<Value> before(zones_.size() * size, kind);
+        for (std::size_t z = 0; z < zones_.size(); ++z) {
+            for (int b = windows[z].begin; b < windows[z].end; ++b) {
+                before[z * size + static_cast<std::size_t>(b - all.begin)] =
+                    stored[z * num_bins() + static_cast<std::size_t>(b)];
+            }
+        }
+        for (int row = 0; row < crosstalk_.rows; ++row) {
+            for (int column = 0; column < crosstalk_.columns; ++column) {
+                const auto zone_at = [&](int c, int r) {
+                    return static_cast<std::size_t>(r * crosstalk_.columns + c);
+                };
+                const std::size_t zone = zone_at(column, row);
+                for (std::size_t b = 0; b < size; ++b) {
+                    const Value& own = before[zone * size + b];
+                    Value sum = own;
+                    const auto exchange = [&](int c, int r) {
+                        if (c < 0 || r < 0 || c >= crosstalk_.columns || r >= crosstalk_.rows)
+                            return;
+                        sum += crosstalk_.share * (before[zone_at(c, r) * size + b] - own);
+                    };
+                    exchange(column - 1, row);
+                    exchange(column + 1, row);
+                    exchange(column, row - 1);
+                    exchange(column, row + 1);
+                    stored[zone * num_bins() + static_cast<std::size_t>(all.begin) + b] = sum;
+                }
+            }
+        }
+    };
+    mix(0.0, values);
+    if (!gradient.empty()) mix(Vec3(Vec3::Zero()), gradient);
+    std::fill(windows.begin(), windows.end(), all);
 }
 
 }  // namespace calib

@@ -42,6 +42,14 @@ class PulseTable {
     std::vector<double> slope_;
 };
 
+/// The share of its light that each zone of a grid gives to each neighbour beside it, above and
+/// below.
+struct ZoneCrosstalk {
+    int columns = 0;
+    int rows = 0;
+    double share = 0.0;
+};
+
 /// What a target of strength 1 adds to the histograms of a sensor.
 ///
 /// A retroreflective target sends the light that it gets from a wall point back to this point; each
@@ -57,12 +65,14 @@ class TargetResponse {
     /// axis         of the histograms; a target at path length l falls into the bin of l
     /// opl_origin   whether path lengths include the legs between devices and wall
     /// sigma_m      standard deviation of pulse and jitter in path length [m]
+    /// crosstalk    what zones see of their neighbours
     TargetResponse(const core::SensorFootprints& footprints,
                    const core::TimeAxis& axis,
                    const TargetSettings& target,
                    core::SensorIllumination illumination,
                    core::OplOrigin opl_origin,
-                   double sigma_m);
+                   double sigma_m,
+                   const ZoneCrosstalk& crosstalk = {});
 
     std::size_t num_zones() const { return zones_.size(); }
     std::size_t num_bins() const { return static_cast<std::size_t>(axis_.num_bins); }
@@ -116,9 +126,14 @@ class TargetResponse {
                        std::span<double> values,
                        std::span<core::Vec3> gradient) const;
 
+    void mix_zones(std::vector<Window>& windows,
+                   std::span<double> values,
+                   std::span<core::Vec3> gradient) const;
+
     core::TimeAxis axis_;
     core::Vec3 normal_;
     TargetKind kind_;
+    ZoneCrosstalk crosstalk_;
     PulseTable pulse_;
     double sigma_m_;
     std::vector<Zone> zones_;

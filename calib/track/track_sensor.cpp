@@ -56,12 +56,14 @@ core::RelayWall wall_through(const std::vector<Vec3>& points_m, const std::strin
                           "must lie in one plane; state the wall by `wall`");
     }
     core::RelayWall wall;
-    wall.center_m = center;
     wall.normal = axes.eigenvectors().col(0);
     const double towards =
         std::abs(wall.normal.z()) > 0.1 ? wall.normal.z() : -wall.normal.dot(center);
     if (towards < 0.0) wall.normal = -wall.normal;
     if (std::abs(wall.normal.dot(wall.up)) > 0.9) wall.up = Vec3::UnitX();
+    // The point nearest to the origin, so that x and y of a wall along z = c are those of the
+    // world.
+    wall.center_m = wall.normal.dot(center) * wall.normal;
     const core::Transform wall_from_world = wall.world_from_wall().inverse();
     Vec3 reach = Vec3::Zero();
     for (const Vec3& p : points_m) reach = reach.cwiseMax((wall_from_world * p).cwiseAbs());
@@ -114,6 +116,25 @@ core::SensorFootprints footprints_at(const TrackSensor& sensor, const core::Sens
     setup.pose = pose;
     setup.poses.clear();
     return core::make_footprints(setup);
+}
+
+TargetResponse response_at(const TrackSensor& sensor,
+                           const core::SensorFootprints& footprints,
+                           const TargetSettings& target) {
+    auto illumination = core::SensorIllumination::Zones;
+    ZoneCrosstalk crosstalk;
+    if (sensor.setup) {
+        const core::SensorModel& model = sensor.setup->model;
+        illumination = model.illumination;
+        crosstalk = {model.zones[0], model.zones[1], model.detector.zone_crosstalk};
+    }
+    return {footprints,
+            sensor.axis,
+            target,
+            illumination,
+            sensor.opl_origin,
+            sensor.sigma_m,
+            crosstalk};
 }
 
 SearchBox search_box(const TrackSettings& settings,

@@ -49,6 +49,11 @@ core::SensorFootprints footprints_of_spots(const std::vector<core::Vec3>& spots_
 /// Footprints with the sensor at a pose, if it has a set-up.
 core::SensorFootprints footprints_at(const TrackSensor& sensor, const core::SensorPose& pose);
 
+/// The response to targets with the sensor's zones at these footprints.
+TargetResponse response_at(const TrackSensor& sensor,
+                           const core::SensorFootprints& footprints,
+                           const TargetSettings& target);
+
 /// Where targets are looked for, given what the zones see.
 SearchBox search_box(const TrackSettings& settings,
                      const core::RelayWall& wall,

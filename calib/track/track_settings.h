@@ -75,6 +75,7 @@ struct BackgroundSettings {
 struct NoiseSettings {
     std::optional<double> dispersion;
     std::optional<double> saturation_counts;
+    double model_error = 0.1;
 };
 
 struct ExistenceSettings {
@@ -159,6 +160,11 @@ void for_each_field(NoiseSettings& s, Visitor&& visit) {
     visit("saturation_counts",
           s.saturation_counts,
           core::above(0, "counts at which a bin is full and says nothing; null: never"));
+    visit("model_error",
+          s.model_error,
+          core::at_least(0,
+                         "relative standard deviation of what a target adds to a bin from what the "
+                         "model says"));
 }
 
 template <class Visitor>
@@ -196,7 +202,7 @@ void for_each_field(TrackSettings& s, Visitor&& visit) {
         "subsamples", s.subsamples, core::Ranged{"points per zone and axis", {1, true, 64, true}});
     visit("response_fwhm_ps",
           s.response_fwhm_ps,
-          core::above(0, "width of pulse and jitter; null: the sensor's, else 400 [ps]"));
+          core::above(0, "width of pulse and jitter; null: the sensor's, else 1000 [ps]"));
     visit("time_zero_m", s.time_zero_m, core::Ranged{"true path length = axis - this [m]", {}});
     visit("frame_s",
           s.frame_s,

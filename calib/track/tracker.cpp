@@ -57,14 +57,8 @@ Tracker::Tracker(const TrackSettings& settings, const TrackSensor& sensor)
 void Tracker::aim(const core::SensorPose& pose) {
     const Vec3 normal = sensor_.wall.normal.normalized();
     const core::SensorFootprints footprints = footprints_at(sensor_, pose);
-    const auto illumination =
-        sensor_.setup ? sensor_.setup->model.illumination : core::SensorIllumination::Zones;
-    response_ = std::make_unique<TargetResponse>(footprints,
-                                                 sensor_.axis,
-                                                 settings_.target,
-                                                 illumination,
-                                                 sensor_.opl_origin,
-                                                 sensor_.sigma_m);
+    response_ =
+        std::make_unique<TargetResponse>(response_at(sensor_, footprints, settings_.target));
     if (search_ && is_shift(search_pose_, pose, normal)) {
         search_offset_m_ = pose.position_m - search_pose_.position_m;
     } else {
@@ -253,7 +247,7 @@ void Tracker::look_for_more(const FrameCounts& frame, double dt_s) {
             expected[i] = std::max(expected[i] - strength * unit[i], frame.background[i]);
         }
     }
-    auto found = find({frame.counts, expected, frame.weights});
+    auto found = find({frame.counts, expected, frame.weights, frame.model_error});
     if (!found) return;
     found->predicted_probability = birth;
     found->probability = updated(birth, found->log_evidence);
@@ -316,7 +310,7 @@ FrameEstimate Tracker::step(const TrackFrame& frame) {
         return estimate;
     }
     for (double& weight : weights) weight /= dispersion * (1.0 + background_.excess_variance());
-    const FrameCounts data{frame.counts, background_.mean(), weights};
+    const FrameCounts data{frame.counts, background_.mean(), weights, settings_.noise.model_error};
     std::fill(signal_.begin(), signal_.end(), 0.0);
     if (!targets_.empty()) update(data, estimate);
     look_for_more(data, estimate.dt_s);

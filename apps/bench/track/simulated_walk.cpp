@@ -77,9 +77,9 @@ class Light {
     }
 
     /// Counts per unit of radiance over a zone, per watt of laser power.
-    double scale(const core::SensorFootprints& f) const {
-        return model_.detector.laser_w * 1e-6 * model_.detector.aperture_mm2 * f.zone_etendue_sr *
-               counts_per_w_;
+    double scale() const {
+        return model_.detector.laser_w * 1e-6 * model_.detector.aperture_mm2 *
+               core::zone_etendue_sr(model_) * counts_per_w_;
     }
 
     void add_target(const core::SensorFootprints& f,
@@ -144,7 +144,7 @@ class Light {
     void add_returns(const core::SensorFootprints& f,
                      std::vector<double>& counts,
                      const Back& back) const {
-        const double unit = scale(f);
+        const double unit = scale();
         for (std::size_t z = 0; z < f.zones.size(); ++z) {
             const core::PatchPoints& seen = f.zones[z].seen;
             for (std::size_t i = 0; i < seen.size(); ++i) {
@@ -234,9 +234,8 @@ SimulatedWalk simulate_walk(const WalkSettings& settings) {
         walk.frames.push_back(std::move(frame));
         walk.truth.push_back(std::move(truth));
     }
-    walk.retro_strength = light.scale(core::make_footprints(setup)) *
-                          std::pow(settings.wall_albedo / core::kPi, 2) * settings.target_albedo *
-                          settings.target_area_m2;
+    walk.retro_strength = light.scale() * std::pow(settings.wall_albedo / core::kPi, 2) *
+                          settings.target_albedo * settings.target_area_m2;
     return walk;
 }
 

@@ -4,21 +4,18 @@
 #include "apps/bench/track/simulated_walk.h"
 #include "calib/track/compare_tracks.h"
 #include "calib/track/smooth.h"
+#include "calib/track/track_bound.h"
 #include "calib/track/tracker.h"
 #include "renderer/core/parallel.h"
 #include "renderer/core/stopwatch.h"
 
-#include <Eigen/Cholesky>
 #include <fmt/core.h>
 
 #include <cmath>
-#include <mutex>
 #include <vector>
 
 namespace apps {
 namespace {
-
-using calib::Gaussian;
 
 /// A row of the table.
 struct TrackRow {
@@ -85,60 +82,39 @@ Bound bound_of(const SimulatedWalk& walk, const calib::TrackSettings& settings) 
     int empty = 0;
     for (std::size_t f = 0; f < walk.frames.size(); ++f) {
         if (!walk.truth[f].targets.empty()) continue;
-        for (std::size_t i = 0; i < background.size(); ++i)
+        for (std::size_t i = 0; i < background.size(); ++i) {
             background[i] += walk.frames[f].counts[i];
+        }
         ++empty;
     }
     for (double& value : background) value = std::max(value / empty, 1e-3);
-    std::vector<Gaussian> filtered;
-    std::vector<Gaussian> predicted;
+    std::vector<calib::SeenMatrix> information;
     for (std::size_t f = 0; f < walk.frames.size(); ++f) {
         if (walk.truth[f].targets.empty()) continue;
         const core::SensorFootprints footprints =
             calib::footprints_at(walk.sensor, *walk.frames[f].pose);
-        const calib::TargetResponse response(footprints,
-                                             walk.sensor.axis,
-                                             settings.target,
-                                             walk.sensor.setup->model.illumination,
-                                             walk.sensor.opl_origin,
-                                             walk.sensor.sigma_m);
+        const calib::TargetResponse response =
+            calib::response_at(walk.sensor, footprints, settings.target);
         calib::SeenVector seen;
         seen << walk.truth[f].targets.front().position_m, std::log(walk.retro_strength);
         // What the direct return drowns says nothing.
         std::vector<double> weights(background.size());
-        for (std::size_t i = 0; i < weights.size(); ++i)
+        for (std::size_t i = 0; i < weights.size(); ++i) {
             weights[i] = background[i] < 1e3 ? 1.0 : 0.0;
-        const calib::SeenMatrix information =
-            calib::fisher_information(response, {walk.frames[f].counts, background, weights}, seen);
-        calib::SeenMatrix wide = calib::SeenMatrix::Identity();
-        wide(3, 3) = 9.0;
-        predicted.push_back(filtered.empty() ? motion.start(seen, wide)
-                                             : motion.predict(filtered.back(), dt_s));
-        const calib::SeenMatrix prior = predicted.back().covariance.topLeftCorner<4, 4>();
-        const calib::SeenMatrix posterior = (prior.inverse() + information).inverse();
-        filtered.push_back(calib::condition(predicted.back(), seen, posterior));
-    }
-    Bound bound;
-    Gaussian smoothed;
-    const Eigen::MatrixXd transition = motion.transition(dt_s);
-    for (std::size_t i = filtered.size(); i-- > 0;) {
-        if (i + 1 == filtered.size()) {
-            smoothed = filtered[i];
-        } else {
-            const Eigen::MatrixXd gain = predicted[i + 1]
-                                             .covariance.ldlt()
-                                             .solve(transition * filtered[i].covariance)
-                                             .transpose();
-            smoothed.covariance =
-                (filtered[i].covariance +
-                 gain * (smoothed.covariance - predicted[i + 1].covariance) * gain.transpose())
-                    .eval();
         }
-        bound.filtered_m2 += filtered[i].position_covariance().trace();
-        bound.smoothed_m2 += smoothed.position_covariance().trace();
-        ++bound.frames;
+        information.push_back(calib::fisher_information(
+            response, {walk.frames[f].counts, background, weights, 0.0}, seen));
     }
-    return bound;
+    calib::SeenMatrix wide = calib::SeenMatrix::Identity();
+    wide(3, 3) = 9.0;
+    const calib::TrackBound bound = calib::track_bound(information, wide, motion, dt_s);
+    Bound sum;
+    for (std::size_t i = 0; i < information.size(); ++i) {
+        sum.filtered_m2 += bound.filtered_m2[i];
+        sum.smoothed_m2 += bound.smoothed_m2[i];
+        ++sum.frames;
+    }
+    return sum;
 }
 
 /// What a set of walks gave: as they came, and smoothed.
