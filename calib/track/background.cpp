@@ -54,7 +54,7 @@ void Background::average(const std::vector<std::vector<double>>& frames) {
             sum += value;
             count += 1.0;
         }
-        mean_[i] = sum / (count + 1.0);
+        mean_[i] = sum / std::max(count, 1.0);
     }
     frames_seen_ = static_cast<double>(frames.size());
 }
@@ -67,13 +67,14 @@ void Background::set_levels(std::span<const double> counts, std::span<const doub
         for (int pass = 0; pass < 3; ++pass) {
             double sum = kPriorCounts;
             double square = 0.0;
-            double count = 1.0;
+            double count = 0.0;
             for (std::size_t i = begin; i < begin + num_bins_; ++i) {
                 if (weights[i] == 0.0 || counts[i] > limit) continue;
                 sum += counts[i];
                 square += counts[i] * counts[i];
                 count += 1.0;
             }
+            count = std::max(count, 1.0);
             level = sum / count;
             limit = level + 2.0 * std::sqrt(std::max(square / count - level * level, 0.0));
         }

@@ -43,7 +43,6 @@ class Problem {
             target.gradient.resize(response.size());
         }
         signal_.resize(response.size());
-        weights_.assign(frame.weights.begin(), frame.weights.end());
     }
 
     VectorXd start() const {
@@ -54,19 +53,6 @@ class Problem {
     }
     Eigen::Index size() const { return kSeen * static_cast<Eigen::Index>(targets_.size()); }
     static Eigen::Index at(std::size_t target) { return kSeen * static_cast<Eigen::Index>(target); }
-
-    // Takes the variance of bins at a state, beside that of counting what the model may be wrong
-    // by.
-    void set_weights(const VectorXd& state) {
-        weights_.assign(frame_.weights.begin(), frame_.weights.end());
-        if (frame_.model_error == 0.0) return;
-        evaluate(state);
-        for (std::size_t i = 0; i < weights_.size(); ++i) {
-            const double error = frame_.model_error * signal_[i];
-            const double expected = frame_.background[i] + signal_[i];
-            weights_[i] /= 1.0 + weights_[i] * error * error / expected;
-        }
-    }
 
     // Logarithm of the posterior density up to a constant.
     double evaluate(const VectorXd& state) {
@@ -98,14 +84,14 @@ class Problem {
         }
         VectorXd row = VectorXd::Zero(size());
         for (std::size_t i = 0; i < signal_.size(); ++i) {
-            if (signal_[i] <= 0.0 || weights_[i] == 0.0) continue;
+            if (signal_[i] <= 0.0 || frame_.weights[i] == 0.0) continue;
             const double expected = frame_.background[i] + signal_[i];
             for (std::size_t t = 0; t < targets_.size(); ++t) {
                 const Contribution& target = targets_[t];
                 row.segment<3>(at(t)) = target.strength * target.gradient[i];
                 row[at(t) + kSeen - 1] = target.strength * target.unit[i];
             }
-            const double weight = weights_[i] / expected;
+            const double weight = frame_.weights[i] / expected;
             information.noalias() += weight * row * row.transpose();
             slope += (weight * (frame_.counts[i] - expected)) * row;
         }
@@ -122,7 +108,7 @@ class Problem {
             const double with = frame_.background[i] + signal_[i];
             const double mine = target.strength * target.unit[i];
             const double without = std::max(with - mine, frame_.background[i]);
-            gain += weights_[i] * (frame_.counts[i] * std::log(with / without) - mine);
+            gain += frame_.weights[i] * (frame_.counts[i] * std::log(with / without) - mine);
         });
         const SeenMatrix own = information.block<kSeen, kSeen>(at(t), at(t));
         return gain - prior_misfit(state, t) - 0.5 * prior_log_det_[t] -
@@ -145,7 +131,7 @@ class Problem {
         double gain = 0.0;
         for (std::size_t i = 0; i < signal_.size(); ++i) {
             if (signal_[i] <= 0.0) continue;
-            gain += weights_[i] *
+            gain += frame_.weights[i] *
                     (frame_.counts[i] * std::log1p(signal_[i] / frame_.background[i]) - signal_[i]);
         }
         return gain;
@@ -163,7 +149,6 @@ class Problem {
     std::vector<SeenMatrix> prior_information_;
     std::vector<double> prior_log_det_;
     std::vector<double> signal_;
-    std::vector<double> weights_;
     double log_likelihood_ = 0.0;
 };
 
@@ -195,7 +180,6 @@ JointUpdate update_jointly(const TargetResponse& response,
                            const std::function<bool(const Vec3&)>& hidden) {
     Problem problem(response, frame, priors);
     VectorXd state = problem.start();
-    problem.set_weights(state);
     double value = problem.evaluate(state);
     MatrixXd information;
     VectorXd slope;
@@ -241,7 +225,6 @@ SeenMatrix fisher_information(const TargetResponse& response,
     constexpr double kWide = 1e12;
     const Gaussian prior{target, kWide * MatrixXd::Identity(kSeen, kSeen)};
     Problem problem(response, frame, {prior});
-    problem.set_weights(target);
     problem.evaluate(target);
     MatrixXd information;
     VectorXd slope;

@@ -14,8 +14,7 @@ namespace calib {
 struct FrameCounts {
     std::span<const double> counts;
     std::span<const double> background;  ///< positive
-    std::span<const double> weights;     ///< 1 / dispersion; 0 where a bin says nothing
-    double model_error = 0.0;            ///< relative, of what a target is expected to add to a bin
+    std::span<const double> weights;     ///< mean over variance; 0 where a bin says nothing
 };
 
 /// What targets became in the light of a frame.

@@ -171,6 +171,19 @@ double Tracker::dispersion_of(const TrackFrame& frame, const std::vector<double>
     return dispersion_;
 }
 
+// A bin may be off by a share of what it holds beyond the background; the same for all targets that
+// may explain it, so that these can be compared.
+void Tracker::add_model_error(const std::vector<double>& counts,
+                              std::vector<double>& weights) const {
+    const std::vector<double>& background = background_.mean();
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+        const double excess = counts[i] - background[i];
+        if (excess <= 0.0) continue;
+        const double error = settings_.noise.model_error * excess;
+        weights[i] /= 1.0 + weights[i] * error * error / counts[i];
+    }
+}
+
 bool Tracker::is_hidden(const Vec3& position_m) const {
     const double height = sensor_.wall.normal.normalized().dot(position_m - sensor_.wall.center_m);
     return height > kNearestToWall_m && height < 2.0 * settings_.search.z_range_m[1];
@@ -247,7 +260,7 @@ void Tracker::look_for_more(const FrameCounts& frame, double dt_s) {
             expected[i] = std::max(expected[i] - strength * unit[i], frame.background[i]);
         }
     }
-    auto found = find({frame.counts, expected, frame.weights, frame.model_error});
+    auto found = find({frame.counts, expected, frame.weights});
     if (!found) return;
     found->predicted_probability = birth;
     found->probability = updated(birth, found->log_evidence);
@@ -310,7 +323,8 @@ FrameEstimate Tracker::step(const TrackFrame& frame) {
         return estimate;
     }
     for (double& weight : weights) weight /= dispersion * (1.0 + background_.excess_variance());
-    const FrameCounts data{frame.counts, background_.mean(), weights, settings_.noise.model_error};
+    add_model_error(frame.counts, weights);
+    const FrameCounts data{frame.counts, background_.mean(), weights};
     std::fill(signal_.begin(), signal_.end(), 0.0);
     if (!targets_.empty()) update(data, estimate);
     look_for_more(data, estimate.dt_s);

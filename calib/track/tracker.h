@@ -85,6 +85,7 @@ class Tracker {
     void aim(const core::SensorPose& pose);
     std::vector<double> weights_of(const TrackFrame& frame, FrameEstimate& estimate);
     double dispersion_of(const TrackFrame& frame, const std::vector<double>& weights);
+    void add_model_error(const std::vector<double>& counts, std::vector<double>& weights) const;
     void warn_once(const std::string& text, FrameEstimate& estimate);
     void predict(double dt_s);
     void update(const FrameCounts& frame, FrameEstimate& estimate);

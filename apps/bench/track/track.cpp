@@ -103,7 +103,7 @@ Bound bound_of(const SimulatedWalk& walk, const calib::TrackSettings& settings) 
             weights[i] = background[i] < 1e3 ? 1.0 : 0.0;
         }
         information.push_back(calib::fisher_information(
-            response, {walk.frames[f].counts, background, weights, 0.0}, seen));
+            response, {walk.frames[f].counts, background, weights}, seen));
     }
     calib::SeenMatrix wide = calib::SeenMatrix::Identity();
     wide(3, 3) = 9.0;

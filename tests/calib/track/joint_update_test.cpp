@@ -52,7 +52,7 @@ TEST(JointUpdate, IsKalmansInTheLinearLimit) {
         posterior * jacobian.transpose() * expected.cwiseInverse().asDiagonal() * innovation;
 
     const auto update = calib::update_jointly(
-        response, {counts, background, weights, 0.0}, {Gaussian{mean, prior}}, kAnywhere);
+        response, {counts, background, weights}, {Gaussian{mean, prior}}, kAnywhere);
     const Eigen::VectorXd found = update.targets[0].mean - mean;
     EXPECT_LT((found - moved).norm(), 0.03 * moved.norm());
     EXPECT_LT((update.targets[0].covariance - posterior).norm(), 0.03 * posterior.norm());
@@ -82,7 +82,7 @@ TEST(JointUpdate, StatesItsErrors) {
         const auto counts = test_support::draw_counts(
             response, {truth.head<3>()}, std::exp(truth[3]), 2.0, static_cast<std::uint64_t>(t));
         const auto update = calib::update_jointly(
-            response, {counts, background, weights, 0.0}, {Gaussian{mean, prior}}, kAnywhere);
+            response, {counts, background, weights}, {Gaussian{mean, prior}}, kAnywhere);
         const Eigen::VectorXd error = update.targets[0].mean - truth;
         sum += error.dot(update.targets[0].covariance.ldlt().solve(error));
         spread += update.targets[0].covariance(0, 0) / kTargets;
@@ -103,7 +103,7 @@ TEST(JointUpdate, EvidenceTellsATargetFromNone) {
     const auto evidence = [&](const std::vector<Vec3>& targets) {
         const auto counts = test_support::draw_counts(response, targets, 200.0, 2.0, 3);
         return calib::update_jointly(
-                   response, {counts, background, weights, 0.0}, {Gaussian{mean, prior}}, kAnywhere)
+                   response, {counts, background, weights}, {Gaussian{mean, prior}}, kAnywhere)
             .log_evidence[0];
     };
     EXPECT_GT(evidence({Vec3(0.1, -0.1, 0.8)}), 20.0);
