@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "apps/commands/track_pictures.h"
 
+#include "calib/track/track_file.h"
+
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -139,7 +141,9 @@ void draw_sensor(const std::vector<calib::FrameEstimate>& frames, Plan& plan) {
     plan.legend("sensor", kSensorColour);
 }
 
-void draw_paths(const std::vector<calib::FrameEstimate>& frames, Plan& plan) {
+void draw_paths(const std::vector<calib::FrameEstimate>& frames,
+                const calib::TrackSettings& settings,
+                Plan& plan) {
     std::map<int, std::vector<const calib::TargetEstimate*>> paths;
     for (const calib::FrameEstimate& frame : frames) {
         for (const calib::TargetEstimate& target : frame.targets) {
@@ -151,7 +155,9 @@ void draw_paths(const std::vector<calib::FrameEstimate>& frames, Plan& plan) {
             kPathColours[static_cast<std::size_t>(id - 1) % kPathColours.size()];
         const std::size_t step = (path.size() + kMostEllipses - 1) / kMostEllipses;
         for (std::size_t i = 0; i < path.size(); i += step) {
-            plan.ellipse(path[i]->state.position_m(), path[i]->state.position_covariance(), colour);
+            plan.ellipse(path[i]->state.position_m(),
+                         calib::stated_covariance_m2(*path[i], settings),
+                         colour);
         }
     }
     for (const auto& [id, path] : paths) {
@@ -196,7 +202,7 @@ std::vector<nlos::Panel> track_panels(const std::vector<calib::FrameEstimate>& f
         Plan plan(view, sensor);
         draw_wall(settings, sensor, plan);
         draw_sensor(frames, plan);
-        draw_paths(frames, plan);
+        draw_paths(frames, settings, plan);
         panels.emplace_back(plan.finished());
     }
     if (shown.counts.empty()) return panels;

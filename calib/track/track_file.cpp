@@ -25,7 +25,7 @@ Json target_json(const TargetEstimate& target, const TrackSettings& settings) {
     Json json;
     json["id"] = target.id;
     json["position_m"] = core::write_value(stated_position_m(target, settings));
-    json["covariance_m2"] = matrix_json(target.state.position_covariance());
+    json["covariance_m2"] = matrix_json(stated_covariance_m2(target, settings));
     json["probability"] = target.probability;
     json["strength"] = target.state.strength();
     if (target.state.mean.size() > kSeen) {
@@ -63,6 +63,12 @@ TrackedPosition read_target(const Json& json, const std::string& where) {
 }
 
 }  // namespace
+
+core::Mat3 stated_covariance_m2(const TargetEstimate& target, const TrackSettings& settings) {
+    const double systematic_m = settings.noise.systematic_m;
+    return target.state.position_covariance() +
+           systematic_m * systematic_m * core::Mat3::Identity();
+}
 
 Json frame_json(const FrameEstimate& frame, const TrackSettings& settings) {
     Json json;
@@ -106,7 +112,7 @@ std::string track_csv(const std::vector<FrameEstimate>& frames, const TrackSetti
         for (const TargetEstimate& target : frame.targets) {
             if (!target.is_named) continue;
             const Vec3 p = stated_position_m(target, settings);
-            const core::Mat3 c = target.state.position_covariance();
+            const core::Mat3 c = stated_covariance_m2(target, settings);
             text += fmt::format("{:.9g},{},{:.6g},{:.6g},{:.6g},{:.6g},",
                                 frame.time_s,
                                 target.id,

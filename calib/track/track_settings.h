@@ -76,6 +76,7 @@ struct NoiseSettings {
     std::optional<double> dispersion;
     std::optional<double> saturation_counts;
     double model_error = 0.1;
+    double systematic_m = 0.005;
 };
 
 struct ExistenceSettings {
@@ -165,6 +166,11 @@ void for_each_field(NoiseSettings& s, Visitor&& visit) {
           core::at_least(0,
                          "relative standard deviation of what a target adds to a bin from what the "
                          "model says"));
+    visit("systematic_m",
+          s.systematic_m,
+          core::at_least(0,
+                         "error along each axis that no number of frames averages away, beside "
+                         "those of counting in stated covariances [m]"));
 }
 
 template <class Visitor>

@@ -44,13 +44,15 @@ NLOS_FIGURES(TrackRow,
              frames_per_s,
              slowest_ms);
 
-calib::TrackSettings settings_for(const SimulatedWalk& walk) {
+calib::TrackSettings settings_for(const SimulatedWalk& walk, double systematic_m) {
     calib::TrackSettings settings;
+    settings.noise.systematic_m = systematic_m;
     settings.pose = walk.sensor.setup->pose;
     return settings;
 }
 
-std::vector<calib::TrackedFrame> named(const std::vector<calib::FrameEstimate>& estimates) {
+std::vector<calib::TrackedFrame> named(const std::vector<calib::FrameEstimate>& estimates,
+                                       const calib::TrackSettings& settings) {
     std::vector<calib::TrackedFrame> frames;
     for (const calib::FrameEstimate& estimate : estimates) {
         calib::TrackedFrame frame;
@@ -59,7 +61,7 @@ std::vector<calib::TrackedFrame> named(const std::vector<calib::FrameEstimate>& 
         for (const calib::TargetEstimate& target : estimate.targets) {
             if (!target.is_named) continue;
             frame.targets.push_back(
-                {target.state.position_m(), target.state.position_covariance()});
+                {target.state.position_m(), calib::stated_covariance_m2(target, settings)});
         }
         frames.push_back(std::move(frame));
     }
@@ -126,8 +128,8 @@ struct Tally {
     double slowest_s = 0.0;
     int frames = 0;
 
-    void add(const SimulatedWalk& walk) {
-        const calib::TrackSettings settings = settings_for(walk);
+    void add(const SimulatedWalk& walk, double systematic_m) {
+        const calib::TrackSettings settings = settings_for(walk, systematic_m);
         calib::Tracker tracker(settings, walk.sensor);
         std::vector<calib::FrameEstimate> estimates;
         for (const calib::TrackFrame& frame : walk.frames) {
@@ -138,9 +140,9 @@ struct Tally {
             slowest_s = std::max(slowest_s, spent);
             ++frames;
         }
-        live.add(named(estimates), walk.truth, "walk");
+        live.add(named(estimates, settings), walk.truth, "walk");
         calib::smooth(estimates, settings);
-        smoothed.add(named(estimates), walk.truth, "walk");
+        smoothed.add(named(estimates, settings), walk.truth, "walk");
         if (walk.truth[walk.truth.size() / 2].targets.empty()) return;
         const Bound one = bound_of(walk, settings);
         bound.filtered_m2 += one.filtered_m2;
@@ -169,7 +171,7 @@ struct Tally {
     }
 };
 
-Tally tally(int walks, WalkSettings settings, const core::Progress& progress) {
+Tally tally(int walks, WalkSettings settings, double systematic_m, const core::Progress& progress) {
     Tally tally;
     core::parallel_in_order<SimulatedWalk>(
         static_cast<std::size_t>(walks),
@@ -179,7 +181,7 @@ Tally tally(int walks, WalkSettings settings, const core::Progress& progress) {
             return simulate_walk(one);
         },
         [&](std::size_t i, const SimulatedWalk& walk) {
-            tally.add(walk);
+            tally.add(walk, systematic_m);
             progress.update(static_cast<double>(i + 1) / walks, "");
             return !progress.should_stop();
         });
@@ -231,7 +233,7 @@ BenchResult measure_track(const TrackBenchSettings& settings, const core::Progre
         walk.seed = moves ? 1000 : 2000;
         const double begin = moves ? 0.0 : kThird;
         const core::Progress part = progress.part(begin, begin + kThird);
-        const Tally done = tally(settings.walks, walk, part);
+        const Tally done = tally(settings.walks, walk, settings.systematic_m, part);
         const std::string what = moves ? "sensor moves" : "sensor stands";
         rows.push_back(done.row(what, settings.walks, false));
         rows.push_back(done.row(what + ", smoothed", settings.walks, true));
@@ -239,8 +241,8 @@ BenchResult measure_track(const TrackBenchSettings& settings, const core::Progre
     walk.has_target = false;
     walk.seed = 3000;
     const core::Progress part = progress.part(2.0 * kThird, 1.0);
-    rows.push_back(
-        tally(settings.empty_walks, walk, part).row("empty scene", settings.empty_walks, false));
+    rows.push_back(tally(settings.empty_walks, walk, settings.systematic_m, part)
+                       .row("empty scene", settings.empty_walks, false));
     BenchResult result;
     result.figures["targets"] = core::write_value(targets_of(rows));
     result.figures["walks"] = core::write_value(rows);

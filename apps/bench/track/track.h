@@ -8,8 +8,9 @@ namespace apps {
 
 /// What `nlos bench track` is to measure.
 struct TrackBenchSettings {
-    int walks = 50;        ///< trajectories of each row
-    int empty_walks = 20;  ///< of a scene without a target
+    int walks = 50;               ///< trajectories of each row
+    int empty_walks = 20;         ///< of a scene without a target
+    double systematic_m = 0.005;  ///< see calib::NoiseSettings
 };
 
 /// Tracks simulated walks and holds them against their truth, their stated covariance and the

@@ -10,6 +10,10 @@ void declare_track(CLI::App& command, TrackBenchSettings& settings) {
     add_setting(command, "--walks", settings.walks, "Trajectories of each row", {1, 10000});
     add_setting(
         command, "--empty-walks", settings.empty_walks, "Scenes without a target", {1, 10000});
+    add_setting(command,
+                "--systematic-m",
+                settings.systematic_m,
+                "Error of the model stated beside those of counting [m]");
 }
 
 }  // namespace
