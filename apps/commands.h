@@ -23,6 +23,7 @@ void add_generate_command(CLI::App& app);
 void add_demo_command(CLI::App& app);
 void add_bench_command(CLI::App& app);
 void add_sweep_command(CLI::App& app);
+void add_track_command(CLI::App& app);
 
 // Subcommands of bench.
 void add_bench_noise_command(CLI::App& bench);
@@ -33,5 +34,6 @@ void add_bench_render_command(CLI::App& bench);
 void add_bench_fit_command(CLI::App& bench);
 void add_bench_comparisons_command(CLI::App& bench);
 void add_bench_reconstruct_command(CLI::App& bench);
+void add_bench_track_command(CLI::App& bench);
 
 }  // namespace apps

@@ -2,6 +2,7 @@
 #include "apps/file_kind.h"
 
 #include "calib/fit_file.h"
+#include "calib/track/track_file.h"
 #include "nlos/formats/capture_file.h"
 #include "nlos/formats/volume_file.h"
 #include "renderer/core/settings.h"
@@ -20,6 +21,7 @@ FileKind kind_of_json(const std::string& path) {
     };
     if (calib::is_fit_file(path)) return FileKind::Fit;
     if (has("depth_mae_m", "rel_l2")) return FileKind::Metrics;
+    if (calib::is_track(json)) return FileKind::Track;
     if (has("scene", "free")) return FileKind::Model;
     if (has("direct_returns", "commands")) return FileKind::Setup;
     if (has("points_m", "opl_offset_m")) return FileKind::Calibration;

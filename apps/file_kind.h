@@ -13,6 +13,7 @@ enum class FileKind {
     Setup,
     Calibration,
     Sweep,
+    Track,
     Volume,
     Geometry,
     PointCloud,

@@ -65,6 +65,7 @@ int run(const std::vector<std::string>& arguments) {
     apps::add_bench_command(app);
     apps::add_generate_command(app);
     apps::add_sweep_command(app);
+    apps::add_track_command(app);
     apps::add_demo_command(app);
 
     reject_unknown_command(app, arguments);

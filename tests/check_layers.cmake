@@ -25,14 +25,14 @@ set(floors_nlos
     "nlos")
 set(floors_calib
     "calib/statistics|calib/model"
-    "calib/forward|calib/setup"
+    "calib/forward|calib/setup|calib/track"
     "calib/fit|calib/adjoint"
     "calib")
 set(floors_apps
     "apps"
     "apps/batch|apps/shapes"
     "apps/bench|apps/dataset"
-    "apps/report|apps/bench/render|apps/bench/reconstruct|apps/bench/fit"
+    "apps/report|apps/bench/render|apps/bench/reconstruct|apps/bench/fit|apps/bench/track"
     "apps/commands"
     "apps/python|apps/sweep")
 

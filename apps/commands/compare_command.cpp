@@ -53,7 +53,7 @@ void add_compare_command(CLI::App& app) {
     command
         ->add_option("A",
                      arguments->a,
-                     "Volume, capture (.h5), fit (.json), point cloud or mesh (.ply, .glb)")
+                     "Volume, capture (.h5), fit or track (.json), point cloud or mesh (.ply, .glb)")
         ->required();
     command->add_option("B", arguments->b, "scene.json as the truth, or another of A's kind")
         ->required();

@@ -7,6 +7,7 @@
 #include "apps/scene_truth.h"
 #include "calib/compare_fit.h"
 #include "calib/fit_file.h"
+#include "calib/track/compare_tracks.h"
 #include "nlos/formats/capture_file.h"
 #include "nlos/formats/ply_file.h"
 #include "nlos/formats/volume_file.h"
@@ -67,6 +68,20 @@ nlos::Metrics compare_fit_to_scene(const std::string& a,
     return metrics;
 }
 
+nlos::Metrics compare_tracks(const std::string& a, const std::string& b) {
+    calib::TrackScorer scorer;
+    scorer.add(calib::read_track(a), calib::read_track(b), a);
+    const calib::TrackScores scores = scorer.scores();
+    nlos::Metrics metrics;
+    metrics.track_rmse_m = scores.rmse_m;
+    metrics.track_median_m = scores.median_m;
+    metrics.track_coverage = scores.coverage;
+    metrics.track_latency_s = scores.latency_s;
+    metrics.track_false_alarms = scores.false_alarms;
+    metrics.track_missed = scores.missed;
+    return metrics;
+}
+
 bool is_surface(FileKind kind) {
     return kind == FileKind::Geometry || kind == FileKind::PointCloud;
 }
@@ -102,6 +117,9 @@ Comparison compare_kinds(const std::string& a,
         const core::Capture reference = nlos::read_capture(b);
         return {nlos::compare_captures(result, reference),
                 nlos::comparison_warnings(result, reference)};
+    }
+    if (kind_a == FileKind::Track && kind_b == FileKind::Track) {
+        return {compare_tracks(a, b), {}};
     }
     throw core::Error(
         a,

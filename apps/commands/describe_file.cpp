@@ -192,6 +192,9 @@ void describe_one(Description& out,
         case FileKind::Sweep:
             describe_json(out, path, "sweep over settings");
             break;
+        case FileKind::Track:
+            describe_json(out, path, "track");
+            break;
         case FileKind::Geometry:
             describe_geometry(out, path);
             break;

@@ -35,6 +35,7 @@ void write_picture(const std::vector<std::string>& paths,
         case FileKind::Setup:
         case FileKind::Calibration:
         case FileKind::Sweep:
+        case FileKind::Track:
         case FileKind::Geometry:
         case FileKind::PointCloud:
             break;

@@ -146,6 +146,7 @@ std::string contents_text(const ResultsFolder& results) {
     add(results.captures.size(), "capture");
     add(results.volumes.size(), "reconstruction");
     add(results.fits.size(), "fit");
+    add(results.tracks.size(), "track");
     add(results.scores.size(), "comparison");
     add(results.benches.size(), "benchmark");
     add(results.sweeps.size(), "sweep");
@@ -178,6 +179,7 @@ std::string render_report(const ResultsFolder& results) {
     html += section_html(
         "reconstructions", "Reconstructions", cards_html(results.volumes, "Projections"));
     html += section_html("fits", "Fits", cards_html(results.fits, "Data, model and residual"));
+    html += section_html("tracks", "Tracks", cards_html(results.tracks, "Plan and histograms"));
     html +=
         section_html("comparisons", "Comparison with the truth", comparisons_html(results.scores));
     html += section_html("benchmarks", "Speed against error", benches_html(results.benches));

@@ -21,13 +21,14 @@ struct ResultCard {
     core::Json settings;  ///< how it was made; null when unknown
 };
 
-/// What a page shows of a capture, a volume, a fit.
+/// What a page shows of a capture, a volume, a fit, a track.
 ///
-/// json     content of the fit's file
+/// json     content of the file
 /// throws   core::Error as reading them does
 ResultCard capture_card(const std::string& path);
 ResultCard volume_card(const std::string& path);
 ResultCard fit_card(const std::string& path, const core::Json& json);
+ResultCard track_card(const std::string& path, const core::Json& json);
 
 /// A number with three significant digits and no exponent where it can be avoided.
 std::string short_number(double value);

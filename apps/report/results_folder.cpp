@@ -3,6 +3,7 @@
 
 #include "apps/report/bench_cards.h"
 #include "calib/fit_file.h"
+#include "calib/track/track_file.h"
 #include "nlos/formats/volume_file.h"
 
 #include <algorithm>
@@ -78,6 +79,8 @@ void read_file(const fs::path& path, ResultsFolder& results) {
             results.scores.push_back(scored_result(path, json));
         } else if (calib::is_fit_file(path.string())) {
             results.fits.push_back(fit_card(path.string(), json));
+        } else if (calib::is_track(json)) {
+            results.tracks.push_back(track_card(path.string(), json));
         } else if (is_bench(json)) {
             results.benches.push_back(read_bench_card(path.string(), json));
         } else if (is_sweep(json)) {
@@ -109,6 +112,7 @@ void drop_accompanying_figures(ResultsFolder& results) {
     for (const ResultCard& card : results.captures) add(card.file);
     for (const ResultCard& card : results.volumes) add(card.file);
     for (const ResultCard& card : results.fits) add(card.file);
+    for (const ResultCard& card : results.tracks) add(card.file);
     for (const ScoredResult& scored : results.scores) add(scored.file);
     std::erase_if(results.figures, [&](const Figure& figure) {
         const fs::path file = figure.file;

@@ -39,6 +39,7 @@ struct ResultsFolder {
     std::vector<ResultCard> captures;
     std::vector<ResultCard> volumes;
     std::vector<ResultCard> fits;
+    std::vector<ResultCard> tracks;
     std::vector<BenchCard> benches;
     std::vector<SweepCard> sweeps;
     core::Json hard_cases;        ///< the table that hard_cases_tests --report writes; null: none
@@ -48,8 +49,8 @@ struct ResultsFolder {
 
     bool empty() const {
         return !dataset && scores.empty() && captures.empty() && volumes.empty() && fits.empty() &&
-               benches.empty() && sweeps.empty() && hard_cases.empty() && figures.empty() &&
-               documents.empty() && unreadable.empty();
+               tracks.empty() && benches.empty() && sweeps.empty() && hard_cases.empty() &&
+               figures.empty() && documents.empty() && unreadable.empty();
     }
 };
 

@@ -32,6 +32,12 @@ struct Metrics {
     std::optional<double> albedo_error;
     std::optional<double> rel_l2;
     std::optional<double> rel_mse;
+    std::optional<double> track_rmse_m;        ///< of the positions of named targets
+    std::optional<double> track_median_m;      ///< of the same distances
+    std::optional<double> track_coverage;      ///< share of true positions in 95 % ellipsoids
+    std::optional<double> track_latency_s;     ///< from a target's appearance to its naming
+    std::optional<double> track_false_alarms;  ///< share of frames that name too many targets
+    std::optional<double> track_missed;        ///< share of true targets that were not named
     std::optional<double> seconds;
     std::optional<std::uint64_t> peak_rss_bytes;
 };
@@ -64,6 +70,12 @@ void for_each_field(Metrics& m, Visitor&& visit) {
     visit("albedo_error", m.albedo_error, "relative, of a fitted object");
     visit("rel_l2", m.rel_l2, "relative L2 distance of two captures or volumes");
     visit("rel_mse", m.rel_mse, "mean square distance over mean square reference");
+    visit("track_rmse_m", m.track_rmse_m, "root mean square error of tracked positions [m]");
+    visit("track_median_m", m.track_median_m, "median distance of tracked positions [m]");
+    visit("track_coverage", m.track_coverage, "share of true positions in the 95 % ellipsoids");
+    visit("track_latency_s", m.track_latency_s, "from a target's appearance to its naming [s]");
+    visit("track_false_alarms", m.track_false_alarms, "share of frames that name too many targets");
+    visit("track_missed", m.track_missed, "share of true targets that were not named");
     visit("seconds", m.seconds, "time the result took [s]");
     visit("peak_rss_bytes", m.peak_rss_bytes, "memory the result took [bytes]");
 }

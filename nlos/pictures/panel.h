@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -50,6 +51,25 @@ struct CurvePanel {
     std::string y_label;
 };
 
-using Panel = std::variant<ImagePanel, CurvePanel>;
+/// A line of a drawing; with `fill` its inside is coloured too.
+struct DrawnLine {
+    std::vector<std::array<double, 2>> points;  ///< (x, y) in the units of the axes
+    Colour colour;
+    int thickness_px = 3;
+    double fill = 0.0;  ///< opacity of the inside, in [0, 1]
+};
+
+/// Lines on axes of one scale, such as a plan, with a legend beside them.
+struct DrawingPanel {
+    std::string title;
+    std::vector<DrawnLine> lines;  ///< later ones above earlier ones
+    std::vector<std::pair<std::string, Colour>> legend;
+    std::array<double, 2> x_range{0.0, 1.0};
+    std::array<double, 2> y_range{0.0, 1.0};
+    std::string x_label;  ///< with unit
+    std::string y_label;
+};
+
+using Panel = std::variant<ImagePanel, CurvePanel, DrawingPanel>;
 
 }  // namespace nlos

@@ -21,6 +21,8 @@ constexpr int kBottomMargin = 108;  // tick labels and x label
 constexpr int kBarGap = 28;
 constexpr int kBarWidth = 22;
 constexpr int kBarLabels = 132;
+constexpr int kLegendLine = 44;
+constexpr int kLegendStep = 40;
 constexpr int kPanelGap = 44;  // to the next panel
 constexpr int kTickLength = 9;
 constexpr int kLine = 2;
@@ -83,6 +85,14 @@ PixelSize plot_size(const ImagePanel& panel) {
     return {side(width), side(height)};
 }
 
+PixelSize plot_size(const DrawingPanel& panel) {
+    const double width = std::abs(panel.x_range[1] - panel.x_range[0]);
+    const double height = std::abs(panel.y_range[1] - panel.y_range[0]);
+    const double scale = kPlotSize / std::max(width, height);
+    return {static_cast<int>(std::lround(width * scale)),
+            static_cast<int>(std::lround(height * scale))};
+}
+
 PixelSize plot_size(const CurvePanel&) {
     return {kPlotSize, kPlotSize};
 }
@@ -92,6 +102,13 @@ int right_margin(const ImagePanel&) {
 }
 int right_margin(const CurvePanel&) {
     return kPanelGap;
+}
+int right_margin(const DrawingPanel& panel) {
+    int widest = 0;
+    for (const auto& [name, colour] : panel.legend) {
+        widest = std::max(widest, Canvas::text_length(name, kTickText));
+    }
+    return kBarGap + kLegendLine + widest + kPanelGap;
 }
 
 void check(const ImagePanel& panel) {
@@ -107,6 +124,17 @@ void check(const CurvePanel& panel) {
     throw core::Error("picture '" + panel.title + "'",
                       fmt::format("found {} x and {} y", panel.x.size(), panel.y.size()),
                       "must be as many, and at least one");
+}
+
+void check(const DrawingPanel& panel) {
+    if (panel.x_range[1] > panel.x_range[0] && panel.y_range[1] > panel.y_range[0]) return;
+    throw core::Error("picture '" + panel.title + "'",
+                      fmt::format("found axes from {} to {} and {} to {}",
+                                  panel.x_range[0],
+                                  panel.x_range[1],
+                                  panel.y_range[0],
+                                  panel.y_range[1]),
+                      "must be ascending");
 }
 
 // ---- Axes --------------------------------------------------------------------------------------
@@ -264,6 +292,39 @@ void draw_plot(Canvas& canvas, const PixelBox& plot, const CurvePanel& panel) {
     canvas.frame(plot, kAxis, kLine);
     draw_x_axis(canvas, plot, x, panel.x_label);
     draw_y_axis(canvas, plot, y, panel.y_label);
+}
+
+// ---- Drawings ----------------------------------------------------------------------------------
+
+void draw_plot(Canvas& canvas, const PixelBox& plot, const DrawingPanel& panel) {
+    const PixelAxis x{panel.x_range[0], panel.x_range[1], plot.x, plot.right()};
+    const PixelAxis y{panel.y_range[0], panel.y_range[1], plot.bottom(), plot.y};
+    draw_grid(canvas, plot, x, y);
+    for (const DrawnLine& line : panel.lines) {
+        std::vector<std::array<double, 2>> points;
+        for (const auto& [px, py] : line.points) {
+            points.push_back({std::clamp(x.pixel(px), double(plot.x), double(plot.right())),
+                              std::clamp(y.pixel(py), double(plot.y), double(plot.bottom()))});
+        }
+        if (line.fill > 0.0 && points.size() > 2) {
+            canvas.fill_polygon(points, line.colour, line.fill);
+        }
+        if (points.size() > 1 && line.thickness_px > 0) {
+            canvas.polyline(points, line.colour, line.thickness_px);
+        }
+    }
+    canvas.frame(plot, kAxis, kLine);
+    draw_x_axis(canvas, plot, x, panel.x_label);
+    draw_y_axis(canvas, plot, y, panel.y_label);
+    int row = plot.y + kLegendStep / 2;
+    for (const auto& [name, colour] : panel.legend) {
+        canvas.fill({plot.right() + kBarGap, row - 4, kLegendLine - 14, 8}, colour);
+        canvas.text(plot.right() + kBarGap + kLegendLine,
+                    row,
+                    name,
+                    anchored(kTickText, TextAnchor::Start));
+        row += kLegendStep;
+    }
 }
 
 }  // namespace

@@ -4,7 +4,8 @@
 
     run_guide.py NLOS PAGE.md
 
-Commands are the indented lines that begin with nlos or python3. Each must succeed. The folder sees
+Commands are the indented lines that begin with nlos or python3; `< FILE` at the end is their input.
+Each must succeed. The folder sees
 apps, data and scenes of the checkout, as a reader does who follows the page there.
 """
 import os
@@ -32,7 +33,11 @@ def main(program: str, page: str) -> int:
             os.symlink(root / name, Path(folder) / name)
         for command in commands:
             words = [program if command[0] == "nlos" else sys.executable, *command[1:]]
-            done = subprocess.run(words, cwd=folder, capture_output=True, text=True,
+            given = ""
+            if "<" in words:
+                given = (Path(folder) / words[-1]).read_text(encoding="utf-8")
+                words = words[:words.index("<")]
+            done = subprocess.run(words, cwd=folder, capture_output=True, text=True, input=given,
                                   timeout=TIMEOUT_S)
             print("$", " ".join(command), done.stdout, done.stderr, sep="\n", flush=True)
             if done.returncode != 0:

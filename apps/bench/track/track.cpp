@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: MIT
+#include "apps/bench/track/track.h"
+
+#include "apps/bench/track/simulated_walk.h"
+#include "calib/track/compare_tracks.h"
+#include "calib/track/smooth.h"
+#include "calib/track/track_bound.h"
+#include "calib/track/tracker.h"
+#include "renderer/core/parallel.h"
+#include "renderer/core/stopwatch.h"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <vector>
+
+namespace apps {
+namespace {
+
+/// A row of the table.
+struct TrackRow {
+    std::string what;
+    int walks = 0;
+    double rmse_m = 0.0;
+    double coverage = 0.0;
+    double missed = 0.0;
+    double false_alarms = 0.0;
+    double latency_s = 0.0;
+    double bound_m = 0.0;     ///< root mean square of the Cramer-Rao bound
+    double over_bound = 0.0;  ///< error over it
+    double frames_per_s = 0.0;
+    double slowest_ms = 0.0;
+};
+NLOS_FIGURES(TrackRow,
+             what,
+             walks,
+             rmse_m,
+             coverage,
+             missed,
+             false_alarms,
+             latency_s,
+             bound_m,
+             over_bound,
+             frames_per_s,
+             slowest_ms);
+
+calib::TrackSettings settings_for(const SimulatedWalk& walk, double systematic_m) {
+    calib::TrackSettings settings;
+    settings.noise.systematic_m = systematic_m;
+    settings.pose = walk.sensor.setup->pose;
+    return settings;
+}
+
+std::vector<calib::TrackedFrame> named(const std::vector<calib::FrameEstimate>& estimates,
+                                       const calib::TrackSettings& settings) {
+    std::vector<calib::TrackedFrame> frames;
+    for (const calib::FrameEstimate& estimate : estimates) {
+        calib::TrackedFrame frame;
+        frame.time_s = estimate.time_s;
+        frame.is_learning = estimate.is_learning;
+        for (const calib::TargetEstimate& target : estimate.targets) {
+            if (!target.is_named) continue;
+            frame.targets.push_back(
+                {target.state.position_m(), calib::stated_covariance_m2(target, settings)});
+        }
+        frames.push_back(std::move(frame));
+    }
+    return frames;
+}
+
+/// Sums of squares of the bound of positions, filtered and smoothed, over the frames of a walk.
+struct Bound {
+    double filtered_m2 = 0.0;
+    double smoothed_m2 = 0.0;
+    int frames = 0;
+};
+
+/// Posterior Cramer-Rao bound along the true way: covariances as the filter would have them with
+/// the Fisher information there, and smoothed.
+Bound bound_of(const SimulatedWalk& walk, const calib::TrackSettings& settings) {
+    const calib::Motion motion(settings.motion);
+    const double dt_s = walk.sensor.frame_s;
+    std::vector<double> background(walk.frames.front().counts.size(), 0.0);
+    int empty = 0;
+    for (std::size_t f = 0; f < walk.frames.size(); ++f) {
+        if (!walk.truth[f].targets.empty()) continue;
+        for (std::size_t i = 0; i < background.size(); ++i) {
+            background[i] += walk.frames[f].counts[i];
+        }
+        ++empty;
+    }
+    for (double& value : background) value = std::max(value / empty, 1e-3);
+    std::vector<calib::SeenMatrix> information;
+    for (std::size_t f = 0; f < walk.frames.size(); ++f) {
+        if (walk.truth[f].targets.empty()) continue;
+        const core::SensorFootprints footprints =
+            calib::footprints_at(walk.sensor, *walk.frames[f].pose);
+        const calib::TargetResponse response =
+            calib::response_at(walk.sensor, footprints, settings.target);
+        calib::SeenVector seen;
+        seen << walk.truth[f].targets.front().position_m, std::log(walk.retro_strength);
+        // What the direct return drowns says nothing.
+        std::vector<double> weights(background.size());
+        for (std::size_t i = 0; i < weights.size(); ++i) {
+            weights[i] = background[i] < 1e3 ? 1.0 : 0.0;
+        }
+        information.push_back(calib::fisher_information(
+            response, {walk.frames[f].counts, background, weights}, seen));
+    }
+    calib::SeenMatrix wide = calib::SeenMatrix::Identity();
+    wide(3, 3) = 9.0;
+    const calib::TrackBound bound = calib::track_bound(information, wide, motion, dt_s);
+    Bound sum;
+    for (std::size_t i = 0; i < information.size(); ++i) {
+        sum.filtered_m2 += bound.filtered_m2[i];
+        sum.smoothed_m2 += bound.smoothed_m2[i];
+        ++sum.frames;
+    }
+    return sum;
+}
+
+/// What a set of walks gave: as they came, and smoothed.
+struct Tally {
+    calib::TrackScorer live;
+    calib::TrackScorer smoothed;
+    Bound bound;
+    double seconds = 0.0;
+    double slowest_s = 0.0;
+    int frames = 0;
+
+    void add(const SimulatedWalk& walk, double systematic_m) {
+        const calib::TrackSettings settings = settings_for(walk, systematic_m);
+        calib::Tracker tracker(settings, walk.sensor);
+        std::vector<calib::FrameEstimate> estimates;
+        for (const calib::TrackFrame& frame : walk.frames) {
+            const core::ThreadStopwatch watch;
+            estimates.push_back(tracker.step(frame));
+            const double spent = watch.seconds();
+            seconds += spent;
+            slowest_s = std::max(slowest_s, spent);
+            ++frames;
+        }
+        live.add(named(estimates, settings), walk.truth, "walk");
+        calib::smooth(estimates, settings);
+        smoothed.add(named(estimates, settings), walk.truth, "walk");
+        if (walk.truth[walk.truth.size() / 2].targets.empty()) return;
+        const Bound one = bound_of(walk, settings);
+        bound.filtered_m2 += one.filtered_m2;
+        bound.smoothed_m2 += one.smoothed_m2;
+        bound.frames += one.frames;
+    }
+
+    TrackRow row(const std::string& what, int walks, bool is_smoothed) const {
+        const calib::TrackScores scores = (is_smoothed ? smoothed : live).scores();
+        TrackRow row;
+        row.what = what;
+        row.walks = walks;
+        row.rmse_m = scores.rmse_m.value_or(0.0);
+        row.coverage = scores.coverage.value_or(0.0);
+        row.missed = scores.missed.value_or(0.0);
+        row.false_alarms = scores.false_alarms.value_or(0.0);
+        row.latency_s = scores.latency_s.value_or(0.0);
+        if (bound.frames > 0) {
+            const double square = is_smoothed ? bound.smoothed_m2 : bound.filtered_m2;
+            row.bound_m = std::sqrt(square / bound.frames);
+            row.over_bound = row.rmse_m / row.bound_m;
+        }
+        row.frames_per_s = seconds > 0.0 ? frames / seconds : 0.0;
+        row.slowest_ms = 1e3 * slowest_s;
+        return row;
+    }
+};
+
+Tally tally(int walks, WalkSettings settings, double systematic_m, const core::Progress& progress) {
+    Tally tally;
+    core::parallel_in_order<SimulatedWalk>(
+        static_cast<std::size_t>(walks),
+        [&](std::size_t i) {
+            WalkSettings one = settings;
+            one.seed = settings.seed + i;
+            return simulate_walk(one);
+        },
+        [&](std::size_t i, const SimulatedWalk& walk) {
+            tally.add(walk, systematic_m);
+            progress.update(static_cast<double>(i + 1) / walks, "");
+            return !progress.should_stop();
+        });
+    return tally;
+}
+
+std::vector<Target> targets_of(const std::vector<TrackRow>& rows) {
+    const auto share = [](double value) { return fmt::format("{:.1f} %", 100.0 * value); };
+    std::vector<Target> targets;
+    for (const TrackRow& row : rows) {
+        if (row.bound_m == 0.0) {
+            targets.push_back({"no target named: " + row.what,
+                               "in 99 % of frames",
+                               share(1.0 - row.false_alarms),
+                               row.false_alarms <= 0.01});
+            continue;
+        }
+        targets.push_back({"RMSE: " + row.what,
+                           "6 cm",
+                           fmt::format("{:.1f} cm", 100.0 * row.rmse_m),
+                           row.rmse_m <= 0.06});
+        targets.push_back({"95 % ellipsoids cover: " + row.what,
+                           "92 to 98 %",
+                           share(row.coverage),
+                           row.coverage >= 0.92 && row.coverage <= 0.98});
+        if (row.what.ends_with("smoothed")) {
+            targets.push_back({"error over the Cramer-Rao bound: " + row.what,
+                               "1.5",
+                               fmt::format("{:.2f}", row.over_bound),
+                               row.over_bound <= 1.5});
+        } else {
+            targets.push_back({"frames per second, one core: " + row.what,
+                               "100",
+                               fmt::format("{:.0f}", row.frames_per_s),
+                               row.frames_per_s >= 100.0});
+        }
+    }
+    return targets;
+}
+
+}  // namespace
+
+BenchResult measure_track(const TrackBenchSettings& settings, const core::Progress& progress) {
+    std::vector<TrackRow> rows;
+    WalkSettings walk;
+    constexpr double kThird = 1.0 / 3.0;
+    for (const bool moves : {true, false}) {
+        walk.sensor_moves = moves;
+        walk.seed = moves ? 1000 : 2000;
+        const double begin = moves ? 0.0 : kThird;
+        const core::Progress part = progress.part(begin, begin + kThird);
+        const Tally done = tally(settings.walks, walk, settings.systematic_m, part);
+        const std::string what = moves ? "sensor moves" : "sensor stands";
+        rows.push_back(done.row(what, settings.walks, false));
+        rows.push_back(done.row(what + ", smoothed", settings.walks, true));
+    }
+    walk.has_target = false;
+    walk.seed = 3000;
+    const core::Progress part = progress.part(2.0 * kThird, 1.0);
+    rows.push_back(tally(settings.empty_walks, walk, settings.systematic_m, part)
+                       .row("empty scene", settings.empty_walks, false));
+    BenchResult result;
+    result.figures["targets"] = core::write_value(targets_of(rows));
+    result.figures["walks"] = core::write_value(rows);
+    return result;
+}
+
+}  // namespace apps

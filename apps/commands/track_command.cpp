@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+#include "apps/arguments.h"
+#include "apps/capture_options.h"
+#include "apps/commands.h"
+#include "apps/commands/track_job.h"
+#include "apps/terminal.h"
+#include "renderer/core/error.h"
+
+#include <iostream>
+#include <memory>
+
+namespace apps {
+namespace {
+
+void run(TrackRequest request) {
+    // The last word that is no option is the model.
+    if (request.frames.size() < 2) {
+        throw core::Error("track", "found one file", "must be FRAMES and MODEL.json");
+    }
+    request.model = request.frames.back();
+    request.frames.pop_back();
+    const bool live = request.frames == std::vector<std::string>{"-"};
+    if (!live && request.output.empty()) {
+        throw core::Error("--output", "is missing", "must name the track to write (.json)");
+    }
+    const TrackSummary summary = live ? track_live(request, std::cin) : track_to_file(request);
+    for (const std::string& text : summary.warnings) print_error("warning: {}\n", text);
+    if (live) return;
+    std::string written = request.output;
+    for (const std::string& file : {request.csv, request.picture}) {
+        if (!file.empty()) written += ", " + file;
+    }
+    print("wrote {} ({} frames, {} with a target, {:.0f} frames/s)\n",
+          written,
+          summary.frames,
+          summary.named,
+          static_cast<double>(summary.frames) / std::max(summary.seconds, 1e-9));
+}
+
+}  // namespace
+
+void add_track_command(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("track", "Track hidden targets with a histogram camera");
+    const auto request = std::make_shared<TrackRequest>();
+    command
+        ->add_option("FRAMES... MODEL",
+                     request->frames,
+                     "Frames: a folder, a sequence capture, files that are frames, or - for a line "
+                     "of JSON each on standard input; then what counted them and what is tracked "
+                     "(.json)")
+        ->required();
+    add_output_option(*command, request->output, "Track to write (.json); may be left out with -");
+    command->add_option("--csv", request->csv, "Table to write: a line per frame and target");
+    command->add_option(
+        "--picture", request->picture, "Picture to write (.png): plan, histograms and model");
+    command->add_flag("--smooth", request->smooth, "Use later frames too, once all are there");
+    add_capture_options(*command, request->overrides);
+    command->footer(settings_footer(
+        core::settings_help(TrackOptions{}),
+        "nlos track data/walk data/track.json -o out/track.json --picture out/track.png"));
+    command->callback([request] { run(*request); });
+}
+
+}  // namespace apps

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: MIT
+#include "apps/commands/track_job.h"
+
+#include "apps/arguments.h"
+#include "apps/commands/track_frames.h"
+#include "apps/commands/track_pictures.h"
+#include "apps/terminal.h"
+#include "apps/version.h"
+#include "calib/track/smooth.h"
+#include "calib/track/track_file.h"
+#include "calib/track/tracker.h"
+#include "nlos/pictures/picture.h"
+#include "renderer/core/output_file.h"
+#include "renderer/core/stopwatch.h"
+
+#include <algorithm>
+
+namespace apps {
+namespace {
+
+using calib::FrameEstimate;
+using calib::Tracker;
+using calib::TrackSensor;
+using calib::TrackSettings;
+
+/// A tracker and what it found so far.
+class Run {
+ public:
+    Run(const TrackSettings& settings, const TrackSensor& sensor)
+        : settings_(settings), tracker_(settings, sensor) {
+        if (settings.background.file.empty()) return;
+        TrackSettings of_file = settings;
+        of_file.poses.clear();
+        tracker_.learn_background(
+            read_track_frames({settings.background.file}, of_file, {}).frames);
+    }
+
+    const FrameEstimate& step(const calib::TrackFrame& frame) {
+        const core::Stopwatch watch;
+        estimates_.push_back(tracker_.step(frame));
+        summary_.seconds += watch.seconds();
+        const FrameEstimate& estimate = estimates_.back();
+        ++summary_.frames;
+        summary_.warnings.insert(
+            summary_.warnings.end(), estimate.warnings.begin(), estimate.warnings.end());
+        const bool named = std::ranges::any_of(estimate.targets, &calib::TargetEstimate::is_named);
+        if (named && (shown_.counts.empty() || estimate.log_likelihood > best_)) {
+            best_ = estimate.log_likelihood;
+            shown_ = {frame.time_s, frame.counts, tracker_.background(), tracker_.signal()};
+        }
+        return estimate;
+    }
+
+    TrackSummary finish(const TrackRequest& request, const std::vector<std::string>& warnings) {
+        if (request.smooth) calib::smooth(estimates_, settings_);
+        summary_.warnings.insert(summary_.warnings.begin(), warnings.begin(), warnings.end());
+        for (const FrameEstimate& estimate : estimates_) {
+            summary_.named +=
+                std::ranges::any_of(estimate.targets, &calib::TargetEstimate::is_named) ? 1 : 0;
+        }
+        if (!request.output.empty()) write_track(request);
+        if (!request.csv.empty()) {
+            core::write_text_file(request.csv, calib::track_csv(estimates_, settings_));
+        }
+        if (!request.picture.empty()) {
+            nlos::write_panels_png(
+                request.picture, track_panels(estimates_, settings_, tracker_.sensor(), shown_), 2);
+        }
+        return summary_;
+    }
+
+ private:
+    void write_track(const TrackRequest& request) const {
+        core::Json json = calib::track_json(estimates_, settings_, tracker_.sensor());
+        json["smoothed"] = request.smooth;
+        json["seconds"] = summary_.seconds;
+        json["warnings"] = summary_.warnings;
+        json["version"] = version_text();
+        json["command"] = command_line();
+        core::write_text_file(request.output, core::json_text(json));
+    }
+
+    TrackSettings settings_;
+    Tracker tracker_;
+    std::vector<FrameEstimate> estimates_;
+    ExplainedFrame shown_;
+    double best_ = 0.0;
+    TrackSummary summary_;
+};
+
+void check_outputs(const TrackRequest& request) {
+    require_suffix(request.output, {".json"});
+    require_suffix(request.csv, {".csv"});
+    require_suffix(request.picture, {".png"});
+    std::vector<std::string> inputs = request.frames;
+    inputs.push_back(request.model);
+    core::check_targets({request.output, request.csv, request.picture}, inputs);
+}
+
+}  // namespace
+
+TrackSummary track_to_file(const TrackRequest& request) {
+    check_outputs(request);
+    std::vector<std::string> overrides = request.overrides;
+    const auto reading = capture_options(take_capture_overrides(overrides)).capture;
+    TrackSettings settings = calib::read_track_settings(request.model, overrides);
+    const TrackFrames input = read_track_frames(request.frames, settings, reading);
+    Run run(settings, input.sensor);
+    ProgressBar bar("track");
+    const core::Progress progress = bar.progress();
+    std::size_t done = 0;
+    for (const calib::TrackFrame& frame : input.frames) {
+        run.step(frame);
+        ++done;
+        progress.update(static_cast<double>(done) / static_cast<double>(input.frames.size()), "");
+        if (progress.should_stop()) throw core::Failure("track", "interrupted");
+    }
+    return run.finish(request, input.warnings);
+}
+
+TrackSummary track_live(const TrackRequest& request, std::istream& lines) {
+    if (request.smooth) {
+        throw core::Error("--smooth", "found with live frames", "must come with frames from files");
+    }
+    check_outputs(request);
+    std::vector<std::string> overrides = request.overrides;
+    take_capture_overrides(overrides);
+    const TrackSettings settings = calib::read_track_settings(request.model, overrides);
+    const TrackSensor sensor = stated_sensor(settings);
+    Run run(settings, sensor);
+    FrameLines source(lines, sensor);
+    while (const auto frame = source.next()) {
+        write_output(calib::frame_json(run.step(*frame), settings).dump() + "\n");
+        flush_output();
+    }
+    return run.finish(request, {});
+}
+
+}  // namespace apps

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: MIT
+#include "apps/commands/track_pictures.h"
+
+#include "calib/track/track_file.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+
+namespace apps {
+namespace {
+
+using core::Vec2;
+using core::Vec3;
+using Point = std::array<double, 2>;
+
+constexpr nlos::Colour kWallColour{60, 64, 72};
+constexpr nlos::Colour kSpotColour{222, 140, 40};
+constexpr nlos::Colour kSensorColour{190, 40, 60};
+constexpr nlos::Colour kStartColour{30, 140, 80};
+constexpr std::array kPathColours{nlos::Colour{37, 99, 180},
+                                  nlos::Colour{150, 60, 160},
+                                  nlos::Colour{20, 140, 140},
+                                  nlos::Colour{160, 110, 20}};
+constexpr double kChi2_95_2d = 5.991464547107979;
+constexpr std::size_t kMostEllipses = 40;
+constexpr double kMargin_m = 0.15;
+
+struct View {
+    const char* title;
+    int across;
+    int up;
+    const char* up_label;
+};
+
+/// Axes that grow around what they are shown.
+struct Extent {
+    Point x{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+    Point y = x;
+
+    void add(const Point& p) {
+        x = {std::min(x[0], p[0]), std::max(x[1], p[0])};
+        y = {std::min(y[0], p[1]), std::max(y[1], p[1])};
+    }
+};
+
+class Plan {
+ public:
+    Plan(const View& view, const calib::TrackSensor& sensor)
+        : view_(view), wall_from_world_(sensor.wall.world_from_wall().inverse()) {
+        panel_.title = view.title;
+        panel_.x_label = "x [m]";
+        panel_.y_label = view.up_label;
+    }
+
+    Point place(const Vec3& world) const {
+        const Vec3 p = wall_from_world_ * world;
+        return {p[view_.across], p[view_.up]};
+    }
+
+    void line(std::vector<Point> points, nlos::Colour colour, int thickness, double fill) {
+        for (const Point& p : points) extent_.add(p);
+        panel_.lines.push_back({std::move(points), colour, thickness, fill});
+    }
+
+    void mark(const Point& p, double radius_m, nlos::Colour colour) {
+        line(circle(p, radius_m * Eigen::Matrix2d::Identity()), colour, 2, 0.9);
+    }
+
+    void ellipse(const Vec3& world, const core::Mat3& covariance, nlos::Colour colour) {
+        const core::Mat3 turned =
+            wall_from_world_.linear() * covariance * wall_from_world_.linear().transpose();
+        // A root of the view's part, by Cholesky: its circle is the ellipse.
+        const double a = std::sqrt(turned(view_.across, view_.across));
+        const double b = turned(view_.across, view_.up) / a;
+        const double c = std::sqrt(std::max(0.0, turned(view_.up, view_.up) - b * b));
+        Eigen::Matrix2d root;
+        root << a, 0.0, b, c;
+        root *= std::sqrt(kChi2_95_2d);
+        line(circle(place(world), root), colour, 1, 0.08);
+    }
+
+    void legend(const std::string& name, nlos::Colour colour) {
+        panel_.legend.emplace_back(name, colour);
+    }
+
+    nlos::DrawingPanel finished() {
+        panel_.x_range = {extent_.x[0] - kMargin_m, extent_.x[1] + kMargin_m};
+        panel_.y_range = {extent_.y[0] - kMargin_m, extent_.y[1] + kMargin_m};
+        return std::move(panel_);
+    }
+
+ private:
+    static std::vector<Point> circle(const Point& center, const Eigen::Matrix2d& shape) {
+        constexpr int kCorners = 48;
+        std::vector<Point> points;
+        for (int i = 0; i <= kCorners; ++i) {
+            const double angle = 2.0 * core::kPi * i / kCorners;
+            const Vec2 p =
+                Vec2(center[0], center[1]) + shape * Vec2(std::cos(angle), std::sin(angle));
+            points.push_back({p.x(), p.y()});
+        }
+        return points;
+    }
+
+    View view_;
+    core::Transform wall_from_world_;
+    nlos::DrawingPanel panel_;
+    Extent extent_;
+};
+
+void draw_wall(const calib::TrackSettings& settings, const calib::TrackSensor& sensor, Plan& plan) {
+    const core::SensorFootprints footprints = footprints_at(sensor, settings.pose);
+    Extent spots;
+    for (const core::ZoneFootprint& zone : footprints.zones) {
+        for (const Vec3& p : zone.seen.positions) spots.add(plan.place(p));
+    }
+    plan.line({{spots.x[0] - kMargin_m, spots.y[0]}, {spots.x[1] + kMargin_m, spots.y[0]}},
+              kWallColour,
+              spots.y[1] - spots.y[0] < 1e-6 ? 8 : 0,
+              0.0);
+    plan.legend("wall", kWallColour);
+    for (const core::ZoneFootprint& zone : footprints.zones) {
+        if (zone.center_m) plan.mark(plan.place(*zone.center_m), 0.015, kSpotColour);
+    }
+    plan.legend("middle of a zone", kSpotColour);
+}
+
+void draw_sensor(const std::vector<calib::FrameEstimate>& frames, Plan& plan) {
+    std::vector<Point> way;
+    for (const calib::FrameEstimate& frame : frames) {
+        if (frame.pose) way.push_back(plan.place(frame.pose->position_m));
+    }
+    if (way.empty()) return;
+    plan.line(way, kSensorColour, 3, 0.0);
+    plan.mark(way.front(), 0.03, kSensorColour);
+    plan.legend("sensor", kSensorColour);
+}
+
+void draw_paths(const std::vector<calib::FrameEstimate>& frames,
+                const calib::TrackSettings& settings,
+                Plan& plan) {
+    std::map<int, std::vector<const calib::TargetEstimate*>> paths;
+    for (const calib::FrameEstimate& frame : frames) {
+        for (const calib::TargetEstimate& target : frame.targets) {
+            if (target.is_named) paths[target.id].push_back(&target);
+        }
+    }
+    for (const auto& [id, path] : paths) {
+        const nlos::Colour colour =
+            kPathColours[static_cast<std::size_t>(id - 1) % kPathColours.size()];
+        const std::size_t step = (path.size() + kMostEllipses - 1) / kMostEllipses;
+        for (std::size_t i = 0; i < path.size(); i += step) {
+            plan.ellipse(path[i]->state.position_m(),
+                         calib::stated_covariance_m2(*path[i], settings),
+                         colour);
+        }
+    }
+    for (const auto& [id, path] : paths) {
+        const nlos::Colour colour =
+            kPathColours[static_cast<std::size_t>(id - 1) % kPathColours.size()];
+        std::vector<Point> line;
+        for (const auto* target : path) line.push_back(plan.place(target->state.position_m()));
+        const Point first = line.front();
+        plan.line(std::move(line), colour, 4, 0.0);
+        plan.mark(first, 0.02, kStartColour);
+        plan.legend(fmt::format("target {} with 95 % ellipses", id), colour);
+    }
+    if (!paths.empty()) plan.legend("first named", kStartColour);
+}
+
+nlos::ImagePanel rows_panel(const std::string& title,
+                            const calib::TrackSensor& sensor,
+                            const std::vector<double>& values) {
+    nlos::ImagePanel panel;
+    panel.title = title;
+    panel.width = static_cast<std::size_t>(sensor.axis.num_bins);
+    panel.height = sensor.num_zones();
+    panel.values.assign(values.begin(), values.end());
+    panel.x_range = {sensor.axis.opl_start_m, sensor.axis.opl_end_m()};
+    panel.y_range = {0.0, static_cast<double>(sensor.num_zones())};
+    panel.x_label = "path length [m]";
+    panel.y_label = "zone";
+    panel.value_label = "counts";
+    panel.scale = nlos::AxisScale::Free;
+    return panel;
+}
+
+}  // namespace
+
+std::vector<nlos::Panel> track_panels(const std::vector<calib::FrameEstimate>& frames,
+                                      const calib::TrackSettings& settings,
+                                      const calib::TrackSensor& sensor,
+                                      const ExplainedFrame& shown) {
+    std::vector<nlos::Panel> panels;
+    for (const View& view : {View{"Top view: wall below", 0, 2, "distance from the wall [m]"},
+                             View{"Front view, onto the wall", 0, 1, "y [m]"}}) {
+        Plan plan(view, sensor);
+        draw_wall(settings, sensor, plan);
+        draw_sensor(frames, plan);
+        draw_paths(frames, settings, plan);
+        panels.emplace_back(plan.finished());
+    }
+    if (shown.counts.empty()) return panels;
+    std::vector<double> data(shown.counts.size());
+    std::vector<double> model(shown.counts.size());
+    double most = 0.0;
+    for (std::size_t i = 0; i < data.size(); ++i) {
+        data[i] = std::max(0.0, shown.counts[i] - shown.background[i]);
+        model[i] = shown.signal[i];
+        if (model[i] > 0.0) most = std::max({most, data[i], model[i]});
+    }
+    nlos::ImagePanel counted = rows_panel(
+        fmt::format("Counts over the background at {:.3g} s", shown.time_s), sensor, data);
+    nlos::ImagePanel explained = rows_panel("What the targets explain", sensor, model);
+    if (most > 0.0) counted.value_range = explained.value_range = std::array{0.0, most};
+    panels.emplace_back(std::move(counted));
+    panels.emplace_back(std::move(explained));
+    return panels;
+}
+
+}  // namespace apps

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "calib/track/joint_update.h"
+#include "calib/track/target_response.h"
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace calib {
+
+/// A box in the wall's frame in which targets are looked for.
+struct SearchBox {
+    core::Transform world_from_wall = core::Transform::Identity();
+    std::array<std::array<double, 2>, 3> ranges_m{};  ///< along x, y and z of the wall
+
+    bool holds(const core::Vec3& position_m) const;
+    double volume_m3() const;
+};
+
+/// Where a target may be that a frame shows, and how strong.
+struct Candidate {
+    core::Vec3 position_m;
+    double strength = 0.0;
+    double score = 0.0;  ///< logarithm of the likelihood ratio, to second order in the strength
+};
+
+/// Histograms of targets on a grid, to find those that a frame shows.
+class TargetSearch {
+ public:
+    /// make_response   of a given sigma beside the response's own, so that no target falls between
+    ///                 two cells; see TargetResponse
+    TargetSearch(const TargetResponse& response, const SearchBox& box, double cell_m);
+
+    /// The best cells that are better than the cells around them, best first.
+    ///
+    /// offset_m   by which sensor and box moved along the wall since the grid was made
+    std::vector<Candidate> find(const FrameCounts& frame,
+                                std::size_t most,
+                                const core::Vec3& offset_m) const;
+
+ private:
+    struct Piece {
+        std::uint32_t first = 0;  ///< index of the first bin in [zone][bin]
+        std::uint32_t size = 0;
+        std::uint32_t at = 0;  ///< in values_
+    };
+    std::size_t index(int x, int y, int z) const;
+
+    std::array<int, 3> cells_{};
+    std::vector<core::Vec3> positions_;
+    std::vector<std::uint32_t> first_piece_;  ///< of each cell; one more at the end
+    std::vector<Piece> pieces_;
+    std::vector<float> values_;
+};
+
+}  // namespace calib

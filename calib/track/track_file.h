@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "calib/track/tracker.h"
+#include "renderer/core/settings.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace calib {
+
+/// A target in a frame of a track file.
+struct TrackedPosition {
+    core::Vec3 position_m;
+    std::optional<core::Mat3> covariance_m2;
+};
+
+/// A frame of a track file: the targets that it names.
+struct TrackedFrame {
+    double time_s = 0.0;
+    bool is_learning = false;
+    std::vector<TrackedPosition> targets;
+};
+
+/// The covariance of a target's position: what counting leaves open, and
+/// settings.noise.systematic_m of the model.
+core::Mat3 stated_covariance_m2(const TargetEstimate& target, const TrackSettings& settings);
+
+/// What is believed after a frame, as TRACK.json holds it and as live answers say it. Where the
+/// sensor's pose is free, positions are the sensor's: where it stood at settings.pose plus what the
+/// target seemed to move the other way.
+core::Json frame_json(const FrameEstimate& frame, const TrackSettings& settings);
+
+/// TRACK.json's content: settings, wall, spots and frames.
+core::Json track_json(const std::vector<FrameEstimate>& frames,
+                      const TrackSettings& settings,
+                      const TrackSensor& sensor);
+
+/// A line per frame and named target, under a line of names.
+std::string track_csv(const std::vector<FrameEstimate>& frames, const TrackSettings& settings);
+
+/// True for JSON that lists frames with targets.
+bool is_track(const core::Json& json);
+
+/// The frames of a TRACK.json, or of the truth beside it.
+/// throws   core::Error naming file and key
+std::vector<TrackedFrame> read_track(const std::string& path);
+
+}  // namespace calib

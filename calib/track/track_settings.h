@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/core/relay_wall.h"
+#include "renderer/core/sensor_footprint.h"
+#include "renderer/core/settings.h"
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace calib {
+
+/// How a hidden target sends light back: to the wall point it came from, or everywhere.
+enum class TargetKind { Retroreflective, Diffuse };
+
+/// How a target moves: its position, or its velocity, wanders.
+enum class MotionKind { RandomWalk, ConstantVelocity };
+
+/// What is known of the light that no target sends: the mean of frames, or one level per zone, for
+/// frames whose background was subtracted already.
+enum class BackgroundKind { Learn, Flat };
+
+/// What moves and is to be found: the hidden target, or the sensor before a target that stands.
+enum class TrackUnknown { Target, SensorPose };
+
+}  // namespace calib
+
+namespace core {
+
+template <>
+struct EnumNames<calib::TargetKind> {
+    static constexpr auto value = names_from_zero<calib::TargetKind>("retroreflective", "diffuse");
+};
+template <>
+struct EnumNames<calib::MotionKind> {
+    static constexpr auto value =
+        names_from_zero<calib::MotionKind>("random_walk", "constant_velocity");
+};
+template <>
+struct EnumNames<calib::BackgroundKind> {
+    static constexpr auto value = names_from_zero<calib::BackgroundKind>("learn", "flat");
+};
+template <>
+struct EnumNames<calib::TrackUnknown> {
+    static constexpr auto value = names_from_zero<calib::TrackUnknown>("target", "sensor_pose");
+};
+
+}  // namespace core
+
+namespace calib {
+
+struct TargetSettings {
+    TargetKind kind = TargetKind::Retroreflective;
+    double radius_m = 0.0;
+    std::optional<core::Vec3> position_m;
+};
+
+struct MotionSettings {
+    MotionKind kind = MotionKind::ConstantVelocity;
+    double diffusion = 0.5;
+    double acceleration = 1.0;
+    double speed_m_per_s = 1.0;
+    double strength_rate = 0.5;
+};
+
+struct BackgroundSettings {
+    BackgroundKind kind = BackgroundKind::Learn;
+    int frames = 20;
+    int memory_frames = 300;
+    std::string file;
+};
+
+struct NoiseSettings {
+    std::optional<double> dispersion;
+    std::optional<double> saturation_counts;
+    double model_error = 0.1;
+    double systematic_m = 0.005;
+};
+
+struct ExistenceSettings {
+    double birth_per_s = 0.02;
+    double lifetime_s = 20.0;
+    double name_at = 0.5;
+};
+
+struct SearchSettings {
+    std::optional<std::array<double, 2>> x_range_m;
+    std::optional<std::array<double, 2>> y_range_m;
+    std::array<double, 2> z_range_m{0.2, 2.5};
+    double cell_m = 0.12;
+};
+
+/// All that MODEL.json of `nlos track` says.
+struct TrackSettings {
+    std::string sensor;
+    core::SensorPose pose{core::Vec3(0.0, 0.0, 1.0), -core::Vec3::UnitZ(), core::Vec3::UnitY()};
+    std::vector<core::SensorPose> poses;
+    std::optional<core::RelayWall> wall;
+    int subsamples = 3;
+    std::optional<double> response_fwhm_ps;
+    double time_zero_m = 0.0;
+    std::optional<double> frame_s;
+    TargetSettings target;
+    MotionSettings motion;
+    BackgroundSettings background;
+    NoiseSettings noise;
+    ExistenceSettings existence;
+    SearchSettings search;
+    int max_targets = 1;
+    TrackUnknown free = TrackUnknown::Target;
+};
+
+template <class Visitor>
+void for_each_field(TargetSettings& s, Visitor&& visit) {
+    visit("kind", s.kind, "how the target sends light back");
+    visit("radius_m", s.radius_m, core::at_least(0, "of a small body; 0: a point [m]"));
+    visit("position_m", s.position_m, "where it stands, when the sensor's pose is free [m]");
+}
+
+template <class Visitor>
+void for_each_field(MotionSettings& s, Visitor&& visit) {
+    visit("kind", s.kind, "what wanders: the position or the velocity");
+    visit("diffusion",
+          s.diffusion,
+          core::above(0, "random walk: spread after a second along each axis [m/s^0.5]"));
+    visit("acceleration",
+          s.acceleration,
+          core::above(0, "constant velocity: its spread after a second along each axis [m/s^1.5]"));
+    visit("speed_m_per_s",
+          s.speed_m_per_s,
+          core::above(0, "spread of the first velocity along each axis [m/s]"));
+    visit("strength_rate",
+          s.strength_rate,
+          core::at_least(
+              0, "spread after a second of the logarithm of the target's strength [1/s^0.5]"));
+}
+
+template <class Visitor>
+void for_each_field(BackgroundSettings& s, Visitor&& visit) {
+    visit("kind",
+          s.kind,
+          "the mean of frames, or one level per zone where it was subtracted already");
+    visit("frames",
+          s.frames,
+          core::at_least(1, "first frames that teach the background and name no target"));
+    visit("memory_frames",
+          s.memory_frames,
+          core::at_least(1, "frames over which the background follows changes"));
+    visit("file", s.file, "capture of frames without a target to learn from instead");
+}
+
+template <class Visitor>
+void for_each_field(NoiseSettings& s, Visitor&& visit) {
+    visit("dispersion",
+          s.dispersion,
+          core::above(0,
+                      "variance of a bin over its mean; null: 1 for whole counts, else as bins "
+                      "beside each other differ"));
+    visit("saturation_counts",
+          s.saturation_counts,
+          core::above(0, "counts at which a bin is full and says nothing; null: never"));
+    visit("model_error",
+          s.model_error,
+          core::at_least(0,
+                         "relative standard deviation of what a target adds to a bin from what the "
+                         "model says"));
+    visit("systematic_m",
+          s.systematic_m,
+          core::at_least(0,
+                         "error along each axis that no number of frames averages away, beside "
+                         "those of counting in stated covariances [m]"));
+}
+
+template <class Visitor>
+void for_each_field(ExistenceSettings& s, Visitor&& visit) {
+    visit("birth_per_s", s.birth_per_s, core::above(0, "targets that appear per second [1/s]"));
+    visit("lifetime_s", s.lifetime_s, core::above(0, "mean time that a target stays [s]"));
+    visit("name_at",
+          s.name_at,
+          core::strictly_between(0, 1, "probability from which on a target is named"));
+}
+
+template <class Visitor>
+void for_each_field(SearchSettings& s, Visitor&& visit) {
+    visit("x_range_m",
+          s.x_range_m,
+          core::Ranged{
+              "where targets may appear, in the wall's frame; null: up to 1 m beyond what the "
+              "sensor sees [m]",
+              {}});
+    visit(
+        "y_range_m", s.y_range_m, core::Ranged{"the same along y; null: up to 0.75 m beyond", {}});
+    visit("z_range_m", s.z_range_m, core::above(0, "distances from the wall [m]"));
+    visit("cell_m", s.cell_m, core::above(0, "pitch of the grid on which targets are found [m]"));
+}
+
+template <class Visitor>
+void for_each_field(TrackSettings& s, Visitor&& visit) {
+    visit("sensor",
+          s.sensor,
+          "name or JSON file of a sensor; empty: what the frames say, or their wall points");
+    visit("pose", s.pose, "where the sensor is and looks");
+    visit("poses", s.poses, "its poses frame by frame, in place of pose");
+    visit("wall", s.wall, "the wall; null: the plane through the frames' wall points, or z = 0");
+    visit(
+        "subsamples", s.subsamples, core::Ranged{"points per zone and axis", {1, true, 64, true}});
+    visit("response_fwhm_ps",
+          s.response_fwhm_ps,
+          core::above(0, "width of pulse and jitter; null: the sensor's, else 1000 [ps]"));
+    visit("time_zero_m", s.time_zero_m, core::Ranged{"true path length = axis - this [m]", {}});
+    visit("frame_s",
+          s.frame_s,
+          core::above(0,
+                      "time from frame to frame; null: the frames' or the sensor's, else 0.1 [s]"));
+    visit("target", s.target, "what is tracked");
+    visit("motion", s.motion, "how it moves");
+    visit("background", s.background, "light that no target sends");
+    visit("noise", s.noise, "how counts scatter");
+    visit("existence", s.existence, "how targets come and go");
+    visit("search", s.search, "where targets may be");
+    visit("max_targets", s.max_targets, core::Ranged{"targets at a time", {1, true, 8, true}});
+    visit("free", s.free, "what moves: the target, or the sensor before a target that stands");
+}
+
+/// Throws core::Error naming the first setting that is out of range.
+void validate(const TrackSettings& settings, const std::string& where);
+
+/// Reads MODEL.json and then `key.path=value` texts.
+/// throws   core::Error naming file, key and what is allowed
+TrackSettings read_track_settings(const std::string& path,
+                                  const std::vector<std::string>& overrides);
+
+}  // namespace calib

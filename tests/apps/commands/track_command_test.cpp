@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+// nlos track as its users call it: frames from files and as lines, and what it refuses.
+#include "apps/bench/track/simulated_walk.h"
+#include "renderer/core/settings.h"
+#include "tests/support/command_line.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace {
+
+using core::Json;
+using test_support::CommandLine;
+using test_support::file_bytes;
+using test_support::Outcome;
+using test_support::write_file_bytes;
+
+constexpr const char* kModel =
+    R"({"sensor": "vl53l8", "pose": {"position_m": [0, 0, 1]}, "background": {"frames": 10},
+        "search": {"x_range_m": [-1, 1], "y_range_m": [-0.6, 0.6], "cell_m": 0.25}})";
+
+class TrackCommand : public CommandLine {
+ protected:
+    // A short walk as lines, with its truth beside it.
+    void write_walk() {
+        apps::WalkSettings settings;
+        settings.frames = 30;
+        settings.first = 14;
+        settings.last = 30;
+        settings.sensor_moves = false;
+        settings.seed = 5;
+        const apps::SimulatedWalk walk = apps::simulate_walk(settings);
+        Json truth = Json::array();
+        std::string lines;
+        for (std::size_t f = 0; f < walk.frames.size(); ++f) {
+            Json zones = Json::array();
+            const auto& counts = walk.frames[f].counts;
+            for (std::size_t z = 0; z < 16; ++z) {
+                const auto begin = counts.begin() + static_cast<std::ptrdiff_t>(128 * z);
+                zones.push_back(std::vector<double>(begin, begin + 128));
+            }
+            lines += Json{{"t", walk.frames[f].time_s}, {"histograms", zones}}.dump() + "\n";
+            Json targets = Json::array();
+            for (const auto& target : walk.truth[f].targets) {
+                targets.push_back({{"position_m", core::write_value(target.position_m)}});
+            }
+            truth.push_back({{"time_s", walk.truth[f].time_s}, {"targets", targets}});
+        }
+        write_file_bytes(file("frames.jsonl"), lines);
+        write_file_bytes(file("truth.json"), Json{{"frames", truth}}.dump());
+        write_file_bytes(file("model.json"), kModel);
+    }
+
+    std::string live(const std::string& lines) const {
+        return "track - " + file("model.json") + " <" + file(lines);
+    }
+};
+
+TEST_F(TrackCommand, AnswersLinesWithLinesAndScoresThem) {
+    write_walk();
+    const Outcome outcome =
+        run("track - " + file("model.json") + " -o " + file("track.json") + " --csv " +
+            file("track.csv") + " --picture " + file("track.png") + " <" + file("frames.jsonl"));
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    std::istringstream answers(outcome.out);
+    const Json track = core::read_json_file(file("track.json"));
+    std::size_t frame = 0;
+    for (std::string line; std::getline(answers, line); ++frame) {
+        EXPECT_EQ(core::parse_json(line, "answer"), track["frames"][frame]);
+    }
+    ASSERT_EQ(frame, 30U);
+    EXPECT_TRUE(track["frames"][0]["learning"].get<bool>());
+    EXPECT_EQ(track["frames"][29]["targets"].size(), 1U);
+    EXPECT_GT(file_bytes(file("track.png")).size(), 1000U);
+    EXPECT_NE(file_bytes(file("track.csv")).find("time_s,id,probability"), std::string::npos);
+
+    const Outcome compare = run("compare " + file("track.json") + " " + file("truth.json") +
+                                " -o " + file("metrics.json"));
+    ASSERT_EQ(compare.status, 0) << compare.err;
+    const Json metrics = core::read_json_file(file("metrics.json"));
+    EXPECT_LT(metrics["track_rmse_m"].get<double>(), 0.1);
+    EXPECT_LT(metrics["track_false_alarms"].get<double>(), 0.1);
+    EXPECT_TRUE(metrics["depth_mae_m"].is_null());
+
+    const Outcome report = run("report " + folder_.path().string() + " -o " + file("report.html"));
+    ASSERT_EQ(report.status, 0) << report.err;
+    EXPECT_NE(file_bytes(file("report.html")).find("1 track"), std::string::npos);
+}
+
+TEST_F(TrackCommand, RefusesBadLinesInOneLine) {
+    write_file_bytes(file("model.json"), kModel);
+    const std::vector<std::pair<std::string, std::string>> cases{
+        {"{", "line 1"},
+        {"[1]", "line 1"},
+        {R"({"t": 0})", "line 1.histograms: is missing"},
+        {R"({"t": "now", "histograms": null})", "line 1.t"},
+        {R"({"histograms": [[1, 2]]})", "number of zones: found 1; must be 16"},
+        {R"({"histograms": null, "posse": 1})", "posse"},
+        {R"({"histograms": null, "pose": {"forward": [0, 0, 0]}})", "line 1.pose.forward"},
+    };
+    for (const auto& [line, part] : cases) {
+        write_file_bytes(file("bad.jsonl"), line + "\n");
+        expect_bad_input(live("bad.jsonl"), part);
+    }
+}
+
+TEST_F(TrackCommand, RefusesModelsThatDoNotFit) {
+    write_file_bytes(file("bad.jsonl"), "");
+    write_file_bytes(file("model.json"), R"({"target": {"kind": "shiny"}})");
+    expect_bad_input(live("bad.jsonl"), "retroreflective");
+    write_file_bytes(file("model.json"), R"({"sensor": "vl53l9"})");
+    expect_bad_input(live("bad.jsonl"), "vl53l8");
+    write_file_bytes(file("model.json"), "{}");
+    expect_bad_input(live("bad.jsonl"), "sensor");
+    expect_bad_input(live("bad.jsonl") + " --smooth", "--smooth");
+    expect_bad_input("track " + file("model.json") + " -o " + file("t.json"), "must be FRAMES");
+    expect_bad_input("track data/letter.h5 " + file("model.json"), "--output");
+}
+
+}  // namespace
