@@ -17,6 +17,7 @@
 #include <memory>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 namespace apps {
 namespace {
@@ -91,16 +92,13 @@ void run(const NoiseArguments& arguments) {
     if (sensor) {
         options.detector = nlos::detector_of(*sensor);
         apply(arguments, options);
-        nlos::add_crosstalk(*sensor, capture);
     }
     if (const auto warning = nlos::coarse_bins_warning(capture, options.detector)) {
         print_error("warning: {}\n", *warning);
     }
-    core::Capture noisy = nlos::detect(capture, options.detector);
-    if (sensor) {
-        nlos::cut_direct_return(*sensor, noisy);
-        noisy.scene_info["detector"]["sensor"] = sensor->model.name;
-    }
+    core::Capture noisy =
+        sensor ? nlos::detect_by_sensor(*sensor, std::move(capture), options.detector)
+               : nlos::detect(capture, options.detector);
     noisy.scene_info["detector"]["program"] = version_text();
     noisy.scene_info["detector"]["command"] = command_line();
     for (const std::string& loss : nlos::write_capture(arguments.output, noisy)) {

@@ -13,8 +13,10 @@
 #include "apps/version.h"
 #include "nlos/compare/compare.h"
 #include "nlos/detector/detector.h"
+#include "nlos/detector/sensor_counts.h"
 #include "nlos/formats/capture_file.h"
 #include "nlos/formats/ply_file.h"
+#include "renderer/core/sensor_footprint.h"
 
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
@@ -85,12 +87,24 @@ nlos::Reconstruction reconstruct(const core::Capture& capture,
     });
 }
 
-core::Capture simulate_noise(const core::Capture& capture, const nb::dict& keywords, int threads) {
-    const auto settings = settings_from_python<nlos::DetectorSettings>(keywords);
+core::Capture simulate_noise(const core::Capture& capture,
+                             bool of_sensor,
+                             const nb::dict& keywords,
+                             int threads) {
+    std::optional<core::SensorSetup> sensor;
+    if (of_sensor) {
+        sensor = core::recorded_sensor(capture);
+        if (!sensor) {
+            throw core::Error("sensor", "the capture states none", "must be False for other scans");
+        }
+    }
+    const auto settings = settings_from_python(
+        keywords, sensor ? nlos::detector_of(*sensor) : nlos::DetectorSettings{});
     return run_long(nb::none(), threads, [&](const core::Progress& report) {
         core::validate(capture, "capture");
         if (const auto text = nlos::coarse_bins_warning(capture, settings)) report.warn(*text);
-        core::Capture noisy = nlos::detect(capture, settings);
+        core::Capture noisy = sensor ? nlos::detect_by_sensor(*sensor, capture, settings)
+                                     : nlos::detect(capture, settings);
         noisy.scene_info["detector"]["program"] = apps::version_text();
         noisy.scene_info["detector"]["command"] = "nlos.simulate_noise";
         return noisy;
@@ -202,6 +216,7 @@ void bind_work(nb::module_& module) {
     module.def("simulate_noise",
                &simulate_noise,
                nb::arg("capture"),
+               nb::arg("sensor"),
                nb::arg("settings"),
                nb::arg("threads"));
     module.def("calibrate", &calibrate, nb::arg("setup"), nb::arg("changes"));

@@ -140,4 +140,14 @@ void cut_direct_return(const core::SensorSetup& setup, core::Capture& capture) {
     core::restrict_observed(capture, ranges);
 }
 
+core::Capture detect_by_sensor(const core::SensorSetup& setup,
+                               core::Capture capture,
+                               const DetectorSettings& settings) {
+    add_crosstalk(setup, capture);
+    core::Capture counts = detect(capture, settings);
+    cut_direct_return(setup, counts);
+    counts.scene_info["detector"]["sensor"] = setup.model.name;
+    return counts;
+}
+
 }  // namespace nlos

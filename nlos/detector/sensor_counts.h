@@ -27,4 +27,12 @@ void add_crosstalk(const core::SensorSetup& setup, core::Capture& capture);
 /// more. Nothing where that is 0.
 void cut_direct_return(const core::SensorSetup& setup, core::Capture& capture);
 
+/// All of this around detect(): what the sensor's zones count.
+///
+/// settings   detector_of(), with what is to differ
+/// throws     as add_crosstalk() and detect()
+core::Capture detect_by_sensor(const core::SensorSetup& setup,
+                               core::Capture capture,
+                               const DetectorSettings& settings);
+
 }  // namespace nlos

@@ -100,14 +100,16 @@ def render(
                         show_progress(progress, "render"), thread_count(threads))
 
 
-def simulate_noise(capture: Capture | Path, *, threads: int = 0, **settings: Any) -> Capture:
+def simulate_noise(capture: Capture | Path, *, sensor: bool = False, threads: int = 0, **settings: Any) -> Capture:
     """Turns a capture into what a detector counts.
 
+    sensor    start from the detector of the capture's sensor, its crosstalk and what its firmware
+              cuts included
     settings  photons, photons_per_point, exposure_s, response, ambient, dark_counts_hz, pile_up,
               dead_time_ns, expected, seed, ...
     returns   Capture with the unit counts
     """
-    return _core.simulate_noise(_capture(capture, "capture"), settings, thread_count(threads))
+    return _core.simulate_noise(_capture(capture, "capture"), sensor, settings, thread_count(threads))
 
 
 def reconstruct(

@@ -74,6 +74,18 @@ def test_noise(program, tmp_path, capture):
     assert (ours.unit, ours.counts_per_radiance) == (theirs.unit, theirs.counts_per_radiance)
 
 
+def test_counts_of_a_sensor(program, tmp_path, capture):
+    program("render", ROOT / "data/walk/scene.json", "-o", "walk.h5", "--set", "frames.count=2")
+    program("simulate-noise", "walk.h5", "-o", "counts.h5", "--sensor", "--seed", "3")
+    walk = nlos.render(ROOT / "data/walk/scene.json", frames={"count": 2})
+    theirs = nlos.read(tmp_path / "counts.h5")
+    ours = nlos.simulate_noise(walk, sensor=True, seed=3)
+    assert np.array_equal(ours.H, theirs.H) and ours.H.any()
+    assert len(ours.frames) == len(theirs.frames) == 2
+    with pytest.raises(nlos.Error, match="sensor"):
+        nlos.simulate_noise(capture, sensor=True)
+
+
 def test_fit(program, tmp_path, capture):
     noisy = nlos.simulate_noise(capture, photons_per_point=1000)
     noisy.write(tmp_path / "noisy.h5")
