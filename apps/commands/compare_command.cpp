@@ -51,9 +51,10 @@ void add_compare_command(CLI::App& app) {
         app.add_subcommand("compare", "Score a result against the truth or another result");
     const auto arguments = std::make_shared<CompareArguments>();
     command
-        ->add_option("A",
-                     arguments->a,
-                     "Volume, capture (.h5), fit or track (.json), point cloud or mesh (.ply, .glb)")
+        ->add_option(
+            "A",
+            arguments->a,
+            "Volume, capture (.h5), fit or track (.json), point cloud or mesh (.ply, .glb)")
         ->required();
     command->add_option("B", arguments->b, "scene.json as the truth, or another of A's kind")
         ->required();

@@ -57,7 +57,7 @@ void add_track_command(CLI::App& app) {
     add_capture_options(*command, request->overrides);
     command->footer(settings_footer(
         core::settings_help(TrackOptions{}),
-        "nlos track data/walk data/track.json -o out/track.json --picture out/track.png"));
+        "nlos track data/walk/counts.h5 data/walk/track.json -o track.json --picture track.png"));
     command->callback([request] { run(*request); });
 }
 

@@ -76,7 +76,7 @@ struct NoiseSettings {
     std::optional<double> dispersion;
     std::optional<double> saturation_counts;
     double model_error = 0.1;
-    double systematic_m = 0.005;
+    double systematic_m = 0.002;
 };
 
 struct ExistenceSettings {

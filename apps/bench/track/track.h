@@ -10,7 +10,7 @@ namespace apps {
 struct TrackBenchSettings {
     int walks = 50;               ///< trajectories of each row
     int empty_walks = 20;         ///< of a scene without a target
-    double systematic_m = 0.005;  ///< see calib::NoiseSettings
+    double systematic_m = 0.002;  ///< see calib::NoiseSettings
 };
 
 /// Tracks simulated walks and holds them against their truth, their stated covariance and the
