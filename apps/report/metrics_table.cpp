@@ -27,7 +27,7 @@ struct MetricStyle {
 
 // Errors of depths and normals are of what was found alone, and the projection's amplitudes are no
 // albedo: for these there is no best.
-constexpr std::array<MetricStyle, 26> kStyles{{
+constexpr std::array<MetricStyle, 32> kStyles{{
     {"depth_mae_m", "Depth error, mean", 1e3, "mm", Better::Neither},
     {"depth_median_m", "Depth error, median", 1e3, "mm", Better::Neither},
     {"depth_rmse_m", "Depth error, RMS", 1e3, "mm", Better::Neither},
@@ -52,6 +52,12 @@ constexpr std::array<MetricStyle, 26> kStyles{{
     {"albedo_error", "Albedo error", 1e2, "%", Better::Lower},
     {"rel_l2", "Relative L2", 1e2, "%", Better::Lower},
     {"rel_mse", "Relative MSE", 1.0, "", Better::Lower},
+    {"track_rmse_m", "Track RMSE", 1e3, "mm", Better::Lower},
+    {"track_median_m", "Track error, median", 1e3, "mm", Better::Lower},
+    {"track_coverage", "Coverage of 95 % ellipsoids", 1e2, "%", Better::Neither},
+    {"track_latency_s", "Track latency", 1.0, "s", Better::Lower},
+    {"track_false_alarms", "Frames with false alarms", 1e2, "%", Better::Lower},
+    {"track_missed", "Targets missed", 1e2, "%", Better::Lower},
     {"seconds", "Time", 1.0, "s", Better::Lower},
     {"peak_rss_bytes", "Peak memory", 1e-6, "MB", Better::Lower},
 }};

@@ -79,7 +79,7 @@ void read_file(const fs::path& path, ResultsFolder& results) {
             results.scores.push_back(scored_result(path, json));
         } else if (calib::is_fit_file(path.string())) {
             results.fits.push_back(fit_card(path.string(), json));
-        } else if (calib::is_track(json)) {
+        } else if (calib::is_track(json) && json.contains("track_of")) {
             results.tracks.push_back(track_card(path.string(), json));
         } else if (is_bench(json)) {
             results.benches.push_back(read_bench_card(path.string(), json));
