@@ -19,8 +19,8 @@ using core::BinRange;
 using core::ScanPattern;
 using core::Vec3;
 
-constexpr std::size_t kColumns = 24;
-constexpr double kPitch_m = 0.04;
+constexpr std::size_t kWallColumns = 24;
+constexpr double kWallPitch_m = 0.04;
 constexpr std::size_t kNumZ = 75;
 const Vec3 kPlace(0.06, -0.1, 0.55);
 const BinRange kGate{60, 132};  // half the bins, with all light of the object
@@ -37,7 +37,8 @@ class ObservedReconstruction : public testing::TestWithParam<MaskCase> {
  protected:
     static core::Capture whole_capture() {
         core::Capture capture = nlos_test::confocal_capture(
-            nlos_test::wall_grid({kColumns, kColumns}, {kPitch_m, kPitch_m}), {0.0, 0.016, 144});
+            nlos_test::wall_grid({kWallColumns, kWallColumns}, {kWallPitch_m, kWallPitch_m}),
+            {0.0, 0.016, 144});
         capture.scan.pattern = GetParam().pattern;
         if (capture.scan.pattern == ScanPattern::Single) {
             capture.scan.illumination = nlos_test::wall_grid({1, 1}, {1.0, 1.0});
@@ -56,7 +57,7 @@ class ObservedReconstruction : public testing::TestWithParam<MaskCase> {
         std::bernoulli_distribution is_dead(0.125);
         std::vector<BinRange> of_point;
         for (std::size_t i = 0; i < capture.scan.sensing.size(); ++i) {
-            const bool is_aside = i / kColumns < kColumns / 5;
+            const bool is_aside = i / kWallColumns < kWallColumns / 5;
             of_point.push_back(is_aside || is_dead(generator) ? BinRange{} : kGate);
         }
         std::vector<BinRange> ranges;
@@ -78,8 +79,8 @@ class ObservedReconstruction : public testing::TestWithParam<MaskCase> {
         constexpr double kReach_m = 0.12;
         const double top = *std::ranges::max_element(volume.values);
         double most = 0.0;
-        for (std::size_t ix = 0; ix < kColumns; ++ix) {
-            for (std::size_t iy = 0; iy < kColumns; ++iy) {
+        for (std::size_t ix = 0; ix < kWallColumns; ++ix) {
+            for (std::size_t iy = 0; iy < kWallColumns; ++iy) {
                 for (std::size_t iz = 0; iz < kNumZ; ++iz) {
                     const Vec3 p(volume.axes.x_m[ix], volume.axes.y_m[iy], volume.axes.z_m[iz]);
                     if ((p - kPlace).norm() < kReach_m) continue;
@@ -174,10 +175,7 @@ TEST_P(ObservedReconstruction, AnythingObservedGivesFiniteVolumes) {
 std::vector<MaskCase> mask_cases() {
     std::vector<MaskCase> cases{
         {"LctConfocal", ScanPattern::Confocal, {"method=lct", "snr=10"}, 0.05, true},
-        {"SolverConfocal",
-         ScanPattern::Confocal,
-         {"method=solver"},
-         0.05},
+        {"SolverConfocal", ScanPattern::Confocal, {"method=solver"}, 0.05},
         {"DlctConfocal", ScanPattern::Confocal, {"method=dlct", "snr=10"}, 0.05, true},
         {"FkConfocal", ScanPattern::Confocal, {"method=fk"}, 0.05}};
     const std::vector<std::pair<std::string, ScanPattern>> patterns{
