@@ -95,7 +95,8 @@ TrackSensor sensor_of(const core::Capture& capture,
     const auto recorded = core::recorded_sensor(capture);
     if (recorded && settings.sensor.empty()) {
         settings.pose = recorded->pose;
-        if (settings.poses.empty()) settings.poses = recorded->poses;
+        const bool is_free = settings.free == calib::TrackUnknown::SensorPose;
+        if (settings.poses.empty() && !is_free) settings.poses = recorded->poses;
         if (!settings.wall) settings.wall = recorded->wall;
         use_model(recorded->model, settings, sensor);
     } else if (!settings.sensor.empty()) {
@@ -170,6 +171,33 @@ TrackFrames read_track_frames(const std::vector<std::string>& paths,
                         numbers.back() + 1));
     }
     return result;
+}
+
+TrackFrames read_background_frames(const TrackSettings& settings,
+                                   const TrackSensor& sensor,
+                                   const nlos::CaptureReadSettings& reading) {
+    TrackSettings of_file = settings;
+    of_file.poses.clear();
+    TrackFrames background = read_track_frames({settings.background.file}, of_file, reading);
+    const core::TimeAxis& found = background.sensor.axis;
+    constexpr double kSame_bins = 1e-3;
+    const double same_m = kSame_bins * sensor.axis.bin_width_m;
+    if (background.sensor.num_zones() != sensor.num_zones() ||
+        found.num_bins != sensor.axis.num_bins ||
+        !(std::abs(found.opl_start_m - sensor.axis.opl_start_m) <= same_m) ||
+        !(std::abs(found.opl_end_m() - sensor.axis.opl_end_m()) <= same_m)) {
+        const auto text = [](const TrackSensor& s) {
+            return fmt::format("{} zones of {} bins from {:.4g} to {:.4g} m",
+                               s.num_zones(),
+                               s.axis.num_bins,
+                               s.axis.opl_start_m,
+                               s.axis.opl_end_m());
+        };
+        throw core::Error(settings.background.file,
+                          "found " + text(background.sensor),
+                          "must be as the frames: " + text(sensor));
+    }
+    return background;
 }
 
 FrameLines::FrameLines(std::istream& lines, const TrackSensor& sensor)

@@ -29,6 +29,12 @@ TrackFrames read_track_frames(const std::vector<std::string>& paths,
                               calib::TrackSettings& settings,
                               const nlos::CaptureReadSettings& reading);
 
+/// Reads the frames that settings.background.file names.
+/// throws   core::Error when they do not fit the frames of the sensor
+TrackFrames read_background_frames(const calib::TrackSettings& settings,
+                                   const calib::TrackSensor& sensor,
+                                   const nlos::CaptureReadSettings& reading);
+
 /// The sensor that settings name, for frames that come without any word of it.
 /// throws   core::Error when they name none
 calib::TrackSensor stated_sensor(const calib::TrackSettings& settings);

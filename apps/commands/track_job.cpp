@@ -13,6 +13,8 @@
 #include "renderer/core/output_file.h"
 #include "renderer/core/stopwatch.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 
 namespace apps {
@@ -26,13 +28,13 @@ using calib::TrackSettings;
 /// A tracker and what it found so far.
 class Run {
  public:
-    Run(const TrackSettings& settings, const TrackSensor& sensor)
+    Run(const TrackSettings& settings,
+        const TrackSensor& sensor,
+        const nlos::CaptureReadSettings& reading)
         : settings_(settings), tracker_(settings, sensor) {
         if (settings.background.file.empty()) return;
-        TrackSettings of_file = settings;
-        of_file.poses.clear();
         tracker_.learn_background(
-            read_track_frames({settings.background.file}, of_file, {}).frames);
+            read_background_frames(settings, tracker_.sensor(), reading).frames);
     }
 
     const FrameEstimate& step(const calib::TrackFrame& frame) {
@@ -54,6 +56,13 @@ class Run {
     TrackSummary finish(const TrackRequest& request, const std::vector<std::string>& warnings) {
         if (request.smooth) calib::smooth(estimates_, settings_);
         summary_.warnings.insert(summary_.warnings.begin(), warnings.begin(), warnings.end());
+        if (std::ranges::all_of(estimates_, &FrameEstimate::is_learning)) {
+            summary_.warnings.push_back(
+                fmt::format("all {} frames taught the background, so that none was left to find "
+                            "targets in; background.frames is {}",
+                            estimates_.size(),
+                            settings_.background.frames));
+        }
         for (const FrameEstimate& estimate : estimates_) {
             summary_.named +=
                 std::ranges::any_of(estimate.targets, &calib::TargetEstimate::is_named) ? 1 : 0;
@@ -105,7 +114,7 @@ TrackSummary track_to_file(const TrackRequest& request) {
     const auto reading = capture_options(take_capture_overrides(overrides)).capture;
     TrackSettings settings = calib::read_track_settings(request.model, overrides);
     const TrackFrames input = read_track_frames(request.frames, settings, reading);
-    Run run(settings, input.sensor);
+    Run run(settings, input.sensor, reading);
     ProgressBar bar("track");
     const core::Progress progress = bar.progress();
     std::size_t done = 0;
@@ -124,10 +133,10 @@ TrackSummary track_live(const TrackRequest& request, std::istream& lines) {
     }
     check_outputs(request);
     std::vector<std::string> overrides = request.overrides;
-    take_capture_overrides(overrides);
+    const auto reading = capture_options(take_capture_overrides(overrides)).capture;
     const TrackSettings settings = calib::read_track_settings(request.model, overrides);
     const TrackSensor sensor = stated_sensor(settings);
-    Run run(settings, sensor);
+    Run run(settings, sensor, reading);
     FrameLines source(lines, sensor);
     while (const auto frame = source.next()) {
         write_output(calib::frame_json(run.step(*frame), settings).dump() + "\n");

@@ -130,7 +130,15 @@ void draw_wall(const calib::TrackSettings& settings, const calib::TrackSensor& s
     plan.legend("middle of a zone", kSpotColour);
 }
 
-void draw_sensor(const std::vector<calib::FrameEstimate>& frames, Plan& plan) {
+/// What is known of the way of the sensor, or where the target stands if this is to be found.
+void draw_known(const std::vector<calib::FrameEstimate>& frames,
+                const calib::TrackSettings& settings,
+                Plan& plan) {
+    if (settings.free == calib::TrackUnknown::SensorPose) {
+        plan.mark(plan.place(*settings.target.position_m), 0.03, kSensorColour);
+        plan.legend("target, which stands", kSensorColour);
+        return;
+    }
     std::vector<Point> way;
     for (const calib::FrameEstimate& frame : frames) {
         if (frame.pose) way.push_back(plan.place(frame.pose->position_m));
@@ -155,20 +163,22 @@ void draw_paths(const std::vector<calib::FrameEstimate>& frames,
             kPathColours[static_cast<std::size_t>(id - 1) % kPathColours.size()];
         const std::size_t step = (path.size() + kMostEllipses - 1) / kMostEllipses;
         for (std::size_t i = 0; i < path.size(); i += step) {
-            plan.ellipse(path[i]->state.position_m(),
+            plan.ellipse(calib::stated_position_m(*path[i], settings),
                          calib::stated_covariance_m2(*path[i], settings),
                          colour);
         }
     }
+    const char* moving = settings.free == calib::TrackUnknown::Target ? "target" : "sensor";
     for (const auto& [id, path] : paths) {
         const nlos::Colour colour =
             kPathColours[static_cast<std::size_t>(id - 1) % kPathColours.size()];
         std::vector<Point> line;
-        for (const auto* target : path) line.push_back(plan.place(target->state.position_m()));
+        for (const auto* target : path)
+            line.push_back(plan.place(calib::stated_position_m(*target, settings)));
         const Point first = line.front();
         plan.line(std::move(line), colour, 4, 0.0);
         plan.mark(first, 0.02, kStartColour);
-        plan.legend(fmt::format("target {} with 95 % ellipses", id), colour);
+        plan.legend(fmt::format("{} {} with 95 % ellipses", moving, id), colour);
     }
     if (!paths.empty()) plan.legend("first named", kStartColour);
 }
@@ -201,7 +211,7 @@ std::vector<nlos::Panel> track_panels(const std::vector<calib::FrameEstimate>& f
                              View{"Front view, onto the wall", 0, 1, "y [m]"}}) {
         Plan plan(view, sensor);
         draw_wall(settings, sensor, plan);
-        draw_sensor(frames, plan);
+        draw_known(frames, settings, plan);
         draw_paths(frames, settings, plan);
         panels.emplace_back(plan.finished());
     }

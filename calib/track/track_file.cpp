@@ -9,12 +9,6 @@ namespace {
 using core::Json;
 using core::Vec3;
 
-Vec3 stated_position_m(const TargetEstimate& target, const TrackSettings& settings) {
-    const Vec3 position_m = target.state.position_m();
-    if (settings.free == TrackUnknown::Target) return position_m;
-    return settings.pose.position_m + (*settings.target.position_m - position_m);
-}
-
 Json matrix_json(const core::Mat3& m) {
     Json rows = Json::array();
     for (int i = 0; i < 3; ++i) rows.push_back({m(i, 0), m(i, 1), m(i, 2)});
@@ -63,6 +57,12 @@ TrackedPosition read_target(const Json& json, const std::string& where) {
 }
 
 }  // namespace
+
+Vec3 stated_position_m(const TargetEstimate& target, const TrackSettings& settings) {
+    const Vec3 position_m = target.state.position_m();
+    if (settings.free == TrackUnknown::Target) return position_m;
+    return settings.pose.position_m + (*settings.target.position_m - position_m);
+}
 
 core::Mat3 stated_covariance_m2(const TargetEstimate& target, const TrackSettings& settings) {
     const double systematic_m = settings.noise.systematic_m;

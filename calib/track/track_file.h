@@ -23,13 +23,15 @@ struct TrackedFrame {
     std::vector<TrackedPosition> targets;
 };
 
+/// Where a target is. Where the sensor's pose is free, where the sensor is: where it stood at
+/// settings.pose plus what the target seemed to move the other way.
+core::Vec3 stated_position_m(const TargetEstimate& target, const TrackSettings& settings);
+
 /// The covariance of a target's position: what counting leaves open, and
 /// settings.noise.systematic_m of the model.
 core::Mat3 stated_covariance_m2(const TargetEstimate& target, const TrackSettings& settings);
 
-/// What is believed after a frame, as TRACK.json holds it and as live answers say it. Where the
-/// sensor's pose is free, positions are the sensor's: where it stood at settings.pose plus what the
-/// target seemed to move the other way.
+/// What is believed after a frame, as TRACK.json holds it and as live answers say it.
 core::Json frame_json(const FrameEstimate& frame, const TrackSettings& settings);
 
 /// TRACK.json's content: settings, wall, spots and frames.

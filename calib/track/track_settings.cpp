@@ -32,6 +32,11 @@ void validate(const TrackSettings& s, const std::string& where) {
                           "is sensor_pose without target.position_m",
                           "must come with the place where the target stands [m]");
     }
+    if (s.free == TrackUnknown::SensorPose && !s.poses.empty()) {
+        throw core::Error(core::join_key(where, "poses"),
+                          "found with free sensor_pose",
+                          "must be left out: `pose` says where the sensor's way begins");
+    }
 }
 
 TrackSettings read_track_settings(const std::string& path,

@@ -272,6 +272,12 @@ void Tracker::look_for_more(const FrameCounts& frame, double dt_s) {
         if (std::log(birth) + found->log_evidence < continued) return;
         targets_.erase(weakest);
     }
+    // The background is not to learn from it, not even in this frame.
+    std::vector<double> unit(response_->size(), 0.0);
+    response_->evaluate(found->state.position_m(), unit, {});
+    for (std::size_t i = 0; i < unit.size(); ++i) {
+        signal_[i] = expected[i] - frame.background[i] + found->state.strength() * unit[i];
+    }
     found->id = next_id_++;
     targets_.push_back(std::move(*found));
 }
@@ -308,7 +314,13 @@ FrameEstimate Tracker::step(const TrackFrame& frame) {
     }
     estimate.dt_s = last_time_s_ ? frame.time_s - *last_time_s_ : sensor_.frame_s;
     last_time_s_ = frame.time_s;
-    if (frame.pose && sensor_.setup) aim(*frame.pose);
+    if (frame.pose && sensor_.setup) {
+        if (settings_.free == TrackUnknown::Target) {
+            aim(*frame.pose);
+        } else {
+            warn_once("poses of frames are not used where the sensor's pose is free", estimate);
+        }
+    }
     predict(estimate.dt_s);
     if (frame.counts.empty()) {
         warn_once("frames are missing; targets are moved on without them", estimate);
