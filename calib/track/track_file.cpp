@@ -3,6 +3,8 @@
 
 #include <fmt/core.h>
 
+#include <cmath>
+
 namespace calib {
 namespace {
 
@@ -65,9 +67,10 @@ Vec3 stated_position_m(const TargetEstimate& target, const TrackSettings& settin
 }
 
 core::Mat3 stated_covariance_m2(const TargetEstimate& target, const TrackSettings& settings) {
-    const double systematic_m = settings.noise.systematic_m;
-    return target.state.position_covariance() +
-           systematic_m * systematic_m * core::Mat3::Identity();
+    // The variance of a ball's points along an axis is a fifth of its squared radius.
+    const double variance_m2 =
+        std::pow(settings.noise.systematic_m, 2) + std::pow(settings.target.radius_m, 2) / 5.0;
+    return target.state.position_covariance() + variance_m2 * core::Mat3::Identity();
 }
 
 Json frame_json(const FrameEstimate& frame, const TrackSettings& settings) {

@@ -27,8 +27,8 @@ struct TrackedFrame {
 /// settings.pose plus what the target seemed to move the other way.
 core::Vec3 stated_position_m(const TargetEstimate& target, const TrackSettings& settings);
 
-/// The covariance of a target's position: what counting leaves open, and
-/// settings.noise.systematic_m of the model.
+/// The covariance of a target's position: what counting leaves open, settings.noise.systematic_m
+/// of the model, and which part of a body the light comes from.
 core::Mat3 stated_covariance_m2(const TargetEstimate& target, const TrackSettings& settings);
 
 /// What is believed after a frame, as TRACK.json holds it and as live answers say it.

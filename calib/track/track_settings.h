@@ -115,7 +115,10 @@ struct TrackSettings {
 template <class Visitor>
 void for_each_field(TargetSettings& s, Visitor&& visit) {
     visit("kind", s.kind, "how the target sends light back");
-    visit("radius_m", s.radius_m, core::at_least(0, "of a small body; 0: a point [m]"));
+    visit(
+        "radius_m",
+        s.radius_m,
+        core::at_least(0, "of a small body, in which any part may send the light; 0: a point [m]"));
     visit("position_m", s.position_m, "where it stands, when the sensor's pose is free [m]");
 }
 

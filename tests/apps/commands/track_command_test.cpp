@@ -91,6 +91,79 @@ TEST_F(TrackCommand, AnswersLinesWithLinesAndScoresThem) {
     EXPECT_NE(file_bytes(file("report.html")).find("1 track"), std::string::npos);
 }
 
+/// Renders `scene`, counts with its sensor, tracks with `model`, and scores against `truth`.
+class TrackScene : public TrackCommand {
+ protected:
+    Json scores(const Json& scene, const Json& model, const Json& truth) {
+        write_file_bytes(file("scene.json"), scene.dump());
+        write_file_bytes(file("model.json"), model.dump());
+        write_file_bytes(file("truth.json"), truth.dump());
+        for (const std::string& command :
+             {"render " + file("scene.json") + " -o " + file("light.h5"),
+              "simulate-noise " + file("light.h5") + " -o " + file("counts.h5") +
+                  " --sensor --set ambient=0.1",
+              "track " + file("counts.h5") + " " + file("model.json") + " -o " + file("track.json"),
+              "compare " + file("track.json") + " " + file("truth.json") + " -o " +
+                  file("metrics.json")}) {
+            const Outcome outcome = run(command);
+            EXPECT_EQ(outcome.status, 0) << command << outcome.err;
+        }
+        return core::read_json_file(file("metrics.json"));
+    }
+
+    /// The walk of the guide, a few frames of it.
+    static Json walk_scene() {
+        Json scene = core::read_json_file(NLOS_SOURCE_DIR "/data/walk/scene.json");
+        scene["geometry"] = NLOS_SOURCE_DIR "/data/walk/vest.obj";
+        scene["frames"]["count"] = kFrames;
+        return scene;
+    }
+
+    static constexpr int kFrames = 8;
+};
+
+TEST_F(TrackScene, FindsADiffuseBodyWithTheErrorItStates) {
+    Json scene = walk_scene();
+    scene["geometry"] = file("plate.obj");
+    write_file_bytes(file("plate.obj"),
+                     "o vest\nv -0.1 -0.1 0.7\nv 0.1 -0.1 0.7\nv 0.1 0.1 0.7\nv -0.1 0.1 0.7\n"
+                     "f 1 3 2\nf 1 4 3\n");
+    scene["objects"]["vest"] = {{"albedo", 0.8}, {"velocity_m_per_s", {0.35, 0.05, -0.15}}};
+    Json truth{{"frames", Json::array()}};
+    for (int k = 0; k < kFrames; ++k) {
+        const double t = 0.0333 * k;
+        truth["frames"].push_back(
+            {{"time_s", t}, {"targets", {{{"position_m", {0.35 * t, 0.05 * t, 0.7 - 0.15 * t}}}}}});
+    }
+    const Json model{{"background", {{"kind", "flat"}}},
+                     {"target", {{"kind", "diffuse"}, {"radius_m", 0.1}}}};
+    const Json metrics = scores(scene, model, truth);
+    EXPECT_LT(metrics["track_rmse_m"].get<double>(), 0.1);
+    EXPECT_GE(metrics["track_coverage"].get<double>(), 0.8);
+    EXPECT_EQ(metrics["track_false_alarms"].get<double>(), 0.0);
+}
+
+TEST_F(TrackScene, FindsTheWayOfASensorBeforeATargetThatStands) {
+    Json scene = walk_scene();
+    scene["objects"]["vest"].erase("velocity_m_per_s");
+    scene["scan"].erase("pose");
+    Json truth{{"frames", Json::array()}};
+    for (int k = 0; k < kFrames; ++k) {
+        const double x = -0.6 + 0.02 * k;
+        scene["scan"]["poses"].push_back(
+            {{"position_m", {x, 0.0, 1.0}}, {"forward", {0.1, 0.0, -1.0}}});
+        truth["frames"].push_back(
+            {{"time_s", 0.0333 * k}, {"targets", {{{"position_m", {x, 0.0, 1.0}}}}}});
+    }
+    const Json model{{"background", {{"kind", "flat"}}},
+                     {"pose", scene["scan"]["poses"][0]},
+                     {"target", {{"radius_m", 0.05}, {"position_m", {0.0, 0.0, 1.2}}}},
+                     {"free", "sensor_pose"}};
+    const Json metrics = scores(scene, model, truth);
+    EXPECT_LT(metrics["track_rmse_m"].get<double>(), 0.03);
+    EXPECT_GE(metrics["track_coverage"].get<double>(), 0.8);
+}
+
 TEST_F(TrackCommand, RefusesBadLinesInOneLine) {
     write_file_bytes(file("model.json"), kModel);
     const std::vector<std::pair<std::string, std::string>> cases{
