@@ -2,8 +2,7 @@
 #include "renderer/scene/ray_caster.h"
 
 #include "renderer/core/error.h"
-
-#include <embree3/rtcore.h>
+#include "renderer/scene/embree.h"
 
 #include <algorithm>
 #include <cmath>
@@ -123,9 +122,8 @@ std::optional<RayHit> RayCaster::first_hit(const Vec3& from,
     query.ray = make_ray(start, direction, std::numeric_limits<float>::infinity());
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcIntersect1(embree_->scene, &context, &query);
+    auto options = embree::incoherent<embree::IntersectOptions>();
+    rtcIntersect1(embree_->scene, NLOS_EMBREE_ARGUMENTS(&query, &options));
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
 
     const double distance = distance_to_plane(query.hit.primID, from, direction);
@@ -171,10 +169,8 @@ void RayCaster::first_hits(const Vec3& from, const Vec3& normal, DirectionPacket
         query.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
         query.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
     }
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-    rtcIntersect16(valid.data(), embree_->scene, &context, &query);
+    auto options = embree::incoherent<embree::IntersectOptions>();
+    rtcIntersect16(valid.data(), embree_->scene, NLOS_EMBREE_ARGUMENTS(&query, &options));
     for (int lane = 0; lane < packet.count; ++lane) {
         const auto i = static_cast<std::size_t>(lane);
         packet.triangle[i] = DirectionPacket::kNone;
@@ -192,9 +188,8 @@ bool RayCaster::is_blocked(const Vec3& a,
     const Vec3 from = moved_off(a, normal_a, b - a, offset_m_) - origin_;
     const Vec3 to = moved_off(b, normal_b, a - b, offset_m_) - origin_;
     RTCRay ray = make_ray(from, to - from, 1.0F);
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcOccluded1(embree_->scene, &context, &ray);
+    auto options = embree::incoherent<embree::OccludedOptions>();
+    rtcOccluded1(embree_->scene, NLOS_EMBREE_ARGUMENTS(&ray, &options));
     return ray.tfar < 0.0F;
 }
 
@@ -280,11 +275,8 @@ void RayCaster::trace(SegmentPacket& packet) const {
         rays.mask[lane] = ~0U;
         rays.flags[lane] = 0;
     }
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    // Embree's traversal for coherent packets misses occluders on small scenes and is no faster.
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-    rtcOccluded16(valid.data(), embree_->scene, &context, &rays);
+    auto options = embree::incoherent<embree::OccludedOptions>();
+    rtcOccluded16(valid.data(), embree_->scene, NLOS_EMBREE_ARGUMENTS(&rays, &options));
     packet.blocked = 0;
     for (int lane = 0; lane < kSize; ++lane) {
         packet.blocked |= std::uint32_t{valid[lane] != 0 && rays.tfar[lane] < 0.0F} << lane;

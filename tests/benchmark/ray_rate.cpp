@@ -8,10 +8,10 @@
 #include "renderer/core/parallel.h"
 #include "renderer/core/process.h"
 #include "renderer/render.h"
+#include "renderer/scene/embree.h"
 #include "renderer/scene/scene_file.h"
 #include "renderer/third_bounce/third_bounce.h"
 
-#include <embree3/rtcore.h>
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -21,6 +21,9 @@
 #include <vector>
 
 namespace {
+
+using renderer::embree::IntersectOptions;
+using renderer::embree::OccludedOptions;
 
 template <class Rays>
 struct Recorded {
@@ -85,48 +88,50 @@ void set_ray(RTCRay16& packet, int lane, const RTCRay& ray) {
 }  // namespace
 
 extern "C" {
-void __real_rtcOccluded16(const int*, RTCScene, RTCIntersectContext*, RTCRay16*);
-void __real_rtcIntersect16(const int*, RTCScene, RTCIntersectContext*, RTCRayHit16*);
-void __real_rtcIntersect1(RTCScene, RTCIntersectContext*, RTCRayHit*);
-void __real_rtcOccluded1(RTCScene, RTCIntersectContext*, RTCRay*);
+void __real_rtcOccluded16(const int*, RTCScene, NLOS_EMBREE_ARGUMENTS(RTCRay16*, OccludedOptions*));
+void __real_rtcIntersect16(const int*,
+                           RTCScene,
+                           NLOS_EMBREE_ARGUMENTS(RTCRayHit16*, IntersectOptions*));
+void __real_rtcIntersect1(RTCScene, NLOS_EMBREE_ARGUMENTS(RTCRayHit*, IntersectOptions*));
+void __real_rtcOccluded1(RTCScene, NLOS_EMBREE_ARGUMENTS(RTCRay*, OccludedOptions*));
 
 void __wrap_rtcOccluded16(const int* valid,
                           RTCScene scene,
-                          RTCIntersectContext* context,
-                          RTCRay16* rays) {
+                          NLOS_EMBREE_ARGUMENTS(RTCRay16* rays, OccludedOptions* options)) {
     if (g_recording != nullptr) {
         g_recording->scene = scene;
         record_packet(Call::Segments, valid, *rays, g_recording->segment_packets);
     }
-    __real_rtcOccluded16(valid, scene, context, rays);
+    __real_rtcOccluded16(valid, scene, NLOS_EMBREE_ARGUMENTS(rays, options));
 }
 
 void __wrap_rtcIntersect16(const int* valid,
                            RTCScene scene,
-                           RTCIntersectContext* context,
-                           RTCRayHit16* rays) {
+                           NLOS_EMBREE_ARGUMENTS(RTCRayHit16* rays, IntersectOptions* options)) {
     if (g_recording != nullptr) {
         record_packet(Call::FirstHits, valid, *rays, g_recording->first_hit_packets);
     }
-    __real_rtcIntersect16(valid, scene, context, rays);
+    __real_rtcIntersect16(valid, scene, NLOS_EMBREE_ARGUMENTS(rays, options));
 }
 
-void __wrap_rtcIntersect1(RTCScene scene, RTCIntersectContext* context, RTCRayHit* ray) {
+void __wrap_rtcIntersect1(RTCScene scene,
+                          NLOS_EMBREE_ARGUMENTS(RTCRayHit* ray, IntersectOptions* options)) {
     if (g_recording != nullptr) {
         g_recording->calls.push_back(Call::FirstHit);
         g_recording->first_hits.push_back(*ray);
         ++g_recording->num_rays;
     }
-    __real_rtcIntersect1(scene, context, ray);
+    __real_rtcIntersect1(scene, NLOS_EMBREE_ARGUMENTS(ray, options));
 }
 
-void __wrap_rtcOccluded1(RTCScene scene, RTCIntersectContext* context, RTCRay* ray) {
+void __wrap_rtcOccluded1(RTCScene scene,
+                         NLOS_EMBREE_ARGUMENTS(RTCRay* ray, OccludedOptions* options)) {
     if (g_recording != nullptr) {
         g_recording->calls.push_back(Call::Segment);
         g_recording->segments.push_back(*ray);
         ++g_recording->num_rays;
     }
-    __real_rtcOccluded1(scene, context, ray);
+    __real_rtcOccluded1(scene, NLOS_EMBREE_ARGUMENTS(ray, options));
 }
 }
 
@@ -134,8 +139,8 @@ namespace {
 
 // CPU seconds of tracing the recorded rays once. The rays are copies: tracing changes them.
 double replay(Recording recording) {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
+    auto hit_options = renderer::embree::incoherent<IntersectOptions>();
+    auto shadow_options = renderer::embree::incoherent<OccludedOptions>();
     auto segment_packet = recording.segment_packets.begin();
     auto first_hit_packet = recording.first_hit_packets.begin();
     auto first_hit = recording.first_hits.begin();
@@ -144,20 +149,24 @@ double replay(Recording recording) {
     for (const Call call : recording.calls) {
         switch (call) {
             case Call::Segments:
-                __real_rtcOccluded16(
-                    segment_packet->valid, recording.scene, &context, &segment_packet->rays);
+                __real_rtcOccluded16(segment_packet->valid,
+                                     recording.scene,
+                                     NLOS_EMBREE_ARGUMENTS(&segment_packet->rays, &shadow_options));
                 ++segment_packet;
                 break;
             case Call::FirstHits:
-                __real_rtcIntersect16(
-                    first_hit_packet->valid, recording.scene, &context, &first_hit_packet->rays);
+                __real_rtcIntersect16(first_hit_packet->valid,
+                                      recording.scene,
+                                      NLOS_EMBREE_ARGUMENTS(&first_hit_packet->rays, &hit_options));
                 ++first_hit_packet;
                 break;
             case Call::FirstHit:
-                __real_rtcIntersect1(recording.scene, &context, &*first_hit++);
+                __real_rtcIntersect1(recording.scene,
+                                     NLOS_EMBREE_ARGUMENTS(&*first_hit++, &hit_options));
                 break;
             case Call::Segment:
-                __real_rtcOccluded1(recording.scene, &context, &*segment++);
+                __real_rtcOccluded1(recording.scene,
+                                    NLOS_EMBREE_ARGUMENTS(&*segment++, &shadow_options));
                 break;
         }
     }
