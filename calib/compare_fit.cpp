@@ -18,7 +18,7 @@ constexpr std::size_t kSamples = 4000;
 constexpr std::size_t kCloudSamples = 40'000;
 constexpr std::uint64_t kSampleSeed = 1;
 
-// The objects of one node as one mesh.
+// The objects of one node, and of those below it, as one mesh.
 struct Shape {
     core::TriangleMesh mesh;
     core::Transform world_from_node = core::Transform::Identity();
@@ -27,12 +27,22 @@ struct Shape {
     double area_m2 = 0.0;
 };
 
+// Where the node of the name stands that the object belongs to; nothing when it belongs to none.
+std::optional<core::Transform> node_of(const renderer::Object& object, const std::string& name) {
+    for (const renderer::NodeGroup& group : object.groups) {
+        if (group.name == name) return group.world_from_node;
+    }
+    if (object.name == name) return object.world_from_node;
+    return std::nullopt;
+}
+
 std::optional<Shape> shape_of(const renderer::SceneGeometry& geometry, const std::string& name) {
     Shape shape;
     for (const renderer::Object& object : geometry.objects) {
-        if (object.name != name) continue;
+        const auto node = node_of(object, name);
+        if (!node) continue;
         if (shape.mesh.vertices.empty()) {
-            shape.world_from_node = object.world_from_node;
+            shape.world_from_node = *node;
             shape.albedo = object.material.albedo;
         }
         const auto base = static_cast<std::uint32_t>(shape.mesh.vertices.size());

@@ -198,11 +198,10 @@ void store_objects(const FitDriver& driver,
     for (std::size_t b = 0; b < model.bodies().size(); ++b) {
         const ModelBody& body = model.bodies()[b];
         const BodyState& s = state.bodies[b];
-        const auto& node = driver.input.geometry.objects[body.objects.front()].world_from_node;
         FittedObject& object = result.objects.emplace_back();
         object.name = body.name;
         object.position_m = s.position_m;
-        object.rotation = (s.rotation * Eigen::Quaterniond(node.rotation())).normalized();
+        object.rotation = (s.rotation * Eigen::Quaterniond(body.turn)).normalized();
         if (object.rotation.w() < 0.0) object.rotation.coeffs() *= -1.0;
         object.size = std::exp(s.log_size);
         object.albedo = std::exp(s.log_albedo);

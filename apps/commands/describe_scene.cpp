@@ -144,7 +144,7 @@ void describe_scene(Description& out, const std::string& path) {
     const renderer::SceneDescription description = renderer::read_scene_description(path, {});
     const core::Scan scan = renderer::make_scan(description);
     const renderer::Scene scene = renderer::load_scene(description, scan);
-    out.print("format: scene description\ngeometry: {}\n", description.geometry);
+    out.print("format: scene description\ngeometry: {}\n", renderer::geometry_name(description));
     for (const std::string& line : renderer::describe_frame(description)) out.print("{}\n", line);
     for (const renderer::Object& object : scene.objects()) print_object(out, object);
     print_warnings(out, scene.warnings());

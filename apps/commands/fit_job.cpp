@@ -89,16 +89,14 @@ calib::FitResult fit_to_file(const std::string& capture_path,
                              const std::string& fit_path) {
     require_suffix(fit_path, {".json"});
     calib::FitInput input = make_input(capture_path, model_path, overrides);
+    std::vector<std::string> sources{
+        capture_path, model_path, calibration, input.settings.scene, input.settings.start};
+    for (const auto& path : renderer::geometry_files(input.scene)) sources.push_back(path);
     core::check_targets({fit_path,
                          with_suffix(fit_path, ".scene.json"),
                          with_suffix(fit_path, ".glb"),
                          with_suffix(fit_path, ".png")},
-                        {capture_path,
-                         model_path,
-                         calibration,
-                         input.settings.scene,
-                         input.scene.geometry,
-                         input.settings.start});
+                        sources);
     if (!calibration.empty()) use_calibration(calib::read_calibration(calibration), input);
     ProgressBar bar("fit");
     const calib::FitResult result = fit_input(input, bar.progress());

@@ -219,7 +219,10 @@ void SweepPlan::take_fingerprint() {
     for (std::size_t number = 0; number < num_runs_; number += repeats) {
         const Json values = values_of(number);
         const Json scene = changes_of(kScene, values);
-        add_file(scene.contains("geometry") ? scene_of(values).geometry : scene_.geometry);
+        const bool is_changed = scene.contains("geometry") || scene.contains("objects");
+        for (const auto& path : renderer::geometry_files(is_changed ? scene_of(values) : scene_)) {
+            add_file(path);
+        }
         for (const char* part : {kNoise, kReconstruct}) {
             const Json response = changes_of(part, values).value("response", Json::object());
             if (response.is_object()) add_file(response.value("curve", ""));

@@ -59,7 +59,7 @@ void SweepRunner::render(const SweepRun& run, const core::Progress& progress) {
     truth_.reset();
     renderer::SceneGeometry geometry = renderer::load_geometry(run.scene);
     RenderInput input;
-    input.scene_name = run.scene.geometry;
+    input.scene_name = renderer::geometry_name(run.scene);
     input.description = run.scene;
     input.scan = renderer::make_scan(run.scene);
     input.scene = std::make_shared<const renderer::Scene>(

@@ -59,6 +59,48 @@ void find_normals(ModelBody& body, const std::vector<ModelFacet>& facets, std::u
     }
 }
 
+// What may be freed: nodes with objects and those above them, each once.
+std::vector<std::string> node_names(const renderer::SceneGeometry& geometry) {
+    std::vector<std::string> names;
+    const auto add = [&](const std::string& name) {
+        if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    };
+    for (const renderer::Object& object : geometry.objects) {
+        if (object.role == renderer::Role::RelayWall) continue;
+        for (const renderer::NodeGroup& group : object.groups) add(group.name);
+        add(object.name);
+    }
+    return names;
+}
+
+// The node that the object moves with: the one above it that is freed by name, else its own.
+renderer::NodeGroup moving_node(const renderer::Object& object, const FreeSettings& free) {
+    const auto is_free = [&](const std::string& name) {
+        return std::any_of(free.objects.begin(), free.objects.end(), [&](const FreeObject& wanted) {
+            return wanted.name == name;
+        });
+    };
+    const renderer::NodeGroup own{object.name, object.world_from_node};
+    const renderer::NodeGroup* found = nullptr;
+    for (const renderer::NodeGroup& group : object.groups) {
+        if (!is_free(group.name)) continue;
+        if (found != nullptr && found->name != group.name) {
+            throw core::Error(
+                "model: free",
+                "found '" + found->name + "' and '" + group.name + "', which is in it",
+                "must free one of them");
+        }
+        found = &group;
+    }
+    if (found == nullptr) return own;
+    if (found->name != own.name && is_free(own.name)) {
+        throw core::Error("model: free",
+                          "found '" + found->name + "' and '" + own.name + "', which is in it",
+                          "must free one of them");
+    }
+    return *found;
+}
+
 }  // namespace
 
 SceneModel::SceneModel(const renderer::SceneGeometry& geometry,
@@ -70,7 +112,7 @@ SceneModel::SceneModel(const renderer::SceneGeometry& geometry,
     for (std::size_t i = 0; i < geometry.objects.size(); ++i) {
         if (geometry.objects[i].role == renderer::Role::RelayWall) continue;
         check_material(geometry.objects[i]);
-        add_body(geometry.objects[i], i);
+        add_to_body(moving_node(geometry.objects[i], settings.free), geometry.objects[i], i);
     }
     for (std::uint32_t b = 0; b < bodies_.size(); ++b) find_normals(bodies_[b], facets_, b);
     free_bodies(settings.free);
@@ -80,14 +122,17 @@ SceneModel::SceneModel(const renderer::SceneGeometry& geometry,
     }
 }
 
-void SceneModel::add_body(const renderer::Object& object, std::size_t index) {
+void SceneModel::add_to_body(const renderer::NodeGroup& node,
+                             const renderer::Object& object,
+                             std::size_t index) {
     auto it = std::find_if(bodies_.begin(), bodies_.end(), [&](const ModelBody& body) {
-        return body.name == object.name;
+        return body.name == node.name;
     });
     if (it == bodies_.end()) {
         ModelBody body;
-        body.name = object.name;
-        body.origin_m = object.world_from_node.translation();
+        body.name = node.name;
+        body.turn = node.world_from_node.rotation();
+        body.origin_m = node.world_from_node.translation();
         body.albedo = std::max(object.material.albedo, kMinAlbedo);
         it = bodies_.insert(bodies_.end(), body);
     }
@@ -130,7 +175,9 @@ void SceneModel::free_bodies(const FreeSettings& free) {
         });
         if (it == bodies_.end()) {
             std::string known;
-            for (const ModelBody& body : bodies_) known += (known.empty() ? "" : ", ") + body.name;
+            for (const std::string& name : node_names(geometry_)) {
+                known += (known.empty() ? "" : ", ") + name;
+            }
             throw core::Error("model: free",
                               "found '" + wanted.name + "'",
                               "must be time_zero, ambient, response_fwhm, wall, point_scatterers "
@@ -259,6 +306,12 @@ renderer::SceneGeometry SceneModel::posed(const SceneState& state) const {
             index[{p.x(), p.y(), p.z()}] = v;
         }
         const double size = std::exp(body.log_size);
+        const auto move = [&](core::Transform& node) {
+            const core::Mat3 turn = size * body.rotation.toRotationMatrix();
+            node.linear() = turn * node.linear();
+            node.translation() =
+                body.position_m + turn * (node.translation() - bodies_[b].origin_m);
+        };
         for (const std::size_t o : bodies_[b].objects) {
             renderer::Object& object = geometry.objects[o];
             for (Vec3& vertex : object.mesh.vertices) {
@@ -268,9 +321,13 @@ renderer::SceneGeometry SceneModel::posed(const SceneState& state) const {
             object.mesh.normals.clear();
             object.material.albedo = std::min(
                 1.0, object.material.albedo * std::exp(body.log_albedo) / bodies_[b].albedo);
-            core::Transform& node = object.world_from_node;
-            node.linear() = size * body.rotation.toRotationMatrix() * node.linear();
-            node.translation() = body.position_m;
+            move(object.world_from_node);
+            // Nodes within the body move with it, those above it stay.
+            bool is_within = false;
+            for (renderer::NodeGroup& group : object.groups) {
+                is_within = is_within || group.name == bodies_[b].name;
+                if (is_within) move(group.world_from_node);
+            }
         }
     }
     return geometry;

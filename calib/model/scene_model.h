@@ -77,11 +77,13 @@ struct ModelFacet {
     bool is_retroreflective = false;
 };
 
-/// Objects of one glTF node, which move as one.
+/// Objects that move as one: those of one glTF node, and where that node is freed by name, those of
+/// all nodes below it.
 struct ModelBody {
     std::string name;
-    core::Vec3 origin_m;               ///< of the node, at the start
-    std::vector<std::size_t> objects;  ///< of the geometry
+    core::Mat3 turn = core::Mat3::Identity();  ///< of the node, at the start: its rotation
+    core::Vec3 origin_m;                       ///< of the node, at the start
+    std::vector<std::size_t> objects;          ///< of the geometry
     std::vector<ModelVertex> vertices;
     std::vector<std::vector<std::uint32_t>> neighbours;  ///< of each vertex, along edges
     double albedo = 1.0;                                 ///< at the start
@@ -118,7 +120,9 @@ class SceneModel {
     renderer::SceneGeometry posed(const SceneState& state) const;
 
  private:
-    void add_body(const renderer::Object& object, std::size_t index);
+    void add_to_body(const renderer::NodeGroup& node,
+                     const renderer::Object& object,
+                     std::size_t index);
     void add_block(ParameterKind kind, std::size_t item, std::vector<std::string> names);
     void free_bodies(const FreeSettings& free);
     void free_rest(const FreeSettings& free, bool scale_is_free);

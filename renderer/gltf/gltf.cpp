@@ -44,6 +44,8 @@ core::Transform node_transform(const tinygltf::Node& node, const std::string& wh
     return parent_from_node;
 }
 
+constexpr std::size_t kMaxGroups = 8;  // a chain of nodes, each below all before it, stays small
+
 /// Walks the node tree and gathers objects and cameras in world coordinates.
 class SceneReader {
  public:
@@ -73,6 +75,7 @@ class SceneReader {
         int node = 0;
         core::Transform world_from_node = core::Transform::Identity();
         NlosExtras extras;
+        std::vector<NodeGroup> groups{};
     };
 
     /// The nodes of the default scene, else of the first one, else all that have no parent.
@@ -95,7 +98,7 @@ class SceneReader {
     std::vector<Visit> walk_nodes() const {
         std::vector<Visit> pending;
         for (const int root : root_nodes())
-            pending.push_back({root, core::Transform::Identity(), {}});
+            pending.push_back({root, core::Transform::Identity(), {}, {}});
         std::reverse(pending.begin(), pending.end());
         std::vector<Visit> visits;
         std::vector<bool> visited(model_.nodes.size(), false);
@@ -111,12 +114,22 @@ class SceneReader {
             visited[index] = true;
             enter(visit);
             const auto& children = model_.nodes[index].children;
+            const auto groups = groups_below(visit);
             for (auto child = children.rbegin(); child != children.rend(); ++child) {
-                pending.push_back({*child, visit.world_from_node, visit.extras});
+                pending.push_back({*child, visit.world_from_node, visit.extras, groups});
             }
             visits.push_back(std::move(visit));
         }
         return visits;
+    }
+
+    std::vector<NodeGroup> groups_below(const Visit& visit) const {
+        std::vector<NodeGroup> groups = visit.groups;
+        const std::string& name = model_.nodes[static_cast<std::size_t>(visit.node)].name;
+        if (name.empty()) return groups;
+        if (groups.size() == kMaxGroups) groups.erase(groups.begin());
+        groups.push_back({name, visit.world_from_node});
+        return groups;
     }
 
     void enter(Visit& visit) const {
@@ -173,6 +186,7 @@ class SceneReader {
             object.ellipsoidal_exclude = extras.ellipsoidal_exclude.value_or(false);
             object.velocity_m_per_s = extras.velocity_m_per_s.value_or(core::Vec3::Zero());
             object.world_from_node = visit.world_from_node;
+            object.groups = visit.groups;
             object.uv = primitive.uv;
             object.mesh = world_mesh(primitive, visit);
             geometry_.objects.push_back(std::move(object));

@@ -123,6 +123,30 @@ bool external_file_exists(const std::string& path, void* /*user_data*/) {
     return std::filesystem::exists(path, ignored);
 }
 
+bool find_external_file_size(std::size_t* num_bytes,
+                             std::string* /*error*/,
+                             const std::string& path,
+                             void* /*user_data*/) {
+    std::error_code failure;
+    *num_bytes = std::filesystem::file_size(path, failure);
+    return !failure;
+}
+
+// tinygltf 2.9 wants a function more than 2.7.
+template <class Callbacks>
+Callbacks file_callbacks(std::uint64_t& largest) {
+    Callbacks callbacks{};
+    callbacks.FileExists = &external_file_exists;
+    callbacks.ExpandFilePath = &tinygltf::ExpandFilePath;
+    callbacks.ReadWholeFile = &read_external_file;
+    callbacks.WriteWholeFile = &tinygltf::WriteWholeFile;
+    if constexpr (requires { callbacks.GetFileSizeInBytes; }) {
+        callbacks.GetFileSizeInBytes = &find_external_file_size;
+    }
+    callbacks.user_data = &largest;
+    return callbacks;
+}
+
 std::shared_ptr<const tinygltf::Model> load_model(std::string_view bytes,
                                                   const core::Json& json,
                                                   const std::string& path) {
@@ -130,11 +154,7 @@ std::shared_ptr<const tinygltf::Model> load_model(std::string_view bytes,
     tinygltf::TinyGLTF loader;
     loader.SetImageLoader(&keep_image_bytes, nullptr);
     std::uint64_t largest = largest_external_file(json);
-    loader.SetFsCallbacks({&external_file_exists,
-                           &tinygltf::ExpandFilePath,
-                           &read_external_file,
-                           &tinygltf::WriteWholeFile,
-                           &largest});
+    loader.SetFsCallbacks(file_callbacks<tinygltf::FsCallbacks>(largest));
     const std::string folder = std::filesystem::path(path).parent_path().string();
     const auto num_bytes = static_cast<unsigned int>(bytes.size());
     std::string error;

@@ -6,6 +6,7 @@
 #include <fmt/core.h>
 #include <tiny_gltf.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -38,10 +39,18 @@ class ModelBuilder {
         if (object.mesh.triangles.empty()) fail(object, "has no triangles", "must have one");
         tinygltf::Node node;
         node.name = object.name;
-        set_transform(object.world_from_node, node);
         node.mesh = add_mesh(object);
         node.extras = node_extras(object);
-        add_node(std::move(node));
+        const int parent = group_node(object.groups);
+        if (parent < 0) {
+            set_transform(object.world_from_node, node);
+            add_node(std::move(node));
+            return;
+        }
+        const core::Transform& world_from_group = object.groups.back().world_from_node;
+        set_transform(world_from_group.inverse() * object.world_from_node, node);
+        model_.nodes[static_cast<std::size_t>(parent)].children.push_back(
+            append(model_.nodes, std::move(node)));
     }
 
     void add(const Camera& camera) {
@@ -84,12 +93,41 @@ class ModelBuilder {
         model_.scenes[0].nodes.push_back(append(model_.nodes, std::move(node)));
     }
 
-    static void set_transform(const core::Transform& world_from_node, tinygltf::Node& node) {
-        if (world_from_node.linear() != core::Mat3::Identity()) {
-            const double* first = world_from_node.matrix().data();
+    /// The node that stands for the innermost of the groups; -1 when there are none.
+    int group_node(const std::vector<NodeGroup>& groups) {
+        int parent = -1;
+        core::Transform group_from_world = core::Transform::Identity();
+        for (const NodeGroup& group : groups) {
+            const auto known =
+                std::find_if(group_nodes_.begin(), group_nodes_.end(), [&](const GroupNode& node) {
+                    return node.parent == parent && node.group.name == group.name &&
+                           node.group.world_from_node.matrix() == group.world_from_node.matrix();
+                });
+            if (known != group_nodes_.end()) {
+                parent = known->node;
+            } else {
+                tinygltf::Node node;
+                node.name = group.name;
+                set_transform(group_from_world * group.world_from_node, node);
+                const int index = append(model_.nodes, std::move(node));
+                auto& siblings = parent < 0
+                                     ? model_.scenes[0].nodes
+                                     : model_.nodes[static_cast<std::size_t>(parent)].children;
+                siblings.push_back(index);
+                group_nodes_.push_back({parent, index, group});
+                parent = index;
+            }
+            group_from_world = group.world_from_node.inverse();
+        }
+        return parent;
+    }
+
+    static void set_transform(const core::Transform& parent_from_node, tinygltf::Node& node) {
+        if (parent_from_node.linear() != core::Mat3::Identity()) {
+            const double* first = parent_from_node.matrix().data();
             node.matrix.assign(first, first + 16);
-        } else if (!world_from_node.translation().isZero(0.0)) {
-            const double* first = world_from_node.matrix().col(3).data();
+        } else if (!parent_from_node.translation().isZero(0.0)) {
+            const double* first = parent_from_node.matrix().col(3).data();
             node.translation.assign(first, first + 3);
         }
     }
@@ -266,8 +304,15 @@ class ModelBuilder {
         return append(model_.accessors, std::move(accessor));
     }
 
+    struct GroupNode {
+        int parent;  ///< -1: none
+        int node;
+        NodeGroup group;
+    };
+
     const std::string& path_;
     tinygltf::Model model_;
+    std::vector<GroupNode> group_nodes_;
     std::map<const Texture*, int> textures_;
 };
 

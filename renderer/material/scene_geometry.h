@@ -15,6 +15,12 @@ namespace renderer {
 /// What a surface is to the measurement.
 enum class Role { Hidden, RelayWall, BackWall };
 
+/// A node of a glTF file above another.
+struct NodeGroup {
+    std::string name;
+    core::Transform world_from_node = core::Transform::Identity();
+};
+
 /// Triangles of one material that move as one.
 struct Object {
     std::string name;  ///< of the glTF node; several objects share it when a node has several
@@ -26,6 +32,8 @@ struct Object {
     core::Vec3 velocity_m_per_s = core::Vec3::Zero();  ///< world
     core::Transform world_from_node =
         core::Transform::Identity();  ///< where the node put it; translation() is its origin
+    std::vector<NodeGroup>
+        groups{};  ///< the nearest nodes above it that have a name, outermost first
 };
 
 /// A pinhole camera.

@@ -14,6 +14,10 @@ namespace renderer {
 namespace {
 
 void apply(const ObjectSettings& settings, Object& object) {
+    if (settings.material) {
+        const auto& [surface, albedo, roughness] = *settings.material;
+        object.material = {object.name, surface, albedo, roughness, nullptr};
+    }
     if (settings.retroreflective) {
         object.material.model =
             *settings.retroreflective ? SurfaceModel::Retroreflective : SurfaceModel::Lambertian;
@@ -33,7 +37,10 @@ double diagonal_m(const SceneGeometry& geometry) {
 }
 
 /// Names a size that no scene beside such a wall, or before such a camera, would have.
-void warn_of_size(const SceneDescription& description, SceneGeometry& geometry) {
+void warn_of_size(const SceneDescription& description,
+                  const std::string& path,
+                  const char* key,
+                  SceneGeometry& geometry) {
     constexpr double kLargestRatio = 30.0;  // a centimetre taken for a metre is 100
     constexpr double kSmallestRatio = 0.01;
     const double size_m = diagonal_m(geometry);
@@ -43,14 +50,66 @@ void warn_of_size(const SceneDescription& description, SceneGeometry& geometry) 
                            : std::hypot(width, height);
     if (size_m < kLargestRatio * wall_m && size_m > kSmallestRatio * wall_m) return;
     geometry.warnings.push_back(
-        fmt::format("{} is {:.3g} m across{} {:.3g} m, if its unit is the metre; geometry_unit_m "
-                    "states another "
+        fmt::format("{} is {:.3g} m across{} {:.3g} m, if its unit is the metre; {} states another "
                     "(0.001: millimetres, 0.01: centimetres, 0.0254: inches)",
-                    description.geometry,
+                    path,
                     size_m,
                     description.camera ? ", seen by a camera that looks at a distance of"
                                        : ", beside a wall of",
-                    wall_m));
+                    wall_m,
+                    key));
+}
+
+std::string path_of(const SceneDescription& description, const std::string& mesh) {
+    return (std::filesystem::path(description.folder) / mesh).string();
+}
+
+core::Transform placement(const ObjectSettings& settings) {
+    core::Transform world_from_mesh = core::Transform::Identity();
+    world_from_mesh.translate(settings.translation_m.value_or(core::Vec3::Zero()));
+    const core::Vec3 angles =
+        settings.rotation_deg.value_or(core::Vec3::Zero()) / core::kDegreesPerRadian;
+    for (const int axis : {2, 1, 0}) {
+        world_from_mesh.rotate(Eigen::AngleAxisd(angles[axis], core::Vec3::Unit(axis)));
+    }
+    return world_from_mesh;
+}
+
+// The objects of a mesh's file, as one body of the name.
+void add_placed(const SceneDescription& description,
+                const std::string& name,
+                const ObjectSettings& settings,
+                SceneGeometry& geometry) {
+    const std::string path = path_of(description, *settings.mesh);
+    const bool is_there = std::any_of(geometry.objects.begin(),
+                                      geometry.objects.end(),
+                                      [&](const Object& object) { return object.name == name; });
+    if (is_there) {
+        throw core::Error("objects." + name,
+                          "has the name of an object in " + description.geometry,
+                          "must have a name of its own to add " + *settings.mesh);
+    }
+    const double scale = settings.scale.value_or(1.0);
+    core::Transform world_from_mesh = placement(settings);
+    SceneGeometry added;
+    if (is_mesh_file(path)) {
+        added = load_mesh_file(path, {scale, settings.up.value_or(MeshFrame{}.up)});
+        if (!settings.scale) warn_of_size(description, path, "scale", added);
+    } else {
+        added = load_gltf(path);
+        world_from_mesh.scale(scale);
+    }
+    const core::Vec3 origin = added.objects.front().world_from_node.translation();
+    for (Object& object : added.objects) {
+        for (core::Vec3& vertex : object.mesh.vertices) vertex = world_from_mesh * vertex;
+        object.mesh.normals.clear();
+        object.name = name;
+        object.groups.clear();
+        object.world_from_node.translation() = origin;
+        object.world_from_node = world_from_mesh * object.world_from_node;
+        geometry.objects.push_back(std::move(object));
+    }
+    for (std::string& text : added.warnings) geometry.warnings.push_back(std::move(text));
 }
 
 }  // namespace
@@ -69,23 +128,42 @@ void apply_objects(const SceneDescription& description, SceneGeometry& geometry)
         }
         if (is_there) continue;
         throw core::Error("objects." + name,
-                          "is not in " + description.geometry,
+                          "is not in " + geometry_name(description),
                           "must be one of " + known.substr(0, 500));
     }
 }
 
 SceneGeometry load_geometry(const SceneDescription& description) {
     SceneGeometry geometry;
-    if (is_mesh_file(description.geometry)) {
-        geometry = load_mesh_file(description.geometry,
+    const std::string& path = description.geometry;
+    if (is_mesh_file(path)) {
+        geometry = load_mesh_file(path,
                                   {description.geometry_unit_m.value_or(MeshFrame{}.unit_m),
                                    description.geometry_up.value_or(MeshFrame{}.up)});
-        if (!description.geometry_unit_m) warn_of_size(description, geometry);
-    } else {
-        geometry = load_gltf(description.geometry);
+        if (!description.geometry_unit_m) {
+            warn_of_size(description, path, "geometry_unit_m", geometry);
+        }
+    } else if (!path.empty()) {
+        geometry = load_gltf(path);
+    }
+    for (const auto& [name, settings] : description.objects) {
+        if (settings.mesh) add_placed(description, name, settings, geometry);
     }
     apply_objects(description, geometry);
     return geometry;
+}
+
+std::string geometry_name(const SceneDescription& description) {
+    return description.geometry.empty() ? "objects" : description.geometry;
+}
+
+std::vector<std::string> geometry_files(const SceneDescription& description) {
+    std::vector<std::string> files;
+    if (!description.geometry.empty()) files.push_back(description.geometry);
+    for (const auto& [name, settings] : description.objects) {
+        if (settings.mesh) files.push_back(path_of(description, *settings.mesh));
+    }
+    return files;
 }
 
 SceneGeometry load_geometry(const std::string& path) {

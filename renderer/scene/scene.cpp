@@ -198,7 +198,7 @@ Scene make_scene(SceneGeometry geometry,
     };
     if (!scan.camera && std::none_of(geometry.objects.begin(), geometry.objects.end(), in_front)) {
         throw core::Error(
-            description.geometry,
+            geometry_name(description),
             "found no hidden surface in front of the relay wall",
             std::string("must have one on the side that the wall's normal points to") +
                 (is_mesh_file(description.geometry)
@@ -207,7 +207,7 @@ Scene make_scene(SceneGeometry geometry,
     }
     const bool has_wall_mesh = relay_wall_mesh(geometry) != nullptr;
     if (has_wall_mesh && scan.sensor) {
-        throw core::Error(description.geometry,
+        throw core::Error(geometry_name(description),
                           "found a mesh with the role relay_wall and a scan of pattern sensor",
                           "must have none: a sensor looks at the rectangle relay_wall");
     }

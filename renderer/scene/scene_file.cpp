@@ -20,10 +20,12 @@ using core::Vec3;
 
 void validate_geometry(const SceneDescription& scene, const std::string& where) {
     const auto refuse = [&](const char* key) {
-        throw Error(
-            where + key,
-            "found together with " + std::filesystem::path(scene.geometry).filename().string(),
-            "must be left out: glTF is in metres, with y up");
+        throw Error(where + key,
+                    scene.geometry.empty()
+                        ? "found without geometry"
+                        : "found together with " +
+                              std::filesystem::path(scene.geometry).filename().string(),
+                    "must stand beside an .obj, .ply or .stl file; glTF is in metres, with y up");
     };
     if (!is_mesh_file(scene.geometry)) {
         if (scene.geometry_unit_m) refuse("geometry_unit_m");
@@ -32,9 +34,18 @@ void validate_geometry(const SceneDescription& scene, const std::string& where) 
     if (scene.geometry_unit_m) {
         core::check_range(*scene.geometry_unit_m, {.low = 0.0}, where + "geometry_unit_m");
     }
-    for (const auto& [name, object] : scene.objects) {
-        core::check_ranges(object, where + "objects." + name);
+    validate(scene.objects, where + "objects");
+}
+
+void require_geometry(const SceneDescription& scene, const std::string& where) {
+    const auto has_mesh = [](const auto& entry) { return entry.second.mesh.has_value(); };
+    if (!scene.geometry.empty() ||
+        std::any_of(scene.objects.begin(), scene.objects.end(), has_mesh)) {
+        return;
     }
+    throw Error(where + "geometry",
+                "found nothing",
+                "must name a .glb, .gltf, .obj, .ply or .stl file, unless objects have meshes");
 }
 
 void validate_normals(const std::vector<Vec3>& points,
@@ -166,7 +177,7 @@ core::Scan image_of(const core::PinholeCamera& camera) {
 void look_up_camera(const std::string& where, SceneDescription& scene) {
     if (!scene.camera || scene.camera->name.empty()) return;
     CameraSettings& camera = *scene.camera;
-    if (is_mesh_file(scene.geometry)) {
+    if (scene.geometry.empty() || is_mesh_file(scene.geometry)) {
         throw Error(
             where, "found \"" + camera.name + "\"", "must be an object: the geometry is no glTF");
     }
@@ -212,19 +223,6 @@ core::Json write_value(const SceneTimeAxis& axis) {
     return axis.automatic ? core::Json("auto") : core::write_value<SceneTimeAxis>(axis);
 }
 
-void read_value(const core::Json& json, const std::string& where, ObjectTable& objects) {
-    if (!json.is_object()) core::throw_wrong_type(where, json, "an object with names of objects");
-    for (const auto& [name, settings] : json.items()) {
-        core::read_value(settings, core::join_key(where, name), objects[name]);
-    }
-}
-
-core::Json write_value(const ObjectTable& objects) {
-    core::Json json = core::Json::object();
-    for (const auto& [name, settings] : objects) json[name] = core::write_value(settings);
-    return json;
-}
-
 void read_value(const core::Json& json, const std::string& where, CameraSettings& camera) {
     if (json.is_string()) {
         camera.name = json.get<std::string>();
@@ -245,12 +243,11 @@ SceneDescription read_scene_description(const std::string& path,
         keys.update(core::parse_override(text));
     }
     refuse_two_setups(keys, path + ": ");
-    if (scene.geometry.empty()) {
-        throw Error(path + ": geometry",
-                    "found nothing",
-                    "must name a .glb, .gltf, .obj, .ply or .stl file");
+    require_geometry(scene, path + ": ");
+    scene.folder = folder;
+    if (!scene.geometry.empty()) {
+        scene.geometry = (std::filesystem::path(folder) / scene.geometry).string();
     }
-    scene.geometry = (std::filesystem::path(folder) / scene.geometry).string();
     look_up_camera(path + ": camera", scene);
     look_up_sensor(folder, path + ": ", keys, scene);
     validate(scene, path + ": ");

@@ -4,12 +4,10 @@
 #include "renderer/core/capture.h"
 #include "renderer/core/relay_wall.h"
 #include "renderer/core/sensor_footprint.h"
-#include "renderer/material/scene_geometry.h"
-#include "renderer/mesh_file/mesh_file.h"
+#include "renderer/scene/object_table.h"
 #include "renderer/settings/render_settings.h"
 
 #include <array>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -75,21 +73,10 @@ struct GroundTruthSettings {
     std::array<int, 2> depth_resolution{256, 256};
 };
 
-/// What the measurement needs to know of an object, in place of what the geometry's file says.
-struct ObjectSettings {
-    std::optional<Role> role;
-    std::optional<double> albedo;
-    std::optional<core::Vec3> velocity_m_per_s;
-    std::optional<bool> retroreflective;
-    std::optional<bool> ellipsoidal_exclude;
-};
-
-/// Objects by their name in the geometry's file.
-struct ObjectTable : std::map<std::string, ObjectSettings> {};
-
 /// What scene.json says.
 struct SceneDescription {
-    std::string geometry;  ///< glTF, OBJ, PLY or STL file, path relative to scene.json
+    std::string folder;    ///< of scene.json; no key of it
+    std::string geometry;  ///< glTF, OBJ, PLY or STL file; empty: the meshes of objects are all
     std::optional<double> geometry_unit_m;  ///< of OBJ, PLY and STL; nothing: metres are assumed
     std::optional<FileAxis> geometry_up;    ///< of OBJ, PLY and STL; nothing: y is assumed
     ObjectTable objects;
@@ -179,19 +166,6 @@ void for_each_field(GroundTruthSettings& truth, Visitor&& visit) {
 }
 
 template <class Visitor>
-void for_each_field(ObjectSettings& object, Visitor&& visit) {
-    visit("role", object.role, "what the surface is to the measurement");
-    visit("albedo", object.albedo, core::between(0, 1, "diffuse albedo"));
-    visit("velocity_m_per_s", object.velocity_m_per_s, "velocity, world [m/s]");
-    visit("retroreflective", object.retroreflective, "reflects light back where it came from");
-    visit("ellipsoidal_exclude", object.ellipsoidal_exclude, "no ellipsoidal connection here");
-}
-
-/// A table is an object with one entry per name.
-void read_value(const core::Json& json, const std::string& where, ObjectTable& objects);
-core::Json write_value(const ObjectTable& objects);
-
-template <class Visitor>
 void for_each_field(SceneDescription& scene, Visitor&& visit) {
     visit("geometry", scene.geometry, "glTF 2.0 file (.glb or .gltf), .obj, .ply or .stl");
     visit("geometry_unit_m",
@@ -202,8 +176,9 @@ void for_each_field(SceneDescription& scene, Visitor&& visit) {
           "axis of such a file that is the world's y: x|-x|y|-y|z|-z; null: y is assumed");
     visit("objects",
           scene.objects,
-          "by name, in place of what the file says: role (hidden|relay_wall|back_wall), albedo, "
-          "velocity_m_per_s, retroreflective, ellipsoidal_exclude");
+          "more meshes, placed (mesh, scale, up, rotation_deg, translation_m, material), and, by "
+          "name, in place of what the file says: material, role (hidden|relay_wall|back_wall), "
+          "albedo, velocity_m_per_s, retroreflective, ellipsoidal_exclude");
     visit("relay_wall", scene.relay_wall, "the wall that laser and detector see");
     visit("scan", scene.scan, "points on the wall");
     visit("camera",

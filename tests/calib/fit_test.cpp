@@ -69,6 +69,53 @@ TEST(Fit, FindsPoseAndAlbedoOfRadianceWithoutAmbientLight) {
     EXPECT_GT(fit.objects[0].albedo_sigma, 0.0);
 }
 
+// Two rectangles below one node, which is freed by its name.
+renderer::SceneGeometry group_at(const Vec3& position, double turn_rad) {
+    core::Transform world_from_group = core::Transform::Identity();
+    world_from_group.translate(position).rotate(Eigen::AngleAxisd(turn_rad, Vec3::UnitY()));
+    renderer::SceneGeometry geometry;
+    geometry.objects = {tilted_rectangle("left", Vec3(-0.12, 0.05, 0.0), 0.3),
+                        tilted_rectangle("right", Vec3(0.15, -0.02, 0.1), -0.2)};
+    for (renderer::Object& object : geometry.objects) {
+        for (Vec3& vertex : object.mesh.vertices) vertex = world_from_group * vertex;
+        object.world_from_node = world_from_group * object.world_from_node;
+        object.groups = {{"pair", world_from_group}};
+    }
+    return geometry;
+}
+
+TEST(Fit, AGroupMovesAsOneBody) {
+    const auto wanted = group_at(Vec3(0.03, 0.0, 0.8), 0.2);
+    const auto capture = expected_capture(wanted, confocal_grid(8), 1e6, 0.5);
+    calib::FitInput input = fit_input(capture, group_at(Vec3(0.0, 0.03, 0.76), 0.1));
+    input.settings.free.objects.front().name = "pair";
+    input.settings.residual = calib::ResidualKind::LeastSquares;
+    const calib::FitResult fit = calib::fit_scene(input, {});
+    ASSERT_TRUE(fit.converged);
+    ASSERT_EQ(fit.objects.size(), 1U);
+    EXPECT_EQ(fit.objects[0].name, "pair");
+    EXPECT_LT((fit.objects[0].position_m - Vec3(0.03, 0.0, 0.8)).norm(), 1e-3);
+    const auto errors = calib::compare_fit(fit, fit.geometry, wanted);
+    EXPECT_LT(*errors.position_m, 1e-3);
+    EXPECT_LT(*errors.rotation_deg, 0.3);
+    for (std::size_t o = 0; o < 2; ++o) {
+        const renderer::Object& object = fit.geometry.objects[o];
+        EXPECT_LT((object.groups[0].world_from_node.translation() - Vec3(0.03, 0.0, 0.8)).norm(),
+                  1e-3);
+        EXPECT_LT(
+            (object.world_from_node.translation() - wanted.objects[o].world_from_node.translation())
+                .norm(),
+            1e-3);
+    }
+    // Its parts are no bodies of their own then.
+    input.settings.free.objects.push_back(input.settings.free.objects.front());
+    input.settings.free.objects.back().name = "left";
+    EXPECT_ERROR_WITH(calib::fit_scene(input, {}), "found 'pair' and 'left', which is in it");
+    input.settings.free.objects = {input.settings.free.objects.front()};
+    input.settings.free.objects.front().name = "pear";
+    EXPECT_ERROR_WITH(calib::fit_scene(input, {}), "pair, left, right");
+}
+
 // A gate that holds the light of the target but not all of it, for every pair another, and dead
 // points: what nobody saw is no darkness.
 TEST(Fit, LeavesOutBinsThatWereNotObserved) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -115,6 +116,42 @@ TEST(GltfWriter, WritingWhatWasReadGivesTheSameBytes) {
     renderer::write_gltf(first, full_geometry());
     renderer::write_gltf(second, renderer::load_gltf(first));
     EXPECT_TRUE(read_bytes(first) == read_bytes(second));
+}
+
+TEST(GltfWriter, GroupsStayAboveTheirObjects) {
+    renderer::NodeGroup chair{"chair", core::Transform::Identity()};
+    chair.world_from_node.translate(core::Vec3(1, 2, 3))
+        .rotate(Eigen::AngleAxisd(0.7, core::Vec3(1, 2, 2).normalized()));
+    renderer::NodeGroup legs{"legs", chair.world_from_node};
+    legs.world_from_node.translate(core::Vec3(0, -0.5, 0));
+    renderer::SceneGeometry geometry;
+    for (const char* name : {"seat", "left", "right", "lamp"}) {
+        renderer::Object& object = geometry.objects.emplace_back();
+        object.name = name;
+        object.mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+        object.mesh.triangles = {{0, 1, 2}};
+    }
+    geometry.objects[0].groups = {chair};
+    geometry.objects[1].groups = {chair, legs};
+    geometry.objects[2].groups = {chair, legs};
+    const test_support::TemporaryFolder folder;
+    renderer::write_gltf(folder.file("a.glb"), geometry);
+    const auto read = renderer::load_gltf(folder.file("a.glb"));
+    ASSERT_EQ(read.objects.size(), 4U);
+    for (const renderer::Object& object : geometry.objects) {
+        const auto found =
+            std::find_if(read.objects.begin(), read.objects.end(), [&](const auto& other) {
+                return other.name == object.name;
+            });
+        ASSERT_NE(found, read.objects.end());
+        ASSERT_EQ(found->groups.size(), object.groups.size()) << object.name;
+        for (std::size_t i = 0; i < object.groups.size(); ++i) {
+            EXPECT_EQ(found->groups[i].name, object.groups[i].name);
+            EXPECT_TRUE(
+                found->groups[i].world_from_node.isApprox(object.groups[i].world_from_node, 1e-12));
+        }
+        EXPECT_LT((found->mesh.vertices[1] - object.mesh.vertices[1]).norm(), 1e-6);
+    }
 }
 
 TEST(GltfWriter, ManyVerticesNeedLongIndices) {

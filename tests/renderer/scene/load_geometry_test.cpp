@@ -137,4 +137,103 @@ TEST_F(LoadGeometry, KeysOfMeshFilesAreChecked) {
                       "objects.roof.albedo: found 2");
 }
 
+TEST_F(LoadGeometry, MeshesArePlacedByScaleThenRotationThenTranslation) {
+    core::TriangleMesh mesh = example_mesh();
+    for (core::Vec3& v : mesh.vertices) v *= 100.0;
+    write_file_bytes(folder_.file("centimetres.obj"), "o a\n" + obj_text(mesh));
+    const core::Json placed = {{"scale", 0.01},
+                               {"rotation_deg", {90, 0, 90}},
+                               {"translation_m", {0.1, 0.2, 0.3}},
+                               {"mesh", "centimetres.obj"},
+                               {"name", "chair"}};
+    const auto geometry = renderer::load_geometry(describe({{"objects", {placed}}}));
+    ASSERT_EQ(geometry.objects.size(), 1U);
+    EXPECT_EQ(geometry.objects[0].name, "chair");
+    const core::TriangleMesh original = example_mesh();
+    for (std::size_t i = 0; i < original.vertices.size(); ++i) {
+        const core::Vec3& v = original.vertices[i];
+        // About x, y goes to z and z to -y; about z, x goes to y and y to -x.
+        const core::Vec3 about_x(v.x(), -v.z(), v.y());
+        const core::Vec3 about_z(-about_x.y(), about_x.x(), about_x.z());
+        EXPECT_LT(
+            (geometry.objects[0].mesh.vertices[i] - about_z - core::Vec3(0.1, 0.2, 0.3)).norm(),
+            1e-6);  // the file's digits
+    }
+}
+
+TEST_F(LoadGeometry, PlacedMeshesOfEveryFormatRenderAsOneGeometryDoes) {
+    const std::vector<float> expected = render({{"geometry", "a.glb"}});
+    const float largest = *std::max_element(expected.begin(), expected.end());
+    for (const char* name : {"a.glb", "a.obj", "a.ply", "a.stl"}) {
+        const std::vector<float> values = render({{"objects", {{{"mesh", name}}}}});
+        ASSERT_EQ(values.size(), expected.size());
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            ASSERT_NEAR(values[i], expected[i], 1e-6f * largest) << name;
+        }
+    }
+}
+
+TEST_F(LoadGeometry, PlacedMeshesStandBesideTheGeometry) {
+    const auto geometry = renderer::load_geometry(describe(
+        {{"geometry", "a.glb"},
+         {"objects",
+          {{{"mesh", "a.obj"}, {"translation_m", {0, 1, 0}}},
+           {{"mesh", "a.obj"}, {"material", {{"surface", "ggx conductor"}, {"roughness", 0.3}}}},
+           {{"name", "roof"}, {"albedo", 0.25}}}}}));
+    ASSERT_EQ(geometry.objects.size(), 3U);
+    EXPECT_EQ(geometry.objects[0].name, "roof");
+    EXPECT_EQ(geometry.objects[0].material.albedo, 0.25);
+    EXPECT_EQ(geometry.objects[1].name, "a");
+    EXPECT_EQ(geometry.objects[2].name, "a_2");
+    EXPECT_EQ(geometry.objects[2].material.model, renderer::SurfaceModel::Ggx);
+    EXPECT_EQ(geometry.objects[2].material.roughness, 0.3);
+    const core::Vec3 apart =
+        geometry.objects[1].mesh.vertices[0] - geometry.objects[2].mesh.vertices[0];
+    EXPECT_LT((apart - core::Vec3(0, 1, 0)).norm(), 1e-12);
+}
+
+TEST_F(LoadGeometry, PlacedMeshesWithoutScaleNameAnImplausibleSize) {
+    core::TriangleMesh mesh = example_mesh();
+    for (core::Vec3& v : mesh.vertices) v *= 1000.0;
+    write_file_bytes(folder_.file("scaled.obj"), obj_text(mesh));
+    const auto warnings = [&](core::Json object) {
+        object["mesh"] = "scaled.obj";
+        return renderer::load_geometry(describe({{"objects", {object}}})).warnings;
+    };
+    EXPECT_TRUE(warnings({{"scale", 1.0}}).empty());
+    ASSERT_EQ(warnings(core::Json::object()).size(), 1U);
+    EXPECT_NE(warnings(core::Json::object())[0].find("scale states another"), std::string::npos);
+}
+
+TEST_F(LoadGeometry, KeysOfPlacedMeshesAreChecked) {
+    const auto load = [&](const core::Json& objects) {
+        return renderer::load_geometry(describe({{"geometry", "a.glb"}, {"objects", objects}}));
+    };
+    const core::Json mesh = {{"mesh", "a.obj"}};
+    const auto with = [&](const char* key, const core::Json& value) {
+        core::Json object = mesh;
+        object[key] = value;
+        return core::Json::array({object});
+    };
+    EXPECT_ERROR_WITH(load(core::Json::array({{{"albedo", 1}}})),
+                      "objects[0]: found no mesh and no name");
+    EXPECT_ERROR_WITH(load({1}), "objects[0]");
+    EXPECT_ERROR_WITH(load(core::Json::array({{{"name", "x"}}, {{"name", "x"}}})),
+                      "objects[1].name: found \"x\" for the second time");
+    EXPECT_ERROR_WITH(load(with("name", 3)), "objects[0].name");
+    EXPECT_ERROR_WITH(load(with("name", "roof")), "objects.roof: has the name of an object");
+    EXPECT_ERROR_WITH(load(with("scale", 0)), "objects.a.scale: found 0; must be above 0");
+    EXPECT_ERROR_WITH(load(with("colour", 1)), "objects[0].colour: found an unknown key");
+    EXPECT_ERROR_WITH(load(with("material", {{"albedo", 2}})),
+                      "objects.a.material.albedo: found 2");
+    EXPECT_ERROR_WITH(load(with("mesh", "nothing.obj")), "nothing.obj");
+    EXPECT_ERROR_WITH(load({{"roof", {{"scale", 2}}}}), "objects.roof.scale: found without mesh");
+    EXPECT_ERROR_WITH(load({{"b", {{"mesh", "a.glb"}, {"up", "z"}}}}), "objects.b.up: found with");
+    EXPECT_ERROR_WITH(describe(core::Json::object()), "geometry: found nothing");
+    EXPECT_ERROR_WITH(describe({{"objects", {{"roof", {{"albedo", 1}}}}}}),
+                      "geometry: found nothing");
+    EXPECT_ERROR_WITH(describe({{"objects", {mesh}}, {"geometry_up", "z"}}),
+                      "geometry_up: found without geometry");
+}
+
 }  // namespace
