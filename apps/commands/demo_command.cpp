@@ -10,6 +10,7 @@
 #include "apps/terminal.h"
 #include "nlos/detector/detector.h"
 #include "nlos/formats/capture_file.h"
+#include "renderer/core/data_folder.h"
 #include "renderer/core/error.h"
 
 #include <fmt/core.h>
@@ -30,12 +31,6 @@ struct DemoArguments {
     std::string folder = "out/demo";
 };
 
-std::string letter_scene() {
-    const fs::path in_working_folder = "scenes/letter/scene.json";
-    if (fs::exists(in_working_folder)) return in_working_folder.string();
-    return std::string(NLOS_SCENES_DIR) + "/letter/scene.json";
-}
-
 void stop_if_interrupted() {
     if (interrupt_requested()) throw core::Failure("demo", "interrupted");
 }
@@ -47,7 +42,7 @@ void run(const DemoArguments& arguments) {
     if (error) throw core::Error(folder.string(), "cannot be made", "must be a writable folder");
     const auto file = [&](const std::string& name) { return (folder / name).string(); };
 
-    const std::string scene = letter_scene();
+    const std::string scene = core::shipped_file("scenes/letter/scene.json");
     print("scene        {}\n", scene);
     write_picture({scene}, file("ground_truth.png"));
     const renderer::RenderResult render = render_to_file(scene, {}, file("capture.h5"));
