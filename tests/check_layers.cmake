@@ -46,7 +46,7 @@ set(below_apps "renderer/|nlos/|calib/")
 # them. "anywhere" may stand in every file, the others only in .cpp files of the rooms named (in
 # apps, which is nobody's library, also in headers).
 set(anywhere
-    "Eigen/|tbb/|nlohmann/|fmt/|sys/|unistd\\.h|spawn\\.h|fcntl\\.h|immintrin\\.h|experimental/simd")
+    "Eigen/|tbb/|nlohmann/|fmt/|sys/|unistd\\.h|spawn\\.h|fcntl\\.h|dlfcn\\.h|link\\.h|immintrin\\.h|experimental/simd")
 set(third_renderer/core "flann/|malloc\\.h")
 set(third_renderer/gltf "tiny_gltf")
 set(third_renderer/mesh_file "assimp/")

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "nlos/compare/compare.h"
+#include "renderer/core/data_folder.h"
 #include "renderer/render.h"
 #include "renderer/scene/scene_file.h"
 
@@ -12,13 +13,21 @@
 
 namespace apps {
 
+/// The description of a scene, which may be one that comes with the program.
+///
+/// overrides   `key.path=value` texts for it
+inline renderer::SceneDescription read_bench_scene(const std::string& path,
+                                                   const std::vector<std::string>& overrides) {
+    return renderer::read_scene_description(core::shipped_file(path), overrides);
+}
+
 /// A scene that benchmarks render again and again with other settings.
 class BenchScene {
  public:
     /// overrides   `key.path=value` texts for the scene description
     explicit BenchScene(const std::string& scene_path,
                         const std::vector<std::string>& overrides = {})
-        : description_(renderer::read_scene_description(scene_path, overrides)),
+        : description_(read_bench_scene(scene_path, overrides)),
           scan_(renderer::make_scan(description_)),
           scene_(renderer::load_scene(description_, scan_)) {}
 

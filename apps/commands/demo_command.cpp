@@ -10,6 +10,7 @@
 #include "apps/terminal.h"
 #include "nlos/detector/detector.h"
 #include "nlos/formats/capture_file.h"
+#include "renderer/core/data_folder.h"
 #include "renderer/core/error.h"
 
 #include <fmt/core.h>
@@ -22,19 +23,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kMatch_m = 0.02;  // of points with the truth, in all scores
-constexpr double kPhotons = 1e5;
-constexpr double kJitterFwhm_ps = 200.0;
+constexpr double kDemoMatch_m = 0.02;  // of points with the truth, in all scores
+constexpr double kDemoPhotons = 1e5;
+constexpr double kDemoJitterFwhm_ps = 200.0;
 
 struct DemoArguments {
     std::string folder = "out/demo";
 };
-
-std::string letter_scene() {
-    const fs::path in_working_folder = "scenes/letter/scene.json";
-    if (fs::exists(in_working_folder)) return in_working_folder.string();
-    return std::string(NLOS_SCENES_DIR) + "/letter/scene.json";
-}
 
 void stop_if_interrupted() {
     if (interrupt_requested()) throw core::Failure("demo", "interrupted");
@@ -47,7 +42,7 @@ void run(const DemoArguments& arguments) {
     if (error) throw core::Error(folder.string(), "cannot be made", "must be a writable folder");
     const auto file = [&](const std::string& name) { return (folder / name).string(); };
 
-    const std::string scene = letter_scene();
+    const std::string scene = core::shipped_file("scenes/letter/scene.json");
     print("scene        {}\n", scene);
     write_picture({scene}, file("ground_truth.png"));
     const renderer::RenderResult render = render_to_file(scene, {}, file("capture.h5"));
@@ -58,7 +53,7 @@ void run(const DemoArguments& arguments) {
         const auto result =
             reconstruct_to_file({file("capture.h5")}, {"method=" + method}, volume, "");
         const nlos::Metrics metrics =
-            compare_files(volume, scene, file("metrics_" + method + ".json"), kMatch_m).metrics;
+            compare_files(volume, scene, file("metrics_" + method + ".json"), kDemoMatch_m).metrics;
         print("{:<12} {} ({:.2f} s, depth error {:.2f} mm over {:.0f} % of the letter)\n",
               method,
               volume,
@@ -68,20 +63,20 @@ void run(const DemoArguments& arguments) {
     }
     stop_if_interrupted();
     nlos::DetectorSettings detector;
-    detector.photons = kPhotons;
-    detector.response.jitter_fwhm_ps = kJitterFwhm_ps;
+    detector.photons = kDemoPhotons;
+    detector.response.jitter_fwhm_ps = kDemoJitterFwhm_ps;
     const core::Capture counts = nlos::detect(render.capture, detector);
     nlos::write_capture(file("counts.h5"), counts);
     print("{:<12} {} ({:.0g} photons, jitter {} ps)\n",
           "counts",
           file("counts.h5"),
-          kPhotons,
-          kJitterFwhm_ps);
+          kDemoPhotons,
+          kDemoJitterFwhm_ps);
     const std::string model = (fs::path(scene).parent_path() / "model.json").string();
     const calib::FitResult fit =
         fit_to_file(file("counts.h5"), model, {"response=capture"}, "", file("fit.json"));
     const nlos::Metrics errors =
-        compare_files(file("fit.json"), scene, file("metrics_fit.json"), kMatch_m).metrics;
+        compare_files(file("fit.json"), scene, file("metrics_fit.json"), kDemoMatch_m).metrics;
     print("{:<12} {} ({:.2f} s, position error {:.2f} mm, rotation error {:.2f} deg)\n",
           "fit",
           file("fit.json"),

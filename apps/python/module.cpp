@@ -4,6 +4,7 @@
 #include "apps/arguments.h"
 #include "apps/python/bindings.h"
 #include "apps/version.h"
+#include "renderer/core/data_folder.h"
 
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/string.h>
@@ -50,6 +51,7 @@ NB_MODULE(_core, module) {
     g_failure = errors.attr("Failure").inc_ref();
     nb::register_exception_translator(translate);
     module.attr("version") = apps::version_text();
+    module.def("data_folder", core::data_folder);
     apps::command_line() = "Python module";
     python::bind_scene(module);
     python::bind_capture(module);

@@ -2,6 +2,7 @@
 #include "apps/bench/render/sequences.h"
 
 #include "apps/bench/error_metrics.h"
+#include "apps/bench/scene.h"
 #include "renderer/core/parallel.h"
 #include "renderer/core/process.h"
 #include "renderer/render.h"
@@ -105,7 +106,7 @@ SequenceSetup::SequenceSetup(const SequenceCase& sequence,
                              const std::vector<std::string>& overrides) {
     std::vector<std::string> all = sequence.overrides;
     all.insert(all.end(), overrides.begin(), overrides.end());
-    description = renderer::read_scene_description(sequence.scene, all);
+    description = read_bench_scene(sequence.scene, all);
     description.time_axis = {
         sequence.gate_start_m, 1e-3 * sequence.gate_width_mm, sequence.num_bins};
     description.frames = {sequence.num_frames, 1e-3 * sequence.gate_step_mm, sequence.frame_s};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/bench/render/shift.h"
 
+#include "apps/bench/scene.h"
 #include "renderer/core/parallel.h"
 #include "renderer/core/process.h"
 #include "renderer/core/random.h"
@@ -41,7 +42,7 @@ struct Shift {
 class ShiftWorkbench {
  public:
     ShiftWorkbench(const std::string& path, int num_shifts)
-        : description_(renderer::read_scene_description(path, {})),
+        : description_(read_bench_scene(path, {})),
           scan_(renderer::make_scan(description_)),
           scene_(renderer::load_scene(description_, scan_)) {
         const renderer::AreaSampler sampler(scene_);

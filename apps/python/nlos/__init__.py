@@ -26,6 +26,7 @@ could not be done raises ``nlos.Failure``, a RuntimeError. What looks doubtful i
 from __future__ import annotations
 
 import os
+import pathlib
 from typing import Any, Callable, Mapping, Sequence, Union
 
 import numpy as np
@@ -40,7 +41,7 @@ __version__ = _core.version.split()[1]
 __all__ = [
     "Capture", "Error", "Failure", "FitResult", "LightConeOperator", "Object", "PairOperator",
     "Reconstruction", "Scene",
-    "calibrate", "compare", "fit", "from_mitransient", "from_tal", "from_trimesh", "generate",
+    "calibrate", "compare", "data_folder", "fit", "from_mitransient", "from_tal", "from_trimesh", "generate",
     "info",
     "load_scene", "read", "read_volume", "reconstruct", "render", "report", "settings",
     "simulate_noise", "third_bounce_vjp", "to_tal",
@@ -48,6 +49,11 @@ __all__ = [
 
 Path = Union[str, "os.PathLike[str]"]
 Progress = Union[None, bool, Callable[[float, str], Any]]
+
+
+def data_folder() -> pathlib.Path:
+    """The folder of the scenes and small captures that come with the module: scenes/ and data/."""
+    return pathlib.Path(_core.data_folder())
 
 
 def load_scene(path: Path, **settings: Any) -> Scene:

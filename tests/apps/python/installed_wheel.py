@@ -44,6 +44,9 @@ scores = nlos.compare(result, scene)
 check(f"compare: depth_mae_m {scores['depth_mae_m']:.5f}", scores["depth_mae_m"] < 0.003)
 check(f"compare: fscore {scores['fscore']:.3f}", scores["fscore"] > 0.8)
 
+shipped = nlos.load_scene(nlos.data_folder() / "scenes" / "letter" / "scene.json")
+check(f"scenes that come with it: {nlos.data_folder()}", len(shipped.objects) == 1)
+
 fit = nlos.fit(capture, letter(DEPTH_M + 0.02), free={"letter": ["pose"]})
 error_m = float(np.abs(fit.scene.objects[0].vertices - scene.objects[0].vertices).max())
 check(f"fit: within {error_m:.1e} m", error_m < 1e-3)

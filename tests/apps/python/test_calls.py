@@ -144,6 +144,12 @@ def test_import_needs_numpy_alone():
     assert done.stdout.strip() == "[]"
 
 
+def test_scenes_come_with_it():
+    scene = nlos.load_scene(nlos.data_folder() / "scenes" / "letter" / "scene.json")
+    assert [shape.name for shape in scene.objects]
+    assert (nlos.data_folder() / "data" / "letter.h5").exists()
+
+
 def test_settings_are_listed():
     for function in ("render", "reconstruct", "simulate_noise", "fit", "read"):
         assert all(len(entry) == 2 and entry[1] for entry in nlos.settings(function).values())
