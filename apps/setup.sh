@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Installs what the project builds with, and packages given as arguments. Debian 12: by apt-get,
-# asking nothing. Elsewhere: prints the list and stops. Does nothing when all is there.
+# Installs what the project builds with, and packages given as arguments. Debian 12 and 13: by
+# apt-get, asking nothing. Ubuntu 24.04, which has the same packages, likewise, but nobody has tested
+# it. Elsewhere: prints the list and stops. Does nothing when all is there.
 set -euo pipefail
 
 packages=(
@@ -26,11 +27,15 @@ fi
 
 system=unknown
 [ -r /etc/os-release ] && system=$(. /etc/os-release && echo "${ID:-unknown} ${VERSION_ID:-}")
-if [ "$system" != "debian 12" ]; then
-    echo "This is $system, not Debian 12. Please install these (Debian's names) and run again:" >&2
+case "$system" in
+"debian 12" | "debian 13") ;;
+"ubuntu 24.04") echo "This is Ubuntu 24.04, where nlos is untested." >&2 ;;
+*)
+    echo "This is $system, not Debian 12 or 13. Please install these (Debian's names) and run again:" >&2
     printf '  %s\n' "${missing[@]}" >&2
     exit 1
-fi
+    ;;
+esac
 
 as_root=()
 if [ "$(id -u)" -ne 0 ]; then

@@ -69,8 +69,8 @@ core::Transient read_channels(const std::string& path,
                               const ExrTable& table) {
     core::Transient transient(camera.num_pixels(), num_bins);
     for (std::size_t bin = 0; bin < transient.num_bins(); ++bin) {
-        const auto& channel =
-            at(path, table.channels, channel_name(kind, bin, transient.num_bins()));
+        const std::string name = channel_name(kind, bin, transient.num_bins());
+        const auto& channel = at(path, table.channels, name);
         for_each_pixel(camera, [&](std::size_t pair, std::size_t place) {
             transient.histogram(pair)[bin] = channel[place];
         });
