@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Runs the Ray example of the guide and compares its data set with one that the program makes.
+"""Runs the Ray example of apps/dataset and compares its data set with one that the program makes.
 
     ray_test.py NLOS        exit status 77 without Ray, or without nlos.generate
 """
@@ -21,7 +21,7 @@ except ModuleNotFoundError as missing:
     print(f"skipped: {missing}; bash apps/guide/notebooks/install_peers.sh DIR installs Ray")
     sys.exit(77)
 
-EXAMPLE = Path(__file__).resolve().parents[3] / "apps" / "guide" / "generate_with_ray.py"
+EXAMPLE = Path(__file__).resolve().parents[3] / "apps" / "dataset" / "generate_with_ray.py"
 TIMEOUT_S = 300
 
 

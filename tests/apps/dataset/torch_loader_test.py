@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Checks the loader of the guide on both formats, with several workers and ranks, without a GPU.
+"""Checks the loader of apps/dataset on both formats, with several workers and ranks, without a GPU.
 
     torch_loader_test.py NLOS        exit status 77 if torch, numpy or h5py are missing
 """
@@ -21,7 +21,7 @@ except ModuleNotFoundError as missing:
     print(f"skipped: {missing}; install python3-torch, python3-numpy and python3-h5py")
     sys.exit(77)
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "apps" / "guide"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "apps" / "dataset"))
 from dataset_loader import Captures  # noqa: E402
 
 ITEMS, SHARDS = 23, 5  # the last shard has fewer items

@@ -1,50 +1,134 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Runs the commands of a page of the guide from top to bottom, in an empty folder.
+"""Follows a page of the guide from top to bottom, as a reader does, in an empty folder.
 
-    run_guide.py NLOS PAGE.md
+    run_guide.py [--update] NLOS PAGE.md
 
-Commands are the indented lines that begin with nlos or python3; `< FILE` at the end is their input.
-Each must succeed. The folder sees
-apps, data and scenes of the checkout, as a reader does who follows the page there.
+Indented lines that begin with one of COMMANDS are run by the shell and must succeed, or end with the
+status that a comment `# exit status N` states. Fenced blocks mean, by the word behind the language:
+
+    ```json scene.json                 a file that the page makes; matlab files are run by GNU Octave
+    ```cpp tests/install/main.cpp      a name with a folder: equal to this file of the checkout
+    ```text                            lines of what the command before printed; numbers within 5 %
+
+Other blocks are not run. Pictures of the page are those that its commands write under the same name:
+both must have the same size, and --update replaces the page's. The folder sees apps, data and scenes
+of the checkout.
 """
 import os
-import shlex
+import re
+import shutil
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
 TIMEOUT_S = 300
+COMMANDS = ("nlos", "python3", "cmake", "cp", "mkdir")
+NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
+TOLERANCE = 0.05
 
 
-def commands_of(page: str) -> list[list[str]]:
-    lines = [line.strip() for line in page.splitlines() if line.startswith("    ")]
-    return [shlex.split(line) for line in lines if line.startswith(("nlos ", "python3 "))]
+class Mismatch(Exception):
+    """The page says something else than the program."""
 
 
-def main(program: str, page: str) -> int:
-    commands = commands_of(Path(page).read_text(encoding="utf-8"))
-    if not commands:
-        sys.exit(f"{page}: holds no command")
-    root = Path(page).resolve().parents[2]
-    with tempfile.TemporaryDirectory(prefix="guide_") as folder:
+class Follower:
+    def __init__(self, program: str, page: Path, folder: Path):
+        self.page, self.folder = page, folder
+        self.root = page.parents[2]
+        self.output = ""  # of the last command
         for name in ("apps", "data", "scenes"):
-            os.symlink(root / name, Path(folder) / name)
-        for command in commands:
-            words = [program if command[0] == "nlos" else sys.executable, *command[1:]]
-            given = ""
-            if "<" in words:
-                given = (Path(folder) / words[-1]).read_text(encoding="utf-8")
-                words = words[:words.index("<")]
-            done = subprocess.run(words, cwd=folder, capture_output=True, text=True, input=given,
-                                  timeout=TIMEOUT_S)
-            print("$", " ".join(command), done.stdout, done.stderr, sep="\n", flush=True)
-            if done.returncode != 0:
-                print(f"{page}: status {done.returncode}")
-                return 1
+            os.symlink(self.root / name, folder / name)
+        tools = folder / ".tools"
+        tools.mkdir()
+        os.symlink(Path(program).resolve(), tools / "nlos")
+        os.symlink(sys.executable, tools / "python3")
+        self.environment = {**os.environ, "PATH": f"{tools}:{os.environ['PATH']}",
+                            "LC_ALL": "C.UTF-8", "PYTHONDONTWRITEBYTECODE": "1"}
+
+    def run(self, command: str) -> None:
+        stated = re.search(r"# exit status (\d+)", command)
+        done = subprocess.run(["bash", "-c", command], cwd=self.folder, env=self.environment,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                              timeout=TIMEOUT_S)
+        self.output = done.stdout
+        print("$", command, done.stdout, sep="\n", flush=True)
+        if done.returncode != int(stated[1] if stated else 0):
+            raise Mismatch(f"status {done.returncode} of: {command}")
+
+    def take_block(self, language: str, name: str, body: str) -> None:
+        if language == "text":
+            for line in body.splitlines():
+                if not any(same(line, printed) for printed in self.output.splitlines()):
+                    raise Mismatch(f"not printed: {line}")
+        elif "/" in name:
+            if (self.root / name).read_text(encoding="utf-8") != body:
+                raise Mismatch(f"differs from the file {name}")
+        elif name:
+            (self.folder / name).write_text(body, encoding="utf-8")
+            if language == "matlab" and shutil.which("octave"):
+                self.run(f"octave --no-gui --quiet {name}")
+
+    def check_picture(self, link: str, update: bool) -> None:
+        shown = self.page.parent / link
+        written = sorted(self.folder.rglob(shown.name))
+        if not written:
+            raise Mismatch(f"no command writes {shown.name}")
+        if update:
+            shown.parent.mkdir(exist_ok=True)
+            shutil.copyfile(written[0], shown)
+        if size_of_png(shown) != size_of_png(written[0]):
+            raise Mismatch(f"{link} is {size_of_png(shown)}, written {size_of_png(written[0])}; --update")
+
+
+def same(stated: str, printed: str) -> bool:
+    """A line of the page and one that was printed; `...` stands for anything."""
+    if "..." not in stated:
+        a, b = stated.split(), printed.split()
+        return NUMBER.sub("#", " ".join(a)) == NUMBER.sub("#", " ".join(b)) and all(
+            abs(float(x) - float(y)) <= TOLERANCE * abs(float(x))
+            for x, y in zip(NUMBER.findall(stated), NUMBER.findall(printed)))
+    return re.search(".*".join(map(re.escape, stated.split("..."))), printed) is not None
+
+
+def size_of_png(path: Path) -> tuple[int, int]:
+    head = path.read_bytes()[:24]
+    return int.from_bytes(head[16:20], "big"), int.from_bytes(head[20:24], "big")
+
+
+def follow(page: Path, follower: Follower, update: bool) -> None:
+    text = page.read_text(encoding="utf-8")
+    lines = iter(text.splitlines())
+    commands = 0
+    for line in lines:
+        if line.startswith("```"):
+            language, _, name = line[3:].partition(" ")
+            body = []
+            while not (line := next(lines)).startswith("```"):
+                body.append(line + "\n")
+            follower.take_block(language, name.strip(), "".join(body))
+        elif line.startswith("    ") and line.split()[0] in COMMANDS:
+            follower.run(line.strip())
+            commands += 1
+    for link in re.findall(r"!\[[^]]*\]\(([^)]*\.png)\)", text):
+        follower.check_picture(link, update)
+    if not commands and "```" not in text:
+        raise Mismatch("holds no command")
+
+
+def main(arguments: list[str]) -> int:
+    update = arguments[0] == "--update"
+    program, page = arguments[update:]
+    with tempfile.TemporaryDirectory(prefix="guide_") as folder:
+        try:
+            follow(Path(page).resolve(),
+                   Follower(program, Path(page).resolve(), Path(folder)), update)
+        except Mismatch as problem:
+            print(f"{page}: {problem}")
+            return 1
     return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main(*sys.argv[1:]))
+    sys.exit(main(sys.argv[1:]))
