@@ -146,10 +146,13 @@ class GroupWalk {
     }
 
     /// Whether a group was not seen before: links may form cycles.
-    bool is_new(const Hdf5Handle& group) {
-        H5O_info_t info{};
-        return H5Oget_info2(group.id(), &info, H5O_INFO_BASIC) >= 0 &&
-               groups_.insert(info.addr).second;
+    bool is_new(const Hdf5Handle& group) { return is_new(group, &H5Oget_info2); }
+
+    /// Info is named H5O_info_t by HDF5 1.10, H5O_info1_t by later versions.
+    template <class Info>
+    bool is_new(const Hdf5Handle& group, herr_t (*get_info)(hid_t, Info*, unsigned)) {
+        Info info{};
+        return get_info(group.id(), &info, H5O_INFO_BASIC) >= 0 && groups_.insert(info.addr).second;
     }
 
     ArrayNames found_;

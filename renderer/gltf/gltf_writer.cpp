@@ -49,8 +49,8 @@ class ModelBuilder {
         }
         const core::Transform& world_from_group = object.groups.back().world_from_node;
         set_transform(world_from_group.inverse() * object.world_from_node, node);
-        model_.nodes[static_cast<std::size_t>(parent)].children.push_back(
-            append(model_.nodes, std::move(node)));
+        const int index = append(model_.nodes, std::move(node));
+        model_.nodes[static_cast<std::size_t>(parent)].children.push_back(index);
     }
 
     void add(const Camera& camera) {
