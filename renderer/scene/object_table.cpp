@@ -18,9 +18,10 @@ std::string name_of(const core::Json& entry, const std::string& where, const Obj
                           "must differ from the others");
     }
     const auto mesh = entry.find("mesh");
-    if (mesh == entry.end() || !mesh->is_string()) {
+    if (mesh == entry.end()) {
         throw core::Error(where, "found no mesh and no name", "must have one of them");
     }
+    if (!mesh->is_string()) core::throw_wrong_type(where + ".mesh", *mesh, "a text");
     const std::string stem = std::filesystem::path(mesh->get<std::string>()).stem().string();
     std::string name = stem;
     for (int i = 2; objects.contains(name); ++i) name = fmt::format("{}_{}", stem, i);

@@ -85,8 +85,8 @@ renderer::SceneGeometry group_at(const Vec3& position, double turn_rad) {
 }
 
 TEST(Fit, AGroupMovesAsOneBody) {
-    const auto wanted = group_at(Vec3(0.03, 0.0, 0.8), 0.2);
-    const auto capture = expected_capture(wanted, confocal_grid(8), 1e6, 0.5);
+    const auto truth_of_pair = group_at(Vec3(0.03, 0.0, 0.8), 0.2);
+    const auto capture = expected_capture(truth_of_pair, confocal_grid(8), 1e6, 0.5);
     calib::FitInput input = fit_input(capture, group_at(Vec3(0.0, 0.03, 0.76), 0.1));
     input.settings.free.objects.front().name = "pair";
     input.settings.residual = calib::ResidualKind::LeastSquares;
@@ -95,17 +95,17 @@ TEST(Fit, AGroupMovesAsOneBody) {
     ASSERT_EQ(fit.objects.size(), 1U);
     EXPECT_EQ(fit.objects[0].name, "pair");
     EXPECT_LT((fit.objects[0].position_m - Vec3(0.03, 0.0, 0.8)).norm(), 1e-3);
-    const auto errors = calib::compare_fit(fit, fit.geometry, wanted);
+    const auto errors = calib::compare_fit(fit, fit.geometry, truth_of_pair);
     EXPECT_LT(*errors.position_m, 1e-3);
     EXPECT_LT(*errors.rotation_deg, 0.3);
     for (std::size_t o = 0; o < 2; ++o) {
         const renderer::Object& object = fit.geometry.objects[o];
         EXPECT_LT((object.groups[0].world_from_node.translation() - Vec3(0.03, 0.0, 0.8)).norm(),
                   1e-3);
-        EXPECT_LT(
-            (object.world_from_node.translation() - wanted.objects[o].world_from_node.translation())
-                .norm(),
-            1e-3);
+        EXPECT_LT((object.world_from_node.translation() -
+                   truth_of_pair.objects[o].world_from_node.translation())
+                      .norm(),
+                  1e-3);
     }
     // Its parts are no bodies of their own then.
     input.settings.free.objects.push_back(input.settings.free.objects.front());

@@ -18,13 +18,18 @@ if [ ! -e /usr/lib/x86_64-linux-gnu/libLLVM.so.19.1 ]; then
 fi
 
 [ -x "$folder/bin/python" ] || "$python" -m venv "$folder"
+# y-tal 0.20 wants NumPy 1, which Python 3.13 (Debian 13) has no wheels of: there it is left out.
 "$folder/bin/python" -m pip install --quiet --disable-pip-version-check \
-    mitsuba==3.9.1 drjit==1.5.0 mitransient==1.3.1 y-tal==0.20.0 pyfftw==0.15.1 \
-    numpy==1.26.4 scipy==1.17.1 h5py==3.16.0 matplotlib==3.11.2 numba==0.68.1 llvmlite==0.50.0 \
-    pillow==10.3.0 nbclient==0.11.0 nbformat==5.11.1 ipykernel==7.4.0 ray==2.60.0
+    mitsuba==3.9.1 drjit==1.5.0 mitransient==1.3.1 pyfftw==0.15.1 \
+    'y-tal==0.20.0; python_version < "3.13"' 'pillow==10.3.0; python_version < "3.13"' \
+    'numpy==1.26.4; python_version < "3.13"' 'numpy>=2.1,<2.4; python_version >= "3.13"' \
+    scipy==1.17.1 h5py==3.16.0 matplotlib==3.11.2 numba==0.68.1 llvmlite==0.50.0 \
+    nbclient==0.11.0 nbformat==5.11.1 ipykernel==7.4.0 ray==2.60.0
 "$folder/bin/python" - <<'PYTHON'
+from importlib import metadata, util
 import mitsuba
 mitsuba.set_variant("llvm_ad_rgb")
-import mitransient, pyfftw, tal
-print("mitsuba", mitsuba.__version__, "mitransient", mitransient.__version__, "y-tal", tal.__version__)
+import mitransient, pyfftw
+print("mitsuba", mitsuba.__version__, "mitransient", mitransient.__version__,
+      "y-tal", metadata.version("y-tal") if util.find_spec("tal") else "left out")
 PYTHON
