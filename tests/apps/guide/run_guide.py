@@ -7,7 +7,7 @@
 Indented lines that begin with one of COMMANDS are run by the shell and must succeed, or end with the
 status that a comment `# exit status N` states. Fenced blocks mean, by the word behind the language:
 
-    ```json scene.json                 a file that the page makes; matlab files are run by GNU Octave
+    ```json scene.json                 a file that the page makes; matlab files are run, if Octave is there
     ```cpp tests/install/main.cpp      a name with a folder: equal to this file of the checkout
     ```text                            lines of what the command before printed; numbers within 10 %
 
@@ -27,6 +27,7 @@ TIMEOUT_S = 300
 COMMANDS = ("nlos", "python3", "cmake", "cp", "mkdir")
 NUMBER = r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?"
 TOLERANCE = 0.1
+OCTAVE_FUNCTIONS = Path(__file__).resolve().parent / "octave"  # those of MATLAB that it lacks
 
 
 class Mismatch(Exception):
@@ -68,7 +69,7 @@ class Follower:
         elif name:
             (self.folder / name).write_text(body, encoding="utf-8")
             if language == "matlab" and shutil.which("octave"):
-                self.run(f"octave --no-gui --quiet {name}")
+                self.run(f"octave --no-gui --quiet --path {OCTAVE_FUNCTIONS} {name}")
 
     def check_picture(self, link: str, update: bool) -> None:
         shown = self.page.parent / link
