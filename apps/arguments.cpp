@@ -29,10 +29,29 @@ std::vector<std::string> expand_set_arguments(const std::vector<std::string>& ar
     return expanded;
 }
 
+namespace {
+
+std::string check_name(const std::string& name) {
+    return name.empty() ? "found no name; must be one" : "";
+}
+
+// How help writes the value of a shorthand.
+std::string type_of(const Shorthand& shorthand, const std::vector<core::SettingHelp>& settings) {
+    const auto setting = std::ranges::find(settings, shorthand.key, &core::SettingHelp::key);
+    const bool is_open = setting == settings.end() || setting->choices.empty();
+    return is_open ? shorthand.type : fmt::format("{{{}}}", fmt::join(setting->choices, ","));
+}
+
+}  // namespace
+
 CLI::Option* add_output_option(CLI::App& command, std::string& path, const std::string& meaning) {
-    return command.add_option("-o,--output", path, meaning)->check([](const std::string& name) {
-        return std::string(name.empty() ? "found no name; must be one" : "");
-    });
+    return add_file_option(command, "-o,--output", path, meaning)->check(check_name);
+}
+
+CLI::Option* add_output_folder_option(CLI::App& command,
+                                      std::string& path,
+                                      const std::string& meaning) {
+    return add_folder_option(command, "-o,--output", path, meaning)->check(check_name);
 }
 
 void add_set_option(CLI::App& command, std::vector<std::string>& overrides) {
@@ -41,7 +60,7 @@ void add_set_option(CLI::App& command, std::vector<std::string>& overrides) {
         ->allow_extra_args(false);
 }
 
-void add_shorthands(CLI::App& command,
+void add_shorthands(Command& command,
                     std::span<const Shorthand> shorthands,
                     std::vector<std::string>& overrides) {
     for (const Shorthand& shorthand : shorthands) {
@@ -60,7 +79,7 @@ void add_shorthands(CLI::App& command,
                     overrides.push_back(prefix + value);
                 },
                 shorthand.help)
-            ->type_name(shorthand.type);
+            ->type_name(type_of(shorthand, command.settings));
     }
 }
 
@@ -68,16 +87,6 @@ void add_threads_option(CLI::App& command, int& threads) {
     command.add_option("--threads", threads, "Threads; 0 takes all processors")
         ->capture_default_str()
         ->check(CLI::Range(0, 1024));
-}
-
-std::string settings_footer(const std::vector<core::SettingHelp>& settings,
-                            const std::string& example) {
-    std::string text;
-    if (!settings.empty()) text += "Settings for --set, with defaults:\n";
-    for (const core::SettingHelp& line : settings) {
-        text += fmt::format("  {} = {}\n      {}\n", line.key, line.default_value, line.meaning);
-    }
-    return text + "\nExample:\n  " + example;
 }
 
 std::string& command_line() {

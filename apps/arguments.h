@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/core/settings.h"
-
-#include <CLI/CLI.hpp>
+#include "apps/command.h"
 
 #include <span>
 #include <string>
@@ -14,8 +12,32 @@ namespace apps {
 /// Splits `--set a=1 b=2` into one `--set` per item, so that it may stand before other arguments.
 std::vector<std::string> expand_set_arguments(const std::vector<std::string>& arguments);
 
-/// Declares `-o`, the file or folder to write, which has a name if it is given.
+/// Declares an argument or an option that names a file, or several; shells offer those with the
+/// suffixes that the meaning names in parentheses, as in "Scene description (.json)".
+template <class Paths>
+CLI::Option* add_file_option(CLI::App& command,
+                             const std::string& name,
+                             Paths& paths,
+                             const std::string& meaning) {
+    return command.add_option(name, paths, meaning)->type_name("FILE");
+}
+
+/// The same of a folder.
+template <class Paths>
+CLI::Option* add_folder_option(CLI::App& command,
+                               const std::string& name,
+                               Paths& paths,
+                               const std::string& meaning) {
+    return command.add_option(name, paths, meaning)->type_name("DIR");
+}
+
+/// Declares `-o`, the file to write, which has a name if it is given.
 CLI::Option* add_output_option(CLI::App& command, std::string& path, const std::string& meaning);
+
+/// Declares `-o`, the folder to write into, likewise.
+CLI::Option* add_output_folder_option(CLI::App& command,
+                                      std::string& path,
+                                      const std::string& meaning);
 
 /// Declares the repeatable `--set key.path=value`; its texts go to `overrides`.
 void add_set_option(CLI::App& command, std::vector<std::string>& overrides);
@@ -29,17 +51,14 @@ struct Shorthand {
     const char* help;
 };
 
-/// Declares the flags; those given go to `overrides` as `key=value`.
-void add_shorthands(CLI::App& command,
+/// Declares the flags; those given go to `overrides` as `key=value`. Help names the choices that
+/// command.settings has for the key.
+void add_shorthands(Command& command,
                     std::span<const Shorthand> shorthands,
                     std::vector<std::string>& overrides);
 
 /// Declares `--threads`; 0 takes all processors.
 void add_threads_option(CLI::App& command, int& threads);
-
-/// The settings as help text: key, default, meaning.
-std::string settings_footer(const std::vector<core::SettingHelp>& settings,
-                            const std::string& example);
 
 /// The command line as it was typed, for provenance; set once by main().
 std::string& command_line();

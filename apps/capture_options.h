@@ -29,7 +29,7 @@ inline constexpr std::array kCaptureShorthands{
               "Layout of the capture: a name or a JSON file (default: by its content)"}};
 
 /// Declares `--layout` and `--set`; both go to `overrides`.
-inline void add_capture_options(CLI::App& command, std::vector<std::string>& overrides) {
+inline void add_capture_options(Command& command, std::vector<std::string>& overrides) {
     add_set_option(command, overrides);  // first: it replaces what the texts hold
     add_shorthands(command, kCaptureShorthands, overrides);
 }
@@ -37,9 +37,10 @@ inline void add_capture_options(CLI::App& command, std::vector<std::string>& ove
 /// Moves the texts that begin with `capture.` out of `overrides`, for commands whose own settings
 /// are read elsewhere.
 inline std::vector<std::string> take_capture_overrides(std::vector<std::string>& overrides) {
-    const auto others = std::stable_partition(overrides.begin(),
-                                              overrides.end(),
-                                              [](const auto& t) { return !t.starts_with("capture."); });
+    const auto others =
+        std::stable_partition(overrides.begin(), overrides.end(), [](const auto& t) {
+            return !t.starts_with("capture.");
+        });
     std::vector<std::string> taken(others, overrides.end());
     overrides.erase(others, overrides.end());
     return taken;

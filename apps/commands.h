@@ -24,6 +24,7 @@ void add_demo_command(CLI::App& app);
 void add_bench_command(CLI::App& app);
 void add_sweep_command(CLI::App& app);
 void add_track_command(CLI::App& app);
+void add_manual_command(CLI::App& app);
 
 // Subcommands of bench.
 void add_bench_noise_command(CLI::App& bench);

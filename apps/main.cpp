@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/arguments.h"
 #include "apps/commands.h"
+#include "apps/outcome.h"
 #include "apps/terminal.h"
 #include "apps/version.h"
 #include "renderer/core/error.h"
@@ -9,50 +10,21 @@
 #include <exception>
 #include <filesystem>
 #include <new>
-#include <span>
+#include <string>
+#include <vector>
 
 namespace {
 
 constexpr int kFailed = 1;
 constexpr int kBadInput = 2;
 
-// Whatever a message holds, it ends up as exactly one line.
-int fail(int status, const std::string& message) {
-    apps::print_error("{}\n", message);
-    return status;
-}
+// The arguments as they were typed, and the command that they were found to name.
+struct CommandLine {
+    std::vector<std::string> arguments;
+    std::string command;
+};
 
-// Names that the system refuses before anything is read: too long, in circles, not permitted.
-int refuse_path(const std::filesystem::filesystem_error& error) {
-    const std::string reason = error.code().message();
-    return fail(kBadInput,
-                core::Error(error.path1().string(),
-                            "cannot be reached (" + reason + ")",
-                            "must be a file or folder that can be")
-                    .what());
-}
-
-// CLI11 would only say that a command is missing.
-void reject_unknown_command(const CLI::App& app, std::span<const std::string> arguments) {
-    const auto commands = app.get_subcommands({});
-    if (commands.empty() || arguments.empty() || arguments.front().starts_with('-')) return;
-    std::string known;
-    for (const CLI::App* command : commands) {
-        if (command->get_name() == arguments.front()) {
-            return reject_unknown_command(*command, arguments.subspan(1));
-        }
-        known += (known.empty() ? "" : ", ") + command->get_name();
-    }
-    throw core::Error(app.get_parent() ? "nlos " + app.get_name() : app.get_name(),
-                      "found unknown command '" + arguments.front() + "'",
-                      "known are " + known);
-}
-
-int run(const std::vector<std::string>& arguments) {
-    CLI::App app("Non-line-of-sight imaging: simulate, reconstruct, fit, compare.", "nlos");
-    app.set_version_flag("--version", apps::version_text());
-    app.require_subcommand(1);
-    app.footer("Example:\n  nlos demo -o out/demo");
+void declare_commands(CLI::App& app) {
     apps::add_render_command(app);
     apps::add_convert_command(app);
     apps::add_simulate_noise_command(app);
@@ -67,42 +39,71 @@ int run(const std::vector<std::string>& arguments) {
     apps::add_sweep_command(app);
     apps::add_track_command(app);
     apps::add_demo_command(app);
+    apps::add_manual_command(app);
+}
 
-    reject_unknown_command(app, arguments);
+// Runs the command; its callback is called within parse().
+void run(CommandLine& line) {
+    apps::Command app("nlos", "Non-line-of-sight imaging: simulate, reconstruct, fit, compare");
+    app.set_version_flag("--version", apps::version_text());
+    app.require_subcommand(1);
+    app.example = "nlos demo -o out/demo";
+    declare_commands(app);
+    apps::reject_unknown_command(app, line.arguments);
 
-    std::vector<std::string> reversed = apps::expand_set_arguments(arguments);
+    std::vector<std::string> reversed = apps::expand_set_arguments(line.arguments);
     std::reverse(reversed.begin(), reversed.end());
+    const auto note_command = [&] { line.command = apps::typed_name(apps::parsed_command(app)); };
+    app.parse_complete_callback(note_command);
     try {
         app.parse(reversed);
     } catch (const CLI::ParseError& error) {
-        if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-        return fail(kBadInput, std::string("nlos: ") + error.what() + "; see nlos --help");
+        note_command();
+        if (error.get_exit_code() != 0) apps::throw_usage_error(app, error);
+        app.exit(error);  // --help, --version
     }
-    return 0;
+}
+
+// Says what failed. Whatever a message holds, it ends up as exactly one line.
+int fail(const CommandLine& line, int status, const std::string& message) {
+    apps::print_error("{}\n", message);
+    apps::print_outcome(line.command, status, message);
+    return status;
+}
+
+// Names that the system refuses before anything is read: too long, in circles, not permitted.
+std::string refused_path(const std::filesystem::filesystem_error& error) {
+    return core::Error(error.path1().string(),
+                       "cannot be reached (" + error.code().message() + ")",
+                       "must be a file or folder that can be")
+        .what();
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    const std::vector<std::string> arguments(argv + 1, argv + argc);
+    CommandLine line{{argv + 1, argv + argc}, "nlos"};
     apps::command_line() = "nlos";
-    for (const std::string& argument : arguments) {
+    for (const std::string& argument : line.arguments) {
         apps::command_line() += " " + core::printable(argument);
+        // Known now, for arguments that cannot be parsed.
+        if (argument == "--json") apps::output_settings().json = true;
     }
     apps::handle_signals();
     try {
-        const int status = run(arguments);
+        run(line);
+        apps::print_outcome(line.command, 0, "");
         apps::flush_output();
-        return status;
+        return 0;
     } catch (const core::Error& error) {
-        return fail(kBadInput, error.what());
+        return fail(line, kBadInput, error.what());
     } catch (const core::Failure& error) {
-        return fail(kFailed, error.what());
+        return fail(line, kFailed, error.what());
     } catch (const std::filesystem::filesystem_error& error) {
-        return refuse_path(error);
+        return fail(line, kBadInput, refused_path(error));
     } catch (const std::bad_alloc&) {
-        return fail(kFailed, "nlos: not enough memory");
+        return fail(line, kFailed, "nlos: not enough memory");
     } catch (const std::exception& error) {
-        return fail(kFailed, std::string("nlos: ") + error.what());
+        return fail(line, kFailed, std::string("nlos: ") + error.what());
     }
 }

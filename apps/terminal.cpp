@@ -6,21 +6,22 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
+#include <string>
 
 namespace apps {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+constexpr std::string_view kClearLine = "\r\033[K";
 
 std::atomic<bool> g_interrupted{false};
-std::atomic<int> g_stoppable_jobs{0};
-std::atomic<bool> g_bar_is_open{false};
+std::atomic<const char*> g_answer{nullptr};  // to the first interruption of stoppable work
+std::atomic<bool> g_line_is_drawn{false};
 
 void write_safely(std::string_view text) {
     [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, text.data(), text.size());
@@ -28,12 +29,17 @@ void write_safely(std::string_view text) {
 
 // Calls only what signal handlers may call.
 void on_interrupt(int) {
-    if (g_stoppable_jobs > 0 && !g_interrupted.exchange(true)) return;
+    const char* answer = g_answer;
+    const bool is_first = !g_interrupted.exchange(true);
+    if (g_line_is_drawn.exchange(false)) write_safely(kClearLine);
+    if (answer != nullptr && is_first) {
+        write_safely("nlos: ");
+        write_safely(answer);
+        write_safely("\n");
+        return;
+    }
     core::remove_partial_files();
-    constexpr std::string_view kClearLine = "\r\033[K";
-    constexpr std::string_view kMessage = "nlos: interrupted\n";
-    if (g_bar_is_open) write_safely(kClearLine);
-    write_safely(kMessage);
+    write_safely("nlos: interrupted\n");
     ::_exit(EXIT_FAILURE);
 }
 
@@ -45,18 +51,15 @@ void open_standard_streams() {
     }
 }
 
-double seconds(Clock::duration duration) {
-    return std::chrono::duration<double>(duration).count();
-}
-
-constexpr double kSilentSeconds = 1.0;
-constexpr double kSecondsBetweenBars = 0.1;
-constexpr int kBarWidth = 30;
-
 }  // namespace
 
 void write_output(std::string_view text) {
+    clear_drawn_line();
     if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) flush_output();
+}
+
+void write_message(std::string_view text) {
+    if (!output_settings().quiet) write_output(text);
 }
 
 void flush_output() {
@@ -67,7 +70,33 @@ void flush_output() {
 }
 
 void write_error(std::string_view text) noexcept {
+    clear_drawn_line();
     std::fwrite(text.data(), 1, text.size(), stderr);
+}
+
+OutputSettings& output_settings() {
+    static OutputSettings settings;
+    return settings;
+}
+
+bool can_redraw_lines() {
+    const auto holds = [](const char* name, std::string_view value) {
+        const char* found = std::getenv(name);
+        return found != nullptr && (value.empty() ? *found != '\0' : found == value);
+    };
+    return ::isatty(STDERR_FILENO) == 1 && !holds("NO_COLOR", "") && !holds("TERM", "dumb");
+}
+
+void clear_drawn_line() noexcept {
+    if (!g_line_is_drawn.exchange(false)) return;
+    std::fwrite(kClearLine.data(), 1, kClearLine.size(), stderr);
+}
+
+void draw_line(std::string_view text) noexcept {
+    std::string line(kClearLine);
+    line += text;
+    std::fwrite(line.data(), 1, line.size(), stderr);
+    g_line_is_drawn = true;
 }
 
 void handle_signals() {
@@ -80,53 +109,10 @@ bool interrupt_requested() {
     return g_interrupted;
 }
 
-ProgressBar::ProgressBar(std::string title)
-    : title_(std::move(title)),
-      start_(Clock::now()),
-      last_shown_(start_),
-      is_terminal_(::isatty(STDERR_FILENO) == 1) {
-    ++g_stoppable_jobs;
-}
+StoppableWork::StoppableWork(const char* answer) : outer_(g_answer.exchange(answer)) {}
 
-ProgressBar::~ProgressBar() {
-    --g_stoppable_jobs;
-    if (g_bar_is_open.exchange(false)) write_error("\r\033[K");
-}
-
-core::Progress ProgressBar::progress() {
-    core::Progress progress;
-    progress.report = [this](double share, const std::string& detail) { show(share, detail); };
-    progress.announce = [](const std::string& text) {
-        print("{}\n", text);
-        flush_output();
-    };
-    progress.warn = [](const std::string& text) { print_error("warning: {}\n", text); };
-    progress.stop_requested = interrupt_requested;
-    return progress;
-}
-
-void ProgressBar::show(double share, const std::string& detail) {
-    const auto now = Clock::now();
-    const double elapsed = seconds(now - start_);
-    if (elapsed < kSilentSeconds) return;
-    const double left = share > 0.0 ? elapsed / share * (1.0 - share) : 0.0;
-    const std::string status =
-        fmt::format("{:3.0f} %  {}  {:.0f} s left", 100.0 * share, detail, left);
-    if (is_terminal_) {
-        if (seconds(now - last_shown_) < kSecondsBetweenBars) return;
-        last_shown_ = now;
-        const int filled = static_cast<int>(share * kBarWidth);
-        write_error(message("\r\033[K{} [{}{}] {}",
-                            title_,
-                            std::string(static_cast<std::size_t>(filled), '#'),
-                            std::string(static_cast<std::size_t>(kBarWidth - filled), '.'),
-                            status));
-        g_bar_is_open = true;
-        return;
-    }
-    const int tenth = static_cast<int>(share * 10.0);
-    if (tenth > last_tenth_) print_error("{} {}\n", title_, status);
-    last_tenth_ = std::max(tenth, last_tenth_);
+StoppableWork::~StoppableWork() {
+    g_answer = outer_;
 }
 
 }  // namespace apps

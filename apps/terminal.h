@@ -2,11 +2,9 @@
 #pragma once
 
 #include "renderer/core/error.h"
-#include "renderer/core/progress.h"
 
 #include <fmt/core.h>
 
-#include <chrono>
 #include <concepts>
 #include <string>
 #include <string_view>
@@ -36,13 +34,17 @@ std::string message(fmt::format_string<Parts...> format, Parts&&... parts) {
 /// Writes to standard output as it is. Throws core::Failure when that is closed or full.
 void write_output(std::string_view text);
 
+/// The same, of what --quiet leaves out.
+void write_message(std::string_view text);
+
 /// Throws core::Failure unless all that was written has reached standard output.
 void flush_output();
 
-/// Prints a message to standard output. Throws core::Failure when that is closed or full.
+/// Prints a message to standard output, unless --quiet leaves it out. Throws core::Failure when
+/// that is closed or full.
 template <class... Parts>
 void print(fmt::format_string<Parts...> format, Parts&&... parts) {
-    write_output(message(format, std::forward<Parts>(parts)...));
+    write_message(message(format, std::forward<Parts>(parts)...));
 }
 
 /// Prints a message to standard error, where there is one.
@@ -52,33 +54,40 @@ void print_error(fmt::format_string<Parts...> format, Parts&&... parts) {
     write_error(message(format, std::forward<Parts>(parts)...));
 }
 
-/// Shows the progress of one job on standard error: a bar with rate and time left on a terminal,
-/// one line per 10 % otherwise. Jobs under a second stay silent. While it lives, Ctrl-C and SIGTERM
-/// ask the job to stop, see handle_signals().
-class ProgressBar {
- public:
-    explicit ProgressBar(std::string title);
-    ~ProgressBar();
-    ProgressBar(const ProgressBar&) = delete;
-    ProgressBar& operator=(const ProgressBar&) = delete;
+/// What is printed beside results, as --quiet and --json ask for it.
+struct OutputSettings {
+    bool quiet = false;  ///< warnings and errors alone
+    bool json = false;   ///< the last line of standard output is an object, see apps/outcome.h
+};
+OutputSettings& output_settings();
 
-    /// Reports here; stops when Ctrl-C was pressed or SIGTERM came.
-    core::Progress progress();
+/// Whether standard error is a terminal that lines may be drawn on again and again: not where
+/// NO_COLOR is set or TERM is dumb.
+bool can_redraw_lines();
+
+/// Ends a line that is drawn again and again, so that a message can follow.
+void clear_drawn_line() noexcept;
+/// Draws such a line in place of the one before.
+void draw_line(std::string_view text) noexcept;
+
+/// Work that can stop early. While it lives, the first Ctrl-C or SIGTERM asks it to, and answers at
+/// once; see handle_signals().
+class StoppableWork {
+ public:
+    /// answer   a literal, one sentence: what happens now, and what a second Ctrl-C does
+    explicit StoppableWork(const char* answer);
+    ~StoppableWork();
+    StoppableWork(const StoppableWork&) = delete;
+    StoppableWork& operator=(const StoppableWork&) = delete;
 
  private:
-    void show(double share, const std::string& detail);
-
-    std::string title_;
-    std::chrono::steady_clock::time_point start_;
-    std::chrono::steady_clock::time_point last_shown_;
-    bool is_terminal_;
-    int last_tenth_ = 0;
+    const char* outer_;
 };
 
-/// Decides what signals do from now on. Ctrl-C and SIGTERM ask the job of a ProgressBar to stop;
-/// the second of them, or without such a job the first, ends the program with one line and status 1
-/// and leaves no partial file. Writing to a closed pipe or beyond a limit of file sizes fails
-/// like any other writing.
+/// Decides what signals do from now on. Ctrl-C and SIGTERM ask a StoppableWork to stop; the second
+/// of them, or without such work the first, ends the program with one line and status 1 and leaves
+/// no partial file. Writing to a closed pipe or beyond a limit of file sizes fails like any other
+/// writing.
 void handle_signals();
 bool interrupt_requested();
 

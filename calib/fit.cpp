@@ -81,21 +81,47 @@ FitAgreement compare_with_data(const FitDriver& driver,
     return result;
 }
 
-// Solves one more candidate on the sharp data, and sorts it in.
-void add_solved(const FitDriver& driver,
-                FitDriver::Stage& last,
-                FitCandidate candidate,
-                std::vector<FitCandidate>& candidates,
-                FitCourse& course) {
-    candidate.summary = driver.solve(last, candidate.state, driver.settings.max_iterations);
-    course.iterations += candidate.summary.iterations;
-    candidates.push_back(std::move(candidate));
-    sort_by_cost(candidates);
-}
+// Solves one after another, and tells how far that is.
+class SolveSeries {
+ public:
+    SolveSeries(const FitDriver& driver, const core::Progress& progress, std::size_t num_solves)
+        : driver_(driver), progress_(progress), num_solves_(num_solves) {}
+
+    void solve(FitDriver::Stage& stage,
+               int max_iterations,
+               FitCandidate& candidate,
+               FitCourse& course) {
+        const double share = static_cast<double>(num_done_) /
+                             static_cast<double>(std::max<std::size_t>(num_solves_, num_done_ + 1));
+        const auto report = [&](int iterations) {
+            progress_.update(share, fmt::format("{}, iteration {}", candidate.name, iterations));
+        };
+        candidate.summary = driver_.solve(stage, candidate.state, max_iterations, report);
+        course.iterations += candidate.summary.iterations;
+        ++num_done_;
+    }
+
+    /// Solves one more candidate on the sharp data, and sorts it in.
+    void add_solved(FitDriver::Stage& last,
+                    FitCandidate candidate,
+                    std::vector<FitCandidate>& candidates,
+                    FitCourse& course) {
+        solve(last, driver_.settings.max_iterations, candidate, course);
+        candidates.push_back(std::move(candidate));
+        sort_by_cost(candidates);
+    }
+
+ private:
+    const FitDriver& driver_;
+    const core::Progress& progress_;
+    std::size_t num_solves_;
+    std::size_t num_done_ = 0;
+};
 
 // Blur can merge what lies apart: a start that was given is then also solved without it.
 void retry_without_blur(const FitDriver& driver,
                         FitDriver::Stage& last,
+                        SolveSeries& series,
                         std::vector<FitCandidate>& candidates,
                         FitCourse& course) {
     const bool has_blur = driver.settings.blur_schedule_m.size() > 1;
@@ -103,11 +129,8 @@ void retry_without_blur(const FitDriver& driver,
     const FitAgreement fit = compare_with_data(driver, last, candidates.front().state);
     const double excess = fit.deviance - fit.expected_deviance;
     if (excess <= kNotableExcess * fit.expected_deviance_sigma) return;
-    add_solved(driver,
-               last,
-               {"given, without blur", driver.starts().front().second, {}},
-               candidates,
-               course);
+    series.add_solved(
+        last, {"given, without blur", driver.starts().front().second, {}}, candidates, course);
 }
 
 // Of sorted candidates, the best and others in other poses that blurred data tell from it no better
@@ -128,10 +151,35 @@ void keep_best(const SceneModel& model,
     candidates = std::move(kept);
 }
 
+// The stages of a fit, as its progress counts them: the starts, the data under every blur, and
+// three on the sharp data.
+class Stages {
+ public:
+    Stages(const FitSettings& settings, const core::Progress& progress)
+        : progress_(progress), num_blurs_(static_cast<int>(settings.blur_schedule_m.size()) - 1) {}
+
+    core::Progress starts() const { return stage(1, "starts"); }
+    core::Progress blurred(std::size_t index, double blur_m) const {
+        return stage(static_cast<int>(index) + 2, fmt::format("data blurred by {:g} m", blur_m));
+    }
+    core::Progress sharp() const { return stage(num_blurs_ + 2, "sharp data"); }
+    core::Progress alike() const { return stage(num_blurs_ + 3, "poses that look alike"); }
+    core::Progress uncertainty() const { return stage(num_blurs_ + 4, "uncertainty"); }
+
+ private:
+    core::Progress stage(int number, const std::string& name) const {
+        const int count = num_blurs_ + 4;
+        return progress_.stage(number, count, name, (number - 1.0) / count, 1.0 * number / count);
+    }
+
+    const core::Progress& progress_;
+    int num_blurs_;
+};
+
 // Solves from all starts on blurred data, drops the worse ones stage by stage, and solves from the
 // rest on the sharp data. Returns the solutions, best first.
 std::vector<FitCandidate> run_stages(const FitDriver& driver,
-                                     const core::Progress& progress,
+                                     const Stages& stages,
                                      FitDriver::Stage& last,
                                      FitCourse& course) {
     constexpr double kAnyCost = std::numeric_limits<double>::infinity();
@@ -147,27 +195,28 @@ std::vector<FitCandidate> run_stages(const FitDriver& driver,
     for (std::size_t s = 0; s + 1 < schedule.size(); ++s) {
         FitDriver::Stage stage = driver.make_stage(*driver.model, schedule[s]);
         if (!driver.is_usable(stage)) continue;
+        const core::Progress progress = stages.blurred(s, schedule[s]);
+        SolveSeries series(driver, progress, candidates.size());
         const bool is_scouting = candidates.size() > 1;
         for (FitCandidate& candidate : candidates) {
-            progress.update(static_cast<double>(s) / static_cast<double>(schedule.size()),
-                            fmt::format("blur {:g} m, {}", schedule[s], candidate.name));
-            candidate.summary =
-                driver.solve(stage,
-                             candidate.state,
-                             is_scouting ? kScoutIterations : driver.settings.max_iterations);
-            course.iterations += candidate.summary.iterations;
+            series.solve(stage,
+                         is_scouting ? kScoutIterations : driver.settings.max_iterations,
+                         candidate,
+                         course);
         }
         sort_by_cost(candidates);
         note_starts();
         keep_best(*driver.model, kKeptStarts, s == 0 ? kAnyCost : kTellableCost, candidates);
     }
+    const core::Progress progress = stages.sharp();
+    SolveSeries series(driver, progress, candidates.size());
     std::vector<FitCandidate> solved;
     for (FitCandidate& candidate : candidates) {
-        add_solved(driver, last, std::move(candidate), solved, course);
+        series.add_solved(last, std::move(candidate), solved, course);
     }
     candidates = std::move(solved);
     note_starts();
-    retry_without_blur(driver, last, candidates, course);
+    retry_without_blur(driver, last, series, candidates, course);
     return candidates;
 }
 
@@ -287,12 +336,15 @@ FittedValues fitted_values(const FitDriver& driver,
 // A nearly symmetric body may have ended in the wrong one of several minima: the others are tried,
 // and named when the data cannot tell them apart.
 void try_symmetric_poses(const FitDriver& driver,
+                         const core::Progress& progress,
                          FitDriver::Stage& last,
                          std::vector<FitCandidate>& candidates,
                          FitCourse& course) {
     const FitCandidate best = candidates.front();
-    for (auto& [name, state] : driver.turned(best.state)) {
-        add_solved(driver, last, {best.name + ", " + name, state, {}}, candidates, course);
+    const std::vector<NamedState> poses = driver.turned(best.state);
+    SolveSeries series(driver, progress, poses.size());
+    for (const auto& [name, state] : poses) {
+        series.add_solved(last, {best.name + ", " + name, state, {}}, candidates, course);
     }
 }
 
@@ -323,10 +375,11 @@ void warn_of_ambiguity(const FitDriver& driver,
 void widen_sigma(const FitDriver& driver,
                  const FitDriver::Stage& last,
                  const SceneState& state,
+                 const core::Progress& progress,
                  Uncertainty& uncertainty,
                  FitResult& result) {
     if (!driver.has_few_photons() || !uncertainty.sigma.allFinite()) return;
-    const Eigen::VectorXd scatter = bootstrap_scatter(driver, last, state);
+    const Eigen::VectorXd scatter = bootstrap_scatter(driver, last, state, progress);
     const Eigen::VectorXd grown = scatter.cwiseMax(uncertainty.sigma);
     const Eigen::VectorXd factor = grown.cwiseQuotient(uncertainty.sigma);
     uncertainty.covariance = factor.asDiagonal() * uncertainty.covariance * factor.asDiagonal();
@@ -345,12 +398,15 @@ void widen_sigma(const FitDriver& driver,
 
 FitResult fit_scene(const FitInput& input, const core::Progress& progress) {
     const core::Stopwatch watch;
-    const FitDriver driver(input, progress);
+    const Stages stages(input.settings, progress);
+    const core::Progress preparing = stages.starts();
+    const FitDriver driver(input, preparing);
     FitResult result;
     FitDriver::Stage last = driver.make_stage(*driver.model, input.settings.blur_schedule_m.back());
-    std::vector<FitCandidate> candidates = run_stages(driver, progress, last, result);
-    try_symmetric_poses(driver, last, candidates, result);
+    std::vector<FitCandidate> candidates = run_stages(driver, stages, last, result);
+    try_symmetric_poses(driver, stages.alike(), last, candidates, result);
     FitCandidate& best = candidates.front();
+    const core::Progress assessing = stages.uncertainty();
     const RefinedSolution refined = refine(driver, last, best.state);
     static_cast<FitAgreement&>(result) = compare_with_data(driver, last, best.state);
 
@@ -365,7 +421,7 @@ FitResult fit_scene(const FitInput& input, const core::Progress& progress) {
     Uncertainty uncertainty = assess(information, result.parameters);
     uncertainty.covariance += refined.element_error * refined.element_error.transpose();
     uncertainty.sigma = uncertainty.sigma.cwiseMax(uncertainty.covariance.diagonal().cwiseSqrt());
-    widen_sigma(driver, last, best.state, uncertainty, result);
+    widen_sigma(driver, last, best.state, assessing, uncertainty, result);
     static_cast<FittedValues&>(result) =
         fitted_values(driver, last, best.state, uncertainty, noise.variance);
     result.correlations = uncertainty.correlations;

@@ -96,6 +96,7 @@ std::optional<LeftOutOrders> leave_out_orders(RenderTask& task) {
     const bool may = task.settings.method == Estimator::Auto && task.settings.target_error &&
                      !task.settings.by_order && task.settings.max_bounces > 3;
     if (!may) return std::nullopt;
+    task.progress.update(0.0, "trial runs for the orders of bounces");
     const BounceTruncation orders =
         find_bounce_truncation(task, kShareOfTarget * *task.settings.target_error);
     if (orders.last == task.settings.max_bounces) return std::nullopt;

@@ -30,7 +30,7 @@ set(floors_calib
     "calib")
 set(floors_apps
     "apps"
-    "apps/batch|apps/shapes"
+    "apps/batch|apps/manual|apps/shapes"
     "apps/bench|apps/dataset"
     "apps/report|apps/bench/render|apps/bench/reconstruct|apps/bench/fit|apps/bench/track"
     "apps/commands"

@@ -46,11 +46,11 @@ void add_benchmark(CLI::App& bench,
                    void (*declare)(CLI::App&, Settings&),
                    BenchResult (*measure)(const Settings&, const core::Progress&)) {
     const auto state = std::make_shared<std::pair<BenchOutput, Settings>>();
-    CLI::App* command = bench.add_subcommand(text.name, text.description);
-    add_output_options(*command, state->first);
-    declare(*command, state->second);
-    command->footer(settings_footer({}, text.example));
-    command->callback([state, measure, name = text.name] {
+    Command& command = add_command(bench, text.name, text.description);
+    add_output_options(command, state->first);
+    declare(command, state->second);
+    command.example = text.example;
+    command.callback([state, measure, name = text.name] {
         run_benchmark(state->first, name, [&](const core::Progress& progress) {
             return measure(state->second, progress);
         });

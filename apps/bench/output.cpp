@@ -5,6 +5,8 @@
 #include "apps/bench/machine.h"
 #include "apps/bench/regression.h"
 #include "apps/bench/tables.h"
+#include "apps/outcome.h"
+#include "apps/progress_bar.h"
 #include "apps/terminal.h"
 #include "apps/version.h"
 #include "renderer/core/mapped_file.h"
@@ -89,7 +91,11 @@ core::Json run_benchmark(const BenchOutput& output,
     core::check_targets({stem + ".json", stem + ".txt", output.results}, {});
     const core::Json earlier = read_earlier_run(output.against, name);
     ProgressBar bar("bench " + name);
-    BenchResult result = benchmark(bar.progress());
+    BenchResult result = [&] {
+        const StoppableWork stoppable(
+            "stopping after this measurement, without a file; Ctrl-C again ends at once");
+        return benchmark(bar.progress());
+    }();
     std::string table = plain_text(tables_of(result.figures));
     result.figures["program"] = version_text();
     result.figures["machine"] = machine_text();
@@ -106,9 +112,10 @@ core::Json run_benchmark(const BenchOutput& output,
         core::write_text_file(stem + suffix + ".png", bytes);
     }
     if (!draw_plots(result, stem)) {
-        print_error("bench: gnuplot is not there, so no plot was drawn\n");
+        warn("gnuplot is not there, so no plot was drawn");
     }
-    write_output(table);
+    write_message(table);
+    note_written({stem + ".json", stem + ".txt", output.results});
     print("wrote {}\n", stem + ".json");
     return result.figures;
 }

@@ -4,6 +4,7 @@
 #include "apps/bench/reconstruct/reconstruct.h"
 #include "apps/bench/render/render.h"
 #include "apps/commands.h"
+#include "apps/outcome.h"
 #include "apps/terminal.h"
 #include "renderer/core/output_file.h"
 
@@ -49,32 +50,31 @@ void run_all(const AllArguments& arguments) {
     add("fit", [&](const core::Progress& progress) { return measure_fit(fit, progress); });
     const auto path = std::filesystem::path(arguments.output.folder) / "bench_all.json";
     core::write_text_file(path.string(), core::json_text(all));
+    note_written({path.string()});
     print("wrote {}\n", path.string());
 }
 
 }  // namespace
 
 void add_bench_command(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("bench", "Measure speed against error");
-    command->require_subcommand(1);
-    command->footer(
-        settings_footer({}, "nlos bench reconstruct -o out/bench --part scaling --largest 32"));
-    add_bench_render_command(*command);
-    add_bench_reconstruct_command(*command);
-    add_bench_fit_command(*command);
+    Command& command = add_command(app, "bench", "Measure speed against error");
+    command.require_subcommand(1);
+    command.example = "nlos bench reconstruct -o out/bench --part scaling --largest 32";
+    add_bench_render_command(command);
+    add_bench_reconstruct_command(command);
+    add_bench_fit_command(command);
     const auto arguments = std::make_shared<AllArguments>();
-    CLI::App* all = command->add_subcommand("all", "These three: render, reconstruct, fit");
-    add_output_options(*all, arguments->output);
-    all->add_flag(
-        "--quick", arguments->quick, "Fewer and smaller runs: minutes instead of an hour");
-    all->footer(settings_footer({}, "nlos bench all -o out/bench --quick"));
-    all->callback([arguments] { run_all(*arguments); });
-    add_bench_noise_command(*command);
-    add_bench_coverage_command(*command);
-    add_bench_comparisons_command(*command);
-    add_bench_sequences_command(*command);
-    add_bench_shift_command(*command);
-    add_bench_track_command(*command);
+    Command& all = add_command(command, "all", "These three: render, reconstruct, fit");
+    add_output_options(all, arguments->output);
+    all.add_flag("--quick", arguments->quick, "Fewer and smaller runs: minutes instead of an hour");
+    all.example = "nlos bench all -o out/bench --quick";
+    all.callback([arguments] { run_all(*arguments); });
+    add_bench_noise_command(command);
+    add_bench_coverage_command(command);
+    add_bench_comparisons_command(command);
+    add_bench_sequences_command(command);
+    add_bench_shift_command(command);
+    add_bench_track_command(command);
 }
 
 }  // namespace apps

@@ -2,6 +2,8 @@
 #include "apps/arguments.h"
 #include "apps/commands.h"
 #include "apps/estimate_text.h"
+#include "apps/outcome.h"
+#include "apps/progress_bar.h"
 #include "apps/terminal.h"
 #include "apps/version.h"
 #include "calib/calibrate.h"
@@ -25,6 +27,7 @@ void run(const CalibrateArguments& arguments) {
     require_suffix(arguments.output, {".json"});
     core::check_targets({arguments.output}, {arguments.setup});
     const calib::SetupSettings settings = calib::read_setup(arguments.setup, arguments.overrides);
+    const ProgressBar bar("calibrate");
     const core::Capture capture = nlos::read_capture(settings.direct_returns);
     const calib::Calibration calibration = calib::calibrate(settings, capture);
     core::Json json = calib::calibration_json(calibration);
@@ -36,10 +39,17 @@ void run(const CalibrateArguments& arguments) {
     const calib::SetupGeometry& setup = calibration.setup;
     for (std::size_t i = 0; i < setup.values.size(); ++i) {
         if (setup.sigma[i] == 0.0) continue;
+        outcome()["values"][calib::kSetupNames[i]] = {{"value", setup.values[i]},
+                                                      {"sigma", setup.sigma[i]}};
         print("{:<18} {}\n", calib::kSetupNames[i], estimate_text(setup.values[i], setup.sigma[i]));
     }
     const auto response = json["response"];
     print("{:<18} {:>11.6g} ps\n", "response FWHM", response["jitter_fwhm_ps"].get<double>());
+    outcome()["response_fwhm_ps"] = response["jitter_fwhm_ps"];
+    outcome()["points"] = setup.points_m.size();
+    outcome()["condition_number"] = setup.uncertainty.condition_number;
+    outcome()["range_rms_m"] = setup.range_rms_m;
+    note_written({arguments.output});
     print("wrote {} ({} points, condition number {:.3g}, path lengths off by {:.3g} mm rms)\n",
           arguments.output,
           setup.points_m.size(),
@@ -50,16 +60,16 @@ void run(const CalibrateArguments& arguments) {
 }  // namespace
 
 void add_calibrate_command(CLI::App& app) {
-    CLI::App* command = app.add_subcommand(
-        "calibrate", "Calibrate wall, spots, time zero and response of a set-up");
+    Command& command =
+        add_command(app, "calibrate", "Calibrate wall, spots, time zero and response of a set-up");
+    command.settings = core::settings_help(calib::SetupSettings{});
     const auto arguments = std::make_shared<CalibrateArguments>();
-    command->add_option("SETUP", arguments->setup, "Description of the measurements (.json)")
+    add_file_option(command, "SETUP", arguments->setup, "Description of the measurements (.json)")
         ->required();
-    add_output_option(*command, arguments->output, "Calibration to write (.json)")->required();
-    add_set_option(*command, arguments->overrides);
-    command->footer(settings_footer(core::settings_help(calib::SetupSettings{}),
-                                    "nlos calibrate data/setup.json -o calibration.json"));
-    command->callback([arguments] { run(*arguments); });
+    add_output_option(command, arguments->output, "Calibration to write (.json)")->required();
+    add_set_option(command, arguments->overrides);
+    command.example = "nlos calibrate data/setup.json -o calibration.json";
+    command.callback([arguments] { run(*arguments); });
 }
 
 }  // namespace apps

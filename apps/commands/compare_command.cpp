@@ -3,6 +3,8 @@
 #include "apps/capture_options.h"
 #include "apps/commands.h"
 #include "apps/commands/compare_job.h"
+#include "apps/outcome.h"
+#include "apps/progress_bar.h"
 #include "apps/terminal.h"
 #include "renderer/core/error.h"
 
@@ -30,44 +32,50 @@ void run(const CompareArguments& arguments) {
                           fmt::format("found {}", *threshold),
                           "must be positive and finite [m]");
     }
-    Comparison comparison = compare_files(arguments.a,
-                                          arguments.b,
-                                          arguments.output,
-                                          threshold,
-                                          capture_options(arguments.overrides).capture);
+    Comparison comparison = [&] {
+        const ProgressBar bar("compare");
+        return compare_files(arguments.a,
+                             arguments.b,
+                             arguments.output,
+                             threshold,
+                             capture_options(arguments.overrides).capture);
+    }();
     for_each_field(comparison.metrics,
                    [](const char* name, const auto& value, const char* meaning) {
                        if (!value) return;
+                       outcome()["metrics"][name] = *value;
                        print("{:<24} {:<12.6g} {}\n", name, static_cast<double>(*value), meaning);
                    });
-    for (const std::string& text : comparison.warnings) print_error("warning: {}\n", text);
+    for (const std::string& text : comparison.warnings) warn(text);
+    note_written({arguments.output});
     if (!arguments.output.empty()) print("wrote {}\n", arguments.output);
 }
 
 }  // namespace
 
 void add_compare_command(CLI::App& app) {
-    CLI::App* command =
-        app.add_subcommand("compare", "Score a result against the truth or another result");
+    Command& command =
+        add_command(app, "compare", "Score a result against the truth or another result");
+    command.settings = core::settings_help(CaptureOptions{});
     const auto arguments = std::make_shared<CompareArguments>();
+    add_file_option(command,
+                    "A",
+                    arguments->a,
+                    "Volume, capture (.h5), fit or track (.json), point cloud or mesh (.ply, .glb)")
+        ->required();
+    add_file_option(command, "B", arguments->b, "scene.json as the truth, or another of A's kind")
+        ->required();
+    add_output_option(command, arguments->output, "Metrics to write (.json)");
     command
-        ->add_option(
-            "A",
-            arguments->a,
-            "Volume, capture (.h5), fit or track (.json), point cloud or mesh (.ply, .glb)")
-        ->required();
-    command->add_option("B", arguments->b, "scene.json as the truth, or another of A's kind")
-        ->required();
-    add_output_option(*command, arguments->output, "Metrics to write (.json)");
-    command->add_option("--fscore-threshold-m",
-                        arguments->fscore_threshold_m,
-                        "Distance that counts as a match of points [m] (default 0.01, of volumes "
-                        "their voxel diagonal)");
-    add_capture_options(*command, arguments->overrides);
-    command->footer(settings_footer(
-        core::settings_help(CaptureOptions{}),
-        "nlos compare scenes/letter/scene.glb scenes/letter/scene.json -o metrics.json"));
-    command->callback([arguments] { run(*arguments); });
+        .add_option("--fscore-threshold-m",
+                    arguments->fscore_threshold_m,
+                    "Distance that counts as a match of points [m] (default 0.01, of volumes "
+                    "their voxel diagonal)")
+        ->type_name("D");
+    add_capture_options(command, arguments->overrides);
+    command.example =
+        "nlos compare scenes/letter/scene.glb scenes/letter/scene.json -o metrics.json";
+    command.callback([arguments] { run(*arguments); });
 }
 
 }  // namespace apps

@@ -6,6 +6,7 @@
 #include "apps/commands/fit_job.h"
 #include "apps/commands/reconstruct_job.h"
 #include "apps/commands/render_job.h"
+#include "apps/outcome.h"
 #include "apps/report/report.h"
 #include "apps/terminal.h"
 #include "nlos/detector/detector.h"
@@ -54,6 +55,7 @@ void run(const DemoArguments& arguments) {
             reconstruct_to_file({file("capture.h5")}, {"method=" + method}, volume, "");
         const nlos::Metrics metrics =
             compare_files(volume, scene, file("metrics_" + method + ".json"), kDemoMatch_m).metrics;
+        outcome()["depth_mae_m"][method] = core::write_value(metrics.depth_mae_m);
         print("{:<12} {} ({:.2f} s, depth error {:.2f} mm over {:.0f} % of the letter)\n",
               method,
               volume,
@@ -84,18 +86,21 @@ void run(const DemoArguments& arguments) {
           1e3 * errors.position_error_m.value_or(0.0),
           errors.rotation_error_deg.value_or(0.0));
     write_report(folder.string(), file("report.html"));
+    note_written({file("report.html")});
+    outcome()["position_error_m"] = core::write_value(errors.position_error_m);
     print("wrote {}\n", file("report.html"));
 }
 
 }  // namespace
 
 void add_demo_command(CLI::App& app) {
-    CLI::App* command = app.add_subcommand(
-        "demo", "Scene, capture, reconstruction, fit, comparison and report in one go");
+    Command& command = add_command(
+        app, "demo", "Scene, capture, reconstruction, fit, comparison and report in one go");
     const auto arguments = std::make_shared<DemoArguments>();
-    add_output_option(*command, arguments->folder, "Folder for the results")->capture_default_str();
-    command->footer(settings_footer({}, "nlos demo -o out/demo"));
-    command->callback([arguments] { run(*arguments); });
+    add_output_folder_option(command, arguments->folder, "Folder for the results")
+        ->capture_default_str();
+    command.example = "nlos demo -o out/demo";
+    command.callback([arguments] { run(*arguments); });
 }
 
 }  // namespace apps

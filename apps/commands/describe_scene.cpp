@@ -26,7 +26,7 @@ void print_object(Description& out, const renderer::Object& object) {
     for (const core::Vec3& vertex : object.mesh.vertices) box.extend(vertex);
     out.print(
         "object {}: {} triangles, role {}, {}, x {:.4g} to {:.4g}, y {:.4g} to {:.4g}, "
-        "z {:.4g} to {:.4g} m{}\n",
+        "z {:.4g} to {:.4g} m{}{}\n",
         object.name.empty() ? "(unnamed)" : object.name,
         object.mesh.triangles.size(),
         core::enum_name(object.role),
@@ -37,9 +37,27 @@ void print_object(Description& out, const renderer::Object& object) {
         box.max().y(),
         box.min().z(),
         box.max().z(),
+        object.ellipsoidal_exclude ? ", left out of ellipsoidal connections" : "",
         object.velocity_m_per_s.norm() > 0.0
-            ? fmt::format(", moves at {:.3g} m/s", object.velocity_m_per_s.norm())
+            ? fmt::format(", moves by ({:.3g}, {:.3g}, {:.3g}) m/s",
+                          object.velocity_m_per_s.x(),
+                          object.velocity_m_per_s.y(),
+                          object.velocity_m_per_s.z())
             : "");
+}
+
+void print_camera(Description& out, const renderer::Camera& camera) {
+    out.print(
+        "camera {}: at ({:.4g}, {:.4g}, {:.4g}) m, looks along ({:.3g}, {:.3g}, {:.3g}), {:.3g} "
+        "deg high\n",
+        camera.name.empty() ? "(unnamed)" : camera.name,
+        camera.position.x(),
+        camera.position.y(),
+        camera.position.z(),
+        camera.forward.x(),
+        camera.forward.y(),
+        camera.forward.z(),
+        core::kDegreesPerRadian * camera.fov_y_rad);
 }
 
 void print_size(Description& out, const renderer::SceneGeometry& geometry) {
@@ -137,6 +155,7 @@ void describe_geometry(Description& out, const std::string& path) {
     for (const std::string& line : renderer::describe_frame(alone)) out.print("{}\n", line);
     print_size(out, geometry);
     for (const renderer::Object& object : geometry.objects) print_object(out, object);
+    for (const renderer::Camera& camera : geometry.cameras) print_camera(out, camera);
     print_warnings(out, geometry.warnings);
 }
 

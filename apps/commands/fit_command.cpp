@@ -4,6 +4,7 @@
 #include "apps/commands.h"
 #include "apps/commands/fit_job.h"
 #include "apps/estimate_text.h"
+#include "apps/outcome.h"
 #include "apps/terminal.h"
 #include "renderer/core/error.h"
 #include "renderer/core/parallel.h"
@@ -42,6 +43,37 @@ void print_object(const calib::FittedObject& object) {
           estimate_text(object.albedo, object.albedo_sigma));
 }
 
+void note(const calib::FitResult& result, const std::string& output) {
+    note_written({output,
+                  with_suffix(output, ".scene.json"),
+                  with_suffix(output, ".glb"),
+                  with_suffix(output, ".png")});
+    core::Json& fields = outcome();
+    for (const calib::FittedObject& object : result.objects) {
+        fields["objects"].push_back(
+            {{"name", object.name},
+             {"position_m", core::write_value(object.position_m)},
+             {"position_sigma_m", core::write_value(object.position_sigma_m)},
+             {"rotation_sigma_deg", core::write_value(object.rotation_sigma_deg)},
+             {"size", object.size},
+             {"size_sigma", object.size_sigma},
+             {"albedo", object.albedo},
+             {"albedo_sigma", object.albedo_sigma}});
+    }
+    for (const calib::FittedPoint& point : result.points) {
+        fields["points"].push_back(
+            {{"position_m", core::write_value(point.position_m)},
+             {"position_sigma_m", core::write_value(point.position_sigma_m)}});
+    }
+    fields["converged"] = result.converged;
+    fields["residual"] = result.residual;
+    fields["deviance"] = result.deviance;
+    fields["expected_deviance"] = result.expected_deviance;
+    fields["iterations"] = result.iterations;
+    fields["seconds_fit"] = result.seconds;
+    fields["unidentifiable"] = result.unidentifiable;
+}
+
 void run(const FitArguments& arguments) {
     const core::ThreadLimit threads(arguments.threads);
     const calib::FitResult result = fit_to_file(arguments.capture,
@@ -49,6 +81,7 @@ void run(const FitArguments& arguments) {
                                                 arguments.overrides,
                                                 arguments.calibration,
                                                 arguments.output);
+    note(result, arguments.output);
     for (const calib::FittedObject& object : result.objects) print_object(object);
     for (const calib::FittedPoint& point : result.points) {
         print("point          {}\n", place_text(point.position_m, point.position_sigma_m));
@@ -77,7 +110,7 @@ void run(const FitArguments& arguments) {
     for (const std::string& text : result.unidentifiable) {
         print_error("unidentifiable: {}\n", text);
     }
-    for (const std::string& text : result.warnings) print_error("warning: {}\n", text);
+    for (const std::string& text : result.warnings) warn(text);
 }
 
 std::vector<core::SettingHelp> fit_help() {
@@ -90,23 +123,23 @@ std::vector<core::SettingHelp> fit_help() {
 }  // namespace
 
 void add_fit_command(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("fit", "Fit a hidden scene to a capture");
+    Command& command = add_command(app, "fit", "Fit a hidden scene to a capture");
+    command.settings = fit_help();
     const auto arguments = std::make_shared<FitArguments>();
-    command->add_option("CAPTURE", arguments->capture, "Capture in any readable format")
+    add_file_option(command, "CAPTURE", arguments->capture, "Capture in any readable format")
         ->required();
-    command->add_option("MODEL", arguments->model, "What is fitted and from where (.json)")
+    add_file_option(command, "MODEL", arguments->model, "What is fitted and from where (.json)")
         ->required();
-    add_output_option(*command,
+    add_output_option(command,
                       arguments->output,
                       "Fit to write (.json); the fitted scene and a picture go beside it")
         ->required();
-    command->add_option(
-        "--calibration", arguments->calibration, "Calibration of the set-up (.json)");
-    add_threads_option(*command, arguments->threads);
-    add_capture_options(*command, arguments->overrides);
-    command->footer(settings_footer(
-        fit_help(), "nlos fit data/letter.h5 scenes/letter/model.json -o fit.json"));
-    command->callback([arguments] { run(*arguments); });
+    add_file_option(
+        command, "--calibration", arguments->calibration, "Calibration of the set-up (.json)");
+    add_threads_option(command, arguments->threads);
+    add_capture_options(command, arguments->overrides);
+    command.example = "nlos fit data/letter.h5 scenes/letter/model.json -o fit.json";
+    command.callback([arguments] { run(*arguments); });
 }
 
 }  // namespace apps

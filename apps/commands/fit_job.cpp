@@ -4,6 +4,7 @@
 #include "apps/arguments.h"
 #include "apps/capture_options.h"
 #include "apps/commands/fit_pictures.h"
+#include "apps/progress_bar.h"
 #include "apps/terminal.h"
 #include "apps/version.h"
 #include "calib/calibrate.h"
@@ -99,7 +100,12 @@ calib::FitResult fit_to_file(const std::string& capture_path,
                         sources);
     if (!calibration.empty()) use_calibration(calib::read_calibration(calibration), input);
     ProgressBar bar("fit");
-    const calib::FitResult result = fit_input(input, bar.progress());
+    const core::Progress progress = bar.progress();
+    const calib::FitResult result = [&] {
+        const StoppableWork stoppable(
+            "stopping after this step, without a file; Ctrl-C again ends at once");
+        return fit_input(input, progress);
+    }();
     write_fit(input, result, fit_path);
     return result;
 }

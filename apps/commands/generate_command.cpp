@@ -4,6 +4,8 @@
 #include "apps/commands.h"
 #include "apps/dataset/dataset_index.h"
 #include "apps/dataset/generate.h"
+#include "apps/outcome.h"
+#include "apps/progress_bar.h"
 #include "apps/terminal.h"
 #include "apps/version.h"
 #include "renderer/core/parallel.h"
@@ -32,7 +34,7 @@ struct GenerateArguments {
 };
 
 constexpr std::array<Shorthand, 1> kGenerateShorthands{
-    {{"--format", "format", "NAME", "How shards are stored: hdf5 (default) or webdataset"}}};
+    {{"--format", "format", "NAME", "How shards are stored (default hdf5)"}}};
 
 ItemRange read_range(const std::string& text) {
     ItemRange range;
@@ -49,14 +51,14 @@ ItemRange read_range(const std::string& text) {
 
 void warn_of_oddities(const GenerateResult& result) {
     for (const auto& [name, reason] : result.broken_meshes) {
-        print_error("warning: {} was skipped: {}\n", name, reason);
+        warn(fmt::format("{} was skipped: {}", name, reason));
     }
     if (result.dark_items > 0) {
-        print_error("warning: {} items hold no light of their scene\n", result.dark_items);
+        warn(fmt::format("{} items hold no light of their scene", result.dark_items));
     }
     if (result.clipped_counts > 0) {
-        print_error("warning: {} counts were clipped to what storage.histograms can hold\n",
-                    result.clipped_counts);
+        warn(fmt::format("{} counts were clipped to what storage.histograms can hold",
+                         result.clipped_counts));
     }
 }
 
@@ -91,14 +93,22 @@ void make(const GenerateArguments& arguments, bool prints_script) {
     std::optional<ItemRange> items;
     if (!arguments.items.empty()) items = read_range(arguments.items);
     ProgressBar bar("generate");
+    const StoppableWork stoppable(
+        "stopping; whole shards stay, and the same command goes on with the others; Ctrl-C again "
+        "ends at once");
     const GenerateResult result =
         generate(dataset, read_work_share(arguments.shard), items, version_text(), bar.progress());
     warn_of_oddities(result);
+    outcome()["shards"] = result.shards_written;
+    outcome()["items"] = result.items_written;
+    outcome()["shards_there"] = result.shards_there;
+    outcome()["interrupted"] = result.interrupted;
     if (result.interrupted) {
         throw core::Failure("generate",
                             fmt::format("interrupted after {} shards; the same command goes on",
                                         result.shards_written));
     }
+    note_written({arguments.folder});
     const auto made = static_cast<double>(std::max<std::uint64_t>(1, result.items_written));
     print(
         "wrote {} ({} shards, {} items, {} shards were there; {:.2f} s, {:.3f} CPU s an item: "
@@ -113,8 +123,12 @@ void make(const GenerateArguments& arguments, bool prints_script) {
 }
 
 void verify(const std::string& folder) {
+    const ProgressBar bar("generate --verify");
     const DatasetIndex index = read_dataset(folder, ShardCheck::Contents);
-    for (const std::string& doubt : index.doubts) print_error("warning: {}\n", doubt);
+    for (const std::string& doubt : index.doubts) warn(doubt);
+    outcome()["items"] = index.items;
+    outcome()["shards"] = index.shards.size();
+    outcome()["problems"] = index.problems;
     for (const std::string& problem : index.problems) print("{}\n", problem);
     if (!index.problems.empty()) {
         throw core::Failure(folder, fmt::format("has {} problems", index.problems.size()));
@@ -123,8 +137,12 @@ void verify(const std::string& folder) {
 }
 
 void merge(const std::string& folder) {
+    const ProgressBar bar("generate --merge");
     const DatasetIndex index = read_dataset(folder, ShardCheck::ManifestOnly);
     const std::string path = write_index(index, folder);
+    note_written({path});
+    outcome()["items"] = index.items;
+    outcome()["shards"] = index.shards.size();
     print("wrote {} ({} items in {} shards)\n", path, index.items, index.shards.size());
 }
 
@@ -142,33 +160,32 @@ void run(const GenerateArguments& arguments, bool prints_script) {
 }  // namespace
 
 void add_generate_command(CLI::App& app) {
-    CLI::App* command =
-        app.add_subcommand("generate", "Make a data set of captures of random scenes");
+    Command& command = add_command(app, "generate", "Make a data set of captures of random scenes");
+    command.settings = core::settings_help(Recipe{});
     const auto arguments = std::make_shared<GenerateArguments>();
-    command->add_option("RECIPE", arguments->recipe, "What is drawn and stored (.json)");
-    add_output_option(*command, arguments->folder, "Folder of the data set");
-    command->add_option("--shard",
-                        arguments->shard,
-                        "I/N: make the part I of N, from 0 to N - 1; without it, the part of the "
-                        "present task of a Slurm array, or everything");
-    command->add_option(
+    add_file_option(command, "RECIPE", arguments->recipe, "What is drawn and stored (.json)");
+    add_output_folder_option(command, arguments->folder, "Folder of the data set");
+    command.add_option("--shard",
+                       arguments->shard,
+                       "I/N: make the part I of N, from 0 to N - 1; without it, the part of the "
+                       "present task of a Slurm array, or everything");
+    command.add_option(
         "--items",
         arguments->items,
         "A:B: make only the items from A to B - 1; not by two processes at once within a shard");
-    add_shorthands(*command, kGenerateShorthands, arguments->shorthands);
-    command->add_option("--verify", arguments->verify, "Check every shard of this folder");
-    command->add_option("--merge", arguments->merge, "Write index.json of this folder");
+    add_shorthands(command, kGenerateShorthands, arguments->shorthands);
+    add_folder_option(command, "--verify", arguments->verify, "Check every shard of this folder");
+    add_folder_option(command, "--merge", arguments->merge, "Write index.json of this folder");
     CLI::Option* slurm =
-        command->add_option("--slurm",
-                            arguments->slurm,
-                            "Only print a script for sbatch, an array of TASKS (default: one per "
-                            "shard, at most 100) with --threads processors each");
+        command.add_option("--slurm",
+                           arguments->slurm,
+                           "Only print a script for sbatch, an array of TASKS (default: one per "
+                           "shard, at most 100) with --threads processors each");
     slurm->type_name("TASKS")->expected(0, 1);
-    add_threads_option(*command, arguments->threads);
-    add_set_option(*command, arguments->overrides);
-    command->footer(settings_footer(core::settings_help(Recipe{}),
-                                    "nlos generate data/recipes/shapes.json -o shapes"));
-    command->callback([arguments, slurm] { run(*arguments, slurm->count() > 0); });
+    add_threads_option(command, arguments->threads);
+    add_set_option(command, arguments->overrides);
+    command.example = "nlos generate data/recipes/shapes.json -o shapes";
+    command.callback([arguments, slurm] { run(*arguments, slurm->count() > 0); });
 }
 
 }  // namespace apps

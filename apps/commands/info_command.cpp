@@ -4,11 +4,14 @@
 #include "apps/commands.h"
 #include "apps/commands/describe_file.h"
 #include "apps/commands/file_picture.h"
+#include "apps/outcome.h"
+#include "apps/progress_bar.h"
 #include "apps/terminal.h"
 #include "nlos/layouts/layout_guess.h"
 #include "renderer/core/output_file.h"
 
 #include <memory>
+#include <sstream>
 
 namespace apps {
 namespace {
@@ -28,6 +31,7 @@ void write_layout(const std::string& path, const std::string& layout_path) {
     }
     core::write_text_file(layout_path, core::json_text(guess.layout));
     for (const std::string& line : guess.findings) print("{}\n", line);
+    note_written({layout_path});
     print("wrote {}\n", layout_path);
 }
 
@@ -40,35 +44,42 @@ void run(const InfoArguments& arguments) {
         write_layout(files.front(), arguments.write_layout);
         return;
     }
+    const ProgressBar bar("info");
     const nlos::CaptureReadSettings settings = capture_options(arguments.overrides).capture;
-    write_output(describe_files(files, settings));
+    const std::string text = describe_files(files, settings);
+    write_message(text);
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) outcome()["lines"].push_back(line);
     if (arguments.picture.empty()) return;
     write_picture(files, arguments.picture, settings);
+    note_written({arguments.picture});
     print("wrote {}\n", arguments.picture);
 }
 
 }  // namespace
 
 void add_info_command(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("info", "Say what a file is and what it holds");
+    Command& command = add_command(app, "info", "Say what a file is and what it holds");
+    command.settings = core::settings_help(CaptureOptions{});
     const auto arguments = std::make_shared<InfoArguments>();
-    command
-        ->add_option(
-            "FILE",
-            arguments->files,
-            "Capture, volume, scene.json, glTF, OBJ, PLY, STL, fit, metrics or calibration; "
-            "several files: the frames of a sequence")
+    add_file_option(
+        command,
+        "FILE",
+        arguments->files,
+        "Capture, volume, scene.json, glTF, OBJ, PLY, STL, fit, metrics or calibration; "
+        "several files: the frames of a sequence")
         ->required();
-    command->add_option("--picture",
-                        arguments->picture,
-                        "Also draw it (.png): a scene as the wall sees it, a capture, a volume");
-    command->add_option("--write-layout",
-                        arguments->write_layout,
-                        "Write a layout for a file of named arrays, to be completed (.json)");
-    add_capture_options(*command, arguments->overrides);
-    command->footer(settings_footer(core::settings_help(CaptureOptions{}),
-                                    "nlos info scenes/letter/scene.json"));
-    command->callback([arguments] { run(*arguments); });
+    add_file_option(command,
+                    "--picture",
+                    arguments->picture,
+                    "Also draw it (.png): a scene as the wall sees it, a capture, a volume");
+    add_file_option(command,
+                    "--write-layout",
+                    arguments->write_layout,
+                    "Write a layout for a file of named arrays, to be completed (.json)");
+    add_capture_options(command, arguments->overrides);
+    command.example = "nlos info scenes/letter/scene.json";
+    command.callback([arguments] { run(*arguments); });
 }
 
 }  // namespace apps

@@ -3,11 +3,13 @@
 #include "apps/capture_options.h"
 #include "apps/commands.h"
 #include "apps/commands/reconstruct_job.h"
+#include "apps/outcome.h"
 #include "apps/terminal.h"
 #include "renderer/core/parallel.h"
 
 #include <fmt/core.h>
 
+#include <array>
 #include <memory>
 
 namespace apps {
@@ -16,28 +18,35 @@ namespace {
 struct ReconstructArguments {
     std::vector<std::string> captures;
     std::string output;
-    std::string method;
     std::string ply;
     std::string glb;
     std::string calibration;
     std::vector<std::string> overrides;
+    std::vector<std::string> shorthands;  ///< --method lct becomes method=lct
     int threads = 0;
 };
+
+constexpr std::array kReconstructShorthands{
+    Shorthand{"--method", "method", "NAME", "Method (default auto)"}};
 
 void run(const ReconstructArguments& arguments) {
     const core::ThreadLimit threads(arguments.threads);
     std::vector<std::string> overrides = arguments.overrides;
-    if (!arguments.method.empty()) overrides.push_back("method=" + arguments.method);
+    overrides.insert(overrides.end(), arguments.shorthands.begin(), arguments.shorthands.end());
     const nlos::Reconstruction result = reconstruct_to_file(arguments.captures,
                                                             overrides,
                                                             arguments.output,
                                                             arguments.ply,
                                                             arguments.glb,
                                                             arguments.calibration);
-    for (const std::string& warning : result.warnings) {
-        print_error("warning: {}\n", warning);
-    }
+    for (const std::string& warning : result.warnings) warn(warning);
     const nlos::VolumeAxes& axes = result.volume.axes;
+    note_written(
+        {arguments.output, with_suffix(arguments.output, ".png"), arguments.ply, arguments.glb});
+    outcome()["method"] = result.method;
+    outcome()["voxels"] = {axes.x_m.size(), axes.y_m.size(), axes.z_m.size()};
+    outcome()["surface_points"] = result.points.positions.size();
+    outcome()["seconds_reconstruct"] = result.seconds;
     print("wrote {}, {}{}{} ({}, {} x {} x {} voxels, {} surface points, {:.2f} s)\n",
           arguments.output,
           with_suffix(arguments.output, ".png"),
@@ -54,28 +63,26 @@ void run(const ReconstructArguments& arguments) {
 }  // namespace
 
 void add_reconstruct_command(CLI::App& app) {
-    CLI::App* command =
-        app.add_subcommand("reconstruct", "Reconstruct the hidden scene from a capture");
+    Command& command =
+        add_command(app, "reconstruct", "Reconstruct the hidden scene from a capture");
+    command.settings = core::settings_help(ReconstructOptions{});
     const auto arguments = std::make_shared<ReconstructArguments>();
-    command
-        ->add_option("CAPTURE",
-                     arguments->captures,
-                     "Capture in any readable format; several files: the frames of a sequence")
+    add_file_option(command,
+                    "CAPTURE",
+                    arguments->captures,
+                    "Capture in any readable format; several files: the frames of a sequence")
         ->required();
-    add_output_option(*command, arguments->output, "Volume to write (.h5); a .png goes beside it")
+    add_output_option(command, arguments->output, "Volume to write (.h5); a .png goes beside it")
         ->required();
-    command->add_option("--method",
-                        arguments->method,
-                        "Method: auto, lct, dlct, fk, phasor, bp or fbp (default auto)");
-    command->add_option("--ply", arguments->ply, "Also write the surface points (.ply)");
-    command->add_option("--glb", arguments->glb, "Also write the surface as a mesh (.glb)");
-    command->add_option(
-        "--calibration", arguments->calibration, "Calibration of the set-up (.json)");
-    add_threads_option(*command, arguments->threads);
-    add_capture_options(*command, arguments->overrides);
-    command->footer(settings_footer(core::settings_help(ReconstructOptions{}),
-                                    "nlos reconstruct data/letter.h5 -o volume.h5 --method lct"));
-    command->callback([arguments] { run(*arguments); });
+    add_shorthands(command, kReconstructShorthands, arguments->shorthands);
+    add_file_option(command, "--ply", arguments->ply, "Also write the surface points (.ply)");
+    add_file_option(command, "--glb", arguments->glb, "Also write the surface as a mesh (.glb)");
+    add_file_option(
+        command, "--calibration", arguments->calibration, "Calibration of the set-up (.json)");
+    add_threads_option(command, arguments->threads);
+    add_capture_options(command, arguments->overrides);
+    command.example = "nlos reconstruct data/letter.h5 -o volume.h5 --method lct";
+    command.callback([arguments] { run(*arguments); });
 }
 
 }  // namespace apps

@@ -2,6 +2,7 @@
 #include "apps/commands/reconstruct_job.h"
 
 #include "apps/arguments.h"
+#include "apps/progress_bar.h"
 #include "apps/terminal.h"
 #include "apps/version.h"
 #include "calib/calibrate.h"
@@ -44,13 +45,21 @@ nlos::Reconstruction reconstruct_to_file(const std::vector<std::string>& capture
                         inputs);
     ReconstructOptions options;
     for (const std::string& text : overrides) core::apply_override(options, text);
+    ProgressBar bar("reconstruct");
+    const core::Progress progress = bar.progress();
+    const core::Progress reading = progress.stage(1, 3, "reading", 0.0, 0.0);
     core::Capture capture = nlos::read_capture(capture_paths, options.capture);
     if (!calibration_path.empty()) {
         capture = calib::apply_calibration(calib::read_calibration(calibration_path), capture);
     }
 
-    ProgressBar bar("reconstruct");
-    nlos::Reconstruction result = nlos::reconstruct(capture, options.reconstruct, bar.progress());
+    nlos::Reconstruction result = [&] {
+        const StoppableWork stoppable(
+            "stopping after this step, without a file; Ctrl-C again ends at once");
+        return nlos::reconstruct(
+            capture, options.reconstruct, progress.stage(2, 3, "reconstructing", 0.0, 1.0));
+    }();
+    const core::Progress writing = progress.stage(3, 3, "writing", 1.0, 1.0);
     result.provenance = {
         {"program", version_text()},
         {"command", command_line()},

@@ -2,6 +2,7 @@
 #include "apps/arguments.h"
 #include "apps/commands.h"
 #include "apps/commands/render_job.h"
+#include "apps/outcome.h"
 #include "apps/terminal.h"
 #include "renderer/core/parallel.h"
 #include "renderer/scene/scene_file.h"
@@ -25,10 +26,7 @@ struct RenderArguments {
 };
 
 constexpr std::array<Shorthand, 6> kRenderShorthands{
-    {{"--method",
-      "render.method",
-      "NAME",
-      "Estimator: auto, third_bounce, path, ellipsoidal or restir (default auto)"},
+    {{"--method", "render.method", "NAME", "Estimator (default auto)"},
      {"--samples", "render.samples", "N", "Candidate paths per pair (default 256)"},
      {"--seconds",
       "render.seconds",
@@ -44,15 +42,28 @@ constexpr std::array<Shorthand, 6> kRenderShorthands{
       "Bounces, both on the relay wall included (default 3)"},
      {"--seed", "render.seed", "N", "Seed of the random numbers (default 0)"}}};
 
+void note(const renderer::RenderResult& result, const std::string& output) {
+    note_written({output, result.capture.scan.camera ? with_suffix(output, ".png") : ""});
+    outcome()["estimator"] = estimator_names(result);
+    outcome()["pairs"] = result.capture.scan.num_pairs();
+    outcome()["bins"] = result.capture.time_axis.num_bins;
+    if (const auto& sequence = result.capture.sequence) {
+        outcome()["frames"] = sequence->frames.size();
+    }
+    outcome()["samples_per_pair"] = result.samples_per_pair;
+    outcome()["estimated_error"] = core::write_value(result.estimated_error);
+    outcome()["interrupted"] = result.interrupted;
+    outcome()["seconds_render"] = result.seconds;
+}
+
 void run(const RenderArguments& arguments) {
     const core::ThreadLimit threads(arguments.threads);
     std::vector<std::string> overrides = arguments.overrides;
     overrides.insert(overrides.end(), arguments.shorthands.begin(), arguments.shorthands.end());
     const renderer::RenderResult result =
         render_to_file(arguments.scene, overrides, arguments.output, arguments.calibration);
-    for (const std::string& warning : result.warnings) {
-        print_error("warning: {}\n", warning);
-    }
+    for (const std::string& warning : result.warnings) warn(warning);
+    note(result, arguments.output);
     std::string effort;
     if (result.estimated_error)
         effort += fmt::format("error about {:.1e}, ", *result.estimated_error);
@@ -75,7 +86,7 @@ void run(const RenderArguments& arguments) {
     if (arguments.verbose) {
         core::Json details = capture.scene_info;
         details.erase("settings");
-        write_output(details.dump(2, ' ', true, core::Json::error_handler_t::replace) + "\n");
+        write_message(details.dump(2, ' ', true, core::Json::error_handler_t::replace) + "\n");
     }
     const std::string frames =
         capture.sequence ? fmt::format("{} frames x ", capture.sequence->frames.size()) : "";
@@ -95,24 +106,25 @@ void run(const RenderArguments& arguments) {
 }  // namespace
 
 void add_render_command(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("render", "Simulate the transients a scan records");
+    Command& command = add_command(app, "render", "Simulate the transients a scan records");
+    command.settings = core::settings_help(renderer::SceneDescription{});
     const auto arguments = std::make_shared<RenderArguments>();
-    command->add_option("SCENE", arguments->scene, "Scene description (.json)")->required();
-    add_output_option(*command, arguments->output, "Capture to write (.h5, .npz, .exr, .mat)")
+    add_file_option(command, "SCENE", arguments->scene, "Scene description (.json)")->required();
+    add_output_option(command, arguments->output, "Capture to write (.h5, .npz, .exr, .mat)")
         ->required();
-    add_shorthands(*command, kRenderShorthands, arguments->shorthands);
-    command->add_option("--calibration",
-                        arguments->calibration,
-                        "Calibration of the set-up to record with (.json)");
-    add_threads_option(*command, arguments->threads);
-    command->add_flag("--verbose",
-                      arguments->verbose,
-                      "Also print what the run did: estimators, excluded objects, shifts and why "
-                      "they were rejected");
-    add_set_option(*command, arguments->overrides);
-    command->footer(settings_footer(core::settings_help(renderer::SceneDescription{}),
-                                    "nlos render scenes/letter/scene.json -o letter.h5"));
-    command->callback([arguments] { run(*arguments); });
+    add_shorthands(command, kRenderShorthands, arguments->shorthands);
+    add_file_option(command,
+                    "--calibration",
+                    arguments->calibration,
+                    "Calibration of the set-up to record with (.json)");
+    add_threads_option(command, arguments->threads);
+    command.add_flag("--verbose",
+                     arguments->verbose,
+                     "Also print what the run did: estimators, excluded objects, shifts and why "
+                     "they were rejected");
+    add_set_option(command, arguments->overrides);
+    command.example = "nlos render scenes/letter/scene.json -o letter.h5";
+    command.callback([arguments] { run(*arguments); });
 }
 
 }  // namespace apps

@@ -2,6 +2,7 @@
 #include "apps/commands/render_job.h"
 
 #include "apps/arguments.h"
+#include "apps/progress_bar.h"
 #include "apps/terminal.h"
 #include "apps/version.h"
 #include "calib/calibrate.h"
@@ -160,6 +161,7 @@ void use_calibration(calib::AppliedCalibration calibration, RenderInput& input) 
 
 renderer::RenderResult render_input(RenderInput input, const core::Progress& progress) {
     renderer::SceneDescription& description = input.description;
+    const core::Progress searching = progress.stage(1, 3, "where the light lies", 0.0, 0.0);
     const auto light = renderer::find_light_range(*input.scene, input.scan, description.render);
     if (description.time_axis.automatic) {
         core::TimeAxis axis =
@@ -184,7 +186,8 @@ renderer::RenderResult render_input(RenderInput input, const core::Progress& pro
         if (progress.warn) progress.warn(doubt);
     }
 
-    renderer::RenderResult result = run(input.scene, rendered, input.scan, progress);
+    renderer::RenderResult result =
+        run(input.scene, rendered, input.scan, progress.stage(2, 3, "rendering", 0.0, 1.0));
     if (input.calibration) {
         result.capture =
             calib::record_with(*input.calibration, result.capture, description.time_axis);
@@ -205,6 +208,7 @@ renderer::RenderResult render_to_file(const std::string& scene_path,
                                       const std::string& calibration_path) {
     nlos::check_capture_suffix(capture_path);
     core::check_targets({capture_path}, {scene_path, calibration_path});
+    ProgressBar bar("render");
     RenderInput input;
     input.scene_name = std::filesystem::absolute(scene_path).lexically_normal().string();
     input.description = renderer::read_scene_description(scene_path, overrides);
@@ -214,8 +218,12 @@ renderer::RenderResult render_to_file(const std::string& scene_path,
     input.scene = std::make_shared<const renderer::Scene>(
         renderer::load_scene(input.description, input.scan));
 
-    ProgressBar bar("render");
-    renderer::RenderResult result = render_input(std::move(input), bar.progress());
+    const StoppableWork stoppable(
+        "stopping after this pass, to write what was computed; Ctrl-C again ends at once, without "
+        "a file");
+    const core::Progress progress = bar.progress();
+    renderer::RenderResult result = render_input(std::move(input), progress);
+    const core::Progress writing = progress.stage(3, 3, "writing", 1.0, 1.0);
     const std::vector<std::string> left_out = nlos::write_capture(capture_path, result.capture);
     if (result.capture.scan.camera) {
         core::write_text_file(with_suffix(capture_path, ".png"),

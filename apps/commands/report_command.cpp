@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "apps/arguments.h"
 #include "apps/commands.h"
+#include "apps/outcome.h"
+#include "apps/progress_bar.h"
 #include "apps/report/report.h"
 #include "apps/terminal.h"
 
@@ -19,16 +21,18 @@ struct ReportArguments {
 }  // namespace
 
 void add_report_command(CLI::App& app) {
-    CLI::App* command =
-        app.add_subcommand("report", "Make one self-contained page of a folder of results");
+    Command& command =
+        add_command(app, "report", "Make one self-contained page of a folder of results");
     const auto arguments = std::make_shared<ReportArguments>();
-    command->add_option("DIR", arguments->folder, "Folder of captures, volumes and metrics")
+    add_folder_option(command, "DIR", arguments->folder, "Folder of captures, volumes and metrics")
         ->required();
-    add_output_option(*command, arguments->output, "Page to write (.html)")->required();
-    command->footer(settings_footer({}, "nlos report data -o report.html"));
-    command->callback([arguments] {
+    add_output_option(command, arguments->output, "Page to write (.html)")->required();
+    command.example = "nlos report data -o report.html";
+    command.callback([arguments] {
         require_suffix(arguments->output, {".html", ".htm"});
+        const ProgressBar bar("report");
         write_report(arguments->folder, arguments->output);
+        note_written({arguments->output});
         print("wrote {}\n", arguments->output);
     });
 }

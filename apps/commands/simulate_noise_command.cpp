@@ -2,6 +2,8 @@
 #include "apps/arguments.h"
 #include "apps/capture_options.h"
 #include "apps/commands.h"
+#include "apps/outcome.h"
+#include "apps/progress_bar.h"
 #include "apps/terminal.h"
 #include "apps/version.h"
 #include "nlos/detector/detector.h"
@@ -87,6 +89,9 @@ void run(const NoiseArguments& arguments) {
     core::check_targets({arguments.output}, {arguments.capture});
     NoiseOptions options;
     apply(arguments, options);
+    ProgressBar bar("simulate-noise");
+    const core::Progress progress = bar.progress();
+    const core::Progress reading = progress.stage(1, 3, "reading", 0.0, 0.0);
     core::Capture capture = nlos::read_capture(arguments.capture, options.capture);
     const std::optional<core::SensorSetup> sensor = sensor_of(arguments, capture);
     if (sensor) {
@@ -94,49 +99,59 @@ void run(const NoiseArguments& arguments) {
         apply(arguments, options);
     }
     if (const auto warning = nlos::coarse_bins_warning(capture, options.detector)) {
-        print_error("warning: {}\n", *warning);
+        warn(*warning);
     }
+    const core::Progress detecting = progress.stage(2, 3, "detecting", 0.0, 1.0);
     core::Capture noisy =
         sensor ? nlos::detect_by_sensor(*sensor, std::move(capture), options.detector)
                : nlos::detect(capture, options.detector);
+    const core::Progress writing = progress.stage(3, 3, "writing", 1.0, 1.0);
     noisy.scene_info["detector"]["program"] = version_text();
     noisy.scene_info["detector"]["command"] = command_line();
     for (const std::string& loss : nlos::write_capture(arguments.output, noisy)) {
         print("not kept: {}\n", loss);
+        outcome()["not_kept"].push_back(core::printable(loss));
     }
 
     const auto values = noisy.transient.values();
     const double sum = std::accumulate(values.begin(), values.end(), 0.0);
+    const double most = *std::max_element(values.begin(), values.end());
+    note_written({arguments.output});
+    outcome()["pairs"] = noisy.transient.num_pairs();
+    outcome()["bins"] = noisy.transient.num_bins();
+    outcome()["counts"] = sum;
+    outcome()["most_in_a_bin"] = most;
     print("wrote {} ({} pairs x {} bins, {:.6g} {}counts, at most {:.6g} in a bin)\n",
           arguments.output,
           noisy.transient.num_pairs(),
           noisy.transient.num_bins(),
           sum,
           options.detector.expected ? "expected " : "",
-          *std::max_element(values.begin(), values.end()));
+          most);
 }
 
 }  // namespace
 
 void add_simulate_noise_command(CLI::App& app) {
-    CLI::App* command =
-        app.add_subcommand("simulate-noise", "Turn a capture into what a detector counts");
+    Command& command =
+        add_command(app, "simulate-noise", "Turn a capture into what a detector counts");
+    command.settings = core::settings_help(NoiseOptions{});
     const auto arguments = std::make_shared<NoiseArguments>();
-    command->add_option("CAPTURE", arguments->capture, "Capture in any readable format")
+    add_file_option(command, "CAPTURE", arguments->capture, "Capture in any readable format")
         ->required();
-    add_output_option(*command, arguments->output, "Capture to write (.h5, .npz, .exr, .mat)")
+    add_output_option(command, arguments->output, "Capture to write (.h5, .npz, .exr, .mat)")
         ->required();
-    add_shorthands(*command, kNoiseShorthands, arguments->shorthands);
-    command->add_flag("--sensor",
-                      arguments->of_sensor,
-                      "Start from the detector of the capture's sensor, its crosstalk and what its "
-                      "firmware cuts included");
-    add_threads_option(*command, arguments->threads);
-    add_capture_options(*command, arguments->overrides);
-    command->footer(settings_footer(core::settings_help(NoiseOptions{}),
-                                    "nlos simulate-noise data/letter.h5 -o noisy.h5 "
-                                    "--photons-per-point 1000 --jitter-fwhm-ps 60"));
-    command->callback([arguments] { run(*arguments); });
+    add_shorthands(command, kNoiseShorthands, arguments->shorthands);
+    command.add_flag("--sensor",
+                     arguments->of_sensor,
+                     "Start from the detector of the capture's sensor, its crosstalk and what its "
+                     "firmware cuts included");
+    add_threads_option(command, arguments->threads);
+    add_capture_options(command, arguments->overrides);
+    command.example =
+        "nlos simulate-noise data/letter.h5 -o noisy.h5 "
+        "--photons-per-point 1000 --jitter-fwhm-ps 60";
+    command.callback([arguments] { run(*arguments); });
 }
 
 }  // namespace apps

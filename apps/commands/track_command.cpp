@@ -3,6 +3,7 @@
 #include "apps/capture_options.h"
 #include "apps/commands.h"
 #include "apps/commands/track_job.h"
+#include "apps/outcome.h"
 #include "apps/terminal.h"
 #include "renderer/core/error.h"
 
@@ -24,7 +25,11 @@ void run(TrackRequest request) {
         throw core::Error("--output", "is missing", "must name the track to write (.json)");
     }
     const TrackSummary summary = live ? track_live(request, std::cin) : track_to_file(request);
-    for (const std::string& text : summary.warnings) print_error("warning: {}\n", text);
+    for (const std::string& text : summary.warnings) warn(text);
+    note_written({request.output, request.csv, request.picture});
+    outcome()["frames"] = summary.frames;
+    outcome()["frames_with_a_target"] = summary.named;
+    outcome()["seconds_track"] = summary.seconds;
     if (live) return;
     std::string written = request.output;
     for (const std::string& file : {request.csv, request.picture}) {
@@ -40,25 +45,28 @@ void run(TrackRequest request) {
 }  // namespace
 
 void add_track_command(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("track", "Track hidden targets with a histogram camera");
+    Command& command = add_command(app, "track", "Track hidden targets with a histogram camera");
+    command.settings = core::settings_help(TrackOptions{});
     const auto request = std::make_shared<TrackRequest>();
-    command
-        ->add_option("FRAMES... MODEL",
-                     request->frames,
-                     "Frames: a folder, a sequence capture, files that are frames, or - for a line "
-                     "of JSON each on standard input; then what counted them and what is tracked "
-                     "(.json)")
+    add_file_option(command,
+                    "FRAMES... MODEL",
+                    request->frames,
+                    "Frames: a folder, a sequence capture, files that are frames, or - for a line "
+                    "of JSON each on standard input; then what counted them and what is tracked "
+                    "(.json)")
         ->required();
-    add_output_option(*command, request->output, "Track to write (.json); may be left out with -");
-    command->add_option("--csv", request->csv, "Table to write: a line per frame and target");
-    command->add_option(
-        "--picture", request->picture, "Picture to write (.png): plan, histograms and model");
-    command->add_flag("--smooth", request->smooth, "Use later frames too, once all are there");
-    add_capture_options(*command, request->overrides);
-    command->footer(settings_footer(
-        core::settings_help(TrackOptions{}),
-        "nlos track data/walk/counts.h5 data/walk/track.json -o track.json --picture track.png"));
-    command->callback([request] { run(*request); });
+    add_output_option(command, request->output, "Track to write (.json); may be left out with -");
+    add_file_option(
+        command, "--csv", request->csv, "Table to write (.csv): a line per frame and target");
+    add_file_option(command,
+                    "--picture",
+                    request->picture,
+                    "Picture to write (.png): plan, histograms and model");
+    command.add_flag("--smooth", request->smooth, "Use later frames too, once all are there");
+    add_capture_options(command, request->overrides);
+    command.example =
+        "nlos track data/walk/counts.h5 data/walk/track.json -o track.json --picture track.png";
+    command.callback([request] { run(*request); });
 }
 
 }  // namespace apps

@@ -4,6 +4,7 @@
 #include "apps/arguments.h"
 #include "apps/commands/track_frames.h"
 #include "apps/commands/track_pictures.h"
+#include "apps/progress_bar.h"
 #include "apps/terminal.h"
 #include "apps/version.h"
 #include "calib/track/smooth.h"
@@ -117,6 +118,8 @@ TrackSummary track_to_file(const TrackRequest& request) {
     Run run(settings, input.sensor, reading);
     ProgressBar bar("track");
     const core::Progress progress = bar.progress();
+    const StoppableWork stoppable(
+        "stopping after this frame, without a file; Ctrl-C again ends at once");
     std::size_t done = 0;
     for (const calib::TrackFrame& frame : input.frames) {
         run.step(frame);

@@ -135,7 +135,7 @@ nb::object calibrate(const std::string& path, const nb::dict& changes) {
 nb::list help_of(const std::vector<core::SettingHelp>& lines) {
     nb::list list;
     for (const core::SettingHelp& line : lines) {
-        list.append(nb::make_tuple(line.key, line.default_value, line.meaning));
+        list.append(nb::make_tuple(line.key, line.default_value, line.text()));
     }
     return list;
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "apps/arguments.h"
 #include "apps/commands.h"
+#include "apps/outcome.h"
+#include "apps/progress_bar.h"
 #include "apps/sweep/sweep.h"
 #include "apps/sweep/sweep_summary.h"
 #include "apps/terminal.h"
@@ -48,12 +50,16 @@ void print_script(const SweepArguments& arguments, const SweepPlan& plan) {
 void print_summary(const SweepPlan& plan, const core::Json& rows, const SweepArguments& arguments) {
     const SweepSummary summary = write_summary(plan, rows, arguments.folder);
     if (rows.size() <= kMostPrinted) {
-        write_output(plain_text({headline_table(plan.settings(), rows)}));
+        write_message(plain_text({headline_table(plan.settings(), rows)}));
     }
-    for (const std::string& text : summary.warnings) print_error("warning: {}\n", text);
+    for (const std::string& text : summary.warnings) warn(text);
     if (!summary.has_plots) {
-        print_error("warning: gnuplot is not there, so no plot was drawn\n");
+        warn("gnuplot is not there, so no plot was drawn");
     }
+    note_written({(fs::path(arguments.folder) / "sweep.json").string(),
+                  (fs::path(arguments.folder) / "sweep.csv").string()});
+    outcome()["runs"] = rows.size();
+    outcome()["runs_failed"] = summary.num_failed;
     print("wrote {} and sweep.csv ({} runs{})\n",
           (fs::path(arguments.folder) / "sweep.json").string(),
           rows.size(),
@@ -69,8 +75,13 @@ void run(const SweepArguments& arguments, bool wants_script) {
     SweepProgress done;
     {
         ProgressBar bar("sweep");
+        const StoppableWork stoppable(
+            "stopping; what is done stays, and the same command goes on with the other runs; "
+            "Ctrl-C again ends at once");
         done = do_share(plan, results, share, bar.progress());
     }
+    outcome()["runs_done"] = results.num_done();
+    outcome()["runs_in_all"] = plan.num_runs();
     if (done.interrupted) {
         throw core::Failure("sweep",
                             fmt::format("interrupted; {} of {} runs are done, and the same command "
@@ -79,6 +90,7 @@ void run(const SweepArguments& arguments, bool wants_script) {
                                         plan.num_runs()));
     }
     if (const auto rows = results.rows()) return print_summary(plan, *rows, arguments);
+    note_written({(fs::path(arguments.folder) / "runs").string()});
     print("wrote {} runs to {}; {} of {} are done, other shards do the rest\n",
           done.num_new,
           (fs::path(arguments.folder) / "runs").string(),
@@ -89,30 +101,30 @@ void run(const SweepArguments& arguments, bool wants_script) {
 }  // namespace
 
 void add_sweep_command(CLI::App& app) {
-    CLI::App* command =
-        app.add_subcommand("sweep", "Render, reconstruct and compare over a grid of settings");
+    Command& command =
+        add_command(app, "sweep", "Render, reconstruct and compare over a grid of settings");
+    command.settings = core::settings_help(SweepSettings{});
     const auto arguments = std::make_shared<SweepArguments>();
-    command->add_option("SWEEP", arguments->sweep, "Scene and grid of settings (.json)")
+    add_file_option(command, "SWEEP", arguments->sweep, "Scene and grid of settings (.json)")
         ->required();
-    add_output_option(*command,
-                      arguments->folder,
-                      "Folder of results; what it holds of this sweep is not done again")
+    add_output_folder_option(command,
+                             arguments->folder,
+                             "Folder of results; what it holds of this sweep is not done again")
         ->required();
-    command->add_option("--shard",
-                        arguments->shard,
-                        "I/N: do part I, from 0, of N (default: that of the Slurm array task, or "
-                        "all)");
+    command.add_option("--shard",
+                       arguments->shard,
+                       "I/N: do part I, from 0, of N (default: that of the Slurm array task, or "
+                       "all)");
     CLI::Option* slurm =
-        command->add_option("--slurm",
-                            arguments->slurm,
-                            "Only print a script for sbatch, an array of TASKS (default: one per "
-                            "capture)");
+        command.add_option("--slurm",
+                           arguments->slurm,
+                           "Only print a script for sbatch, an array of TASKS (default: one per "
+                           "capture)");
     slurm->type_name("TASKS")->expected(0, 1);
-    add_threads_option(*command, arguments->threads);
-    add_set_option(*command, arguments->overrides);
-    command->footer(settings_footer(core::settings_help(SweepSettings{}),
-                                    "nlos sweep data/sweep.json -o out/sweep"));
-    command->callback([arguments, slurm] { run(*arguments, slurm->count() > 0); });
+    add_threads_option(command, arguments->threads);
+    add_set_option(command, arguments->overrides);
+    command.example = "nlos sweep data/sweep.json -o out/sweep";
+    command.callback([arguments, slurm] { run(*arguments, slurm->count() > 0); });
 }
 
 }  // namespace apps

@@ -309,12 +309,16 @@ std::vector<NamedState> FitDriver::turned(const SceneState& state) const {
     return symmetric_poses(*model, state, has_few_photons() ? kNearlySameInNoise : kNearlySame);
 }
 
-SolveSummary FitDriver::solve(Stage& stage, SceneState& state, int max_iterations) const {
+SolveSummary FitDriver::solve(Stage& stage,
+                              SceneState& state,
+                              int max_iterations,
+                              const std::function<void(int)>& report) const {
     SolveSettings limits = solve_settings;
     limits.max_iterations = max_iterations;
     if (stage.blur_m > 0.0) limits.laplacian_weight *= kBlurredSmoothness;
     const int rounds = stage.blur_m > 0.0 ? kBlurredVisibilityRounds : kMaxVisibilityRounds;
     SolveSummary total;
+    limits.report = [&](int iterations) { report(total.iterations + iterations); };
     for (int round = 0; round < rounds; ++round) {
         stage.model->refresh(state);
         if (round > 0 && !stage.model->visibility_changed()) break;

@@ -6,6 +6,7 @@
 #include "calib/fit/stage_solver.h"
 #include "renderer/core/progress.h"
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -45,7 +46,12 @@ struct FitDriver {
     /// A state with one body turned so that it nearly covers itself, as the data may confuse.
     std::vector<NamedState> turned(const SceneState& state) const;
     /// Solves one stage from `state`; repeats while the visibility changes.
-    SolveSummary solve(Stage& stage, SceneState& state, int max_iterations) const;
+    ///
+    /// report   called with the number of iterations so far
+    SolveSummary solve(Stage& stage,
+                       SceneState& state,
+                       int max_iterations,
+                       const std::function<void(int)>& report) const;
 
     const FitInput& input;
     FitSettings settings;  ///< without the freedoms that elimination takes out

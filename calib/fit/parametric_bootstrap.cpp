@@ -31,7 +31,8 @@ double draw_count(core::Rng& rng, double mean) {
 
 Eigen::VectorXd bootstrap_scatter(const FitDriver& driver,
                                   const FitDriver::Stage& stage,
-                                  const SceneState& state) {
+                                  const SceneState& state,
+                                  const core::Progress& progress) {
     stage.model->update(state, renderer::Gradients::Without);
     std::vector<double> means;
     PairModel pair;
@@ -44,6 +45,7 @@ Eigen::VectorXd bootstrap_scatter(const FitDriver& driver,
     SolveSettings settings = driver.solve_settings;
     settings.max_iterations = kRefitIterations;
     for (std::uint64_t refit = 0; refit < kRefits; ++refit) {
+        progress.update(static_cast<double>(refit) / kRefits, "refits to simulated data");
         core::Rng rng(kRefitSeed, refit, 0);
         FitData data = *stage.data;
         for (std::size_t i = 0; i < means.size(); ++i) {

@@ -14,6 +14,7 @@ namespace calib {
 /// source   parametric bootstrap [Efron1993]
 Eigen::VectorXd bootstrap_scatter(const FitDriver& driver,
                                   const FitDriver::Stage& stage,
-                                  const SceneState& state);
+                                  const SceneState& state,
+                                  const core::Progress& progress);
 
 }  // namespace calib

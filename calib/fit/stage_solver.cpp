@@ -127,13 +127,15 @@ class RoughnessPrior : public ceres::CostFunction {
 
 class StopCallback : public ceres::IterationCallback {
  public:
-    explicit StopCallback(const std::function<bool()>& stop_requested) : stop_(stop_requested) {}
-    ceres::CallbackReturnType operator()(const ceres::IterationSummary&) override {
-        return stop_ && stop_() ? ceres::SOLVER_ABORT : ceres::SOLVER_CONTINUE;
+    explicit StopCallback(const SolveSettings& settings) : settings_(settings) {}
+    ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
+        if (settings_.report) settings_.report(summary.iteration);
+        return settings_.stop_requested && settings_.stop_requested() ? ceres::SOLVER_ABORT
+                                                                      : ceres::SOLVER_CONTINUE;
     }
 
  private:
-    const std::function<bool()>& stop_;
+    const SolveSettings& settings_;
 };
 
 // Misfits of wall points beyond this are outliers.
@@ -197,7 +199,7 @@ SolveSummary solve_stage(const SceneModel& model,
     }
     add_priors(model, settings, values, problem);
 
-    StopCallback stop(settings.stop_requested);
+    StopCallback stop(settings);
     ceres::Solver::Options options;
     options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
     options.max_num_iterations = settings.max_iterations;

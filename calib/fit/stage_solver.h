@@ -28,6 +28,7 @@ struct SolveSettings {
     double lowest_log_ambient = -40.0;
     int max_iterations = 60;
     std::function<bool()> stop_requested;
+    std::function<void(int iterations)> report;  ///< called after every iteration; may be empty
 };
 
 /// Minimises an objective from `state`, which becomes the minimum, by Ceres' trust region.

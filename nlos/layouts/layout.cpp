@@ -3,8 +3,10 @@
 
 #include "nlos/layouts/shipped_layouts.h"
 #include "renderer/core/error.h"
+#include "renderer/core/nearest_name.h"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -168,13 +170,16 @@ const std::vector<Layout>& shipped_layouts() {
 }
 
 Layout find_layout(const std::string& name_or_path) {
-    std::string names;
+    std::vector<std::string> names;
     for (const Layout& layout : shipped_layouts()) {
         if (layout.name == name_or_path) return layout;
-        names += (names.empty() ? "" : ", ") + layout.name;
+        names.push_back(layout.name);
     }
     if (std::filesystem::is_regular_file(name_or_path)) return read_layout(name_or_path);
-    throw Error("layout " + name_or_path, "is unknown", "must be a JSON file, or one of " + names);
+    throw Error("layout " + name_or_path,
+                "is unknown",
+                core::did_you_mean(name_or_path, names) +
+                    fmt::format("must be a JSON file, or one of {}", fmt::join(names, ", ")));
 }
 
 }  // namespace nlos

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "renderer/core/json_error.h"
 #include "renderer/core/mapped_file.h"
 #include "renderer/core/settings.h"
 
@@ -9,41 +10,12 @@ namespace {
 
 constexpr std::size_t kDeepestNesting = 100;
 
-/// Control characters as people write them in strings, where the library says <U+000A>.
-std::string with_escapes(std::string text) {
-    constexpr std::string_view kMark = "<U+";
-    constexpr std::size_t kMarkBytes = 8;  // <U+000A>
-    for (std::size_t at = text.find(kMark); at != std::string::npos; at = text.find(kMark, at)) {
-        if (text.size() < at + kMarkBytes || text[at + kMarkBytes - 1] != '>') break;
-        const std::string code = text.substr(at + kMark.size(), 4);
-        std::string escape = "\\u" + code;
-        if (code == "000A") escape = "\\n";
-        if (code == "000D") escape = "\\r";
-        if (code == "0009") escape = "\\t";
-        text.replace(at, kMarkBytes, escape);
-        at += escape.size();
-    }
-    return text;
-}
-
-/// The library's message without its number; what it read last is cut to its end.
-std::string shorten(const std::string& message) {
-    constexpr std::string_view kRead = "last read: '";
-    constexpr std::size_t kLongestRead = 40;
-    const std::size_t start = message.find("] ");
-    std::string text =
-        with_escapes(start == std::string::npos ? message : message.substr(start + 2));
-    const std::size_t read = text.find(kRead);
-    if (read == std::string::npos || text.size() < read + kRead.size() + kLongestRead) return text;
-    return text.substr(0, read + kRead.size()) + "..." + text.substr(text.size() - kLongestRead);
-}
-
 /// Builds the value that a text describes, in time proportional to its length, and throws Error for
 /// what it may not hold: nesting without end, and keys that come twice. (The library's own parser
 /// looks every key up among those before it, and with a callback every item of a list.)
 class JsonBuilder : public nlohmann::json_sax<Json> {
  public:
-    explicit JsonBuilder(const std::string& where) : where_(where) {}
+    JsonBuilder(std::string_view text, const std::string& where) : text_(text), where_(where) {}
 
     Json take() { return std::move(root_); }
 
@@ -68,8 +40,13 @@ class JsonBuilder : public nlohmann::json_sax<Json> {
         return true;
     }
 
-    bool parse_error(std::size_t, const std::string&, const Json::exception& error) override {
-        throw Error(where_, "is not valid JSON (" + shorten(error.what()) + ")", "must be JSON");
+    bool parse_error(std::size_t position,
+                     const std::string& token,
+                     const Json::exception& error) override {
+        throw Error(
+            where_,
+            "is not valid JSON (" + json_error_text(text_, position, token, error.what()) + ")",
+            "must be JSON");
     }
 
  private:
@@ -112,6 +89,7 @@ class JsonBuilder : public nlohmann::json_sax<Json> {
         return members.back().second;
     }
 
+    std::string_view text_;
     const std::string& where_;
     Json root_;
     std::vector<Open> open_;
@@ -121,7 +99,7 @@ class JsonBuilder : public nlohmann::json_sax<Json> {
 }  // namespace
 
 Json parse_json(std::string_view text, const std::string& where) {
-    JsonBuilder builder(where);
+    JsonBuilder builder(text, where);
     Json::sax_parse(text, &builder);
     return builder.take();
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/core/sensor_model.h"
 
+#include "renderer/core/nearest_name.h"
 #include "renderer/core/shipped_sensors.h"
 
 #include <fmt/core.h>
@@ -62,10 +63,13 @@ SensorModel read_sensor_model(const std::string& name_or_path, const std::string
         return entry.first == name_or_path;
     });
     const bool is_file = std::filesystem::path(name_or_path).extension() == ".json";
-    require(known != shipped.end() || is_file,
-            where,
-            "\"" + name_or_path + "\"",
-            fmt::format("one of {} or a .json file", fmt::join(shipped_sensors(), ", ")));
+    if (known == shipped.end() && !is_file) {
+        throw Error(where,
+                    "found \"" + name_or_path + "\"",
+                    did_you_mean(name_or_path, shipped_sensors()) +
+                        fmt::format("must be one of {} or a .json file",
+                                    fmt::join(shipped_sensors(), ", ")));
+    }
     const std::string prefix = name_or_path + ": ";
     const Json json = known != shipped.end() ? parse_json(known->second, name_or_path)
                                              : read_json_file(name_or_path);

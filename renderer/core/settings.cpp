@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/core/settings.h"
 
+#include "renderer/core/nearest_name.h"
+
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
@@ -38,6 +40,19 @@ void throw_wrong_type(const std::string& where, const Json& found, const std::st
     throw Error(where.ends_with(": ") ? where.substr(0, where.size() - 2) : where,
                 "found " + shortened(found),
                 "must be " + allowed);
+}
+
+void throw_unknown_name(const std::string& where,
+                        const Json& found,
+                        const std::vector<std::string>& names) {
+    const std::string nearest =
+        found.is_string() ? did_you_mean(found.get_ref<const std::string&>(), names) : "";
+    throw Error(
+        where, "found " + shortened(found), nearest + "must be one of " + choices_text(names));
+}
+
+std::string choices_text(const std::vector<std::string>& names) {
+    return fmt::format("{}", fmt::join(names, "|"));
 }
 
 std::string join_key(const std::string& where, const std::string& key) {
@@ -92,26 +107,36 @@ void check_keys(const Json& json, const std::string& where, const std::vector<st
         if (std::find(known.begin(), known.end(), key) == known.end()) {
             throw Error(join_key(where, key),
                         "found an unknown key",
-                        fmt::format("known keys are {}", fmt::join(known, ", ")));
+                        did_you_mean(key, known) +
+                            fmt::format("known keys are {}", fmt::join(known, ", ")));
         }
     }
+}
+
+std::string range_text(const Range& range) {
+    std::string text;
+    if (std::isfinite(range.low)) {
+        text = fmt::format("{} {}", range.with_low ? "at least" : "above", range.low);
+    }
+    if (std::isfinite(range.high)) {
+        text += fmt::format("{}{} {}",
+                            text.empty() ? "" : " and ",
+                            range.with_high ? "at most" : "below",
+                            range.high);
+    }
+    return text;
+}
+
+std::string SettingHelp::text() const {
+    const std::string limits = choices.empty() ? range : choices_text(choices);
+    return limits.empty() ? meaning : meaning + " (" + limits + ")";
 }
 
 void check_range(double value, const Range& range, const std::string& where) {
     const bool above = range.with_low ? value >= range.low : value > range.low;
     const bool below = range.with_high ? value <= range.high : value < range.high;
     if (above && below && std::isfinite(value)) return;
-    std::string allowed;
-    if (std::isfinite(range.low)) {
-        allowed = fmt::format("{} {}", range.with_low ? "at least" : "above", range.low);
-    }
-    if (std::isfinite(range.high)) {
-        allowed += fmt::format("{}{} {}",
-                               allowed.empty() ? "" : " and ",
-                               range.with_high ? "at most" : "below",
-                               range.high);
-    }
-    require(false, where, value, std::isfinite(value) ? allowed : "finite");
+    require(false, where, value, std::isfinite(value) ? range_text(range) : "finite");
 }
 
 Json parse_override(const std::string& text) {

@@ -83,13 +83,18 @@ constexpr auto names_from_zero(const Names&... names) {
 }
 
 template <class E>
+std::vector<std::string> enum_names() {
+    std::vector<std::string> names;
+    for (const auto& [value, name] : EnumNames<E>::value) names.emplace_back(name);
+    return names;
+}
+
+/// Names with `|` between them.
+std::string choices_text(const std::vector<std::string>& names);
+
+template <class E>
 std::string enum_choices() {
-    std::string text;
-    for (const auto& [value, name] : EnumNames<E>::value) {
-        if (!text.empty()) text += "|";
-        text += name;
-    }
-    return text;
+    return choices_text(enum_names<E>());
 }
 
 template <class E>
@@ -112,6 +117,11 @@ void require(bool holds,
                                    const Json& found,
                                    const std::string& allowed);
 
+/// Throws the error for a JSON value that is none of these names, with the nearest of them.
+[[noreturn]] void throw_unknown_name(const std::string& where,
+                                     const Json& found,
+                                     const std::vector<std::string>& names);
+
 // Values of settings. Each throws Error naming `where` when the JSON has another type or shape.
 void read_value(const Json& json, const std::string& where, bool& value);
 void read_value(const Json& json, const std::string& where, int& value);
@@ -131,7 +141,7 @@ void read_value(const Json& json, const std::string& where, E& value) {
             }
         }
     }
-    throw_wrong_type(where, json, "one of " + enum_choices<E>());
+    throw_unknown_name(where, json, enum_names<E>());
 }
 
 template <class T, std::size_t N>
@@ -167,7 +177,7 @@ void read_value(const Json& json, const std::string& where, std::optional<T>& va
     read_value(json, where, *value);
 }
 
-/// Throws Error for keys of `json` that are not among `known`, naming the known ones.
+/// Throws Error for keys of `json` that are not among `known`, naming the nearest and all of them.
 void check_keys(const Json& json, const std::string& where, const std::vector<std::string>& known);
 
 /// The name of a key below `where`, as errors print it.
@@ -233,6 +243,9 @@ requires SettingsStruct<S> Json write_value(S settings) {
     return json;
 }
 
+/// The range in words, as in "at least 0 and below 1"; empty for all numbers.
+std::string range_text(const Range& range);
+
 /// Throws Error unless a number is finite and in a range, each number of a list, and that of an
 /// optional if it has one; `where` is the full key.
 void check_range(double value, const Range& range, const std::string& where);
@@ -273,31 +286,58 @@ void apply_override(S& settings, const std::string& text) {
     read_value(parse_override(text), "--set", settings);
 }
 
-/// One line of help: full key, default and meaning.
+/// What help says of a setting.
 struct SettingHelp {
-    std::string key;
+    std::string key;  ///< full, dotted
     std::string default_value;
     std::string meaning;
+    std::vector<std::string> choices;  ///< the values that it may have; empty: no closed set
+    std::string range;                 ///< of its numbers, in words; empty: any
+
+    /// The meaning, with the choices or the range behind it.
+    std::string text() const;
 };
 
 template <class T>
-std::string choices_of(const T&) {
-    if constexpr (std::is_enum_v<T>) return " (" + enum_choices<T>() + ")";
-    return "";
+std::vector<std::string> choices_of(const T&) {
+    if constexpr (std::is_enum_v<T>) return enum_names<T>();
+    return {};
+}
+template <class T>
+std::vector<std::string> choices_of(const std::optional<T>&) {
+    return choices_of(T{});
 }
 
-/// Lists every field, nested ones by their dotted key, with default and meaning.
+/// The settings in a field, which is one of them or has fields of its own.
+template <class T>
+struct NestedSettings {
+    static constexpr bool exist = SettingsStruct<T>;
+    using Type = T;
+};
+template <class T>
+struct NestedSettings<std::optional<T>> : NestedSettings<T> {};
+
+/// Lists every field with default and meaning, nested ones by their dotted key; fields of what is
+/// null by default come behind the line that says so.
 template <SettingsStruct S>
 std::vector<SettingHelp> settings_help(S defaults, const std::string& prefix = "") {
     std::vector<SettingHelp> lines;
-    for_each_field(defaults, [&](const char* name, auto& field, const char* meaning) {
-        using Field = std::remove_reference_t<decltype(field)>;
-        if constexpr (SettingsStruct<Field>) {
-            const auto nested = settings_help(field, prefix + name + ".");
+    for_each_field(defaults, [&](const char* name, auto& field, const auto& meaning) {
+        using Field = std::remove_cvref_t<decltype(field)>;
+        using Nested = NestedSettings<Field>;
+        if constexpr (!SettingsStruct<Field>) {
+            SettingHelp line{prefix + name, write_value(field).dump(), "", choices_of(field), ""};
+            line.meaning = static_cast<const char*>(meaning);
+            if constexpr (std::same_as<decltype(meaning), const Ranged&>) {
+                line.range = range_text(meaning.range);
+            }
+            lines.push_back(std::move(line));
+        }
+        if constexpr (Nested::exist) {
+            typename Nested::Type inner{};
+            if constexpr (SettingsStruct<Field>) inner = field;
+            const auto nested = settings_help(inner, prefix + name + ".");
             lines.insert(lines.end(), nested.begin(), nested.end());
-        } else {
-            lines.push_back(
-                {prefix + name, write_value(field).dump(), meaning + choices_of(field)});
         }
     });
     return lines;

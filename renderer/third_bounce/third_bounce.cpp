@@ -26,6 +26,8 @@ constexpr int kReferenceSteps = PilotRuns::kReferenceSteps;
 // not merged beyond that.
 constexpr double kNearlyFewest = 1.05;
 
+constexpr const char* kTrials = "trial runs for the error";
+
 // Finds the refinement level that meets the target, and integrates with it.
 class Integrator {
  public:
@@ -69,6 +71,7 @@ int Integrator::finest_in_time(const core::Progress& progress) {
         static_cast<double>(scan_.num_pairs()) / static_cast<double>(pilots_.num_pairs());
     const core::Stopwatch watch;
     int level = kCoarsest;
+    progress.update(0.0, kTrials);
     pilots_.error_of(level);
     for (; level > kFinest && !progress.should_stop(); --level) {
         const int next = level - 1;
@@ -97,6 +100,7 @@ int Integrator::choose_level(const core::Progress& progress) {
     }
     if (seconds_) return finest_in_time(progress);
     int level = kFirst;
+    progress.update(0.0, kTrials);
     // Fine enough as a reference for the next finer level, too. A coarser one would miss shadows
     // that both leave out.
     pilots_.run(level - 1 - kReferenceSteps);
@@ -106,6 +110,7 @@ int Integrator::choose_level(const core::Progress& progress) {
             stopped_ = true;
             return kCoarsest;
         }
+        progress.update(0.0, fmt::format("{}, {} elements", kTrials, pilots_.run(level).num_elements));
         if (pilots_.run(level).misses_shadows && pilots_.look_everywhere()) {
             may_be_coarser = true;
             continue;

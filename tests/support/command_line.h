@@ -29,7 +29,7 @@ inline std::string without_progress(const std::string& text) {
     std::istringstream lines(text);
     std::string rest;
     for (std::string line; std::getline(lines, line);) {
-        if (!line.ends_with(" s left")) rest += line + '\n';
+        if (!line.ends_with(" s left") && !line.ends_with(" s so far")) rest += line + '\n';
     }
     return rest;
 }

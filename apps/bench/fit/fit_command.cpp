@@ -9,7 +9,7 @@ namespace {
 void declare(CLI::App& command, FitBenchSettings& settings) {
     add_setting(command, "--trials", settings.trials, "Fits per row of the table", {1, 10000});
     command.add_option("--only", settings.parts, "Parts of the table")
-        ->check(CLI::IsMember(fit_bench_parts()));
+        ->check(one_of(fit_bench_parts()));
 }
 
 }  // namespace

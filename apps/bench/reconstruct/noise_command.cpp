@@ -7,7 +7,7 @@ namespace apps {
 namespace {
 
 void declare(CLI::App& command, NoiseBenchSettings& settings) {
-    add_setting(command, "--scene", settings.scene, "Scene description");
+    add_setting(command, "--scene", settings.scene, "Scene description")->type_name("FILE");
     add_setting(command, "--repeats", settings.repeats, "Seeds per figure", {1, 1000});
 }
 

@@ -7,10 +7,12 @@ namespace apps {
 namespace {
 
 void declare(CLI::App& command, ReconstructBenchSettings& settings) {
-    add_setting(command, "--scenes", settings.scenes_folder, "Folder of the scenes");
-    command.add_option("--capture", settings.capture, "Also score this capture of the letter T");
+    add_setting(command, "--scenes", settings.scenes_folder, "Folder of the scenes")
+        ->type_name("DIR");
+    add_file_option(
+        command, "--capture", settings.capture, "Also score this capture of the letter T");
     add_setting(command, "--part", settings.part, "What to measure")
-        ->check(CLI::IsMember({"all", "time", "accuracy", "scaling"}));
+        ->check(one_of({"all", "time", "accuracy", "scaling"}));
     add_setting(command, "--repeats", settings.repeats, "Runs per median", {1, 1000});
     add_threads_option(command, settings.threads);
     add_setting(

@@ -120,9 +120,11 @@ BenchResult measure(const ComparisonArguments& arguments, const core::Progress& 
 
 void declare(CLI::App& command, ComparisonArguments& arguments) {
     command.add_option("--only", arguments.only, "One of them")
-        ->check(CLI::IsMember({"charts", "gauges", "progress"}));
-    add_setting(command, "--chart-scene", arguments.chart_scene, "Image for charts and gauges");
-    add_setting(command, "--progress-scene", arguments.progress_scene, "Image for progress");
+        ->check(one_of({"charts", "gauges", "progress"}));
+    add_setting(command, "--chart-scene", arguments.chart_scene, "Image for charts and gauges")
+        ->type_name("FILE");
+    add_setting(command, "--progress-scene", arguments.progress_scene, "Image for progress")
+        ->type_name("FILE");
     add_setting(command, "--seconds", arguments.seconds, "CPU time of a method for all frames [s]")
         ->check(CLI::PositiveNumber);
     add_setting(command, "--frames", arguments.frames, "Frames of the moving gate", {4, 10'000});

@@ -7,19 +7,22 @@ namespace apps {
 namespace {
 
 void declare(CLI::App& command, RenderBenchSettings& settings) {
-    add_setting(command, "--scene", settings.scene, "Scene description");
-    add_setting(command, "--camera-scene", settings.camera_scene, "Image to try gates on");
+    add_setting(command, "--scene", settings.scene, "Scene description")->type_name("FILE");
+    add_setting(command, "--camera-scene", settings.camera_scene, "Image to try gates on")
+        ->type_name("FILE");
     add_setting(command,
                 "--exclusion-scenes",
                 settings.exclusion_scenes,
-                "Scenes with surfaces to exclude from ellipsoidal connections");
+                "Scenes with surfaces to exclude from ellipsoidal connections")
+        ->type_name("FILE");
     add_setting(command,
                 "--agreement-scenes",
                 settings.agreement_scenes,
-                "Confocal scans on which third_bounce and path are compared bin by bin");
+                "Confocal scans on which third_bounce and path are compared bin by bin")
+        ->type_name("FILE");
     add_setting(command, "--part", settings.part, "What to measure")
-        ->check(CLI::IsMember(
-            {"all", "curves", "third_bounce", "accuracy", "gates", "exclusion", "scaling"}));
+        ->check(
+            one_of({"all", "curves", "third_bounce", "accuracy", "gates", "exclusion", "scaling"}));
     add_setting(command, "--repeats", settings.repeats, "Runs per point", {1, 1000});
     command.add_flag("--quick", settings.quick, "Leave out what takes longest");
 }

@@ -47,12 +47,14 @@ BenchResult measure(const SequenceArguments& arguments, const core::Progress& pr
 
 void declare(CLI::App& command, SequenceArguments& arguments) {
     SequenceScenes& scenes = arguments.scenes;
-    add_setting(command, "--scene", scenes.scan, "Scan");
-    add_setting(command, "--image-scene", scenes.image, "Camera");
+    add_setting(command, "--scene", scenes.scan, "Scan")->type_name("FILE");
+    add_setting(command, "--image-scene", scenes.image, "Camera")->type_name("FILE");
     add_setting(command, "--image-resolution", scenes.image_resolution, "Pixels, width and height")
         ->check(CLI::Range(1, 10'000));
-    add_setting(command, "--moving-scene", scenes.moving_scan, "Scan of objects that move");
-    add_setting(command, "--moving-image-scene", scenes.moving_image, "Camera on such objects");
+    add_setting(command, "--moving-scene", scenes.moving_scan, "Scan of objects that move")
+        ->type_name("FILE");
+    add_setting(command, "--moving-image-scene", scenes.moving_image, "Camera on such objects")
+        ->type_name("FILE");
     command.add_option("--only", arguments.only, "Sequences whose names contain this");
     add_setting(command, "--frames", arguments.frames, "Frames of a sequence", {2, 10'000});
     add_setting(command, "--repeats", arguments.repeats, "Runs per method", {1, 1000});

@@ -32,11 +32,16 @@ TEST_F(DataFolder, IsThatOfTheEnvironment) {
 
 TEST_F(DataFolder, IsAskedForFilesThatAreNotInTheWorkingFolder) {
     ::unsetenv("NLOS_DATA");
+    const fs::path before = fs::current_path();
+    fs::current_path("/");
     const std::string letter = "data/letter.h5";
     EXPECT_EQ(core::shipped_file(letter), core::data_folder() + "/" + letter);
     EXPECT_EQ(core::shipped_file("/tmp"), "/tmp");
     EXPECT_EQ(core::shipped_file("no/such/file"), "no/such/file");
     EXPECT_EQ(core::shipped_file(""), "");
+    fs::current_path(core::data_folder());
+    EXPECT_EQ(core::shipped_file(letter), letter);
+    fs::current_path(before);
 }
 
 }  // namespace

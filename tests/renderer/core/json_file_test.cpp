@@ -39,13 +39,39 @@ TEST(JsonText, ObjectsMayHaveAnyNumberOfKeys) {
 }
 
 TEST(JsonText, MessagesShowCharactersAsPeopleWriteThem) {
-    EXPECT_ERROR_WITH(parse_json("{\"größe\": [1\n, é]}", "text"), "line 2, column 3");
+    EXPECT_ERROR_WITH(parse_json("{\"größe\": [1\n, é]}", "text"), "line 2, column 3: found 'é'");
     EXPECT_ERROR_WITH(parse_json("[\"größe", "text"), "last read: '\"größe'");
-    EXPECT_ERROR_WITH(parse_json("[\"a\tb\"]", "text"), "last read: '\"a\\t'");
-    EXPECT_ERROR_WITH(parse_json("[\"\xff\"]", "text"), "'\"\\xff'");
+    EXPECT_ERROR_WITH(parse_json("[\"größe\tb\"]", "text"), "line 1, column 8: invalid string");
+    EXPECT_ERROR_WITH(parse_json("[\"a\xff\"]", "text"), "line 1, column 4: invalid string");
+    EXPECT_ERROR_WITH(parse_json("[\"a\nb\"]", "text"), "a line ends before its quote is closed");
     const std::string message =
         test_support::error_message([] { parse_json("[\"" + std::string(10'000, 'a'), "text"); });
     EXPECT_LT(message.size(), 250U) << message;
+}
+
+TEST(JsonText, UsualSlipsAreCalledByTheirName) {
+    const std::vector<std::array<std::string, 2>> slips{
+        {"[1, 2,]", "column 7: found ']'; the last item has no comma behind it"},
+        {"{\"a\": 1,\n}", "line 2, column 1: found '}'; the last item has no comma"},
+        {"{\"größe\": “x”}", "column 11: found '“'; texts stand between straight double quotes"},
+        {"{'a': 1}", "column 2: found '''; texts stand between straight double quotes"},
+        {"{\"a\": 1 // one\n}", "column 9: found '/'; JSON has no comments"},
+        {"# a\n{}", "column 1: found '#'; JSON has no comments"},
+        {"\xef\xbb\xbf[1,]", "column 4: found ']'; the last item"},
+        {"{\"a\": NaN}", "found 'NaN'; JSON has no numbers but finite ones"},
+        {"{\"a\": -Infinity}", "found '-Infinity'; JSON has no numbers but finite ones"},
+        {"[True]", "column 2: found 'True'; JSON writes true, false and null"},
+        {"[tru]", "column 2: found 'tru'"},
+        {"{a: 1}", "column 2: found 'a'; expected a key between double quotes"},
+        {"{\"a\": 1 \"b\": 2}", "column 9: found '\"'; a comma or colon is missing before it"},
+        {"[.5]", "found '.'; numbers begin with a digit"},
+        {"[1, 2", "it ends before all brackets are closed"},
+        {"", "it is empty"},
+        {"\xff\xfe{", "its text is UTF-16; must be UTF-8"}};
+    for (const auto& [text, reason] : slips) {
+        EXPECT_ERROR_WITH(parse_json(text, "text"), reason) << text;
+    }
+    EXPECT_EQ(parse_json("\xef\xbb\xbf[1]", "text"), Json::array({1})) << "a mark of UTF-8 is none";
 }
 
 TEST(JsonText, NumbersBeyondDoubleAreReported) {

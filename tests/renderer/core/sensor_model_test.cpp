@@ -66,7 +66,7 @@ TEST(SensorModel, FilesAreReadAndWrittenUnchanged) {
 TEST(SensorModel, MessagesNameFileKeyAndRange) {
     EXPECT_ERROR_WITH(
         core::read_sensor_model("vl53l9", "scan.sensor"),
-        "scan.sensor: found \"vl53l9\"; must be one of vl53l8, tmf8828, tmf8829 or a");
+        "scan.sensor: found \"vl53l9\"; did you mean 'vl53l8'? must be one of vl53l8, tmf8828, tmf8829 or a");
     EXPECT_ERROR_WITH(core::read_sensor_model("nowhere.json"), "nowhere.json");
     EXPECT_ERROR_WITH(shipped_model_with({{"zones", {0, 4}}}), "other.json: zones");
     EXPECT_ERROR_WITH(shipped_model_with({{"zones", {128, 128}}}), "16384 zones");

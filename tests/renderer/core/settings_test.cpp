@@ -87,8 +87,12 @@ TEST(Settings, EchoReadsBackToTheSameEcho) {
 }
 
 TEST(Settings, UnknownKeyListsKnownKeys) {
-    EXPECT_EQ(message_of(R"({"inner": {"widht_m": 1}})"),
-              "file.json: inner.widht_m: found an unknown key; known keys are width_m, shape");
+    EXPECT_EQ(
+        message_of(R"({"inner": {"widht_m": 1}})"),
+        "file.json: inner.widht_m: found an unknown key; did you mean 'width_m'? known keys are "
+        "width_m, shape");
+    EXPECT_EQ(message_of(R"({"inner": {"depth": 1}})"),
+              "file.json: inner.depth: found an unknown key; known keys are width_m, shape");
 }
 
 TEST(Settings, WrongTypesNameKeyValueAndWhatIsAllowed) {
@@ -102,6 +106,8 @@ TEST(Settings, WrongTypesNameKeyValueAndWhatIsAllowed) {
     EXPECT_EQ(message_of(R"({"on": 1})"), "file.json: on: found 1; must be true or false");
     EXPECT_EQ(message_of(R"({"colour": "blue"})"),
               "file.json: colour: found \"blue\"; must be one of red|green");
+    EXPECT_EQ(message_of(R"({"colour": "gren"})"),
+              "file.json: colour: found \"gren\"; did you mean 'green'? must be one of red|green");
     EXPECT_EQ(message_of(R"({"inner": 5})"),
               "file.json: inner: found 5; must be an object with named fields");
     EXPECT_EQ(message_of(R"({"inner": {"shape": [1]}})"),
@@ -157,10 +163,16 @@ TEST(Settings, MalformedOverridesAreRejected) {
 
 TEST(Settings, HelpListsEveryLeafWithItsDefault) {
     const auto lines = core::settings_help(Outer{});
-    ASSERT_EQ(lines.size(), 7U);
+    ASSERT_EQ(lines.size(), 9U);
     EXPECT_EQ(lines[0].key, "inner.width_m");
     EXPECT_EQ(lines[0].default_value, "0.5");
-    EXPECT_EQ(lines[4].meaning, "colour (red|green)");
+    EXPECT_EQ(lines[0].text(), "width [m] (above 0)");
+    EXPECT_EQ(lines[4].choices, (std::vector<std::string>{"red", "green"}));
+    EXPECT_EQ(lines[4].text(), "colour (red|green)");
+    EXPECT_EQ(lines[5].text(), "limit (at least 0 and below 1)");
+    EXPECT_EQ(lines[6].key, "extra");
+    EXPECT_EQ(lines[6].default_value, "null");
+    EXPECT_EQ(lines[8].key, "extra.shape") << "what is null has fields once it is set";
 }
 
 }  // namespace

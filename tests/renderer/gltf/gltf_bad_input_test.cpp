@@ -130,7 +130,7 @@ TEST(GltfBadInput, MessagesNameTheOffendingValue) {
         {"materials[0].pbrMetallicRoughness.baseColorFactor",
          "/materials",
          R"([{"pbrMetallicRoughness": {"baseColorFactor": [2, 0, 0, 1]}}])"},
-        {"nodes[0].extras.nlos_rolle: found an unknown key; known keys are nlos_role",
+        {"nodes[0].extras.nlos_rolle: found an unknown key; did you mean 'nlos_role'? known keys are nlos_role",
          "/nodes/0/extras",
          R"({"nlos_rolle": "hidden"})"},
         {"nodes[0].extras.nlos_role: found \"wall\"; must be one of hidden|relay_wall|back_wall",

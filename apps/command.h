@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/core/settings.h"
+
+#include <CLI/CLI.hpp>
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace apps {
+
+/// A command of the program: its arguments, and what --help, the manual and the completion of
+/// shells say beside them.
+class Command : public CLI::App {
+ public:
+    Command(const std::string& name, const std::string& description);
+
+    std::vector<core::SettingHelp> settings;  ///< what --set reaches
+    std::string example;                      ///< a command line that works in the checkout
+
+ private:
+    std::string settings_and_example() const;
+};
+
+/// Declares a command of the program or of another command, with the options that all have.
+Command& add_command(CLI::App& parent, const std::string& name, const std::string& description);
+
+/// The name of a command as it is typed, as in "nlos bench render".
+std::string typed_name(const CLI::App& command);
+
+/// The deepest command that has been parsed: this one or one below it.
+const CLI::App& parsed_command(const CLI::App& app);
+
+/// Throws core::Error, with the nearest name, where a command must stand and an unknown one does;
+/// CLI11 would only say that one is missing.
+void reject_unknown_command(const CLI::App& app, std::span<const std::string> arguments);
+
+/// Throws core::Error for arguments that could not be parsed: an unknown option, with the nearest
+/// one, or else what CLI11 says.
+[[noreturn]] void throw_usage_error(const CLI::App& app, const CLI::ParseError& error);
+
+/// A check that a text is one of these names.
+CLI::Validator one_of(const std::vector<std::string>& names);
+
+}  // namespace apps

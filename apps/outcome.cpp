@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+#include "apps/outcome.h"
+
+#include "apps/terminal.h"
+#include "renderer/core/stopwatch.h"
+
+namespace apps {
+namespace {
+
+const core::Stopwatch g_watch;  // since the program began
+
+}  // namespace
+
+core::Json& outcome() {
+    static core::Json fields = core::Json::object();
+    return fields;
+}
+
+void note_written(const std::vector<std::string>& paths) {
+    for (const std::string& path : paths) {
+        if (!path.empty()) outcome()["written"].push_back(core::printable(path));
+    }
+}
+
+void warn(const std::string& text) {
+    print_error("warning: {}\n", text);
+    outcome()["warnings"].push_back(core::printable(text));
+}
+
+void print_outcome(const std::string& command, int status, const std::string& error) noexcept try {
+    if (!output_settings().json) return;
+    core::Json line{{"command", command}, {"status", status}};
+    if (!error.empty()) line["error"] = core::printable(error);
+    line["seconds"] = g_watch.seconds();
+    line.update(outcome());
+    write_output(line.dump(-1, ' ', false, core::Json::error_handler_t::replace) + "\n");
+} catch (const std::exception&) {
+    // What failed before has been said; flush_output() says when standard output cannot be written.
+}
+
+}  // namespace apps

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/core/settings.h"
+
+#include <string>
+#include <vector>
+
+namespace apps {
+
+/// What --json says at the end of a command beside its name, status and seconds: the numbers that
+/// its text shows. Commands add to it.
+core::Json& outcome();
+
+/// Says in outcome() that a file or folder was written; empty names are left out.
+void note_written(const std::vector<std::string>& paths);
+
+/// Prints a warning to standard error and notes it in outcome().
+void warn(const std::string& text);
+
+/// Prints the last line of --json, if it was asked for, after all other output; not where standard
+/// output is closed or full.
+///
+/// command   as it is typed, "nlos bench render"
+/// error     the message of what failed; empty: nothing did
+void print_outcome(const std::string& command, int status, const std::string& error) noexcept;
+
+}  // namespace apps
