@@ -12,7 +12,7 @@ status that a comment `# exit status N` states. Fenced blocks mean, by the word 
     ```text                            lines of what the command before printed; numbers within 10 %
 
 Other blocks are not run. Pictures of the page are those that its commands write under the same name:
-both must have the same size, and --update replaces the page's. The folder sees apps, data and scenes
+both must have the same size within 1 %, and --update replaces the page's. The folder sees apps, data and scenes
 of the checkout.
 """
 import os
@@ -79,8 +79,9 @@ class Follower:
         if update:
             shown.parent.mkdir(exist_ok=True)
             shutil.copyfile(written[0], shown)
-        if size_of_png(shown) != size_of_png(written[0]):
-            raise Mismatch(f"{link} is {size_of_png(shown)}, written {size_of_png(written[0])}; --update")
+        sizes = size_of_png(shown), size_of_png(written[0])
+        if any(abs(a - b) > 0.01 * b for a, b in zip(*sizes)):
+            raise Mismatch(f"{link} is stale, {sizes[0]} pixels for {sizes[1]}: --update")
 
 
 def same(stated: str, printed: str) -> bool:
