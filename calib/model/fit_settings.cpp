@@ -128,7 +128,6 @@ void validate(const FitSettings& s, const std::string& where) {
     const auto positive = [&](double value, const char* key) {
         require(std::isfinite(value) && value > 0.0, key, value, "must be positive");
     };
-    require(!s.scene.empty(), "scene", "nothing", "must name a scene.json");
     require(s.free.point_scatterers >= 0 && s.free.point_scatterers <= 1000,
             "free.point_scatterers",
             s.free.point_scatterers,
@@ -161,6 +160,9 @@ FitSettings read_fit_settings(const std::string& path, const std::vector<std::st
     core::read_value(core::read_json_file(path), path + ": ", settings);
     for (const std::string& text : overrides) core::apply_override(settings, text);
     validate(settings, path + ": ");
+    if (settings.scene.empty()) {
+        throw core::Error(path + ": scene", "found nothing", "must name a scene.json");
+    }
     const std::filesystem::path folder = std::filesystem::path(path).parent_path();
     settings.scene = (folder / settings.scene).string();
     if (!settings.response.curve.empty()) {

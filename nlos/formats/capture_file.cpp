@@ -3,10 +3,12 @@
 
 #include "nlos/formats/capture_adjustment.h"
 #include "nlos/formats/capture_format.h"
+#include "nlos/formats/volume_file.h"
 #include "nlos/layouts/layout_capture.h"
 #include "nlos/layouts/layout_guess.h"
 #include "renderer/core/error.h"
 #include "renderer/core/sensor_footprint.h"
+#include "renderer/core/settings.h"
 
 #include <fmt/core.h>
 
@@ -60,8 +62,29 @@ std::string first_container(const std::string& path) {
     return path;
 }
 
+/// What of ours a file is that is no capture, as messages call it; empty for any other.
+std::string other_file_of_ours(const std::string& path) {
+    const std::string suffix = std::filesystem::path(path).extension().string();
+    for (const char* mesh : {".glb", ".gltf", ".obj", ".ply", ".stl"}) {
+        if (suffix == mesh) return "a mesh";
+    }
+    if (is_volume_file(path)) return "a volume";
+    if (suffix != ".json") return "";
+    const core::Json json = core::read_json_file(path);
+    const bool is_scene =
+        json.is_object() &&
+        (json.contains("geometry") || json.contains("relay_wall") || json.contains("objects"));
+    return is_scene ? "a scene" : "";
+}
+
 [[noreturn]] void throw_unknown(const std::string& path) {
     const std::string file = first_container(path);
+    if (const std::string other = other_file_of_ours(file); !other.empty()) {
+        throw core::Error(
+            path,
+            "is " + other,
+            "must be a capture, such as `nlos render SCENE.json -o CAPTURE.h5` makes");
+    }
     if (!container_of(file)) {
         throw core::Error(path,
                           "is no capture in a known format",

@@ -40,7 +40,6 @@ void run(const char* scene_path) {
     calib::FreeObject free;
     free.name = truth.objects.front().name;
     free.translation = true;
-    input.settings.scene = scene_path;
     input.settings.free.objects = {free};
     const calib::FitResult fit = calib::fit_scene(input, silent);
     const calib::FitErrors errors = calib::compare_fit(fit, fit.geometry, truth);

@@ -2,9 +2,11 @@
 // Captures in y-tal's layout that cannot be read or written.
 #include "nlos/containers/hdf5_writer.h"
 #include "nlos/formats/capture_file.h"
+#include "nlos/formats/volume_file.h"
 #include "tests/nlos/formats/ytal_capture_file.h"
 #include "tests/support/error_message.h"
 #include "tests/support/example_capture.h"
+#include "tests/support/example_volume.h"
 #include "tests/support/file_bytes.h"
 #include "tests/support/temporary_folder.h"
 
@@ -21,6 +23,16 @@ using core::Capture;
 using core::ScanPattern;
 using test_support::example_capture;
 using test_support::TemporaryFolder;
+
+TEST(CaptureRefusals, OtherFilesOfOursAreCalledByTheirName) {
+    const TemporaryFolder folder;
+    test_support::write_file_bytes(folder.file("scene.json"), R"({"geometry": "scene.glb"})");
+    test_support::write_file_bytes(folder.file("a.glb"), "glTF");
+    write_volume(folder.file("v.h5"), test_support::example_reconstruction());
+    EXPECT_ERROR_WITH(read_capture(folder.file("scene.json")), "is a scene; must be a capture");
+    EXPECT_ERROR_WITH(read_capture(folder.file("a.glb")), "is a mesh; must be a capture");
+    EXPECT_ERROR_WITH(read_capture(folder.file("v.h5")), "is a volume; must be a capture");
+}
 
 TEST(YtalRefusals, NamesTheDatasetThatIsMissingOrMisshapen) {
     const auto expect_message = [](auto&& damage, const std::string& part) {
