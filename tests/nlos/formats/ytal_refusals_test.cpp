@@ -6,7 +6,7 @@
 #include "tests/nlos/formats/ytal_capture_file.h"
 #include "tests/support/error_message.h"
 #include "tests/support/example_capture.h"
-#include "tests/support/example_volume.h"
+#include "tests/support/example_reconstruction.h"
 #include "tests/support/file_bytes.h"
 #include "tests/support/temporary_folder.h"
 
