@@ -84,9 +84,10 @@ void add_shorthands(Command& command,
 }
 
 void add_threads_option(CLI::App& command, int& threads) {
-    command.add_option("--threads", threads, "Threads; 0 takes all processors")
-        ->capture_default_str()
-        ->check(CLI::Range(0, 1024));
+    constexpr double kMost = 1024;
+    CLI::Option* option =
+        command.add_option("--threads", threads, "Threads; 0 takes all processors");
+    limit(*option->capture_default_str()->type_name("N"), {0, true, kMost, true});
 }
 
 std::string& command_line() {

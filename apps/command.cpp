@@ -89,7 +89,11 @@ void throw_usage_error(const CLI::App& app, const CLI::ParseError& error) {
                           core::did_you_mean(option, known) +
                               fmt::format("known are {}", fmt::join(known, ", ")));
     }
-    throw core::Error(name, error.what(), "see " + name + " --help");
+    const std::vector<std::string> left = command.remaining();
+    throw core::Error(
+        name,
+        left.empty() ? error.what() : "found '" + left.front() + "', an argument too many",
+        "see " + name + " --help");
 }
 
 CLI::Validator one_of(const std::vector<std::string>& names) {
@@ -100,6 +104,19 @@ CLI::Validator one_of(const std::vector<std::string>& names) {
                    core::choices_text(names);
         },
         "{" + fmt::format("{}", fmt::join(names, ",")) + "}");
+}
+
+void limit(CLI::Option& option, const core::Range& range) {
+    const std::string allowed = core::range_text(range);
+    option.description(option.get_description() + " (" + allowed + ")");
+    option.check([range, allowed](const std::string& text) {
+        try {
+            core::check_range(std::stod(text), range, "");
+        } catch (const std::exception&) {
+            return "found " + text + "; must be " + allowed;
+        }
+        return std::string();
+    });
 }
 
 }  // namespace apps

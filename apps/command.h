@@ -44,4 +44,7 @@ void reject_unknown_command(const CLI::App& app, std::span<const std::string> ar
 /// A check that a text is one of these names.
 CLI::Validator one_of(const std::vector<std::string>& names);
 
+/// Lets an option take numbers of a range alone, and says so in its help.
+void limit(CLI::Option& option, const core::Range& range);
+
 }  // namespace apps

@@ -26,7 +26,9 @@ inline void add_setting(CLI::App& command,
                         int& value,
                         const std::string& meaning,
                         std::pair<int, int> range) {
-    add_setting(command, name, value, meaning)->check(CLI::Range(range.first, range.second));
+    const auto [low, high] = range;
+    CLI::Option* option = add_setting(command, name, value, meaning)->type_name("N");
+    limit(*option, {static_cast<double>(low), true, static_cast<double>(high), true});
 }
 
 /// What the help says of a benchmark.

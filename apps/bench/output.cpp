@@ -96,6 +96,7 @@ core::Json run_benchmark(const BenchOutput& output,
             "stopping after this measurement, without a file; Ctrl-C again ends at once");
         return benchmark(bar.progress());
     }();
+    if (interrupt_requested()) throw core::Failure("bench " + name, "interrupted");
     std::string table = plain_text(tables_of(result.figures));
     result.figures["program"] = version_text();
     result.figures["machine"] = machine_text();

@@ -58,7 +58,7 @@ void run(const ConvertArguments& arguments) {
     }
     nlos::check_capture_suffix(output, arguments.write);
     core::check_targets({output}, inputs);
-    const core::Progress reading = progress.stage(1, 2, "reading", 0.0, 0.0);
+    progress.stage(1, 2, "reading", 0.0, 0.0);
     core::Capture capture =
         nlos::read_capture(inputs, capture_options(arguments.overrides).capture);
     const core::TimeAxis axis = capture.time_axis;
@@ -67,7 +67,7 @@ void run(const ConvertArguments& arguments) {
     } else if (!arguments.gate_m.empty()) {
         capture = nlos::gated_capture(capture, arguments.gate_m[0], arguments.gate_m[1]);
     }
-    const core::Progress writing = progress.stage(2, 2, "writing", 1.0, 1.0);
+    progress.stage(2, 2, "writing", 1.0, 1.0);
     for (const std::string& note : capture.notes) print("read: {}\n", note);
     for (const std::string& loss : nlos::write_capture(output, capture, arguments.write)) {
         print("not kept: {}\n", loss);

@@ -106,6 +106,7 @@ calib::FitResult fit_to_file(const std::string& capture_path,
             "stopping after this step, without a file; Ctrl-C again ends at once");
         return fit_input(input, progress);
     }();
+    if (progress.should_stop()) throw core::Failure("fit", "interrupted");
     write_fit(input, result, fit_path);
     return result;
 }

@@ -47,7 +47,7 @@ nlos::Reconstruction reconstruct_to_file(const std::vector<std::string>& capture
     for (const std::string& text : overrides) core::apply_override(options, text);
     ProgressBar bar("reconstruct");
     const core::Progress progress = bar.progress();
-    const core::Progress reading = progress.stage(1, 3, "reading", 0.0, 0.0);
+    progress.stage(1, 3, "reading", 0.0, 0.0);
     core::Capture capture = nlos::read_capture(capture_paths, options.capture);
     if (!calibration_path.empty()) {
         capture = calib::apply_calibration(calib::read_calibration(calibration_path), capture);
@@ -59,7 +59,8 @@ nlos::Reconstruction reconstruct_to_file(const std::vector<std::string>& capture
         return nlos::reconstruct(
             capture, options.reconstruct, progress.stage(2, 3, "reconstructing", 0.0, 1.0));
     }();
-    const core::Progress writing = progress.stage(3, 3, "writing", 1.0, 1.0);
+    if (progress.should_stop()) throw core::Failure("reconstruct", "interrupted");
+    progress.stage(3, 3, "writing", 1.0, 1.0);
     result.provenance = {
         {"program", version_text()},
         {"command", command_line()},

@@ -161,7 +161,7 @@ void use_calibration(calib::AppliedCalibration calibration, RenderInput& input) 
 
 renderer::RenderResult render_input(RenderInput input, const core::Progress& progress) {
     renderer::SceneDescription& description = input.description;
-    const core::Progress searching = progress.stage(1, 3, "where the light lies", 0.0, 0.0);
+    progress.stage(1, 3, "where the light lies", 0.0, 0.0);
     const auto light = renderer::find_light_range(*input.scene, input.scan, description.render);
     if (description.time_axis.automatic) {
         core::TimeAxis axis =
@@ -223,7 +223,7 @@ renderer::RenderResult render_to_file(const std::string& scene_path,
         "a file");
     const core::Progress progress = bar.progress();
     renderer::RenderResult result = render_input(std::move(input), progress);
-    const core::Progress writing = progress.stage(3, 3, "writing", 1.0, 1.0);
+    progress.stage(3, 3, "writing", 1.0, 1.0);
     const std::vector<std::string> left_out = nlos::write_capture(capture_path, result.capture);
     if (result.capture.scan.camera) {
         core::write_text_file(with_suffix(capture_path, ".png"),

@@ -91,7 +91,7 @@ void run(const NoiseArguments& arguments) {
     apply(arguments, options);
     ProgressBar bar("simulate-noise");
     const core::Progress progress = bar.progress();
-    const core::Progress reading = progress.stage(1, 3, "reading", 0.0, 0.0);
+    progress.stage(1, 3, "reading", 0.0, 0.0);
     core::Capture capture = nlos::read_capture(arguments.capture, options.capture);
     const std::optional<core::SensorSetup> sensor = sensor_of(arguments, capture);
     if (sensor) {
@@ -101,11 +101,11 @@ void run(const NoiseArguments& arguments) {
     if (const auto warning = nlos::coarse_bins_warning(capture, options.detector)) {
         warn(*warning);
     }
-    const core::Progress detecting = progress.stage(2, 3, "detecting", 0.0, 1.0);
+    progress.stage(2, 3, "detecting", 0.0, 1.0);
     core::Capture noisy =
         sensor ? nlos::detect_by_sensor(*sensor, std::move(capture), options.detector)
                : nlos::detect(capture, options.detector);
-    const core::Progress writing = progress.stage(3, 3, "writing", 1.0, 1.0);
+    progress.stage(3, 3, "writing", 1.0, 1.0);
     noisy.scene_info["detector"]["program"] = version_text();
     noisy.scene_info["detector"]["command"] = command_line();
     for (const std::string& loss : nlos::write_capture(arguments.output, noisy)) {

@@ -111,21 +111,23 @@ void check_outputs(const TrackRequest& request) {
 
 TrackSummary track_to_file(const TrackRequest& request) {
     check_outputs(request);
+    ProgressBar bar("track");
+    const core::Progress progress = bar.progress();
+    progress.stage(1, 2, "reading", 0.0, 0.0);
     std::vector<std::string> overrides = request.overrides;
     const auto reading = capture_options(take_capture_overrides(overrides)).capture;
     TrackSettings settings = calib::read_track_settings(request.model, overrides);
     const TrackFrames input = read_track_frames(request.frames, settings, reading);
     Run run(settings, input.sensor, reading);
-    ProgressBar bar("track");
-    const core::Progress progress = bar.progress();
-    const StoppableWork stoppable(
-        "stopping after this frame, without a file; Ctrl-C again ends at once");
+    const core::Progress tracking = progress.stage(2, 2, "tracking", 0.0, 1.0);
     std::size_t done = 0;
     for (const calib::TrackFrame& frame : input.frames) {
+        const StoppableWork stoppable(
+            "stopping after this frame, without a file; Ctrl-C again ends at once");
         run.step(frame);
         ++done;
-        progress.update(static_cast<double>(done) / static_cast<double>(input.frames.size()), "");
-        if (progress.should_stop()) throw core::Failure("track", "interrupted");
+        tracking.update(static_cast<double>(done) / static_cast<double>(input.frames.size()), "");
+        if (tracking.should_stop()) throw core::Failure("track", "interrupted");
     }
     return run.finish(request, input.warnings);
 }

@@ -146,8 +146,7 @@ _nlos() {
         else
             compopt -o nospace 2>/dev/null
             COMPREPLY=($(compgen -S = -W "$keys" -- "$current"))
-            [[ ${#COMPREPLY[@]} -eq 0 || $option != --set ]] || return
-            _nlos_files "$current" ''
+            ((${#COMPREPLY[@]} > 0)) || _nlos_files "$current" ''
         fi
     elif [[ $current == -* ]]; then
         COMPREPLY=($(compgen -W "$options" -- "$current"))

@@ -20,14 +20,6 @@ std::vector<std::string> choices_in(const std::string& type) {
     return names;
 }
 
-// "0 to 1024" from "INT in [0 - 1024]", as CLI11 describes its ranges.
-std::string range_in(const std::string& type) {
-    static const std::regex range(R"(in \[(\S+) - (\S+)\])");
-    std::smatch found;
-    if (std::regex_search(type, found, range)) return found.str(1) + " to " + found.str(2);
-    return type.find(":POSITIVE") != std::string::npos ? "above 0" : "";
-}
-
 // The suffixes in the first parentheses that hold any, as in "Capture to write (.h5, .npz)".
 std::vector<std::string> suffixes_in(const std::string& meaning) {
     static const std::regex list(R"(\((\.\w+(?:, \.\w+)*)\))");
@@ -72,7 +64,6 @@ OptionEntry describe_option(const CLI::Option& option) {
     entry.may_repeat = option.get_expected_max() == CLI::detail::expected_max_vector_size ||
                        option.get_expected_max() > 2;
     entry.choices = choices_in(type);
-    entry.range = range_in(type);
     entry.value = value_name(type, entry.choices);
     entry.kind = kind_of(entry);
     entry.default_value = option.get_default_str();

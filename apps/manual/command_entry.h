@@ -28,7 +28,6 @@ struct OptionEntry {
     std::string value;  ///< as help names it, such as FILE; empty of a switch
     std::string meaning;
     std::string default_value;            ///< empty: none
-    std::string range;                    ///< of a number, in words; empty: any
     std::vector<std::string> choices;     ///< of a closed set
     std::vector<std::string> suffixes{};  ///< of files, without the dot; empty: any
 };

@@ -33,6 +33,10 @@ std::string roff(const std::string& text) {
             case '~':
                 shown += "\\(ti";
                 break;
+            case ',':
+            case '|':
+                shown += std::string(1, c) + "\\:";  // where long lists of names may be broken
+                break;
             default:
                 shown += c;
         }
@@ -80,7 +84,6 @@ std::string details(const OptionEntry& option) {
         text +=
             fmt::format("; one of {}", roff(fmt::format("{}", fmt::join(option.choices, ", "))));
     }
-    if (!option.range.empty()) text += "; " + roff(option.range);
     if (!option.default_value.empty()) text += "; default " + roff(option.default_value);
     return text;
 }

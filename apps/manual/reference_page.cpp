@@ -36,9 +36,7 @@ std::string option_row(const OptionEntry& option) {
             (names.empty() ? "" : ", ") +
             code(name + (option.is_argument || option.value.empty() ? "" : " " + option.value));
     }
-    const std::string limits = option.choices.empty()
-                                   ? cell(option.range)
-                                   : cell(fmt::format("{}", fmt::join(option.choices, ", ")));
+    const std::string limits = cell(fmt::format("{}", fmt::join(option.choices, ", ")));
     return fmt::format("| {}{} | {} | {} | {} |\n",
                        names,
                        option.is_required ? " (required)" : "",

@@ -36,15 +36,20 @@ std::string function_name(const CommandEntry& command) {
     return name;
 }
 
+// One suffix stands without parentheses, which zsh would take for qualifiers.
+std::string files(const std::vector<std::string>& suffixes) {
+    if (suffixes.empty()) return "_files";
+    if (suffixes.size() == 1) return "_files -g \"*." + suffixes.front() + "\"";
+    return fmt::format("_files -g \"*.({})\"", fmt::join(suffixes, "|"));
+}
+
 // How a value is completed.
 std::string action(const CommandEntry& command, const OptionEntry& option) {
     switch (option.kind) {
         case ValueKind::Choice:
             return "(" + spaced(option.choices) + ")";
         case ValueKind::File:
-            return option.suffixes.empty()
-                       ? "_files"
-                       : fmt::format("_files -g \"*.({})\"", fmt::join(option.suffixes, "|"));
+            return files(option.suffixes);
         case ValueKind::Folder:
             return "_files -/";
         case ValueKind::Setting:

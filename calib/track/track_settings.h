@@ -194,7 +194,7 @@ void for_each_field(SearchSettings& s, Visitor&& visit) {
               "sensor sees [m]",
               {}});
     visit(
-        "y_range_m", s.y_range_m, core::Ranged{"the same along y; null: up to 0.75 m beyond", {}});
+        "y_range_m", s.y_range_m, core::Ranged{"the same along y [m]; null: up to 0.75 m beyond", {}});
     visit("z_range_m", s.z_range_m, core::above(0, "distances from the wall [m]"));
     visit("cell_m", s.cell_m, core::above(0, "pitch of the grid on which targets are found [m]"));
 }

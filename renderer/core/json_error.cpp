@@ -29,6 +29,7 @@ std::size_t count_characters(std::string_view text) {
 std::pair<std::size_t, std::size_t> character_at(std::string_view text, std::size_t byte) {
     std::size_t begin = byte;
     while (begin > 0 && byte - begin < 3 && continues_character(text[begin])) --begin;
+    if (static_cast<unsigned char>(text[begin]) < 0xc0U) begin = byte;  // no UTF-8
     std::size_t end = begin + 1;
     while (end < text.size() && end - begin < 4 && continues_character(text[end])) ++end;
     return {begin, end};
@@ -157,12 +158,14 @@ std::string hint_at(std::string_view text, std::size_t begin) {
         lower == "-infinity") {
         return "JSON has no numbers but finite ones, and null";
     }
-    if (lower == "true" || lower == "false" || lower == "none" || lower == "null") {
+    const bool is_literal = word == "true" || word == "false" || word == "null";
+    if (!is_literal &&
+        (lower == "true" || lower == "false" || lower == "none" || lower == "null")) {
         return "JSON writes true, false and null";
     }
     if (word == "+" || word == ".") return "numbers begin with a digit or a minus";
     const std::string_view before = text.substr(0, begin);
-    const bool begins_item = word == "\"" || word == "{" || word == "[" ||
+    const bool begins_item = word == "\"" || word == "{" || word == "[" || is_literal ||
                              std::isdigit(static_cast<unsigned char>(word[0])) != 0;
     const char last = last_before(before, begin);
     if (begins_item && last != ',' && last != ':' && last != '[' && last != '{' && last != '\0') {

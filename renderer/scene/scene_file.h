@@ -173,7 +173,7 @@ void for_each_field(SceneDescription& scene, Visitor&& visit) {
           core::above(0, "unit of an .obj, .ply or .stl file [m]; null: metres are assumed"));
     visit("geometry_up",
           scene.geometry_up,
-          "axis of such a file that is the world's y: x|-x|y|-y|z|-z; null: y is assumed");
+          "axis of such a file that is the world's y; null: y is assumed");
     visit("objects",
           scene.objects,
           "more meshes, placed (mesh, scale, up, rotation_deg, translation_m, material), and, by "

@@ -125,8 +125,9 @@ void declare(CLI::App& command, ComparisonArguments& arguments) {
         ->type_name("FILE");
     add_setting(command, "--progress-scene", arguments.progress_scene, "Image for progress")
         ->type_name("FILE");
-    add_setting(command, "--seconds", arguments.seconds, "CPU time of a method for all frames [s]")
-        ->check(CLI::PositiveNumber);
+    CLI::Option* seconds = add_setting(
+        command, "--seconds", arguments.seconds, "CPU time of a method for all frames [s]");
+    limit(*seconds->type_name("S"), {.low = 0});
     add_setting(command, "--frames", arguments.frames, "Frames of the moving gate", {4, 10'000});
     add_setting(command, "--repeats", arguments.repeats, "Runs per method", {1, 1000});
     add_setting(command,

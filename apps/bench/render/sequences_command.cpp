@@ -49,8 +49,9 @@ void declare(CLI::App& command, SequenceArguments& arguments) {
     SequenceScenes& scenes = arguments.scenes;
     add_setting(command, "--scene", scenes.scan, "Scan")->type_name("FILE");
     add_setting(command, "--image-scene", scenes.image, "Camera")->type_name("FILE");
-    add_setting(command, "--image-resolution", scenes.image_resolution, "Pixels, width and height")
-        ->check(CLI::Range(1, 10'000));
+    CLI::Option* resolution = add_setting(
+        command, "--image-resolution", scenes.image_resolution, "Pixels, width and height");
+    limit(*resolution, {1, true, 10'000, true});
     add_setting(command, "--moving-scene", scenes.moving_scan, "Scan of objects that move")
         ->type_name("FILE");
     add_setting(command, "--moving-image-scene", scenes.moving_image, "Camera on such objects")

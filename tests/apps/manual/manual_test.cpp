@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <set>
@@ -128,6 +129,36 @@ TEST_F(Manual, ZshReadsItsCompletion) {
     EXPECT_NE(script.find("_nlos_bench_render() {"), std::string::npos);
     if (!has_program("zsh")) GTEST_SKIP() << "zsh is not there";
     EXPECT_EQ(std::system(("zsh -n '" + file("manual/zsh/_nlos") + "'").c_str()), 0);
+}
+
+// Units stand in names, and in the help as well.
+TEST_F(Manual, SettingsStateTheUnitsOfTheirNames) {
+    const std::vector<std::array<std::string, 2>> units{{"_m_per_s", "[m/s"},
+                                                        {"per_s", "[1/s"},
+                                                        {"_carrier_hz", "[Hz"},
+                                                        {"_hz", "[1/s"},
+                                                        {"_deg", "[deg"},
+                                                        {"_ps", "[ps"},
+                                                        {"_ns", "[ns"},
+                                                        {"_mm", "[mm"},
+                                                        {"_m2", "[m^2"},
+                                                        {"_gb", "[GB"},
+                                                        {"_m", "[m"},
+                                                        {"_s", "[s"}};
+    std::istringstream lines(file_bytes(file("manual/reference.md")));
+    std::size_t checked = 0;
+    for (std::string line; std::getline(lines, line);) {
+        if (!line.starts_with("| `") || line.starts_with("| `-")) continue;
+        std::string key = line.substr(3, line.find('`', 3) - 3);
+        if (key.ends_with("carrier_hz")) key = "_carrier_hz";
+        std::erase(line, '\\');
+        const auto unit = std::ranges::find_if(
+            units, [&](const auto& candidate) { return key.ends_with(candidate[0]); });
+        if (unit == units.end()) continue;
+        ++checked;
+        EXPECT_NE(line.find((*unit)[1]), std::string::npos) << line;
+    }
+    EXPECT_GT(checked, 100U);
 }
 
 TEST_F(Manual, ReferenceStatesDefaultsRangesAndMeanings) {

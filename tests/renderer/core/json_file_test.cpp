@@ -61,6 +61,7 @@ TEST(JsonText, UsualSlipsAreCalledByTheirName) {
         {"{\"a\": NaN}", "found 'NaN'; JSON has no numbers but finite ones"},
         {"{\"a\": -Infinity}", "found '-Infinity'; JSON has no numbers but finite ones"},
         {"[True]", "column 2: found 'True'; JSON writes true, false and null"},
+        {"[1 true]", "column 4: found 'true'; a comma or colon is missing before it"},
         {"[tru]", "column 2: found 'tru'"},
         {"{a: 1}", "column 2: found 'a'; expected a key between double quotes"},
         {"{\"a\": 1 \"b\": 2}", "column 9: found '\"'; a comma or colon is missing before it"},
