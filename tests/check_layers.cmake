@@ -44,13 +44,15 @@ set(below_apps "renderer/|nlos/|calib/")
 
 # Third-party headers. Debian installs them in /usr/include, so PRIVATE linking alone cannot hide
 # them. "anywhere" may stand in every file, the others only in .cpp files of the rooms named (in
-# apps, which is nobody's library, also in headers).
+# apps, which is nobody's library, also in headers), and in the headers of our own that only such
+# files include and that are not installed.
+set(private_headers renderer/scene/embree.h)
 set(anywhere
     "Eigen/|tbb/|nlohmann/|fmt/|sys/|unistd\\.h|spawn\\.h|fcntl\\.h|dlfcn\\.h|link\\.h|immintrin\\.h|experimental/simd")
 set(third_renderer/core "flann/|malloc\\.h")
 set(third_renderer/gltf "tiny_gltf")
 set(third_renderer/mesh_file "assimp/")
-set(third_renderer/scene "embree3/")
+set(third_renderer/scene "embree[34]/")
 set(third_renderer/scene_import "pugixml\\.hpp|yaml-cpp/")
 set(third_nlos/containers "zlib\\.h|hdf5\\.h|matio\\.h|zip\\.h|OpenEXR/")
 set(third_nlos/fourier "fftw3\\.h")
@@ -97,7 +99,8 @@ foreach(top renderer nlos calib apps)
           elseif(line MATCHES "include[ \t]*<([^>]*[/.][^>]*)>")  # <vector> and other bare names are standard
             set(included ${CMAKE_MATCH_1})
             set(allowed "${anywhere}")
-            if(DEFINED third_${room} AND (file MATCHES "\\.cpp$" OR top STREQUAL "apps"))
+            if(DEFINED third_${room}
+               AND (file MATCHES "\\.cpp$" OR top STREQUAL "apps" OR file IN_LIST private_headers))
               string(APPEND allowed "|${third_${room}}")
             endif()
             if(NOT included MATCHES "^(${allowed})")
