@@ -90,10 +90,12 @@ void throw_usage_error(const CLI::App& app, const CLI::ParseError& error) {
                               fmt::format("known are {}", fmt::join(known, ", ")));
     }
     const std::vector<std::string> left = command.remaining();
-    throw core::Error(
-        name,
-        left.empty() ? error.what() : "found '" + left.front() + "', an argument too many",
-        "see " + name + " --help");
+    if (left.empty()) throw core::Error(name, error.what(), "see " + name + " --help");
+    throw core::Error(name,
+                      "found '" + left.front() + "', an argument too many",
+                      left.front().find('=') == std::string::npos
+                          ? "see " + name + " --help"
+                          : "settings follow --set, up to the next option");
 }
 
 CLI::Validator one_of(const std::vector<std::string>& names) {

@@ -20,7 +20,7 @@ void require_memory(double needed_bytes, std::optional<double> limit_gb) {
     if (needed_bytes <= available) return;
     throw core::Failure(
         "reconstruct",
-        fmt::format("needs {:.2f} GB of memory and {:.2f} GB are available; fewer volume.voxels, "
+        fmt::format("needs {:.3g} GB of memory and {:.3g} GB are available; fewer volume.voxels, "
                     "larger merge_bins or a smaller crop need less",
                     1e-9 * needed_bytes,
                     1e-9 * available));
