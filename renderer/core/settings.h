@@ -291,8 +291,8 @@ struct SettingHelp {
     std::string key;  ///< full, dotted
     std::string default_value;
     std::string meaning;
-    std::vector<std::string> choices{};  ///< the values that it may have; empty: no closed set
-    std::string range{};                 ///< of its numbers, in words; empty: any
+    std::vector<std::string> choices;  ///< the values that it may have; empty: no closed set
+    std::string range;                 ///< of its numbers, in words; empty: any
 
     /// The meaning, with the choices or the range behind it.
     std::string text() const;

@@ -119,8 +119,8 @@ TEST_F(SettingsFuzz, OfSweep) {
                                   "reconstruct.volume.voxels",
                                   "scene",
                                   "a,b"}) {
-        settings.push_back({"grid." + key, "", ""});
-        settings.push_back({"fixed." + key, "", ""});
+        settings.push_back({"grid." + key, "", "", {}, ""});
+        settings.push_back({"fixed." + key, "", "", {}, ""});
     }
     try_settings("sweep data/sweep.json -o " + file("out") + " --slurm", settings, 120, 16);
 }
