@@ -26,10 +26,13 @@ std::vector<std::string> names_of_options(const CLI::App& command) {
 
 Command::Command(const std::string& name, const std::string& description)
     : CLI::App(description, name) {
-    add_flag("--quiet", output_settings().quiet, "Print no more than warnings and errors");
+    // Last in help, behind what the command adds.
+    add_flag("--quiet", output_settings().quiet, "Print no more than warnings and errors")
+        ->group(kGroupOfAll);
     add_flag("--json",
              output_settings().json,
-             "End with a line of JSON: what was written, and the numbers of the text");
+             "End with a line of JSON: what was written, and the numbers of the text")
+        ->group(kGroupOfAll);
     footer([this] { return settings_and_example(); });
 }
 

@@ -11,6 +11,9 @@
 
 namespace apps {
 
+/// Where --help lists the options that all commands have.
+inline constexpr const char* kGroupOfAll = "Options of every command";
+
 /// A command of the program: its arguments, and what --help, the manual and the completion of
 /// shells say beside them.
 class Command : public CLI::App {

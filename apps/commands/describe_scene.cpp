@@ -21,6 +21,10 @@ std::string describe_material(const renderer::Material& material) {
     return text;
 }
 
+std::string vector_text(const core::Vec3& v) {
+    return fmt::format("({:.4g}, {:.4g}, {:.4g})", v.x() + 0.0, v.y() + 0.0, v.z() + 0.0);  // no -0
+}
+
 void print_object(Description& out, const renderer::Object& object) {
     Eigen::AlignedBox3d box;
     for (const core::Vec3& vertex : object.mesh.vertices) box.extend(vertex);
@@ -39,25 +43,16 @@ void print_object(Description& out, const renderer::Object& object) {
         box.max().z(),
         object.ellipsoidal_exclude ? ", left out of ellipsoidal connections" : "",
         object.velocity_m_per_s.norm() > 0.0
-            ? fmt::format(", moves by ({:.3g}, {:.3g}, {:.3g}) m/s",
-                          object.velocity_m_per_s.x(),
-                          object.velocity_m_per_s.y(),
-                          object.velocity_m_per_s.z())
+            ? fmt::format(", moves by {} m/s", vector_text(object.velocity_m_per_s))
             : "");
 }
 
 void print_camera(Description& out, const renderer::Camera& camera) {
-    out.print(
-        "camera {}: at ({:.4g}, {:.4g}, {:.4g}) m, looks along ({:.3g}, {:.3g}, {:.3g}), {:.3g} "
-        "deg high\n",
-        camera.name.empty() ? "(unnamed)" : camera.name,
-        camera.position.x(),
-        camera.position.y(),
-        camera.position.z(),
-        camera.forward.x(),
-        camera.forward.y(),
-        camera.forward.z(),
-        core::kDegreesPerRadian * camera.fov_y_rad);
+    out.print("camera {}: at {} m, looks along {}, {:.3g} deg high\n",
+              camera.name.empty() ? "(unnamed)" : camera.name,
+              vector_text(camera.position),
+              vector_text(camera.forward),
+              core::kDegreesPerRadian * camera.fov_y_rad);
 }
 
 void print_size(Description& out, const renderer::SceneGeometry& geometry) {

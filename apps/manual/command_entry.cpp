@@ -77,10 +77,11 @@ CommandEntry describe_command(const CLI::App& command) {
     CommandEntry entry;
     entry.name = typed_name(command);
     entry.description = command.get_description();
-    for (const CLI::Option* option : command.get_options()) {
-        entry.options.push_back(describe_option(*option));
-    }
-    std::ranges::stable_partition(entry.options, &OptionEntry::is_argument);
+    std::vector<const CLI::Option*> options = command.get_options();
+    std::ranges::stable_partition(
+        options, [](const auto* option) { return option->get_group() != kGroupOfAll; });
+    std::ranges::stable_partition(options, &CLI::Option::get_positional);
+    for (const CLI::Option* option : options) entry.options.push_back(describe_option(*option));
     if (const auto* ours = dynamic_cast<const Command*>(&command)) {
         entry.settings = ours->settings;
         entry.example = ours->example;
