@@ -22,6 +22,21 @@ std::vector<std::string> names_of_options(const CLI::App& command) {
     return names;
 }
 
+// Help that ends with the settings and the example.
+class HelpFormatter : public CLI::Formatter {
+ public:
+    std::string make_footer(const CLI::App* app) const override {
+        const auto* command = dynamic_cast<const Command*>(app);
+        if (command == nullptr) return "";
+        std::string text;
+        if (!command->settings.empty()) text += "Settings for --set, with defaults:\n";
+        for (const core::SettingHelp& line : command->settings) {
+            text += fmt::format("  {} = {}\n      {}\n", line.key, line.default_value, line.text());
+        }
+        return text + "\nExample:\n  " + command->example + "\n";
+    }
+};
+
 }  // namespace
 
 Command::Command(const std::string& name, const std::string& description)
@@ -33,16 +48,7 @@ Command::Command(const std::string& name, const std::string& description)
              output_settings().json,
              "End with a line of JSON: what was written, and the numbers of the text")
         ->group(kGroupOfAll);
-    footer([this] { return settings_and_example(); });
-}
-
-std::string Command::settings_and_example() const {
-    std::string text;
-    if (!settings.empty()) text += "Settings for --set, with defaults:\n";
-    for (const core::SettingHelp& line : settings) {
-        text += fmt::format("  {} = {}\n      {}\n", line.key, line.default_value, line.text());
-    }
-    return text + "\nExample:\n  " + example;
+    formatter(std::make_shared<HelpFormatter>());
 }
 
 Command& add_command(CLI::App& parent, const std::string& name, const std::string& description) {

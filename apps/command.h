@@ -22,9 +22,6 @@ class Command : public CLI::App {
 
     std::vector<core::SettingHelp> settings;  ///< what --set reaches
     std::string example;                      ///< a command line that works in the checkout
-
- private:
-    std::string settings_and_example() const;
 };
 
 /// Declares a command of the program or of another command, with the options that all have.

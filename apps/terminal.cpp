@@ -9,9 +9,11 @@
 #include <atomic>
 #include <cerrno>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <string>
 
 namespace apps {
@@ -19,25 +21,33 @@ namespace {
 
 constexpr std::string_view kClearLine = "\r\033[K";
 
-std::atomic<bool> g_interrupted{false};
-std::atomic<const char*> g_answer{nullptr};  // to the first interruption of stoppable work
+// Signals this close to the first are the same one: some programs send it to a process and then to
+// its group.
+constexpr std::int64_t kSameSignal_ms = 50;
+
+std::atomic<std::int64_t> g_interrupted_ms{0};  // when the first signal came; 0: none has
+std::atomic<const char*> g_answer{nullptr};     // to the first interruption of stoppable work
 std::atomic<bool> g_line_is_drawn{false};
 
 void write_safely(std::string_view text) {
     [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, text.data(), text.size());
 }
 
+std::int64_t clock_ms() {
+    timespec time{};
+    ::clock_gettime(CLOCK_MONOTONIC, &time);
+    return 1 + std::int64_t{time.tv_sec} * 1000 + time.tv_nsec / 1'000'000;
+}
+
 // Calls only what signal handlers may call.
 void on_interrupt(int) {
     const char* answer = g_answer;
-    const bool is_first = !g_interrupted.exchange(true);
+    const std::int64_t now_ms = clock_ms();
+    std::int64_t first_ms = 0;
+    const bool is_first = g_interrupted_ms.compare_exchange_strong(first_ms, now_ms);
+    if (answer != nullptr && !is_first && now_ms - first_ms < kSameSignal_ms) return;
     if (g_line_is_drawn.exchange(false)) write_safely(kClearLine);
-    if (answer != nullptr && is_first) {
-        write_safely("nlos: ");
-        write_safely(answer);
-        write_safely("\n");
-        return;
-    }
+    if (answer != nullptr && is_first) return write_safely(answer);
     core::remove_partial_files();
     write_safely("nlos: interrupted\n");
     ::_exit(EXIT_FAILURE);
@@ -106,10 +116,11 @@ void handle_signals() {
 }
 
 bool interrupt_requested() {
-    return g_interrupted;
+    return g_interrupted_ms != 0;
 }
 
-StoppableWork::StoppableWork(const char* answer) : outer_(g_answer.exchange(answer)) {}
+StoppableWork::StoppableWork(const std::string& answer)
+    : line_("nlos: " + answer + "\n"), outer_(g_answer.exchange(line_.c_str())) {}
 
 StoppableWork::~StoppableWork() {
     g_answer = outer_;

@@ -74,14 +74,15 @@ void draw_line(std::string_view text) noexcept;
 /// once; see handle_signals().
 class StoppableWork {
  public:
-    /// answer   a literal, one sentence: what happens now, and what a second Ctrl-C does
-    explicit StoppableWork(const char* answer);
+    /// answer   one sentence: what happens now, and what a second Ctrl-C does
+    explicit StoppableWork(const std::string& answer);
     ~StoppableWork();
     StoppableWork(const StoppableWork&) = delete;
     StoppableWork& operator=(const StoppableWork&) = delete;
 
  private:
-    const char* outer_;
+    std::string line_;
+    const char* outer_;  ///< the answer of the work around this
 };
 
 /// Decides what signals do from now on. Ctrl-C and SIGTERM ask a StoppableWork to stop; the second
