@@ -2,7 +2,9 @@
 # `package`, which is portable.
 set(CPACK_PACKAGE_NAME nlos)
 set(CPACK_PACKAGE_VENDOR "The nlos authors")
-set(CPACK_PACKAGE_CONTACT "The nlos authors <nlos@localhost.localdomain>")
+set(NLOS_MAINTAINER "The nlos authors <nlos@example.org>" CACHE STRING
+    "Who stands in packages as their maintainer")
+set(CPACK_PACKAGE_CONTACT ${NLOS_MAINTAINER})
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_COMPONENTS_ALL program development)
@@ -15,19 +17,17 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME nlos)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS gnuplot-nox)
-set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "non-line-of-sight imaging: simulate, reconstruct, fit, compare
- Renders what a pulsed laser and a time-resolved detector record of a hidden
- scene by way of a relay wall, reconstructs the scene from such transients,
- fits models to them, and compares results with ground truth.")
+set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "Renders what a pulsed laser and a time-resolved detector record of a hidden
+scene by way of a relay wall, reconstructs the scene from such transients,
+fits models to them, and compares results with ground truth.")
 
 # Who links the static libraries needs what they were built with.
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libnlos-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
     "pkg-config, libembree-dev, libtbb-dev, libtinygltf-dev, nlohmann-json3-dev, libfmt-dev, libeigen3-dev, libfftw3-dev, libhdf5-dev, libmatio-dev, libopenexr-dev, libflann-dev, liblz4-dev, libopencv-dev, libpng-dev, libturbojpeg0-dev, zlib1g-dev, libceres-dev, libzip-dev, libassimp-dev, libpugixml-dev, libyaml-cpp-dev")
-set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "non-line-of-sight imaging: libraries and headers
- The renderer of transients, the reconstructors and the fits of the program
- nlos as static libraries with headers and a package for CMake.")
+set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "The renderer of transients, the reconstructors and the fits of the program
+nlos as static libraries, with headers and a package for CMake.")
 
 # What Debian wants beside them: a changelog and the licences.
 string(TIMESTAMP DATE "%a, %d %b %Y %H:%M:%S +0000" UTC)

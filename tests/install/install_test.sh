@@ -20,7 +20,7 @@ for component in program development; do
 done
 mv installed moved
 share=$scratch/moved/share
-for file in man/man1/nlos.1 man/man1/nlos-render.1 bash-completion/completions/nlos \
+for file in man/man1/nlos.1.gz man/man1/nlos-render.1.gz bash-completion/completions/nlos \
     zsh/vendor-completions/_nlos doc/nlos/copyright doc/nlos/apps/guide/your_labs_file.md \
     doc/nlos/scenes/README.md \
     nlos/scenes/letter/scene.glb nlos/data/letter.h5 nlos/data/layouts/zaragoza.json; do
