@@ -317,7 +317,7 @@ TEST(Dataset, IndexNamesEveryShardAndIsRefusedWhileSomeAreMissing) {
         EXPECT_EQ(shard["items"][0], next);
         next = shard["items"][1];
         EXPECT_EQ(*apps::file_checksum(folder.file("set/" + shard["file"].get<std::string>())),
-                  shard["xxh128"]);
+                  shard["xxh128"].get<std::string>());
     }
     EXPECT_EQ(next, 10u);
     std::size_t drawn = 0;
