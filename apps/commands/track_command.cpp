@@ -49,7 +49,7 @@ void add_track_command(CLI::App& app) {
     command.settings = core::settings_help(TrackOptions{});
     const auto request = std::make_shared<TrackRequest>();
     add_file_option(command,
-                    "FRAMES... MODEL",
+                    "FILES",
                     request->frames,
                     "Frames: a folder, a sequence capture, files that are frames, or - for a line "
                     "of JSON each on standard input; then what counted them and what is tracked "
