@@ -11,6 +11,7 @@ import nbformat
 from jupyter_client import KernelManager
 from jupyter_client.kernelspec import KernelSpec
 from nbclient import NotebookClient
+from nbclient.exceptions import CellTimeoutError
 
 
 class ThisInterpreter(KernelManager):
@@ -22,11 +23,19 @@ class ThisInterpreter(KernelManager):
                           display_name="Python 3", language="python")
 
 
-def main(source, target):
+def run(source):
     notebook = nbformat.read(source, as_version=4)
-    client = NotebookClient(notebook, timeout=600, kernel_manager_class="execute_notebook.ThisInterpreter",
+    client = NotebookClient(notebook, timeout=300, kernel_manager_class="execute_notebook.ThisInterpreter",
                             resources={"metadata": {"path": str(pathlib.Path(source).parent)}})
     client.execute()
+    return notebook
+
+
+def main(source, target):
+    try:
+        notebook = run(source)
+    except CellTimeoutError:  # on a busy machine kernel and client may both wait for the other's message
+        notebook = run(source)
     nbformat.write(notebook, target)
 
 
