@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <tuple>
 
 namespace calib {
@@ -73,32 +74,26 @@ std::vector<std::string> node_names(const renderer::SceneGeometry& geometry) {
     return names;
 }
 
-// The node that the object moves with: the one above it that is freed by name, else its own.
+// The node that the object moves with: of its own and those above it the one that is freed by name,
+// else its own.
 renderer::NodeGroup moving_node(const renderer::Object& object, const FreeSettings& free) {
-    const auto is_free = [&](const std::string& name) {
-        return std::any_of(free.objects.begin(), free.objects.end(), [&](const FreeObject& wanted) {
-            return wanted.name == name;
-        });
-    };
-    const renderer::NodeGroup own{object.name, object.world_from_node};
-    const renderer::NodeGroup* found = nullptr;
-    for (const renderer::NodeGroup& group : object.groups) {
-        if (!is_free(group.name)) continue;
-        if (found != nullptr && found->name != group.name) {
-            throw core::Error(
-                "model: free",
-                "found '" + found->name + "' and '" + group.name + "', which is in it",
-                "must free one of them");
+    std::vector<renderer::NodeGroup> nodes = object.groups;
+    nodes.push_back({object.name, object.world_from_node});
+    std::optional<renderer::NodeGroup> found;
+    for (const renderer::NodeGroup& node : nodes) {
+        const bool is_free =
+            std::any_of(free.objects.begin(), free.objects.end(), [&](const FreeObject& wanted) {
+                return wanted.name == node.name;
+            });
+        if (!is_free || (found && found->name == node.name)) continue;
+        if (found) {
+            throw core::Error("model: free",
+                              "found '" + found->name + "' and '" + node.name + "', which is in it",
+                              "must free one of them");
         }
-        found = &group;
+        found = node;
     }
-    if (found == nullptr) return own;
-    if (found->name != own.name && is_free(own.name)) {
-        throw core::Error("model: free",
-                          "found '" + found->name + "' and '" + own.name + "', which is in it",
-                          "must free one of them");
-    }
-    return *found;
+    return found.value_or(nodes.back());
 }
 
 }  // namespace

@@ -4,11 +4,13 @@
 #include "renderer/gltf/gltf.h"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <set>
 
 namespace renderer {
 namespace {
@@ -81,14 +83,6 @@ void add_placed(const SceneDescription& description,
                 const ObjectSettings& settings,
                 SceneGeometry& geometry) {
     const std::string path = path_of(description, *settings.mesh);
-    const bool is_there = std::any_of(geometry.objects.begin(),
-                                      geometry.objects.end(),
-                                      [&](const Object& object) { return object.name == name; });
-    if (is_there) {
-        throw core::Error("objects." + name,
-                          "has the name of an object in " + description.geometry,
-                          "must have a name of its own to add " + *settings.mesh);
-    }
     const double scale = settings.scale.value_or(1.0);
     core::Transform world_from_mesh = placement(settings);
     SceneGeometry added;
@@ -115,21 +109,18 @@ void add_placed(const SceneDescription& description,
 }  // namespace
 
 void apply_objects(const SceneDescription& description, SceneGeometry& geometry) {
+    std::set<std::string> known;
+    for (Object& object : geometry.objects) {
+        known.insert(object.name);
+        const auto settings = description.objects.find(object.name);
+        if (settings != description.objects.end()) apply(settings->second, object);
+    }
     for (const auto& [name, settings] : description.objects) {
-        bool is_there = false;
-        std::string known;
-        for (Object& object : geometry.objects) {
-            if (object.name == name) {
-                apply(settings, object);
-                is_there = true;
-            } else if (("," + known + ",").find("," + object.name + ",") == std::string::npos) {
-                known += (known.empty() ? "" : ",") + object.name;
-            }
-        }
-        if (is_there) continue;
-        throw core::Error("objects." + name,
-                          "is not in " + geometry_name(description),
-                          "must be one of " + known.substr(0, 500));
+        if (known.contains(name)) continue;
+        throw core::Error(
+            "objects." + name,
+            "is not in " + geometry_name(description),
+            "must be one of " + fmt::format("{}", fmt::join(known, ",")).substr(0, 500));
     }
 }
 
@@ -145,6 +136,13 @@ SceneGeometry load_geometry(const SceneDescription& description) {
         }
     } else if (!path.empty()) {
         geometry = load_gltf(path);
+    }
+    for (const Object& object : geometry.objects) {
+        const auto placed = description.objects.find(object.name);
+        if (placed == description.objects.end() || !placed->second.mesh) continue;
+        throw core::Error("objects." + object.name,
+                          "has the name of an object in " + path,
+                          "must have a name of its own to add " + *placed->second.mesh);
     }
     for (const auto& [name, settings] : description.objects) {
         if (settings.mesh) add_placed(description, name, settings, geometry);
