@@ -46,17 +46,16 @@ timed() {
 
 root=build/bare/$suite
 make_root "$root"
-rm -rf "$root/nlos-new"
-git clone -q . "$root/nlos-new"
-mkdir -p "$root/nlos"
-cp -rT "$root/nlos-new" "$root/nlos"  # what was built before stays
+[ -d "$root/nlos" ] || git clone -q . "$root/nlos"
+git -C "$root/nlos" fetch -q "$PWD" HEAD
+git -C "$root/nlos" reset -q --hard FETCH_HEAD  # what was built before stays
 
 for step in "${steps[@]}"; do
     case "$step" in
     demo) timed "bash apps/demo.sh" in_root "$root" 'cd /nlos && bash apps/demo.sh' ;;
     tests) timed "bash tests/run.sh" in_root "$root" 'cd /nlos && bash tests/run.sh' ;;
     package)
-        in_root "$root" 'cd /nlos && bash apps/setup.sh && cmake --preset package >/dev/null &&
+        in_root "$root" 'cd /nlos && bash apps/setup.sh file dpkg-dev && cmake --preset package >/dev/null &&
             cmake --build --preset package && cd build/package && rm -f ./*.deb && cpack -G DEB'
         user=build/bare/$suite-user
         rm -rf "$user"
