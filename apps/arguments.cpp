@@ -54,6 +54,11 @@ CLI::Option* add_output_folder_option(CLI::App& command,
     return add_folder_option(command, "-o,--output", path, meaning)->check(check_name);
 }
 
+CLI::Option* add_picture_option(CLI::App& command, std::string& path) {
+    return add_file_option(
+        command, "--picture", path, "Also write the picture for print (.svg, .pdf, .png)");
+}
+
 void add_set_option(CLI::App& command, std::vector<std::string>& overrides) {
     command.add_option("--set", overrides, "Change a setting; may be given several times")
         ->type_name("KEY.PATH=VALUE")

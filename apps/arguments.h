@@ -39,6 +39,9 @@ CLI::Option* add_output_folder_option(CLI::App& command,
                                       std::string& path,
                                       const std::string& meaning);
 
+/// Declares `--picture`, for a command that writes one as .png beside its result.
+CLI::Option* add_picture_option(CLI::App& command, std::string& path);
+
 /// Declares the repeatable `--set key.path=value`; its texts go to `overrides`.
 void add_set_option(CLI::App& command, std::vector<std::string>& overrides);
 

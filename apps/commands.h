@@ -19,6 +19,7 @@ void add_calibrate_command(CLI::App& app);
 void add_compare_command(CLI::App& app);
 void add_info_command(CLI::App& app);
 void add_report_command(CLI::App& app);
+void add_view_command(CLI::App& app);
 void add_generate_command(CLI::App& app);
 void add_demo_command(CLI::App& app);
 void add_bench_command(CLI::App& app);
@@ -36,5 +37,6 @@ void add_bench_fit_command(CLI::App& bench);
 void add_bench_comparisons_command(CLI::App& bench);
 void add_bench_reconstruct_command(CLI::App& bench);
 void add_bench_track_command(CLI::App& bench);
+void add_bench_field_command(CLI::App& bench);
 
 }  // namespace apps

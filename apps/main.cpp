@@ -34,6 +34,7 @@ void declare_commands(CLI::App& app) {
     apps::add_compare_command(app);
     apps::add_info_command(app);
     apps::add_report_command(app);
+    apps::add_view_command(app);
     apps::add_bench_command(app);
     apps::add_generate_command(app);
     apps::add_sweep_command(app);

@@ -2,6 +2,7 @@
 #include "apps/outcome.h"
 
 #include "apps/terminal.h"
+#include "renderer/core/process.h"
 #include "renderer/core/stopwatch.h"
 
 namespace apps {
@@ -32,6 +33,7 @@ void print_outcome(const std::string& command, int status, const std::string& er
     core::Json line{{"command", command}, {"status", status}};
     if (!error.empty()) line["error"] = core::printable(error);
     line["seconds"] = g_watch.seconds();
+    line["peak_rss_bytes"] = core::peak_rss_bytes();
     line.update(outcome());
     write_output(line.dump(-1, ' ', false, core::Json::error_handler_t::replace) + "\n");
 } catch (const std::exception&) {

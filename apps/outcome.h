@@ -8,7 +8,7 @@
 
 namespace apps {
 
-/// What --json says at the end of a command beside its name, status and seconds: the numbers that
+/// What --json says at the end of a command beside its name, status, seconds and memory: the numbers that
 /// its text shows. Commands add to it.
 core::Json& outcome();
 

@@ -8,9 +8,9 @@ packages=(
     g++ cmake ninja-build pkg-config git ca-certificates
     libembree-dev libtbb-dev libtinygltf-dev nlohmann-json3-dev libfmt-dev libcli11-dev
     libeigen3-dev libfftw3-dev libhdf5-dev libmatio-dev libopenexr-dev libflann-dev liblz4-dev libopencv-dev
-    libpng-dev libturbojpeg0-dev zlib1g-dev libxxhash-dev libmeshoptimizer-dev
+    libcairo2-dev libfreetype-dev fonts-dejavu-core libpng-dev libturbojpeg0-dev zlib1g-dev libxxhash-dev libmeshoptimizer-dev
     libceres-dev libzip-dev libassimp-dev libpugixml-dev libyaml-cpp-dev
-    libgtest-dev gnuplot-nox
+    libjs-three libgtest-dev gnuplot-nox
     "$@"
 )
 

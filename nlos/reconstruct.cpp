@@ -206,15 +206,24 @@ class Job {
         if (choice.method == Method::Solver) {
             measurement_ = take_measurement(prepared_, settings, axis_, plan_);
         }
-        if (uses_wave(settings) && !settings.phasor.wavelength_m) {
-            settings.phasor.wavelength_m =
-                default_wavelength_m(prepared_.scan, prepared_.wall, axis_);
-        }
+        if (uses_wave(settings)) choose_wavelength(settings.phasor);
         choose_axes(prepared_.scan, axis_, prepared_.wall, settings, axes_);
         observed_ = prepared_observed(plan_);
         core::simplify(observed_, axis_.num_bins);
         if (auto warning = unobserved_warning(settings, observed_, axis_.num_bins)) {
             result_.warnings.push_back(std::move(*warning));
+        }
+    }
+
+    /// Fills the wavelength in; bins can tell no shorter ones from longer ones.
+    void choose_wavelength(PhasorSettings& phasor) const {
+        if (!phasor.wavelength_m) {
+            phasor.wavelength_m = default_wavelength_m(prepared_.scan, prepared_.wall, axis_);
+        }
+        if (*phasor.wavelength_m < axis_.bin_width_m) {
+            throw core::Error("phasor.wavelength_m",
+                              fmt::format("found {:.3g} m", *phasor.wavelength_m),
+                              fmt::format("must be at least a bin, {:.3g} m", axis_.bin_width_m));
         }
     }
 

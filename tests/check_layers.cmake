@@ -17,7 +17,7 @@ set(floors_renderer
     "renderer/restir"
     "renderer")
 set(floors_nlos
-    "nlos/containers|nlos/fourier|nlos/detector|nlos/reconstruction"
+    "nlos/containers|nlos/fourier|nlos/detector|nlos/reconstruction|nlos/canvas"
     "nlos/layouts"
     "nlos/formats|nlos/compare|nlos/preparation"
     "nlos/methods|nlos/pictures"
@@ -32,7 +32,9 @@ set(floors_apps
     "apps"
     "apps/batch|apps/manual|apps/shapes"
     "apps/bench|apps/dataset"
+    "apps/page"
     "apps/report|apps/bench/render|apps/bench/reconstruct|apps/bench/fit|apps/bench/track"
+    "apps/bench/field"
     "apps/commands"
     "apps/python|apps/sweep")
 
@@ -48,7 +50,7 @@ set(below_apps "renderer/|nlos/|calib/")
 # files include and that are not installed.
 set(private_headers renderer/scene/embree.h)
 set(anywhere
-    "Eigen/|tbb/|nlohmann/|fmt/|sys/|unistd\\.h|spawn\\.h|fcntl\\.h|dlfcn\\.h|link\\.h|immintrin\\.h|experimental/simd")
+    "Eigen/|tbb/|nlohmann/|fmt/|sys/|unistd\\.h|spawn\\.h|fcntl\\.h|poll\\.h|dlfcn\\.h|link\\.h|immintrin\\.h|experimental/simd")
 set(third_renderer/core "flann/|malloc\\.h")
 set(third_renderer/gltf "tiny_gltf")
 set(third_renderer/mesh_file "assimp/")
@@ -56,13 +58,14 @@ set(third_renderer/scene "embree[34]/")
 set(third_renderer/scene_import "pugixml\\.hpp|yaml-cpp/")
 set(third_nlos/containers "zlib\\.h|hdf5\\.h|matio\\.h|zip\\.h|OpenEXR/")
 set(third_nlos/fourier "fftw3\\.h")
-set(third_nlos/pictures "opencv2/|png\\.h")
+set(third_nlos/canvas "cairo-|zlib\\.h")
 set(third_calib/setup "ceres/|opencv2/|png\\.h|turbojpeg\\.h")
 set(third_calib/forward "ceres/")
 set(third_calib/fit "ceres/")
 set(third_apps "CLI/")
 set(third_apps/batch "xxhash\\.h")
 set(third_apps/dataset "meshoptimizer\\.h")
+set(third_apps/page "zlib\\.h")
 set(third_apps/bench "CLI/")
 set(third_apps/python "nanobind/|pthread\\.h")
 

@@ -7,8 +7,9 @@ cd "$(dirname "$0")/.."
 
 preset=${1:-check}
 [ $# -gt 0 ] && shift
-# They write the layouts of other groups, and read data sets.
-bash apps/setup.sh python3-h5py python3-numpy python3-scipy python3-torch
+# They write the layouts of other groups, read data sets, and use pages as a browser's user does.
+bash apps/setup.sh python3-h5py python3-numpy python3-scipy python3-torch \
+    chromium chromium-driver python3-selenium python3-pil
 module=()
 if [ "$preset" != sanitize ]; then
     bash tests/python.sh

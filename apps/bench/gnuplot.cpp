@@ -1,19 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "apps/bench/gnuplot.h"
 
+#include "apps/run_program.h"
 #include "renderer/core/error.h"
 #include "renderer/core/output_file.h"
 
-#include <fcntl.h>
 #include <fmt/ranges.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
-#include <memory>
 #include <utility>
 
 namespace apps {
@@ -67,36 +61,11 @@ std::string script_of(const Plot& plot, const std::string& terminal) {
     return script + data + curves + "\n";
 }
 
-/// Runs gnuplot, without a shell and without start-up files.
-///
-/// script    goes to its standard input
-/// picture   the file that its standard output goes to
-/// returns   whether gnuplot was there and content
-bool run_gnuplot(const std::string& script, const std::string& picture) {
-    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> input(std::tmpfile(), &std::fclose);
-    if (!input || std::fputs(script.c_str(), input.get()) < 0) return false;
-    std::rewind(input.get());
-
-    posix_spawn_file_actions_t streams;
-    ::posix_spawn_file_actions_init(&streams);
-    ::posix_spawn_file_actions_adddup2(&streams, ::fileno(input.get()), STDIN_FILENO);
-    ::posix_spawn_file_actions_addopen(
-        &streams, STDOUT_FILENO, picture.c_str(), O_WRONLY | O_TRUNC, 0);
-    ::posix_spawn_file_actions_addopen(&streams, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
-    std::string program = "gnuplot";
-    std::string option = "--default-settings";
-    const std::array<char*, 3> arguments{program.data(), option.data(), nullptr};
-    pid_t process = 0;
-    const int error =
-        ::posix_spawnp(&process, program.c_str(), &streams, nullptr, arguments.data(), ::environ);
-    ::posix_spawn_file_actions_destroy(&streams);
-    int status = 0;
-    return error == 0 && ::waitpid(process, &status, 0) == process && status == 0;
-}
-
 bool draw_as(const Plot& plot, const std::string& terminal, const std::string& target) {
     core::OutputFile output(target);
-    if (!run_gnuplot(script_of(plot, terminal), output.temporary())) return false;
+    const auto status = run_program(
+        {"gnuplot", "--default-settings"}, script_of(plot, terminal), output.temporary());
+    if (status != 0) return false;
     output.commit();
     return true;
 }

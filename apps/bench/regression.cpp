@@ -28,17 +28,23 @@ constexpr Quantity kTarget{Judgement::Target, 0.0};
 
 // Figures that say how good a run is. Everything else describes what was run.
 const std::map<std::string_view, Quantity> kQuantities{{"cpu_seconds", kTime},
+                                                       {"cpu_s", kTime},
+                                                       {"process_cpu_s", kTime},
+                                                       {"cpu_s_at_1_percent", kTime},
                                                        {"seconds", kTime},
                                                        {"seconds_per_frame", kTime},
                                                        {"ns", kTime},
                                                        {"ns_checked", kTime},
                                                        {"peak_bytes", kMemory},
+                                                       {"peak_mb", kMemory},
                                                        {"bytes", kMemory},
                                                        {"rel_l2", kError},
                                                        {"rel_mse", kError},
                                                        {"trimmed_rel_mse", kError},
                                                        {"variance_seconds", kError},
                                                        {"depth_mae_m", kError},
+                                                       {"depth_mae_mm", kError},
+                                                       {"stated_mae_mm", kError},
                                                        {"depth_median_m", kError},
                                                        {"depth_rmse_m", kError},
                                                        {"normal_median_deg", kError},
@@ -48,29 +54,18 @@ const std::map<std::string_view, Quantity> kQuantities{{"cpu_seconds", kTime},
                                                        {"mask_iou_best", kShare},
                                                        {"accepted", kShare},
                                                        {"accepted_share", kShare},
+                                                       {"iou", kShare},
+                                                       {"iou_best", kShare},
+                                                       {"consistent", kTarget},
                                                        {"holds", kTarget},
                                                        {"met", kTarget}};
 
 // Fields that name a row.
-constexpr std::array kNames{"name",
-                            "scene",
-                            "pattern",
-                            "target_error",
-                            "sequence",
-                            "method",
-                            "choice",
-                            "of",
-                            "chart",
-                            "gauge",
-                            "mode",
-                            "effort",
-                            "size",
-                            "operation",
-                            "gate_mm",
-                            "max_bounces",
-                            "center_m",
-                            "peak_counts",
-                            "at_rel_l2"};
+constexpr std::array kNames{"name",        "scene",    "pattern",     "points",       "light",
+                            "capture",     "program",  "samples",     "target_error", "sequence",
+                            "method",      "choice",   "of",          "chart",        "gauge",
+                            "mode",        "effort",   "size",        "operation",    "gate_mm",
+                            "max_bounces", "center_m", "peak_counts", "at_rel_l2"};
 
 std::string name_of(const Json& row) {
     std::string name;
@@ -78,6 +73,7 @@ std::string name_of(const Json& row) {
     for (const char* field : kNames) {
         if (!row.contains(field)) continue;
         const Json& value = row[field];
+        if (value.is_array() && !value.empty() && value.front().is_object()) continue;  // rows
         if (!name.empty()) name += "/";
         name += value.is_string() ? value.get<std::string>() : value.dump();
     }

@@ -75,6 +75,7 @@ void add_bench_command(CLI::App& app) {
     add_bench_sequences_command(command);
     add_bench_shift_command(command);
     add_bench_track_command(command);
+    add_bench_field_command(command);
 }
 
 }  // namespace apps

@@ -21,6 +21,7 @@ struct CompareArguments {
     std::string a;
     std::string b;
     std::string output;
+    std::string picture;
     std::optional<double> fscore_threshold_m;
     std::vector<std::string> overrides;
 };
@@ -38,7 +39,8 @@ void run(const CompareArguments& arguments) {
                              arguments.b,
                              arguments.output,
                              threshold,
-                             capture_options(arguments.overrides).capture);
+                             capture_options(arguments.overrides).capture,
+                             arguments.picture);
     }();
     for_each_field(comparison.metrics,
                    [](const char* name, const auto& value, const char* meaning) {
@@ -47,8 +49,10 @@ void run(const CompareArguments& arguments) {
                        print("{:<24} {:<12.6g} {}\n", name, static_cast<double>(*value), meaning);
                    });
     for (const std::string& text : comparison.warnings) warn(text);
-    note_written({arguments.output});
-    if (!arguments.output.empty()) print("wrote {}\n", arguments.output);
+    for (const std::string& path : {arguments.output, arguments.picture}) {
+        note_written({path});
+        if (!path.empty()) print("wrote {}\n", path);
+    }
 }
 
 }  // namespace
@@ -66,6 +70,7 @@ void add_compare_command(CLI::App& app) {
     add_file_option(command, "B", arguments->b, "scene.json as the truth, or another of A's kind")
         ->required();
     add_output_option(command, arguments->output, "Metrics to write (.json)");
+    add_picture_option(command, arguments->picture);
     command
         .add_option("--fscore-threshold-m",
                     arguments->fscore_threshold_m,

@@ -21,6 +21,7 @@
 namespace apps {
 namespace {
 
+constexpr int kPictureColumns = 3;
 constexpr std::size_t kSurfaceSamples = 100'000;
 constexpr std::uint64_t kSurfaceSeed = 0;
 
@@ -33,39 +34,31 @@ core::PointCloud points_of_file(const std::string& path) {
     return core::sample_surface(mesh, kSurfaceSamples, kSurfaceSeed);
 }
 
-nlos::Metrics compare_volume_to_scene(const std::string& a,
-                                      const std::string& b,
-                                      const std::string& picture_path,
-                                      std::optional<double> threshold_m) {
+Comparison compare_volume_to_scene(const std::string& a,
+                                   const std::string& b,
+                                   std::optional<double> threshold_m) {
     const nlos::Reconstruction result = nlos::read_volume(a);
     const nlos::VolumeAxes& axes = result.volume.axes;
     const core::DepthMap truth = SceneTruth(b).depth_map(axes.world_from_wall, axes.x_m, axes.y_m);
-    if (!picture_path.empty()) {
-        nlos::write_panels_png(picture_path, nlos::comparison_panels(result, truth), 3);
-    }
-    return nlos::compare_to_truth(result, truth, threshold_m);
+    return {nlos::compare_to_truth(result, truth, threshold_m),
+            {},
+            nlos::comparison_panels(result, truth)};
 }
 
 // `b` is a scene, or a fit with its scene beside it.
-nlos::Metrics compare_fit_to_scene(const std::string& a,
-                                   const std::string& b,
-                                   const std::string& picture_path,
-                                   double threshold_m) {
+Comparison compare_fit_to_scene(const std::string& a, const std::string& b, double threshold_m) {
     const bool is_fit = kind_of_file(b) == FileKind::Fit;
     const renderer::SceneDescription scene =
         renderer::read_scene_description(is_fit ? with_suffix(b, ".scene.json") : b, {});
-    std::vector<nlos::Panel> overlay;
-    const nlos::Metrics metrics =
+    Comparison comparison;
+    comparison.metrics =
         score_fit(calib::read_fit(a),
                   renderer::load_geometry(with_suffix(a, ".glb")),
                   renderer::load_geometry(scene),
                   is_fit ? calib::read_fit(b).points : std::vector<calib::FittedPoint>(),
                   threshold_m,
-                  &overlay);
-    if (!picture_path.empty() && !overlay.empty()) {
-        nlos::write_panels_png(picture_path, overlay, 3);
-    }
-    return metrics;
+                  &comparison.panels);
+    return comparison;
 }
 
 nlos::Metrics compare_tracks(const std::string& a, const std::string& b) {
@@ -88,17 +81,16 @@ bool is_surface(FileKind kind) {
 
 Comparison compare_kinds(const std::string& a,
                          const std::string& b,
-                         const std::string& picture_path,
                          std::optional<double> threshold_m,
                          const nlos::CaptureReadSettings& settings) {
     const FileKind kind_a = kind_of_file(a);
     const FileKind kind_b = kind_of_file(b);
     const double between_points = threshold_m.value_or(kDefaultThreshold_m);
     if (kind_a == FileKind::Volume && kind_b == FileKind::Scene) {
-        return {compare_volume_to_scene(a, b, picture_path, threshold_m), {}};
+        return compare_volume_to_scene(a, b, threshold_m);
     }
     if (kind_a == FileKind::Fit && (kind_b == FileKind::Scene || kind_b == FileKind::Fit)) {
-        return {compare_fit_to_scene(a, b, picture_path, between_points), {}};
+        return compare_fit_to_scene(a, b, between_points);
     }
     if (is_surface(kind_a) && kind_b == FileKind::Scene) {
         return {
@@ -160,17 +152,28 @@ Comparison compare_files(const std::string& a,
                          const std::string& b,
                          const std::string& metrics_path,
                          std::optional<double> fscore_threshold_m,
-                         const nlos::CaptureReadSettings& settings) {
-    const std::string picture = metrics_path.empty() ? "" : with_suffix(metrics_path, ".png");
+                         const nlos::CaptureReadSettings& settings,
+                         const std::string& picture) {
+    const std::string own_picture = metrics_path.empty() ? "" : with_suffix(metrics_path, ".png");
     require_suffix(metrics_path, {".json"});
-    core::check_targets({metrics_path, picture}, {a, b});
-    Comparison comparison = compare_kinds(a, b, picture, fscore_threshold_m, settings);
+    nlos::check_picture_suffix(picture);
+    core::check_targets({metrics_path, own_picture, picture}, {a, b});
+    Comparison comparison = compare_kinds(a, b, fscore_threshold_m, settings);
+    if (!picture.empty() && comparison.panels.empty()) {
+        throw core::Error("--picture",
+                          "found two files whose scores have no picture",
+                          "must come with a volume or a fit against a scene");
+    }
     if (!metrics_path.empty()) {
         core::Json json = core::write_value(comparison.metrics);
         json["result"] = core::printable(a);
         json["reference"] = core::printable(b);
         if (!comparison.warnings.empty()) json["warnings"] = comparison.warnings;
         core::write_text_file(metrics_path, core::json_text(json));
+    }
+    for (const std::string& path : {own_picture, picture}) {
+        if (path.empty() || comparison.panels.empty()) continue;
+        nlos::write_panels(path, comparison.panels, kPictureColumns);
     }
     return comparison;
 }

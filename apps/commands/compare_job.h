@@ -13,10 +13,11 @@
 
 namespace apps {
 
-/// Scores, and what casts doubt on them.
+/// Scores, what casts doubt on them, and a picture of what they say.
 struct Comparison {
     nlos::Metrics metrics;
-    std::vector<std::string> warnings;
+    std::vector<std::string> warnings{};
+    std::vector<nlos::Panel> panels{};  ///< of a volume or a fit against a scene
 };
 
 /// Distance that counts as a match of points, unless told otherwise [m].
@@ -46,11 +47,13 @@ nlos::Metrics score_fit(const calib::FitResult& fit,
 /// fscore_threshold_m   distance that counts as a match of points; nothing: 0.01 m for surfaces and
 ///                      clouds, the voxel diagonal for volumes
 /// settings             how A is read when it is a capture
-/// throws               core::Error when the two cannot be compared
+/// picture              where to write that picture in another format; empty: nowhere
+/// throws               core::Error when the two cannot be compared, or have no picture to write
 Comparison compare_files(const std::string& a,
                          const std::string& b,
                          const std::string& metrics_path,
                          std::optional<double> fscore_threshold_m = std::nullopt,
-                         const nlos::CaptureReadSettings& settings = {});
+                         const nlos::CaptureReadSettings& settings = {},
+                         const std::string& picture = "");
 
 }  // namespace apps

@@ -52,7 +52,7 @@ void run(const DemoArguments& arguments) {
         stop_if_interrupted();
         const std::string volume = file("volume_" + method + ".h5");
         const auto result =
-            reconstruct_to_file({file("capture.h5")}, {"method=" + method}, volume, "");
+            reconstruct_to_file({{file("capture.h5")}, {"method=" + method}, volume});
         const nlos::Metrics metrics =
             compare_files(volume, scene, file("metrics_" + method + ".json"), kDemoMatch_m).metrics;
         outcome()["depth_mae_m"][method] = core::write_value(metrics.depth_mae_m);
@@ -85,7 +85,7 @@ void run(const DemoArguments& arguments) {
           fit.seconds,
           1e3 * errors.position_error_m.value_or(0.0),
           errors.rotation_error_deg.value_or(0.0));
-    write_report(folder.string(), file("report.html"));
+    write_report(file("report.html"), read_results_folder(folder.string(), scene), {});
     note_written({file("report.html")});
     outcome()["position_error_m"] = core::write_value(errors.position_error_m);
     print("wrote {}\n", file("report.html"));

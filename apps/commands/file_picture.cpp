@@ -1,33 +1,29 @@
 // SPDX-License-Identifier: MIT
 #include "apps/commands/file_picture.h"
 
-#include "apps/arguments.h"
 #include "apps/file_kind.h"
 #include "apps/scene_truth.h"
 #include "nlos/formats/capture_file.h"
 #include "nlos/formats/volume_file.h"
 #include "nlos/pictures/picture.h"
 #include "nlos/pictures/pictures.h"
-#include "renderer/core/output_file.h"
 
 namespace apps {
 
 void write_picture(const std::vector<std::string>& paths,
-                   const std::string& png_path,
+                   const std::string& picture_path,
                    const nlos::CaptureReadSettings& settings) {
-    require_suffix(png_path, {".png"});
-    core::check_targets({png_path}, paths);
     const std::string& path = paths.front();
     switch (kind_of_file(path)) {
         case FileKind::Scene:
-            nlos::write_panels_png(png_path, nlos::truth_panels(SceneTruth(path).depth_map()), 3);
+            nlos::write_panels(picture_path, nlos::truth_panels(SceneTruth(path).depth_map()), 3);
             return;
         case FileKind::Volume:
-            nlos::write_panels_png(png_path, nlos::volume_panels(nlos::read_volume(path)), 2);
+            nlos::write_panels(picture_path, nlos::volume_panels(nlos::read_volume(path)), 2);
             return;
         case FileKind::Capture:
-            nlos::write_panels_png(
-                png_path, nlos::capture_panels(nlos::read_capture(paths, settings)), 3);
+            nlos::write_panels(
+                picture_path, nlos::capture_panels(nlos::read_capture(paths, settings)), 3);
             return;
         case FileKind::Fit:
         case FileKind::Metrics:

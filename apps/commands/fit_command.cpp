@@ -23,6 +23,7 @@ struct FitArguments {
     std::string model;
     std::string output;
     std::string calibration;
+    std::string picture;
     std::vector<std::string> overrides;
     int threads = 0;
 };
@@ -80,19 +81,22 @@ void run(const FitArguments& arguments) {
                                                 arguments.model,
                                                 arguments.overrides,
                                                 arguments.calibration,
-                                                arguments.output);
+                                                arguments.output,
+                                                arguments.picture);
     note(result, arguments.output);
+    note_written({arguments.picture});
     for (const calib::FittedObject& object : result.objects) print_object(object);
     for (const calib::FittedPoint& point : result.points) {
         print("point          {}\n", place_text(point.position_m, point.position_sigma_m));
     }
     print(
-        "wrote {}, {}, {}, {} ({}, deviance {:.4g} of {:.4g} expected, {} iterations, "
+        "wrote {}, {}, {}, {}{} ({}, deviance {:.4g} of {:.4g} expected, {} iterations, "
         "{:.2f} s)\n",
         arguments.output,
         with_suffix(arguments.output, ".scene.json"),
         with_suffix(arguments.output, ".glb"),
         with_suffix(arguments.output, ".png"),
+        arguments.picture.empty() ? "" : ", " + arguments.picture,
         result.residual,
         result.deviance,
         result.expected_deviance,
@@ -134,6 +138,7 @@ void add_fit_command(CLI::App& app) {
                       arguments->output,
                       "Fit to write (.json); the fitted scene and a picture go beside it")
         ->required();
+    add_picture_option(command, arguments->picture);
     add_file_option(
         command, "--calibration", arguments->calibration, "Calibration of the set-up (.json)");
     add_threads_option(command, arguments->threads);

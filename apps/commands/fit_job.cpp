@@ -22,6 +22,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr int kFitColumns = 3;  // of the picture
+
 void refuse_camera(const calib::FitInput& input) {
     if (!input.capture.scan.camera && !input.scene.camera) return;
     throw core::Error(input.scene.camera ? input.settings.scene : "capture",
@@ -75,7 +77,7 @@ void write_fit(const calib::FitInput& input,
     const std::string geometry = fs::path(stem + ".glb").filename().string();
     core::write_text_file(stem + ".scene.json",
                           core::json_text(calib::fitted_scene_json(input, geometry)));
-    nlos::write_panels_png(stem + ".png", fit_panels(result), 3);
+    nlos::write_panels(stem + ".png", fit_panels(result), kFitColumns);
     core::Json json = calib::fit_json(result);
     json["program"] = version_text();
     json["command"] = command_line();
@@ -87,8 +89,10 @@ calib::FitResult fit_to_file(const std::string& capture_path,
                              const std::string& model_path,
                              const std::vector<std::string>& overrides,
                              const std::string& calibration,
-                             const std::string& fit_path) {
+                             const std::string& fit_path,
+                             const std::string& picture) {
     require_suffix(fit_path, {".json"});
+    nlos::check_picture_suffix(picture);
     calib::FitInput input = make_input(capture_path, model_path, overrides);
     std::vector<std::string> sources{
         capture_path, model_path, calibration, input.settings.scene, input.settings.start};
@@ -96,7 +100,8 @@ calib::FitResult fit_to_file(const std::string& capture_path,
     core::check_targets({fit_path,
                          with_suffix(fit_path, ".scene.json"),
                          with_suffix(fit_path, ".glb"),
-                         with_suffix(fit_path, ".png")},
+                         with_suffix(fit_path, ".png"),
+                         picture},
                         sources);
     if (!calibration.empty()) use_calibration(calib::read_calibration(calibration), input);
     ProgressBar bar("fit");
@@ -108,6 +113,7 @@ calib::FitResult fit_to_file(const std::string& capture_path,
     }();
     if (progress.should_stop()) throw core::Failure("fit", "interrupted");
     write_fit(input, result, fit_path);
+    if (!picture.empty()) nlos::write_panels(picture, fit_panels(result), kFitColumns);
     return result;
 }
 

@@ -26,12 +26,14 @@ void write_fit(const calib::FitInput& input,
 /// overrides     `key.path=value` texts for MODEL.json, and `capture.` for how the capture is read
 /// calibration   CALIBRATION.json to apply to the capture; empty: none
 /// fit_path      FIT.json; FIT.scene.json, FIT.glb and FIT.png go beside it
+/// picture       where to write what FIT.png shows in another format; empty: nowhere
 /// throws        core::Error, core::Failure as fit_scene() does; a fit that did not converge is
 ///               written and returned
 calib::FitResult fit_to_file(const std::string& capture_path,
                              const std::string& model_path,
                              const std::vector<std::string>& overrides,
                              const std::string& calibration,
-                             const std::string& fit_path);
+                             const std::string& fit_path,
+                             const std::string& picture = "");
 
 }  // namespace apps

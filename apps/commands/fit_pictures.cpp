@@ -2,6 +2,7 @@
 #include "apps/commands/fit_pictures.h"
 
 #include "calib/statistics/poisson_deviance.h"
+#include "nlos/pictures/light_scale.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,15 +18,34 @@ using core::Vec3;
 constexpr std::size_t kMaxRows = 256;
 constexpr double kCellsAcross = 90.0;
 
-nlos::ImagePanel rows_panel(const calib::FitResult& result, const std::string& title) {
+// Colours that colour-blind people tell apart [Wong2011].
+constexpr nlos::Colour kTruth{0, 114, 178};
+constexpr nlos::Colour kFit{230, 159, 0};
+constexpr nlos::Colour kBoth{90, 90, 90};
+
+nlos::ImagePanel rows_panel(const calib::FitResult& result,
+                            const std::array<std::size_t, 2>& bins,
+                            const std::string& title) {
     nlos::ImagePanel panel;
     panel.title = title;
-    panel.width = static_cast<std::size_t>(result.axis.num_bins);
-    panel.x_range = {result.axis.opl_start_m, result.axis.opl_end_m()};
+    panel.width = bins[1] - bins[0];
+    panel.x_range = {result.axis.bin_begin_m(static_cast<double>(bins[0])),
+                     result.axis.bin_begin_m(static_cast<double>(bins[1]))};
     panel.x_label = "path length [m]";
     panel.y_label = "pair";
     panel.scale = nlos::AxisScale::Free;
     return panel;
+}
+
+/// First and one past the last bin in which the model has light from the scene: more than the least
+/// that there is, which is ambient.
+std::array<std::size_t, 2> lit_bins(const calib::FitResult& result) {
+    std::vector<double> light(static_cast<std::size_t>(result.axis.num_bins), 0.0);
+    for (std::size_t i = 0; i < result.model.size(); ++i)
+        light[i % light.size()] += result.model[i];
+    const double ambient = *std::min_element(light.begin(), light.end());
+    for (double& value : light) value -= ambient;
+    return nlos::shown_bins(light);
 }
 
 struct Box {
@@ -63,8 +83,7 @@ nlos::ImagePanel overlay_view(
     panel.y_range = {box.low[up], box.low[up] + cell * static_cast<double>(panel.height)};
     panel.x_label = labels[static_cast<std::size_t>(across)];
     panel.y_label = labels[static_cast<std::size_t>(up)];
-    panel.value_label = "1 truth, 2 fit, 3 both";
-    panel.value_range = std::array{0.0, 3.0};
+    panel.categories = {{"truth", kTruth}, {"fit", kFit}, {"both", kBoth}};
     std::vector<int> marks(panel.width * panel.height, 0);
     const auto mark = [&](const core::PointCloud& points, int bit) {
         for (const Vec3& p : points.positions) {
@@ -86,12 +105,13 @@ std::vector<nlos::Panel> fit_panels(const calib::FitResult& result) {
     const std::size_t pairs = result.data.size() / bins;
     const std::size_t group = (pairs + kMaxRows - 1) / kMaxRows;
     const std::size_t rows = (pairs + group - 1) / group;
-    nlos::ImagePanel data = rows_panel(result, "Data");
-    nlos::ImagePanel model = rows_panel(result, "Model");
-    nlos::ImagePanel residual = rows_panel(result, "Data - model");
+    const std::array<std::size_t, 2> shown = lit_bins(result);
+    nlos::ImagePanel data = rows_panel(result, shown, "Data");
+    nlos::ImagePanel model = rows_panel(result, shown, "Model");
+    nlos::ImagePanel residual = rows_panel(result, shown, "Data − model");
     const bool is_poisson = result.residual == "poisson";
     for (std::size_t row = 0; row < rows; ++row) {
-        for (std::size_t bin = 0; bin < bins; ++bin) {
+        for (std::size_t bin = shown[0]; bin < shown[1]; ++bin) {
             double counted = 0.0;
             double expected = 0.0;
             for (std::size_t i = row * group; i < std::min(pairs, (row + 1) * group); ++i) {

@@ -4,10 +4,12 @@
 #include "apps/commands.h"
 #include "apps/commands/describe_file.h"
 #include "apps/commands/file_picture.h"
+#include "apps/commands/film_file.h"
 #include "apps/outcome.h"
 #include "apps/progress_bar.h"
 #include "apps/terminal.h"
 #include "nlos/layouts/layout_guess.h"
+#include "nlos/pictures/picture.h"
 #include "renderer/core/output_file.h"
 
 #include <memory>
@@ -19,6 +21,7 @@ namespace {
 struct InfoArguments {
     std::vector<std::string> files;
     std::string picture;
+    std::string film;
     std::string write_layout;
     std::vector<std::string> overrides;
 };
@@ -35,6 +38,19 @@ void write_layout(const std::string& path, const std::string& layout_path) {
     print("wrote {}\n", layout_path);
 }
 
+void draw(const InfoArguments& arguments,
+          const nlos::CaptureReadSettings& settings,
+          const core::Progress& progress) {
+    if (!arguments.picture.empty()) write_picture(arguments.files, arguments.picture, settings);
+    if (!arguments.film.empty()) {
+        write_film(arguments.film, nlos::read_capture(arguments.files, settings), progress);
+    }
+    for (const std::string& path : {arguments.picture, arguments.film}) {
+        note_written({path});
+        if (!path.empty()) print("wrote {}\n", path);
+    }
+}
+
 void run(const InfoArguments& arguments) {
     const std::vector<std::string>& files = arguments.files;
     if (!arguments.write_layout.empty()) {
@@ -44,16 +60,16 @@ void run(const InfoArguments& arguments) {
         write_layout(files.front(), arguments.write_layout);
         return;
     }
-    const ProgressBar bar("info");
+    nlos::check_picture_suffix(arguments.picture);
+    check_film_path(arguments.film);
+    core::check_targets({arguments.picture, arguments.film}, files);
+    ProgressBar bar("info");
     const nlos::CaptureReadSettings settings = capture_options(arguments.overrides).capture;
     const std::string text = describe_files(files, settings);
     write_message(text);
     std::istringstream lines(text);
     for (std::string line; std::getline(lines, line);) outcome()["lines"].push_back(line);
-    if (arguments.picture.empty()) return;
-    write_picture(files, arguments.picture, settings);
-    note_written({arguments.picture});
-    print("wrote {}\n", arguments.picture);
+    draw(arguments, settings, bar.progress());
 }
 
 }  // namespace
@@ -69,10 +85,17 @@ void add_info_command(CLI::App& app) {
         "Capture, volume, scene.json, glTF, OBJ, PLY, STL, fit, metrics or calibration; "
         "several files: the frames of a sequence")
         ->required();
-    add_file_option(command,
-                    "--picture",
-                    arguments->picture,
-                    "Also draw it (.png): a scene as the wall sees it, a capture, a volume");
+    add_file_option(
+        command,
+        "--picture",
+        arguments->picture,
+        "Also draw it (.png, .svg, .pdf): a scene as the wall sees it, a capture, a volume");
+    add_file_option(
+        command,
+        "--film",
+        arguments->film,
+        "Also film a capture, bin by bin or a sequence frame by frame (.png, which is animated, or "
+        ".mp4 by ffmpeg)");
     add_file_option(command,
                     "--write-layout",
                     arguments->write_layout,

@@ -16,12 +16,7 @@ namespace apps {
 namespace {
 
 struct ReconstructArguments {
-    std::vector<std::string> captures;
-    std::string output;
-    std::string ply;
-    std::string glb;
-    std::string calibration;
-    std::vector<std::string> overrides;
+    ReconstructRequest request;
     std::vector<std::string> shorthands;  ///< --method lct becomes method=lct
     int threads = 0;
 };
@@ -31,27 +26,25 @@ constexpr std::array kReconstructShorthands{
 
 void run(const ReconstructArguments& arguments) {
     const core::ThreadLimit threads(arguments.threads);
-    std::vector<std::string> overrides = arguments.overrides;
-    overrides.insert(overrides.end(), arguments.shorthands.begin(), arguments.shorthands.end());
-    const nlos::Reconstruction result = reconstruct_to_file(arguments.captures,
-                                                            overrides,
-                                                            arguments.output,
-                                                            arguments.ply,
-                                                            arguments.glb,
-                                                            arguments.calibration);
+    ReconstructRequest request = arguments.request;
+    request.overrides.insert(
+        request.overrides.end(), arguments.shorthands.begin(), arguments.shorthands.end());
+    const nlos::Reconstruction result = reconstruct_to_file(request);
     for (const std::string& warning : result.warnings) warn(warning);
     const nlos::VolumeAxes& axes = result.volume.axes;
-    note_written(
-        {arguments.output, with_suffix(arguments.output, ".png"), arguments.ply, arguments.glb});
+    std::string written = request.volume;
+    note_written({request.volume});
+    for (const std::string& file :
+         {with_suffix(request.volume, ".png"), request.ply, request.glb, request.picture}) {
+        note_written({file});
+        if (!file.empty()) written += ", " + file;
+    }
     outcome()["method"] = result.method;
     outcome()["voxels"] = {axes.x_m.size(), axes.y_m.size(), axes.z_m.size()};
     outcome()["surface_points"] = result.points.positions.size();
     outcome()["seconds_reconstruct"] = result.seconds;
-    print("wrote {}, {}{}{} ({}, {} x {} x {} voxels, {} surface points, {:.2f} s)\n",
-          arguments.output,
-          with_suffix(arguments.output, ".png"),
-          arguments.ply.empty() ? "" : ", " + arguments.ply,
-          arguments.glb.empty() ? "" : ", " + arguments.glb,
+    print("wrote {} ({}, {} x {} x {} voxels, {} surface points, {:.2f} s)\n",
+          written,
           result.method,
           axes.x_m.size(),
           axes.y_m.size(),
@@ -69,18 +62,24 @@ void add_reconstruct_command(CLI::App& app) {
     const auto arguments = std::make_shared<ReconstructArguments>();
     add_file_option(command,
                     "CAPTURE",
-                    arguments->captures,
+                    arguments->request.captures,
                     "Capture in any readable format; several files: the frames of a sequence")
         ->required();
-    add_output_option(command, arguments->output, "Volume to write (.h5); a .png goes beside it")
+    add_output_option(
+        command, arguments->request.volume, "Volume to write (.h5); a .png goes beside it")
         ->required();
     add_shorthands(command, kReconstructShorthands, arguments->shorthands);
-    add_file_option(command, "--ply", arguments->ply, "Also write the surface points (.ply)");
-    add_file_option(command, "--glb", arguments->glb, "Also write the surface as a mesh (.glb)");
     add_file_option(
-        command, "--calibration", arguments->calibration, "Calibration of the set-up (.json)");
+        command, "--ply", arguments->request.ply, "Also write the surface points (.ply)");
+    add_file_option(
+        command, "--glb", arguments->request.glb, "Also write the surface as a mesh (.glb)");
+    add_picture_option(command, arguments->request.picture);
+    add_file_option(command,
+                    "--calibration",
+                    arguments->request.calibration,
+                    "Calibration of the set-up (.json)");
     add_threads_option(command, arguments->threads);
-    add_capture_options(command, arguments->overrides);
+    add_capture_options(command, arguments->request.overrides);
     command.example = "nlos reconstruct data/letter.h5 -o volume.h5 --method lct";
     command.callback([arguments] { run(*arguments); });
 }

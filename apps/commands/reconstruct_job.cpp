@@ -30,27 +30,24 @@ void write_surface(const std::string& glb_path, core::TriangleMesh mesh) {
 
 }  // namespace
 
-nlos::Reconstruction reconstruct_to_file(const std::vector<std::string>& capture_paths,
-                                         const std::vector<std::string>& overrides,
-                                         const std::string& volume_path,
-                                         const std::string& ply_path,
-                                         const std::string& glb_path,
-                                         const std::string& calibration_path) {
-    require_suffix(volume_path, {".h5", ".hdf5"});
-    require_suffix(ply_path, {".ply"});
-    require_suffix(glb_path, {".glb"});
-    std::vector<std::string> inputs = capture_paths;
-    inputs.push_back(calibration_path);
-    core::check_targets({volume_path, with_suffix(volume_path, ".png"), ply_path, glb_path},
+nlos::Reconstruction reconstruct_to_file(const ReconstructRequest& request) {
+    require_suffix(request.volume, {".h5", ".hdf5"});
+    require_suffix(request.ply, {".ply"});
+    require_suffix(request.glb, {".glb"});
+    nlos::check_picture_suffix(request.picture);
+    std::vector<std::string> inputs = request.captures;
+    inputs.push_back(request.calibration);
+    const std::string own_picture = with_suffix(request.volume, ".png");
+    core::check_targets({request.volume, own_picture, request.ply, request.glb, request.picture},
                         inputs);
     ReconstructOptions options;
-    for (const std::string& text : overrides) core::apply_override(options, text);
+    for (const std::string& text : request.overrides) core::apply_override(options, text);
     ProgressBar bar("reconstruct");
     const core::Progress progress = bar.progress();
     progress.stage(1, 3, "reading", 0.0, 0.0);
-    core::Capture capture = nlos::read_capture(capture_paths, options.capture);
-    if (!calibration_path.empty()) {
-        capture = calib::apply_calibration(calib::read_calibration(calibration_path), capture);
+    core::Capture capture = nlos::read_capture(request.captures, options.capture);
+    if (!request.calibration.empty()) {
+        capture = calib::apply_calibration(calib::read_calibration(request.calibration), capture);
     }
 
     nlos::Reconstruction result = [&] {
@@ -64,11 +61,13 @@ nlos::Reconstruction reconstruct_to_file(const std::vector<std::string>& capture
     result.provenance = {
         {"program", version_text()},
         {"command", command_line()},
-        {"capture", core::printable(fmt::format("{}", fmt::join(capture_paths, " ")))}};
-    nlos::write_volume(volume_path, result);
-    nlos::write_panels_png(with_suffix(volume_path, ".png"), nlos::volume_panels(result), 2);
-    if (!ply_path.empty()) nlos::write_ply(ply_path, result.points);
-    if (!glb_path.empty()) write_surface(glb_path, nlos::surface_mesh(result.depth));
+        {"capture", core::printable(fmt::format("{}", fmt::join(request.captures, " ")))}};
+    nlos::write_volume(request.volume, result);
+    for (const std::string& path : {own_picture, request.picture}) {
+        if (!path.empty()) nlos::write_panels(path, nlos::volume_panels(result), 2);
+    }
+    if (!request.ply.empty()) nlos::write_ply(request.ply, result.points);
+    if (!request.glb.empty()) write_surface(request.glb, nlos::surface_mesh(result.depth));
     return result;
 }
 

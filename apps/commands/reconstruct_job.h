@@ -21,19 +21,19 @@ void for_each_field(ReconstructOptions& options, Visitor&& visit) {
     visit("capture", options.capture, "what the capture file leaves open");
 }
 
-/// Reconstructs a capture file into a volume file and the picture beside it.
-///
-/// capture_paths   one, or the frames of a sequence
-/// overrides   `key.path=value` texts for ReconstructOptions
-/// ply_path    where to write the surface points; empty: nowhere
-/// glb_path    where to write the surface as a mesh; empty: nowhere
-/// calibration_path   CALIBRATION.json to apply to the capture; empty: none
-/// throws      also core::Failure when a mesh was asked for and no surface was found
-nlos::Reconstruction reconstruct_to_file(const std::vector<std::string>& capture_paths,
-                                         const std::vector<std::string>& overrides,
-                                         const std::string& volume_path,
-                                         const std::string& ply_path,
-                                         const std::string& glb_path = "",
-                                         const std::string& calibration_path = "");
+/// What `nlos reconstruct` is asked to do; empty paths: nothing.
+struct ReconstructRequest {
+    std::vector<std::string> captures;   ///< one, or the frames of a sequence
+    std::vector<std::string> overrides;  ///< `key.path=value` texts for ReconstructOptions
+    std::string volume;                  ///< VOLUME.h5; VOLUME.png goes beside it
+    std::string ply{};                   ///< the surface points
+    std::string glb{};                   ///< the surface as a mesh
+    std::string picture{};               ///< what VOLUME.png shows, in another format
+    std::string calibration{};           ///< CALIBRATION.json to apply to the capture
+};
+
+/// Reconstructs a capture file into a volume file and what goes beside it.
+/// throws   also core::Failure when a mesh was asked for and no surface was found
+nlos::Reconstruction reconstruct_to_file(const ReconstructRequest& request);
 
 }  // namespace apps

@@ -1,13 +1,20 @@
 // SPDX-License-Identifier: MIT
 #include "apps/arguments.h"
+#include "apps/capture_options.h"
 #include "apps/commands.h"
 #include "apps/outcome.h"
 #include "apps/progress_bar.h"
 #include "apps/report/report.h"
 #include "apps/terminal.h"
+#include "renderer/core/error.h"
 
 #include <fmt/core.h>
+#include <spawn.h>
+#include <unistd.h>
 
+#include <array>
+#include <cstdlib>
+#include <filesystem>
 #include <memory>
 
 namespace apps {
@@ -16,7 +23,56 @@ namespace {
 struct ReportArguments {
     std::string folder;
     std::string output;
+    ReportOptions options;
 };
+
+struct ViewArguments {
+    std::vector<std::string> files;
+    std::string output;
+    bool keep_closed = false;
+    std::vector<std::string> overrides;
+    ReportOptions options;
+};
+
+void add_size_option(Command& command, ReportOptions& options) {
+    CLI::Option& size = *command.add_option("--data-mb",
+                                            options.data_mb,
+                                            "Most that volumes and films may take [MB]; larger "
+                                            "ones are shown more coarsely");
+    limit(*size.capture_default_str(), {0.1, true, 1e4, true});
+}
+
+/// A page in a new folder for temporary files, which nobody else writes to.
+std::string temporary_page() {
+    std::string folder = (std::filesystem::temp_directory_path() / "nlos-view-XXXXXX").string();
+    if (::mkdtemp(folder.data()) == nullptr) {
+        throw core::Failure("view", "no folder for temporary files can be made; name a page by -o");
+    }
+    return folder + "/view.html";
+}
+
+/// Opens a page in the browser, where there is a screen and a program that knows one.
+bool open_in_browser(const std::string& path) {
+    if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) {
+        return false;
+    }
+    std::array<std::string, 2> texts{"xdg-open", std::filesystem::absolute(path).string()};
+    const std::array<char*, 3> arguments{texts[0].data(), texts[1].data(), nullptr};
+    pid_t process = 0;
+    return ::posix_spawnp(&process, arguments[0], nullptr, nullptr, arguments.data(), ::environ) ==
+           0;
+}
+
+void run_view(const ViewArguments& arguments) {
+    const std::string page = arguments.output.empty() ? temporary_page() : arguments.output;
+    require_suffix(page, {".html", ".htm"});
+    const ProgressBar bar("view");
+    const nlos::CaptureReadSettings settings = capture_options(arguments.overrides).capture;
+    write_report(page, read_result_files(arguments.files, settings), arguments.options);
+    note_written({page});
+    const bool opened = !arguments.keep_closed && open_in_browser(page);
+    print("wrote {}{}\n", page, opened ? "" : "; open it in a browser");
+}
 
 }  // namespace
 
@@ -27,14 +83,39 @@ void add_report_command(CLI::App& app) {
     add_folder_option(command, "DIR", arguments->folder, "Folder of captures, volumes and metrics")
         ->required();
     add_output_option(command, arguments->output, "Page to write (.html)")->required();
+    add_file_option(command,
+                    "--scene",
+                    arguments->options.scene,
+                    "Scene with the truth, if not the one that the results name (.json)");
+    add_size_option(command, arguments->options);
     command.example = "nlos report data -o report.html";
     command.callback([arguments] {
         require_suffix(arguments->output, {".html", ".htm"});
         const ProgressBar bar("report");
-        write_report(arguments->folder, arguments->output);
+        const ReportOptions& options = arguments->options;
+        write_report(
+            arguments->output, read_results_folder(arguments->folder, options.scene), options);
         note_written({arguments->output});
         print("wrote {}\n", arguments->output);
     });
+}
+
+void add_view_command(CLI::App& app) {
+    Command& command =
+        add_command(app, "view", "Show captures, volumes and scenes as a page in the browser");
+    command.settings = core::settings_help(CaptureOptions{});
+    const auto arguments = std::make_shared<ViewArguments>();
+    add_file_option(command,
+                    "FILE",
+                    arguments->files,
+                    "Captures, volumes, fits, metrics; of a scene.json: the truth beside them")
+        ->required();
+    add_output_option(command, arguments->output, "Page to keep (.html); else a temporary one");
+    command.add_flag("--no-browser", arguments->keep_closed, "Only write the page");
+    add_size_option(command, arguments->options);
+    add_capture_options(command, arguments->overrides);
+    command.example = "nlos view data/letter.h5 scenes/letter/scene.json --no-browser";
+    command.callback([arguments] { run_view(*arguments); });
 }
 
 }  // namespace apps

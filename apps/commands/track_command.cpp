@@ -61,7 +61,7 @@ void add_track_command(CLI::App& app) {
     add_file_option(command,
                     "--picture",
                     request->picture,
-                    "Picture to write (.png): plan, histograms and model");
+                    "Picture to write (.png, .svg, .pdf): plan, histograms and model");
     command.add_flag("--smooth", request->smooth, "Use later frames too, once all are there");
     add_capture_options(command, request->overrides);
     command.example =

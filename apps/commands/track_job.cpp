@@ -73,7 +73,7 @@ class Run {
             core::write_text_file(request.csv, calib::track_csv(estimates_, settings_));
         }
         if (!request.picture.empty()) {
-            nlos::write_panels_png(
+            nlos::write_panels(
                 request.picture, track_panels(estimates_, settings_, tracker_.sensor(), shown_), 2);
         }
         return summary_;
@@ -101,7 +101,7 @@ class Run {
 void check_outputs(const TrackRequest& request) {
     require_suffix(request.output, {".json"});
     require_suffix(request.csv, {".csv"});
-    require_suffix(request.picture, {".png"});
+    nlos::check_picture_suffix(request.picture);
     std::vector<std::string> inputs = request.frames;
     inputs.push_back(request.model);
     core::check_targets({request.output, request.csv, request.picture}, inputs);

@@ -112,7 +112,7 @@ std::optional<Manifest> make_shard(Dataset& dataset,
     if (!is_whole) return std::nullopt;
     writer->finish();
     if (!preview.empty()) {
-        nlos::write_panels_png(
+        nlos::write_panels(
             preview_path(dataset.folder()), preview, static_cast<int>(preview_columns));
     }
     manifest.bytes = fs::file_size(path);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "apps/dataset/item_preview.h"
 
+#include "nlos/pictures/light_scale.h"
+
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -94,7 +96,7 @@ ImagePanel streak_panel_of(const Recipe& recipe, const ItemArray& histograms) {
     panel.y_direction = nlos::AxisDirection::Reversed;
     panel.scale = nlos::AxisScale::Free;
     panel.value_scale = nlos::ValueScale::Gamma;
-    panel.value_label = recipe.detector ? "counts" : "radiance";
+    panel.value_label = recipe.detector ? "counts per bin" : nlos::kRenderedRadiancePerBin;
     return panel;
 }
 

@@ -151,6 +151,11 @@ void validate_counts(const Recipe& recipe, const std::string& where) {
 void validate(const Recipe& recipe, const std::string& where) {
     core::check_ranges(recipe, where);
     core::check_ranges(recipe.objects, where + "objects");
+    const ObjectDistributions& objects = recipe.objects;
+    for (const auto& [key, place] :
+         {std::pair{"x_m", &objects.x_m}, {"y_m", &objects.y_m}, {"z_m", &objects.z_m}}) {
+        check_range(*place, {}, where + "objects." + key);  // any number
+    }
     validate_counts(recipe, where);
     validate_meshes(recipe.meshes, where + "meshes");
     validate_truths(recipe, where);

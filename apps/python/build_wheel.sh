@@ -34,6 +34,17 @@ stand_in() {
 stand_in libcurl.so.4 CURL_OPENSSL_4 curl_ libhdf5_serial.so
 stand_in libGLX.so.0 '' glX libopencv_core.so
 
+# Debian's Cairo can also draw in windows. Its copy for the wheel asks one more such library for that,
+# in place of six of X11, which wheels would have to find where they run.
+stand_in libno_windows.so '' '_\?[Xx]' libcairo.so
+cairo=$scratch/stand_ins/$(basename "$(grep /libcairo.so <<<"$libraries")")
+cp "$(grep /libcairo.so <<<"$libraries")" "$cairo"
+ln -s "$(basename "$cairo")" "$scratch/stand_ins/libcairo.so.2"
+for library in $(patchelf --print-needed "$cairo" | grep -E '^lib(X|xcb)'); do
+    patchelf --remove-needed "$library" "$cairo"
+done
+patchelf --add-needed libno_windows.so "$cairo"
+
 # What processor it needs is checked when the module is loaded.
 LD_LIBRARY_PATH=$scratch/stand_ins auditwheel repair --disable-isa-ext-check \
     --wheel-dir "$scratch/repaired" "$scratch"/bare/*.whl
@@ -43,6 +54,7 @@ wheel unpack --dest "$scratch/repaired" "$scratch"/repaired/*.whl >/dev/null
 licenses=$(echo "$scratch"/repaired/*/*.dist-info)/licenses/libraries
 mkdir -p "$licenses"
 cp -r /usr/share/common-licenses "$licenses"
+cp /usr/share/doc/fonts-dejavu-core/copyright "$licenses/fonts-dejavu"  # which is in the module itself
 for bundled in "$scratch"/repaired/*/nlos.libs/*; do
     name=$(basename "$bundled")
     library=$(grep "/$(sed -E 's/-[0-9a-f]{8}\././' <<<"$name")$" <<<"$libraries") || continue

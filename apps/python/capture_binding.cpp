@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "apps/python/bindings.h"
 #include "apps/python/capture_histograms.h"
+#include "apps/python/picture_bytes.h"
 #include "nlos/formats/capture_file.h"
-#include "nlos/pictures/picture.h"
 #include "nlos/pictures/pictures.h"
 
 #include <fmt/ranges.h>
@@ -123,9 +123,8 @@ std::vector<std::string> write_capture(const Capture& capture,
     });
 }
 
-nb::bytes picture_of(const Capture& capture) {
-    const std::string png = nlos::encode_panels_png(nlos::capture_panels(capture), 3);
-    return nb::bytes(png.data(), png.size());
+nb::bytes picture_of(const Capture& capture, const std::string& format) {
+    return picture_bytes(nlos::capture_panels(capture), 3, format);
 }
 
 // Views of points in the shape of their list or grid.
@@ -306,8 +305,11 @@ void bind_capture(nb::module_& module) {
                 return nb::module_::import_("nlos.neighbours").attr("to_xarray")(self);
             },
             "H as an xarray.DataArray with named axes and units, in the same memory.")
-        .def("picture", &picture_of, "PNG: streak image, light over the wall, mean transient.")
-        .def("_repr_png_", &picture_of)
+        .def("picture",
+             &picture_of,
+             nb::arg("format") = "png",
+             "PNG, SVG or PDF: streak image, light over the wall, mean transient.")
+        .def("_repr_png_", [](const Capture& capture) { return picture_of(capture, "png"); })
         .def("__repr__", &text_of);
     module.def("read_capture", &read_capture, nb::arg("paths"), nb::arg("settings"));
 }

@@ -3,8 +3,8 @@
 #include "apps/commands/fit_pictures.h"
 #include "apps/python/bindings.h"
 #include "apps/python/fit_object.h"
+#include "apps/python/picture_bytes.h"
 #include "calib/fit_file.h"
-#include "nlos/pictures/picture.h"
 #include "renderer/scene/load_geometry.h"
 
 #include <fmt/core.h>
@@ -84,9 +84,8 @@ SceneObject scene_of(const FitObject& fitted) {
     return scene;
 }
 
-nb::bytes picture_of(const FitObject& fitted) {
-    const std::string png = nlos::encode_panels_png(apps::fit_panels(fitted.result), 3);
-    return nb::bytes(png.data(), png.size());
+nb::bytes picture_of(const FitObject& fitted, const std::string& format) {
+    return picture_bytes(apps::fit_panels(fitted.result), 3, format);
 }
 
 std::string text_of(const FitObject& fitted) {
@@ -145,8 +144,11 @@ void bind_fit(nb::module_& module) {
             },
             nb::arg("path").none(),
             "Writes FIT.json and, beside it, the fitted scene and a picture.")
-        .def("picture", &picture_of, "PNG: data, model and their difference.")
-        .def("_repr_png_", &picture_of)
+        .def("picture",
+             &picture_of,
+             nb::arg("format") = "png",
+             "PNG, SVG or PDF: data, model and their difference.")
+        .def("_repr_png_", [](const FitObject& fitted) { return picture_of(fitted, "png"); })
         .def("__repr__", &text_of);
     module.def("fit",
                &fit,

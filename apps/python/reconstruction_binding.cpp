@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "apps/python/bindings.h"
+#include "apps/python/picture_bytes.h"
 #include "nlos/formats/ply_file.h"
 #include "nlos/formats/volume_file.h"
-#include "nlos/pictures/picture.h"
 #include "nlos/pictures/pictures.h"
 #include "nlos/reconstruction/surface_mesh.h"
 
@@ -69,9 +69,8 @@ void write(const Reconstruction& result, nb::handle target) {
     });
 }
 
-nb::bytes picture_of(const Reconstruction& result) {
-    const std::string png = nlos::encode_panels_png(nlos::volume_panels(result), 2);
-    return nb::bytes(png.data(), png.size());
+nb::bytes picture_of(const Reconstruction& result, const std::string& format) {
+    return picture_bytes(nlos::volume_panels(result), 2, format);
 }
 
 std::string text_of(const Reconstruction& result) {
@@ -152,8 +151,11 @@ void bind_reconstruction(nb::module_& module) {
              &write,
              nb::arg("path").none(),
              "Writes the volume (.h5) or its points (.ply).")
-        .def("picture", &picture_of, "PNG: projections, depth, and what is stated about it.")
-        .def("_repr_png_", &picture_of)
+        .def("picture",
+             &picture_of,
+             nb::arg("format") = "png",
+             "PNG, SVG or PDF: projections, depth, and what is stated about it.")
+        .def("_repr_png_", [](const Reconstruction& result) { return picture_of(result, "png"); })
         .def("__repr__", &text_of);
     module.def(
         "read_volume",

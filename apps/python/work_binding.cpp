@@ -233,7 +233,7 @@ void bind_work(nb::module_& module) {
         "report",
         [](const std::string& folder, const std::string& path) {
             with_files([&] {
-                apps::write_report(folder, path);
+                apps::write_report(path, apps::read_results_folder(folder), {});
                 return 0;
             });
         },

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "apps/report/bench_cards.h"
 
-#include "apps/report/html.h"
+#include "apps/page/html.h"
 #include "apps/report/result_cards.h"
 
 #include <fmt/core.h>
 
+#include <charconv>
 #include <filesystem>
 #include <set>
 
@@ -19,6 +20,50 @@ std::string text_of(const core::Json& json, const char* key) {
     if (it == json.end()) return "";
     if (it->is_number()) return short_number(it->get<double>());
     return it->is_string() ? it->get<std::string>() : it->dump();
+}
+
+constexpr std::size_t kLongTable = 60;  // rows, from which on a table is folded
+
+bool is_number(const std::string& text) {
+    double value = 0.0;
+    const char* end = text.data() + text.size();
+    return std::from_chars(text.data(), end, value).ptr == end;
+}
+
+std::string table_html(const Table& table) {
+    std::vector<bool> holds_words(table.columns.size());
+    for (const std::vector<std::string>& row : table.rows) {
+        for (std::size_t c = 0; c < row.size(); ++c) {
+            if (!row[c].empty() && !is_number(row[c])) holds_words[c] = true;
+        }
+    }
+    const auto row_html = [&](const std::vector<std::string>& cells, const char* element) {
+        std::string html = "<tr>";
+        for (std::size_t c = 0; c < cells.size(); ++c) {
+            html += fmt::format("<{0}{1}>{2}</{0}>",
+                                element,
+                                holds_words[c] ? " class=\"text\"" : "",
+                                escape_html(cells[c]));
+        }
+        return html + "</tr>\n";
+    };
+    std::string html =
+        "<div class=\"bench\"><table><thead>" + row_html(table.columns, "th") + "</thead><tbody>\n";
+    for (const std::vector<std::string>& row : table.rows) html += row_html(row, "td");
+    html += "</tbody></table></div>\n";
+    const std::string name = escape_html(table.name);
+    if (table.rows.size() < kLongTable) return (name.empty() ? "" : "<h4>" + name + "</h4>") + html;
+    return fmt::format(
+        "<details><summary>{}, {} rows</summary>{}</details>\n", name, table.rows.size(), html);
+}
+
+// The tables of a benchmark, behind them what changed against an earlier run.
+std::vector<Table> all_tables(core::Json figures) {
+    const core::Json against = figures.value("against", core::Json::object());
+    for (const char* key : {"program", "machine", "libraries", "against"}) figures.erase(key);
+    std::vector<Table> tables = tables_of(figures);
+    for (Table& table : tables_of(against)) tables.push_back(std::move(table));
+    return tables;
 }
 
 std::string stem_of(const std::string& file) {
@@ -45,8 +90,7 @@ BenchCard read_bench_card(const std::string& path, const core::Json& json) {
     card.facts = {{"Version", text_of(json, "program")},
                   {"Machine", text_of(json, "machine")},
                   {"Libraries", text_of(json, "libraries")}};
-    const fs::path table = fs::path(path).replace_extension(".txt");
-    if (fs::exists(table)) card.table = read_bytes(table.string());
+    card.tables = all_tables(json);
     return card;
 }
 
@@ -70,11 +114,17 @@ std::string benches_html(const std::vector<BenchCard>& benches) {
     std::string html;
     for (const BenchCard& card : benches) {
         html += fmt::format("<article><h3>{}</h3>\n", escape_html(card.file));
+        const auto add_tables = [&](bool are_long) {
+            for (const Table& table : card.tables) {
+                if ((table.rows.size() >= kLongTable) == are_long) html += table_html(table);
+            }
+        };
+        add_tables(false);
         for (const Figure& figure : card.figures) {
             html += figure_html(embedded_image(figure.bytes, figure.mime_type, figure.file),
                                 escape_html(figure.file));
         }
-        if (!card.table.empty()) html += "<pre>" + escape_html(card.table) + "</pre>\n";
+        add_tables(true);
         html += facts_html(card.facts) + "</article>\n";
     }
     return html;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "apps/bench/tables.h"
 #include "apps/report/result_cards.h"
 #include "renderer/core/settings.h"
 
@@ -20,7 +21,7 @@ struct Figure {
 struct BenchCard {
     std::string file;
     std::vector<Fact> facts;
-    std::string table;  ///< the text beside the JSON file; empty: none
+    std::vector<Table> tables;
     std::vector<Figure> figures;
 };
 
@@ -30,15 +31,15 @@ bool is_bench(const core::Json& json);
 /// Whether it holds several of them, which have files of their own beside it.
 bool is_collection_of_benches(const core::Json& json);
 
-/// A benchmark's facts and table; its figures are still to be given to it.
+/// A benchmark's facts and tables; its figures are still to be given to it.
 ///
-/// path   of the JSON file; the table lies beside it
+/// path   of the JSON file
 BenchCard read_bench_card(const std::string& path, const core::Json& json);
 
 /// Moves figures whose names begin with a benchmark's to it, one format of each.
 void give_figures_to_benches(std::vector<Figure>& figures, std::vector<BenchCard>& benches);
 
-/// The benchmarks as HTML: what they ran on, plots, table.
+/// The benchmarks as HTML: what they ran on, short tables, plots, and long tables folded.
 std::string benches_html(const std::vector<BenchCard>& benches);
 
 /// The table of hard cases as HTML.

@@ -83,7 +83,7 @@ DatasetCard dataset_card(const std::string& folder) {
     for (const auto& [key, histogram] : drawn_histograms(index)) {
         panels.emplace_back(outline(key, histogram));
     }
-    if (!panels.empty()) result.histograms_png = nlos::encode_panels_png(panels, 3);
+    if (!panels.empty()) result.histograms_png = nlos::encode_panels(panels, 3);
     return result;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/report/metrics_table.h"
 
-#include "apps/report/html.h"
+#include "apps/page/html.h"
 
 #include <fmt/core.h>
 
@@ -63,39 +63,39 @@ constexpr std::array<MetricStyle, 32> kStyles{{
 }};
 
 /// One metric of all results.
-struct MetricRow {
+struct MetricColumn {
     std::string key;
     std::string meaning;
     std::vector<std::optional<double>> values;  ///< one per result, as stored
 };
 
-/// The fields of Metrics, in their order, turned from columns into rows.
-std::vector<MetricRow> rows_of(const std::vector<ScoredResult>& scores) {
-    std::vector<MetricRow> rows;
+/// The fields of Metrics, in their order, that any result has.
+std::vector<MetricColumn> columns_of(const std::vector<ScoredResult>& scores) {
+    std::vector<MetricColumn> columns;
     for (const ScoredResult& scored : scores) {
         nlos::Metrics metrics = scored.metrics;
-        std::size_t row = 0;
+        std::size_t next = 0;
         for_each_field(metrics, [&](const char* name, const auto& field, const char* meaning) {
-            if (row == rows.size()) rows.push_back({name, meaning, {}});
+            if (next == columns.size()) columns.push_back({name, meaning, {}});
             std::optional<double> value;
             if (field) value = static_cast<double>(*field);
-            rows[row++].values.push_back(value);
+            columns[next++].values.push_back(value);
         });
     }
-    std::erase_if(rows, [](const MetricRow& row) {
-        return std::none_of(row.values.begin(), row.values.end(), [](const auto& value) {
+    std::erase_if(columns, [](const MetricColumn& column) {
+        return std::none_of(column.values.begin(), column.values.end(), [](const auto& value) {
             return value.has_value();
         });
     });
-    return rows;
+    return columns;
 }
 
-MetricStyle style_of(const MetricRow& row) {
+MetricStyle style_of(const MetricColumn& column) {
     const auto it = std::find_if(kStyles.begin(), kStyles.end(), [&](const MetricStyle& style) {
-        return style.key == row.key;
+        return style.key == column.key;
     });
     if (it != kStyles.end()) return *it;
-    return {row.key, row.key, 1.0, "", Better::Neither};
+    return {column.key, column.key, 1.0, "", Better::Neither};
 }
 
 /// Three significant digits, trailing zeros included, so that a column reads evenly.
@@ -107,11 +107,11 @@ std::string three_digits(double value) {
     return fmt::format("{:#.3g}", value);
 }
 
-/// The best value of a row; nothing when best has no meaning here.
-std::optional<double> best_value(const MetricRow& row, Better better) {
+/// The best value of a metric; nothing when best has no meaning here.
+std::optional<double> best_value(const MetricColumn& column, Better better) {
     if (better == Better::Neither) return std::nullopt;
     std::optional<double> best;
-    for (const auto& value : row.values) {
+    for (const auto& value : column.values) {
         if (!value) continue;
         const bool improves = !best || (better == Better::Lower ? *value < *best : *value > *best);
         if (improves) best = value;
@@ -119,50 +119,58 @@ std::optional<double> best_value(const MetricRow& row, Better better) {
     return best;
 }
 
-/// The cells of a row. Results that read the same are equally good; where all do, none is marked.
-std::string value_cells(const MetricRow& row, const MetricStyle& style) {
+/// A metric as a column of the table: a cell per result. Results that read the same are equally
+/// good; where all do, none is marked.
+std::vector<std::string> cells_of(const MetricColumn& column, const MetricStyle& style) {
     const auto text_of = [&](const std::optional<double>& value) {
         return value ? three_digits(*value * style.factor) : std::string();
     };
-    const std::string best = text_of(best_value(row, style.better));
+    const std::string best = text_of(best_value(column, style.better));
     const bool is_contest =
-        std::any_of(row.values.begin(), row.values.end(), [&](const auto& value) {
+        std::any_of(column.values.begin(), column.values.end(), [&](const auto& value) {
             return value && !best.empty() && text_of(value) != best;
         });
-    std::string html;
-    for (const auto& value : row.values) {
+    std::vector<std::string> cells;
+    for (const auto& value : column.values) {
         if (!value) {
-            html += "<td class=\"none\">&ndash;</td>";
+            cells.emplace_back("<td class=\"none\">&ndash;</td>");
         } else {
             const bool is_best = is_contest && text_of(value) == best;
-            html += fmt::format("<td{}>{}</td>", is_best ? " class=\"best\"" : "", text_of(value));
+            cells.push_back(fmt::format("<td{} data-value=\"{}\">{}</td>",
+                                        is_best ? " class=\"best\"" : "",
+                                        *value,
+                                        text_of(value)));
         }
     }
-    return html;
+    return cells;
 }
 
 }  // namespace
 
 std::string metrics_table(const std::vector<ScoredResult>& scores) {
-    std::string html = "<div class=\"scroll\"><table class=\"scores\"><thead><tr><th>Metric</th>";
+    std::string html =
+        "<div class=\"scroll\"><table class=\"scores sortable\"><thead><tr><th>Result</th>";
+    std::vector<std::string> rows;
     for (const ScoredResult& scored : scores) {
-        html += fmt::format("<th>{}", escape_html(scored.name));
+        rows.push_back("<tr><th>" + escape_html(scored.name));
         if (!scored.result.empty()) {
-            html += fmt::format("<small>{} against {}</small>",
-                                escape_html(scored.result),
-                                escape_html(scored.reference));
+            rows.back() += fmt::format("<small>{} against {}</small>",
+                                       escape_html(scored.result),
+                                       escape_html(scored.reference));
         }
-        html += "</th>";
+        rows.back() += "</th>";
     }
-    html += "</tr></thead><tbody>\n";
-    for (const MetricRow& row : rows_of(scores)) {
-        const MetricStyle style = style_of(row);
-        html += fmt::format("<tr><th title=\"{}\">{}<span class=\"unit\">{}</span></th>",
-                            escape_html(row.meaning),
+    for (const MetricColumn& column : columns_of(scores)) {
+        const MetricStyle style = style_of(column);
+        html += fmt::format("<th title=\"{}\">{}<span class=\"unit\">{}</span></th>",
+                            escape_html(column.meaning),
                             escape_html(style.label),
                             escape_html(style.unit));
-        html += value_cells(row, style) + "</tr>\n";
+        const std::vector<std::string> cells = cells_of(column, style);
+        for (std::size_t i = 0; i < rows.size(); ++i) rows[i] += cells[i];
     }
+    html += "</tr></thead><tbody>\n";
+    for (const std::string& row : rows) html += row + "</tr>\n";
     return html + "</tbody></table></div>\n";
 }
 

@@ -12,8 +12,8 @@ namespace apps {
 /// without any stand in the first.
 std::vector<std::vector<ScoredResult>> groups_by_threshold(const std::vector<ScoredResult>& scores);
 
-/// An HTML table with one row per metric that any result has and one column per result, in units
-/// that people read; the best value of each row is marked.
+/// An HTML table with one row per result and one column per metric that any result has, in units
+/// that people read; the best value of each column is marked. The page's script sorts it.
 ///
 /// scores   at one threshold, see groups_by_threshold()
 std::string metrics_table(const std::vector<ScoredResult>& scores);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "apps/report/report.h"
 
+#include "apps/page/html.h"
 #include "apps/report/bench_cards.h"
-#include "apps/report/html.h"
+#include "apps/report/lead.h"
 #include "apps/report/metrics_table.h"
 #include "apps/version.h"
 #include "renderer/core/output_file.h"
@@ -13,8 +14,8 @@
 
 namespace apps {
 
-/// report.css, compiled in.
-extern const char* const kReportStyle;
+/// The style sheet of pages, compiled in.
+extern const char* const kPageStyle;
 
 namespace {
 
@@ -34,15 +35,34 @@ std::string notes_html(const std::vector<std::string>& notes) {
     return html + "</ul>\n";
 }
 
-std::string card_html(const ResultCard& card, const std::string& picture_of) {
-    std::string picture;
-    if (!card.picture_png.empty()) {
-        picture = "<figure>" +
-                  embedded_image(card.picture_png, kPng, picture_of + " of " + card.file) +
-                  "</figure>\n";
-    }
-    return fmt::format("<article><h3>{}</h3>\n", escape_html(card.file)) + picture +
-           facts_html(card.facts) + notes_html(card.notes) +
+/// Where the page's script puts a view; `fallback` stands there without it.
+std::string view_html(const std::string& kind,
+                      const std::string& attributes = "",
+                      const std::string& fallback = "") {
+    return fmt::format(
+        "<div class=\"view\" data-view=\"{}\"{}>{}</div>\n", kind, attributes, fallback);
+}
+
+std::string folded_html(const std::string& title, const std::string& content) {
+    if (content.empty()) return "";
+    return fmt::format("<details><summary>{}</summary>{}</details>\n", escape_html(title), content);
+}
+
+std::string picture_html(const ResultCard& card, const std::string& picture_of) {
+    if (card.picture_png.empty()) return "";
+    return "<figure>" + embedded_image(card.picture_png, kPng, picture_of + " of " + card.file) +
+           "</figure>\n";
+}
+
+/// A card: its heading, what is seen of it, facts, and the rest folded.
+std::string card_html(const ResultCard& card,
+                      const std::string& seen,
+                      const std::string& folded = "") {
+    const bool has_label = !card.label.empty();
+    return fmt::format("<article><h3>{}{}</h3>\n",
+                       escape_html(has_label ? card.label : card.file),
+                       has_label ? "<small>" + escape_html(card.file) + "</small>" : "") +
+           seen + facts_html(card.facts) + notes_html(card.notes) + folded +
            details_html("Settings and provenance", card.settings) + "</article>\n";
 }
 
@@ -60,17 +80,22 @@ std::string scores_html(const std::vector<ScoredResult>& scores) {
         html += metrics_tiles(group) + metrics_table(group);
         if (group.size() > 1) {
             html +=
-                "<p class=\"hint\">The best value of a row is marked where results can be "
+                "<p class=\"hint\">The best value of a column is marked where results can be "
                 "compared by it.</p>\n";
         }
     }
     return html;
 }
 
-std::string comparisons_html(const std::vector<ScoredResult>& scores) {
+/// Pictures of comparisons, but for those that stand side by side with the truth already.
+std::string comparisons_html(const ResultsFolder& results) {
     std::string html;
-    for (const ScoredResult& scored : scores) {
-        if (scored.picture_png.empty()) continue;
+    for (const ScoredResult& scored : results.scores) {
+        const bool is_volume = std::any_of(
+            results.volumes.begin(), results.volumes.end(), [&](const ResultCard& volume) {
+                return volume.file == scored.result;
+            });
+        if (scored.picture_png.empty() || (is_volume && results.views.truth)) continue;
         std::string caption = "<b>" + escape_html(scored.name) + "</b>";
         if (!scored.result.empty()) {
             caption += fmt::format(
@@ -84,13 +109,64 @@ std::string comparisons_html(const std::vector<ScoredResult>& scores) {
 
 std::string cards_html(const std::vector<ResultCard>& cards, const std::string& picture_of) {
     std::string html;
-    for (const ResultCard& card : cards) html += card_html(card, picture_of);
+    for (const ResultCard& card : cards) html += card_html(card, picture_html(card, picture_of));
     return html;
+}
+
+std::string reconstructions_html(const std::vector<ResultCard>& volumes) {
+    std::string html;
+    for (const ResultCard& volume : volumes) {
+        html += card_html(
+            volume,
+            "",
+            folded_html("Projections and depth as a picture", picture_html(volume, "Projections")));
+    }
+    return html;
+}
+
+/// Captures, each with its film.
+std::string captures_html(const std::vector<ResultCard>& captures) {
+    std::string html;
+    for (std::size_t i = 0; i < captures.size(); ++i) {
+        html += card_html(
+            captures[i],
+            view_html("film", fmt::format(" data-film=\"{}\"", i)),
+            folded_html("Streak image, light over the wall and mean transient as a picture",
+                        picture_html(captures[i], "Streak image")));
+    }
+    return html;
+}
+
+/// The 3-D view, with a picture of what it would show.
+std::string space_html(const ResultsFolder& results) {
+    if (!results.views.has_space()) return "";
+    std::string fallback;
+    if (!results.volumes.empty()) {
+        fallback = embedded_image(results.volumes.front().picture_png, kPng, "Projections");
+    } else if (!results.captures.empty()) {
+        fallback = embedded_image(results.captures.front().picture_png, kPng, "Capture");
+    }
+    return figure_html(view_html("space", "", fallback), escape_html(space_caption(results)));
+}
+
+/// Maps of all results beside the truth, and two of them over each other.
+std::string side_by_side_html(const ResultsFolder& results) {
+    if (results.views.results.empty()) return "";
+    return figure_html(view_html("matrix"),
+                       "Seen from the wall: y upwards, x running right to left. A row has one "
+                       "scale; depth errors are found minus true.") +
+           figure_html(view_html("pair"), "Two of these over each other: move the divider.");
+}
+
+std::string slices_html(const ResultsFolder& results) {
+    if (results.views.results.empty()) return "";
+    return figure_html(view_html("slices"),
+                       "Cuts through a volume at one voxel; click to move the cross.");
 }
 
 std::string dataset_html(const std::optional<DatasetCard>& dataset) {
     if (!dataset) return "";
-    std::string html = card_html(dataset->card, "First items");
+    std::string html = card_html(dataset->card, picture_html(dataset->card, "First items"));
     if (!dataset->histograms_png.empty()) {
         html += figure_html(embedded_image(dataset->histograms_png, kPng, "Histograms"),
                             "What was drawn, over all items.");
@@ -105,9 +181,11 @@ FigureKind kind_of(const Figure& figure) {
     return truth ? FigureKind::Truth : FigureKind::Other;
 }
 
-std::string figures_html(const std::vector<Figure>& figures, FigureKind kind) {
+/// The truth is not drawn twice.
+std::string figures_html(const ResultsFolder& results, FigureKind kind) {
+    if (kind == FigureKind::Truth && results.views.truth) return "";
     std::string html;
-    for (const Figure& figure : figures) {
+    for (const Figure& figure : results.figures) {
         if (kind_of(figure) != kind) continue;
         html += figure_html(embedded_image(figure.bytes, figure.mime_type, figure.file),
                             escape_html(figure.file));
@@ -134,24 +212,17 @@ std::string unreadable_html(const std::vector<Fact>& unreadable) {
     return html + "</ul>\n";
 }
 
-/// What the page holds, such as `1 capture, 2 reconstructions`.
-std::string contents_text(const ResultsFolder& results) {
-    std::string text;
-    const auto add = [&](std::size_t count, const char* thing) {
-        if (count == 0) return;
-        text +=
-            fmt::format("{}{} {}{}", text.empty() ? "" : ", ", count, thing, count == 1 ? "" : "s");
-    };
-    add(results.dataset ? 1 : 0, "data set");
-    add(results.captures.size(), "capture");
-    add(results.volumes.size(), "reconstruction");
-    add(results.fits.size(), "fit");
-    add(results.tracks.size(), "track");
-    add(results.scores.size(), "comparison");
-    add(results.benches.size(), "benchmark");
-    add(results.sweeps.size(), "sweep");
-    add(results.unreadable.size(), "unreadable file");
-    return text;
+/// A part of the page; its anchor is the title in small letters.
+struct Section {
+    std::string title;
+    std::string content;
+};
+
+std::string anchor_of(std::string title) {
+    std::transform(title.begin(), title.end(), title.begin(), [](unsigned char c) {
+        return c == ' ' ? '-' : static_cast<char>(std::tolower(c));
+    });
+    return title;
 }
 
 std::string header_html(const ResultsFolder& results) {
@@ -159,45 +230,65 @@ std::string header_html(const ResultsFolder& results) {
         "<header><p class=\"kicker\">Non-line-of-sight imaging</p><h1>{}</h1>"
         "<p class=\"lead\">{}</p></header>\n",
         escape_html(results.name),
-        contents_text(results));
+        escape_html(lead_text(results)));
+}
+
+/// The titles of the sections that hold something.
+std::string contents_html(const std::vector<Section>& sections) {
+    std::string html = "<nav aria-label=\"Contents\"><ul>";
+    for (const Section& section : sections) {
+        if (section.content.empty()) continue;
+        html +=
+            fmt::format("<li><a href=\"#{}\">{}</a></li>", anchor_of(section.title), section.title);
+    }
+    return html + "</ul></nav>\n";
+}
+
+std::vector<Section> sections_of(const ResultsFolder& results) {
+    return {{"Data set", dataset_html(results.dataset)},
+            {"Hidden scene", space_html(results)},
+            {"Scores", scores_html(results.scores)},
+            {"Side by side", side_by_side_html(results)},
+            {"Slices", slices_html(results)},
+            {"Ground truth", figures_html(results, FigureKind::Truth)},
+            {"Captures", captures_html(results.captures)},
+            {"Reconstructions", reconstructions_html(results.volumes)},
+            {"Fits", cards_html(results.fits, "Data, model and residual")},
+            {"Tracks", cards_html(results.tracks, "Plan and histograms")},
+            {"Comparison with the truth", comparisons_html(results)},
+            {"Speed against error", benches_html(results.benches)},
+            {"Sweeps over settings", sweeps_html(results.sweeps)},
+            {"Hard cases", hard_cases_html(results.hard_cases)},
+            {"Figures", figures_html(results, FigureKind::Other)},
+            {"Other files", documents_html(results.documents)},
+            {"Files that could not be read", unreadable_html(results.unreadable)}};
 }
 
 }  // namespace
 
-std::string render_report(const ResultsFolder& results) {
+std::string render_report(const ResultsFolder& results, double limit_bytes) {
     std::string html =
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
         "<meta name=\"color-scheme\" content=\"light dark\">\n";
     html += fmt::format("<title>{} - nlos report</title>\n", escape_html(results.name));
-    html += std::string("<style>") + kReportStyle + "</style>\n</head>\n<body>\n";
-    html += header_html(results) + "<main>\n";
-    html += section_html("dataset", "Data set", dataset_html(results.dataset));
-    html += section_html("scores", "Scores", scores_html(results.scores));
-    html += section_html("truth", "Ground truth", figures_html(results.figures, FigureKind::Truth));
-    html += section_html("captures", "Captures", cards_html(results.captures, "Streak image"));
-    html += section_html(
-        "reconstructions", "Reconstructions", cards_html(results.volumes, "Projections"));
-    html += section_html("fits", "Fits", cards_html(results.fits, "Data, model and residual"));
-    html += section_html("tracks", "Tracks", cards_html(results.tracks, "Plan and histograms"));
-    html +=
-        section_html("comparisons", "Comparison with the truth", comparisons_html(results.scores));
-    html += section_html("benchmarks", "Speed against error", benches_html(results.benches));
-    html += section_html("sweeps", "Sweeps over settings", sweeps_html(results.sweeps));
-    html += section_html("hard-cases", "Hard cases", hard_cases_html(results.hard_cases));
-    html += section_html("figures", "Figures", figures_html(results.figures, FigureKind::Other));
-    html += section_html("files", "Other files", documents_html(results.documents));
-    html += section_html(
-        "unreadable", "Files that could not be read", unreadable_html(results.unreadable));
+    html += std::string("<style>") + kPageStyle + "</style>\n</head>\n<body>\n";
+    const std::vector<Section> sections = sections_of(results);
+    html += header_html(results) + contents_html(sections) + "<main>\n";
+    for (const Section& section : sections) {
+        html += section_html(anchor_of(section.title), section.title, section.content);
+    }
     html +=
         "</main>\n<footer>Made by " + escape_html(version_text()) +
         ". Lengths in metres in the wall's frame; front views show what an eye at the wall sees: "
-        "y upwards, x running right to left.</footer>\n</body>\n</html>\n";
-    return html;
+        "y upwards, x running right to left.</footer>\n";
+    return html + views_html(results.views, limit_bytes) + "</body>\n</html>\n";
 }
 
-void write_report(const std::string& folder, const std::string& output_html) {
-    core::write_text_file(output_html, render_report(read_results_folder(folder)));
+void write_report(const std::string& output_html,
+                  const ResultsFolder& results,
+                  const ReportOptions& options) {
+    core::write_text_file(output_html, render_report(results, 1e6 * options.data_mb));
 }
 
 }  // namespace apps

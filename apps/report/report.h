@@ -7,15 +7,22 @@
 
 namespace apps {
 
-/// One HTML page that holds everything it shows: style and pictures inline, no script, no other
-/// file.
-std::string render_report(const ResultsFolder& results);
+/// What `nlos report` and `nlos view` let users choose.
+struct ReportOptions {
+    double data_mb = 25.0;  ///< most that a page's views may take; see views_html()
+    std::string scene;      ///< scene.json with the truth; empty: the one that the results name
+};
 
-/// Writes the page about a folder of captures, volumes, metrics and pictures.
+/// One HTML page that holds everything it shows: style, pictures, data and scripts inline, no other
+/// file.
 ///
-/// folder        where the results lie
-/// output_html   page to write; whole or not at all
-/// throws        core::Error when the folder does not exist or holds no result, or for a bad target
-void write_report(const std::string& folder, const std::string& output_html);
+/// limit_bytes   of the data of its views
+std::string render_report(const ResultsFolder& results, double limit_bytes);
+
+/// Writes the page about results; whole or not at all.
+/// throws   core::Error for a bad target
+void write_report(const std::string& output_html,
+                  const ResultsFolder& results,
+                  const ReportOptions& options);
 
 }  // namespace apps

@@ -3,8 +3,7 @@
 
 #include "apps/estimate_text.h"
 #include "calib/fit_file.h"
-#include "nlos/formats/capture_file.h"
-#include "nlos/formats/volume_file.h"
+#include "nlos/pictures/light_scale.h"
 #include "nlos/pictures/pictures.h"
 #include "nlos/preparation/wall_frame.h"
 #include "renderer/core/mapped_file.h"
@@ -91,7 +90,7 @@ std::vector<Fact> capture_facts(const core::Capture& capture) {
           fmt::format("{} of {} mm of path", axis.num_bins, short_number(1e3 * axis.bin_width_m))},
          {"Path length", range_text(axis.opl_start_m, axis.opl_end_m(), "m")},
          {"Path begins at", path_origin(capture.scan)},
-         {"Unit", std::string(core::enum_name(capture.unit))},
+         {"Unit", nlos::light_label(capture)},
          {"Largest value", short_number(*std::max_element(values.begin(), values.end()))},
          {"Sum of all values", short_number(total)}});
     return facts;
@@ -182,22 +181,20 @@ std::string read_bytes(const std::string& path) {
     return std::string(file.bytes());
 }
 
-ResultCard capture_card(const std::string& path) {
-    const core::Capture capture = nlos::read_capture(path);
+ResultCard capture_card(const std::string& path, const core::Capture& capture) {
     ResultCard card;
     card.file = fs::path(path).filename().string();
-    card.picture_png = nlos::encode_panels_png(nlos::capture_panels(capture), kCaptureColumns);
+    card.picture_png = nlos::encode_panels(nlos::capture_panels(capture), kCaptureColumns);
     card.facts = capture_facts(capture);
     card.notes = capture.notes;
     if (!capture.scene_info.empty()) card.settings = capture.scene_info;
     return card;
 }
 
-ResultCard volume_card(const std::string& path) {
-    const nlos::Reconstruction result = nlos::read_volume(path);
+ResultCard volume_card(const std::string& path, const nlos::Reconstruction& result) {
     ResultCard card;
     card.file = fs::path(path).filename().string();
-    card.picture_png = nlos::encode_panels_png(nlos::volume_panels(result), kVolumeColumns);
+    card.picture_png = nlos::encode_panels(nlos::volume_panels(result), kVolumeColumns);
     card.facts = volume_facts(result);
     card.settings = core::write_value(result.settings);
     return card;

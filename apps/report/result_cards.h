@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "nlos/reconstruction/reconstruction.h"
+#include "renderer/core/capture.h"
 #include "renderer/core/settings.h"
 
 #include <string>
@@ -15,6 +17,7 @@ using Fact = std::pair<std::string, std::string>;
 /// A capture, volume or fit, reduced to what a page shows of it.
 struct ResultCard {
     std::string file;
+    std::string label;        ///< what to call it: method and setting; empty: its file
     std::string picture_png;  ///< bytes of a PNG file
     std::vector<Fact> facts;
     std::vector<std::string> notes;
@@ -23,10 +26,11 @@ struct ResultCard {
 
 /// What a page shows of a capture, a volume, a fit, a track.
 ///
+/// path     of the file, whose name is shown
 /// json     content of the file
 /// throws   core::Error as reading them does
-ResultCard capture_card(const std::string& path);
-ResultCard volume_card(const std::string& path);
+ResultCard capture_card(const std::string& path, const core::Capture& capture);
+ResultCard volume_card(const std::string& path, const nlos::Reconstruction& result);
 ResultCard fit_card(const std::string& path, const core::Json& json);
 ResultCard track_card(const std::string& path, const core::Json& json);
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "apps/report/results_folder.h"
 
+#include "apps/file_kind.h"
 #include "apps/report/bench_cards.h"
+#include "apps/report/result_labels.h"
 #include "calib/fit_file.h"
 #include "calib/track/track_file.h"
 #include "nlos/formats/volume_file.h"
@@ -38,6 +40,7 @@ ScoredResult scored_result(const fs::path& path, const core::Json& json) {
     scored.name = shown_name(path.stem().string());
     scored.result = file_name_at(json, "result");
     scored.reference = file_name_at(json, "reference");
+    if (!scored.reference.empty()) scored.reference_path = json["reference"].get<std::string>();
     for_each_field(scored.metrics, [&](const char* name, auto& field, const char*) {
         const auto it = json.find(name);
         if (it != json.end()) core::read_value(*it, path.string() + ": " + name, field);
@@ -64,35 +67,52 @@ bool is_measurement(const std::string& suffix) {
     return suffixes.contains(suffix);
 }
 
+void read_measurement(const fs::path& path,
+                      const nlos::CaptureReadSettings& settings,
+                      ResultsFolder& results) {
+    const std::string name = path.filename().string();
+    if (nlos::is_volume_file(path.string())) {
+        const nlos::Reconstruction volume = nlos::read_volume(path.string());
+        results.volumes.push_back(volume_card(path.string(), volume));
+        results.views.results.push_back(result_view(volume, name));
+        return;
+    }
+    const core::Capture capture = nlos::read_capture(path.string(), settings);
+    results.captures.push_back(capture_card(path.string(), capture));
+    results.views.films.push_back(film_view(capture, name));
+    if (!results.views.scan) results.views.scan = capture.scan;
+}
+
+void read_json(const fs::path& path, ResultsFolder& results) {
+    const std::string name = path.filename().string();
+    core::Json json = core::read_json_file(path.string());
+    if (is_metrics(json)) {
+        results.scores.push_back(scored_result(path, json));
+    } else if (calib::is_fit_file(path.string())) {
+        results.fits.push_back(fit_card(path.string(), json));
+    } else if (calib::is_track(json) && json.contains("track_of")) {
+        results.tracks.push_back(track_card(path.string(), json));
+    } else if (is_bench(json)) {
+        results.benches.push_back(read_bench_card(path.string(), json));
+    } else if (is_sweep(json)) {
+        results.sweeps.push_back({name, std::move(json), {}});
+    } else if (json.contains("hard_cases")) {
+        results.hard_cases = json["hard_cases"];
+    } else if (!is_collection_of_benches(json)) {
+        results.documents.push_back({name, std::move(json)});
+    }
+}
+
+/// Reads a file of a folder; what is nothing of a result is passed over.
 void read_file(const fs::path& path, ResultsFolder& results) {
     const std::string suffix = path.extension().string();
-    const std::string name = path.filename().string();
     if (is_measurement(suffix)) {
-        if (nlos::is_volume_file(path.string())) {
-            results.volumes.push_back(volume_card(path.string()));
-        } else {
-            results.captures.push_back(capture_card(path.string()));
-        }
+        read_measurement(path, {}, results);
     } else if (suffix == ".json") {
-        core::Json json = core::read_json_file(path.string());
-        if (is_metrics(json)) {
-            results.scores.push_back(scored_result(path, json));
-        } else if (calib::is_fit_file(path.string())) {
-            results.fits.push_back(fit_card(path.string(), json));
-        } else if (calib::is_track(json) && json.contains("track_of")) {
-            results.tracks.push_back(track_card(path.string(), json));
-        } else if (is_bench(json)) {
-            results.benches.push_back(read_bench_card(path.string(), json));
-        } else if (is_sweep(json)) {
-            results.sweeps.push_back({name, std::move(json), {}});
-        } else if (json.contains("hard_cases")) {
-            results.hard_cases = json["hard_cases"];
-        } else if (!is_collection_of_benches(json)) {
-            results.documents.push_back({name, std::move(json)});
-        }
+        read_json(path, results);
     } else if (suffix == ".png" || suffix == ".svg") {
         const std::string mime_type = suffix == ".png" ? "image/png" : "image/svg+xml";
-        results.figures.push_back({name, mime_type, read_bytes(path.string())});
+        results.figures.push_back({path.filename().string(), mime_type, read_bytes(path.string())});
     }
 }
 
@@ -120,9 +140,66 @@ void drop_accompanying_figures(ResultsFolder& results) {
     });
 }
 
+/// Paths of scenes that the results name: what metrics are against, what captures were rendered
+/// from.
+std::vector<std::string> named_scenes(const ResultsFolder& results) {
+    std::vector<std::string> paths;
+    for (const ScoredResult& scored : results.scores) paths.push_back(scored.reference_path);
+    for (const ResultCard& capture : results.captures) {
+        if (!capture.settings.is_object()) continue;
+        const auto scene = capture.settings.find("scene");
+        if (scene != capture.settings.end() && scene->is_string()) paths.push_back(*scene);
+    }
+    return paths;
+}
+
+/// The truth of the first named scene that is still there and can be looked at from its wall.
+void find_truth(const fs::path& folder, ResultsFolder& results) {
+    for (const std::string& name : named_scenes(results)) {
+        for (const fs::path& path : {fs::path(name), folder / name}) {
+            try {
+                if (kind_of_file(path.string()) != FileKind::Scene) continue;
+                results.views.truth = truth_view(path.string(), results.views.results);
+                return;
+            } catch (const std::exception&) {
+                continue;  // gone, moved or changed since: the page does without
+            }
+        }
+    }
+}
+
+/// The result with the highest F-score, or else the first.
+std::size_t best_result(const ResultsFolder& results) {
+    std::size_t best = 0;
+    double highest = -1.0;
+    for (const ScoredResult& scored : results.scores) {
+        for (std::size_t i = 0; i < results.volumes.size(); ++i) {
+            const double fscore = scored.metrics.fscore.value_or(-1.0);
+            if (results.volumes[i].file != scored.result || fscore <= highest) continue;
+            highest = fscore;
+            best = i;
+        }
+    }
+    return best;
+}
+
+/// What only the whole says: labels, whose pictures are whose, the truth.
+void complete(const fs::path& folder, const std::string& scene, ResultsFolder& results) {
+    label_by_method(results);
+    results.views.best = best_result(results);
+    drop_accompanying_figures(results);
+    give_figures_to_benches(results.figures, results.benches);
+    give_figures_to_sweeps(results.figures, results.sweeps);
+    if (scene.empty()) {
+        find_truth(folder, results);
+    } else {
+        results.views.truth = truth_view(scene, results.views.results);
+    }
+}
+
 }  // namespace
 
-ResultsFolder read_results_folder(const std::string& folder) {
+ResultsFolder read_results_folder(const std::string& folder, const std::string& scene) {
     std::error_code error;
     if (!fs::is_directory(folder, error)) {
         throw core::Error(folder, "is not a folder", "must be a folder of results");
@@ -139,14 +216,35 @@ ResultsFolder read_results_folder(const std::string& folder) {
                                             without_folder(failure.what(), folder));
         }
     }
-    drop_accompanying_figures(results);
-    give_figures_to_benches(results.figures, results.benches);
-    give_figures_to_sweeps(results.figures, results.sweeps);
+    complete(folder, scene, results);
     if (results.empty()) {
         throw core::Error(folder,
                           "holds no result",
                           "must hold captures or volumes (.h5), metrics (.json) or pictures");
     }
+    return results;
+}
+
+ResultsFolder read_result_files(const std::vector<std::string>& paths,
+                                const nlos::CaptureReadSettings& settings) {
+    ResultsFolder results;
+    std::string scene;
+    for (const std::string& path : paths) {
+        const FileKind kind = kind_of_file(path);
+        const fs::path file = path;
+        if (kind == FileKind::Scene) {
+            scene = path;
+        } else if (kind == FileKind::Capture || kind == FileKind::Volume) {
+            read_measurement(file, settings, results);
+        } else if (file.extension() == ".json") {
+            read_json(file, results);
+        } else {
+            throw core::Error(
+                path, "is a shape", "must be a capture, volume, scene.json or result in JSON");
+        }
+        results.name += (results.name.empty() ? "" : ", ") + file.filename().string();
+    }
+    complete(fs::path(paths.front()).parent_path(), scene, results);
     return results;
 }
 

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "apps/page/page_views.h"
 #include "apps/report/bench_cards.h"
 #include "apps/report/dataset_card.h"
 #include "apps/report/result_cards.h"
 #include "apps/report/sweep_cards.h"
 #include "nlos/compare/compare.h"
+#include "nlos/formats/capture_file.h"
 #include "renderer/core/settings.h"
 
 #include <optional>
@@ -18,9 +20,10 @@ namespace apps {
 /// A METRICS.json.
 struct ScoredResult {
     std::string file;
-    std::string name;       ///< to show: the file's, without suffix and a leading `metrics_`
-    std::string result;     ///< name of the scored file; empty when unknown
-    std::string reference;  ///< name of what it was scored against
+    std::string name;              ///< to show: the file's, without suffix and a leading `metrics_`
+    std::string result;            ///< name of the scored file; empty when unknown
+    std::string reference;         ///< name of what it was scored against
+    std::string reference_path{};  ///< as the file says it
     nlos::Metrics metrics;
     std::string picture_png;  ///< of the picture beside it; empty: none
 };
@@ -46,6 +49,7 @@ struct ResultsFolder {
     std::vector<Figure> figures;  ///< but for those that belong to a file shown
     std::vector<JsonDocument> documents;
     std::vector<Fact> unreadable;  ///< file and what is wrong with it
+    PageViews views;               ///< a film per capture and a result per volume, in their order
 
     bool empty() const {
         return !dataset && scores.empty() && captures.empty() && volumes.empty() && fits.empty() &&
@@ -56,8 +60,17 @@ struct ResultsFolder {
 
 /// Reads every capture, volume, fit, JSON file and picture of a folder (not of folders inside it).
 ///
+/// scene     scene.json with the truth; empty: the first that metrics or captures name and that is
+///           still there
 /// returns   what was found; files that cannot be read are listed with their error
-/// throws    core::Error when the folder does not exist or holds nothing of these
-ResultsFolder read_results_folder(const std::string& folder);
+/// throws    core::Error when the folder does not exist or holds nothing of these, and as reading
+///           `scene` does
+ResultsFolder read_results_folder(const std::string& folder, const std::string& scene = "");
+
+/// The same of files, of which a scene.json is the truth.
+///
+/// settings   of captures
+ResultsFolder read_result_files(const std::vector<std::string>& paths,
+                                const nlos::CaptureReadSettings& settings = {});
 
 }  // namespace apps

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/report/sweep_cards.h"
 
-#include "apps/report/html.h"
+#include "apps/page/html.h"
 #include "apps/report/result_cards.h"
 
 #include <fmt/core.h>

@@ -58,9 +58,9 @@ core::TimeAxis ForwardModel::fine_axis() const {
 }
 
 void ForwardModel::refresh(const SceneState& state) {
-    const double smear = settings_.measured || settings_.sigma_m == 0.0
-                             ? 0.5 * settings_.axis.bin_width_m
-                             : settings_.sigma_m;
+    // A response narrower than half a bin asks for no more than the bins do.
+    const double half_bin_m = 0.5 * settings_.axis.bin_width_m;
+    const double smear = settings_.measured ? half_bin_m : std::max(half_bin_m, settings_.sigma_m);
     const auto old_masks = std::exchange(masks_, {});
     edge_gradients_.clear();
     elements_ = cut_elements(model_, state, scan_, smear, settings_.tolerance);

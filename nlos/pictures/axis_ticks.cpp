@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace nlos {
@@ -46,7 +47,7 @@ AxisTicks choose_ticks(double low, double high, int at_most) {
     const double span = high - low;
     if (!(span > 0.0) || !std::isfinite(span)) return ticks;
 
-    const double step = round_step(low, high, std::max(2, at_most));
+    const double step = round_step(low, high, std::max(1, at_most));
     const auto [first, last] = multiples_inside(low, high, step);
     ticks.exponent = common_exponent(std::max(std::abs(low), std::abs(high)));
     const double scale = std::pow(10.0, -ticks.exponent);
@@ -55,14 +56,26 @@ AxisTicks choose_ticks(double low, double high, int at_most) {
     for (double multiple = first; multiple <= last; multiple += 1.0) {
         const double value = multiple * step + 0.0;  // + 0.0 turns -0 into 0
         ticks.values.push_back(value);
-        ticks.labels.push_back(fmt::format("{:.{}f}", value * scale, decimals));
+        const std::string digits = fmt::format("{:.{}f}", std::abs(value) * scale, decimals);
+        ticks.labels.push_back((value < 0.0 ? "−" : "") + digits);
     }
     return ticks;
 }
 
-std::string label_with_exponent(const std::string& label, int exponent) {
+std::string power_of_ten(int exponent) {
+    constexpr std::array kRaised{"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+    std::string text = exponent < 0 ? "10⁻" : "10";
+    for (const char digit : std::to_string(std::abs(exponent))) {
+        text += kRaised[static_cast<std::size_t>(digit - '0')];
+    }
+    return text;
+}
+
+std::string label_with_exponent(std::string label, int exponent) {
     if (exponent == 0) return label;
-    return fmt::format("{} x 1e{}", label, exponent);
+    const std::size_t unit = label.find('[');
+    if (unit == std::string::npos) return label + " [" + power_of_ten(exponent) + "]";
+    return label.insert(unit + 1, power_of_ten(exponent) + " ");
 }
 
 }  // namespace nlos

@@ -16,10 +16,14 @@ struct AxisTicks {
 /// Chooses ticks at multiples of 1, 2 or 5 times a power of ten.
 ///
 /// low, high   ends of the axis, in any order
-/// at_most     the largest number of ticks wanted, at least 2
+/// at_most     the largest number of ticks wanted, at least 1
 AxisTicks choose_ticks(double low, double high, int at_most);
 
-/// The label of an axis, with the power of ten its numbers are divided by.
-std::string label_with_exponent(const std::string& label, int exponent);
+/// "10⁻⁶".
+std::string power_of_ten(int exponent);
+
+/// The label of an axis with the power of ten that its numbers are multiples of, as a part of its
+/// unit: "light [W]" becomes "light [10⁻⁶ W]".
+std::string label_with_exponent(std::string label, int exponent);
 
 }  // namespace nlos

@@ -7,6 +7,14 @@ std::array<double, 2> cell_edges(double first, double pitch, std::size_t count) 
     return {first - 0.5 * pitch, first + (static_cast<double>(count) - 0.5) * pitch};
 }
 
+std::array<double, 2> cell_edges(const std::vector<double>& centres) {
+    if (centres.empty()) return {0.0, 1.0};
+    const std::size_t count = centres.size();
+    const double pitch =
+        count > 1 ? (centres.back() - centres.front()) / static_cast<double>(count - 1) : 1.0;
+    return {centres.front() - 0.5 * pitch, centres.back() + 0.5 * pitch};
+}
+
 ImagePanel camera_panel(const core::PinholeCamera& camera, const std::vector<float>& of_pixels) {
     ImagePanel panel;
     panel.width = camera.width();

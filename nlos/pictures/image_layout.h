@@ -14,6 +14,9 @@ namespace nlos {
 /// Outer edges of `count` cells of width `pitch` whose first centre is `first`.
 std::array<double, 2> cell_edges(double first, double pitch, std::size_t count);
 
+/// Outer edges of cells around evenly spaced centres; a single one is 1 wide.
+std::array<double, 2> cell_edges(const std::vector<double>& centres);
+
 /// One value per pixel as the camera sees them, axes in pixels from the top left.
 ///
 /// of_pixels   numbered as core::PinholeCamera says

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "nlos/pictures/colour_map.h"
+#include "nlos/canvas/colour_map.h"
 
 #include <array>
 #include <cstddef>
@@ -38,8 +38,13 @@ struct ImagePanel {
     AxisDirection x_direction = AxisDirection::Usual;
     AxisDirection y_direction = AxisDirection::Usual;
     AxisScale scale = AxisScale::Equal;
+    /// Of equal axes: the length that a plot of the usual size stands for, so that panels beside
+    /// each other share a scale; 0: the longer axis.
+    double full_length = 0.0;
     ValueScale value_scale = ValueScale::Linear;
     std::optional<std::array<double, 2>> value_range;  ///< empty: from the values
+    /// What the values 1, 2, ... stand for, 0 being nothing: a legend in place of the colour bar.
+    std::vector<std::pair<std::string, Colour>> categories;
 };
 
 /// A curve through (x, y), drawn as a line with axes; y starts at 0 or below.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/pictures/panel_drawing.h"
 
+#include "nlos/pictures/axis_drawing.h"
 #include "nlos/pictures/axis_ticks.h"
 #include "renderer/core/error.h"
 
@@ -12,53 +13,21 @@
 namespace nlos {
 namespace {
 
-// Sizes in pixels of the file, which has two for each pixel of an ordinary screen.
-constexpr int kPlotSize = 640;      // longer side of a plot
-constexpr int kSmallestSide = 200;  // of a plot much longer than wide
+// Sizes in pixels of the canvas.
+constexpr int kPlotSize = 640;  // longer side of a plot
 constexpr int kTitleHeight = 66;
-constexpr int kLeftMargin = 132;    // y label and tick labels
-constexpr int kBottomMargin = 108;  // tick labels and x label
 constexpr int kBarGap = 28;
 constexpr int kBarWidth = 22;
 constexpr int kBarLabels = 132;
 constexpr int kLegendLine = 44;
 constexpr int kLegendStep = 40;
 constexpr int kPanelGap = 44;  // to the next panel
-constexpr int kTickLength = 9;
-constexpr int kLine = 2;
 
-constexpr Colour kInk{32, 36, 44};
-constexpr Colour kSoftInk{92, 98, 108};
-constexpr Colour kAxis{120, 126, 136};
-constexpr Colour kGrid{228, 231, 235};
 constexpr Colour kNoValue{214, 217, 222};
 constexpr Colour kCurve{37, 99, 180};
+constexpr Colour kNoCategory{255, 255, 255};
 
-const TextStyle kTitleText{19.0, 2.7, kInk, TextAnchor::Start, TextDirection::Horizontal};
-const TextStyle kTickText{15.0, 1.8, kSoftInk, TextAnchor::Centre, TextDirection::Horizontal};
-const TextStyle kLabelText{16.0, 1.9, kInk, TextAnchor::Centre, TextDirection::Horizontal};
-
-TextStyle anchored(TextStyle style, TextAnchor anchor) {
-    style.anchor = anchor;
-    return style;
-}
-
-TextStyle upwards(TextStyle style) {
-    style.direction = TextDirection::Upwards;
-    return style;
-}
-
-/// One axis of a plot: from value to pixel.
-struct PixelAxis {
-    double low = 0.0;
-    double high = 1.0;
-    int low_px = 0;
-    int high_px = 1;
-
-    double pixel(double value) const {
-        return low_px + (value - low) / (high - low) * (high_px - low_px);
-    }
-};
+constexpr TextStyle kTitleText{18.0, kInk, TextAnchor::Start};
 
 PixelAxis pixel_axis(const std::array<double, 2>& range,
                      AxisDirection direction,
@@ -68,47 +37,61 @@ PixelAxis pixel_axis(const std::array<double, 2>& range,
     return {range[0], range[1], begin_px, end_px};
 }
 
-int tick_count(int length_px) {
-    return std::clamp(length_px / 75, 3, 9);
-}
-
 // ---- Sizes -------------------------------------------------------------------------------------
 
-PixelSize plot_size(const ImagePanel& panel) {
-    if (panel.scale == AxisScale::Free) return {kPlotSize, kPlotSize};
-    const double width = std::abs(panel.x_range[1] - panel.x_range[0]);
-    const double height = std::abs(panel.y_range[1] - panel.y_range[0]);
-    const double scale = kPlotSize / std::max(width, height);
+/// A plot on which a unit is as long along x as along y.
+///
+/// full_length   what the usual size of a plot stands for; 0: the longer axis
+PixelSize equal_size(const std::array<double, 2>& x_range,
+                     const std::array<double, 2>& y_range,
+                     double full_length) {
+    const double width = std::abs(x_range[1] - x_range[0]);
+    const double height = std::abs(y_range[1] - y_range[0]);
+    const double longest = full_length > 0.0 ? full_length : std::max(width, height);
     const auto side = [&](double length) {
-        return std::max(kSmallestSide, static_cast<int>(std::lround(length * scale)));
+        return std::max(2, static_cast<int>(std::lround(length / longest * kPlotSize)));
     };
     return {side(width), side(height)};
 }
 
+PixelSize plot_size(const ImagePanel& panel) {
+    if (panel.scale == AxisScale::Free) return {kPlotSize, kPlotSize};
+    return equal_size(panel.x_range, panel.y_range, panel.full_length);
+}
+
 PixelSize plot_size(const DrawingPanel& panel) {
-    const double width = std::abs(panel.x_range[1] - panel.x_range[0]);
-    const double height = std::abs(panel.y_range[1] - panel.y_range[0]);
-    const double scale = kPlotSize / std::max(width, height);
-    return {static_cast<int>(std::lround(width * scale)),
-            static_cast<int>(std::lround(height * scale))};
+    return equal_size(panel.x_range, panel.y_range, 0.0);
 }
 
 PixelSize plot_size(const CurvePanel&) {
     return {kPlotSize, kPlotSize};
 }
 
-int right_margin(const ImagePanel&) {
-    return kBarGap + kBarWidth + kBarLabels + kPanelGap;
+/// What a plot takes beside its margins.
+PixelSize room_of(const PixelSize& plot) {
+    return {std::max(kSmallestRoom, plot.width), std::max(kSmallestRoom, plot.height)};
+}
+
+using Legend = std::vector<std::pair<std::string, Colour>>;
+
+int legend_width(const Legend& legend) {
+    double widest = 0.0;
+    for (const auto& [name, colour] : legend) {
+        widest = std::max(widest, Canvas::text_length(name, kTickText));
+    }
+    return kLegendLine + static_cast<int>(std::ceil(widest));
+}
+
+int right_margin(const ImagePanel& panel) {
+    const bool has_legend = !panel.categories.empty();
+    return kBarGap + (has_legend ? legend_width(panel.categories) : kBarWidth + kBarLabels) +
+           kPanelGap;
 }
 int right_margin(const CurvePanel&) {
     return kPanelGap;
 }
 int right_margin(const DrawingPanel& panel) {
-    int widest = 0;
-    for (const auto& [name, colour] : panel.legend) {
-        widest = std::max(widest, Canvas::text_length(name, kTickText));
-    }
-    return kBarGap + kLegendLine + widest + kPanelGap;
+    return kBarGap + legend_width(panel.legend) + kPanelGap;
 }
 
 void check(const ImagePanel& panel) {
@@ -137,40 +120,6 @@ void check(const DrawingPanel& panel) {
                       "must be ascending");
 }
 
-// ---- Axes --------------------------------------------------------------------------------------
-
-void draw_x_axis(Canvas& canvas,
-                 const PixelBox& plot,
-                 const PixelAxis& axis,
-                 const std::string& label) {
-    const AxisTicks ticks = choose_ticks(axis.low, axis.high, tick_count(plot.width));
-    for (std::size_t i = 0; i < ticks.values.size(); ++i) {
-        const int x = static_cast<int>(std::lround(axis.pixel(ticks.values[i])));
-        canvas.fill({x - kLine / 2, plot.bottom() + kLine, kLine, kTickLength}, kAxis);
-        canvas.text(x, plot.bottom() + 32, ticks.labels[i], kTickText);
-    }
-    canvas.text(plot.x + plot.width / 2,
-                plot.bottom() + 76,
-                label_with_exponent(label, ticks.exponent),
-                kLabelText);
-}
-
-void draw_y_axis(Canvas& canvas,
-                 const PixelBox& plot,
-                 const PixelAxis& axis,
-                 const std::string& label) {
-    const AxisTicks ticks = choose_ticks(axis.low, axis.high, tick_count(plot.height));
-    for (std::size_t i = 0; i < ticks.values.size(); ++i) {
-        const int y = static_cast<int>(std::lround(axis.pixel(ticks.values[i])));
-        canvas.fill({plot.x - kLine - kTickLength, y - kLine / 2, kTickLength, kLine}, kAxis);
-        canvas.text(plot.x - 20, y, ticks.labels[i], anchored(kTickText, TextAnchor::End));
-    }
-    canvas.text(plot.x - kLeftMargin + 24,
-                plot.y + plot.height / 2,
-                label_with_exponent(label, ticks.exponent),
-                upwards(kLabelText));
-}
-
 // ---- Images ------------------------------------------------------------------------------------
 
 /// The range colours span: given, or that of the finite values, never empty.
@@ -195,6 +144,16 @@ double colour_share(const ImagePanel& panel, const std::array<double, 2>& range,
     return panel.value_scale == ValueScale::Gamma ? std::sqrt(std::max(0.0, share)) : share;
 }
 
+Colour colour_of(const ImagePanel& panel, const std::array<double, 2>& range, float value) {
+    if (!std::isfinite(value)) return kNoValue;
+    if (panel.categories.empty()) {
+        return colour_at(panel.colour_map, colour_share(panel, range, double{value}));
+    }
+    const auto number = static_cast<std::size_t>(std::max(0.0F, value));
+    return number == 0 || number > panel.categories.size() ? kNoCategory
+                                                           : panel.categories[number - 1].second;
+}
+
 /// Colours in the order of drawing: rows from the top, columns from the left.
 std::vector<Colour> panel_colours(const ImagePanel& panel, const std::array<double, 2>& range) {
     std::vector<Colour> colours;
@@ -205,38 +164,44 @@ std::vector<Colour> panel_colours(const ImagePanel& panel, const std::array<doub
         const std::size_t iy = upward ? panel.height - 1 - row : row;
         for (std::size_t column = 0; column < panel.width; ++column) {
             const std::size_t ix = leftwards ? panel.width - 1 - column : column;
-            const float value = panel.values[iy * panel.width + ix];
-            colours.push_back(
-                std::isfinite(value)
-                    ? colour_at(panel.colour_map, colour_share(panel, range, double{value}))
-                    : kNoValue);
+            colours.push_back(colour_of(panel, range, panel.values[iy * panel.width + ix]));
         }
     }
     return colours;
 }
 
 void draw_colour_bar(Canvas& canvas,
-                     const PixelBox& plot,
+                     const PixelBox& bar,
                      const ImagePanel& panel,
                      const std::array<double, 2>& range) {
-    const PixelBox bar{plot.right() + kBarGap, plot.y, kBarWidth, plot.height};
     const auto& table = colours_of(panel.colour_map);
     canvas.image(bar, 1, static_cast<int>(table.size()), {table.rbegin(), table.rend()});
-    canvas.frame(bar, kAxis, kLine);
+    canvas.frame(bar, kAxisColour, kLine);
 
     const PixelAxis axis{0.0, 1.0, bar.bottom(), bar.y};
     const AxisTicks ticks = choose_ticks(range[0], range[1], tick_count(bar.height));
     for (std::size_t i = 0; i < ticks.values.size(); ++i) {
         const int y =
             static_cast<int>(std::lround(axis.pixel(colour_share(panel, range, ticks.values[i]))));
-        canvas.fill({bar.right() + kLine, y - kLine / 2, kTickLength, kLine}, kAxis);
-        canvas.text(bar.right() + 18, y, ticks.labels[i], anchored(kTickText, TextAnchor::Start));
+        canvas.fill({bar.right() + kLine, y - kLine / 2, kTickLength, kLine}, kAxisColour);
+        canvas.text(bar.right() + 18, y, ticks.labels[i], kTickText);
     }
+    const std::string label = label_with_exponent(panel.value_label, ticks.exponent) +
+                              (panel.value_scale == ValueScale::Gamma ? ", square-root scale" : "");
     canvas.text(bar.right() + kBarLabels - 16,
                 bar.y + bar.height / 2,
-                label_with_exponent(panel.value_label, ticks.exponent) +
-                    (panel.value_scale == ValueScale::Gamma ? ", square-root scale" : ""),
-                upwards(kLabelText));
+                label,
+                upwards(fitted(kLabelText, label, bar.height + kTitleHeight)));
+}
+
+/// Draws a legend whose upper left corner is (x, y).
+void draw_legend(Canvas& canvas, int x, int y, const Legend& legend) {
+    int row = y + kLegendStep / 2;
+    for (const auto& [name, colour] : legend) {
+        canvas.fill({x, row - 4, kLegendLine - 14, 8}, colour);
+        canvas.text(x + kLegendLine, row, name, kTickText);
+        row += kLegendStep;
+    }
 }
 
 void draw_plot(Canvas& canvas, const PixelBox& plot, const ImagePanel& panel) {
@@ -245,7 +210,7 @@ void draw_plot(Canvas& canvas, const PixelBox& plot, const ImagePanel& panel) {
                  static_cast<int>(panel.width),
                  static_cast<int>(panel.height),
                  panel_colours(panel, range));
-    canvas.frame(plot, kAxis, kLine);
+    canvas.frame(plot, kAxisColour, kLine);
     draw_x_axis(canvas,
                 plot,
                 pixel_axis(panel.x_range, panel.x_direction, plot.x, plot.right()),
@@ -254,21 +219,17 @@ void draw_plot(Canvas& canvas, const PixelBox& plot, const ImagePanel& panel) {
                 plot,
                 pixel_axis(panel.y_range, panel.y_direction, plot.bottom(), plot.y),
                 panel.y_label);
-    draw_colour_bar(canvas, plot, panel, range);
+    const PixelSize room = room_of({plot.width, plot.height});
+    const int bar_x = plot.x + (plot.width + room.width) / 2 + kBarGap;
+    const int bar_y = plot.y + (plot.height - room.height) / 2;
+    if (!panel.categories.empty()) {
+        draw_legend(canvas, bar_x, bar_y, panel.categories);
+        return;
+    }
+    draw_colour_bar(canvas, {bar_x, bar_y, kBarWidth, room.height}, panel, range);
 }
 
 // ---- Curves ------------------------------------------------------------------------------------
-
-void draw_grid(Canvas& canvas, const PixelBox& plot, const PixelAxis& x, const PixelAxis& y) {
-    for (const double value : choose_ticks(x.low, x.high, tick_count(plot.width)).values) {
-        const int px = static_cast<int>(std::lround(x.pixel(value)));
-        canvas.fill({px - kLine / 2, plot.y, kLine, plot.height}, kGrid);
-    }
-    for (const double value : choose_ticks(y.low, y.high, tick_count(plot.height)).values) {
-        const int py = static_cast<int>(std::lround(y.pixel(value)));
-        canvas.fill({plot.x, py - kLine / 2, plot.width, kLine}, kGrid);
-    }
-}
 
 void draw_plot(Canvas& canvas, const PixelBox& plot, const CurvePanel& panel) {
     const auto [x_low, x_high] = std::minmax_element(panel.x.begin(), panel.x.end());
@@ -289,7 +250,7 @@ void draw_plot(Canvas& canvas, const PixelBox& plot, const CurvePanel& panel) {
     draw_grid(canvas, plot, x, y);
     canvas.fill_polygon(area, kCurve, 0.15);
     canvas.polyline(line, kCurve, 4);
-    canvas.frame(plot, kAxis, kLine);
+    canvas.frame(plot, kAxisColour, kLine);
     draw_x_axis(canvas, plot, x, panel.x_label);
     draw_y_axis(canvas, plot, y, panel.y_label);
 }
@@ -313,18 +274,10 @@ void draw_plot(Canvas& canvas, const PixelBox& plot, const DrawingPanel& panel) 
             canvas.polyline(points, line.colour, line.thickness_px);
         }
     }
-    canvas.frame(plot, kAxis, kLine);
+    canvas.frame(plot, kAxisColour, kLine);
     draw_x_axis(canvas, plot, x, panel.x_label);
     draw_y_axis(canvas, plot, y, panel.y_label);
-    int row = plot.y + kLegendStep / 2;
-    for (const auto& [name, colour] : panel.legend) {
-        canvas.fill({plot.right() + kBarGap, row - 4, kLegendLine - 14, 8}, colour);
-        canvas.text(plot.right() + kBarGap + kLegendLine,
-                    row,
-                    name,
-                    anchored(kTickText, TextAnchor::Start));
-        row += kLegendStep;
-    }
+    draw_legend(canvas, plot.right() + kBarGap, plot.y, panel.legend);
 }
 
 }  // namespace
@@ -336,9 +289,9 @@ void check_panel(const Panel& panel) {
 PixelSize panel_size(const Panel& panel) {
     return std::visit(
         [](const auto& p) -> PixelSize {
-            const PixelSize plot = plot_size(p);
-            return {kLeftMargin + plot.width + right_margin(p),
-                    kTitleHeight + plot.height + kBottomMargin};
+            const PixelSize room = room_of(plot_size(p));
+            return {kLeftMargin + room.width + right_margin(p),
+                    kTitleHeight + room.height + kBottomMargin};
         },
         panel);
 }
@@ -347,8 +300,15 @@ void draw_panel(Canvas& canvas, int x, int y, const Panel& panel) {
     std::visit(
         [&](const auto& p) {
             const PixelSize size = plot_size(p);
-            const PixelBox plot{x + kLeftMargin, y + kTitleHeight, size.width, size.height};
-            canvas.text(plot.x, y + kTitleHeight / 2, p.title, kTitleText);
+            const PixelSize room = room_of(size);
+            const PixelBox plot{x + kLeftMargin + (room.width - size.width) / 2,
+                                y + kTitleHeight + (room.height - size.height) / 2,
+                                size.width,
+                                size.height};
+            canvas.text(x + kLeftMargin,
+                        y + kTitleHeight / 2,
+                        p.title,
+                        fitted(kTitleText, p.title, room.width + right_margin(p) - kPanelGap / 2));
             draw_plot(canvas, plot, p);
         },
         panel);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "nlos/pictures/canvas.h"
+#include "nlos/canvas/canvas.h"
 #include "nlos/pictures/panel.h"
 
 namespace nlos {

@@ -6,6 +6,7 @@
 #include "renderer/core/output_file.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <numeric>
 
 namespace nlos {
@@ -40,14 +41,23 @@ PanelTable table_of(const std::vector<Panel>& panels, std::size_t columns) {
 
 }  // namespace
 
-std::string encode_panels_png(const std::vector<Panel>& panels, int columns) {
+PictureFormat picture_format(const std::string& path) {
+    const std::string suffix = std::filesystem::path(path).extension().string();
+    if (suffix == ".png") return PictureFormat::Png;
+    if (suffix == ".svg") return PictureFormat::Svg;
+    if (suffix == ".pdf") return PictureFormat::Pdf;
+    throw core::Error(
+        path, "has the suffix '" + suffix + "'", "must be one of .png, .svg, .pdf for a picture");
+}
+
+std::string encode_panels(const std::vector<Panel>& panels, int columns, PictureFormat format) {
     if (panels.empty()) throw core::Error("picture", "found no panel", "must have at least one");
     for (const Panel& panel : panels) check_panel(panel);
 
     const std::size_t per_row =
         std::min(static_cast<std::size_t>(std::max(1, columns)), panels.size());
     const PanelTable table = table_of(panels, per_row);
-    Canvas canvas(table.size().width, table.size().height, kPaper);
+    Canvas canvas(table.size().width, table.size().height, kPaper, format);
     int y = kOuterMargin;
     for (std::size_t row = 0; row < table.heights.size(); ++row) {
         int x = kOuterMargin;
@@ -57,11 +67,15 @@ std::string encode_panels_png(const std::vector<Panel>& panels, int columns) {
         }
         y += table.heights[row];
     }
-    return canvas.encode_png();
+    return canvas.finish();
 }
 
-void write_panels_png(const std::string& path, const std::vector<Panel>& panels, int columns) {
-    core::write_text_file(path, encode_panels_png(panels, columns));
+void write_panels(const std::string& path, const std::vector<Panel>& panels, int columns) {
+    core::write_text_file(path, encode_panels(panels, columns, picture_format(path)));
+}
+
+void check_picture_suffix(const std::string& path) {
+    if (!path.empty()) picture_format(path);
 }
 
 }  // namespace nlos

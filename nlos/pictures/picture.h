@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "nlos/canvas/canvas.h"
 #include "nlos/pictures/panel.h"
 
 #include <string>
@@ -10,12 +11,22 @@ namespace nlos {
 
 /// Draws panels in reading order, `columns` to a row, on white.
 ///
-/// returns   the bytes of a PNG file, at twice the usual density of pixels
+/// format    PNG at twice the usual density of pixels, or SVG or PDF, whose lines and letters stay
+///           sharp at any size
+/// returns   the bytes of the file
 /// throws    core::Error when there is no panel or a panel's values do not match its size
-std::string encode_panels_png(const std::vector<Panel>& panels, int columns);
+std::string encode_panels(const std::vector<Panel>& panels,
+                          int columns,
+                          PictureFormat format = PictureFormat::Png);
 
-/// Writes what encode_panels_png() returns; whole or not at all.
+/// Writes the same picture, in the format of its suffix; whole or not at all.
 /// throws    also core::Error for a bad target and core::Failure when writing fails
-void write_panels_png(const std::string& path, const std::vector<Panel>& panels, int columns);
+void write_panels(const std::string& path, const std::vector<Panel>& panels, int columns);
+
+/// The format of a file by its suffix: .png, .svg or .pdf. Throws core::Error for others.
+PictureFormat picture_format(const std::string& path);
+
+/// Throws core::Error when `path`, unless it is empty, ends in no suffix of a picture.
+void check_picture_suffix(const std::string& path);
 
 }  // namespace nlos

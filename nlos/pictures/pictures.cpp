@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/pictures/pictures.h"
 
+#include "nlos/pictures/image_layout.h"
 #include "renderer/core/error.h"
 
 #include <fmt/core.h>
@@ -15,15 +16,6 @@ constexpr double kNarrowestDepthRange_m = 0.1;
 constexpr double kErrorRange = 0.02;  // of the true depth
 
 using Range = std::array<double, 2>;
-
-/// Outer edges of cells around evenly spaced centres.
-Range cell_edges(const std::vector<double>& centres) {
-    if (centres.empty()) return {0.0, 1.0};
-    const double half_pitch = centres.size() > 1 ? 0.5 * (centres.back() - centres.front()) /
-                                                       static_cast<double>(centres.size() - 1)
-                                                 : 0.5;
-    return {centres.front() - half_pitch, centres.back() + half_pitch};
-}
 
 /// A panel of the wall's plane as seen from the wall.
 ImagePanel front_view(const std::vector<double>& x_m, const std::vector<double>& y_m) {
@@ -117,10 +109,12 @@ void label_projections(const VolumeAxes& axes, Projections& views) {
     label(views.top, x, "x [m]", z, "z [m]");
     views.front.x_direction = AxisDirection::Reversed;
     views.top.x_direction = AxisDirection::Reversed;
-    // A volume deeper than the wall is large would shrink the wall beside it.
-    if (z[1] - z[0] > std::max(x[1] - x[0], y[1] - y[0])) {
-        views.side.scale = AxisScale::Free;
-        views.top.scale = AxisScale::Free;
+    // One scale for all three, on which the wall has the usual size.
+    constexpr double kDeepest = 3.0;  // against the wall
+    const double wall = std::max(x[1] - x[0], y[1] - y[0]);
+    const double full_length = std::max(wall, (z[1] - z[0]) / kDeepest);
+    for (ImagePanel* panel : {&views.front, &views.side, &views.top}) {
+        panel->full_length = full_length;
     }
 }
 
@@ -172,7 +166,7 @@ ImagePanel sigma_panel(const core::DepthMap& map, const std::vector<double>& sig
     ImagePanel panel =
         front_view_of(map.x_m, map.y_m, [&](std::size_t i) { return 1000.0 * sigma_m[i]; });
     panel.title = "Standard deviation of depth";
-    panel.value_label = "sigma [mm]";
+    panel.value_label = "standard deviation σ [mm]";
     panel.colour_map = ColourMap::Viridis;
     const double high = 1000.0 * percentile(sigma_m, 0.99);
     if (high > 0.0) panel.value_range = Range{0.0, high};
@@ -216,7 +210,7 @@ std::vector<Panel> comparison_panels(const Reconstruction& reconstruction,
         return 1000.0 * (found.depth_m[i] - truth.depth_m[i]);
     });
     error.title = "Error where both are";
-    error.value_label = "found - true [mm]";
+    error.value_label = "found − true [mm]";
     error.colour_map = ColourMap::Diverging;
     // One scale for all results of a scene, so that their maps can be compared.
     const double limit_mm = 1000.0 * kErrorRange * percentile(truth.depth_m, 0.5);
@@ -224,6 +218,12 @@ std::vector<Panel> comparison_panels(const Reconstruction& reconstruction,
     return {depth_panel(truth, "True depth", range),
             depth_panel(found, "Reconstructed depth", range),
             error};
+}
+
+ImagePanel front_panel(const std::vector<double>& x_m,
+                       const std::vector<double>& y_m,
+                       const std::vector<float>& values) {
+    return front_view_of(x_m, y_m, [&](std::size_t column) { return values[column]; });
 }
 
 std::vector<Panel> truth_panels(const core::DepthMap& truth) {

@@ -38,6 +38,12 @@ std::string encode_preview_png(const core::Capture& capture);
 std::vector<Panel> comparison_panels(const Reconstruction& reconstruction,
                                      const core::DepthMap& truth);
 
+/// Values of columns along the wall's normal, such as a maximum projection, as an eye at the wall
+/// sees them; `values` are stored [x][y].
+ImagePanel front_panel(const std::vector<double>& x_m,
+                       const std::vector<double>& y_m,
+                       const std::vector<float>& values);
+
 /// True depth and, where known, the albedo seen and how far the surface faces the wall.
 std::vector<Panel> truth_panels(const core::DepthMap& truth);
 

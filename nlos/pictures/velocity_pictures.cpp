@@ -15,7 +15,7 @@ namespace {
 // Light that moves is a small part of most scenes' light: powers are drawn in decibels over this
 // share of all.
 constexpr double kFloor = 1e-6;
-constexpr const char* kPowerLabel = "light [dB over 1e-6 of all]";
+constexpr const char* kPowerLabel = "light [dB over 10⁻⁶ of all]";
 
 using Range = std::array<double, 2>;
 
@@ -77,7 +77,7 @@ ImagePanel velocity_image(const core::Scan& scan, const core::VelocityHistogram&
     ImagePanel panel = scan.camera ? camera_panel(*scan.camera, means)
                                    : wall_panel(*derive_wall_frame(scan).grid, means);
     panel.title = "Mean path velocity";
-    panel.value_label = "m/s";
+    panel.value_label = "path velocity [m/s]";
     panel.colour_map = ColourMap::Diverging;
     panel.value_range = symmetric_range(panel.values);
     return panel;

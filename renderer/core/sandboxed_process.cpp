@@ -5,6 +5,7 @@
 #include "renderer/core/process.h"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
@@ -17,8 +18,10 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <new>
 #include <optional>
+#include <sstream>
 
 namespace core {
 namespace {
@@ -107,8 +110,7 @@ std::uint64_t cpu_limit_s(std::uint64_t file_bytes) {
     return kSeconds + file_bytes / kBytesPerSecond;
 }
 
-/// What a request may take by the clock [s], on a machine that is shared with many: a child that
-/// another thread's lock came along with would wait for ever.
+/// What a request may take by the clock [s], on a machine that is shared with many.
 unsigned request_limit_s(std::uint64_t file_bytes) {
     constexpr std::uint64_t kLongest = 100'000;
     return static_cast<unsigned>(std::min(kLongest, 30 * cpu_limit_s(file_bytes)));
@@ -176,6 +178,22 @@ void isolate() {
     throw Failure(line.substr(0, where_end), line.substr(std::min(where_end + 2, line.size())));
 }
 
+/// The CPU time of a process that sleeps [clock ticks]; nothing when it runs or waits for a disk.
+std::optional<std::uint64_t> cpu_ticks_if_asleep(pid_t process) {
+    std::ifstream file("/proc/" + std::to_string(process) + "/stat");
+    const std::string text(std::istreambuf_iterator<char>(file), {});
+    // After the name, which may hold anything: the state, 10 other fields, user and system time.
+    std::istringstream fields(text.substr(std::min(text.rfind(')'), text.size() - 1) + 1));
+    std::string state;
+    std::string other;
+    std::uint64_t user = 0;
+    std::uint64_t system = 0;
+    fields >> state;
+    for (int i = 0; i < 10; ++i) fields >> other;
+    if (!(fields >> user >> system) || state != "S") return std::nullopt;
+    return user + system;
+}
+
 std::uint64_t file_bytes_of(const std::string& path) {
     std::error_code error;
     const std::uint64_t bytes = std::filesystem::file_size(path, error);
@@ -184,8 +202,16 @@ std::uint64_t file_bytes_of(const std::string& path) {
 
 }  // namespace
 
-SandboxedProcess::SandboxedProcess(std::string path, const Serve& serve) : path_(std::move(path)) {
-    const std::uint64_t file_bytes = file_bytes_of(path_);
+SandboxedProcess::SandboxedProcess(std::string path, Serve serve)
+    : path_(std::move(path)), serve_(std::move(serve)), file_bytes_(file_bytes_of(path_)) {
+    start();
+}
+
+SandboxedProcess::~SandboxedProcess() {
+    end();
+}
+
+void SandboxedProcess::start() {
     std::array<int, 2> sockets{};
     if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, sockets.data()) != 0) {
         throw Failure(path_, "cannot be read: no socket for a child process");
@@ -196,21 +222,38 @@ SandboxedProcess::SandboxedProcess(std::string path, const Serve& serve) : path_
     process_ = ::fork();
     if (process_ == 0) {
         ::close(sockets[0]);
-        run_child(sockets[1], file_bytes, serve);
+        run_child(sockets[1], file_bytes_, serve_);
     }
     ::close(sockets[1]);
     socket_ = sockets[0];
     if (process_ < 0) {
-        ::close(socket_);
+        end();
         throw Failure(path_, "cannot be read: no child process can be started");
     }
 }
 
-SandboxedProcess::~SandboxedProcess() {
+void SandboxedProcess::end() {
     ::close(socket_);
+    socket_ = -1;
     if (process_ < 0) return;
     ::kill(process_, SIGKILL);
     ::waitpid(process_, nullptr, 0);
+    process_ = -1;
+}
+
+/// Waits for an answer or the child's end; false when the child meanwhile slept without working.
+bool SandboxedProcess::has_answer_in(std::chrono::milliseconds patience) const {
+    constexpr int kLooks = 10;
+    std::optional<std::uint64_t> asleep_at;
+    for (int looks_asleep = 0; looks_asleep < kLooks; ++looks_asleep) {
+        pollfd answer{socket_, POLLIN, 0};
+        const int ready = ::poll(&answer, 1, static_cast<int>(patience.count() / kLooks));
+        if (ready > 0) return true;
+        const std::optional<std::uint64_t> now_at = cpu_ticks_if_asleep(process_);
+        if (!now_at || now_at != asleep_at) looks_asleep = 0;
+        asleep_at = now_at;
+    }
+    return false;
 }
 
 void SandboxedProcess::throw_ended() {
@@ -227,7 +270,12 @@ void SandboxedProcess::throw_ended() {
 
 std::string SandboxedProcess::ask(const std::string& request) {
     const std::lock_guard lock(one_at_a_time_);
-    if (!send_message(socket_, Kind::Bytes, request)) throw_ended();
+    for (std::chrono::milliseconds patience(1000);; patience *= 4) {
+        if (!send_message(socket_, Kind::Bytes, request)) throw_ended();
+        if (has_answer_in(patience)) break;
+        end();
+        start();
+    }
     std::optional<Message> answer = receive_message(socket_);
     if (!answer) throw_ended();
     switch (answer->kind) {

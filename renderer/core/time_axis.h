@@ -3,6 +3,8 @@
 
 #include "renderer/core/settings.h"
 
+#include <fmt/core.h>
+
 #include <optional>
 
 namespace core {
@@ -34,9 +36,19 @@ void for_each_field(TimeAxis& axis, Visitor&& visit) {
     visit("num_bins", axis.num_bins, at_least(1, "number of bins; one bin is a time gate"));
 }
 
-/// Throws Error unless the axis has at least one bin of positive width.
+/// Longer paths are nobody's: light takes three seconds.
+inline constexpr double kLongestPath_m = 1e9;
+
+/// Throws Error unless the axis has at least one bin of positive width and ends at lengths that
+/// occur.
 inline void validate(const TimeAxis& axis, const std::string& where) {
     check_ranges(axis, where);
+    if (!(axis.opl_start_m >= -kLongestPath_m) || !(axis.opl_end_m() <= kLongestPath_m)) {
+        throw Error(
+            where,
+            fmt::format("path lengths from {:.3g} to {:.3g} m", axis.opl_start_m, axis.opl_end_m()),
+            "must lie within 1e9 m of 0");
+    }
 }
 
 }  // namespace core

@@ -70,11 +70,11 @@ class TransientAccumulator {
     SquaredNorms squared_norms(int num_passes, const core::Transient* precomputed) const;
 
  private:
-    template <class Double>
-    static auto array(Double* begin, std::size_t size) {
-        using Array =
-            std::conditional_t<std::is_const_v<Double>, const Eigen::ArrayXd, Eigen::ArrayXd>;
-        return Eigen::Map<Array>(begin, static_cast<Eigen::Index>(size));
+    static Eigen::Map<Eigen::ArrayXd> array(double* begin, std::size_t size) {
+        return {begin, static_cast<Eigen::Index>(size)};
+    }
+    static Eigen::Map<const Eigen::ArrayXd> array(const double* begin, std::size_t size) {
+        return {begin, static_cast<Eigen::Index>(size)};
     }
 
     // Eigen's sums depend on the alignment of the values; this one has the same bits for any.

@@ -123,16 +123,6 @@ bool external_file_exists(const std::string& path, void* /*user_data*/) {
     return std::filesystem::exists(path, ignored);
 }
 
-/// Leaves all checks to read_external_file(), whose messages say what is wrong.
-bool accept_external_file(std::size_t* num_bytes,
-                          std::string* /*error*/,
-                          const std::string& /*path*/,
-                          void* /*user_data*/) {
-    *num_bytes = 0;
-    return true;
-}
-
-// tinygltf 2.9 wants a function more than 2.7.
 template <class Callbacks>
 Callbacks file_callbacks(std::uint64_t& largest) {
     Callbacks callbacks{};
@@ -140,8 +130,14 @@ Callbacks file_callbacks(std::uint64_t& largest) {
     callbacks.ExpandFilePath = &tinygltf::ExpandFilePath;
     callbacks.ReadWholeFile = &read_external_file;
     callbacks.WriteWholeFile = &tinygltf::WriteWholeFile;
+    // tinygltf 2.9 wants a function more than 2.7. It leaves all checks to read_external_file(),
+    // whose messages say what is wrong.
     if constexpr (requires { callbacks.GetFileSizeInBytes; }) {
-        callbacks.GetFileSizeInBytes = &accept_external_file;
+        callbacks.GetFileSizeInBytes =
+            [](std::size_t* num_bytes, std::string*, const std::string&, void*) {
+                *num_bytes = 0;
+                return true;
+            };
     }
     callbacks.user_data = &largest;
     return callbacks;

@@ -173,7 +173,8 @@ void LightVertexCache::find(const PathDomain& domain,
             length[i] += std::sqrt(lx * lx + ly * ly + lz * lz);
         }
         const auto is_hit = [&](std::uint32_t i) {
-            return static_cast<std::uint32_t>((length[i] >= low) & (length[i] < high));
+            return static_cast<std::uint32_t>(length[i] >= low) &
+                   static_cast<std::uint32_t>(length[i] < high);
         };
         // In a narrow gate most blocks have no hit, and the others few: collect them without
         // branches.

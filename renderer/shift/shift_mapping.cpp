@@ -237,7 +237,8 @@ std::optional<ShiftSolution> ShiftMapping::solve(const Task& task,
         const ShiftSide<Chart, Functional> source{
             charts[0], functional_of(task.source), task.change.ratio};
         const ShiftSide<Chart, Functional> target{charts[1], functional_of(task.target), 1.0};
-        const ShiftProblem problem{source, target, task.change.offset_m};
+        const ShiftProblem<ShiftSide<Chart, Functional>, ShiftSide<Chart, Functional>> problem{
+            source, target, task.change.offset_m};
         const ChartExpansion at_source = source.expand(at_x);
         return std::visit(
             [&](const auto& gauge) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/third_bounce/pilot_runs.h"
 
+#include "renderer/core/error.h"
 #include "renderer/core/process.h"
 #include "renderer/core/stopwatch.h"
 #include "renderer/third_bounce/pilot_scan.h"
@@ -19,6 +20,12 @@ constexpr double kFinerReference = 3.0;    // then: times as many elements
 
 // A reference has an error of its own, and the pairs of the pilot run are not all pairs.
 constexpr double kCaution = 1.5;
+
+// What a difference from the next finer level is short of one from kReferenceSteps finer, where
+// errors fall with the square root of the tolerance; those of shadow edges fall with its power of
+// about 0.75 [measured on `bars`].
+const double kNextLevelFactor =
+    (1.0 - std::exp2(-0.5 * PilotRuns::kReferenceSteps)) / (1.0 - std::exp2(-0.5));
 
 // Rays of each of both sets of a VisibilityCheck over all pairs of a pilot run, down to this
 // target. The noise of what they find falls with their square root, as targets do with theirs.
@@ -136,20 +143,36 @@ const Pilot& PilotRuns::run(int level) {
     return pilots_.emplace(level, std::move(pilot)).first->second;
 }
 
-// The reference is at least kReferenceSteps finer. Where facets are few and large, levels hardly
-// differ: what both leave out must not count as no error, and the reference becomes finer until it
-// has many more elements.
+/// Runs a reference for a level unless there is one; returns the finest level run.
+int PilotRuns::run_reference(int level) {
+    const auto is_run = [&](int wanted) {
+        return !pilots_.empty() && pilots_.begin()->first <= wanted;
+    };
+    const int wanted = level - kReferenceSteps;
+    if (!is_run(wanted) && wanted > too_fine_.value_or(wanted - 1)) {
+        try {
+            run(wanted);
+        } catch (const core::Failure&) {
+            too_fine_ = wanted;
+        }
+    }
+    if (!is_run(level - 1)) run(level - 1);
+    return pilots_.begin()->first;
+}
+
+// Where facets are few and large, levels hardly differ: what both leave out must not count as no
+// error, and the reference becomes finer until it has many more elements.
 double PilotRuns::error_of(int level) {
-    int finest = pilots_.empty() ? level : pilots_.begin()->first;
-    finest = std::min(finest, level - kReferenceSteps);
-    run(finest);
+    int finest = run_reference(level);
     const auto elements = static_cast<double>(run(level).num_elements);
     Pilot& pilot = pilots_.at(level);
     double difference = relative_difference(pilot.transient, pilots_.at(finest).transient);
     while (difference < kSuspiciousShare * target_ && finest > kFinest - kReferenceSteps &&
+           finest - 1 > too_fine_.value_or(finest - 2) &&
            static_cast<double>(pilots_.at(finest).num_elements) < kFinerReference * elements) {
         difference = relative_difference(pilot.transient, run(--finest).transient);
     }
+    if (level - finest < kReferenceSteps) difference *= kNextLevelFactor;
     const double norm = std::sqrt(squared_norm(pilots_.at(finest).transient));
     // Shadow edges that both pilot runs leave uncertain do not show in their difference.
     const double shadows = norm > 0.0 ? pilot.shadow_error / norm : 0.0;

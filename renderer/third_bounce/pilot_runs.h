@@ -39,7 +39,7 @@ class PilotRuns {
  public:
     static constexpr int kCoarsest = 5;
     static constexpr int kFinest = -10;
-    static constexpr int kReferenceSteps = 2;  ///< a reference is at least this much finer
+    static constexpr int kReferenceSteps = 2;  ///< by how much a reference is finer, if it can be
 
     /// scene, scan   must outlive the runs
     /// target        relative L2 error over all of H
@@ -60,7 +60,8 @@ class PilotRuns {
     void estimate_norm(int level);
 
     const Pilot& run(int level);
-    /// Estimates the error of a level against the finest run so far.
+    /// Estimates the error of a level against the finest run so far. Where one kReferenceSteps
+    /// finer would have too many elements, the next finer level serves, with more caution.
     double error_of(int level);
     /// All runs so far are forgotten, and the next ones send rays to all parts of all elements.
     /// Returns false when they did so already.
@@ -75,6 +76,7 @@ class PilotRuns {
 
  private:
     std::size_t check_rays_per_pair() const;
+    int run_reference(int level);
 
     const Scene& scene_;
     core::Scan pilot_scan_;
@@ -85,6 +87,7 @@ class PilotRuns {
     double norm_per_pair_ = 0.0;
     ShadowRayPlan plan_ = ShadowRayPlan::WhereNeighboursDisagree;
     std::map<int, Pilot> pilots_;  ///< by level, all with this plan
+    std::optional<int> too_fine_;  ///< a level that has too many elements
     TracingCost cost_;
 };
 

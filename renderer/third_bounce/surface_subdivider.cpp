@@ -80,6 +80,10 @@ std::vector<SurfaceElement> clip(const SurfaceElement& element,
     return parts;
 }
 
+[[noreturn]] void throw_too_many() {
+    throw core::Failure("third_bounce", "needs more than 8 million elements of surface");
+}
+
 // Squared width of the BSDF's lobe relative to a cosine's.
 double lobe_scale(const Material& material) {
     if (material.model != SurfaceModel::Ggx) return 1.0;
@@ -126,6 +130,21 @@ bool SurfaceSubdivider::is_small_enough(const LegBounds& legs,
     return holds(exact_light, exact_sensor);
 }
 
+double SurfaceSubdivider::least_parts(const SurfaceElement& element,
+                                      const LegBounds& legs,
+                                      double tolerance) const {
+    const double light = legs.light.max_m;
+    const double sensor = legs.sensor.max_m;
+    const double nearest = std::min(light, sensor);
+    const double by_size =
+        std::min(kSquaredSizePerTolerance * tolerance, kMaxSquaredSize) * nearest * nearest;
+    const double by_kappa =
+        kKappaPerTolerance * tolerance * 8.0 * axis_.bin_width_m / (1.0 / light + 1.0 / sensor);
+    const double largest_area = std::sqrt(3.0) / 4.0 * std::min(by_size, by_kappa);
+    const auto& [a, b, c] = element.corners;
+    return core::triangle_area_vector(a, b, c).norm() / largest_area;
+}
+
 void SurfaceSubdivider::bisect(const SurfaceElement& facet,
                                double tolerance,
                                std::vector<SurfaceElement>& elements) const {
@@ -144,12 +163,14 @@ void SurfaceSubdivider::bisect(const SurfaceElement& facet,
         if (boxes_.is_behind(center, reach)) continue;
         if (depth == kMaxBisections || is_small_enough(legs, center, longest.squared, tolerance)) {
             elements.push_back(element);
-            if (elements.size() > kMaxElements) {
-                throw core::Failure("third_bounce",
-                                    "needs more than 8 million elements of surface");
-            }
+            if (elements.size() > kMaxElements) throw_too_many();
             continue;
         }
+        const bool is_whole =  // none of its parts will be left out
+            boxes_.common_plane() && legs.light.min_m + legs.sensor.min_m >= begin &&
+            legs.light.max_m + legs.sensor.max_m <= end;
+        if (is_whole && least_parts(element, legs, tolerance) > double{kMaxElements})
+            throw_too_many();
         const std::size_t i = longest.index;
         SurfaceElement first = element;
         SurfaceElement second = element;

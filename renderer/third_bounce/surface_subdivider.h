@@ -37,6 +37,10 @@ class SurfaceSubdivider {
                          const core::Vec3& center,
                          double squared_edge,
                          double tolerance) const;
+    /// At least this many elements cover a triangle, by the size rule at its farthest point.
+    double least_parts(const SurfaceElement& element,
+                       const LegBounds& legs,
+                       double tolerance) const;
     void bisect(const SurfaceElement& facet,
                 double tolerance,
                 std::vector<SurfaceElement>& elements) const;

@@ -1,15 +1,21 @@
 // SPDX-License-Identifier: MIT
-// Every setting of every command with values from the edges of its type: exit codes as documented,
-// one line for what is refused, no crash.
+// Settings of every command with values from the edges of their types: exit codes as documented,
+// one line for what is refused, no crash. A few of them, or with NLOS_FUZZ_ALL=1 in the environment
+// every setting with every value, where what takes more than 10 s fails too.
 #include "apps/capture_options.h"
 #include "apps/commands/reconstruct_job.h"
+#include "apps/commands/track_job.h"
+#include "apps/dataset/recipe.h"
 #include "apps/sweep/sweep_settings.h"
 #include "calib/calibrate.h"
 #include "calib/fit.h"
+#include "nlos/detector/detector.h"
+#include "renderer/core/stopwatch.h"
 #include "renderer/scene/scene_file.h"
 #include "tests/support/command_line.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <random>
 #include <vector>
 
@@ -51,19 +57,28 @@ const std::vector<std::string> kValues{"0",
                                        "/dev/zero",
                                        "%s%n$(id)"};
 
+constexpr double kLongest_s = 10.0;
+
 class SettingsFuzz : public CommandLine {
  protected:
-    // Tries `count` of the settings, each with one value, chosen by the seed.
+    // Tries `count` of the settings, each with one value, chosen by the seed; or all.
     void try_settings(const std::string& command,
                       const std::vector<core::SettingHelp>& settings,
                       int count,
                       unsigned seed) const {
+        const bool all = std::getenv("NLOS_FUZZ_ALL") != nullptr;
         std::mt19937 random(seed);
-        for (int i = 0; i < count; ++i) {
-            const std::string& key = settings[random() % settings.size()].key;
-            const std::string& value = kValues[random() % kValues.size()];
+        const std::size_t num_tries =
+            all ? settings.size() * kValues.size() : static_cast<std::size_t>(count);
+        for (std::size_t i = 0; i < num_tries; ++i) {
+            const std::string& key =
+                settings[all ? i / kValues.size() : random() % settings.size()].key;
+            const std::string& value =
+                kValues[all ? i % kValues.size() : random() % kValues.size()];
             const std::string arguments = command + " --set '" + key + "=" + value + "'";
+            const core::Stopwatch stopwatch;
             const Outcome outcome = run(arguments);
+            EXPECT_TRUE(!all || stopwatch.seconds() < kLongest_s) << arguments;
             EXPECT_TRUE(outcome.status >= 0 && outcome.status <= 2) << arguments;
             if (outcome.status == 0) continue;
             const std::string& error = outcome.err;
@@ -104,6 +119,28 @@ TEST_F(SettingsFuzz, OfCaptures) {
                      20,
                      13);
     }
+}
+
+TEST_F(SettingsFuzz, OfSimulateNoise) {
+    try_settings("simulate-noise data/letter.h5 -o " + file("c.npz") + " --photons 1000",
+                 core::settings_help(nlos::DetectorSettings{}),
+                 20,
+                 17);
+}
+
+TEST_F(SettingsFuzz, OfTrack) {
+    try_settings("track data/walk/counts.h5 data/walk/track.json -o " + file("t.json"),
+                 core::settings_help(apps::TrackOptions{}),
+                 20,
+                 18);
+}
+
+TEST_F(SettingsFuzz, OfGenerate) {
+    try_settings("generate data/recipes/shapes.json -o " + file("set") +
+                     " --set items=1 calibration_items=0 scene.scan.sensing_points=[4,4]",
+                 core::settings_help(apps::Recipe{}),
+                 20,
+                 19);
 }
 
 // The description alone is read: a script is printed, and nothing runs.

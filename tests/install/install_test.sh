@@ -23,7 +23,8 @@ share=$scratch/moved/share
 for file in man/man1/nlos.1.gz man/man1/nlos-render.1.gz bash-completion/completions/nlos \
     zsh/vendor-completions/_nlos doc/nlos/copyright doc/nlos/apps/guide/your_labs_file.md \
     doc/nlos/scenes/README.md \
-    nlos/scenes/letter/scene.glb nlos/data/letter.h5 nlos/data/layouts/zaragoza.json; do
+    nlos/scenes/letter/scene.glb nlos/data/letter.h5 nlos/data/layouts/zaragoza.json \
+    nlos/apps/bench/field/peers/ytal_reconstruct.py; do
     [ -s "$share/$file" ] || fail "$file was not installed"
 done
 

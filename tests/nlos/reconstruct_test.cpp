@@ -245,6 +245,9 @@ TEST(Reconstruct, NamesSettingsOutOfRange) {
     EXPECT_ERROR_WITH(reconstruct(example(), with({"snr=0"}), {}), "snr: found 0");
     EXPECT_ERROR_WITH(reconstruct(example(), with({"mask_threshold=1.5"}), {}), "mask_threshold");
     EXPECT_ERROR_WITH(reconstruct(example(), with({"merge_bins=500"}), {}), "128 bins");
+    EXPECT_ERROR_WITH(
+        reconstruct(example(), with({"method=phasor", "phasor.wavelength_m=5e-324"}), {}),
+        "must be at least a bin");
     EXPECT_ERROR_WITH(reconstruct(example(), with({"volume.voxels=[0,4,4]"}), {}), "volume.voxels");
     EXPECT_ERROR_WITH(reconstruct(example(), with({"volume.z_range_m=[0.5,0.4]"}), {}),
                       "volume.z_range_m");

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Starts a real Slurm of one node for tests of job arrays: munged, slurmctld and slurmd, without
-# control groups and service manager, everything in one folder and on two ports. Debian 12, as root.
+# control groups and service manager, everything in one folder and on two ports. Debian 12 or 13,
+# as root.
 #   start_one_node_slurm.sh DIR FIRST_PORT [PROCESSORS]    prints SLURM_CONF
 # To stop it: kill $(cat DIR/*.pid)
 set -euo pipefail
@@ -53,6 +54,8 @@ SlurmdPort=$((port + 1))
 NodeName=$(hostname) NodeAddr=127.0.0.1 CPUs=$processors State=UNKNOWN
 PartitionName=main Nodes=ALL Default=YES MaxTime=INFINITE State=UP
 CONF
+# Debian 13's fails without control groups unless told so; Debian 12's does not know the word.
+[[ $(slurmd -V) == *" 22."* ]] || echo "CgroupPlugin=disabled" >"$folder/cgroup.conf"
 export SLURM_CONF=$folder/slurm.conf
 munged --key-file="$folder/key/munge.key" --socket="$folder/munge.socket" \
     --pid-file="$folder/munge.pid" --log-file="$folder/munge.log" \

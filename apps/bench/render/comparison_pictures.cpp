@@ -2,6 +2,7 @@
 #include "apps/bench/render/comparison_pictures.h"
 
 #include "nlos/pictures/image_layout.h"
+#include "nlos/pictures/light_scale.h"
 
 #include <fmt/core.h>
 
@@ -71,7 +72,7 @@ std::vector<Panel> error_panels(const Comparison& comparison) {
     ImagePanel truth =
         image_panel(camera, "Reference, last frame", bin_of(comparison.references[0].back(), 0));
     truth.value_range = {0.0, bright_value(truth.values)};
-    truth.value_label = "radiance";
+    truth.value_label = nlos::kRenderedRadiance;
     std::vector<Panel> panels{truth};
     std::vector<float> all;
     for (const MethodComparison& method : comparison.methods) {
@@ -94,7 +95,7 @@ std::vector<Panel> error_panels(const Comparison& comparison) {
     for (std::size_t i = 0; i < difference.size(); ++i) difference[i] -= second.error_map[i];
     ImagePanel panel = image_panel(
         camera,
-        fmt::format("Error of {} - {}, {} pixels", first.method, second.method, kBlock * kBlock),
+        fmt::format("Error of {} − {}, {} pixels", first.method, second.method, kBlock * kBlock),
         block_means(camera, difference));
     panel.value_range = {-0.5 * top, 0.5 * top};
     panel.value_label = "red: " + second.method + " is better";

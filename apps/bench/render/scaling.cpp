@@ -2,8 +2,8 @@
 #include "apps/bench/render/scaling.h"
 
 #include "apps/bench/lower_bounds.h"
-#include "apps/shapes/grid_mesh.h"
 #include "apps/bench/power_law.h"
+#include "apps/shapes/grid_mesh.h"
 #include "renderer/core/parallel.h"
 #include "renderer/core/process.h"
 #include "renderer/render.h"
@@ -50,7 +50,7 @@ struct Figures {
 Figures measure(Estimator method, const Sizes& sizes) {
     renderer::SceneDescription description;
     description.scan.sensing_points = {sizes.points, sizes.points};
-    description.time_axis = {1.4, kSpan_m / sizes.bins, sizes.bins};
+    description.time_axis = {{1.4, kSpan_m / sizes.bins, sizes.bins}};
     description.render.method = method;
     description.render.max_bounces = sizes.bounces;
     description.render.samples = 256;

@@ -108,7 +108,7 @@ SequenceSetup::SequenceSetup(const SequenceCase& sequence,
     all.insert(all.end(), overrides.begin(), overrides.end());
     description = read_bench_scene(sequence.scene, all);
     description.time_axis = {
-        sequence.gate_start_m, 1e-3 * sequence.gate_width_mm, sequence.num_bins};
+        {sequence.gate_start_m, 1e-3 * sequence.gate_width_mm, sequence.num_bins}};
     description.frames = {sequence.num_frames, 1e-3 * sequence.gate_step_mm, sequence.frame_s};
     description.velocity_axis.reset();
     description.render.variance = false;

@@ -263,7 +263,7 @@ std::vector<ShiftCost> measure_costs(const ShiftWorkbench& bench) {
         const renderer::Facet& plane = plane_of(s);
         const renderer::AffineChart chart(
             Vec3::Zero(), plane.edge1, plane.edge2, Vec3::Zero(), 0.0);
-        const renderer::ShiftSide side{
+        const renderer::ShiftSide<renderer::AffineChart, renderer::OpticalLength> side{
             chart,
             renderer::OpticalLength{s.source.a - s.x.position, s.source.y - s.x.position},
             1.0};

@@ -381,8 +381,10 @@ TEST(Dataset, HalvesKeepElevenBitsOfRadianceAndCountsAreClipped) {
     EXPECT_GT(apps::make_item(bright, meshes, 0, {}).clipped_counts, 0u);
 }
 
-TEST(Dataset, NamesMeshesThatAreMissing) {
+TEST(Dataset, NamesWhatIsWrongOrMissing) {
     const TemporaryFolder folder;
+    EXPECT_ERROR_WITH(run(folder, tiny_recipe({{"objects", {{"y_m", "far"}}}}), "x"),
+                      "objects.y_m: found \"far\"; must be a number");
     EXPECT_ERROR_WITH(run(folder, tiny_recipe({{"meshes", {{"folder", "nowhere"}}}}), "x"),
                       "is no folder");
     EXPECT_ERROR_WITH(run(folder, tiny_recipe({{"meshes", {{"files", {"a.obj"}}}}}), "x"),

@@ -18,7 +18,7 @@ try:
     import nlos
     import ray  # noqa: F401
 except ModuleNotFoundError as missing:
-    print(f"skipped: {missing}; bash apps/guide/notebooks/install_peers.sh DIR installs Ray")
+    print(f"skipped: {missing}; bash apps/bench/field/install_peers.sh DIR installs Ray")
     sys.exit(77)
 
 EXAMPLE = Path(__file__).resolve().parents[3] / "apps" / "dataset" / "generate_with_ray.py"

@@ -18,6 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using test_support::CommandLine;
 using test_support::file_bytes;
+using test_support::write_file_bytes;
 
 bool has_program(const std::string& name) {
     return std::system(("command -v " + name + " >/dev/null 2>&1").c_str()) == 0;

@@ -118,6 +118,9 @@ def test_results_have_their_arrays(capture):
     vertices, faces = result.mesh()
     assert vertices.shape[1] == faces.shape[1] == 3 and faces.max() < len(vertices)
     assert result.picture().startswith(b"\x89PNG") and noisy.picture().startswith(b"\x89PNG")
+    assert result.picture("pdf").startswith(b"%PDF") and b"<svg" in noisy.picture(format="svg")
+    with pytest.raises(ValueError, match="png"):
+        result.picture("jpg")
 
 
 def test_scenes_from_arrays_can_be_written(square, tmp_path):

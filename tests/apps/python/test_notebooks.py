@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Every notebook of the guide runs, draws figures, and is stored without outputs.
 
-NLOS_PEERS_PYTHON names the interpreter of an environment that apps/guide/notebooks/install_peers.sh
+NLOS_PEERS_PYTHON names the interpreter of an environment that apps/bench/field/install_peers.sh
 made; without it the notebook of mitransient and y-tal is skipped.
 """
 

@@ -2,8 +2,9 @@
 #include "apps/report/report.h"
 
 #include "apps/estimate_text.h"
-#include "apps/report/html.h"
+#include "apps/page/html.h"
 #include "apps/report/metrics_table.h"
+#include "apps/report/result_labels.h"
 #include "calib/fit_file.h"
 #include "nlos/formats/capture_file.h"
 #include "nlos/formats/volume_file.h"
@@ -25,6 +26,17 @@ namespace apps {
 namespace {
 
 using test_support::TemporaryFolder;
+
+constexpr double kAllData = 1e9;  // bytes
+
+/// A page without its scripts and data.
+std::string without_scripts(std::string html) {
+    for (auto begin = html.find("<script"); begin != std::string::npos;
+         begin = html.find("<script")) {
+        html.erase(begin, html.find("</script>", begin) + 9 - begin);
+    }
+    return html;
+}
 
 std::size_t count_of(const std::string& text, const std::string& part) {
     std::size_t count = 0;
@@ -52,12 +64,12 @@ void fill(const TemporaryFolder& folder) {
     nlos::write_capture(folder.file("capture.h5"), capture);
     const auto volume = test_support::column_volume({1.0F, 0.5F}, {0.7, 0.71});
     nlos::write_volume(folder.file("volume_bp.h5"), volume);
-    nlos::write_panels_png(folder.file("volume_bp.png"), nlos::volume_panels(volume), 2);
+    nlos::write_panels(folder.file("volume_bp.png"), nlos::volume_panels(volume), 2);
     core::Json json = core::write_value(scores(0.002, 0.75));
     json["result"] = "somewhere/volume_bp.h5";
     json["reference"] = "scene.json";
     core::write_text_file(folder.file("metrics_bp.json"), json.dump());
-    nlos::write_panels_png(folder.file("metrics_bp.png"), nlos::volume_panels(volume), 2);
+    nlos::write_panels(folder.file("metrics_bp.png"), nlos::volume_panels(volume), 2);
     core::write_text_file(folder.file("metrics_<b>&.json"),
                           core::write_value(scores(0.001, 0.5)).dump());
     core::write_text_file(folder.file("broken.h5"), "no <HDF5> at all");
@@ -88,7 +100,7 @@ TEST(Report, ShowsSweepsWithTheirPlotsAndFailures) {
     EXPECT_TRUE(results.documents.empty());
     ASSERT_EQ(results.sweeps[0].figures.size(), 1U);
     EXPECT_EQ(results.figures.size(), 1U) << "other.svg is nobody's";
-    const std::string html = render_report(results);
+    const std::string html = render_report(results, kAllData);
     EXPECT_TRUE(contains(html, "<th>&lt;photons&gt;<small>noise</small></th>"));
     EXPECT_TRUE(contains(html, "<td>none</td><td>0.25</td>"));
     EXPECT_TRUE(contains(html, "<b>Run 1, 3</b> failed: no &lt;light&gt;"));
@@ -122,7 +134,7 @@ TEST(Report, ShowsFitsWithTheirErrorsAndDoubts) {
     const ResultsFolder results = read_results_folder(folder.path().string());
     ASSERT_EQ(results.fits.size(), 1U);
     EXPECT_TRUE(results.documents.empty());
-    const std::string html = render_report(results);
+    const std::string html = render_report(results, kAllData);
     EXPECT_TRUE(contains(html, "<h2>Fits</h2>"));
     EXPECT_TRUE(contains(html, "400.00 +- 0.50"));
     EXPECT_TRUE(contains(html, "Warning: light &lt;is&gt; cut off"));
@@ -132,10 +144,12 @@ TEST(Report, ShowsFitsWithTheirErrorsAndDoubts) {
 TEST(Report, NeedsNothingButItself) {
     const TemporaryFolder folder;
     fill(folder);
-    write_report(folder.path().string(), folder.file("report.html"));
+    write_report(folder.file("report.html"), read_results_folder(folder.path().string()), {});
     std::ostringstream text;
     text << std::ifstream(folder.file("report.html"), std::ios::binary).rdbuf();
-    const std::string html = text.str();
+    const std::string whole = text.str();
+    EXPECT_FALSE(contains(whole, "<script src"));
+    const std::string html = without_scripts(whole);
     for (const char* foreign : {"http", "<script", "<link", "url(", "@import", "<iframe"}) {
         EXPECT_FALSE(contains(html, foreign)) << foreign;
     }
@@ -156,20 +170,24 @@ TEST(Report, ShowsEveryResultOnce) {
     ASSERT_EQ(results.figures.size(), 1U);
     EXPECT_EQ(results.figures[0].file, "plot.svg");
     ASSERT_EQ(results.documents.size(), 1U);
-    const std::string html = render_report(results);
+    const std::string html = render_report(results, kAllData);
     EXPECT_TRUE(contains(html, "capture.h5"));
     EXPECT_TRUE(contains(html, "volume_bp.h5 against scene.json"));
     EXPECT_EQ(count_of(html, "<article>"), 2U);
+    EXPECT_TRUE(contains(html, "<h3>bp<small>volume_bp.h5</small></h3>"));
+    EXPECT_TRUE(contains(html, "reconstructed by bp"));
     EXPECT_TRUE(contains(html, "1 capture, 1 reconstruction, 2 comparisons, 1 unreadable file"));
 }
 
-TEST(Report, ShowsBenchmarksWithTheirPlotsAndTable) {
+TEST(Report, ShowsBenchmarksWithTheirPlotsAndTables) {
     const TemporaryFolder folder;
-    core::write_text_file(folder.file("bench_render.json"),
-                          R"({"curves": [], "program": "nlos 1", "machine": "a <processor>"})");
+    core::Json bench{{"program", "nlos 1"}, {"machine", "a <processor>"}};
+    bench["curves"] = {{{"method", "error < time"}, {"seconds", 1.5}}};
+    for (int i = 0; i < 100; ++i) bench["runs"].push_back({{"run", i}});
+    bench["against"] = {{"changes", {{{"quantity", "rel_l2"}}}}};
+    core::write_text_file(folder.file("bench_render.json"), core::json_text(bench));
     core::write_text_file(folder.file("bench_all.json"),
                           R"({"render": {"program": "nlos 1", "machine": "a <processor>"}})");
-    core::write_text_file(folder.file("bench_render.txt"), "error < time");
     core::write_text_file(folder.file("bench_render.svg"), "<svg/>");
     core::write_text_file(folder.file("bench_render.png"), "the same");
     core::write_text_file(folder.file("bench_render_growth.svg"), "<svg/>");
@@ -178,8 +196,10 @@ TEST(Report, ShowsBenchmarksWithTheirPlotsAndTable) {
     EXPECT_EQ(results.benches[0].figures.size(), 2U);
     EXPECT_TRUE(results.figures.empty());
     EXPECT_TRUE(results.documents.empty());
-    const std::string html = render_report(results);
-    EXPECT_TRUE(contains(html, "error &lt; time"));
+    const std::string html = render_report(results, kAllData);
+    EXPECT_TRUE(contains(html, "<td class=\"text\">error &lt; time</td><td>1.5</td>"));
+    EXPECT_TRUE(contains(html, "<td class=\"text\">rel_l2</td>"));
+    EXPECT_TRUE(contains(html, "<summary>runs, 100 rows</summary>"));
     EXPECT_TRUE(contains(html, "a &lt;processor&gt;"));
     EXPECT_TRUE(contains(html, "1 benchmark"));
 }
@@ -190,7 +210,7 @@ TEST(Report, ShowsHardCases) {
         folder.file("hard_cases.json"),
         R"({"hard_cases": [{"name": "sliver", "group": "geometry", "why": "thin & long",
             "must_hold": "area", "worst": 1e-9, "bound": 1e-6, "explanation": ""}]})");
-    const std::string html = render_report(read_results_folder(folder.path().string()));
+    const std::string html = render_report(read_results_folder(folder.path().string()), kAllData);
     EXPECT_TRUE(contains(html, "geometry: sliver"));
     EXPECT_TRUE(contains(html, "thin &amp; long"));
     EXPECT_TRUE(contains(html, "1.00e-09"));
@@ -199,7 +219,7 @@ TEST(Report, ShowsHardCases) {
 TEST(Report, EscapesEveryText) {
     const TemporaryFolder folder;
     fill(folder);
-    const std::string html = render_report(read_results_folder(folder.path().string()));
+    const std::string html = render_report(read_results_folder(folder.path().string()), kAllData);
     EXPECT_FALSE(contains(html, "<b>&"));
     EXPECT_TRUE(contains(html, "&lt;b&gt;&amp;"));
     EXPECT_TRUE(contains(html, "nlos render &lt;scene&gt; &amp; more"));
@@ -219,13 +239,13 @@ TEST(Report, ListsFilesThatCannotBeRead) {
         EXPECT_FALSE(error.empty());
     }
     EXPECT_EQ(files, "broken.h5 half.json metrics_odd.json ");
-    const std::string html = render_report(results);
+    const std::string html = render_report(results, kAllData);
     EXPECT_TRUE(contains(html, "Files that could not be read"));
     EXPECT_TRUE(contains(html, "broken.h5"));
     EXPECT_TRUE(contains(html, "found &quot;much&quot;"));
 }
 
-TEST(Report, MarksTheBestValueOfEachRow) {
+TEST(Report, MarksTheBestValueOfEachMetric) {
     ScoredResult a;
     a.name = "first";
     a.metrics = scores(0.003, 0.75);
@@ -235,10 +255,14 @@ TEST(Report, MarksTheBestValueOfEachRow) {
     b.metrics = scores(0.0015, 0.5);
     b.metrics.chamfer_m = 0.001;
     const std::string table = metrics_table({a, b});
-    EXPECT_TRUE(contains(table, "<td>2.00</td><td class=\"best\">1.00</td>"));  // mm, lower
-    EXPECT_TRUE(contains(table, "<td>3.00</td><td>1.50</td>"));  // of other shares of the surface
-    EXPECT_TRUE(contains(table, "<td class=\"best\">75.0</td><td>50.0</td>"));  // %, higher
-    EXPECT_EQ(count_of(table, "<tr>"), 4U);  // metrics nobody has are left out
+    EXPECT_TRUE(contains(table, "<td data-value=\"0.002\">2.00</td>"));
+    EXPECT_TRUE(contains(table, "<td class=\"best\" data-value=\"0.001\">1.00</td>"));  // mm, lower
+    EXPECT_TRUE(contains(table, "<td class=\"best\" data-value=\"0.75\">75.0</td>"));   // %, higher
+    EXPECT_TRUE(contains(table, "<td data-value=\"0.5\">50.0</td>"));
+    EXPECT_TRUE(contains(table, ">1.50</td>"));  // of another share of the surface: not the best
+    EXPECT_EQ(count_of(table, "class=\"best\""), 2U);
+    EXPECT_EQ(count_of(table, "<tr>"), 3U);
+    EXPECT_EQ(count_of(table, "<span class=\"unit\">"), 3U);  // metrics nobody has are left out
     EXPECT_FALSE(contains(metrics_table({a}), "best\""));
     EXPECT_FALSE(contains(metrics_table({a, a}), "best\""));
     ScoredResult same = a;
@@ -264,6 +288,74 @@ TEST(Report, HeadlinesAreOfTheResultWithTheHighestFScore) {
     EXPECT_TRUE(contains(tiles, "<b>2.00<i>mm</i></b><small>over 95.0 % of the true surface"));
     EXPECT_FALSE(contains(tiles, "0.100"));
     EXPECT_EQ(metrics_tiles({}), "");
+}
+
+TEST(Report, ResultsAreNamedByMethodAndByTheSettingsInWhichTheyDiffer) {
+    ResultsFolder results;
+    const auto add = [&](const char* file, const char* method, core::Json settings) {
+        results.volumes.emplace_back();
+        results.volumes.back().file = file;
+        results.volumes.back().settings = std::move(settings);
+        results.views.results.emplace_back();
+        results.views.results.back().name = method;
+    };
+    add("a.h5", "lct", {{"snr", 0.1}, {"voxels", {8, 8}}});
+    add("b.h5", "lct", {{"snr", 0.2}, {"voxels", {8, 8}}});
+    add("c.h5", "bp", {{"snr", 0.1}});
+    add("d.h5", "fk", {{"snr", 0.1}});
+    add("e.h5", "fk", {{"snr", 0.1}});
+    add("f.h5", "", nullptr);
+    ScoredResult scored;
+    scored.name = "first";
+    scored.result = "a.h5";
+    results.scores.push_back(scored);
+    label_by_method(results);
+    std::vector<std::string> labels;
+    for (const ResultCard& card : results.volumes) labels.push_back(card.label);
+    EXPECT_EQ(
+        labels,
+        (std::vector<std::string>{"lct, snr 0.1", "lct, snr 0.2", "bp", "fk, d", "fk, e", ""}));
+    EXPECT_EQ(results.views.results[5].name, "f.h5");
+    EXPECT_EQ(results.scores[0].name, "lct, snr 0.1");
+}
+
+TEST(Report, TheTruthIsDrawnWhereItsSceneIsAtHand) {
+    const TemporaryFolder folder;
+    const core::Json scene{{"objects", {{{"mesh", "card.obj"}}}},
+                           {"relay_wall", {{"size_m", {0.4, 0.2}}}}};
+    core::write_text_file(folder.file("scene.json"), scene.dump());
+    core::write_text_file(folder.file("card.obj"), "v -1 -1 0.7\nv 1 -1 0.7\nv 0 1 0.7\nf 1 3 2\n");
+    const auto volume = test_support::column_volume({1.0F, 0.5F}, {0.7, 0.71});
+    nlos::write_volume(folder.file("v.h5"), volume);
+    EXPECT_FALSE(read_results_folder(folder.path().string()).views.truth) << "nobody names it";
+    const ResultsFolder given =
+        read_results_folder(folder.path().string(), folder.file("scene.json"));
+    ASSERT_TRUE(given.views.truth);
+    EXPECT_EQ(given.views.truth->mesh.triangles.size(), 1U);
+    ASSERT_TRUE(given.views.results[0].truth);
+    EXPECT_NEAR(given.views.results[0].truth->depth_m[0], 0.7, 1e-6);
+    core::Json metrics = core::write_value(scores(0.002, 0.75));
+    metrics["reference"] = "scene.json";  // of the folder, not of where the program runs
+    core::write_text_file(folder.file("m.json"), metrics.dump());
+    EXPECT_TRUE(read_results_folder(folder.path().string()).views.truth);
+    metrics["reference"] = "gone/scene.json";
+    core::write_text_file(folder.file("m.json"), metrics.dump());
+    EXPECT_FALSE(read_results_folder(folder.path().string()).views.truth);
+    EXPECT_ERROR_WITH(read_results_folder(folder.path().string(), "gone.json"), "gone.json");
+}
+
+TEST(Report, FilesAreShownWithoutTheirFolder) {
+    const TemporaryFolder folder;
+    fill(folder);
+    const ResultsFolder results =
+        read_result_files({folder.file("capture.h5"), folder.file("volume_bp.h5")});
+    EXPECT_EQ(results.name, "capture.h5, volume_bp.h5");
+    EXPECT_EQ(results.views.films.size(), 1U);
+    EXPECT_EQ(results.views.results.size(), 1U);
+    EXPECT_TRUE(results.scores.empty());
+    for (const std::string name : {"broken.h5", "plot.svg", "none.h5"}) {
+        EXPECT_ERROR_WITH(read_result_files({folder.file(name)}), name);
+    }
 }
 
 TEST(Report, TablesHaveOneThreshold) {
@@ -322,7 +414,7 @@ TEST(Html, EscapesWhatHasAMeaning) {
 
 TEST(Html, PicturesCarryTheirBytesAndWidth) {
     const std::string png =
-        nlos::encode_panels_png({nlos::CurvePanel{"curve", {0.0, 1.0}, {1.0, 2.0}, "x", "y"}}, 1);
+        nlos::encode_panels({nlos::CurvePanel{"curve", {0.0, 1.0}, {1.0, 2.0}, "x", "y"}}, 1);
     const std::string image = embedded_image(png, "image/png", "a \"curve\"");
     EXPECT_TRUE(contains(image, "src=\"data:image/png;base64,iVBOR"));
     EXPECT_TRUE(contains(image, " width=\""));

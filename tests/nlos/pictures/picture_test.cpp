@@ -2,20 +2,19 @@
 #include "nlos/pictures/picture.h"
 
 #include "nlos/pictures/axis_ticks.h"
+#include "nlos/pictures/panel_drawing.h"
 #include "nlos/pictures/pictures.h"
 #include "tests/support/error_message.h"
 #include "tests/support/example_capture.h"
 #include "tests/support/example_volume.h"
+#include "tests/support/file_bytes.h"
 #include "tests/support/temporary_folder.h"
 
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <numeric>
-#include <sstream>
 
 namespace nlos {
 namespace {
@@ -41,7 +40,7 @@ cv::Mat decode(const std::string& png) {
 /// Where the panel's red pixels (its largest values) lie, as shares of its white picture; the
 /// colour bar, which holds the same red in a narrow strip at the right, is left out.
 std::array<double, 2> centre_of_red(const ImagePanel& panel) {
-    const cv::Mat picture = decode(encode_panels_png({panel}, 1));
+    const cv::Mat picture = decode(encode_panels({panel}, 1));
     const Colour red = colour_at(ColourMap::Diverging, 1.0);
     const int plot_end = picture.cols * 4 / 5;
     double count = 0.0;
@@ -109,53 +108,132 @@ TEST(Picture, ValuesWithoutMeaningAreDrawnNeutral) {
     ImagePanel panel = small_panel();
     panel.values.assign(16, NAN);
     panel.value_range.reset();
-    const cv::Mat picture = decode(encode_panels_png({panel}, 1));
+    const cv::Mat picture = decode(encode_panels({panel}, 1));
     const cv::Vec3b middle = picture.at<cv::Vec3b>(picture.rows / 2, picture.cols / 2);
     EXPECT_LT(std::abs(middle[0] - middle[2]), 12);  // grey
     EXPECT_NE(middle, cv::Vec3b(255, 255, 255));
 }
 
+TEST(Picture, CategoriesHaveColoursOfTheirOwn) {
+    ImagePanel panel = small_panel();
+    panel.categories = {{"first", {200, 30, 30}}, {"second", {30, 30, 200}}};
+    for (const auto& [value, blue, red] :
+         {std::tuple{1.0F, 30, 200}, std::tuple{2.0F, 200, 30}, std::tuple{0.0F, 255, 255}}) {
+        panel.values.assign(16, value);
+        const cv::Mat picture = decode(encode_panels({panel}, 1));
+        const cv::Vec3b middle = picture.at<cv::Vec3b>(picture.rows / 2, picture.cols / 2);
+        EXPECT_EQ(middle[0], blue) << value;
+        EXPECT_EQ(middle[2], red) << value;
+    }
+}
+
 TEST(Picture, PanelsFillRowsFirst) {
     const std::vector<Panel> panels{small_panel(), small_panel(), small_panel()};
-    const cv::Mat one = decode(encode_panels_png({small_panel()}, 1));
-    const cv::Mat row = decode(encode_panels_png(panels, 3));
-    const cv::Mat table = decode(encode_panels_png(panels, 2));
+    const cv::Mat one = decode(encode_panels({small_panel()}, 1));
+    const cv::Mat row = decode(encode_panels(panels, 3));
+    const cv::Mat table = decode(encode_panels(panels, 2));
     EXPECT_EQ(row.rows, one.rows);
     EXPECT_GT(row.cols, 2.5 * one.cols);
     EXPECT_GT(table.rows, 1.5 * one.rows);
     EXPECT_LT(table.cols, row.cols);
 }
 
-TEST(Picture, FileHoldsTheEncodedBytes) {
+TEST(Picture, SuffixChoosesTheFormat) {
     const test_support::TemporaryFolder folder;
-    write_panels_png(folder.file("a.png"), {small_panel()}, 1);
-    std::ifstream file(folder.file("a.png"), std::ios::binary);
-    std::ostringstream bytes;
-    bytes << file.rdbuf();
-    EXPECT_EQ(bytes.str(), encode_panels_png({small_panel()}, 1));
+    const auto written = [&](const std::string& name) {
+        write_panels(folder.file(name), {small_panel()}, 1);
+        return test_support::file_bytes(folder.file(name));
+    };
+    EXPECT_EQ(written("a.png"), encode_panels({small_panel()}, 1));
+    EXPECT_NE(written("a.svg").find("<svg"), std::string::npos);
+    EXPECT_TRUE(written("a.pdf").starts_with("%PDF"));
+    EXPECT_ERROR_WITH(written("a.jpg"), "has the suffix '.jpg'; must be one of .png, .svg, .pdf");
+    EXPECT_ERROR_WITH(check_picture_suffix("a"), "must be one of .png, .svg, .pdf");
+    check_picture_suffix("");
+}
+
+/// The width and height of a panel's coloured plot, without what stands around it [pixels].
+std::array<int, 2> plot_size(const ImagePanel& panel) {
+    ImagePanel large = panel;
+    large.x_range = {0.0, 1.0};
+    large.y_range = {0.0, 1.0};
+    large.full_length = 0.0;
+    const PixelSize usual = panel_size(large);
+    const PixelSize size = panel_size(panel);
+    return {640 + size.width - usual.width, 640 + size.height - usual.height};
+}
+
+TEST(Picture, MetresAreAsLongAlongBothAxes) {
+    ImagePanel panel = small_panel();
+    panel.x_range = {-1.0, 1.0};
+    panel.y_range = {0.0, 1.5};
+    EXPECT_EQ(plot_size(panel), (std::array{640, 480}));
+    panel.full_length = 1.0;
+    EXPECT_EQ(plot_size(panel), (std::array{1280, 960}));
+    panel.scale = AxisScale::Free;
+    EXPECT_EQ(plot_size(panel), (std::array{640, 640}));
+}
+
+TEST(Picture, ThinPlotsStayTrueToTheMetre) {
+    ImagePanel panel = small_panel();
+    panel.values.assign(16, 1.0F);
+    panel.y_range = {0.0, 0.1};
+    const cv::Mat picture = decode(encode_panels({panel}, 1));
+    const Colour red = colour_at(ColourMap::Diverging, 1.0);
+    int rows = 0;
+    for (int y = 0; y < picture.rows; ++y) {
+        rows +=
+            picture.at<cv::Vec3b>(y, picture.cols / 2) == cv::Vec3b(red.blue, red.green, red.red);
+    }
+    EXPECT_EQ(rows, 64) << "a tenth of its width";
+}
+
+TEST(Pictures, ViewsOfDeepVolumesShareTheScaleOfTheWall) {
+    Reconstruction deep = test_support::column_volume({1.0F, 0.5F, 0.2F}, {});
+    for (double& z : deep.volume.axes.z_m) z *= 10.0;
+    const std::vector<Panel> panels = volume_panels(deep);
+    const auto& front = std::get<ImagePanel>(panels[0]);
+    for (std::size_t i = 0; i < 3; ++i) {
+        const auto& view = std::get<ImagePanel>(panels[i]);
+        EXPECT_EQ(view.scale, AxisScale::Equal);
+        EXPECT_EQ(view.full_length, front.full_length);
+    }
+    EXPECT_EQ(std::get<ImagePanel>(panels[2]).x_range, front.x_range);
+}
+
+TEST(Pictures, UnitOfRadianceIsStatedOfRenderedCapturesAlone) {
+    core::Capture capture = test_support::example_capture(core::ScanPattern::Confocal);
+    const auto label = [&] { return std::get<ImagePanel>(capture_panels(capture)[0]).value_label; };
+    EXPECT_EQ(label(), "radiance per bin") << "of a file that says no more";
+    capture.scene_info["estimator"] = "path";
+    EXPECT_EQ(label(), "radiance per bin at 1 W [W/(m² sr)]");
+    EXPECT_EQ(std::get<ImagePanel>(capture_panels(capture)[1]).value_label,
+              "radiance at 1 W [W/(m² sr)]");
+    capture.unit = core::TransientUnit::Counts;
+    EXPECT_EQ(label(), "counts per bin");
 }
 
 TEST(Picture, PanelsWithoutMatchingValuesAreRefused) {
     ImagePanel panel = small_panel();
     panel.values.pop_back();
-    EXPECT_ERROR_WITH(encode_panels_png({panel}, 1), "found 15 values for 4 x 4");
-    EXPECT_ERROR_WITH(encode_panels_png({}, 1), "found no panel");
-    EXPECT_ERROR_WITH(encode_panels_png({CurvePanel{"c", {1.0}, {}, "", ""}}, 1), "1 x and 0 y");
+    EXPECT_ERROR_WITH(encode_panels({panel}, 1), "found 15 values for 4 x 4");
+    EXPECT_ERROR_WITH(encode_panels({}, 1), "found no panel");
+    EXPECT_ERROR_WITH(encode_panels({CurvePanel{"c", {1.0}, {}, "", ""}}, 1), "1 x and 0 y");
 }
 
 TEST(Picture, OddCurvesCanBeDrawn) {
     for (const auto& y :
          {std::vector<double>{0.0, 0.0}, {5.0, 5.0}, {-1.0, -2.0}, {1e-12, 2e-12}}) {
         const CurvePanel curve{"curve", {0.0, 1.0}, y, "x", "y"};
-        EXPECT_FALSE(decode(encode_panels_png({curve}, 1)).empty());
+        EXPECT_FALSE(decode(encode_panels({curve}, 1)).empty());
     }
     const CurvePanel point{"point", {1.0}, {1.0}, "x", "y"};
-    EXPECT_FALSE(decode(encode_panels_png({point}, 1)).empty());
+    EXPECT_FALSE(decode(encode_panels({point}, 1)).empty());
 }
 
 TEST(AxisTicks, AreRoundNumbersInsideTheAxis) {
     const AxisTicks ticks = choose_ticks(0.5, -0.5, 8);
-    EXPECT_EQ(ticks.labels, (std::vector<std::string>{"-0.4", "-0.2", "0.0", "0.2", "0.4"}));
+    EXPECT_EQ(ticks.labels, (std::vector<std::string>{"−0.4", "−0.2", "0.0", "0.2", "0.4"}));
     EXPECT_EQ(choose_ticks(0.0, 1.0, 3).labels, (std::vector<std::string>{"0.0", "0.5", "1.0"}));
     EXPECT_EQ(choose_ticks(1.49, 3.51, 5).labels,
               (std::vector<std::string>{"1.5", "2.0", "2.5", "3.0", "3.5"}));
@@ -167,7 +245,9 @@ TEST(AxisTicks, TakeFarPowersOfTenOutOfTheLabels) {
     const AxisTicks small = choose_ticks(0.0, 3e-6, 4);
     EXPECT_EQ(small.exponent, -6);
     EXPECT_EQ(small.labels, (std::vector<std::string>{"0", "1", "2", "3"}));
-    EXPECT_EQ(label_with_exponent("radiance", small.exponent), "radiance x 1e-6");
+    EXPECT_EQ(label_with_exponent("counts", small.exponent), "counts [10⁻⁶]");
+    EXPECT_EQ(label_with_exponent("light [W] of all", 12), "light [10¹² W] of all");
+    EXPECT_EQ(label_with_exponent("light [W]", 0), "light [W]");
     EXPECT_EQ(choose_ticks(0.0, 4e6, 5).exponent, 6);
     EXPECT_EQ(choose_ticks(0.0, 4e3, 5).exponent, 0);
 }
@@ -189,7 +269,7 @@ TEST(Pictures, FrontViewShowsWhatAnEyeAtTheWallSees) {
     EXPECT_EQ(image(panels[1]).values, (std::vector<float>{0.0F, 1.0F, 0.0F}));  // along x: z
     EXPECT_EQ(image(panels[2]).values,
               (std::vector<float>{0.0F, 0.0F, 0.0F, 0.25F, 0.0F, 1.0F, 0.0F, 0.0F, 0.0F}));
-    EXPECT_FALSE(encode_panels_png(panels, 2).empty());
+    EXPECT_FALSE(encode_panels(panels, 2).empty());
 }
 
 TEST(Pictures, ProbabilityAndDeviationOfDepthStandBesideIt) {
@@ -202,15 +282,15 @@ TEST(Pictures, ProbabilityAndDeviationOfDepthStandBesideIt) {
     EXPECT_EQ(image(panels[4]).values, (std::vector<float>{0.9F, 0.25F}));
     EXPECT_FLOAT_EQ(image(panels[5]).values[0], 2.0F);  // mm
     EXPECT_TRUE(std::isnan(image(panels[5]).values[1]));
-    EXPECT_FALSE(encode_panels_png(panels, 2).empty());
+    EXPECT_FALSE(encode_panels(panels, 2).empty());
 }
 
 TEST(Pictures, DarkVolumesAndEmptyMapsCanBeDrawn) {
     const Reconstruction dark = test_support::column_volume({0.0F, 0.0F}, {});
-    EXPECT_FALSE(encode_panels_png(volume_panels(dark), 2).empty());
+    EXPECT_FALSE(encode_panels(volume_panels(dark), 2).empty());
     const core::DepthMap nothing = test_support::truth_of(dark, {kBackground, kBackground});
-    EXPECT_FALSE(encode_panels_png(comparison_panels(dark, nothing), 3).empty());
-    EXPECT_FALSE(encode_panels_png(truth_panels(nothing), 3).empty());
+    EXPECT_FALSE(encode_panels(comparison_panels(dark, nothing), 3).empty());
+    EXPECT_FALSE(encode_panels(truth_panels(nothing), 3).empty());
 }
 
 TEST(Pictures, ErrorMapIsSignedInMillimetres) {
@@ -263,7 +343,7 @@ TEST(Pictures, StreakHoldsTheMiddleRowOfTheWall) {
 TEST(Pictures, EveryKindOfCaptureCanBeDrawn) {
     for (const auto pattern : {core::ScanPattern::Single, core::ScanPattern::Exhaustive}) {
         const core::Capture capture = test_support::example_capture(pattern);
-        EXPECT_FALSE(encode_panels_png(capture_panels(capture), 3).empty());
+        EXPECT_FALSE(encode_panels(capture_panels(capture), 3).empty());
     }
     core::Capture list = test_support::example_capture(core::ScanPattern::Confocal);
     list.scan.sensing.grid.reset();
@@ -274,7 +354,7 @@ TEST(Pictures, EveryKindOfCaptureCanBeDrawn) {
     gate.time_axis.num_bins = 1;
     gate.transient = core::Transient(gate.scan.num_pairs(), 1);
     EXPECT_EQ(capture_panels(gate).size(), 1U);  // only the wall
-    EXPECT_FALSE(encode_panels_png(capture_panels(gate), 3).empty());
+    EXPECT_FALSE(encode_panels(capture_panels(gate), 3).empty());
 }
 
 TEST(Pictures, VelocitiesHaveAnImageOfTheirMeanAndASpectrum) {
@@ -295,7 +375,7 @@ TEST(Pictures, VelocitiesHaveAnImageOfTheirMeanAndASpectrum) {
     EXPECT_EQ(spectrum.y[2], 0.0);
     EXPECT_NEAR(spectrum.y.back(), 10.0 * std::log10(0.75e6), 1e-9);
     EXPECT_EQ(capture_panels(capture).size(), 8U);
-    EXPECT_FALSE(encode_panels_png(capture_panels(capture), 3).empty());
+    EXPECT_FALSE(encode_panels(capture_panels(capture), 3).empty());
 
     capture.velocity->axis.with_time = true;
     capture.velocity->values = core::Transient(6, 20);
@@ -324,7 +404,7 @@ TEST(Pictures, ImagesAreDrawnFromTheTop) {
     float gated = 0.0F;
     for (std::size_t i = 2; i < panels.size(); ++i) gated += image(panels[i]).values[4];
     EXPECT_FLOAT_EQ(gated, light_of(3)) << "gates share the bins";
-    EXPECT_FALSE(encode_panels_png(panels, 3).empty());
+    EXPECT_FALSE(encode_panels(panels, 3).empty());
 }
 
 TEST(Pictures, PreviewShowsTheImageUpright) {

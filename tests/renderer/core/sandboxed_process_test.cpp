@@ -6,8 +6,13 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <csignal>
+#include <ctime>
+#include <latch>
+#include <mutex>
 #include <new>
+#include <thread>
 
 namespace core {
 namespace {
@@ -62,6 +67,46 @@ TEST(SandboxedProcess, WhatDoesNotEndIsEnded) {
                                         return std::string();
                                     }),
                       "does not end");
+}
+
+// The child's copy of a lock that another thread held when it was started is never released.
+TEST(SandboxedProcess, AChildThatWaitsForAnotherThreadsLockIsReplaced) {
+    std::mutex mutex;
+    std::latch is_held(1);
+    std::latch is_started(1);
+    std::thread other([&] {
+        const std::lock_guard lock(mutex);
+        is_held.count_down();
+        is_started.wait();
+    });
+    is_held.wait();
+    SandboxedProcess process("some file", [&](const std::string& request) {
+        const std::lock_guard lock(mutex);
+        return request;
+    });
+    is_started.count_down();
+    other.join();
+    EXPECT_EQ(process.ask("first"), "first");
+    EXPECT_EQ(process.ask("second"), "second");
+}
+
+TEST(SandboxedProcess, AChildThatWorksLongIsNotReplaced) {
+    const auto begin = std::chrono::steady_clock::now();
+    int asked = 0;
+    SandboxedProcess process("some file", [&](const std::string&) {
+        ++asked;
+        // Work with naps, longer than one that waits for a lock is left alone.
+        for (int i = 0; asked == 2 && i < 150; ++i) {
+            const auto start = std::clock();
+            while (std::clock() - start < CLOCKS_PER_SEC / 100) {
+            }
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        }
+        return std::to_string(asked);
+    });
+    EXPECT_EQ(process.ask(""), "1");
+    EXPECT_EQ(process.ask(""), "2");
+    EXPECT_GT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(2));
 }
 
 TEST(SandboxedProcess, SeveralLiveSideBySide) {

@@ -2,6 +2,7 @@
 // What third bounces promise of their error, behind occluders of 1 mm to 1 m. The benchmark
 // occluder_stress does the same with more scenes and targets.
 #include "renderer/render.h"
+#include "renderer/third_bounce/pilot_runs.h"
 #include "tests/support/occluder_scenes.h"
 
 #include <gtest/gtest.h>
@@ -66,15 +67,36 @@ TEST(ThirdBounceBehindOccluders, RandomScenesAreWithinTheTarget) {
     EXPECT_LE(above, 1);
 }
 
-// A wide sheet, of which the first cut already has too many elements.
-TEST(ThirdBounceBehindOccluders, TargetsOutOfReachNameOneThatIsNot) {
-    const core::Scan scan = test_support::confocal_scan({Vec3(0.0, 0.0, 0.0)});
+// A wide sheet, which takes many elements, behind a small one that is black.
+renderer::SceneGeometry wide_sheet() {
     renderer::SceneGeometry geometry;
     geometry.objects.push_back(test_support::parallelogram_object(
         {Vec3(-0.5, -0.5, 0.5), Vec3(1.0, 0.0, 0.0), Vec3(0.0, 1.0, 0.0), 0.5}));
     geometry.objects.push_back(test_support::parallelogram_object(
         {Vec3(-0.05, -0.1, 0.3), Vec3(0.15, 0.0, 0.02), Vec3(0.02, 0.2, 0.0), 0.0}));
-    const renderer::Scene scene(std::move(geometry), scan, {});
+    return geometry;
+}
+
+// Where the usual reference has too many elements, a nearer one serves: its error is no smaller
+// than a third of the next coarser level's, and at most that.
+TEST(ThirdBounceBehindOccluders, ErrorsAreKnownUpToTheLastLevelButOne) {
+    const core::Scan scan = test_support::confocal_scan({Vec3(0.0, 0.0, 0.0)});
+    const renderer::Scene scene(wide_sheet(), scan, {});
+    renderer::PilotRuns pilots(scene, scan, {0.9, 0.05, 20}, 1e-4, 0.0);
+    const auto fits = [&](int level) { return failure_of([&] { pilots.cut(level); }).empty(); };
+    int last = 0;
+    while (fits(last - 1)) --last;
+    const double coarser = pilots.error_of(last + 2);
+    const double error = pilots.error_of(last + 1);
+    EXPECT_LE(error, coarser);
+    EXPECT_GE(error, coarser / 3.0);
+    EXPECT_FALSE(failure_of([&] { pilots.error_of(last); }).empty());
+}
+
+// The first cut already has too many elements.
+TEST(ThirdBounceBehindOccluders, TargetsOutOfReachNameOneThatIsNot) {
+    const core::Scan scan = test_support::confocal_scan({Vec3(0.0, 0.0, 0.0)});
+    const renderer::Scene scene(wide_sheet(), scan, {});
     renderer::RenderSettings settings;
     settings.method = renderer::Estimator::ThirdBounce;
     const core::TimeAxis axis{0.9, 0.05, 20};

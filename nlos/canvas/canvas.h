@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "nlos/pictures/colour_map.h"
+#include "nlos/canvas/colour_map.h"
 
 #include <array>
 #include <memory>
@@ -21,21 +21,26 @@ struct PixelBox {
     int bottom() const { return y + height; }
 };
 
+/// What a picture is stored as: pixels, or lines and letters that stay sharp at any size.
+enum class PictureFormat { Png, Svg, Pdf };
+
 enum class TextAnchor { Start, Centre, End };
 enum class TextDirection { Horizontal, Upwards };
 
 struct TextStyle {
     double cap_height_px = 17.0;  ///< height of a capital letter
-    double stroke_px = 2.0;
-    Colour colour;
+    Colour colour{};
     TextAnchor anchor = TextAnchor::Start;  ///< which end of the text lies at the given point
     TextDirection direction = TextDirection::Horizontal;
 };
 
-/// An image to draw on, smooth-edged; needs no display and no font files.
+/// A picture to draw on, smooth-edged; needs no display and no font files.
+///
+/// Sizes are in pixels of a .png, of which an ordinary screen would show two per pixel of its own;
+/// in an .svg and a .pdf four of them are as long as 1.5 points.
 class Canvas {
  public:
-    Canvas(int width, int height, Colour background);
+    Canvas(int width, int height, Colour background, PictureFormat format = PictureFormat::Png);
     ~Canvas();
     Canvas(const Canvas&) = delete;
     Canvas& operator=(const Canvas&) = delete;
@@ -52,22 +57,24 @@ class Canvas {
 
     void polyline(const std::vector<std::array<double, 2>>& points, Colour colour, int thickness);
 
-    /// Draws ASCII text whose capitals are centred across its line on (x, y).
+    /// Draws text in UTF-8 whose capitals are centred across its line on (x, y).
     void text(int x, int y, const std::string& text, const TextStyle& style);
 
     /// The length of a text along its direction [pixels].
-    static int text_length(const std::string& text, const TextStyle& style);
+    static double text_length(const std::string& text, const TextStyle& style);
 
     /// Fills the box with an image of `columns` x `rows` colours, stored row by row from the top:
     /// averaged where it must shrink, in sharp blocks where it must grow.
     void image(const PixelBox& box, int columns, int rows, const std::vector<Colour>& colours);
 
-    /// The picture as the bytes of a PNG file.
-    std::string encode_png() const;
+    /// Ends the drawing.
+    /// returns   the bytes of the file
+    /// throws    core::Failure when something could not be drawn
+    std::string finish();
 
  private:
-    struct Pixels;
-    std::unique_ptr<Pixels> pixels_;
+    struct Drawing;
+    std::unique_ptr<Drawing> drawing_;
 };
 
 }  // namespace nlos

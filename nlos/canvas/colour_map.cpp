@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/pictures/colour_map.h"
+#include "nlos/canvas/colour_map.h"
 
-#include <opencv2/imgproc.hpp>
+#include "nlos/canvas/colour_tables.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,16 +11,12 @@ namespace {
 
 using Table = std::array<Colour, 256>;
 
-Table opencv_table(int map) {
-    cv::Mat levels(1, 256, CV_8UC1);
-    for (int i = 0; i < 256; ++i) levels.at<std::uint8_t>(0, i) = static_cast<std::uint8_t>(i);
-    cv::Mat coloured;
-    cv::applyColorMap(levels, coloured, map);
+Table unpacked(const std::array<std::uint32_t, 256>& colours) {
     Table table;
-    for (int i = 0; i < 256; ++i) {
-        const auto& bgr = coloured.at<cv::Vec3b>(0, i);
-        table[static_cast<std::size_t>(i)] = {bgr[2], bgr[1], bgr[0]};
-    }
+    std::transform(colours.begin(), colours.end(), table.begin(), [](std::uint32_t rgb) {
+        const auto byte = [rgb](int shift) { return static_cast<std::uint8_t>(rgb >> shift); };
+        return Colour{byte(16), byte(8), byte(0)};
+    });
     return table;
 }
 
@@ -62,8 +58,8 @@ Table grey_table() {
 }  // namespace
 
 const std::array<Colour, 256>& colours_of(ColourMap map) {
-    static const Table inferno = opencv_table(cv::COLORMAP_INFERNO);
-    static const Table viridis = opencv_table(cv::COLORMAP_VIRIDIS);
+    static const Table inferno = unpacked(kInferno);
+    static const Table viridis = unpacked(kViridis);
     static const Table diverging = diverging_table();
     static const Table grey = grey_table();
     switch (map) {
@@ -80,7 +76,7 @@ const std::array<Colour, 256>& colours_of(ColourMap map) {
 }
 
 Colour colour_at(ColourMap map, double share) {
-    const double level = std::clamp(share, 0.0, 1.0) * 255.0;
+    const double level = share > 0.0 ? std::min(share, 1.0) * 255.0 : 0.0;  // NaN is dark
     return colours_of(map)[static_cast<std::size_t>(std::lround(level))];
 }
 

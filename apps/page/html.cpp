@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "apps/report/html.h"
+#include "apps/page/html.h"
 
 #include <fmt/core.h>
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Makes a virtual environment for mitransient_and_ytal.ipynb: mitransient, y-tal, what they need, and
-# what runs a notebook; and Ray for generate_with_ray.py. `nlos` itself comes from PYTHONPATH, or from
-# `DIR/bin/pip install .` afterwards.
-#   bash apps/guide/notebooks/install_peers.sh DIR [PYTHON]
+# Makes a virtual environment of peers for `nlos bench field` and mitransient_and_ytal.ipynb: mitransient,
+# y-tal, what they need, what runs a notebook; and Ray for generate_with_ray.py. `nlos` itself comes from
+# PYTHONPATH, or from `DIR/bin/pip install .` afterwards. A second run changes nothing.
+#   bash apps/bench/field/install_peers.sh DIR [PYTHON]
 set -euo pipefail
 [ $# -ge 1 ] || { sed -n '2,5s/^# //p' "$0" >&2; exit 2; }
 folder=$1

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "apps/bench/field/contenders.h"
+#include "apps/bench/figures.h"
+#include "renderer/core/progress.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace apps {
+
+/// One run of a renderer.
+struct RenderingRow {
+    std::string scene{};
+    int max_bounces = 0;
+    std::string program{};
+    std::string method{};
+    std::optional<int> samples{};           ///< paths per wall point
+    std::optional<double> target_error{};   ///< relative L2 that was asked for instead
+    std::optional<double> rel_l2{};         ///< error over all of H
+    std::optional<double> energy_ratio{};   ///< all light over that of the reference
+    std::optional<double> cpu_s{};          ///< of the rendering, without compilation
+    std::optional<double> compile_cpu_s{};  ///< of just-in-time compilation
+    std::optional<double> process_cpu_s{};  ///< of the whole process
+    std::optional<double> peak_mb{};        ///< memory of the whole process
+    std::string reason{};                   ///< why there is no result
+};
+NLOS_FIGURES(RenderingRow,
+             scene,
+             max_bounces,
+             program,
+             method,
+             samples,
+             target_error,
+             rel_l2,
+             energy_ratio,
+             cpu_s,
+             compile_cpu_s,
+             process_cpu_s,
+             peak_mb,
+             reason);
+
+/// What an error of 1 % costs.
+struct RenderingSummary {
+    std::string scene{};
+    int max_bounces = 0;
+    std::string program{};
+    std::string method{};
+    std::optional<double> cpu_s_at_1_percent{};
+    std::optional<double> times_ours{};  ///< over that of the fastest of ours
+    std::string reason{};                ///< why it does not get there
+};
+NLOS_FIGURES(
+    RenderingSummary, scene, max_bounces, program, method, cpu_s_at_1_percent, times_ours, reason);
+
+/// How well a peer's histograms agree with ours, see bin_agreement.h.
+struct AgreementRow {
+    std::string scene{};
+    int max_bounces = 0;
+    std::string program{};
+    std::string method{};
+    int runs = 0;  ///< independent seeds
+    std::optional<double> energy_ratio{};
+    std::optional<double> energy_z{};
+    int cells = 0;
+    std::optional<double> rms_z{};
+    std::optional<double> worst_z{};
+    std::optional<double> worst_by_chance{};  ///< exceeded in one of a hundred tables like this one
+    bool consistent = false;                  ///< neither score is worse than that
+    std::string reason{};                     ///< why there is none
+};
+NLOS_FIGURES(AgreementRow,
+             scene,
+             max_bounces,
+             program,
+             method,
+             runs,
+             energy_ratio,
+             energy_z,
+             cells,
+             rms_z,
+             worst_z,
+             worst_by_chance,
+             consistent,
+             reason);
+
+/// All that renderers were asked for.
+struct RenderingTable {
+    std::vector<RenderingRow> rows;
+    std::vector<RenderingSummary> summaries;
+    std::vector<AgreementRow> agreement;
+};
+
+/// Renders letter, animal and bars to orders 3 and 5 from a single laser by all renderers.
+///
+/// points    along either side of the wall, a multiple of 4
+/// quick     the letter to order 3 alone
+RenderingTable measure_renderings(Contenders& contenders,
+                                  int points,
+                                  bool quick,
+                                  const core::Progress& progress);
+
+}  // namespace apps

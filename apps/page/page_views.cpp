@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: MIT
+#include "apps/page/page_views.h"
+
+#include "nlos/preparation/wall_frame.h"
+
+#include <fmt/core.h>
+
+namespace apps {
+
+/// The scripts of the views, and the libraries that they stand on, compiled in.
+extern const char* const kViewerScripts;
+
+namespace {
+
+constexpr int kMostHalvings = 12;
+
+/// The wall that everything on the page is placed by.
+struct PageWall {
+    core::Transform frame_from_world = core::Transform::Identity();
+    core::Json footprint;  ///< null where it is not known
+};
+
+PageWall page_wall(const PageViews& views) {
+    PageWall wall;
+    const bool has_points = views.scan && !views.scan->camera;
+    if (!views.results.empty()) {
+        wall.frame_from_world = views.results.front().depth.world_from_wall.inverse();
+    } else if (has_points) {
+        wall.frame_from_world = nlos::derive_wall_frame(*views.scan).world_from_wall.inverse();
+    } else if (views.truth) {
+        wall.frame_from_world = views.truth->depth.world_from_wall.inverse();
+    }
+    core::Vec3 low = core::Vec3::Constant(std::numeric_limits<double>::infinity());
+    core::Vec3 high = -low;
+    const auto include = [&](const core::Vec3& point) {
+        low = low.cwiseMin(point);
+        high = high.cwiseMax(point);
+    };
+    if (has_points) {
+        const nlos::WallFrame scanned = nlos::derive_wall_frame(*views.scan);
+        for (const double x : {scanned.min_m[0], scanned.max_m[0]}) {
+            for (const double y : {scanned.min_m[1], scanned.max_m[1]}) {
+                include(wall.frame_from_world * (scanned.world_from_wall * core::Vec3(x, y, 0.0)));
+            }
+        }
+    } else if (!views.results.empty() && !views.results.front().depth.x_m.empty()) {
+        const core::DepthMap& depth = views.results.front().depth;
+        include({depth.x_m.front(), depth.y_m.front(), 0.0});
+        include({depth.x_m.back(), depth.y_m.back(), 0.0});
+    }
+    if (low[0] <= high[0]) {
+        wall.footprint = {{"x_m", {low[0], high[0]}}, {"y_m", {low[1], high[1]}}};
+    }
+    return wall;
+}
+
+core::Json wall_points_json(const core::WallPoints& points,
+                            const PageWall& wall,
+                            PageArrays& arrays) {
+    std::vector<core::Vec3> placed;
+    for (const core::Vec3& point : points.positions) {
+        placed.push_back(wall.frame_from_world * point);
+    }
+    return add_points(arrays, placed);
+}
+
+core::Json mesh_json(const TruthView& truth, const PageWall& wall, PageArrays& arrays) {
+    std::vector<core::Vec3> vertices;
+    for (const core::Vec3& vertex : truth.mesh.vertices) {
+        vertices.push_back(wall.frame_from_world * vertex);
+    }
+    std::vector<std::uint32_t> corners;
+    for (const auto& triangle : truth.mesh.triangles) {
+        corners.insert(corners.end(), triangle.begin(), triangle.end());
+    }
+    return {{"name", truth.name},
+            {"positions", add_points(arrays, vertices)},
+            {"triangles", arrays.add(corners)}};
+}
+
+core::Json views_json(const PageViews& views, int halvings, PageArrays& arrays) {
+    const PageWall wall = page_wall(views);
+    core::Json json{{"version", 1},
+                    {"wall", wall.footprint},
+                    {"sensing", nullptr},
+                    {"illumination", nullptr},
+                    {"truth", nullptr},
+                    {"results", core::Json::array()},
+                    {"best", views.best + (views.truth ? 1 : 0)},
+                    {"films", core::Json::array()}};
+    if (views.scan && !views.scan->camera) {
+        json["sensing"] = wall_points_json(views.scan->sensing, wall, arrays);
+        if (views.scan->pattern != core::ScanPattern::Confocal) {
+            json["illumination"] = wall_points_json(views.scan->illumination, wall, arrays);
+        }
+    }
+    std::optional<core::DepthMap> true_depth;
+    if (views.truth) true_depth = views.truth->depth;
+    const MapScales scales = map_scales(views.results, true_depth);
+    if (views.truth) {
+        json["truth"] = mesh_json(*views.truth, wall, arrays);
+        json["results"].push_back(
+            truth_json(*true_depth, views.truth->name, scales, wall.frame_from_world, arrays));
+    }
+    for (const ResultView& result : views.results) {
+        json["results"].push_back(
+            result_json(result, scales, wall.frame_from_world, halvings, arrays));
+    }
+    for (FilmView film : views.films) {
+        for (int i = 0; i < halvings; ++i) film = halved(film);
+        json["films"].push_back(film_json(film, wall.frame_from_world, arrays));
+    }
+    return json;
+}
+
+/// JSON that no browser takes for the end of the script element around it.
+std::string script_json(const core::Json& json) {
+    std::string text;
+    for (const char c : json.dump(-1, ' ', false, core::Json::error_handler_t::replace)) {
+        if (c == '<') {
+            text += "\\u003c";
+        } else {
+            text += c;
+        }
+    }
+    return text;
+}
+
+}  // namespace
+
+std::string views_html(const PageViews& views, double limit_bytes) {
+    if (views.empty()) return "";
+    std::string data;
+    for (int halvings = 0; halvings <= kMostHalvings; ++halvings) {
+        PageArrays arrays;
+        const core::Json json = views_json(views, halvings, arrays);
+        data = "<script type=\"application/json\" id=\"nlos-data\">" + script_json(json) +
+               "</script>\n" + arrays.html();
+        if (static_cast<double>(data.size()) <= limit_bytes) break;
+    }
+    return data + kViewerScripts;
+}
+
+}  // namespace apps

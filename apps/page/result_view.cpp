@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: MIT
+#include "apps/page/result_view.h"
+
+#include "nlos/pictures/image_layout.h"
+
+#include <fmt/core.h>
+
+namespace apps {
+namespace {
+
+constexpr double kNarrowestDepths_m = 0.1;  // flat things get some room on the scale
+constexpr double kErrorShare = 0.02;        // of the true depth, at the ends of the errors' scale
+constexpr double kSameFrame = 1e-6;         // [m and rad] between walls that are one
+
+using Range = std::array<double, 2>;
+
+/// The value below which `share` of the finite values lie; nothing when there is none.
+std::optional<double> percentile(std::vector<double> values, double share) {
+    std::erase_if(values, [](double value) { return !std::isfinite(value); });
+    if (values.empty()) return std::nullopt;
+    const auto rank = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), values.begin() + rank, values.end());
+    return values[static_cast<std::size_t>(rank)];
+}
+
+VolumeView volume_view(const nlos::Volume& volume) {
+    VolumeView view;
+    const std::array axes{&volume.axes.x_m, &volume.axes.y_m, &volume.axes.z_m};
+    for (std::size_t a = 0; a < axes.size(); ++a) {
+        view.size[a] = axes[a]->size();
+        if (!axes[a]->empty()) view.centres_m[a] = {axes[a]->front(), axes[a]->back()};
+    }
+    for (const float value : volume.values) view.highest = std::max(view.highest, double{value});
+    const LinearCoding coding{0.0, view.highest};
+    view.codes.reserve(volume.values.size());
+    for (const float value : volume.values) {
+        view.codes.push_back(coding.encode<std::uint8_t>(double{value}));
+    }
+    return view;
+}
+
+/// How a map looks: what its values are and how they become colours.
+struct MapStyle {
+    const char* name;
+    const char* unit;
+    const char* colours;
+    Range range;
+};
+
+/// A map of columns of the wall, stored [x][y].
+core::Json map_json(const core::DepthMap& columns,
+                    const std::vector<double>& values,
+                    const MapStyle& style,
+                    PageArrays& arrays) {
+    return {{"name", style.name},
+            {"unit", style.unit},
+            {"colours", style.colours},
+            {"range", style.range},
+            {"size", {columns.x_m.size(), columns.y_m.size()}},
+            {"x_m", nlos::cell_edges(columns.x_m)},
+            {"y_m", nlos::cell_edges(columns.y_m)},
+            {"values", coding_of(values).add<std::uint16_t>(arrays, values)}};
+}
+
+std::vector<double> scaled(std::vector<double> values, double factor) {
+    for (double& value : values) value *= factor;
+    return values;
+}
+
+std::vector<double> errors_mm(const ResultView& result) {
+    std::vector<double> errors(result.depth.depth_m.size());
+    for (std::size_t i = 0; i < errors.size(); ++i) {
+        errors[i] = 1e3 * (result.depth.depth_m[i] - result.truth->depth_m[i]);
+    }
+    return errors;
+}
+
+/// The foreground of a depth map with what is known of each point.
+core::Json points_json(const ResultView& result,
+                       const MapScales& scales,
+                       const core::Transform& frame_from_world,
+                       PageArrays& arrays) {
+    const core::DepthMap& depth = result.depth;
+    std::vector<core::Vec3> positions;
+    std::vector<std::size_t> columns;
+    for (std::size_t ix = 0; ix < depth.x_m.size(); ++ix) {
+        for (std::size_t iy = 0; iy < depth.y_m.size(); ++iy) {
+            if (!depth.is_foreground(depth.index(ix, iy))) continue;
+            columns.push_back(depth.index(ix, iy));
+            positions.push_back(frame_from_world * depth.point_world(ix, iy));
+        }
+    }
+    if (positions.empty()) return nullptr;
+    core::Json fields = core::Json::array();
+    const auto add = [&](const std::vector<double>& of_columns, const MapStyle& style) {
+        std::vector<double> values;
+        for (const std::size_t column : columns) values.push_back(of_columns[column]);
+        fields.push_back({{"name", style.name},
+                          {"unit", style.unit},
+                          {"colours", style.colours},
+                          {"range", style.range},
+                          {"values", coding_of(values).add<std::uint16_t>(arrays, values)}});
+    };
+    add(depth.depth_m, {"Depth", "m", "depth", scales.depth_m});
+    if (result.truth) {
+        const Range range{-scales.error_mm, scales.error_mm};
+        add(errors_mm(result), {"Depth error", "mm", "diverging", range});
+    }
+    if (!result.sigma_m.empty()) {
+        add(scaled(result.sigma_m, 1e3),
+            {"Standard deviation of depth", "mm", "depth", {0.0, scales.sigma_mm}});
+    }
+    return {{"positions", add_points(arrays, positions)}, {"fields", std::move(fields)}};
+}
+
+core::Json volume_json(VolumeView volume, int halvings, PageArrays& arrays) {
+    for (int i = 0; i < halvings; ++i) volume = halved(volume);
+    core::Json values = arrays.add(volume.codes);
+    values.update({{"coding", "linear"}, {"low", 0.0}, {"high", volume.highest}});
+    std::string reduced;
+    const auto& [x, y, z] = volume.merged;
+    if (x * y * z > 1) {
+        reduced = fmt::format("{} × {} × {} voxels are one, to keep the page small", x, y, z);
+    }
+    return {{"size", volume.size},
+            {"x_m", volume.centres_m[0]},
+            {"y_m", volume.centres_m[1]},
+            {"z_m", volume.centres_m[2]},
+            {"values", std::move(values)},
+            {"reduced", reduced}};
+}
+
+}  // namespace
+
+ResultView result_view(const nlos::Reconstruction& result, const std::string& file) {
+    ResultView view;
+    view.name = result.method;
+    const nlos::VolumeAxes& axes = result.volume.axes;
+    view.detail = fmt::format(
+        "{} × {} × {} voxels, {}", axes.x_m.size(), axes.y_m.size(), axes.z_m.size(), file);
+    view.depth = result.depth;
+    const std::size_t num_columns = result.depth.depth_m.size();
+    if (result.surface_probability.size() == num_columns) {
+        view.probability = result.surface_probability;
+    }
+    if (result.depth_sigma_m.size() == num_columns) view.sigma_m = result.depth_sigma_m;
+    view.volume = volume_view(result.volume);
+    if (view.volume.highest > 0.0) {
+        view.projection = nlos::max_projection(result.volume);
+        for (float& value : view.projection) value /= static_cast<float>(view.volume.highest);
+    }
+    return view;
+}
+
+VolumeView halved(const VolumeView& volume) {
+    const auto axis = static_cast<std::size_t>(
+        std::max_element(volume.size.begin(), volume.size.end()) - volume.size.begin());
+    if (volume.size[axis] < 2) return volume;
+    VolumeView half = volume;
+    half.size[axis] = (volume.size[axis] + 1) / 2;
+    half.merged[axis] *= 2;
+    const auto& [first, last] = volume.centres_m[axis];
+    const double pitch = (last - first) / static_cast<double>(volume.size[axis] - 1);
+    half.centres_m[axis][0] = first + 0.5 * pitch;
+    half.centres_m[axis][1] =
+        half.centres_m[axis][0] + 2.0 * pitch * static_cast<double>(half.size[axis] - 1);
+    half.codes.assign(half.size[0] * half.size[1] * half.size[2], 0);
+    std::array<std::size_t, 3> voxel{};
+    std::size_t source = 0;
+    for (voxel[0] = 0; voxel[0] < volume.size[0]; ++voxel[0]) {
+        for (voxel[1] = 0; voxel[1] < volume.size[1]; ++voxel[1]) {
+            for (voxel[2] = 0; voxel[2] < volume.size[2]; ++voxel[2]) {
+                std::array<std::size_t, 3> target = voxel;
+                target[axis] /= 2;
+                std::uint8_t& code =
+                    half.codes[(target[0] * half.size[1] + target[1]) * half.size[2] + target[2]];
+                code = std::max(code, volume.codes[source++]);
+            }
+        }
+    }
+    return half;
+}
+
+MapScales map_scales(const std::vector<ResultView>& results,
+                     const std::optional<core::DepthMap>& truth) {
+    std::vector<double> depths;
+    std::vector<double> sigmas;
+    if (truth) depths = truth->depth_m;
+    const bool truth_is_dark = !percentile(depths, 0.5).has_value();
+    for (const ResultView& result : results) {
+        if (truth_is_dark) {
+            depths.insert(depths.end(), result.depth.depth_m.begin(), result.depth.depth_m.end());
+        }
+        sigmas.insert(sigmas.end(), result.sigma_m.begin(), result.sigma_m.end());
+    }
+    MapScales scales;
+    if (const std::optional<double> middle = percentile(depths, 0.5)) {
+        const double low = *percentile(depths, 0.01);
+        const double high = *percentile(depths, 0.99);
+        const double room = 0.5 * std::max(0.0, kNarrowestDepths_m - (high - low));
+        scales.depth_m = {low - room, high + room};
+        if (*middle > 0.0) scales.error_mm = 1e3 * kErrorShare * *middle;
+    }
+    scales.sigma_mm = std::max(1e-3, 1e3 * percentile(sigmas, 0.99).value_or(1e-3));
+    return scales;
+}
+
+core::Json result_json(const ResultView& result,
+                       const MapScales& scales,
+                       const core::Transform& frame_from_world,
+                       int halvings,
+                       PageArrays& arrays) {
+    core::Json maps = core::Json::array();
+    const auto add = [&](const std::vector<double>& values, const MapStyle& style) {
+        if (!values.empty()) maps.push_back(map_json(result.depth, values, style, arrays));
+    };
+    add(result.depth.depth_m, {"Depth", "m", "depth", scales.depth_m});
+    if (result.truth) {
+        add(errors_mm(result),
+            {"Depth error", "mm", "diverging", {-scales.error_mm, scales.error_mm}});
+    }
+    add({result.projection.begin(), result.projection.end()},
+        {"Maximum projection", "", "heat", {0.0, 1.0}});
+    add(scaled(result.sigma_m, 1e3),
+        {"Standard deviation of depth", "mm", "depth", {0.0, scales.sigma_mm}});
+    add(result.probability, {"Probability of a surface", "", "share", {0.0, 1.0}});
+    const core::Transform moved = frame_from_world * result.depth.world_from_wall;
+    const bool same_wall = moved.isApprox(core::Transform::Identity(), kSameFrame);
+    const bool has_volume = same_wall && !result.volume.codes.empty();
+    return {{"name", result.name},
+            {"detail", result.detail + (same_wall ? "" : ", of another wall")},
+            {"is_truth", false},
+            {"maps", std::move(maps)},
+            {"points", points_json(result, scales, frame_from_world, arrays)},
+            {"volume", has_volume ? volume_json(result.volume, halvings, arrays) : core::Json()}};
+}
+
+core::Json truth_json(const core::DepthMap& truth,
+                      const std::string& scene,
+                      const MapScales& scales,
+                      const core::Transform& frame_from_world,
+                      PageArrays& arrays) {
+    ResultView view;
+    view.name = "Truth";
+    view.detail = scene;
+    view.depth = truth;
+    core::Json json = result_json(view, scales, frame_from_world, 0, arrays);
+    json["is_truth"] = true;
+    json["points"] = nullptr;  // its mesh is shown
+    return json;
+}
+
+}  // namespace apps

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "nlos/canvas/canvas.h"
+
+#include <string>
+
+namespace nlos {
+
+// Around a plot, in pixels of the canvas.
+inline constexpr int kLeftMargin = 132;    // y label and tick labels
+inline constexpr int kBottomMargin = 108;  // tick labels and x label
+inline constexpr int kSmallestRoom = 200;  // of a plot along either axis, however thin it is
+inline constexpr int kTickLength = 9;
+inline constexpr int kLine = 2;
+
+inline constexpr Colour kInk{32, 36, 44};
+inline constexpr Colour kSoftInk{92, 98, 108};
+inline constexpr Colour kAxisColour{120, 126, 136};
+inline constexpr Colour kGridColour{228, 231, 235};
+
+inline constexpr TextStyle kTickText{15.0, kSoftInk, TextAnchor::Start};
+inline constexpr TextStyle kLabelText{16.0, kInk, TextAnchor::Centre};
+
+TextStyle anchored(TextStyle style, TextAnchor anchor);
+TextStyle upwards(TextStyle style);
+
+/// The style, with smaller letters where the text would be longer than `length_px`.
+TextStyle fitted(TextStyle style, const std::string& text, int length_px);
+
+/// One axis of a plot: from value to pixel.
+struct PixelAxis {
+    double low = 0.0;
+    double high = 1.0;
+    int low_px = 0;
+    int high_px = 1;
+
+    double pixel(double value) const {
+        return low_px + (value - low) / (high - low) * (high_px - low_px);
+    }
+};
+
+/// The largest number of ticks along an axis that goes upwards.
+int tick_count(int length_px);
+
+/// Ticks, their numbers and the label, below and to the left of a plot.
+void draw_x_axis(Canvas& canvas,
+                 const PixelBox& plot,
+                 const PixelAxis& axis,
+                 const std::string& label);
+void draw_y_axis(Canvas& canvas,
+                 const PixelBox& plot,
+                 const PixelAxis& axis,
+                 const std::string& label);
+
+/// Lines across the plot at the ticks of both axes.
+void draw_grid(Canvas& canvas, const PixelBox& plot, const PixelAxis& x, const PixelAxis& y);
+
+}  // namespace nlos

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: MIT
+#include "nlos/pictures/film.h"
+
+#include "nlos/pictures/image_layout.h"
+#include "nlos/pictures/light_images.h"
+#include "nlos/pictures/light_scale.h"
+#include "nlos/preparation/wall_frame.h"
+#include "renderer/core/error.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+
+namespace nlos {
+namespace {
+
+constexpr double kBrightestOfFilm = 0.001;  // of all values, drawn in the last colour
+
+std::optional<WallGrid> grid_of(const core::Scan& scan) {
+    return scan.camera ? std::nullopt : derive_wall_frame(scan).grid;
+}
+
+/// One scale for all: of light that is faint in any of them, one that shows it.
+void share_scale(double brightest_share, std::vector<ImagePanel>& images) {
+    std::vector<float> values;
+    for (const ImagePanel& image : images) {
+        values.insert(values.end(), image.values.begin(), image.values.end());
+    }
+    const std::array<double, 2> range = light_range(std::move(values), brightest_share);
+    bool is_faint = false;
+    for (ImagePanel& image : images) {
+        is_faint = is_faint || image.value_scale == ValueScale::Gamma;
+        image.value_range = range;
+    }
+    for (ImagePanel& image : images) {
+        image.value_scale = is_faint ? ValueScale::Gamma : ValueScale::Linear;
+    }
+}
+
+/// Light of bins [first, last) of every point of the wall.
+ImagePanel wall_image(const core::Capture& capture,
+                      const WallGrid& grid,
+                      const std::array<std::size_t, 2>& bins) {
+    std::vector<float> sums;
+    for (std::size_t point = 0; point < capture.scan.sensing.size(); ++point) {
+        const std::size_t pair = pair_of(capture.scan, point);
+        const core::BinRange observed = capture.observed_range(pair);
+        float sum = 0.0F;
+        bool is_seen = false;
+        for (std::size_t bin = bins[0]; bin < bins[1]; ++bin) {
+            is_seen = is_seen || observed.holds(static_cast<int>(bin));
+            sum += capture.transient.histogram(pair)[bin];
+        }
+        sums.push_back(is_seen ? sum : std::numeric_limits<float>::quiet_NaN());
+    }
+    return wall_panel(grid, sums);
+}
+
+std::string time_text(const core::Capture& capture, const std::array<std::size_t, 2>& bins) {
+    const double middle_m =
+        capture.time_axis.bin_begin_m(0.5 * static_cast<double>(bins[0] + bins[1]));
+    return fmt::format(
+        "Path length {:.3f} m, {:.3f} ns", middle_m, 1e9 * middle_m / core::kSpeedOfLight);
+}
+
+std::vector<ImagePanel> bin_panels(const core::Capture& capture, std::size_t most) {
+    const std::optional<WallGrid> grid = grid_of(capture.scan);
+    const auto [first, last] = shown_bins(mean_transient(capture));
+    const std::size_t per_frame = (last - first + most - 1) / most;
+    std::vector<ImagePanel> images;
+    for (std::size_t begin = first; begin < last; begin += per_frame) {
+        const std::array bins{begin, std::min(last, begin + per_frame)};
+        ImagePanel image = grid ? wall_image(capture, *grid, bins)
+                                : gated_panel(*capture.scan.camera, capture.transient, bins);
+        image.title = time_text(capture, bins);
+        image.value_label = per_frame == 1 ? light_per_bin_label(capture) : light_label(capture);
+        image.value_scale = ValueScale::Gamma;
+        images.push_back(std::move(image));
+    }
+    share_scale(kBrightestOfFilm, images);
+    return images;
+}
+
+}  // namespace
+
+std::vector<ImagePanel> sequence_panels(const core::Capture& capture, std::size_t most) {
+    const core::FrameSequence& sequence = *capture.sequence;
+    const std::optional<WallGrid> grid = grid_of(capture.scan);
+    if (!capture.scan.camera && !grid) return {};
+    const std::size_t count = sequence.frames.size();
+    const std::size_t num_shown = std::min(most, count);
+    std::vector<ImagePanel> images;
+    for (std::size_t i = 0; i < num_shown; ++i) {
+        const std::size_t frame = num_shown > 1 ? i * (count - 1) / (num_shown - 1) : 0;
+        const core::Transient& transient = sequence.frames[frame];
+        ImagePanel image =
+            grid ? light_panel(capture, transient, *grid)
+                 : gated_panel(*capture.scan.camera, transient, {0, transient.num_bins()});
+        core::TimeAxis axis = capture.time_axis;
+        axis.opl_start_m -= static_cast<double>(count - 1 - frame) * sequence.gate_step_m;
+        image.title = fmt::format("Frame {}: {}", frame, axis_text(axis));
+        image.value_label = light_label(capture);
+        images.push_back(std::move(image));
+    }
+    share_scale(kBrightestPixels, images);
+    return images;
+}
+
+std::vector<ImagePanel> film_panels(const core::Capture& capture, std::size_t most) {
+    if (!capture.scan.camera && !grid_of(capture.scan)) {
+        throw core::Error("film", "found a list of points", "must be a grid of points or a camera");
+    }
+    if (capture.sequence) return sequence_panels(capture, most);
+    if (capture.transient.num_bins() < 2) {
+        throw core::Error("film", "found one time bin", "must be several, or a sequence of frames");
+    }
+    return bin_panels(capture, most);
+}
+
+}  // namespace nlos
