@@ -9,6 +9,7 @@
 #include "apps/progress_bar.h"
 #include "apps/terminal.h"
 #include "apps/version.h"
+#include "nlos/pictures/picture.h"
 #include "renderer/core/mapped_file.h"
 #include "renderer/core/output_file.h"
 
@@ -109,8 +110,10 @@ core::Json run_benchmark(const BenchOutput& output,
     core::write_text_file(stem + ".json", core::json_text(result.figures));
     core::write_text_file(stem + ".txt", table);
     if (!output.results.empty()) write_results(output, name, result.figures);
-    for (const auto& [suffix, bytes] : result.pictures) {
-        core::write_text_file(stem + suffix + ".png", bytes);
+    for (const auto& [suffix, picture] : result.pictures) {
+        for (const char* format : {".svg", ".png"}) {
+            nlos::write_panels(stem + suffix + format, picture.panels, picture.columns);
+        }
     }
     if (!draw_plots(result, stem)) {
         warn("gnuplot is not there, so no plot was drawn");

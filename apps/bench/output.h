@@ -3,6 +3,7 @@
 
 #include "apps/bench/figures.h"
 #include "apps/bench/gnuplot.h"
+#include "nlos/pictures/panel.h"
 #include "renderer/core/progress.h"
 
 #include <functional>
@@ -28,11 +29,17 @@ struct Target {
 };
 NLOS_FIGURES(Target, name, target, ours, holds);
 
+/// Panels in rows of `columns`.
+struct BenchPicture {
+    std::vector<nlos::Panel> panels;
+    int columns = 1;
+};
+
 /// What a benchmark found.
 struct BenchResult {
-    core::Json figures;                             ///< an object; tables.h makes tables of it
-    std::map<std::string, Plot> plots{};            ///< by the end of their file's name
-    std::map<std::string, std::string> pictures{};  ///< bytes of PNG files, likewise
+    core::Json figures;                              ///< an object; tables.h makes tables of it
+    std::map<std::string, Plot> plots{};             ///< by the end of their file's name
+    std::map<std::string, BenchPicture> pictures{};  ///< likewise
 };
 
 using Benchmark = std::function<BenchResult(const core::Progress&)>;
@@ -44,8 +51,9 @@ using Benchmark = std::function<BenchResult(const core::Progress&)>;
 core::Json read_earlier_run(const std::string& path, const std::string& name);
 
 /// Runs a benchmark and writes bench_NAME.json (with version and machine), bench_NAME.txt, and
-/// plots as .svg and .png beside them; prints the tables. With `results`, the tables also replace
-/// the benchmark's section of that Markdown file, or are appended to it; the rest stays.
+/// plots and pictures as .svg and .png beside them; prints the tables. With `results`, the tables
+/// also replace the benchmark's section of that Markdown file, or are appended to it; the rest
+/// stays.
 ///
 /// name      of the benchmark; an earlier run is found under this name in files of `bench all`
 /// returns   the JSON that was written

@@ -112,8 +112,10 @@ std::optional<Manifest> make_shard(Dataset& dataset,
     if (!is_whole) return std::nullopt;
     writer->finish();
     if (!preview.empty()) {
-        nlos::write_panels(
-            preview_path(dataset.folder()), preview, static_cast<int>(preview_columns));
+        for (const char* suffix : {".svg", ".png"}) {
+            nlos::write_panels(
+                preview_path(dataset.folder(), suffix), preview, static_cast<int>(preview_columns));
+        }
     }
     manifest.bytes = fs::file_size(path);
     manifest.checksum = file_checksum(path).value_or("");

@@ -59,8 +59,8 @@ std::string manifest_path(const std::string& folder, std::uint64_t shard) {
     return (fs::path(folder) / (shard_name(shard) + ".json")).string();
 }
 
-std::string preview_path(const std::string& folder) {
-    return (fs::path(folder) / "preview.png").string();
+std::string preview_path(const std::string& folder, const std::string& suffix) {
+    return (fs::path(folder) / ("preview" + suffix)).string();
 }
 
 void write_manifest(const Manifest& manifest, const std::string& path) {

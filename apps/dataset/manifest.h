@@ -33,8 +33,8 @@ std::string shard_name(std::uint64_t shard);
 /// The path of the manifest that stands beside shard `shard`.
 std::string manifest_path(const std::string& folder, std::uint64_t shard);
 
-/// The picture of the first items, beside the first shard.
-std::string preview_path(const std::string& folder);
+/// The picture of the first items, beside the first shard. suffix: .png or .svg
+std::string preview_path(const std::string& folder, const std::string& suffix);
 
 void write_manifest(const Manifest& manifest, const std::string& path);
 

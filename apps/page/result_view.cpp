@@ -2,26 +2,16 @@
 #include "apps/page/result_view.h"
 
 #include "nlos/pictures/image_layout.h"
+#include "nlos/pictures/map_ranges.h"
 
 #include <fmt/core.h>
 
 namespace apps {
 namespace {
 
-constexpr double kNarrowestDepths_m = 0.1;  // flat things get some room on the scale
-constexpr double kErrorShare = 0.02;        // of the true depth, at the ends of the errors' scale
-constexpr double kSameFrame = 1e-6;         // [m and rad] between walls that are one
+constexpr double kSameFrame = 1e-6;  // [m and rad] between walls that are one
 
 using Range = std::array<double, 2>;
-
-/// The value below which `share` of the finite values lie; nothing when there is none.
-std::optional<double> percentile(std::vector<double> values, double share) {
-    std::erase_if(values, [](double value) { return !std::isfinite(value); });
-    if (values.empty()) return std::nullopt;
-    const auto rank = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), values.begin() + rank, values.end());
-    return values[static_cast<std::size_t>(rank)];
-}
 
 VolumeView volume_view(const nlos::Volume& volume) {
     VolumeView view;
@@ -186,7 +176,7 @@ MapScales map_scales(const std::vector<ResultView>& results,
     std::vector<double> depths;
     std::vector<double> sigmas;
     if (truth) depths = truth->depth_m;
-    const bool truth_is_dark = !percentile(depths, 0.5).has_value();
+    const bool truth_is_dark = !nlos::depth_range_m(depths).has_value();
     for (const ResultView& result : results) {
         if (truth_is_dark) {
             depths.insert(depths.end(), result.depth.depth_m.begin(), result.depth.depth_m.end());
@@ -194,14 +184,9 @@ MapScales map_scales(const std::vector<ResultView>& results,
         sigmas.insert(sigmas.end(), result.sigma_m.begin(), result.sigma_m.end());
     }
     MapScales scales;
-    if (const std::optional<double> middle = percentile(depths, 0.5)) {
-        const double low = *percentile(depths, 0.01);
-        const double high = *percentile(depths, 0.99);
-        const double room = 0.5 * std::max(0.0, kNarrowestDepths_m - (high - low));
-        scales.depth_m = {low - room, high + room};
-        if (*middle > 0.0) scales.error_mm = 1e3 * kErrorShare * *middle;
-    }
-    scales.sigma_mm = std::max(1e-3, 1e3 * percentile(sigmas, 0.99).value_or(1e-3));
+    if (const auto range = nlos::depth_range_m(depths)) scales.depth_m = *range;
+    if (const auto limit = nlos::error_limit_m(depths)) scales.error_mm = 1e3 * *limit;
+    if (const auto limit = nlos::sigma_limit_m(sigmas)) scales.sigma_mm = 1e3 * *limit;
     return scales;
 }
 

@@ -60,7 +60,7 @@ bool is_dataset(const std::string& folder) {
 
 bool belongs_to_dataset(const std::string& file_name) {
     return file_name.starts_with("shard-") || file_name == "recipe.json" ||
-           file_name == "index.json" || file_name == "preview.png";
+           file_name == "index.json" || file_name.starts_with("preview.");
 }
 
 DatasetCard dataset_card(const std::string& folder) {
@@ -76,9 +76,8 @@ DatasetCard dataset_card(const std::string& folder) {
         result.card.notes.push_back(name + " was skipped: " + reason);
     }
     std::error_code ignored;
-    if (fs::exists(preview_path(folder), ignored)) {
-        result.card.picture_png = read_bytes(preview_path(folder));
-    }
+    const std::string preview = preview_path(folder, ".png");
+    if (fs::exists(preview, ignored)) result.card.picture_png = read_bytes(preview);
     std::vector<nlos::Panel> panels;
     for (const auto& [key, histogram] : drawn_histograms(index)) {
         panels.emplace_back(outline(key, histogram));

@@ -2,6 +2,7 @@
 #include "nlos/pictures/pictures.h"
 
 #include "nlos/pictures/image_layout.h"
+#include "nlos/pictures/map_ranges.h"
 #include "renderer/core/error.h"
 
 #include <fmt/core.h>
@@ -11,9 +12,6 @@
 
 namespace nlos {
 namespace {
-
-constexpr double kNarrowestDepthRange_m = 0.1;
-constexpr double kErrorRange = 0.02;  // of the true depth
 
 using Range = std::array<double, 2>;
 
@@ -118,28 +116,6 @@ void label_projections(const VolumeAxes& axes, Projections& views) {
     }
 }
 
-/// The value below which `share` of the finite values lie; NaN when there is none.
-double percentile(std::vector<double> values, double share) {
-    std::erase_if(values, [](double value) { return !std::isfinite(value); });
-    if (values.empty()) return NAN;
-    const auto rank = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), values.begin() + rank, values.end());
-    return values[static_cast<std::size_t>(rank)];
-}
-
-/// Range of depths without the outermost hundredth at either end; flat things get some room.
-std::optional<Range> depth_range(const std::vector<double>& depths_m) {
-    double low = percentile(depths_m, 0.01);
-    double high = percentile(depths_m, 0.99);
-    if (std::isnan(low)) return std::nullopt;
-    const double missing = kNarrowestDepthRange_m - (high - low);
-    if (missing > 0.0) {
-        low -= 0.5 * missing;
-        high += 0.5 * missing;
-    }
-    return Range{low, high};
-}
-
 ImagePanel depth_panel(const core::DepthMap& map,
                        const std::string& title,
                        const std::optional<Range>& range) {
@@ -168,8 +144,7 @@ ImagePanel sigma_panel(const core::DepthMap& map, const std::vector<double>& sig
     panel.title = "Standard deviation of depth";
     panel.value_label = "standard deviation σ [mm]";
     panel.colour_map = ColourMap::Viridis;
-    const double high = 1000.0 * percentile(sigma_m, 0.99);
-    if (high > 0.0) panel.value_range = Range{0.0, high};
+    if (const auto limit_m = sigma_limit_m(sigma_m)) panel.value_range = {0.0, 1000.0 * *limit_m};
     return panel;
 }
 
@@ -181,7 +156,7 @@ std::vector<Panel> volume_panels(const Reconstruction& reconstruction) {
     std::vector<Panel> panels{views.front, views.side, views.top};
     const core::DepthMap& depth = reconstruction.depth;
     if (depth.depth_m.empty()) return panels;
-    panels.emplace_back(depth_panel(depth, "Depth map", depth_range(depth.depth_m)));
+    panels.emplace_back(depth_panel(depth, "Depth map", depth_range_m(depth.depth_m)));
     if (reconstruction.surface_probability.size() == depth.depth_m.size()) {
         panels.emplace_back(probability_panel(depth, reconstruction.surface_probability));
     }
@@ -204,17 +179,17 @@ std::vector<Panel> comparison_panels(const Reconstruction& reconstruction,
                           "both must have the same columns");
     }
     // The truth sets the colours: far-off depths of a poor result would wash out both maps.
-    std::optional<Range> range = depth_range(truth.depth_m);
-    if (!range) range = depth_range(found.depth_m);
+    std::optional<Range> range = depth_range_m(truth.depth_m);
+    if (!range) range = depth_range_m(found.depth_m);
     ImagePanel error = front_view_of(truth.x_m, truth.y_m, [&](std::size_t i) {
         return 1000.0 * (found.depth_m[i] - truth.depth_m[i]);
     });
     error.title = "Error where both are";
     error.value_label = "found − true [mm]";
     error.colour_map = ColourMap::Diverging;
-    // One scale for all results of a scene, so that their maps can be compared.
-    const double limit_mm = 1000.0 * kErrorRange * percentile(truth.depth_m, 0.5);
-    if (limit_mm > 0.0) error.value_range = Range{-limit_mm, limit_mm};
+    if (const auto limit_m = error_limit_m(truth.depth_m)) {
+        error.value_range = {-1000.0 * *limit_m, 1000.0 * *limit_m};
+    }
     return {depth_panel(truth, "True depth", range),
             depth_panel(found, "Reconstructed depth", range),
             error};
@@ -227,7 +202,7 @@ ImagePanel front_panel(const std::vector<double>& x_m,
 }
 
 std::vector<Panel> truth_panels(const core::DepthMap& truth) {
-    std::vector<Panel> panels{depth_panel(truth, "True depth", depth_range(truth.depth_m))};
+    std::vector<Panel> panels{depth_panel(truth, "True depth", depth_range_m(truth.depth_m))};
     if (!truth.albedo.empty()) {
         ImagePanel panel = front_view_of(truth.x_m, truth.y_m, [&](std::size_t i) {
             return truth.is_foreground(i) ? truth.albedo[i] : NAN;

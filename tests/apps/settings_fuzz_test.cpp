@@ -10,6 +10,7 @@
 #include "calib/calibrate.h"
 #include "calib/fit.h"
 #include "nlos/detector/detector.h"
+#include "nlos/formats/capture_file.h"
 #include "renderer/core/stopwatch.h"
 #include "renderer/scene/scene_file.h"
 #include "tests/support/command_line.h"
@@ -128,8 +129,13 @@ TEST_F(SettingsFuzz, OfSimulateNoise) {
                  17);
 }
 
+// The first few frames of the walk.
 TEST_F(SettingsFuzz, OfTrack) {
-    try_settings("track data/walk/counts.h5 data/walk/track.json -o " + file("t.json"),
+    core::Capture walk = nlos::read_capture("data/walk/counts.h5");
+    walk.sequence->frames.resize(12);
+    walk.transient = walk.sequence->frames.back();
+    nlos::write_capture(file("walk.h5"), walk);
+    try_settings("track " + file("walk.h5") + " data/walk/track.json -o " + file("t.json"),
                  core::settings_help(apps::TrackOptions{}),
                  20,
                  18);

@@ -5,7 +5,6 @@
 #include "apps/bench/field/reconstruction_table.h"
 #include "nlos/compare/compare_scores.h"
 #include "nlos/formats/capture_file.h"
-#include "nlos/pictures/picture.h"
 
 #include <fmt/core.h>
 
@@ -117,7 +116,7 @@ CapturesTable measure_captures(Contenders& contenders,
             }
             table.rows.push_back(std::move(row));
         }
-        if (!panels.empty()) table.pictures["_" + name] = nlos::encode_panels(panels, 4);
+        if (!panels.empty()) table.pictures["_" + name] = {std::move(panels), 4};
     }
     return table;
 }

@@ -3,6 +3,7 @@
 
 #include "apps/bench/field/contenders.h"
 #include "apps/bench/figures.h"
+#include "apps/bench/output.h"
 #include "nlos/layouts/capture_settings.h"
 #include "renderer/core/progress.h"
 
@@ -64,7 +65,7 @@ NLOS_FIGURES(CaptureRow,
 /// The table, and maximum projections side by side by the end of their files' names.
 struct CapturesTable {
     std::vector<CaptureRow> rows;
-    std::map<std::string, std::string> pictures;
+    std::map<std::string, BenchPicture> pictures;
 };
 
 /// Reconstructs the captures of a folder by every method, from nearly at the wall to twice the

@@ -9,7 +9,6 @@
 #include "nlos/detector/detector.h"
 #include "nlos/formats/capture_file.h"
 #include "nlos/formats/volume_file.h"
-#include "nlos/pictures/picture.h"
 #include "nlos/pictures/pictures.h"
 #include "renderer/scene/ground_truth.h"
 
@@ -285,8 +284,7 @@ ReconstructionTable measure_reconstructions(Contenders& contenders,
             }
             if ((light == kClean || light == "20") && !panels.empty()) {
                 constexpr int kColumns = 5;
-                table.pictures["_" + task.name() + "_" + light] =
-                    nlos::encode_panels(panels, kColumns);
+                table.pictures["_" + task.name() + "_" + light] = {std::move(panels), kColumns};
             }
         }
     }

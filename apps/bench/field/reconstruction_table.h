@@ -3,6 +3,7 @@
 
 #include "apps/bench/field/contenders.h"
 #include "apps/bench/figures.h"
+#include "apps/bench/output.h"
 #include "nlos/pictures/panel.h"
 #include "nlos/reconstruction/volume.h"
 #include "renderer/core/capture.h"
@@ -148,7 +149,7 @@ nlos::Panel projection_panel(const ReconstructionMethod& method, const nlos::Vol
 /// The table, and maximum projections side by side by the end of their files' names.
 struct ReconstructionTable {
     std::vector<ReconstructionRow> rows;
-    std::map<std::string, std::string> pictures;
+    std::map<std::string, BenchPicture> pictures;
 };
 
 /// Reconstructs every scene by every method: confocal and from a single laser, without noise and at

@@ -3,7 +3,6 @@
 #include "apps/bench/render/comparison_pictures.h"
 #include "apps/bench/render/comparisons.h"
 #include "apps/commands.h"
-#include "nlos/pictures/picture.h"
 
 namespace apps {
 namespace {
@@ -110,8 +109,8 @@ BenchResult measure(const ComparisonArguments& arguments, const core::Progress& 
             plan.sequence, plan.methods, plan.seconds_per_frame, arguments.repeats, progress);
         const bool shows_progress = name == "progress";
         result.pictures["_" + name] = shows_progress
-                                          ? nlos::encode_panels(progress_panels(comparison), 5)
-                                          : nlos::encode_panels(error_panels(comparison), 3);
+                                          ? BenchPicture{progress_panels(comparison), 5}
+                                          : BenchPicture{error_panels(comparison), 3};
         if (shows_progress) result.plots["_progress_error"] = progress_plot(comparison);
         result.figures["comparisons"].push_back(core::write_value(comparison));
     }
