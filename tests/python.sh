@@ -13,7 +13,7 @@ if [ "${1:-}" = install ]; then
     exec build/python/bin/python tests/apps/python/installed_wheel.py
 fi
 bash apps/setup.sh python3-dev python3-venv python3-numpy python3-scipy python3-pytest python3-torch \
-    python3-xarray python3-matplotlib python3-tqdm python3-nbclient python3-ipykernel
+    python3-xarray python3-matplotlib python3-tqdm python3-ipython
 [ -d build/python ] || /usr/bin/python3 -m venv --system-site-packages build/python
 build/python/bin/pip install --quiet 'scikit-build-core>=0.10' 'nanobind>=2.4' trimesh
 [ -x build/peers/bin/ray ] || bash apps/bench/field/install_peers.sh build/peers /usr/bin/python3

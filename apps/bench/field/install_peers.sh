@@ -24,7 +24,7 @@ fi
     'y-tal==0.20.0; python_version < "3.13"' 'pillow==10.3.0; python_version < "3.13"' \
     'numpy==1.26.4; python_version < "3.13"' 'numpy>=2.1,<2.4; python_version >= "3.13"' \
     scipy==1.17.1 h5py==3.16.0 matplotlib==3.11.2 numba==0.68.1 llvmlite==0.50.0 \
-    nbclient==0.11.0 nbformat==5.11.1 ipykernel==7.4.0 ray==2.60.0
+    ipython==9.18.1 ray==2.60.0
 "$folder/bin/python" - <<'PYTHON'
 from importlib import metadata, util
 import mitsuba

@@ -52,15 +52,12 @@ def test_runs(path, tmp_path):
         if subprocess.run([python, "-c", "import tal"], capture_output=True, check=False).returncode != 0:
             pytest.skip("the environment of NLOS_PEERS_PYTHON has no y-tal, as on Debian 13")
     else:
-        pytest.importorskip("nbclient")
+        pytest.importorskip("IPython")
         if path.stem == "fit_with_gradients":
             pytest.importorskip("torch")
     before = sorted(FOLDER.iterdir())
-    environment = {**os.environ, "NLOS_QUICK": "1", "IPYTHONDIR": str(tmp_path), "JUPYTER_DATA_DIR": str(tmp_path)}
-    done = subprocess.run([python, str(EXECUTE), str(path), str(tmp_path / "done.ipynb")],
-                          env=environment, capture_output=True, text=True, check=False)
+    environment = {**os.environ, "NLOS_QUICK": "1", "IPYTHONDIR": str(tmp_path)}
+    done = subprocess.run([python, str(EXECUTE), str(path)], env=environment, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr[-4000:]
-    cells = json.loads((tmp_path / "done.ipynb").read_text())["cells"]
-    outputs = [output for cell in cells for output in cell.get("outputs", [])]
-    assert sum("image/png" in output.get("data", {}) for output in outputs) >= 2
+    assert int(done.stdout.split()[-1]) >= 2, "a notebook draws two pictures at least"
     assert sorted(FOLDER.iterdir()) == before, "a notebook left files beside it"
