@@ -14,11 +14,18 @@ from IPython.core.interactiveshell import InteractiveShell
 from IPython.utils.capture import capture_output
 
 
+class NotebookShell(InteractiveShell):
+    """Draws into the notebook, so that no window's event loop is needed."""
+
+    def enable_gui(self, gui=None):
+        pass
+
+
 def run(path):
     cells = json.loads(path.read_text(encoding="utf-8"))["cells"]
     os.chdir(path.parent)
     sys.path.insert(0, "")
-    shell = InteractiveShell.instance()
+    shell = NotebookShell.instance()
     shell.run_line_magic("matplotlib", "inline")
     pictures = 0
     for cell in cells:
