@@ -131,7 +131,7 @@ TEST_F(SettingsFuzz, OfSimulateNoise) {
 
 // The first few frames of the walk.
 TEST_F(SettingsFuzz, OfTrack) {
-    core::Capture walk = nlos::read_capture("data/walk/counts.h5");
+    core::Capture walk = nlos::read_capture(NLOS_SOURCE_DIR "/data/walk/counts.h5");
     walk.sequence->frames.resize(12);
     walk.transient = walk.sequence->frames.back();
     nlos::write_capture(file("walk.h5"), walk);
