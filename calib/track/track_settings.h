@@ -115,10 +115,10 @@ struct TrackSettings {
 template <class Visitor>
 void for_each_field(TargetSettings& s, Visitor&& visit) {
     visit("kind", s.kind, "how the target sends light back");
-    visit(
-        "radius_m",
-        s.radius_m,
-        core::at_least(0, "of a small body, in which any part may send the light; 0: a point [m]"));
+    visit("radius_m",
+          s.radius_m,
+          core::Ranged{"of a small body, in which any part may send the light; 0: a point [m]",
+                       {0, true, 10, true}});
     visit("position_m", s.position_m, "where it stands, when the sensor's pose is free [m]");
 }
 
@@ -193,8 +193,9 @@ void for_each_field(SearchSettings& s, Visitor&& visit) {
               "where targets may appear, in the wall's frame; null: up to 1 m beyond what the "
               "sensor sees [m]",
               {}});
-    visit(
-        "y_range_m", s.y_range_m, core::Ranged{"the same along y [m]; null: up to 0.75 m beyond", {}});
+    visit("y_range_m",
+          s.y_range_m,
+          core::Ranged{"the same along y [m]; null: up to 0.75 m beyond", {}});
     visit("z_range_m", s.z_range_m, core::above(0, "distances from the wall [m]"));
     visit("cell_m", s.cell_m, core::above(0, "pitch of the grid on which targets are found [m]"));
 }
