@@ -3,156 +3,20 @@
 
 #include "nlos/layouts/layout_bins.h"
 #include "nlos/layouts/layout_histograms.h"
-#include "nlos/layouts/layout_points.h"
+#include "nlos/layouts/layout_pairs.h"
 #include "renderer/core/error.h"
 
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <filesystem>
 
 namespace nlos {
 namespace {
 
-namespace fs = std::filesystem;
 using core::Capture;
 using core::Error;
 using core::Vec3;
-
-/// The histograms' axes along which points of one kind lie.
-PointAxes point_axes(const LayoutFiles& files,
-                     const HistogramArray& array,
-                     const std::vector<std::string>& names) {
-    PointAxes axes;
-    axes.reversed = array.reversed;
-    axes.first_index_fastest = files.first_index_fastest(array.name);
-    for (std::size_t i = 0; i < array.axes.size(); ++i) {
-        if (std::find(names.begin(), names.end(), array.axes[i]) == names.end()) continue;
-        axes.names.push_back(array.axes[i]);
-        axes.extents.push_back(array.extents[i]);
-    }
-    return axes;
-}
-
-bool are_same_points(const core::WallPoints& a, const core::WallPoints& b) {
-    constexpr double kTolerance_m = 1e-5;  // files hold single precision
-    if (a.size() != b.size()) return false;
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        if (!((a.positions[i] - b.positions[i]).norm() <= kTolerance_m)) return false;
-    }
-    return true;
-}
-
-core::ScanPattern pattern_of(const Layout& layout,
-                             const core::Scan& scan,
-                             const PairNumbers& numbers,
-                             bool has_illumination_axes) {
-    switch (layout.pattern) {
-        case LayoutPattern::Single:
-            return core::ScanPattern::Single;
-        case LayoutPattern::Confocal:
-            return core::ScanPattern::Confocal;
-        case LayoutPattern::Exhaustive:
-            return core::ScanPattern::Exhaustive;
-        case LayoutPattern::ByPoints:
-            break;
-    }
-    const bool pairwise = !has_illumination_axes && numbers.illumination.size() > 1;
-    if (pairwise && are_same_points(scan.sensing, scan.illumination) &&
-        numbers.sensing == numbers.illumination) {
-        return core::ScanPattern::Confocal;
-    }
-    return scan.illumination.size() == 1 ? core::ScanPattern::Single
-                                         : core::ScanPattern::Exhaustive;
-}
-
-void require_every_pair_once(const LayoutFiles& files,
-                             const PairNumbers& numbers,
-                             std::size_t num_pairs) {
-    const std::size_t lit =
-        numbers.listed ? 1 : std::max<std::size_t>(numbers.illumination.size(), 1);
-    const bool exhaustive = numbers.pattern == core::ScanPattern::Exhaustive;
-    std::vector<bool> seen(num_pairs, false);
-    std::size_t entries = 0;
-    for (std::size_t l = 0; l < (exhaustive ? lit : 1); ++l) {
-        for (std::size_t s = 0; s < numbers.sensing.size(); ++s, ++entries) {
-            const std::size_t pair = numbers.pair(l, s);
-            if (pair >= num_pairs || seen[pair]) {
-                throw Error(files.path(),
-                            fmt::format("histogram {} repeats an earlier pair of points", entries),
-                            "must have every pair once");
-            }
-            seen[pair] = true;
-        }
-    }
-    if (entries != num_pairs) {
-        throw Error(files.path(),
-                    fmt::format("has {} histograms for {} pairs of points", entries, num_pairs),
-                    "must pair every illumination with every sensing point, or be confocal");
-    }
-}
-
-/// Where the points are and how they pair up.
-PairNumbers read_points(const LayoutFiles& files,
-                        const Layout& layout,
-                        const HistogramArray& array,
-                        const CaptureReadSettings& settings,
-                        core::Scan& scan) {
-    // The devices stand on the side of the wall on which the hidden scene is.
-    const std::optional<Vec3> towards =
-        scan.opl_origin == core::OplOrigin::Device
-            ? std::optional<Vec3>(0.5 * (scan.laser_position + scan.detector_position))
-            : std::nullopt;
-    const PointAxes sensed = point_axes(files, array, {"x", "y", "sx", "sy", "s", "pair"});
-    PlacedPoints sensing =
-        place_points(files, layout.sensing, sensed, settings, towards, "sensing");
-    PairNumbers numbers;
-    numbers.sensing = std::move(sensing.of_entry);
-    numbers.num_sensing = sensing.points.size();
-    numbers.listed = array.extent("pair").has_value();
-    scan.sensing = std::move(sensing.points);
-
-    PointAxes lit = point_axes(files, array, {"lx", "ly", "l"});
-    const bool has_illumination_axes = !lit.names.empty();
-    if (numbers.listed || (layout.pattern == LayoutPattern::ByPoints && !has_illumination_axes)) {
-        lit = sensed;  // each histogram has its own of both
-    }
-    if (layout.pattern == LayoutPattern::Confocal) {
-        scan.illumination = scan.sensing;
-        numbers.illumination = numbers.sensing;
-    } else if (!layout.illumination.index.empty()) {
-        std::vector<double> index = files.read(layout.illumination.index);
-        if (sensed.names.size() == 2 && sensed.names[0].back() == 'y') {
-            std::reverse(index.begin(), index.end());
-        }
-        const auto grid = scan.sensing.grid.value_or(std::array<std::size_t, 2>{0, 0});
-        const bool inside = index.size() == 2 && index[0] >= 1 && index[1] >= 1 &&
-                            index[0] <= static_cast<double>(grid[0]) &&
-                            index[1] <= static_cast<double>(grid[1]);
-        if (!inside) {
-            throw Error(
-                files.where(layout.illumination.index),
-                fmt::format("found ({})", fmt::join(index, ", ")),
-                fmt::format(
-                    "must be a point of the {} x {} grid, counted from 1", grid[0], grid[1]));
-        }
-        const auto number = (static_cast<std::size_t>(index[0]) - 1) * grid[1] +
-                            static_cast<std::size_t>(index[1]) - 1;
-        scan.illumination = {{scan.sensing.positions[number]}, {scan.sensing.normals[number]}, {}};
-        numbers.illumination = {0};
-    } else {
-        PlacedPoints placed =
-            place_points(files, layout.illumination, lit, settings, towards, "illumination");
-        scan.illumination = std::move(placed.points);
-        numbers.illumination = std::move(placed.of_entry);
-    }
-    scan.pattern = pattern_of(layout, scan, numbers, has_illumination_axes);
-    numbers.pattern = scan.pattern;
-    require_every_pair_once(files, numbers, scan.num_pairs());
-    return numbers;
-}
 
 /// Laser and detector, and whether lengths start and end there.
 void read_devices(const LayoutFiles& files,
@@ -265,7 +129,7 @@ Capture read_one(const std::string& path,
     }
     Capture capture;
     read_devices(files, layout, settings, capture);
-    const PairNumbers numbers = read_points(files, layout, *array, settings, capture.scan);
+    const PairNumbers numbers = read_pairs(files, layout, *array, settings, capture.scan);
     capture.time_axis = read_axis(files, layout.bins, *array->extent("t"), settings);
     Histograms histograms =
         read_histograms(files, *array, numbers, capture.scan.num_pairs(), settings.frame);
@@ -296,68 +160,7 @@ Capture read_one(const std::string& path,
     return capture;
 }
 
-std::vector<std::string> files_in(const std::string& folder) {
-    constexpr std::size_t kMost = 100000;
-    std::vector<std::string> files;
-    std::error_code error;
-    for (const auto& entry : fs::directory_iterator(folder, error)) {
-        if (files.size() < kMost && entry.is_regular_file()) files.push_back(entry.path().string());
-    }
-    std::sort(files.begin(), files.end());
-    return files;
-}
-
-bool is_of(const std::string& file, const Layout& layout) {
-    return container_of(file) && mismatches(LayoutFiles(file), layout).empty();
-}
-
 }  // namespace
-
-std::optional<LayoutSource> find_layout_source(const std::string& path) {
-    const bool is_folder = fs::is_directory(path);
-    // A folder is what its first files are; more than these are not looked at.
-    constexpr std::size_t kMostTried = 8;
-    std::vector<std::string> candidates{path};
-    if (is_folder) candidates = files_in(path);
-    if (candidates.size() > kMostTried) candidates.resize(kMostTried);
-    for (const std::string& candidate : candidates) {
-        if (!container_of(candidate)) continue;
-        const LayoutFiles files(candidate);
-        for (const Layout& layout : shipped_layouts()) {
-            if (!mismatches(files, layout).empty()) continue;
-            return is_folder ? layout_source(path, layout) : LayoutSource{layout, {path}};
-        }
-    }
-    return std::nullopt;
-}
-
-LayoutSource layout_source(const std::string& path, const Layout& layout) {
-    if (!fs::is_directory(path)) return {layout, {path}};
-    LayoutSource source{layout, {}};
-    for (const std::string& file : files_in(path)) {
-        if (!is_of(file, layout)) continue;
-        source.files.push_back(file);
-        if (!layout.files_are_frames) return source;
-    }
-    if (source.files.empty()) {
-        throw Error(
-            path, "holds no file of layout " + layout.name, "must be such a file or folder");
-    }
-    return source;
-}
-
-LayoutSource sequence_source(const std::vector<std::string>& files, const Layout& layout) {
-    if (!layout.files_are_frames) {
-        throw Error(files.front(),
-                    fmt::format("is the first of {} files of layout {}", files.size(), layout.name),
-                    "must stand alone: files of this layout are no frames of a sequence");
-    }
-    for (const std::string& file : files) {
-        if (is_of(file, layout)) continue;
-        throw Error(file, "is not of layout " + layout.name, "must be, as the frames before");
-    }
-    return {layout, files};
-}
 
 Capture read_layout_capture(const LayoutSource& source, const CaptureReadSettings& settings) {
     if (source.files.size() == 1) return read_one(source.files[0], source.layout, settings);
