@@ -88,14 +88,15 @@ double fk_fft_seconds(const nlos::MethodInput& input) {
 
 /// Those of the phasor field: for every depth and frequency the kernel and one plane back.
 double phasor_fft_seconds(const nlos::MethodInput& input, const nlos::PhasorSettings& settings) {
-    const std::size_t frequencies = nlos::phasor_frequency_count(input, settings);
-    const std::size_t planes = frequencies * input.axes.z_m.size();
+    const nlos::PhasorTransforms transforms = nlos::phasor_transforms(input, settings);
     const bool is_confocal = input.scan.pattern == core::ScanPattern::Confocal;
     const nlos::WallGrid& grid = *input.wall.grid;
     // Confocal frequencies add up before the way back.
-    return plane_seconds(
-               grid.size, grid, frequencies, is_confocal ? input.axes.z_m.size() : planes) +
-           kernel_quadrant_seconds(grid, planes);
+    return plane_seconds(grid.size,
+                         grid,
+                         transforms.wall,
+                         is_confocal ? input.axes.z_m.size() : transforms.planes) +
+           kernel_quadrant_seconds(grid, transforms.planes);
 }
 
 /// Two multiply-adds for every pair of histogram and voxel.

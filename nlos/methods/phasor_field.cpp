@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cmath>
+#include <span>
 
 namespace nlos {
 namespace {
@@ -42,14 +43,35 @@ std::vector<core::Vec3> illumination_of(const MethodInput& input) {
     return points;
 }
 
-/// Shortest and longest path length over wall points and voxels, from bounds of both.
-std::array<double, 2> path_lengths(const MethodInput& input) {
-    const auto [low_z, high_z] = std::minmax_element(input.axes.z_m.begin(), input.axes.z_m.end());
+/// Planes of voxels that are worked on together, from the same frequencies: the fewer, the shorter
+/// the span of their path lengths, which these must tell apart.
+constexpr std::size_t kPlanesPerGroup = 16;
+
+std::vector<Slab> plane_groups(const MethodInput& input) {
+    const std::size_t num_planes = input.axes.z_m.size();
+    return split_into_slabs(num_planes, largest_slab(num_planes, kPlanesPerGroup));
+}
+
+/// Shortest and longest path length from the wall over a group of planes to the wall, from bounds
+/// of points and voxels.
+std::array<double, 2> path_lengths(const MethodInput& input, const Slab& planes) {
+    const double near_m = input.axes.z_m[planes.begin];
+    const double far_m = input.axes.z_m[planes.end - 1];
     const double wide = std::max(input.wall.max_m[0], input.axes.x_m.back()) -
                         std::min(input.wall.min_m[0], input.axes.x_m.front());
     const double high = std::max(input.wall.max_m[1], input.axes.y_m.back()) -
                         std::min(input.wall.min_m[1], input.axes.y_m.front());
-    return {2.0 * *low_z, 2.0 * std::sqrt(wide * wide + high * high + *high_z * *high_z)};
+    const double longest_back = std::sqrt(wide * wide + high * high + far_m * far_m);
+    double longest_out = 0.0;
+    for (const core::Vec3& point : illumination_of(input)) {
+        for (const double x : {input.axes.x_m.front(), input.axes.x_m.back()}) {
+            for (const double y : {input.axes.y_m.front(), input.axes.y_m.back()}) {
+                const core::Vec3 corner(x, y, far_m);
+                longest_out = std::max(longest_out, (corner - point).norm());
+            }
+        }
+    }
+    return {2.0 * near_m, longest_back + (longest_out > 0.0 ? longest_out : longest_back)};
 }
 
 /// The wave and the bins that can reach a voxel.
@@ -58,13 +80,13 @@ struct Band {
     core::BinRange bins;
 };
 
-Band make_band(const MethodInput& input, const PhasorSettings& settings) {
+Band make_band(const MethodInput& input, const Slab& planes, const PhasorSettings& settings) {
     const core::TimeAxis& axis = input.time_axis;
     const std::array<double, 2> legs = core::device_leg_range_m(input.scan);
     const double shortest_leg = legs[0];
     const double longest_leg = legs[1];
     const double reach = 4.0 * settings.cycles * *settings.wavelength_m / 6.0;
-    const auto [shortest, longest] = path_lengths(input);
+    const auto [shortest, longest] = path_lengths(input, planes);
     const auto bin_at = [&](double opl) {
         const double bin = std::floor((opl - axis.opl_start_m) / axis.bin_width_m);
         return static_cast<int>(std::clamp(bin, 0.0, static_cast<double>(axis.num_bins)));
@@ -248,10 +270,11 @@ std::size_t illumination_per_chunk(const MethodInput& input,
     return std::min(illumination_count(input), fitting);
 }
 
-/// Adds what a wave, or a part of one, brings to all voxels to `field` [z][x][y].
+/// Adds what a wave, or a part of one, brings to planes of voxels to `field` [z][x][y].
 ///
 /// chunk   illumination points at a time
 void add_wave(const MethodInput& input,
+              std::span<const double> z_m,
               const VirtualWave& wave,
               const core::BinRange& bins,
               std::size_t chunk,
@@ -268,12 +291,12 @@ void add_wave(const MethodInput& input,
             return static_cast<double>(done) / static_cast<double>(num_illumination);
         };
         parallel_blocks_with_progress(
-            input.axes.z_m.size(),
+            z_m.size(),
             1,
             {progress, share(first), share(end), "propagation"},
             [&](std::size_t iz, std::size_t) {
                 std::vector<ComplexF> plane(num_columns);
-                propagator.add_plane(input.axes.z_m[iz], spectra, {first, end}, plane);
+                propagator.add_plane(z_m[iz], spectra, {first, end}, plane);
                 for (std::size_t i = 0; i < num_columns; ++i) {
                     field[iz * num_columns + i] += plane[i];
                 }
@@ -281,32 +304,37 @@ void add_wave(const MethodInput& input,
     }
 }
 
-Volume propagate(const MethodInput& input, const PhasorSettings& settings, std::size_t num_slabs) {
-    const Band band = make_band(input, settings);
-    const std::size_t num_columns = input.axes.x_m.size() * input.axes.y_m.size();
+/// Fills a group of planes of the volume.
+void propagate_to(const Slab& planes,
+                  const MethodInput& input,
+                  const PhasorSettings& settings,
+                  std::size_t num_slabs,
+                  Volume& volume) {
     const std::size_t num_z = input.axes.z_m.size();
+    const Band band = make_band(input, planes, settings);
+    const core::Progress progress = planes.part_of(input.progress, num_z);
+    const std::size_t num_columns = input.axes.x_m.size() * input.axes.y_m.size();
     const std::size_t num_frequencies = band.wave.size();
     const std::size_t chunk = illumination_per_chunk(
         input, largest_slab(num_frequencies, num_slabs), padded_size(*input.wall.grid), num_slabs);
 
-    std::vector<ComplexF> field(num_columns * num_z);  // [z][x][y]
+    std::vector<ComplexF> field(num_columns * planes.size());  // [z][x][y]
     for (const Slab& slab : split_into_slabs(num_frequencies, num_slabs)) {
         add_wave(input,
+                 {input.axes.z_m.data() + planes.begin, planes.size()},
                  band.wave.part(slab.begin, slab.end),
                  band.bins,
                  chunk,
-                 slab.part_of(input.progress, num_frequencies),
+                 slab.part_of(progress, num_frequencies),
                  field);
     }
-    Volume volume{input.axes, std::vector<float>(field.size()), {}};
     for (std::size_t column = 0; column < num_columns; ++column) {
-        for (std::size_t iz = 0; iz < num_z; ++iz) {
-            const ComplexF value = field[iz * num_columns + column];
+        for (std::size_t iz = planes.begin; iz < planes.end; ++iz) {
+            const ComplexF value = field[(iz - planes.begin) * num_columns + column];
             volume.values[column * num_z + iz] =
                 std::sqrt(value.real() * value.real() + value.imag() * value.imag());
         }
     }
-    return volume;
 }
 
 }  // namespace
@@ -314,12 +342,23 @@ Volume propagate(const MethodInput& input, const PhasorSettings& settings, std::
 Volume phasor_field(const MethodInput& input,
                     const ReconstructSettings& settings,
                     std::size_t num_slabs) {
-    return is_planar(input) ? propagate(input, settings.phasor, num_slabs)
-                            : phasor_backprojection(input, settings, num_slabs);
+    if (!is_planar(input)) return phasor_backprojection(input, settings, num_slabs);
+    Volume volume{input.axes, std::vector<float>(input.axes.num_voxels()), {}};
+    for (const Slab& planes : plane_groups(input)) {
+        propagate_to(planes, input, settings.phasor, num_slabs, volume);
+    }
+    return volume;
 }
 
-std::size_t phasor_frequency_count(const MethodInput& input, const PhasorSettings& settings) {
-    return make_band(input, settings).wave.size();
+PhasorTransforms phasor_transforms(const MethodInput& input, const PhasorSettings& settings) {
+    PhasorTransforms transforms;
+    for (const Slab& planes : plane_groups(input)) {
+        const std::size_t num_frequencies = make_band(input, planes, settings).wave.size();
+        transforms.wall += num_frequencies;
+        transforms.planes += num_frequencies * planes.size();
+        transforms.most_frequencies = std::max(transforms.most_frequencies, num_frequencies);
+    }
+    return transforms;
 }
 
 double phasor_field_bytes(const MethodInput& input,
@@ -329,14 +368,15 @@ double phasor_field_bytes(const MethodInput& input,
     const auto [nx, ny] = input.wall.grid->size;
     const std::size_t padded = padded_size(*input.wall.grid);
     const std::size_t size =
-        largest_slab(phasor_frequency_count(input, settings.phasor), num_slabs);
+        largest_slab(phasor_transforms(input, settings.phasor).most_frequencies, num_slabs);
     const auto chunk = static_cast<double>(illumination_per_chunk(input, size, padded, num_slabs));
     const double spectra =
         8.0 * chunk * static_cast<double>(size) * static_cast<double>(padded + nx * ny);
     const double per_thread =
         8.0 * static_cast<double>(padded) * 4.0 + 16.0 * chunk * static_cast<double>(nx * ny);
     return spectra + per_thread * core::thread_count() +
-           12.0 * static_cast<double>(input.axes.num_voxels());
+           8.0 * static_cast<double>(nx * ny * kPlanesPerGroup) +
+           4.0 * static_cast<double>(input.axes.num_voxels());
 }
 
 }  // namespace nlos

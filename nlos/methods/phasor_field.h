@@ -12,8 +12,9 @@ namespace nlos {
 ///     sum over pairs of (H * wave)(|l - p| + |p - s|),
 ///
 /// the wave focused at the moment it reaches the voxel. On planar sensing grids it is propagated
-/// frequency by frequency with the Rayleigh-Sommerfeld kernel by FFT from plane to plane; amplitude
-/// factors of the propagation are left out.
+/// frequency by frequency with the Rayleigh-Sommerfeld kernel by FFT from plane to plane, a group
+/// of planes at a time: how many frequencies that takes grows with the span of their path lengths.
+/// Amplitude factors of the propagation are left out.
 ///
 /// input      any scan
 /// settings   phasor; its wavelength_m must be set
@@ -25,8 +26,13 @@ Volume phasor_field(const MethodInput& input,
                     const ReconstructSettings& settings,
                     std::size_t num_slabs = 1);
 
-/// Number of frequencies that phasor_field() propagates.
-std::size_t phasor_frequency_count(const MethodInput& input, const PhasorSettings& settings);
+/// How much phasor_field() transforms laterally on a planar grid, per illumination point.
+struct PhasorTransforms {
+    std::size_t wall = 0;              ///< frequencies at the wall
+    std::size_t planes = 0;            ///< frequencies at planes of voxels
+    std::size_t most_frequencies = 0;  ///< that serve one plane
+};
+PhasorTransforms phasor_transforms(const MethodInput& input, const PhasorSettings& settings);
 
 /// Memory that phasor_field() takes on top of its input, its volume included [bytes].
 double phasor_field_bytes(const MethodInput& input,
