@@ -17,7 +17,7 @@ mirror=$(apt-get indextargets --format '$(REPO_URI)' 'Origin: Debian' 'Component
     'Created-By: Packages' | grep -v security | head -n 1)
 mkdir -p build/bare
 
-# A bare system in the folder, which sees /proc and /dev while a command runs.
+# A bare system in the folder, which sees /proc, /sys and /dev, and its own name, while a command runs.
 make_root() {
     [ ! -e "$1/bare" ] || return 0
     rm -rf "$1"
@@ -33,7 +33,8 @@ in_root() {
     shift
     unshare --mount --pid --fork --mount-proc="$root/proc" bash -c '
         mount --rbind /dev "$0/dev"
-        cp /etc/resolv.conf "$0/etc/"
+        mount --rbind /sys "$0/sys"
+        cp /etc/resolv.conf /etc/hosts "$0/etc/"
         exec chroot "$0" /usr/bin/env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8 \
             DEBIAN_FRONTEND=noninteractive bash -euc "$1"' "$root" "$*"
 }

@@ -32,7 +32,7 @@ moved/bin/nlos render "$share/nlos/scenes/letter/scene.json" -o letter.h5 \
     --set 'scan.sensing_points=[8,8]' time_axis.num_bins=64 >/dev/null
 moved/bin/nlos info letter.h5 >/dev/null
 
-sh "$consumer/build.sh" "$scratch/moved" "$scratch/consumer" \
+CMAKE_GENERATOR=Ninja sh "$consumer/build.sh" "$scratch/moved" "$scratch/consumer" \
     "$share/nlos/scenes/letter/scene.json" >build.log 2>&1 ||
     { cat build.log; fail "the consumer does not build or run"; }
 tail -n 2 build.log | tee errors
