@@ -44,8 +44,8 @@ std::vector<core::Vec3> illumination_of(const MethodInput& input) {
 }
 
 /// Planes of voxels that are worked on together, from the same frequencies: the fewer, the shorter
-/// the span of their path lengths, which these must tell apart.
-constexpr std::size_t kPlanesPerGroup = 16;
+/// the span of their path lengths, which these must tell apart; but threads share a group's planes.
+constexpr std::size_t kPlanesPerGroup = 32;
 
 std::vector<Slab> plane_groups(const MethodInput& input) {
     const std::size_t num_planes = input.axes.z_m.size();
@@ -62,7 +62,8 @@ std::array<double, 2> path_lengths(const MethodInput& input, const Slab& planes)
     const double high = std::max(input.wall.max_m[1], input.axes.y_m.back()) -
                         std::min(input.wall.min_m[1], input.axes.y_m.front());
     const double longest_back = std::sqrt(wide * wide + high * high + far_m * far_m);
-    double longest_out = 0.0;
+    const bool is_confocal = input.scan.pattern == core::ScanPattern::Confocal;
+    double longest_out = is_confocal ? longest_back : 0.0;
     for (const core::Vec3& point : illumination_of(input)) {
         for (const double x : {input.axes.x_m.front(), input.axes.x_m.back()}) {
             for (const double y : {input.axes.y_m.front(), input.axes.y_m.back()}) {
@@ -71,7 +72,7 @@ std::array<double, 2> path_lengths(const MethodInput& input, const Slab& planes)
             }
         }
     }
-    return {2.0 * near_m, longest_back + (longest_out > 0.0 ? longest_out : longest_back)};
+    return {2.0 * near_m, longest_out + longest_back};
 }
 
 /// The wave and the bins that can reach a voxel.

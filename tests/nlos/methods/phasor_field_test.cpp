@@ -76,7 +76,7 @@ VolumeAxes axes_of(const WallFrame& wall) {
     VolumeAxes axes;
     axes.x_m = cell_centers(-0.175, 0.175, 7);  // at the sensing points
     axes.y_m = cell_centers(-0.1, 0.1, 5);
-    axes.z_m = cell_centers(0.3, 0.6, 33);  // three groups of planes
+    axes.z_m = cell_centers(0.3, 0.6, 33);  // two groups of planes
     axes.world_from_wall = wall.world_from_wall;
     return axes;
 }
