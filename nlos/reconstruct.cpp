@@ -41,25 +41,29 @@ void take_normals(const Volume& volume, core::DepthMap& depth) {
 }
 
 /// Noise makes dim columns of its own: where there may be any, all columns are held against the
-/// brightest surfaces alone. Backprojection leaves no edges, and the solver sharp ones.
-PlateauShares plateau_shares(Method method, bool has_noise) {
-    if (method == Method::Solver) return {0.0, 0.25};
-    if (method == Method::Bp || has_noise) return {0.0, 0.45};
-    return {};
+/// brightest surfaces alone. Backprojection leaves no edges, and the solver sharp ones. Fits random
+/// surfaces, see reconstruction/README.md.
+PlateauShares plateau_shares(const ReconstructSettings& settings, bool has_noise) {
+    if (settings.method == Method::Bp) return {0.0, 0.72, 6.0};
+    if (settings.method == Method::Solver) return {0.0, has_noise ? 0.4 : 0.25};
+    if (!has_noise) return {};
+    if (settings.method == Method::Fk) return {0.0, 0.45};
+    if (uses_wave(settings) || settings.method == Method::Fbp) return {0.0, 0.5};
+    return {0.0, 0.55, 5.0};
 }
 
 /// Waves and f-k migration give squares. The deviations of depth are those of random surfaces, see
-/// nlos/README.md.
+/// reconstruction/README.md.
 VolumeErrors volume_errors(const ReconstructSettings& settings, bool has_noise) {
-    const PlateauShares shares = plateau_shares(settings.method, has_noise);
+    const PlateauShares shares = plateau_shares(settings, has_noise);
     if (uses_wave(settings)) return {VolumeScale::Power, 0.4, 0.7, shares};
     switch (settings.method) {
         case Method::Solver:
-            return {VolumeScale::Amplitude, 0.2, 0.5, shares};
+            return {VolumeScale::Amplitude, 0.15, 0.38, shares};
         case Method::Fk:
             return {VolumeScale::Power, 0.16, 0.35, shares};
         case Method::Bp:
-            return {VolumeScale::Amplitude, 0.25, 0.7, shares};
+            return {VolumeScale::Amplitude, 0.15, 0.42, shares};
         case Method::Fbp:
         case Method::Dlct:
             return {VolumeScale::Amplitude, 0.1, 0.5, shares};

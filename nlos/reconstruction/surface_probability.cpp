@@ -9,7 +9,6 @@ namespace nlos {
 namespace {
 
 constexpr double kPowerAround = 12.0;  // of odds
-constexpr double kPowerAmongAll = 4.0;
 
 /// A stretch of p-values of one density.
 struct Stretch {
@@ -63,7 +62,7 @@ constexpr double kTolerance = 1e-6;
 /// Against all surfaces. From above: the mean of what is bright, then of what that calls a surface.
 std::vector<double> probabilities_among_all(const std::vector<double>& peaks,
                                             const std::vector<double>& weights,
-                                            double share) {
+                                            const PlateauShares& shares) {
     std::vector<double> probabilities(peaks.size(), 1.0);
     double last = 0.0;
     for (int i = 0; i < kMaxIterations; ++i) {
@@ -74,7 +73,7 @@ std::vector<double> probabilities_among_all(const std::vector<double>& peaks,
         if (std::abs(mean.value() - last) <= kTolerance * last) break;
         last = mean.value();
         std::ranges::transform(peaks, probabilities.begin(), [&](double peak) {
-            return plateau_probability(peak, share * last, kPowerAmongAll);
+            return plateau_probability(peak, shares.dimmest * last, shares.power);
         });
     }
     return probabilities;
@@ -126,7 +125,7 @@ std::vector<double> plateau_probabilities(const std::vector<double>& peaks,
                                           const std::vector<double>& weights,
                                           std::size_t num_y,
                                           const PlateauShares& shares) {
-    const std::vector<double> among_all = probabilities_among_all(peaks, weights, shares.dimmest);
+    const std::vector<double> among_all = probabilities_among_all(peaks, weights, shares);
     std::vector<double> probabilities = among_all;
     for (int i = 0; i < kMaxIterations; ++i) {
         std::vector<double> next(peaks.size());

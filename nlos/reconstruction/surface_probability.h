@@ -20,6 +20,7 @@ std::vector<double> false_discovery_rates(const std::vector<double>& p_values);
 struct PlateauShares {
     double edge = 0.7;     ///< of the surfaces among the column and its eight neighbours; 0: none
     double dimmest = 0.2;  ///< of all surfaces
+    double power = 4.0;    ///< of the odds that the ratio to `dimmest` makes
 };
 
 /// The probability that columns hold a surface and not what a method smears around one.
@@ -27,7 +28,7 @@ struct PlateauShares {
 /// Across a blurred edge brightness falls within a column or two; where a surface turns away, or is
 /// dim, it falls slowly. So a column is held against the mean brightness of the surfaces around it,
 /// and, less strictly, against that of all. The odds are the ratio to a share of the one to the
-/// power of 12, and of the other to the power of 4; the probabilities of both are multiplied. Means
+/// power of 12, and of the other to a power of its own; the probabilities of both are multiplied. Means
 /// are weighted by brightness and the square of the probability itself. Shares and powers fit
 /// simulated scenes.
 ///
