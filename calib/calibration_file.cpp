@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "calib/calibrate.h"
 
-#include <cmath>
-
 namespace calib {
 namespace {
 

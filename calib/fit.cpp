@@ -10,7 +10,6 @@
 #include "calib/model/pose_ambiguity.h"
 #include "calib/statistics/poisson_deviance.h"
 #include "calib/statistics/uncertainty.h"
-#include "renderer/core/error.h"
 #include "renderer/core/stopwatch.h"
 
 #include <fmt/core.h>

@@ -9,8 +9,6 @@
 #include "renderer/core/output_file.h"
 #include "renderer/core/parallel.h"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <numeric>
 

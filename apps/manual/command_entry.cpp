@@ -2,7 +2,6 @@
 #include "apps/manual/command_entry.h"
 
 #include <algorithm>
-#include <cctype>
 #include <regex>
 #include <sstream>
 

@@ -3,7 +3,6 @@
 
 #include "renderer/core/settings.h"
 
-#include <cstdint>
 #include <string>
 #include <type_traits>
 #include <vector>

@@ -3,8 +3,6 @@
 
 #include "nlos/preparation/wall_frame.h"
 
-#include <fmt/core.h>
-
 namespace apps {
 
 /// The scripts of the views, and the libraries that they stand on, compiled in.

@@ -15,7 +15,6 @@
 #include "nlos/detector/detector.h"
 #include "nlos/detector/sensor_counts.h"
 #include "nlos/formats/capture_file.h"
-#include "nlos/formats/ply_file.h"
 #include "renderer/core/sensor_footprint.h"
 
 #include <nanobind/stl/optional.h>

@@ -2,7 +2,6 @@
 #include "apps/report/results_folder.h"
 
 #include "apps/file_kind.h"
-#include "apps/report/bench_cards.h"
 #include "apps/report/result_labels.h"
 #include "calib/fit_file.h"
 #include "calib/track/track_file.h"

@@ -7,9 +7,7 @@
 #include "renderer/material/scene_geometry.h"
 #include "renderer/scene/scene_file.h"
 
-#include <array>
 #include <limits>
-#include <optional>
 #include <string>
 #include <vector>
 

@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
 namespace apps {
 namespace {
@@ -134,6 +133,15 @@ SequenceFrames reference_frames(const SequenceCase& sequence, std::uint64_t seed
     }
     if (sequence.frame_s > 0.0) return frames_of(setup);
     return gates_of_histogram(setup, sequence);
+}
+
+PlotLine line_of_frames(const std::string& title, const std::vector<double>& errors) {
+    PlotLine line{title, {}, {}};
+    for (const double error : errors) {
+        line.x.push_back(static_cast<double>(line.x.size() + 1));
+        line.y.push_back(std::max(1e-9, error));
+    }
+    return line;
 }
 
 std::vector<SequenceBench> bench_sequence(const SequenceCase& sequence,

@@ -24,12 +24,7 @@ void add_plot(const SequenceBench& bench, std::map<std::string, Plot>& plots) {
     plot.title = bench.sequence;
     plot.x_label = "frame";
     plot.y_label = "relative MSE";
-    PlotLine line{bench.method, {}, {}, LineStyle::Measured};
-    for (const double error : bench.rel_mse_of_frames) {
-        line.x.push_back(static_cast<double>(line.x.size() + 1));
-        line.y.push_back(std::max(1e-9, error));
-    }
-    plot.lines.push_back(std::move(line));
+    plot.lines.push_back(line_of_frames(bench.method, bench.rel_mse_of_frames));
 }
 
 BenchResult measure(const SequenceArguments& arguments, const core::Progress& progress) {

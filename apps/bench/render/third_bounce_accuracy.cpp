@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "apps/bench/render/third_bounce_accuracy.h"
 
-#include "apps/shapes/grid_mesh.h"
 #include "apps/bench/scene.h"
+#include "apps/shapes/grid_mesh.h"
 #include "renderer/core/random.h"
 #include "renderer/third_bounce/third_bounce.h"
 
