@@ -93,12 +93,10 @@ struct FitCourse {
 };
 
 /// What fit_scene() found.
-struct FitResult : FittedValues, FitAgreement, FitCourse {
-    std::vector<Correlation> correlations;
-    double condition_number = 1.0;
+///
+/// Uncertainties are those of `parameters`; of the logarithms of sizes, albedos and widths.
+struct FitResult : FittedValues, FitAgreement, FitCourse, Uncertainty {
     std::vector<std::string> parameters;  ///< names of the free ones
-    Eigen::MatrixXd covariance;           ///< of them; logarithms of sizes, albedos and widths
-    std::vector<std::string> unidentifiable;
     std::vector<std::string> warnings;
 };
 
