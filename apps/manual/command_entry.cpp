@@ -105,4 +105,13 @@ std::vector<std::string> setting_choices(const core::SettingHelp& setting) {
     return is_switch ? std::vector<std::string>{"true", "false"} : setting.choices;
 }
 
+std::string with_backslashes(const std::string& text, std::string_view characters) {
+    std::string shown;
+    for (const char c : text) {
+        if (characters.find(c) != std::string_view::npos) shown += '\\';
+        shown += c;
+    }
+    return shown;
+}
+
 }  // namespace apps

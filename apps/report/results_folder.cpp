@@ -44,8 +44,7 @@ ScoredResult scored_result(const fs::path& path, const core::Json& json) {
         const auto it = json.find(name);
         if (it != json.end()) core::read_value(*it, path.string() + ": " + name, field);
     });
-    const fs::path picture = fs::path(path).replace_extension(".png");
-    if (fs::exists(picture)) scored.picture_png = read_bytes(picture.string());
+    scored.picture_png = picture_beside(path.string());
     return scored;
 }
 

@@ -5,6 +5,7 @@
 #include "apps/bench/scene.h"
 #include "apps/commands.h"
 #include "apps/shapes/grid_mesh.h"
+#include "calib/statistics/median.h"
 #include "nlos/detector/detector.h"
 #include "nlos/reconstruct.h"
 #include "renderer/core/capture.h"
@@ -141,11 +142,8 @@ struct DepthTally {
     }
 };
 
-double median(std::vector<double> values) {
-    if (values.empty()) return 0.0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
+double median(const std::vector<double>& values) {
+    return values.empty() ? 0.0 : calib::median(values);
 }
 
 /// Columns of one method by tenths of their probability.
