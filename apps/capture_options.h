@@ -21,6 +21,18 @@ void for_each_field(CaptureOptions& options, Visitor&& visit) {
     visit("capture", options.capture, "what the capture file leaves open");
 }
 
+/// What `--set` reaches of commands that have settings of their own beside these.
+template <core::SettingsStruct S>
+struct WithCapture {
+    S settings;
+    nlos::CaptureReadSettings capture;
+};
+template <class S, class Visitor>
+void for_each_field(WithCapture<S>& options, Visitor&& visit) {
+    for_each_field(options.settings, visit);
+    visit("capture", options.capture, "what the capture file leaves open");
+}
+
 /// `--layout`, for every command that reads a capture.
 inline constexpr std::array kCaptureShorthands{
     Shorthand{"--layout",

@@ -3,9 +3,6 @@
 
 #include <CLI/CLI.hpp>
 
-#include <string>
-#include <vector>
-
 namespace apps {
 
 // One function per subcommand, in the file of its name. Each declares its arguments and a callback

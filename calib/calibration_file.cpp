@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "calib/calibrate.h"
 
-#include <cmath>
-
 namespace calib {
 namespace {
 
@@ -11,10 +9,6 @@ using core::Vec3;
 
 Json with_sigma(double value, double sigma) {
     return {{"value", value}, {"sigma", sigma}};
-}
-
-Json coordinates(const Vec3& v) {
-    return {v.x(), v.y(), v.z()};
 }
 
 // FWHM in picoseconds of a standard deviation in path length.
@@ -28,7 +22,8 @@ double ps(double opl_m) {
 
 Json camera_json(const CameraCalibration& camera) {
     Json homography = Json::array();
-    for (int r = 0; r < 3; ++r) homography.push_back(coordinates(camera.wall_from_pixel.row(r)));
+    for (int r = 0; r < 3; ++r)
+        homography.push_back(core::write_value(Vec3(camera.wall_from_pixel.row(r))));
     return {{"focal_px",
              {with_sigma(camera.focal_x_px, camera.sigma_px[0]),
               with_sigma(camera.focal_y_px, camera.sigma_px[1])}},
@@ -51,7 +46,7 @@ Json calibration_json(const Calibration& calibration) {
                     {"distance_m", value(0)},
                     {"tilt_x_rad", value(1)},
                     {"tilt_y_rad", value(2)}};
-    json["device_m"] = coordinates(setup.device_m);
+    json["device_m"] = core::write_value(setup.device_m);
     json["time_zero_m"] = value(6);
     json["galvo"] = {{"gain_x", value(7)},
                      {"gain_y", value(8)},
@@ -60,7 +55,7 @@ Json calibration_json(const Calibration& calibration) {
     json["points_m"] = Json::array();
     json["normals"] = Json::array();
     for (const Vec3& point : setup.points_m) {
-        json["points_m"].push_back(coordinates(point));
+        json["points_m"].push_back(core::write_value(point));
         json["normals"].push_back({0.0, 0.0, 1.0});
     }
     json["opl_offset_m"] = setup.opl_offset_m;

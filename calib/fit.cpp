@@ -9,8 +9,6 @@
 #include "calib/fit/stage_solver.h"
 #include "calib/model/pose_ambiguity.h"
 #include "calib/statistics/poisson_deviance.h"
-#include "calib/statistics/uncertainty.h"
-#include "renderer/core/error.h"
 #include "renderer/core/stopwatch.h"
 
 #include <fmt/core.h>
@@ -282,14 +280,13 @@ void widen_sigma(const FitDriver& driver,
                  const FitDriver::Stage& last,
                  const SceneState& state,
                  const core::Progress& progress,
-                 Uncertainty& uncertainty,
                  FitResult& result) {
-    if (!driver.has_few_photons() || !uncertainty.sigma.allFinite()) return;
+    if (!driver.has_few_photons() || !result.sigma.allFinite()) return;
     const Eigen::VectorXd scatter = bootstrap_scatter(driver, last, state, progress);
-    const Eigen::VectorXd grown = scatter.cwiseMax(uncertainty.sigma);
-    const Eigen::VectorXd factor = grown.cwiseQuotient(uncertainty.sigma);
-    uncertainty.covariance = factor.asDiagonal() * uncertainty.covariance * factor.asDiagonal();
-    uncertainty.sigma = grown;
+    const Eigen::VectorXd grown = scatter.cwiseMax(result.sigma);
+    const Eigen::VectorXd factor = grown.cwiseQuotient(result.sigma);
+    result.covariance = factor.asDiagonal() * result.covariance * factor.asDiagonal();
+    result.sigma = grown;
     double photons = 0.0;
     const double ambient = ambient_of(last, state);
     for (const double value : result.model) photons += value;
@@ -324,21 +321,17 @@ FitResult fit_scene(const FitInput& input, const core::Progress& progress) {
         const Eigen::MatrixXd prior = prior_information(*driver.model, driver.solve_settings);
         information = prior + (information - prior) / noise.inflation;
     }
-    Uncertainty uncertainty = assess(information, result.parameters);
-    uncertainty.covariance += refined.element_error * refined.element_error.transpose();
-    uncertainty.sigma = uncertainty.sigma.cwiseMax(uncertainty.covariance.diagonal().cwiseSqrt());
-    widen_sigma(driver, last, best.state, assessing, uncertainty, result);
+    static_cast<Uncertainty&>(result) = assess(information, result.parameters);
+    result.covariance += refined.element_error * refined.element_error.transpose();
+    result.sigma = result.sigma.cwiseMax(result.covariance.diagonal().cwiseSqrt());
+    widen_sigma(driver, last, best.state, assessing, result);
     static_cast<FittedValues&>(result) =
-        fitted_values(driver, last, best.state, uncertainty, noise.variance);
-    result.correlations = uncertainty.correlations;
-    result.condition_number = uncertainty.condition_number;
-    result.unidentifiable = uncertainty.unidentifiable;
-    result.covariance = uncertainty.covariance;
+        fitted_values(driver, last, best.state, result, noise.variance);
     result.converged = best.summary.converged;
     result.message = best.summary.message;
     result.num_elements = last.model->num_elements();
 
-    check_dependence(*driver.model, uncertainty.sigma, result);
+    check_dependence(*driver.model, result);
     add_warnings(driver, last, best.state, result);
     if (!refined.is_settled) {
         result.warnings.push_back(

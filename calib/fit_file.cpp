@@ -3,7 +3,6 @@
 
 #include "renderer/core/mapped_file.h"
 
-#include <cmath>
 #include <filesystem>
 
 namespace calib {

@@ -72,6 +72,11 @@ bool draw_as(const Plot& plot, const std::string& terminal, const std::string& t
 
 }  // namespace
 
+PlotLine& line_named(const std::string& title, Plot& plot) {
+    const auto it = std::ranges::find(plot.lines, title, &PlotLine::title);
+    return it != plot.lines.end() ? *it : plot.lines.emplace_back(PlotLine{title, {}, {}});
+}
+
 PlotLine pareto_front(const std::vector<PlotLine>& lines) {
     std::vector<std::pair<double, double>> points;
     for (const PlotLine& line : lines) {

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace apps {
@@ -32,6 +34,20 @@ struct Plot {
     AxisScale x_scale = AxisScale::Logarithmic;
     AxisScale y_scale = AxisScale::Logarithmic;
 };
+
+/// A line with a point for every row: members of it, or functions of it, are x and y.
+template <class Rows, class X, class Y>
+PlotLine line_of(std::string title, const Rows& rows, const X& x, const Y& y) {
+    PlotLine line{std::move(title), {}, {}};
+    for (const auto& row : rows) {
+        line.x.push_back(std::invoke(x, row));
+        line.y.push_back(std::invoke(y, row));
+    }
+    return line;
+}
+
+/// The line of a plot with this title, which is added where there is none.
+PlotLine& line_named(const std::string& title, Plot& plot);
 
 /// The points of all lines that no other point beats in both coordinates, by rising x.
 PlotLine pareto_front(const std::vector<PlotLine>& lines);

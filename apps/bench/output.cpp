@@ -2,7 +2,6 @@
 #include "apps/bench/output.h"
 
 #include "apps/arguments.h"
-#include "apps/bench/machine.h"
 #include "apps/bench/regression.h"
 #include "apps/bench/tables.h"
 #include "apps/outcome.h"
@@ -12,15 +11,43 @@
 #include "nlos/pictures/picture.h"
 #include "renderer/core/mapped_file.h"
 #include "renderer/core/output_file.h"
+#include "renderer/core/parallel.h"
 
 #include <fmt/chrono.h>
 #include <fmt/core.h>
 
 #include <ctime>
 #include <filesystem>
+#include <fstream>
+#include <string>
 
 namespace apps {
 namespace {
+
+// The first value of a `name : value` line of a file of the system.
+std::string value_in(const std::string& path, const std::string& name) {
+    std::ifstream file(path);
+    for (std::string line; std::getline(file, line);) {
+        if (!line.starts_with(name)) continue;
+        const auto start = line.find_first_not_of(" \t", line.find(':') + 1);
+        return start == std::string::npos ? "" : line.substr(start);
+    }
+    return "";
+}
+
+/// The processor, how many of it this process may use, and memory, in words.
+std::string machine_text() {
+    const std::string processor = value_in("/proc/cpuinfo", "model name");
+    return fmt::format("{}, {} of its threads, memory {}",
+                       processor.empty() ? "unknown processor" : processor,
+                       core::thread_count(),
+                       value_in("/proc/meminfo", "MemTotal"));
+}
+
+/// Compiler and libraries that decide speed, with versions.
+std::string libraries_text() {
+    return "GCC " __VERSION__ NLOS_LIBRARIES;
+}
 
 std::string make_stem(const std::string& folder, const std::string& name) {
     std::error_code error;

@@ -66,6 +66,13 @@ inline double relative_l2(const core::Capture& a, const core::Capture& b) {
     return nlos::compare_captures(a, b).rel_l2.value_or(0.0);
 }
 
+/// Photons of a whole capture whose brightest bin expects so many.
+inline double photons_for_peak(const core::Capture& capture, double peak_counts) {
+    const auto values = capture.transient.values();
+    const double sum = std::accumulate(values.begin(), values.end(), 0.0);
+    return peak_counts * sum / double{*std::max_element(values.begin(), values.end())};
+}
+
 /// The bin in which this share of the capture's light has arrived.
 inline int bin_of_share(const core::Capture& capture, double share) {
     std::vector<double> arrived(static_cast<std::size_t>(capture.transient.num_bins()));

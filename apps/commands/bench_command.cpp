@@ -8,8 +8,6 @@
 #include "apps/terminal.h"
 #include "renderer/core/output_file.h"
 
-#include <fmt/core.h>
-
 #include <filesystem>
 #include <memory>
 

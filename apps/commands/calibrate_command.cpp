@@ -10,8 +10,6 @@
 #include "nlos/formats/capture_file.h"
 #include "renderer/core/output_file.h"
 
-#include <fmt/core.h>
-
 #include <memory>
 
 namespace apps {

@@ -11,8 +11,6 @@
 #include "renderer/gltf/gltf.h"
 #include "renderer/scene_import/scene_import.h"
 
-#include <fmt/core.h>
-
 #include <filesystem>
 #include <memory>
 

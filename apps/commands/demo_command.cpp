@@ -14,8 +14,6 @@
 #include "renderer/core/data_folder.h"
 #include "renderer/core/error.h"
 
-#include <fmt/core.h>
-
 #include <filesystem>
 #include <memory>
 

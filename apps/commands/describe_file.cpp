@@ -172,41 +172,29 @@ void describe_one(Description& out,
                   const nlos::CaptureReadSettings& settings) {
     switch (kind_of_file(path)) {
         case FileKind::Scene:
-            describe_scene(out, path);
-            break;
+            return describe_scene(out, path);
         case FileKind::Fit:
-            describe_fit(out, path);
-            break;
+            return describe_fit(out, path);
         case FileKind::Metrics:
-            describe_json(out, path, "metrics");
-            break;
+            return describe_json(out, path, "metrics");
         case FileKind::Model:
-            describe_json(out, path, "model of a fit");
-            break;
+            return describe_json(out, path, "model of a fit");
         case FileKind::Setup:
-            describe_json(out, path, "set-up to calibrate");
-            break;
+            return describe_json(out, path, "set-up to calibrate");
         case FileKind::Calibration:
-            describe_json(out, path, "calibration");
-            break;
+            return describe_json(out, path, "calibration");
         case FileKind::Sweep:
-            describe_json(out, path, "sweep over settings");
-            break;
+            return describe_json(out, path, "sweep over settings");
         case FileKind::Track:
-            describe_json(out, path, "track");
-            break;
+            return describe_json(out, path, "track");
         case FileKind::Geometry:
-            describe_geometry(out, path);
-            break;
+            return describe_geometry(out, path);
         case FileKind::PointCloud:
-            describe_ply(out, path);
-            break;
+            return describe_ply(out, path);
         case FileKind::Volume:
-            describe_volume(out, path);
-            break;
+            return describe_volume(out, path);
         case FileKind::Capture:
-            describe_captures(out, {path}, settings);
-            break;
+            return describe_captures(out, {path}, settings);
     }
 }
 

@@ -11,8 +11,6 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
-#include <iterator>
 #include <memory>
 
 namespace apps {
@@ -117,18 +115,11 @@ void run(const FitArguments& arguments) {
     for (const std::string& text : result.warnings) warn(text);
 }
 
-std::vector<core::SettingHelp> fit_help() {
-    std::vector<core::SettingHelp> lines = core::settings_help(calib::FitSettings{});
-    const auto of_capture = core::settings_help(CaptureOptions{});
-    lines.insert(lines.end(), of_capture.begin(), of_capture.end());
-    return lines;
-}
-
 }  // namespace
 
 void add_fit_command(CLI::App& app) {
     Command& command = add_command(app, "fit", "Fit a hidden scene to a capture");
-    command.settings = fit_help();
+    command.settings = core::settings_help(WithCapture<calib::FitSettings>{});
     const auto arguments = std::make_shared<FitArguments>();
     add_file_option(command, "CAPTURE", arguments->capture, "Capture in any readable format")
         ->required();

@@ -7,7 +7,6 @@
 #include "apps/progress_bar.h"
 #include "apps/terminal.h"
 #include "apps/version.h"
-#include "calib/calibrate.h"
 #include "calib/fit_file.h"
 #include "nlos/formats/volume_file.h"
 #include "nlos/preparation/capture_check.h"

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 
 namespace apps {
@@ -48,47 +47,41 @@ std::array<std::size_t, 2> lit_bins(const calib::FitResult& result) {
     return nlos::shown_bins(light);
 }
 
-struct Box {
-    Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity());
-    Vec3 high = -low;
-};
-
-Box box_around(const calib::FitErrors& errors) {
-    Box box;
+Eigen::AlignedBox3d box_around(const calib::FitErrors& errors) {
+    Eigen::AlignedBox3d box;
     for (const auto* points : {&errors.true_points, &errors.fitted_points}) {
-        for (const Vec3& p : points->positions) {
-            box.low = box.low.cwiseMin(p);
-            box.high = box.high.cwiseMax(p);
-        }
+        for (const Vec3& p : points->positions) box.extend(p);
     }
-    const double margin = 0.05 * (box.high - box.low).maxCoeff() + 0.01;
-    box.low.array() -= margin;
-    box.high.array() += margin;
-    return box;
+    const double margin = 0.05 * box.sizes().maxCoeff() + 0.01;
+    return {box.min().array() - margin, box.max().array() + margin};
 }
 
 // Cells that hold truth get 1, those that hold the fit 2 more.
-nlos::ImagePanel overlay_view(
-    const calib::FitErrors& errors, const Box& box, const char* title, int across, int up) {
+nlos::ImagePanel overlay_view(const calib::FitErrors& errors,
+                              const Eigen::AlignedBox3d& box,
+                              const char* title,
+                              int across,
+                              int up) {
     const std::array<const char*, 3> labels{"x [m]", "y [m]", "z [m]"};
-    const double cell = (box.high - box.low).maxCoeff() / kCellsAcross;
+    const double cell = box.sizes().maxCoeff() / kCellsAcross;
     nlos::ImagePanel panel;
     panel.title = title;
     const auto cells = [&](int axis) {
-        return static_cast<std::size_t>(std::ceil((box.high - box.low)[axis] / cell));
+        return static_cast<std::size_t>(std::ceil(box.sizes()[axis] / cell));
     };
     panel.width = cells(across);
     panel.height = cells(up);
-    panel.x_range = {box.low[across], box.low[across] + cell * static_cast<double>(panel.width)};
-    panel.y_range = {box.low[up], box.low[up] + cell * static_cast<double>(panel.height)};
+    panel.x_range = {box.min()[across],
+                     box.min()[across] + cell * static_cast<double>(panel.width)};
+    panel.y_range = {box.min()[up], box.min()[up] + cell * static_cast<double>(panel.height)};
     panel.x_label = labels[static_cast<std::size_t>(across)];
     panel.y_label = labels[static_cast<std::size_t>(up)];
     panel.categories = {{"truth", kTruth}, {"fit", kFit}, {"both", kBoth}};
     std::vector<int> marks(panel.width * panel.height, 0);
     const auto mark = [&](const core::PointCloud& points, int bit) {
         for (const Vec3& p : points.positions) {
-            const auto x = static_cast<std::size_t>((p[across] - box.low[across]) / cell);
-            const auto y = static_cast<std::size_t>((p[up] - box.low[up]) / cell);
+            const auto x = static_cast<std::size_t>((p[across] - box.min()[across]) / cell);
+            const auto y = static_cast<std::size_t>((p[up] - box.min()[up]) / cell);
             marks[y * panel.width + x] |= bit;
         }
     };
@@ -145,7 +138,7 @@ std::vector<nlos::Panel> fit_panels(const calib::FitResult& result) {
 
 std::vector<nlos::Panel> overlay_panels(const calib::FitErrors& errors) {
     if (errors.true_points.positions.empty() && errors.fitted_points.positions.empty()) return {};
-    const Box box = box_around(errors);
+    const Eigen::AlignedBox3d box = box_around(errors);
     nlos::ImagePanel front = overlay_view(errors, box, "Front (seen from the wall)", 0, 1);
     nlos::ImagePanel side = overlay_view(errors, box, "Side (along x)", 2, 1);
     nlos::ImagePanel top = overlay_view(errors, box, "Top (along y)", 0, 2);

@@ -7,8 +7,6 @@
 #include "apps/terminal.h"
 #include "renderer/core/parallel.h"
 
-#include <fmt/core.h>
-
 #include <array>
 #include <memory>
 

@@ -54,7 +54,7 @@ nlos::Reconstruction reconstruct_to_file(const ReconstructRequest& request) {
         const StoppableWork stoppable(
             "stopping after this step, without a file; Ctrl-C again ends at once");
         return nlos::reconstruct(
-            capture, options.reconstruct, progress.stage(2, 3, "reconstructing", 0.0, 1.0));
+            capture, options.settings, progress.stage(2, 3, "reconstructing", 0.0, 1.0));
     }();
     if (progress.should_stop()) throw core::Failure("reconstruct", "interrupted");
     progress.stage(3, 3, "writing", 1.0, 1.0);

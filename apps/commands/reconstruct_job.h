@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "nlos/formats/capture_file.h"
+#include "apps/capture_options.h"
 #include "nlos/reconstruct.h"
 
 #include <string>
@@ -9,17 +9,8 @@
 
 namespace apps {
 
-/// What `--set` of reconstruct reaches: the method's settings, and `capture.` for the file.
-struct ReconstructOptions {
-    nlos::ReconstructSettings reconstruct;
-    nlos::CaptureReadSettings capture;
-};
-
-template <class Visitor>
-void for_each_field(ReconstructOptions& options, Visitor&& visit) {
-    for_each_field(options.reconstruct, visit);
-    visit("capture", options.capture, "what the capture file leaves open");
-}
+/// What `--set` of reconstruct reaches.
+using ReconstructOptions = WithCapture<nlos::ReconstructSettings>;
 
 /// What `nlos reconstruct` is asked to do; empty paths: nothing.
 struct ReconstructRequest {

@@ -5,7 +5,6 @@
 #include "apps/progress_bar.h"
 #include "apps/terminal.h"
 #include "apps/version.h"
-#include "calib/calibrate.h"
 #include "nlos/formats/capture_file.h"
 #include "nlos/pictures/pictures.h"
 #include "renderer/core/output_file.h"
@@ -21,7 +20,6 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <memory>
 
 namespace apps {
 namespace {

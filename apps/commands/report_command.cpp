@@ -8,7 +8,6 @@
 #include "apps/terminal.h"
 #include "renderer/core/error.h"
 
-#include <fmt/core.h>
 #include <spawn.h>
 #include <unistd.h>
 

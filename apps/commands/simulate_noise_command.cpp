@@ -13,8 +13,6 @@
 #include "renderer/core/parallel.h"
 #include "renderer/core/sensor_footprint.h"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <memory>
 #include <numeric>
@@ -33,17 +31,8 @@ struct NoiseArguments {
     int threads = 0;
 };
 
-/// What `--set` of simulate-noise reaches: the detector, and `capture.` for the file.
-struct NoiseOptions {
-    nlos::DetectorSettings detector;
-    nlos::CaptureReadSettings capture;
-};
-
-template <class Visitor>
-void for_each_field(NoiseOptions& options, Visitor&& visit) {
-    for_each_field(options.detector, visit);
-    visit("capture", options.capture, "what the capture file leaves open");
-}
+/// What `--set` of simulate-noise reaches.
+using NoiseOptions = WithCapture<nlos::DetectorSettings>;
 
 constexpr std::array kNoiseShorthands{
     Shorthand{"--photons", "photons", "N", "Expected signal photons in the whole capture"},
@@ -95,16 +84,16 @@ void run(const NoiseArguments& arguments) {
     core::Capture capture = nlos::read_capture(arguments.capture, options.capture);
     const std::optional<core::SensorSetup> sensor = sensor_of(arguments, capture);
     if (sensor) {
-        options.detector = nlos::detector_of(*sensor);
+        options.settings = nlos::detector_of(*sensor);
         apply(arguments, options);
     }
-    if (const auto warning = nlos::coarse_bins_warning(capture, options.detector)) {
+    if (const auto warning = nlos::coarse_bins_warning(capture, options.settings)) {
         warn(*warning);
     }
     progress.stage(2, 3, "detecting", 0.0, 1.0);
     core::Capture noisy =
-        sensor ? nlos::detect_by_sensor(*sensor, std::move(capture), options.detector)
-               : nlos::detect(capture, options.detector);
+        sensor ? nlos::detect_by_sensor(*sensor, std::move(capture), options.settings)
+               : nlos::detect(capture, options.settings);
     progress.stage(3, 3, "writing", 1.0, 1.0);
     noisy.scene_info["detector"]["program"] = version_text();
     noisy.scene_info["detector"]["command"] = command_line();
@@ -126,7 +115,7 @@ void run(const NoiseArguments& arguments) {
           noisy.transient.num_pairs(),
           noisy.transient.num_bins(),
           sum,
-          options.detector.expected ? "expected " : "",
+          options.settings.expected ? "expected " : "",
           most);
 }
 

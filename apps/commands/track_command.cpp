@@ -46,7 +46,7 @@ void run(TrackRequest request) {
 
 void add_track_command(CLI::App& app) {
     Command& command = add_command(app, "track", "Track hidden targets with a histogram camera");
-    command.settings = core::settings_help(TrackOptions{});
+    command.settings = core::settings_help(WithCapture<calib::TrackSettings>{});
     const auto request = std::make_shared<TrackRequest>();
     add_file_option(command,
                     "FILES",

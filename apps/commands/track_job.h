@@ -22,18 +22,6 @@ struct TrackRequest {
     std::vector<std::string> overrides;
 };
 
-/// What `--set` of track reaches: MODEL.json's keys, and `capture.` for the frames.
-struct TrackOptions {
-    calib::TrackSettings track;
-    nlos::CaptureReadSettings capture;
-};
-
-template <class Visitor>
-void for_each_field(TrackOptions& options, Visitor&& visit) {
-    for_each_field(options.track, visit);
-    visit("capture", options.capture, "what the frames' files leave open");
-}
-
 /// What came out, for people.
 struct TrackSummary {
     std::size_t frames = 0;

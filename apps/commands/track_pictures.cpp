@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <map>
 
 namespace apps {
@@ -37,17 +36,6 @@ struct View {
     const char* up_label;
 };
 
-/// Axes that grow around what they are shown.
-struct Extent {
-    Point x{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-    Point y = x;
-
-    void add(const Point& p) {
-        x = {std::min(x[0], p[0]), std::max(x[1], p[0])};
-        y = {std::min(y[0], p[1]), std::max(y[1], p[1])};
-    }
-};
-
 class Plan {
  public:
     Plan(const View& view, const calib::TrackSensor& sensor)
@@ -63,7 +51,7 @@ class Plan {
     }
 
     void line(std::vector<Point> points, nlos::Colour colour, int thickness, double fill) {
-        for (const Point& p : points) extent_.add(p);
+        for (const Point& p : points) extent_.extend(Vec2(p[0], p[1]));
         panel_.lines.push_back({std::move(points), colour, thickness, fill});
     }
 
@@ -89,8 +77,8 @@ class Plan {
     }
 
     nlos::DrawingPanel finished() {
-        panel_.x_range = {extent_.x[0] - kMargin_m, extent_.x[1] + kMargin_m};
-        panel_.y_range = {extent_.y[0] - kMargin_m, extent_.y[1] + kMargin_m};
+        panel_.x_range = {extent_.min().x() - kMargin_m, extent_.max().x() + kMargin_m};
+        panel_.y_range = {extent_.min().y() - kMargin_m, extent_.max().y() + kMargin_m};
         return std::move(panel_);
     }
 
@@ -110,18 +98,22 @@ class Plan {
     View view_;
     core::Transform wall_from_world_;
     nlos::DrawingPanel panel_;
-    Extent extent_;
+    Eigen::AlignedBox2d extent_;
 };
 
 void draw_wall(const calib::TrackSettings& settings, const calib::TrackSensor& sensor, Plan& plan) {
     const core::SensorFootprints footprints = footprints_at(sensor, settings.pose);
-    Extent spots;
+    Eigen::AlignedBox2d spots;
     for (const core::ZoneFootprint& zone : footprints.zones) {
-        for (const Vec3& p : zone.seen.positions) spots.add(plan.place(p));
+        for (const Vec3& p : zone.seen.positions) {
+            const Point spot = plan.place(p);
+            spots.extend(Vec2(spot[0], spot[1]));
+        }
     }
-    plan.line({{spots.x[0] - kMargin_m, spots.y[0]}, {spots.x[1] + kMargin_m, spots.y[0]}},
+    plan.line({{spots.min().x() - kMargin_m, spots.min().y()},
+               {spots.max().x() + kMargin_m, spots.min().y()}},
               kWallColour,
-              spots.y[1] - spots.y[0] < 1e-6 ? 8 : 0,
+              spots.sizes().y() < 1e-6 ? 8 : 0,
               0.0);
     plan.legend("wall", kWallColour);
     for (const core::ZoneFootprint& zone : footprints.zones) {
@@ -158,27 +150,26 @@ void draw_paths(const std::vector<calib::FrameEstimate>& frames,
             if (target.is_named) paths[target.id].push_back(&target);
         }
     }
+    const auto colour_of = [](int id) {
+        return kPathColours[static_cast<std::size_t>(id - 1) % kPathColours.size()];
+    };
     for (const auto& [id, path] : paths) {
-        const nlos::Colour colour =
-            kPathColours[static_cast<std::size_t>(id - 1) % kPathColours.size()];
         const std::size_t step = (path.size() + kMostEllipses - 1) / kMostEllipses;
         for (std::size_t i = 0; i < path.size(); i += step) {
             plan.ellipse(calib::stated_position_m(*path[i], settings),
                          calib::stated_covariance_m2(*path[i], settings),
-                         colour);
+                         colour_of(id));
         }
     }
     const char* moving = settings.free == calib::TrackUnknown::Target ? "target" : "sensor";
     for (const auto& [id, path] : paths) {
-        const nlos::Colour colour =
-            kPathColours[static_cast<std::size_t>(id - 1) % kPathColours.size()];
         std::vector<Point> line;
         for (const auto* target : path)
             line.push_back(plan.place(calib::stated_position_m(*target, settings)));
         const Point first = line.front();
-        plan.line(std::move(line), colour, 4, 0.0);
+        plan.line(std::move(line), colour_of(id), 4, 0.0);
         plan.mark(first, 0.02, kStartColour);
-        plan.legend(fmt::format("{} {} with 95 % ellipses", moving, id), colour);
+        plan.legend(fmt::format("{} {} with 95 % ellipses", moving, id), colour_of(id));
     }
     if (!paths.empty()) plan.legend("first named", kStartColour);
 }

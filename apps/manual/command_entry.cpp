@@ -2,7 +2,6 @@
 #include "apps/manual/command_entry.h"
 
 #include <algorithm>
-#include <cctype>
 #include <regex>
 #include <sstream>
 
@@ -104,6 +103,15 @@ std::vector<const CommandEntry*> all_commands(const CommandEntry& command) {
 std::vector<std::string> setting_choices(const core::SettingHelp& setting) {
     const bool is_switch = setting.default_value == "true" || setting.default_value == "false";
     return is_switch ? std::vector<std::string>{"true", "false"} : setting.choices;
+}
+
+std::string with_backslashes(const std::string& text, std::string_view characters) {
+    std::string shown;
+    for (const char c : text) {
+        if (characters.find(c) != std::string_view::npos) shown += '\\';
+        shown += c;
+    }
+    return shown;
 }
 
 }  // namespace apps

@@ -4,6 +4,7 @@
 #include "apps/command.h"
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace apps {
@@ -50,5 +51,8 @@ std::vector<const CommandEntry*> all_commands(const CommandEntry& command);
 
 /// The choices of a setting: those of its closed set, or true and false; empty: anything.
 std::vector<std::string> setting_choices(const core::SettingHelp& setting);
+
+/// A text with a backslash before each of these characters.
+std::string with_backslashes(const std::string& text, std::string_view characters);
 
 }  // namespace apps

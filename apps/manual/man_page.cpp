@@ -4,42 +4,32 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <array>
 #include <cctype>
+#include <string_view>
 
 namespace apps {
 namespace {
+
+// Long lists of names may be broken after a comma or a bar.
+constexpr std::array<std::pair<char, std::string_view>, 8> kEscapes{{{'\\', "\\e"},
+                                                                     {'-', "\\-"},
+                                                                     {'\'', "\\(aq"},
+                                                                     {'`', "\\(ga"},
+                                                                     {'^', "\\(ha"},
+                                                                     {'~', "\\(ti"},
+                                                                     {',', ",\\:"},
+                                                                     {'|', "|\\:"}}};
 
 // A text as roff shows it unchanged: hyphens can be copied as the minus that options begin with,
 // and no line is taken for a request.
 std::string roff(const std::string& text) {
     std::string shown;
     for (const char c : text) {
-        switch (c) {
-            case '\\':
-                shown += "\\e";
-                break;
-            case '-':
-                shown += "\\-";
-                break;
-            case '\'':
-                shown += "\\(aq";
-                break;
-            case '`':
-                shown += "\\(ga";
-                break;
-            case '^':
-                shown += "\\(ha";
-                break;
-            case '~':
-                shown += "\\(ti";
-                break;
-            case ',':
-            case '|':
-                shown += std::string(1, c) + "\\:";  // where long lists of names may be broken
-                break;
-            default:
-                shown += c;
-        }
+        const auto escape =
+            std::ranges::find(kEscapes, c, &std::pair<char, std::string_view>::first);
+        shown += escape == kEscapes.end() ? std::string_view(&c, 1) : escape->second;
     }
     return text.starts_with('.') ? "\\&" + shown : shown;
 }
@@ -100,13 +90,6 @@ void add_options(const CommandEntry& command, bool arguments, std::string& page)
     }
 }
 
-bool has_arguments(const CommandEntry& command) {
-    for (const OptionEntry& option : command.options) {
-        if (option.is_argument) return true;
-    }
-    return false;
-}
-
 void add_settings(const CommandEntry& command, std::string& page) {
     if (command.settings.empty()) return;
     page += ".SH SETTINGS\nKeys for " + bold("--set") + " with their defaults.\n";
@@ -151,7 +134,7 @@ when set, progress is shown in plain lines instead of a bar that is drawn again 
 
 std::string page_name(const CommandEntry& command) {
     std::string name = command.name;
-    for (char& c : name) c = c == ' ' ? '-' : c;
+    std::ranges::replace(name, ' ', '-');
     return name;
 }
 
@@ -170,7 +153,7 @@ std::string man_page(const CommandEntry& command, const std::string& version) {
         synopsis(command),
         roff(command.description));
     add_commands(command, page);
-    if (has_arguments(command)) page += ".SH ARGUMENTS\n";
+    if (std::ranges::any_of(command.options, &OptionEntry::is_argument)) page += ".SH ARGUMENTS\n";
     add_options(command, true, page);
     page += ".SH OPTIONS\n";
     add_options(command, false, page);

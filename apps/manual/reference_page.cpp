@@ -4,29 +4,20 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
-#include <string_view>
+#include <algorithm>
 
 namespace apps {
 namespace {
 
 // A text within a cell of a table.
 std::string cell(const std::string& text) {
-    std::string shown;
-    for (const char c : text) {
-        if (std::string_view("|*_<>[]`\\").find(c) != std::string_view::npos) shown += '\\';
-        shown += c == '\n' ? ' ' : c;
-    }
+    std::string shown = with_backslashes(text, "|*_<>[]`\\");
+    std::ranges::replace(shown, '\n', ' ');
     return shown;
 }
 
 std::string code(const std::string& text) {
-    if (text.empty()) return "";
-    std::string shown;
-    for (const char c : text) {
-        if (c == '|') shown += '\\';
-        shown += c;
-    }
-    return "`" + shown + "`";
+    return text.empty() ? "" : "`" + with_backslashes(text, "|") + "`";
 }
 
 std::string option_row(const OptionEntry& option) {
@@ -78,9 +69,8 @@ std::string reference_page(const CommandEntry& program, const std::string& versi
         "too, `_s` seconds, `_ps` picoseconds, `_deg` degrees.\n\n",
         version);
     for (const CommandEntry* command : all_commands(program)) {
-        std::string anchor = command->name;
-        for (char& c : anchor) c = c == ' ' ? '-' : c;
-        page += fmt::format("* [{}](#{}): {}\n", command->name, anchor, command->description);
+        page += fmt::format(
+            "* [{}](#{}): {}\n", command->name, page_name(*command), command->description);
     }
     for (const CommandEntry* command : all_commands(program)) page += section(*command);
     return page;

@@ -4,8 +4,6 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
-#include <string_view>
-
 namespace apps {
 namespace {
 
@@ -22,12 +20,7 @@ std::string quoted(const std::string& text) {
 
 // A text within a specification of _arguments or _describe.
 std::string plain(const std::string& text) {
-    std::string shown;
-    for (const char c : text) {
-        if (std::string_view("[]:\\").find(c) != std::string_view::npos) shown += '\\';
-        shown += c;
-    }
-    return shown;
+    return with_backslashes(text, "[]:\\");
 }
 
 std::string function_name(const CommandEntry& command) {

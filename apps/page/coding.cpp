@@ -1,16 +1,50 @@
 // SPDX-License-Identifier: MIT
 #include "apps/page/coding.h"
 
+#include "apps/page/html.h"
+#include "renderer/core/error.h"
+#include "renderer/core/parallel.h"
+
+#include <fmt/core.h>
+#include <zlib.h>
+
 namespace apps {
+namespace {
+
+std::string compressed(const std::string& bytes) {
+    uLongf size = ::compressBound(bytes.size());
+    std::string result(size, '\0');
+    const int status = ::compress2(reinterpret_cast<Bytef*>(result.data()),
+                                   &size,
+                                   reinterpret_cast<const Bytef*>(bytes.data()),
+                                   bytes.size(),
+                                   Z_DEFAULT_COMPRESSION);
+    if (status != Z_OK) throw core::Failure("page", "its data cannot be compressed");
+    result.resize(size);
+    return result;
+}
+
+}  // namespace
+
+std::string PageArrays::html() const {
+    std::vector<std::string> elements(bytes_.size());
+    core::parallel_for(bytes_.size(), [&](std::size_t i) {
+        elements[i] = fmt::format("<script type=\"text/plain\" id=\"nlos-array-{}\">{}</script>\n",
+                                  i,
+                                  encode_base64(compressed(bytes_[i])));
+    });
+    std::string html;
+    for (const std::string& element : elements) html += element;
+    return html;
+}
 
 core::Json add_points(PageArrays& arrays, const std::vector<core::Vec3>& points) {
     constexpr double kSteps = std::numeric_limits<std::uint16_t>::max();
-    core::Vec3 low = points.empty() ? core::Vec3::Zero().eval() : points.front();
-    core::Vec3 high = low;
-    for (const core::Vec3& point : points) {
-        low = low.cwiseMin(point);
-        high = high.cwiseMax(point);
-    }
+    Eigen::AlignedBox3d box;
+    for (const core::Vec3& point : points) box.extend(point);
+    if (points.empty()) box.extend(core::Vec3(0.0, 0.0, 0.0));
+    const core::Vec3 low = box.min();
+    const core::Vec3 high = box.max();
     std::vector<std::uint16_t> codes;
     codes.reserve(3 * points.size());
     for (const core::Vec3& point : points) {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "apps/page/film_view.h"
-
+#include "apps/page/page_views.h"
 #include "nlos/pictures/image_layout.h"
 #include "nlos/pictures/light_scale.h"
 #include "nlos/preparation/wall_frame.h"

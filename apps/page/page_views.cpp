@@ -3,8 +3,6 @@
 
 #include "nlos/preparation/wall_frame.h"
 
-#include <fmt/core.h>
-
 namespace apps {
 
 /// The scripts of the views, and the libraries that they stand on, compiled in.
@@ -30,26 +28,23 @@ PageWall page_wall(const PageViews& views) {
     } else if (views.truth) {
         wall.frame_from_world = views.truth->depth.world_from_wall.inverse();
     }
-    core::Vec3 low = core::Vec3::Constant(std::numeric_limits<double>::infinity());
-    core::Vec3 high = -low;
-    const auto include = [&](const core::Vec3& point) {
-        low = low.cwiseMin(point);
-        high = high.cwiseMax(point);
-    };
+    Eigen::AlignedBox3d box;
     if (has_points) {
         const nlos::WallFrame scanned = nlos::derive_wall_frame(*views.scan);
         for (const double x : {scanned.min_m[0], scanned.max_m[0]}) {
             for (const double y : {scanned.min_m[1], scanned.max_m[1]}) {
-                include(wall.frame_from_world * (scanned.world_from_wall * core::Vec3(x, y, 0.0)));
+                box.extend(wall.frame_from_world *
+                           (scanned.world_from_wall * core::Vec3(x, y, 0.0)));
             }
         }
     } else if (!views.results.empty() && !views.results.front().depth.x_m.empty()) {
         const core::DepthMap& depth = views.results.front().depth;
-        include({depth.x_m.front(), depth.y_m.front(), 0.0});
-        include({depth.x_m.back(), depth.y_m.back(), 0.0});
+        box.extend(core::Vec3(depth.x_m.front(), depth.y_m.front(), 0.0));
+        box.extend(core::Vec3(depth.x_m.back(), depth.y_m.back(), 0.0));
     }
-    if (low[0] <= high[0]) {
-        wall.footprint = {{"x_m", {low[0], high[0]}}, {"y_m", {low[1], high[1]}}};
+    if (!box.isEmpty()) {
+        wall.footprint = {{"x_m", {box.min().x(), box.max().x()}},
+                          {"y_m", {box.min().y(), box.max().y()}}};
     }
     return wall;
 }

@@ -1,15 +1,68 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "apps/page/film_view.h"
 #include "apps/page/result_view.h"
-#include "apps/page/truth_view.h"
+#include "renderer/core/capture.h"
+#include "renderer/core/mesh.h"
 
+#include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace apps {
+
+/// A capture as a film: the light of every cell - wall point or pixel - by time or by frame.
+struct FilmView {
+    enum class Kind { Wall, Camera, List };
+
+    std::string name;    ///< of the file
+    std::string detail;  ///< scan and size, in words
+    std::string unit;    ///< of the values
+    Kind kind = Kind::List;
+    std::array<std::size_t, 2> size{};      ///< along x and y; of lists: points and 1
+    std::array<double, 2> x_m{};            ///< outer edges of the cells of a wall
+    std::array<double, 2> y_m{};            ///< likewise
+    std::vector<core::Vec3> positions;      ///< of the points of a list [m, world]
+    std::vector<std::string> labels;        ///< of frames; empty where time is shown
+    std::size_t num_bins = 0;               ///< or frames
+    double start_m = 0.0;                   ///< path length at the start of the first bin
+    double step_m = 0.0;                    ///< width of a bin
+    std::array<std::size_t, 2> lit_bins{};  ///< first and last of those with all but 0.2 % of light
+    std::size_t merged = 1;                 ///< bins of the capture in one of these
+    bool whole = true;                      ///< the values are whole numbers
+    LogCoding coding;
+    std::vector<std::uint8_t>
+        codes;  ///< stored [cell][bin]; cells [x][y], of cameras [row][column]
+};
+
+/// A sequence by its frames, all bins of each together; everything else by path length, from the
+/// first to the last bin with light. Of exhaustive scans: the middle illumination point.
+FilmView film_view(const core::Capture& capture, const std::string& name);
+
+/// The film with pairs of bins as one; of frames: as it is.
+FilmView halved(const FilmView& film);
+
+/// What the page's script reads of a film.
+///
+/// frame_from_world   of the positions
+core::Json film_json(const FilmView& film,
+                     const core::Transform& frame_from_world,
+                     PageArrays& arrays);
+
+/// The hidden scene as it is.
+struct TruthView {
+    std::string name;         ///< of the scene
+    core::TriangleMesh mesh;  ///< its hidden surfaces [m, world]; of very many, a simpler shape
+    core::DepthMap depth;     ///< seen from the first result's columns, else from the whole wall
+};
+
+/// Loads a scene and traces what the wall sees of it, also from the columns of each result, whose
+/// `truth` it sets.
+///
+/// throws   core::Error as reading the scene does, and when it has no relay wall
+TruthView truth_view(const std::string& scene_path, std::vector<ResultView>& results);
 
 /// What the interactive views of a page are about.
 struct PageViews {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "apps/page/truth_view.h"
-
 #include "apps/dataset/mesh_library.h"
+#include "apps/page/page_views.h"
 #include "apps/scene_truth.h"
 #include "renderer/scene/load_geometry.h"
 

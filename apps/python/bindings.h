@@ -4,11 +4,35 @@
 #include "apps/python/arrays.h"
 #include "apps/python/json_values.h"
 #include "apps/python/long_call.h"
-#include "apps/python/scene_object.h"
+#include "calib/fit.h"
+#include "renderer/core/capture.h"
+#include "renderer/material/scene_geometry.h"
+#include "renderer/scene/scene_file.h"
 
 #include <nanobind/nanobind.h>
 
+#include <string>
+
 namespace python {
+
+/// What Python calls a Scene: a description and the geometry that it is about.
+struct SceneObject {
+    std::string name;
+    renderer::SceneDescription description;  ///< valid
+    renderer::SceneGeometry geometry;        ///< with the description's objects applied
+};
+
+/// A scene and the points from which it is measured.
+struct ScannedScene {
+    SceneObject scene;
+    core::Scan scan;
+};
+
+/// What Python calls a FitResult: a fit and what it was of.
+struct FitObject {
+    calib::FitInput input;
+    calib::FitResult result;
+};
 
 // What each file adds to the module.
 void bind_scene(nanobind::module_& module);
@@ -22,5 +46,16 @@ void bind_gradients(nanobind::module_& module);
 
 /// Changes a scene by keys of scene.json.
 void change_scene(SceneObject& scene, const core::Json& changes);
+
+/// A scene with changes, and the scan and bins that arguments ask for.
+///
+/// scan      keys of scene.json's `scan`; a Capture: its points and bins; None: the scene's
+/// axis      keys of scene.json's `time_axis`, or auto; None: the scan's, or the scene's
+/// changes   keys of scene.json
+/// throws    core::Error naming the argument
+ScannedScene scan_scene(const SceneObject& scene,
+                        const nanobind::object& scan,
+                        const nanobind::object& axis,
+                        core::Json changes);
 
 }  // namespace python

@@ -2,7 +2,6 @@
 #include "apps/commands/fit_job.h"
 #include "apps/commands/fit_pictures.h"
 #include "apps/python/bindings.h"
-#include "apps/python/fit_object.h"
 #include "apps/python/picture_bytes.h"
 #include "calib/fit_file.h"
 #include "renderer/scene/load_geometry.h"

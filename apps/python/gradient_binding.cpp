@@ -2,7 +2,6 @@
 // Third bounces of all objects of a scene, and the way back from a loss by H to one by the objects.
 #include "apps/python/bindings.h"
 #include "apps/python/capture_histograms.h"
-#include "apps/python/scanned_scene.h"
 #include "calib/third_bounce_vjp.h"
 
 #include <nanobind/stl/string.h>

@@ -10,7 +10,6 @@
 #include <nanobind/stl/string.h>
 
 #include <filesystem>
-#include <new>
 
 namespace nb = nanobind;
 

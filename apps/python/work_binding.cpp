@@ -6,8 +6,6 @@
 #include "apps/commands/reconstruct_job.h"
 #include "apps/commands/render_job.h"
 #include "apps/python/bindings.h"
-#include "apps/python/fit_object.h"
-#include "apps/python/scanned_scene.h"
 #include "apps/report/report.h"
 #include "apps/scene_truth.h"
 #include "apps/version.h"
@@ -15,7 +13,6 @@
 #include "nlos/detector/detector.h"
 #include "nlos/detector/sensor_counts.h"
 #include "nlos/formats/capture_file.h"
-#include "nlos/formats/ply_file.h"
 #include "renderer/core/sensor_footprint.h"
 
 #include <nanobind/stl/optional.h>

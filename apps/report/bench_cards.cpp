@@ -2,7 +2,6 @@
 #include "apps/report/bench_cards.h"
 
 #include "apps/page/html.h"
-#include "apps/report/result_cards.h"
 
 #include <fmt/core.h>
 

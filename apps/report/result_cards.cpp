@@ -181,6 +181,11 @@ std::string read_bytes(const std::string& path) {
     return std::string(file.bytes());
 }
 
+std::string picture_beside(const std::string& path) {
+    const fs::path picture = fs::path(path).replace_extension(".png");
+    return fs::exists(picture) ? read_bytes(picture.string()) : "";
+}
+
 ResultCard capture_card(const std::string& path, const core::Capture& capture) {
     ResultCard card;
     card.file = fs::path(path).filename().string();
@@ -204,8 +209,7 @@ ResultCard fit_card(const std::string& path, const core::Json& json) {
     ResultCard card;
     card.file = fs::path(path).filename().string();
     card.facts = fit_facts(calib::read_fit(path), json);
-    const fs::path picture = fs::path(path).replace_extension(".png");
-    if (fs::exists(picture)) card.picture_png = read_bytes(picture.string());
+    card.picture_png = picture_beside(path);
     for (const char* key : {"warnings", "unidentifiable"}) {
         for (const core::Json& text : json.value(key, core::Json::array())) {
             const std::string prefix =

@@ -40,4 +40,7 @@ std::string short_number(double value);
 /// A whole file. Throws core::Error when it cannot be opened.
 std::string read_bytes(const std::string& path);
 
+/// The .png of the same name beside a file; nothing when there is none.
+std::string picture_beside(const std::string& path);
+
 }  // namespace apps

@@ -2,7 +2,6 @@
 #include "apps/report/results_folder.h"
 
 #include "apps/file_kind.h"
-#include "apps/report/bench_cards.h"
 #include "apps/report/result_labels.h"
 #include "calib/fit_file.h"
 #include "calib/track/track_file.h"
@@ -45,8 +44,7 @@ ScoredResult scored_result(const fs::path& path, const core::Json& json) {
         const auto it = json.find(name);
         if (it != json.end()) core::read_value(*it, path.string() + ": " + name, field);
     });
-    const fs::path picture = fs::path(path).replace_extension(".png");
-    if (fs::exists(picture)) scored.picture_png = read_bytes(picture.string());
+    scored.picture_png = picture_beside(path.string());
     return scored;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "calib/fit/fit_checks.h"
 
+#include "calib/statistics/median.h"
 #include "calib/statistics/poisson_deviance.h"
 #include "renderer/core/recorded_detector.h"
 
@@ -77,9 +78,7 @@ void warn_of_deviance(const FitDriver& driver, double min_mean, FitResult& resul
     const std::vector<Excess> excesses = pair_excesses(result, min_mean);
     std::vector<double> sizes;
     for (const Excess& pair : excesses) sizes.push_back(std::abs(pair.sigmas()));
-    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-    std::nth_element(sizes.begin(), middle, sizes.end());
-    const double limit = std::max(kWild, kWildOfUsual * *middle);
+    const double limit = std::max(kWild, kWildOfUsual * median(std::move(sizes)));
     for (std::size_t i = 0; i < excesses.size(); ++i) {
         const Excess& pair = excesses[i];
         if (pair.sigmas() > limit) {
@@ -271,12 +270,13 @@ void add_warnings(const FitDriver& driver,
     }
 }
 
-void check_dependence(const SceneModel& model, const Eigen::VectorXd& sigma, FitResult& result) {
+void check_dependence(const SceneModel& model, FitResult& result) {
     for (const ParameterBlock& block : model.blocks()) {
         const bool is_place = block.kind == ParameterKind::Translation ||
                               block.kind == ParameterKind::Rotation ||
                               block.kind == ParameterKind::PointPosition;
-        if (!is_place || sigma.segment(block.first_column, block.columns).allFinite()) continue;
+        if (!is_place || result.sigma.segment(block.first_column, block.columns).allFinite())
+            continue;
         result.converged = false;
         result.message = "the light of " +
                          block.names.front().substr(0, block.names.front().rfind('.')) +

@@ -24,7 +24,8 @@ void add_warnings(const FitDriver& driver,
                   const SceneState& state,
                   FitResult& result);
 
-/// Sets result.converged to false when the data do not depend on where an object is.
-void check_dependence(const SceneModel& model, const Eigen::VectorXd& sigma, FitResult& result);
+/// Sets result.converged to false when the data do not depend on where an object is: its sigma is
+/// then infinite.
+void check_dependence(const SceneModel& model, FitResult& result);
 
 }  // namespace calib

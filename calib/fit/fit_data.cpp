@@ -47,6 +47,27 @@ core::BinRange unspoilt(const core::BinRange& range, int num_bins, int reach) {
     return range.size() > 0 ? core::intersection(left, {0, num_bins}) : range;
 }
 
+struct ObservedSums {
+    std::vector<double> sums;
+    std::vector<double> counts;
+};
+
+// Of the values in equal parts of the axis over all pairs; counts are of the bins observed.
+ObservedSums observed_sums(const FitData& data, std::size_t parts) {
+    const auto bins = static_cast<std::size_t>(data.axis.num_bins);
+    ObservedSums result{std::vector<double>(parts, 0.0), std::vector<double>(parts, 0.0)};
+    for (std::size_t pair = 0; pair < data.num_pairs(); ++pair) {
+        const core::BinRange seen = data.observed_range(pair);
+        for (auto b = static_cast<std::size_t>(seen.begin); b < static_cast<std::size_t>(seen.end);
+             ++b) {
+            const std::size_t part = b * parts / bins;
+            result.sums[part] += data.values[pair * bins + b];
+            result.counts[part] += 1.0;
+        }
+    }
+    return result;
+}
+
 }  // namespace
 
 FitData crop(const core::Capture& capture, const std::optional<std::array<double, 2>>& window_m) {
@@ -129,17 +150,8 @@ std::array<bool, 2> light_is_cut(const FitData& data, double ambient) {
     constexpr double kShareOfBrightest = 0.05;
     constexpr double kSignificance = 5.0;
     const auto bins = static_cast<std::size_t>(data.axis.num_bins);
-    std::vector<double> sums(bins, 0.0);
-    std::vector<double> pairs(bins, 0.0);  // that observed a bin
-    for (std::size_t pair = 0; pair < data.num_pairs(); ++pair) {
-        const core::BinRange seen = data.observed_range(pair);
-        for (auto b = static_cast<std::size_t>(seen.begin); b < static_cast<std::size_t>(seen.end);
-             ++b) {
-            sums[b] += data.values[pair * bins + b];
-            pairs[b] += 1.0;
-        }
-    }
-    const auto light_in = [&](std::size_t b) { return sums[b] - ambient * pairs[b]; };
+    const ObservedSums all = observed_sums(data, bins);
+    const auto light_in = [&](std::size_t b) { return all.sums[b] - ambient * all.counts[b]; };
     double brightest = light_in(0);
     for (std::size_t b = 1; b < bins; ++b) brightest = std::max(brightest, light_in(b));
     const std::size_t width = std::min(kEdgeBins, bins);
@@ -148,7 +160,7 @@ std::array<bool, 2> light_is_cut(const FitData& data, double ambient) {
         double counted = 0.0;
         for (std::size_t b = first; b < first + width; ++b) {
             light += light_in(b);
-            counted += sums[b];
+            counted += all.sums[b];
         }
         return light > kShareOfBrightest * static_cast<double>(width) * brightest &&
                light > kSignificance * std::sqrt(counted);
@@ -228,19 +240,8 @@ bool is_integer_valued(const core::Capture& capture) {
 
 double quietest_level(const FitData& data) {
     constexpr std::size_t kParts = 16;
-    const auto bins = static_cast<std::size_t>(data.axis.num_bins);
-    const std::size_t parts = std::min(kParts, bins);
-    std::vector<double> sums(parts, 0.0);
-    std::vector<double> counts(parts, 0.0);
-    for (std::size_t pair = 0; pair < data.num_pairs(); ++pair) {
-        const core::BinRange seen = data.observed_range(pair);
-        for (auto b = static_cast<std::size_t>(seen.begin); b < static_cast<std::size_t>(seen.end);
-             ++b) {
-            const std::size_t part = b * parts / bins;
-            sums[part] += data.values[pair * bins + b];
-            counts[part] += 1.0;
-        }
-    }
+    const std::size_t parts = std::min(kParts, static_cast<std::size_t>(data.axis.num_bins));
+    const auto [sums, counts] = observed_sums(data, parts);
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t p = 0; p < parts; ++p) {
         if (counts[p] > 0.0) least = std::min(least, sums[p] / counts[p]);

@@ -7,9 +7,7 @@
 #include "renderer/material/scene_geometry.h"
 #include "renderer/scene/scene_file.h"
 
-#include <array>
 #include <limits>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -95,12 +93,10 @@ struct FitCourse {
 };
 
 /// What fit_scene() found.
-struct FitResult : FittedValues, FitAgreement, FitCourse {
-    std::vector<Correlation> correlations;
-    double condition_number = 1.0;
+///
+/// Uncertainties are those of `parameters`; of the logarithms of sizes, albedos and widths.
+struct FitResult : FittedValues, FitAgreement, FitCourse, Uncertainty {
     std::vector<std::string> parameters;  ///< names of the free ones
-    Eigen::MatrixXd covariance;           ///< of them; logarithms of sizes, albedos and widths
-    std::vector<std::string> unidentifiable;
     std::vector<std::string> warnings;
 };
 

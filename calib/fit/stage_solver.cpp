@@ -2,13 +2,13 @@
 #include "calib/fit/stage_solver.h"
 
 #include "calib/model/state_vector.h"
+#include "calib/statistics/median.h"
 #include "renderer/core/error.h"
 
 #include <ceres/ceres.h>
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <memory>
 
 namespace calib {
@@ -144,9 +144,7 @@ double loss_width(const FitObjective& objective, const SolveSettings& settings) 
     for (std::size_t i = 0; i < objective.num_pairs(); ++i) {
         squares.push_back(objective.pair(i).residual.squaredNorm());
     }
-    const auto middle = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
-    std::nth_element(squares.begin(), middle, squares.end());
-    return settings.loss_scale * std::sqrt(std::max(*middle, 1e-300));
+    return settings.loss_scale * std::sqrt(std::max(median(std::move(squares)), 1e-300));
 }
 
 std::unique_ptr<ceres::LossFunction> make_loss(LossKind kind, double width) {

@@ -5,9 +5,6 @@
 
 #include <ceres/jet.h>
 
-#include <algorithm>
-#include <cmath>
-
 namespace calib {
 namespace {
 

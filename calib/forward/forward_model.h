@@ -9,7 +9,6 @@
 #include "renderer/triangle/triangle_histogram.h"
 
 #include <optional>
-#include <span>
 #include <vector>
 
 namespace calib {

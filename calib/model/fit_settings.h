@@ -94,15 +94,10 @@ FitSettings read_fit_settings(const std::string& path, const std::vector<std::st
 
 template <>
 struct core::EnumNames<calib::ResidualKind> {
-    static constexpr std::array<std::pair<calib::ResidualKind, std::string_view>, 3> value{
-        {{calib::ResidualKind::Auto, "auto"},
-         {calib::ResidualKind::Poisson, "poisson"},
-         {calib::ResidualKind::LeastSquares, "least_squares"}}};
+    static constexpr auto value =
+        names_from_zero<calib::ResidualKind>("auto", "poisson", "least_squares");
 };
 template <>
 struct core::EnumNames<calib::LossKind> {
-    static constexpr std::array<std::pair<calib::LossKind, std::string_view>, 3> value{
-        {{calib::LossKind::None, "none"},
-         {calib::LossKind::Huber, "huber"},
-         {calib::LossKind::Cauchy, "cauchy"}}};
+    static constexpr auto value = names_from_zero<calib::LossKind>("none", "huber", "cauchy");
 };

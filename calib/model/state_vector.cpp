@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "calib/model/state_vector.h"
 
-#include <algorithm>
-#include <cmath>
 #include <span>
 #include <type_traits>
 

@@ -43,7 +43,6 @@ DirectReturns fit_direct_returns(const core::Capture& capture, ResponseShape sha
 
 template <>
 struct core::EnumNames<calib::ResponseShape> {
-    static constexpr std::array<std::pair<calib::ResponseShape, std::string_view>, 2> value{
-        {{calib::ResponseShape::Gaussian, "gaussian"},
-         {calib::ResponseShape::GaussianExponential, "gaussian_exponential"}}};
+    static constexpr auto value =
+        names_from_zero<calib::ResponseShape>("gaussian", "gaussian_exponential");
 };

@@ -72,6 +72,5 @@ SetupGeometry solve_setup(const SetupObservations& observations);
 
 template <>
 struct core::EnumNames<calib::CommandUnit> {
-    static constexpr std::array<std::pair<calib::CommandUnit, std::string_view>, 2> value{
-        {{calib::CommandUnit::Rad, "rad"}, {calib::CommandUnit::Volt, "volt"}}};
+    static constexpr auto value = names_from_zero<calib::CommandUnit>("rad", "volt");
 };

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "calib/statistics/uncertainty.h"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>

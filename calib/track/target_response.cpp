@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace calib {
 namespace {
@@ -108,6 +107,19 @@ TargetResponse::Reach TargetResponse::reach(const Leg& leg,
             per_r3 * (normal_ - (3.0 * height / (r * r)) * d)};
 }
 
+TargetResponse::Reaches TargetResponse::reaches(const std::vector<Leg>& legs,
+                                                const Vec3& position_m,
+                                                double ways) const {
+    Reaches result;
+    result.all.reserve(legs.size());
+    for (const Leg& leg : legs) {
+        const Reach& one = result.all.emplace_back(reach(leg, position_m, ways));
+        result.first_m = std::min(result.first_m, one.opl_m);
+        result.last_m = std::max(result.last_m, one.opl_m);
+    }
+    return result;
+}
+
 TargetResponse::Window TargetResponse::bins_around(double first_m,
                                                    double last_m,
                                                    double margin_m) const {
@@ -125,23 +137,15 @@ TargetResponse::Window TargetResponse::add_retroreflective(const Zone& zone,
                                                            const Vec3& position_m,
                                                            std::span<double> values,
                                                            std::span<Vec3> gradient) const {
-    double first_m = std::numeric_limits<double>::infinity();
-    double last_m = -first_m;
-    std::vector<Reach> reaches;
-    reaches.reserve(zone.there_and_back.size());
-    for (const Leg& leg : zone.there_and_back) {
-        reaches.push_back(reach(leg, position_m, 2.0));
-        first_m = std::min(first_m, reaches.back().opl_m);
-        last_m = std::max(last_m, reaches.back().opl_m);
-    }
-    if (reaches.empty()) return {};
-    const Window window = bins_around(first_m, last_m, pulse_.reach_m());
+    const Reaches ways = reaches(zone.there_and_back, position_m, 2.0);
+    if (ways.all.empty()) return {};
+    const Window window = bins_around(ways.first_m, ways.last_m, pulse_.reach_m());
     for (int i = window.begin; i < window.end; ++i) {
         const auto bin = static_cast<std::size_t>(i);
         const double center_m = axis_.bin_center_m(i);
         double value = 0.0;
         Vec3 slope = Vec3::Zero();
-        for (const Reach& r : reaches) {
+        for (const Reach& r : ways.all) {
             const PulseTable::Value pulse = pulse_.at(center_m - r.opl_m);
             value += r.weight * pulse.share;
             slope += pulse.share * r.weight_gradient - (r.weight * pulse.slope) * r.opl_gradient;
@@ -155,24 +159,17 @@ TargetResponse::Window TargetResponse::add_retroreflective(const Zone& zone,
 TargetResponse::LitPulse TargetResponse::lit_pulse(const std::vector<Leg>& lit,
                                                    const Vec3& position_m) const {
     LitPulse result;
-    std::vector<Reach> reaches;
-    double first_m = std::numeric_limits<double>::infinity();
-    double last_m = -first_m;
-    for (const Leg& leg : lit) {
-        reaches.push_back(reach(leg, position_m, 1.0));
-        first_m = std::min(first_m, reaches.back().opl_m);
-        last_m = std::max(last_m, reaches.back().opl_m);
-    }
-    if (reaches.empty()) return result;
+    const Reaches ways = reaches(lit, position_m, 1.0);
+    if (ways.all.empty()) return result;
     result.per_m = kLitStepsPerSigma / sigma_m_;
-    result.start_m = first_m - pulse_.reach_m();
-    const double length_m = last_m - first_m + 2.0 * pulse_.reach_m();
+    result.start_m = ways.first_m - pulse_.reach_m();
+    const double length_m = ways.last_m - ways.first_m + 2.0 * pulse_.reach_m();
     const auto steps = static_cast<std::size_t>(std::ceil(length_m * result.per_m)) + 2;
     result.end_m = result.start_m + static_cast<double>(steps - 1) / result.per_m;
     result.share.assign(steps, 0.0);
     result.slope.assign(steps, 0.0);
     result.gradient.assign(steps, Vec3::Zero());
-    for (const Reach& r : reaches) {
+    for (const Reach& r : ways.all) {
         const double from = (r.opl_m - pulse_.reach_m() - result.start_m) * result.per_m;
         const double to = (r.opl_m + pulse_.reach_m() - result.start_m) * result.per_m;
         const auto last = std::min(steps - 1, static_cast<std::size_t>(to));
@@ -194,19 +191,12 @@ TargetResponse::Window TargetResponse::add_diffuse(const Zone& zone,
                                                    std::span<double> values,
                                                    std::span<Vec3> gradient) const {
     if (lit.share.empty() || zone.seen.empty()) return {};
-    std::vector<Reach> reaches;
-    double first_m = std::numeric_limits<double>::infinity();
-    double last_m = -first_m;
-    for (const Leg& leg : zone.seen) {
-        reaches.push_back(reach(leg, position_m, 1.0));
-        first_m = std::min(first_m, reaches.back().opl_m);
-        last_m = std::max(last_m, reaches.back().opl_m);
-    }
-    const Window window = bins_around(lit.start_m + first_m, lit.end_m + last_m, 0.0);
+    const Reaches ways = reaches(zone.seen, position_m, 1.0);
+    const Window window = bins_around(lit.start_m + ways.first_m, lit.end_m + ways.last_m, 0.0);
     for (int i = window.begin; i < window.end; ++i) {
         double value = 0.0;
         Vec3 slope = Vec3::Zero();
-        for (const Reach& r : reaches) {
+        for (const Reach& r : ways.all) {
             const double position = (axis_.bin_center_m(i) - r.opl_m - lit.start_m) * lit.per_m;
             if (!(position >= 0.0) || position >= static_cast<double>(lit.share.size() - 1))
                 continue;

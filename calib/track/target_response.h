@@ -8,6 +8,7 @@
 #include "renderer/core/types.h"
 
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -111,9 +112,16 @@ class TargetResponse {
         core::Vec3 opl_gradient;
         core::Vec3 weight_gradient;
     };
+    /// Those of all legs, and their shortest and longest path.
+    struct Reaches {
+        std::vector<Reach> all;
+        double first_m = std::numeric_limits<double>::infinity();
+        double last_m = -std::numeric_limits<double>::infinity();
+    };
     struct LitPulse;  ///< what all points lit send to the target, by time
 
     Reach reach(const Leg& leg, const core::Vec3& position_m, double legs) const;
+    Reaches reaches(const std::vector<Leg>& legs, const core::Vec3& position_m, double ways) const;
     LitPulse lit_pulse(const std::vector<Leg>& lit, const core::Vec3& position_m) const;
     Window bins_around(double first_m, double last_m, double margin_m) const;
     Window add_retroreflective(const Zone& zone,

@@ -19,12 +19,6 @@ bool SearchBox::holds(const Vec3& position_m) const {
     return true;
 }
 
-double SearchBox::volume_m3() const {
-    double volume = 1.0;
-    for (const auto& range : ranges_m) volume *= range[1] - range[0];
-    return volume;
-}
-
 TargetSearch::TargetSearch(const TargetResponse& response, const SearchBox& box, double cell_m) {
     std::array<double, 3> pitch_m{};
     for (std::size_t axis = 0; axis < 3; ++axis) {

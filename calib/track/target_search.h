@@ -6,7 +6,6 @@
 
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <vector>
 
 namespace calib {
@@ -17,7 +16,6 @@ struct SearchBox {
     std::array<std::array<double, 2>, 3> ranges_m{};  ///< along x, y and z of the wall
 
     bool holds(const core::Vec3& position_m) const;
-    double volume_m3() const;
 };
 
 /// Where a target may be that a frame shows, and how strong.

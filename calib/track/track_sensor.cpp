@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace calib {
 namespace {
@@ -142,18 +141,14 @@ SearchBox search_box(const TrackSettings& settings,
                      const core::SensorFootprints& footprints) {
     SearchBox box;
     box.world_from_wall = wall.world_from_wall();
-    Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity());
-    Vec3 high = -low;
+    Eigen::AlignedBox3d seen;
     for (const core::ZoneFootprint& zone : footprints.zones) {
-        for (const Vec3& p : zone.seen.positions) {
-            low = low.cwiseMin(box.world_from_wall.inverse() * p);
-            high = high.cwiseMax(box.world_from_wall.inverse() * p);
-        }
+        for (const Vec3& p : zone.seen.positions) seen.extend(box.world_from_wall.inverse() * p);
     }
-    box.ranges_m[0] =
-        settings.search.x_range_m.value_or(std::array{low.x() - kBeyondX_m, high.x() + kBeyondX_m});
-    box.ranges_m[1] =
-        settings.search.y_range_m.value_or(std::array{low.y() - kBeyondY_m, high.y() + kBeyondY_m});
+    box.ranges_m[0] = settings.search.x_range_m.value_or(
+        std::array{seen.min().x() - kBeyondX_m, seen.max().x() + kBeyondX_m});
+    box.ranges_m[1] = settings.search.y_range_m.value_or(
+        std::array{seen.min().y() - kBeyondY_m, seen.max().y() + kBeyondY_m});
     box.ranges_m[2] = settings.search.z_range_m;
     return box;
 }

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace calib {
 namespace {
@@ -191,7 +190,7 @@ bool Tracker::is_hidden(const Vec3& position_m) const {
 
 void Tracker::predict(double dt_s) {
     const double survival = std::exp(-dt_s / settings_.existence.lifetime_s);
-    for (Target& target : targets_) {
+    for (TargetEstimate& target : targets_) {
         target.predicted = dt_s > 0.0 ? motion_.predict(target.state, dt_s) : target.state;
         target.state = target.predicted;
         target.predicted_probability = survival * target.probability;
@@ -202,7 +201,7 @@ void Tracker::predict(double dt_s) {
 
 void Tracker::update(const FrameCounts& frame, FrameEstimate& estimate) {
     std::vector<Gaussian> priors;
-    for (const Target& target : targets_) priors.push_back(target.predicted);
+    for (const TargetEstimate& target : targets_) priors.push_back(target.predicted);
     const JointUpdate joint =
         update_jointly(*response_, frame, priors, [this](const Vec3& p) { return is_hidden(p); });
     for (std::size_t t = 0; t < targets_.size(); ++t) {
@@ -215,8 +214,8 @@ void Tracker::update(const FrameCounts& frame, FrameEstimate& estimate) {
 }
 
 // A target that the frame shows beyond its background.
-std::optional<Tracker::Target> Tracker::find(const FrameCounts& frame) const {
-    std::optional<Target> best;
+std::optional<TargetEstimate> Tracker::find(const FrameCounts& frame) const {
+    std::optional<TargetEstimate> best;
     for (const Candidate& candidate : search_->find(frame, kCandidates, search_offset_m_)) {
         if (candidate.score < kLeastScore) continue;
         SeenVector mean;
@@ -229,7 +228,7 @@ std::optional<Tracker::Target> Tracker::find(const FrameCounts& frame) const {
         // Axes of the box are those of the wall.
         Eigen::Matrix4d turn = Eigen::Matrix4d::Identity();
         turn.topLeftCorner<3, 3>() = box_.world_from_wall.linear();
-        Target target;
+        TargetEstimate target;
         target.predicted = motion_.start(mean, turn * wide * turn.transpose());
         const JointUpdate fit =
             update_jointly(*response_, frame, {target.predicted}, [&](const Vec3& p) {
@@ -284,17 +283,10 @@ void Tracker::look_for_more(const FrameCounts& frame, double dt_s) {
 
 void Tracker::report(FrameEstimate& estimate) const {
     double none = 1.0;
-    for (const Target& target : targets_) {
+    for (const TargetEstimate& target : targets_) {
         none *= 1.0 - target.probability;
-        TargetEstimate one;
-        one.id = target.id;
-        one.probability = target.probability;
-        one.predicted = target.predicted;
-        one.state = target.state;
-        one.predicted_probability = target.predicted_probability;
-        one.log_evidence = target.log_evidence;
+        TargetEstimate& one = estimate.targets.emplace_back(target);
         one.is_named = target.probability >= settings_.existence.name_at;
-        estimate.targets.push_back(std::move(one));
     }
     estimate.probability = 1.0 - none;
     if (sensor_.setup) estimate.pose = pose_;
@@ -340,7 +332,8 @@ FrameEstimate Tracker::step(const TrackFrame& frame) {
     std::fill(signal_.begin(), signal_.end(), 0.0);
     if (!targets_.empty()) update(data, estimate);
     look_for_more(data, estimate.dt_s);
-    std::erase_if(targets_, [](const Target& t) { return t.probability < kKeptProbability; });
+    std::erase_if(targets_,
+                  [](const TargetEstimate& t) { return t.probability < kKeptProbability; });
     report(estimate);
     background_.follow(frame.counts, weights, signal_);
     return estimate;

@@ -72,15 +72,6 @@ class Tracker {
     const TrackSensor& sensor() const { return sensor_; }
 
  private:
-    struct Target {
-        int id = 0;
-        double probability = 0.0;
-        double predicted_probability = 0.0;
-        double log_evidence = 0.0;
-        Gaussian predicted;
-        Gaussian state;
-    };
-
     void check(const TrackFrame& frame) const;
     void aim(const core::SensorPose& pose);
     std::vector<double> weights_of(const TrackFrame& frame, FrameEstimate& estimate);
@@ -90,7 +81,7 @@ class Tracker {
     void predict(double dt_s);
     void update(const FrameCounts& frame, FrameEstimate& estimate);
     void look_for_more(const FrameCounts& frame, double dt_s);
-    std::optional<Target> find(const FrameCounts& frame) const;
+    std::optional<TargetEstimate> find(const FrameCounts& frame) const;
     void report(FrameEstimate& estimate) const;
     bool is_hidden(const core::Vec3& position_m) const;
 
@@ -109,7 +100,7 @@ class Tracker {
     std::optional<bool> counts_are_whole_;
     double dispersion_ = 1.0;
     double dispersion_frames_ = 0.0;
-    std::vector<Target> targets_;
+    std::vector<TargetEstimate> targets_;
     std::vector<double> signal_;
     int next_id_ = 1;
     std::set<std::string> said_;

@@ -136,7 +136,7 @@ TEST_F(SettingsFuzz, OfTrack) {
     walk.transient = walk.sequence->frames.back();
     nlos::write_capture(file("walk.h5"), walk);
     try_settings("track " + file("walk.h5") + " data/walk/track.json -o " + file("t.json"),
-                 core::settings_help(apps::TrackOptions{}),
+                 core::settings_help(apps::WithCapture<calib::TrackSettings>{}),
                  20,
                  18);
 }

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/bench/field/bin_agreement.h"
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 namespace apps {

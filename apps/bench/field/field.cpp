@@ -1,20 +1,95 @@
 // SPDX-License-Identifier: MIT
-#include "apps/bench/field/field.h"
-
+#include "apps/bench/command.h"
 #include "apps/bench/field/captures_table.h"
-#include "apps/bench/field/field_plots.h"
 #include "apps/bench/field/losses.h"
 #include "apps/bench/field/reconstruction_table.h"
 #include "apps/bench/field/rendering_table.h"
+#include "apps/bench/gnuplot.h"
+#include "apps/commands.h"
+#include "apps/outcome.h"
+#include "apps/report/report.h"
+#include "apps/terminal.h"
 
+#include <fmt/core.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
 
 namespace apps {
 namespace {
+
+/// Depth error against CPU time and against counts per point, for either pattern, by the end of
+/// the pictures' names.
+std::map<std::string, Plot> reconstruction_plots(
+    const std::vector<ReconstructionSummary>& summaries);
+
+void add(PlotLine& line, double x, std::optional<double> y) {
+    if (!y || !(*y > 0.0)) return;
+    line.x.push_back(x);
+    line.y.push_back(*y);
+}
+
+std::map<std::string, Plot> reconstruction_plots(
+    const std::vector<ReconstructionSummary>& summaries) {
+    std::map<std::string, Plot> plots;
+    for (const ReconstructionSummary& s : summaries) {
+        if (!s.cpu_s) continue;
+        const std::string of = fmt::format("{}, {} x {} points", s.pattern, s.points, s.points);
+        const std::string suffix = fmt::format("_{}_{}", s.pattern, s.points);
+        const std::string title = s.program + " " + s.method;
+        Plot& time = plots["_time" + suffix];
+        time.title = "Error against time, without noise, " + of;
+        time.x_label = "CPU time of the calculation [s]";
+        time.y_label = "mean depth error, median of the scenes [mm]";
+        add(line_named(title, time), *s.cpu_s, s.clean_mae_mm);
+        if (!s.mae_mm_3) continue;
+        Plot& photons = plots["_photons" + suffix];
+        photons.title = "Photons against accuracy, " + of;
+        photons.x_label = "counts per wall point";
+        photons.y_label = time.y_label;
+        photons.x_ticks = {3, 20, 100};
+        PlotLine& line = line_named(title, photons);
+        add(line, 3, s.mae_mm_3);
+        add(line, 20, s.mae_mm_20);
+        add(line, 100, s.mae_mm_100);
+    }
+    for (auto& [suffix, plot] : plots) {
+        if (suffix.starts_with("_time")) plot.lines.push_back(pareto_front(plot.lines));
+    }
+    return plots;
+}
+
+/// Error against CPU time for every scene and order, likewise.
+std::map<std::string, Plot> rendering_plots(const std::vector<RenderingRow>& rows) {
+    std::map<std::string, Plot> plots;
+    for (const RenderingRow& row : rows) {
+        if (!row.cpu_s) continue;
+        Plot& plot = plots[fmt::format("_render_{}_{}", row.scene, row.max_bounces)];
+        plot.title =
+            fmt::format("Error against time, {}, up to {} bounces", row.scene, row.max_bounces);
+        plot.x_label = "CPU time of the rendering [s]";
+        plot.y_label = "relative L2 error over all of H";
+        add(line_named(row.program + " " + row.method, plot), *row.cpu_s, row.rel_l2);
+    }
+    for (auto& [suffix, plot] : plots) plot.lines.push_back(pareto_front(plot.lines));
+    return plots;
+}
+
+/// What the field's table is made of.
+struct FieldSettings {
+    std::string part = "all";  ///< all, reconstruct, render or captures
+    std::string peers;         ///< environment of install_peers.sh; empty: our methods alone
+    std::string captures;      ///< folder with a captures.json; empty: none
+    int sensing_points = 32;   ///< along either side of the wall
+    double limit_s = 120.0;    ///< CPU time that one run may take
+    bool quick = false;        ///< the letter alone, fewer points and samples
+};
 
 /// What renderers mean by the same words.
 struct Convention {
@@ -56,8 +131,13 @@ std::vector<Convention> conventions() {
     };
 }
 
-}  // namespace
-
+/// Our methods and installed peers side by side on the same files: reconstruction of scenes by
+/// light levels, rendering by orders of bounces with the agreement of every bin, and captures of
+/// the user's. Every run is a process of its own on one thread; one that fails costs its row.
+///
+/// folder    gets the captures, volumes and logs of all runs
+/// throws    core::Error for a folder of peers or captures that is none; core::Failure when
+///           interrupted
 BenchResult measure_field(const FieldSettings& settings,
                           const std::string& folder,
                           const core::Progress& progress) {
@@ -101,6 +181,48 @@ BenchResult measure_field(const FieldSettings& settings,
         result.figures["peers"] = fmt::format("{}", fmt::join(contenders.versions(), ", "));
     }
     return result;
+}
+
+void run(const BenchOutput& output, const FieldSettings& settings) {
+    const std::filesystem::path folder = output.folder;
+    run_benchmark(output, "field", [&](const core::Progress& progress) {
+        return measure_field(settings, (folder / "files").string(), progress);
+    });
+    const std::string page = (folder / "report.html").string();
+    write_report(page, read_results_folder(output.folder), {});
+    note_written({page});
+    print("wrote {}\n", page);
+}
+
+}  // namespace
+
+void add_bench_field_command(CLI::App& bench) {
+    const auto state = std::make_shared<std::pair<BenchOutput, FieldSettings>>();
+    FieldSettings& settings = state->second;
+    Command& command =
+        add_command(bench, "field", "Our methods and installed peers on the same files");
+    add_output_options(command, state->first);
+    add_setting(command, "--part", settings.part, "What to measure")
+        ->check(one_of({"all", "reconstruct", "render", "captures"}));
+    command
+        .add_option("--peers",
+                    settings.peers,
+                    "Environment of apps/bench/field/install_peers.sh (default: no peers)")
+        ->type_name("DIR");
+    command
+        .add_option("--captures",
+                    settings.captures,
+                    "Folder with captures.json: own captures and known distances")
+        ->type_name("DIR");
+    add_setting(command,
+                "--sensing-points",
+                settings.sensing_points,
+                "Wall points along either side, a multiple of 4",
+                {8, 256});
+    add_setting(command, "--limit-s", settings.limit_s, "CPU time one run may take [s]");
+    command.add_flag("--quick", settings.quick, "The letter alone: a few minutes");
+    command.example = "nlos bench field -o out/field --quick --sensing-points 16";
+    command.callback([state] { run(state->first, state->second); });
 }
 
 }  // namespace apps

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "apps/bench/fit/fit.h"
 
+#include "apps/bench/command.h"
 #include "apps/bench/fit/fit_parts.h"
 #include "apps/bench/fit/fit_trials.h"
+#include "apps/commands.h"
 #include "renderer/core/parallel.h"
 #include "renderer/core/process.h"
 #include "renderer/render.h"
@@ -260,6 +262,12 @@ const std::vector<BenchPart>& bench_parts() {
     return kParts;
 }
 
+void declare(CLI::App& command, FitBenchSettings& settings) {
+    add_setting(command, "--trials", settings.trials, "Fits per row of the table", {1, 10000});
+    command.add_option("--only", settings.parts, "Parts of the table")
+        ->check(one_of(fit_bench_parts()));
+}
+
 }  // namespace
 
 std::vector<std::string> fit_bench_parts() {
@@ -288,6 +296,15 @@ BenchResult measure_fit(const FitBenchSettings& settings, const core::Progress& 
     plot.lines.push_back(pareto_front(plot.lines));
     result.plots[""] = plot;
     return result;
+}
+
+void add_bench_fit_command(CLI::App& bench) {
+    add_benchmark<FitBenchSettings>(bench,
+                                    {"fit",
+                                     "Fitting and calibration against their targets",
+                                     "nlos bench fit -o out/bench --trials 1"},
+                                    declare,
+                                    measure_fit);
 }
 
 }  // namespace apps

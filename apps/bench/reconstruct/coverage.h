@@ -68,6 +68,4 @@ struct CoverageBenchSettings {
 /// the truth.
 CoverageBench cover(const CoverageBenchSettings& settings, const core::Progress& progress);
 
-BenchResult measure_coverage(const CoverageBenchSettings& settings, const core::Progress& progress);
-
 }  // namespace apps

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include "apps/bench/reconstruct/reconstruct.h"
 
+#include "apps/bench/command.h"
+#include "apps/commands.h"
 #include "renderer/core/parallel.h"
 
 namespace apps {
 namespace {
 
 PlotLine scaling_line(const ReconstructScaling& curve, double ScalingPoint::*value) {
-    PlotLine line{curve.of == "voxels" ? curve.method + ", voxels" : curve.method, {}, {}};
-    for (const ScalingPoint& point : curve.points) {
-        line.x.push_back(point.values);
-        line.y.push_back(point.*value);
-    }
-    return line;
+    return line_of(curve.of == "voxels" ? curve.method + ", voxels" : curve.method,
+                   curve.points,
+                   &ScalingPoint::values,
+                   value);
 }
 
 Plot scaling_plot(const ReconstructBench& bench,
@@ -33,6 +33,19 @@ void add_limits(const ReconstructBench& bench, Plot& plot) {
         line.style = LineStyle::Limit;
         line.limit_of = static_cast<int>(i);
     }
+}
+
+void declare(CLI::App& command, ReconstructBenchSettings& settings) {
+    add_setting(command, "--scenes", settings.scenes_folder, "Folder of the scenes")
+        ->type_name("DIR");
+    add_file_option(
+        command, "--capture", settings.capture, "Also score this capture of the letter T");
+    add_setting(command, "--part", settings.part, "What to measure")
+        ->check(one_of({"all", "time", "accuracy", "scaling"}));
+    add_setting(command, "--repeats", settings.repeats, "Runs per median", {1, 1000});
+    add_threads_option(command, settings.threads);
+    add_setting(
+        command, "--largest", settings.largest, "Largest side of the scaling curves", {32, 256});
 }
 
 }  // namespace
@@ -57,6 +70,15 @@ BenchResult measure_reconstruct(const ReconstructBenchSettings& settings,
         result.plots["_memory"] = scaling_plot(bench, "memory [bytes]", &ScalingPoint::bytes);
     }
     return result;
+}
+
+void add_bench_reconstruct_command(CLI::App& bench) {
+    add_benchmark<ReconstructBenchSettings>(bench,
+                                            {"reconstruct",
+                                             "Time, memory and accuracy of every method",
+                                             "nlos bench reconstruct -o out/bench"},
+                                            declare,
+                                            measure_reconstruct);
 }
 
 }  // namespace apps

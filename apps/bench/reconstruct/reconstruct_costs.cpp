@@ -21,22 +21,18 @@ struct CostTarget {
 };
 
 void judge(const CostTarget& target, ReconstructCost& cost) {
-    bool holds = true;
-    const auto add = [&](const std::string& text, bool is_met) {
-        cost.target += (cost.target.empty() ? "" : ", ") + text;
-        holds = holds && is_met;
-    };
-    if (target.max_ratio > 0.0) {
-        add(fmt::format("ratio <= {:g}", target.max_ratio), cost.ratio <= target.max_ratio);
-    }
-    if (target.max_bytes > 0.0) {
-        add(fmt::format("< {:g} GB", 1e-9 * target.max_bytes), cost.peak_bytes < target.max_bytes);
-    }
-    if (target.min_gpairs_per_s > 0.0) {
-        add(fmt::format(">= {:g} G/s", target.min_gpairs_per_s),
-            cost.gpairs_per_s >= target.min_gpairs_per_s);
-    }
-    if (!cost.target.empty()) cost.met = holds ? "yes" : "no";
+    judge(cost,
+          target.max_ratio > 0.0,
+          fmt::format("ratio <= {:g}", target.max_ratio),
+          cost.ratio <= target.max_ratio);
+    judge(cost,
+          target.max_bytes > 0.0,
+          fmt::format("< {:g} GB", 1e-9 * target.max_bytes),
+          cost.peak_bytes < target.max_bytes);
+    judge(cost,
+          target.min_gpairs_per_s > 0.0,
+          fmt::format(">= {:g} G/s", target.min_gpairs_per_s),
+          cost.gpairs_per_s >= target.min_gpairs_per_s);
 }
 
 struct CostCase {

@@ -13,6 +13,14 @@ using Overrides = std::vector<std::string>;  ///< `key.path=value` texts
 /// The slices that the costs of methods are compared on.
 inline const std::string kSlices = "volume.z_range_m=[0.45,1.05]";
 
+/// Notes what is asked of a row of a table, unless nothing is, and whether it and all before hold.
+template <class Row>
+void judge(Row& row, bool is_asked, const std::string& text, bool is_met) {
+    if (!is_asked) return;
+    row.target += (row.target.empty() ? "" : ", ") + text;
+    row.met = is_met && row.met != "no" ? "yes" : "no";
+}
+
 /// One reconstruction and what it took.
 struct ReconstructRun {
     nlos::Reconstruction result;

@@ -5,8 +5,7 @@
 #include "apps/bench/output.h"
 #include "apps/bench/render/gates.h"
 #include "apps/bench/render/scaling.h"
-#include "apps/bench/render/third_bounce_accuracy.h"
-#include "apps/bench/render/third_bounce_costs.h"
+#include "apps/bench/render/third_bounce.h"
 
 #include <string>
 #include <vector>

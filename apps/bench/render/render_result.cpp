@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
+#include "apps/bench/command.h"
 #include "apps/bench/render/render.h"
+#include "apps/commands.h"
 
 #include <fmt/core.h>
 
@@ -74,13 +76,7 @@ Plot gate_plot(const GateTable& table) {
               {}};
     for (const GateBench& gate : table.gates) {
         if (gate.gate_mm == 0.0) continue;
-        const auto same =
-            std::find_if(plot.lines.begin(), plot.lines.end(), [&](const PlotLine& line) {
-                return line.title == gate.method;
-            });
-        PlotLine& line = same != plot.lines.end()
-                             ? *same
-                             : plot.lines.emplace_back(PlotLine{gate.method, {}, {}});
+        PlotLine& line = line_named(gate.method, plot);
         line.x.push_back(gate.gate_mm);
         line.y.push_back(gate.rel_mse);
     }
@@ -105,22 +101,41 @@ Plot scaling_plot(const RenderBench& bench) {
 Plot curves_plot(const RenderBench& bench) {
     Plot plot{"Error against time, " + bench.scene, "CPU time [s]", "relative L2 error", {}};
     for (const BenchCurve& curve : bench.curves) {
-        PlotLine& line = plot.lines.emplace_back();
-        line.title = curve.method;
-        for (const BenchPoint& point : curve.points) {
-            line.x.push_back(point.cpu_seconds);
-            line.y.push_back(point.rel_l2);
-        }
+        plot.lines.push_back(
+            line_of(curve.method, curve.points, &BenchPoint::cpu_seconds, &BenchPoint::rel_l2));
     }
-    PlotLine limit{"path, its rays alone", {}, {}, LineStyle::Limit, 0};
-    for (const BenchPoint& point : bench.curves.front().points) {
-        limit.x.push_back(bench.ray_limit_seconds * point.samples);
-        limit.y.push_back(point.rel_l2);
-    }
+    const auto ray_seconds = [&](const BenchPoint& point) {
+        return bench.ray_limit_seconds * point.samples;
+    };
+    PlotLine limit = line_of(
+        "path, its rays alone", bench.curves.front().points, ray_seconds, &BenchPoint::rel_l2);
+    limit.style = LineStyle::Limit;
+    limit.limit_of = 0;
     const PlotLine front = pareto_front(plot.lines);
     plot.lines.push_back(limit);
     plot.lines.push_back(front);
     return plot;
+}
+
+void declare(CLI::App& command, RenderBenchSettings& settings) {
+    add_setting(command, "--scene", settings.scene, "Scene description")->type_name("FILE");
+    add_setting(command, "--camera-scene", settings.camera_scene, "Image to try gates on")
+        ->type_name("FILE");
+    add_setting(command,
+                "--exclusion-scenes",
+                settings.exclusion_scenes,
+                "Scenes with surfaces to exclude from ellipsoidal connections")
+        ->type_name("FILE");
+    add_setting(command,
+                "--agreement-scenes",
+                settings.agreement_scenes,
+                "Confocal scans on which third_bounce and path are compared bin by bin")
+        ->type_name("FILE");
+    add_setting(command, "--part", settings.part, "What to measure")
+        ->check(
+            one_of({"all", "curves", "third_bounce", "accuracy", "gates", "exclusion", "scaling"}));
+    add_setting(command, "--repeats", settings.repeats, "Runs per point", {1, 1000});
+    command.add_flag("--quick", settings.quick, "Leave out what takes longest");
 }
 
 }  // namespace
@@ -137,6 +152,14 @@ BenchResult measure_render(const RenderBenchSettings& settings, const core::Prog
             gate_plot(table);
     }
     return result;
+}
+
+void add_bench_render_command(CLI::App& bench) {
+    add_benchmark<RenderBenchSettings>(
+        bench,
+        {"render", "Every estimator on one scene", "nlos bench render -o out/bench --quick"},
+        declare,
+        measure_render);
 }
 
 }  // namespace apps

@@ -9,8 +9,6 @@
 #include "renderer/render.h"
 #include "renderer/scene/scene_file.h"
 
-#include <fmt/core.h>
-
 #include <cmath>
 #include <span>
 

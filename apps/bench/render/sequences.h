@@ -72,6 +72,9 @@ NLOS_FIGURES(SequenceBench,
              merges_per_frame,
              rel_mse_of_frames);
 
+/// Errors of frames as a line over their numbers from 1 on.
+PlotLine line_of_frames(const std::string& title, const std::vector<double>& errors);
+
 /// A method and the settings that make it.
 struct SequenceMethod {
     std::string name;

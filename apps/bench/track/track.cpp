@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "apps/bench/track/track.h"
-
+#include "apps/bench/command.h"
 #include "apps/bench/track/simulated_walk.h"
+#include "apps/commands.h"
 #include "calib/track/compare_tracks.h"
 #include "calib/track/smooth.h"
 #include "calib/track/track_bound.h"
@@ -16,6 +16,13 @@
 
 namespace apps {
 namespace {
+
+/// What `nlos bench track` is to measure.
+struct TrackBenchSettings {
+    int walks = 50;               ///< trajectories of each row
+    int empty_walks = 20;         ///< of a scene without a target
+    double systematic_m = 0.002;  ///< see calib::NoiseSettings
+};
 
 /// A row of the table.
 struct TrackRow {
@@ -222,8 +229,8 @@ std::vector<Target> targets_of(const std::vector<TrackRow>& rows) {
     return targets;
 }
 
-}  // namespace
-
+/// Tracks simulated walks and holds them against their truth, their stated covariance and the
+/// recursive Cramer-Rao bound [Tichavsky1998], and measures speed on one core.
 BenchResult measure_track(const TrackBenchSettings& settings, const core::Progress& progress) {
     std::vector<TrackRow> rows;
     WalkSettings walk;
@@ -247,6 +254,27 @@ BenchResult measure_track(const TrackBenchSettings& settings, const core::Progre
     result.figures["targets"] = core::write_value(targets_of(rows));
     result.figures["walks"] = core::write_value(rows);
     return result;
+}
+
+void declare_track(CLI::App& command, TrackBenchSettings& settings) {
+    add_setting(command, "--walks", settings.walks, "Trajectories of each row", {1, 10000});
+    add_setting(
+        command, "--empty-walks", settings.empty_walks, "Scenes without a target", {1, 10000});
+    add_setting(command,
+                "--systematic-m",
+                settings.systematic_m,
+                "Error of the model stated beside those of counting [m]");
+}
+
+}  // namespace
+
+void add_bench_track_command(CLI::App& bench) {
+    add_benchmark<TrackBenchSettings>(bench,
+                                      {"track",
+                                       "Tracking with a cheap sensor against its targets",
+                                       "nlos bench track -o out/bench --walks 2 --empty-walks 1"},
+                                      declare_track,
+                                      measure_track);
 }
 
 }  // namespace apps

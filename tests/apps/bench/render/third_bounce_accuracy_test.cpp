@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What `nlos bench render --part accuracy` measures, on fewer scenes.
-#include "apps/bench/render/third_bounce_accuracy.h"
-
+#include "apps/bench/render/third_bounce.h"
 #include "apps/shapes/grid_mesh.h"
 
 #include <gtest/gtest.h>
