@@ -17,6 +17,7 @@
 #include "nlos/formats/capture_file.h"
 #include "nlos/formats/ply_file.h"
 #include "renderer/core/sensor_footprint.h"
+#include "renderer/core/settings_help.h"
 
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
