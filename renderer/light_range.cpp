@@ -67,9 +67,8 @@ std::vector<Vec3> hidden_points(const Scene& scene) {
     const auto step = static_cast<std::uint32_t>(1 + 3 * scene.facets().size() / kMaxCorners);
     for (std::uint32_t i = 0; i < num_facets; i += step) {
         if (!scene.is_hidden(i)) continue;
-        const Facet& facet = scene.facet(i);
-        points.insert(points.end(),
-                      {facet.corner, facet.corner + facet.edge1, facet.corner + facet.edge2});
+        const auto corners = scene.facet(i).corners();
+        points.insert(points.end(), corners.begin(), corners.end());
     }
     const AreaSampler by_area(scene);
     for (int i = 0; i < kAreaPoints; ++i) {

@@ -14,6 +14,7 @@
 #include "nlos/detector/sensor_counts.h"
 #include "nlos/formats/capture_file.h"
 #include "renderer/core/sensor_footprint.h"
+#include "renderer/core/settings_help.h"
 
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>

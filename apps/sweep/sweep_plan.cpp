@@ -196,7 +196,7 @@ void SweepPlan::check_parts() const {
         const std::string objects = compact({scene.geometry,
                                              core::write_value(scene.geometry_unit_m),
                                              core::write_value(scene.geometry_up),
-                                             write_value(scene.objects)});
+                                             core::write_value(scene.objects)});
         if (seen.insert(objects).second) renderer::load_geometry(scene);
     }
 }

@@ -128,13 +128,10 @@ Photograph decode_jpeg(const std::string& path, std::string_view bytes) {
     return result;
 }
 
-std::string to_cbor(const Photograph& photograph) {
-    std::string bytes;
-    Json::to_cbor(Json{{"width", photograph.width},
-                       {"height", photograph.height},
-                       {"grey", Json::binary(photograph.grey)}},
-                  bytes);
-    return bytes;
+Json to_json(const Photograph& photograph) {
+    return {{"width", photograph.width},
+            {"height", photograph.height},
+            {"grey", Json::binary(photograph.grey)}};
 }
 
 }  // namespace
@@ -145,11 +142,10 @@ Photograph read_photograph(const std::string& path) {
     if (!png && !is_jpeg(file.bytes())) {
         throw core::Error(path, "is neither a PNG nor a JPEG file", kAllowed);
     }
-    const std::string answer = core::run_sandboxed(path, [&] {
+    const Json json = core::run_sandboxed(path, [&] {
         require_upright(path, file.bytes());
-        return to_cbor((png ? decode_png : decode_jpeg)(path, file.bytes()));
+        return to_json((png ? decode_png : decode_jpeg)(path, file.bytes()));
     });
-    const Json json = Json::from_cbor(answer);
     return {json.at("width"), json.at("height"), json.at("grey").get_binary()};
 }
 

@@ -30,31 +30,24 @@ double voxel_diagonal_m(const VolumeAxes& axes) {
 void check_same_axis(const std::vector<double>& found,
                      const std::vector<double>& wanted,
                      const std::string& name) {
+    const auto refuse = [&](const std::string& difference) {
+        throw core::Error("compare: " + name, difference, "both must have the same grid");
+    };
     if (found.size() != wanted.size()) {
-        throw core::Error("compare: " + name,
-                          fmt::format("found {} values against {}", found.size(), wanted.size()),
-                          "both must have the same grid");
+        refuse(fmt::format("found {} values against {}", found.size(), wanted.size()));
     }
     const double tolerance = 1e-6 + 1e-3 * pitch_m(wanted);
     for (std::size_t i = 0; i < found.size(); ++i) {
-        if (!(std::abs(found[i] - wanted[i]) <= tolerance)) {
-            throw core::Error("compare: " + name,
-                              fmt::format("value {} is {} m against {} m", i, found[i], wanted[i]),
-                              "both must have the same grid");
-        }
+        if (std::abs(found[i] - wanted[i]) <= tolerance) continue;
+        refuse(fmt::format("value {} is {} m against {} m", i, found[i], wanted[i]));
     }
 }
 
 void check_same_wall(const core::Transform& found, const core::Transform& wanted) {
     constexpr double kTolerance = 1e-6;  // of rotation entries and metres
-    for (int row = 0; row < 3; ++row) {
-        for (int column = 0; column < 4; ++column) {
-            if (std::abs(found(row, column) - wanted(row, column)) <= kTolerance) continue;
-            throw core::Error("compare: wall",
-                              "found two different poses",
-                              "both must lie in the same wall's frame");
-        }
-    }
+    if (((found.affine() - wanted.affine()).array().abs() <= kTolerance).all()) return;
+    throw core::Error(
+        "compare: wall", "found two different poses", "both must lie in the same wall's frame");
 }
 
 void check_same_columns(const VolumeAxes& axes, const core::DepthMap& map) {
@@ -144,21 +137,6 @@ void score_image(const std::vector<float>& image,
     metrics.ssim = ssim(*a, *b, axes.x_m.size(), axes.y_m.size());
 }
 
-void score_points(const core::PointCloud& result,
-                  const core::PointCloud& truth,
-                  double threshold_m,
-                  Metrics& metrics) {
-    const Metrics scores = compare_points(result, truth, threshold_m);
-    metrics.chamfer_m = scores.chamfer_m;
-    metrics.fscore = scores.fscore;
-    metrics.completeness = scores.completeness;
-    metrics.accuracy = scores.accuracy;
-    metrics.fscore_threshold_m = scores.fscore_threshold_m;
-    if (metrics.normal_mae_deg) return;
-    metrics.normal_mae_deg = scores.normal_mae_deg;
-    metrics.normal_median_deg = scores.normal_median_deg;
-}
-
 /// World position of the brightest voxel; nothing when no value is positive.
 std::optional<core::Vec3> peak_world(const Volume& volume) {
     const auto it = std::max_element(volume.values.begin(), volume.values.end());
@@ -197,11 +175,11 @@ Metrics compare_to_truth(const Reconstruction& result,
     const std::vector<std::size_t> columns = common_columns(result.depth, truth);
     const core::PointCloud true_points = surface_points(truth);
 
-    Metrics metrics;
+    Metrics metrics =
+        compare_points(result.points, true_points, threshold_m.value_or(voxel_diagonal_m(axes)));
     score_depth(result.depth, truth, columns, metrics);
     score_masks(projection, result.depth, foreground_of(truth), metrics);
     score_normals(result.volume, truth, columns, metrics);
-    score_points(result.points, true_points, threshold_m.value_or(voxel_diagonal_m(axes)), metrics);
     score_image(projection, albedo_image(truth), axes, metrics);
     const auto peak = peak_world(result.volume);
     if (peak && !true_points.positions.empty()) {
@@ -224,12 +202,11 @@ Metrics compare_volumes(const Reconstruction& result,
     const std::vector<float> reference_projection = max_projection(reference.volume);
     const Mask reference_mask = mask_above_share(reference_projection, kMaskShare);
 
-    Metrics metrics;
+    Metrics metrics = compare_points(
+        result.points, reference.points, threshold_m.value_or(voxel_diagonal_m(axes)));
     score_depth(
         result.depth, reference.depth, common_columns(result.depth, reference.depth), metrics);
     score_masks(projection, result.depth, reference_mask, metrics);
-    score_points(
-        result.points, reference.points, threshold_m.value_or(voxel_diagonal_m(axes)), metrics);
     score_image(projection, reference_projection, axes, metrics);
     const auto peak = peak_world(result.volume);
     const auto reference_peak = peak_world(reference.volume);

@@ -28,8 +28,8 @@ const std::vector<Container>& containers() {
 std::size_t rows_of_read(const Shape& shape) {
     constexpr std::size_t kValuesPerRead = std::size_t{1} << 22;
     if (shape.empty()) return 1;
-    const std::uint64_t values = total_bytes(Shape(shape.begin() + 1, shape.end()), 1);
-    return std::max<std::size_t>(1, kValuesPerRead / std::max<std::size_t>(1, values));
+    return std::max<std::size_t>(1,
+                                 kValuesPerRead / std::max<std::size_t>(1, values_per_row(shape)));
 }
 
 }  // namespace nlos

@@ -73,6 +73,12 @@ struct Container {
     std::unique_ptr<ArrayFile> (*open)(const std::string& path);
 };
 
+/// For Container::open, of a class that is made from a path.
+template <class File>
+std::unique_ptr<ArrayFile> open_as(const std::string& path) {
+    return std::make_unique<File>(path);
+}
+
 /// All kinds, in the order in which a file is tried.
 const std::vector<Container>& containers();
 

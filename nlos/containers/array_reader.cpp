@@ -171,9 +171,7 @@ std::vector<T> ArrayReader::read_values(const std::string& name,
     std::string request;
     Json::to_cbor(Json::array({"read", name, first, count, kPrecision}), request);
     const std::string bytes = process_->ask(request);
-    const Shape found = shape(name);
-    const std::uint64_t row =
-        found.empty() ? 1 : total_bytes(Shape(found.begin() + 1, found.end()), 1);
+    const std::uint64_t row = values_per_row(shape(name));
     if (bytes.size() != count * row * sizeof(T)) {
         throw core::Error(where(name), "cannot be read", "must be an undamaged file");
     }

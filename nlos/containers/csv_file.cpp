@@ -6,10 +6,8 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <filesystem>
-#include <fstream>
 
 namespace nlos {
 namespace {
@@ -131,19 +129,13 @@ class CsvFile : public StoredArrayFile {
 bool is_csv_file(const std::string& path) {
     const std::string suffix = std::filesystem::path(path).extension().string();
     if (suffix != ".csv" && suffix != ".tsv" && suffix != ".txt") return false;
-    std::ifstream file(path, std::ios::binary);
-    std::array<char, 1024> bytes{};
-    file.read(bytes.data(), bytes.size());
-    const std::string_view start(bytes.data(), static_cast<std::size_t>(file.gcount()));
-    return start.find('\0') == std::string_view::npos;
+    return core::first_bytes(path, 1024).find('\0') == std::string::npos;
 }
 
 }  // namespace
 
 Container csv_container() {
-    return {"CSV", is_csv_file, [](const std::string& path) -> std::unique_ptr<ArrayFile> {
-                return std::make_unique<CsvFile>(path);
-            }};
+    return {"CSV", is_csv_file, open_as<CsvFile>};
 }
 
 }  // namespace nlos

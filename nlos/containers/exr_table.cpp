@@ -3,6 +3,7 @@
 
 #include "nlos/containers/file_memory.h"
 #include "renderer/core/error.h"
+#include "renderer/core/mapped_file.h"
 #include "renderer/core/output_file.h"
 #include "renderer/core/sandboxed_process.h"
 #include "renderer/core/settings.h"
@@ -18,11 +19,8 @@
 #include <OpenEXR/ImfTestFile.h>
 #include <fmt/core.h>
 
-#include <array>
 #include <cstdint>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 
 namespace nlos {
 namespace {
@@ -30,8 +28,8 @@ namespace {
 constexpr std::size_t kColumnBytes = sizeof(float);
 constexpr std::uint64_t kMaxChannels = 1 << 16;
 
-[[noreturn]] void throw_damaged_table(const std::string& path) {
-    throw core::Error(path, "is damaged or cut short", "must be a complete OpenEXR file");
+core::Error damaged_table(const std::string& path) {
+    return {path, "is damaged or cut short", "must be a complete OpenEXR file"};
 }
 
 /// Throws unless the file is a single image of scan lines, no larger than its bytes can hold.
@@ -39,7 +37,7 @@ void check_kind_and_size(const std::string& path) {
     bool tiled = false;
     bool deep = false;
     bool multi_part = false;
-    if (!Imf::isOpenExrFile(path.c_str(), tiled, deep, multi_part)) throw_damaged_table(path);
+    if (!Imf::isOpenExrFile(path.c_str(), tiled, deep, multi_part)) throw damaged_table(path);
     if (tiled || deep || multi_part) {
         throw core::Error(path,
                           fmt::format("is {}",
@@ -55,7 +53,7 @@ void check_kind_and_size(const std::string& path) {
     const Imath::Box2i window = Imf::InputFile(path.c_str(), 0).header().dataWindow();
     const std::uint64_t width = static_cast<std::uint64_t>(window.max.x - window.min.x) + 1;
     const std::uint64_t height = static_cast<std::uint64_t>(window.max.y - window.min.y) + 1;
-    if (width > most_pixels / height) throw_damaged_table(path);
+    if (width > most_pixels / height) throw damaged_table(path);
 }
 
 core::Json to_json(const ExrTable& table) {
@@ -65,10 +63,7 @@ core::Json to_json(const ExrTable& table) {
     json["texts"] = table.texts;
     const auto add = [&](const char* key, const auto& lists) {
         json[key] = core::Json::object();
-        for (const auto& [name, values] : lists) {
-            const auto* bytes = reinterpret_cast<const std::uint8_t*>(values.data());
-            json[key][name] = core::Json::binary({bytes, bytes + values.size() * kColumnBytes});
-        }
+        for (const auto& [name, values] : lists) json[key][name] = core::to_binary(values);
     };
     add("lists", table.lists);
     add("channels", table.channels);
@@ -83,10 +78,7 @@ ExrTable from_json(const core::Json& json) {
     json.at("texts").get_to(table.texts);
     const auto take = [&](const char* key, auto& lists) {
         for (const auto& [name, value] : json.at(key).items()) {
-            const auto& bytes = value.get_binary();
-            std::vector<float>& values = lists[name];
-            values.resize(bytes.size() / kColumnBytes);
-            std::memcpy(values.data(), bytes.data(), values.size() * kColumnBytes);
+            core::from_binary(value, lists[name]);
         }
     };
     take("lists", table.lists);
@@ -142,29 +134,14 @@ ExrTable read_with_library(const std::string& path) {
 }  // namespace
 
 bool is_exr_file(const std::string& path) {
-    constexpr std::array<char, 4> kSignature{'\x76', '\x2f', '\x31', '\x01'};
-    std::ifstream file(path, std::ios::binary);
-    std::array<char, 4> start{};
-    return file.read(start.data(), start.size()) && start == kSignature;
+    return core::first_bytes(path, 4) == "\x76\x2f\x31\x01";
 }
 
 ExrTable read_exr_table(const std::string& path) {
-    const std::string answer = core::run_sandboxed(path, [&] {
-        try {
-            std::string bytes;
-            core::Json::to_cbor(to_json(read_with_library(path)), bytes);
-            return bytes;
-        } catch (const core::Error&) {
-            throw;
-        } catch (const core::Failure&) {
-            throw;
-        } catch (const std::bad_alloc&) {
-            throw;
-        } catch (const std::exception&) {  // the library's own, and texts that are not UTF-8
-            throw_damaged_table(path);
-        }
-    });
-    return from_json(core::Json::from_cbor(answer));
+    return from_json(core::run_sandboxed(
+        path,
+        [&] { return to_json(read_with_library(path)); },
+        [&](const std::string&) { return damaged_table(path); }));
 }
 
 void write_exr_table(const std::string& path, const ExrTable& table) {

@@ -316,21 +316,13 @@ std::string Hdf5File::read(const std::string& name,
                            Precision precision) const {
     const Hdf5Handle dataset = open_object(name);
     const Hdf5Handle space(H5Dget_space(dataset.id()), H5Sclose);
-    const Shape shape = extents_of(space, where(name));
+    Shape shape = extents_of(space, where(name));
     check_size(dataset, shape, where(name));
-    std::vector<hsize_t> start(shape.size(), 0);
-    std::vector<hsize_t> size(shape.begin(), shape.end());
-    if (!shape.empty()) {
-        start[0] = first;
-        size[0] = count;
-        H5Sselect_hyperslab(
-            space.id(), H5S_SELECT_SET, start.data(), nullptr, size.data(), nullptr);
-    }
+    const Hdf5Handle memory = select_rows(space, first, count);
+    if (!shape.empty()) shape[0] = count;
     const bool is_double = precision == Precision::Double;
     const std::size_t value_bytes = is_double ? sizeof(double) : sizeof(float);
-    std::string values(total_bytes({size.begin(), size.end()}, value_bytes), '\0');
-    const Hdf5Handle memory(H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr),
-                            H5Sclose);
+    std::string values(total_bytes(shape, value_bytes), '\0');
     const hid_t type = is_double ? H5T_NATIVE_DOUBLE : H5T_NATIVE_FLOAT;
     if (!values.empty() &&
         H5Dread(dataset.id(), type, memory.id(), space.id(), H5P_DEFAULT, values.data()) < 0) {

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <fstream>
+#include <vector>
 
 namespace nlos {
 
@@ -20,6 +21,20 @@ bool is_hdf5_file(const std::string& path) {
         if (!file.seekg(begin).read(start.data(), start.size())) return false;
         if (start == kSignature) return true;
     }
+}
+
+Hdf5Handle select_rows(const Hdf5Handle& space, std::size_t first, std::size_t count) {
+    const int rank = H5Sget_simple_extent_ndims(space.id());
+    std::vector<hsize_t> start(static_cast<std::size_t>(rank), 0);
+    std::vector<hsize_t> size(start.size());
+    if (rank > 0) {
+        H5Sget_simple_extent_dims(space.id(), size.data(), nullptr);
+        start[0] = first;
+        size[0] = count;
+        H5Sselect_hyperslab(
+            space.id(), H5S_SELECT_SET, start.data(), nullptr, size.data(), nullptr);
+    }
+    return {H5Screate_simple(rank, size.data(), nullptr), H5Sclose};
 }
 
 void prepare_hdf5() {

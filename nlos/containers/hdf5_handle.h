@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -43,6 +44,10 @@ class Hdf5Handle {
     std::int64_t id_ = -1;
     Close close_ = nullptr;
 };
+
+/// Selects rows, along the slowest index, of a dataset's space; no rank: its only value. Returns
+/// the space of as many values in memory.
+Hdf5Handle select_rows(const Hdf5Handle& space, std::size_t first, std::size_t count);
 
 /// Keeps the HDF5 library from printing its own messages; to be called before any use of it.
 void prepare_hdf5();

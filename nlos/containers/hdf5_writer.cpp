@@ -5,6 +5,7 @@
 
 #include <hdf5.h>
 
+#include <array>
 #include <cassert>
 #include <cstdint>
 #include <fstream>
@@ -19,12 +20,6 @@ Hdf5Handle create_space(const Shape& shape) {
                : Hdf5Handle(
                      H5Screate_simple(static_cast<int>(extents.size()), extents.data(), nullptr),
                      H5Sclose);
-}
-
-[[maybe_unused]] std::size_t count_values(const Shape& shape) {
-    std::size_t count = 1;
-    for (const std::size_t extent : shape) count *= extent;
-    return count;
 }
 
 Hdf5Handle utf8_type() {
@@ -47,31 +42,26 @@ Hdf5Handle half_type() {
 }
 
 Hdf5Handle stored_type(StoredNumber number) {
-    switch (number) {
-        case StoredNumber::Int8:
-            return {H5Tcopy(H5T_NATIVE_INT8), H5Tclose};
-        case StoredNumber::UInt8:
-            return {H5Tcopy(H5T_NATIVE_UINT8), H5Tclose};
-        case StoredNumber::Int16:
-            return {H5Tcopy(H5T_NATIVE_INT16), H5Tclose};
-        case StoredNumber::UInt16:
-            return {H5Tcopy(H5T_NATIVE_UINT16), H5Tclose};
-        case StoredNumber::Int32:
-            return {H5Tcopy(H5T_NATIVE_INT32), H5Tclose};
-        case StoredNumber::UInt32:
-            return {H5Tcopy(H5T_NATIVE_UINT32), H5Tclose};
-        case StoredNumber::Int64:
-            return {H5Tcopy(H5T_NATIVE_INT64), H5Tclose};
-        case StoredNumber::UInt64:
-            return {H5Tcopy(H5T_NATIVE_UINT64), H5Tclose};
-        case StoredNumber::Float16:
-            return half_type();
-        case StoredNumber::Float32:
-            return {H5Tcopy(H5T_NATIVE_FLOAT), H5Tclose};
-        case StoredNumber::Float64:
-            return {H5Tcopy(H5T_NATIVE_DOUBLE), H5Tclose};
-    }
-    return {};
+    if (number == StoredNumber::Float16) return half_type();
+    const std::array types{H5T_NATIVE_INT8,
+                           H5T_NATIVE_UINT8,
+                           H5T_NATIVE_INT16,
+                           H5T_NATIVE_UINT16,
+                           H5T_NATIVE_INT32,
+                           H5T_NATIVE_UINT32,
+                           H5T_NATIVE_INT64,
+                           H5T_NATIVE_UINT64,
+                           hid_t{H5I_INVALID_HID},
+                           H5T_NATIVE_FLOAT,
+                           H5T_NATIVE_DOUBLE};
+    return {H5Tcopy(types[static_cast<std::size_t>(number)]), H5Tclose};
+}
+
+/// How datasets are created, without times: the same values give the same bytes.
+Hdf5Handle creation_plan() {
+    Hdf5Handle plan(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+    H5Pset_obj_track_times(plan.id(), false);
+    return plan;
 }
 
 }  // namespace
@@ -104,13 +94,10 @@ void Hdf5Writer::create_group(const std::string& name) {
 
 Hdf5Handle Hdf5Writer::create_dataset(const std::string& name,
                                       std::int64_t type,
-                                      const Hdf5Handle& space) {
-    prepare_hdf5();
-    const Hdf5Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-    H5Pset_obj_track_times(creation.id(), false);
+                                      const Hdf5Handle& space,
+                                      const Hdf5Handle& plan) {
     Hdf5Handle dataset(
-        H5Dcreate2(
-            file_.id(), name.c_str(), type, space.id(), H5P_DEFAULT, creation.id(), H5P_DEFAULT),
+        H5Dcreate2(file_.id(), name.c_str(), type, space.id(), H5P_DEFAULT, plan.id(), H5P_DEFAULT),
         H5Dclose);
     check(dataset.is_valid());
     return dataset;
@@ -120,25 +107,26 @@ void Hdf5Writer::write_dataset(const std::string& name,
                                std::int64_t type,
                                const Hdf5Handle& space,
                                const void* values) {
-    Hdf5Handle dataset = create_dataset(name, type, space);
+    prepare_hdf5();
+    Hdf5Handle dataset = create_dataset(name, type, space, creation_plan());
     check(H5Dwrite(dataset.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0);
     check(dataset.close());
 }
 
 void Hdf5Writer::write(const std::string& name, const Shape& shape, std::span<const float> values) {
-    assert(values.size() == count_values(shape));
+    assert(values.size() == total_bytes(shape, 1));
     write_dataset(name, H5T_NATIVE_FLOAT, create_space(shape), values.data());
 }
 
 void Hdf5Writer::write(const std::string& name,
                        const Shape& shape,
                        std::span<const double> values) {
-    assert(values.size() == count_values(shape));
+    assert(values.size() == total_bytes(shape, 1));
     write_dataset(name, H5T_NATIVE_DOUBLE, create_space(shape), values.data());
 }
 
 void Hdf5Writer::write(const std::string& name, const Shape& shape, std::span<const int> values) {
-    assert(values.size() == count_values(shape));
+    assert(values.size() == total_bytes(shape, 1));
     write_dataset(name, H5T_NATIVE_INT, create_space(shape), values.data());
 }
 
@@ -170,24 +158,19 @@ void Hdf5Writer::write_text(const std::string& name, const std::string& text) {
 }
 
 void Hdf5Writer::write_null(const std::string& name) {
-    create_dataset(name, H5T_NATIVE_FLOAT, {H5Screate(H5S_NULL), H5Sclose});
+    create_dataset(name, H5T_NATIVE_FLOAT, {H5Screate(H5S_NULL), H5Sclose}, creation_plan());
 }
 
 Hdf5Handle Hdf5Writer::create_float_dataset(const std::string& name, const Shape& shape) {
-    return create_dataset(name, H5T_NATIVE_FLOAT, create_space(shape));
+    return create_dataset(name, H5T_NATIVE_FLOAT, create_space(shape), creation_plan());
 }
 
 void Hdf5Writer::write_row_range(const Hdf5Handle& dataset,
-                                 const Shape& shape,
-                                 RowRange rows,
+                                 std::size_t first,
+                                 std::size_t count,
                                  const std::vector<float>& values) {
-    std::vector<hsize_t> start(shape.size(), 0);
-    std::vector<hsize_t> size(shape.begin(), shape.end());
-    start[0] = rows.first;
-    size[0] = rows.count;
-    const Hdf5Handle memory = create_space({size.begin(), size.end()});
     const Hdf5Handle space(H5Dget_space(dataset.id()), H5Sclose);
-    H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, start.data(), nullptr, size.data(), nullptr);
+    const Hdf5Handle memory = select_rows(space, first, count);
     check(
         H5Dwrite(
             dataset.id(), H5T_NATIVE_FLOAT, memory.id(), space.id(), H5P_DEFAULT, values.data()) >=
@@ -203,25 +186,13 @@ void Hdf5Writer::create_rows(const std::string& name,
     chunk.insert(chunk.begin(), 1);
     Shape shape = row_shape;
     shape.insert(shape.begin(), rows);
-    const Hdf5Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-    H5Pset_obj_track_times(creation.id(), false);
-    H5Pset_chunk(creation.id(), static_cast<int>(chunk.size()), chunk.data());
+    const Hdf5Handle plan = creation_plan();
+    H5Pset_chunk(plan.id(), static_cast<int>(chunk.size()), chunk.data());
     if (level > 0) {
-        H5Pset_shuffle(creation.id());
-        H5Pset_deflate(creation.id(), static_cast<unsigned>(level));
+        H5Pset_shuffle(plan.id());
+        H5Pset_deflate(plan.id(), static_cast<unsigned>(level));
     }
-    const Hdf5Handle space = create_space(shape);
-    const Hdf5Handle type = stored_type(number);
-    Hdf5Handle dataset(H5Dcreate2(file_.id(),
-                                  name.c_str(),
-                                  type.id(),
-                                  space.id(),
-                                  H5P_DEFAULT,
-                                  creation.id(),
-                                  H5P_DEFAULT),
-                       H5Dclose);
-    check(dataset.is_valid());
-    row_datasets_[name] = std::move(dataset);
+    row_datasets_[name] = create_dataset(name, stored_type(number).id(), create_space(shape), plan);
 }
 
 void Hdf5Writer::write_packed_row(const std::string& name,
@@ -240,7 +211,7 @@ void Hdf5Writer::write_numbers(const std::string& name,
                                StoredNumber number,
                                const Shape& shape,
                                const std::string& bytes) {
-    assert(bytes.size() == count_values(shape) * bytes_of(number));
+    assert(bytes.size() == total_bytes(shape, 1) * bytes_of(number));
     write_dataset(name, stored_type(number).id(), create_space(shape), bytes.data());
 }
 
@@ -262,7 +233,7 @@ void Hdf5Writer::write_attribute(const std::string& object,
                                  const std::string& name,
                                  const Shape& shape,
                                  std::span<const double> values) {
-    assert(values.size() == count_values(shape));
+    assert(values.size() == total_bytes(shape, 1));
     write_attribute_values({object, name}, H5T_NATIVE_DOUBLE, shape, values.data());
 }
 

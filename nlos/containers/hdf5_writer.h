@@ -46,8 +46,7 @@ class Hdf5Writer {
     template <class Fill>
     void write_rows(const std::string& name, const Shape& shape, Fill&& fill) {
         constexpr std::size_t kValuesPerWrite = std::size_t{1} << 22;
-        std::size_t row_values = 1;
-        for (std::size_t axis = 1; axis < shape.size(); ++axis) row_values *= shape[axis];
+        const std::size_t row_values = values_per_row(shape);
         const std::size_t step = std::max<std::size_t>(1, kValuesPerWrite / row_values);
         const Hdf5Handle dataset = create_float_dataset(name, shape);
         std::vector<float> values;
@@ -55,7 +54,7 @@ class Hdf5Writer {
             const std::size_t count = std::min(step, shape[0] - first);
             values.resize(count * row_values);
             fill(first, count, values);
-            write_row_range(dataset, shape, {first, count}, values);
+            write_row_range(dataset, first, count, values);
         }
     }
 
@@ -95,19 +94,18 @@ class Hdf5Writer {
     void finish();
 
  private:
-    struct RowRange {
-        std::size_t first;
-        std::size_t count;
-    };
     struct AttributeName {
         const std::string& object;
         const std::string& attribute;
     };
-    Hdf5Handle create_dataset(const std::string& name, std::int64_t type, const Hdf5Handle& space);
+    Hdf5Handle create_dataset(const std::string& name,
+                              std::int64_t type,
+                              const Hdf5Handle& space,
+                              const Hdf5Handle& plan);
     Hdf5Handle create_float_dataset(const std::string& name, const Shape& shape);
     void write_row_range(const Hdf5Handle& dataset,
-                         const Shape& shape,
-                         RowRange rows,
+                         std::size_t first,
+                         std::size_t count,
                          const std::vector<float>& values);
     void write_dataset(const std::string& name,
                        std::int64_t type,

@@ -5,9 +5,6 @@
 
 #include <fmt/core.h>
 
-#include <array>
-#include <fstream>
-
 namespace nlos {
 namespace {
 
@@ -53,10 +50,8 @@ class JsonFile : public JsonLeaves {
 
 /// A file that starts as an object or a list, after blanks, and holds no zero bytes there.
 bool is_json_file(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    std::array<char, 1024> bytes{};
-    file.read(bytes.data(), bytes.size());
-    std::string_view start(bytes.data(), static_cast<std::size_t>(file.gcount()));
+    const std::string bytes = core::first_bytes(path, 1024);
+    std::string_view start = bytes;
     constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
     if (start.starts_with(kByteOrderMark)) start.remove_prefix(kByteOrderMark.size());
     const std::size_t begin = start.find_first_not_of(kJsonBlanks);
@@ -67,9 +62,7 @@ bool is_json_file(const std::string& path) {
 }  // namespace
 
 Container json_container() {
-    return {"JSON", is_json_file, [](const std::string& path) -> std::unique_ptr<ArrayFile> {
-                return std::make_unique<JsonFile>(path);
-            }};
+    return {"JSON", is_json_file, open_as<JsonFile>};
 }
 
 }  // namespace nlos

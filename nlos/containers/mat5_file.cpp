@@ -5,6 +5,7 @@
 #include "nlos/containers/stored_number.h"
 #include "nlos/containers/unicode_text.h"
 #include "renderer/core/error.h"
+#include "renderer/core/mapped_file.h"
 #include "renderer/core/process.h"
 #include "renderer/core/sandboxed_process.h"
 
@@ -56,40 +57,28 @@ void check_elements(const std::string& path) {
 }
 
 bool is_mat5_file(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    std::array<char, kMatHeaderBytes> header{};
-    if (!file.read(header.data(), header.size())) return false;
-    const std::string_view mark(header.data() + kMatHeaderBytes - 4, 4);
     using namespace std::string_view_literals;
-    return mark == "\x00\x01IM"sv || mark == "\x01\x00MI"sv;
+    const std::string header = core::first_bytes(path, kMatHeaderBytes);
+    return header.size() == kMatHeaderBytes &&
+           (header.ends_with("\x00\x01IM"sv) || header.ends_with("\x01\x00MI"sv));
 }
 
 /// How the values of a class are stored; nothing for what is no number.
 std::optional<StoredNumber> number_of(matio_classes type_class) {
-    switch (type_class) {
-        case MAT_C_DOUBLE:
-            return StoredNumber::Float64;
-        case MAT_C_SINGLE:
-            return StoredNumber::Float32;
-        case MAT_C_INT8:
-            return StoredNumber::Int8;
-        case MAT_C_UINT8:
-            return StoredNumber::UInt8;
-        case MAT_C_INT16:
-            return StoredNumber::Int16;
-        case MAT_C_UINT16:
-            return StoredNumber::UInt16;
-        case MAT_C_INT32:
-            return StoredNumber::Int32;
-        case MAT_C_UINT32:
-            return StoredNumber::UInt32;
-        case MAT_C_INT64:
-            return StoredNumber::Int64;
-        case MAT_C_UINT64:
-            return StoredNumber::UInt64;
-        default:
-            return std::nullopt;
-    }
+    using Number = StoredNumber;
+    constexpr std::array kFromDouble{Number::Float64,
+                                     Number::Float32,
+                                     Number::Int8,
+                                     Number::UInt8,
+                                     Number::Int16,
+                                     Number::UInt16,
+                                     Number::Int32,
+                                     Number::UInt32,
+                                     Number::Int64,
+                                     Number::UInt64};
+    static_assert(MAT_C_UINT64 - MAT_C_DOUBLE + 1 == kFromDouble.size());
+    if (type_class < MAT_C_DOUBLE || type_class > MAT_C_UINT64) return std::nullopt;
+    return kFromDouble[static_cast<std::size_t>(type_class - MAT_C_DOUBLE)];
 }
 
 std::string type_name(const matvar_t& variable) {
@@ -324,9 +313,7 @@ std::string Mat5File::read(const std::string& name,
 }  // namespace
 
 Container mat5_container() {
-    return {"MATLAB v5", is_mat5_file, [](const std::string& path) -> std::unique_ptr<ArrayFile> {
-                return std::make_unique<Mat5File>(path);
-            }};
+    return {"MATLAB v5", is_mat5_file, open_as<Mat5File>};
 }
 
 }  // namespace nlos

@@ -3,13 +3,13 @@
 #include "nlos/containers/matlab_name.h"
 #include "nlos/containers/unicode_text.h"
 #include "renderer/core/error.h"
+#include "renderer/core/mapped_file.h"
 
 #include <fmt/core.h>
 #include <hdf5.h>
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <vector>
 
 namespace nlos {
@@ -292,12 +292,7 @@ std::string Mat73File::read(const std::string& name,
 bool is_mat73_file(const Hdf5File& file, const std::string& path) {
     constexpr std::string_view kHeader = "MATLAB 7.3";
     constexpr std::size_t kMostAsked = 64;
-    std::array<char, kHeader.size()> start{};
-    std::ifstream stream(path, std::ios::binary);
-    if (stream.read(start.data(), start.size()) &&
-        std::string_view(start.data(), start.size()) == kHeader) {
-        return true;
-    }
+    if (core::first_bytes(path, kHeader.size()) == kHeader) return true;
     const Hdf5Handle root = file.open_root();
     std::vector<std::string> links = links_of(root).names;
     links.resize(std::min(links.size(), kMostAsked));

@@ -6,9 +6,7 @@
 
 #include <fmt/core.h>
 
-#include <array>
 #include <charconv>
-#include <tuple>
 
 namespace nlos {
 namespace {
@@ -80,21 +78,10 @@ class HeaderText {
 
 /// The numbers of a kind of NumPy's ('i', 'u', 'f', 'b') with so many bytes.
 std::optional<StoredNumber> number_of(char kind, std::uint64_t bytes) {
-    using Number = StoredNumber;
-    constexpr std::array kNumbers{std::tuple{'i', 1U, Number::Int8},
-                                  std::tuple{'i', 2U, Number::Int16},
-                                  std::tuple{'i', 4U, Number::Int32},
-                                  std::tuple{'i', 8U, Number::Int64},
-                                  std::tuple{'u', 1U, Number::UInt8},
-                                  std::tuple{'u', 2U, Number::UInt16},
-                                  std::tuple{'u', 4U, Number::UInt32},
-                                  std::tuple{'u', 8U, Number::UInt64},
-                                  std::tuple{'f', 2U, Number::Float16},
-                                  std::tuple{'f', 4U, Number::Float32},
-                                  std::tuple{'f', 8U, Number::Float64},
-                                  std::tuple{'b', 1U, Number::UInt8}};
-    for (const auto& [known_kind, known_bytes, number] : kNumbers) {
-        if (kind == known_kind && bytes == known_bytes) return number;
+    if (kind == 'b' && bytes == 1) return StoredNumber::UInt8;
+    for (int i = 0; i <= static_cast<int>(StoredNumber::Float64); ++i) {
+        const auto number = static_cast<StoredNumber>(i);
+        if (type_name(number)[0] == kind && bytes_of(number) == bytes) return number;
     }
     return std::nullopt;
 }

@@ -5,9 +5,7 @@
 
 #include <fmt/core.h>
 
-#include <array>
 #include <filesystem>
-#include <fstream>
 
 namespace nlos {
 namespace {
@@ -58,17 +56,13 @@ class NpyFile : public ArrayFile {
 };
 
 bool is_npy_file(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    std::array<char, 6> start{};
-    return file.read(start.data(), start.size()) && is_npy({start.data(), start.size()});
+    return is_npy(core::first_bytes(path, 6));
 }
 
 }  // namespace
 
 Container npy_container() {
-    return {"NumPy .npy", is_npy_file, [](const std::string& path) -> std::unique_ptr<ArrayFile> {
-                return std::make_unique<NpyFile>(path);
-            }};
+    return {"NumPy .npy", is_npy_file, open_as<NpyFile>};
 }
 
 }  // namespace nlos

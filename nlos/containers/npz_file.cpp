@@ -2,13 +2,12 @@
 #include "nlos/containers/file_memory.h"
 #include "nlos/containers/npy_array.h"
 #include "renderer/core/error.h"
+#include "renderer/core/mapped_file.h"
 
 #include <fmt/core.h>
 #include <zip.h>
 
-#include <array>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 
 namespace nlos {
@@ -167,19 +166,14 @@ std::string NpzFile::read(const std::string& name,
 }
 
 bool is_npz_file(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    std::array<char, 4> start{};
-    if (!file.read(start.data(), start.size())) return false;
-    const std::string_view mark(start.data(), start.size());
+    const std::string mark = core::first_bytes(path, 4);
     return mark == "PK\x03\x04" || mark == "PK\x05\x06";
 }
 
 }  // namespace
 
 Container npz_container() {
-    return {"NumPy .npz", is_npz_file, [](const std::string& path) -> std::unique_ptr<ArrayFile> {
-                return std::make_unique<NpzFile>(path);
-            }};
+    return {"NumPy .npz", is_npz_file, open_as<NpzFile>};
 }
 
 }  // namespace nlos

@@ -66,12 +66,6 @@ std::u32string to_characters(const std::string& text) {
     return characters;
 }
 
-std::size_t count_values(const Shape& shape) {
-    std::size_t count = 1;
-    for (const std::size_t extent : shape) count *= extent;
-    return count;
-}
-
 /// A .npy member that is made while the archive is written: its header, then row after row.
 class RowMember {
  public:
@@ -79,7 +73,7 @@ class RowMember {
         : fill_(std::move(fill)),
           header_(npy_header("<f4", shape)),
           rows_(shape.at(0)),
-          row_values_(count_values(shape) / rows_) {
+          row_values_(values_per_row(shape)) {
         zip_error_init(&error_);
     }
     ~RowMember() { zip_error_fini(&error_); }
@@ -195,12 +189,12 @@ void NpzWriter::check(bool ok) const {
 }
 
 void NpzWriter::write(const std::string& name, const Shape& shape, std::span<const double> values) {
-    assert(values.size() == count_values(shape));
+    assert(values.size() == total_bytes(shape, 1));
     add_member(name, npy_header("<f8", shape), to_bytes(values));
 }
 
 void NpzWriter::write(const std::string& name, const Shape& shape, std::span<const int> values) {
-    assert(values.size() == count_values(shape));
+    assert(values.size() == total_bytes(shape, 1));
     add_member(name, npy_header("<i4", shape), to_bytes(values));
 }
 
@@ -208,7 +202,7 @@ void NpzWriter::write_numbers(const std::string& name,
                               StoredNumber number,
                               const Shape& shape,
                               const std::string& bytes) {
-    assert(bytes.size() == count_values(shape) * bytes_of(number));
+    assert(bytes.size() == total_bytes(shape, 1) * bytes_of(number));
     add_member(name, npy_header(npy_type(number), shape), bytes);
 }
 

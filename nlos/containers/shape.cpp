@@ -23,4 +23,8 @@ std::uint64_t total_bytes(const Shape& shape, std::uint64_t bytes) {
     return total;
 }
 
+std::uint64_t values_per_row(const Shape& shape) {
+    return shape.empty() ? 1 : total_bytes({shape.begin() + 1, shape.end()}, 1);
+}
+
 }  // namespace nlos

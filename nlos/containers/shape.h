@@ -17,4 +17,7 @@ std::string shape_text(const Shape& shape);
 /// Number of values times `bytes` each; the largest number when that does not fit 64 bits.
 std::uint64_t total_bytes(const Shape& shape, std::uint64_t bytes);
 
+/// Number of values at each index of the slowest axis; 1 for a scalar.
+std::uint64_t values_per_row(const Shape& shape);
+
 }  // namespace nlos

@@ -6,15 +6,10 @@
 namespace nlos {
 namespace {
 
-std::size_t row_values(const StoredArray& array) {
-    if (array.shape.empty()) return 1;
-    return total_bytes(Shape(array.shape.begin() + 1, array.shape.end()), 1);
-}
-
 /// Rows of an array whose first axis is the fastest, in the order of shape.
 std::string gather_rows(const StoredArray& array, std::size_t first, std::size_t count) {
     const std::size_t size = bytes_of(array.number);
-    const std::size_t row = row_values(array);
+    const std::size_t row = values_per_row(array.shape);
     const std::size_t rank = array.shape.size();
     std::string rows(count * row * size, '\0');
     std::vector<std::size_t> place(rank, 0);
@@ -55,7 +50,7 @@ std::string read_stored(const StoredArray& array,
                         std::size_t count,
                         Precision precision) {
     if (total_bytes(array.shape, 1) == 0) return {};
-    const std::size_t row = row_values(array);
+    const std::size_t row = values_per_row(array.shape);
     if (array.first_axis_fastest && array.shape.size() > 1) {
         const std::string rows = gather_rows(array, first, count);
         return convert_numbers(rows.data(), count * row, array.number, array.order, precision);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/containers/stored_number.h"
 
+#include <Eigen/Core>
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -12,29 +13,6 @@
 
 namespace nlos {
 namespace {
-
-/// IEEE 754 binary16.
-struct Half {
-    std::uint16_t bits = 0;
-
-    explicit operator double() const {
-        constexpr int kFractionBits = 10;
-        constexpr int kBias = 15;
-        const int exponent = bits >> kFractionBits & 0x1f;
-        const int fraction = bits & 0x3ff;
-        double size = 0.0;
-        if (exponent == 0x1f) {
-            size = fraction == 0 ? std::numeric_limits<double>::infinity()
-                                 : std::numeric_limits<double>::quiet_NaN();
-        } else if (exponent == 0) {
-            size = std::ldexp(fraction, 1 - kBias - kFractionBits);
-        } else {
-            size = std::ldexp(fraction + 0x400, exponent - kBias - kFractionBits);
-        }
-        return (bits & 0x8000) != 0 ? -size : size;
-    }
-    explicit operator float() const { return static_cast<float>(static_cast<double>(*this)); }
-};
 
 template <class Stored>
 Stored load(const char* bytes, std::endian order) {
@@ -75,7 +53,7 @@ auto with_type(StoredNumber number, Use&& use) {
         case StoredNumber::UInt64:
             return use(std::uint64_t{});
         case StoredNumber::Float16:
-            return use(Half{});
+            return use(Eigen::half{});
         case StoredNumber::Float32:
             return use(float{});
         case StoredNumber::Float64:
@@ -101,6 +79,12 @@ std::string type_name(StoredNumber number) {
                            : std::is_integral_v<Value> ? "int"
                                                        : "float";
         return fmt::format("{}{}", base, 8 * sizeof(Value));
+    });
+}
+
+double number_at(const char* stored, StoredNumber number, std::endian order) {
+    return with_type(number, [&](auto value) {
+        return static_cast<double>(load<decltype(value)>(stored, order));
     });
 }
 

@@ -27,6 +27,9 @@ std::size_t bytes_of(StoredNumber number);
 ElementKind kind_of(StoredNumber number);
 std::string type_name(StoredNumber number);  ///< "uint16", "float32", ...
 
+/// The number that begins at `stored`, aligned anyhow.
+double number_at(const char* stored, StoredNumber number, std::endian order);
+
 /// Numbers as the bytes of float or double.
 ///
 /// stored   `count` numbers, aligned anyhow, in byte order `order`

@@ -7,7 +7,6 @@
 
 #include <array>
 #include <bit>
-#include <fstream>
 #include <map>
 #include <utility>
 
@@ -60,23 +59,16 @@ class TiFile : public JsonLeaves {
         add_array(name, array);
     }
 
-    /// Takes a number of pixels, bins or bytes, which is an array too.
-    std::uint64_t take_count(const std::string& name) {
-        std::uint64_t count = 0;
-        for (std::size_t i = std::min(kWordBytes, rest_.size()); i-- > 0;) {
-            count = count << 8 | static_cast<unsigned char>(rest_[i]);
-        }
-        take_array(name, StoredNumber::UInt32, {});
-        return count;
+    /// Takes a number, which is an array too.
+    double take_number(const std::string& name, StoredNumber number) {
+        const char* begin = rest_.data();
+        take_array(name, number, {});
+        return number_at(begin, number, std::endian::little);
     }
 
-    double take_real(const std::string& name) {
-        std::uint32_t bits = 0;
-        for (std::size_t i = std::min(kWordBytes, rest_.size()); i-- > 0;) {
-            bits = bits << 8 | static_cast<unsigned char>(rest_[i]);
-        }
-        take_array(name, StoredNumber::Float32, {});
-        return std::bit_cast<float>(bits);
+    /// Takes a number of pixels, bins or bytes.
+    std::uint64_t take_count(const std::string& name) {
+        return static_cast<std::uint64_t>(take_number(name, StoredNumber::UInt32));
     }
 
     void take_version_4() {
@@ -105,8 +97,8 @@ class TiFile : public JsonLeaves {
         const std::array<const char*, 3> names =
             is_old ? std::array{"vRes", "numBins", "uRes"} : std::array{"numBins", "uRes", "vRes"};
         for (const char* name : names) counts[name] = take_count(name);
-        const double begin = take_real("tmin");
-        const double end = take_real("tmax");
+        const double begin = take_number("tmin", StoredNumber::Float32);
+        const double end = take_number("tmax", StoredNumber::Float32);
         // As the newer version states it.
         add_values("tDelta",
                    {},
@@ -132,19 +124,14 @@ class TiFile : public JsonLeaves {
 };
 
 bool is_ti_file(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    std::array<char, 4> start{};
-    if (!file.read(start.data(), start.size())) return false;
-    const std::string_view magic(start.data(), start.size());
+    const std::string magic = core::first_bytes(path, 4);
     return magic == "TI00" || magic == "TI01" || magic == "TI04";
 }
 
 }  // namespace
 
 Container ti_container() {
-    return {"Bonn .ti", is_ti_file, [](const std::string& path) -> std::unique_ptr<ArrayFile> {
-                return std::make_unique<TiFile>(path);
-            }};
+    return {"Bonn .ti", is_ti_file, open_as<TiFile>};
 }
 
 }  // namespace nlos

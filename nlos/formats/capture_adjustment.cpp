@@ -7,7 +7,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <functional>
 #include <numeric>
 
 namespace nlos {
@@ -31,19 +30,6 @@ void set_wall_size(const std::array<double, 2>& size_m, Capture& capture) {
     }
     capture.notes.push_back(
         fmt::format("the scanned points extend over {} x {} m, as told", size_m[0], size_m[1]));
-}
-
-/// Visits every array of histograms of a capture; those of velocities with and without time.
-void for_each_transient(Capture& capture, const std::function<void(core::Transient&)>& visit) {
-    visit(capture.transient);
-    if (capture.variance) visit(*capture.variance);
-    for (core::Transient& order : capture.by_order) visit(order);
-    if (capture.sequence) {
-        for (core::Transient& frame : capture.sequence->frames) visit(frame);
-    }
-    if (!capture.velocity) return;
-    visit(capture.velocity->values);
-    if (capture.velocity->variance) visit(*capture.velocity->variance);
 }
 
 /// Where the histogram of each point stands in the file.
@@ -82,13 +68,18 @@ void move_histograms(const CaptureReadSettings& settings,
     const auto stored_pair = [&](std::size_t pair) {
         return lit[pair / sensed.size()] * sensed.size() + sensed[pair % sensed.size()];
     };
-    for_each_transient(capture, [&](core::Transient& transient) {
+    const auto move = [&](const char*, core::Transient& transient, int) {
         const core::Transient stored = transient;
         for (std::size_t pair = 0; pair < stored.num_pairs(); ++pair) {
             std::ranges::copy(stored.histogram(stored_pair(pair)),
                               transient.histogram(pair).begin());
         }
-    });
+    };
+    core::for_each_transient(capture, move);
+    if (capture.velocity && !capture.velocity->axis.with_time) {
+        move("velocity", capture.velocity->values, 1);
+        if (capture.velocity->variance) move("velocity_variance", *capture.velocity->variance, 1);
+    }
     if (capture.observed) {
         const std::vector<core::BinRange> stored = *capture.observed;
         for (std::size_t pair = 0; pair < stored.size(); ++pair) {
@@ -106,14 +97,7 @@ void move_histograms(const CaptureReadSettings& settings,
 
 void reverse_time(Capture& capture) {
     const auto bins = static_cast<std::size_t>(capture.time_axis.num_bins);
-    const core::Transient* without_time = nullptr;
-    const core::Transient* its_variance = nullptr;
-    if (capture.velocity && !capture.velocity->axis.with_time) {
-        without_time = &capture.velocity->values;
-        if (capture.velocity->variance) its_variance = &*capture.velocity->variance;
-    }
-    for_each_transient(capture, [&](core::Transient& transient) {
-        if (&transient == without_time || &transient == its_variance) return;
+    core::for_each_transient(capture, [&](const char*, core::Transient& transient, int) {
         const auto values = transient.values();
         for (std::size_t begin = 0; begin < values.size(); begin += bins) {
             std::ranges::reverse(values.subspan(begin, bins));

@@ -2,6 +2,7 @@
 #include "nlos/formats/capture_array_reader.h"
 
 #include "nlos/containers/file_memory.h"
+#include "nlos/formats/capture_arrays.h"
 #include "nlos/formats/ytal_layout.h"
 #include "nlos/formats/ytal_scan.h"
 #include "renderer/core/error.h"
@@ -15,22 +16,6 @@ namespace nlos {
 
 using core::Capture;
 using core::Error;
-
-void copy_bins(const float* rows,
-               std::size_t first,
-               std::size_t count,
-               core::Transient& transient) {
-    constexpr std::size_t kPairsAtOnce = 16;  // one cache line of every row at a time
-    const std::size_t pairs = transient.num_pairs();
-    for (std::size_t begin = 0; begin < pairs; begin += kPairsAtOnce) {
-        const std::size_t end = std::min(pairs, begin + kPairsAtOnce);
-        for (std::size_t row = 0; row < count; ++row) {
-            for (std::size_t pair = begin; pair < end; ++pair) {
-                transient.histogram(pair)[first + row] = rows[row * pairs + pair];
-            }
-        }
-    }
-}
 
 core::Transient make_transient(const ArrayReader& file,
                                const std::string& name,

@@ -17,9 +17,6 @@ core::Capture read_histograms(const ArrayReader& file, const CaptureReadSettings
 /// number.
 double checked_scale(double counts_per_radiance, const std::string& where);
 
-/// Copies rows with time slowest to bins [first, first + count) of [pair][bin].
-void copy_bins(const float* rows, std::size_t first, std::size_t count, core::Transient& transient);
-
 /// An empty transient for the pairs of `capture`, if there is memory for it.
 core::Transient make_transient(const ArrayReader& file,
                                const std::string& name,

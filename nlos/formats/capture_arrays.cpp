@@ -44,20 +44,43 @@ std::vector<int> observed_array(const std::vector<core::BinRange>& observed) {
     return bins;
 }
 
-void copy_rows(const core::Transient& transient,
-               std::size_t first,
-               std::size_t count,
-               float* rows) {
-    constexpr std::size_t kPairsAtOnce = 16;  // one cache line of every row at a time
+namespace {
+
+/// Visits bins [first, first + count) of all pairs, each with its place in rows with time slowest:
+/// one cache line of every row at a time.
+template <class AnyTransient, class Visit>
+void for_each_row_value(AnyTransient& transient,
+                        std::size_t first,
+                        std::size_t count,
+                        Visit&& visit) {
+    constexpr std::size_t kPairsAtOnce = 16;
     const std::size_t pairs = transient.num_pairs();
     for (std::size_t begin = 0; begin < pairs; begin += kPairsAtOnce) {
         const std::size_t end = std::min(pairs, begin + kPairsAtOnce);
         for (std::size_t row = 0; row < count; ++row) {
             for (std::size_t pair = begin; pair < end; ++pair) {
-                rows[row * pairs + pair] = transient.histogram(pair)[first + row];
+                visit(transient.histogram(pair)[first + row], row * pairs + pair);
             }
         }
     }
+}
+
+}  // namespace
+
+void copy_rows(const core::Transient& transient,
+               std::size_t first,
+               std::size_t count,
+               float* rows) {
+    for_each_row_value(
+        transient, first, count, [&](float value, std::size_t place) { rows[place] = value; });
+}
+
+void copy_bins(const float* rows,
+               std::size_t first,
+               std::size_t count,
+               core::Transient& transient) {
+    for_each_row_value(
+        transient, first, count, [&](float& value, std::size_t place) { value = rows[place]; });
 }
 
 void copy_stack(const std::vector<core::Transient>& stack,

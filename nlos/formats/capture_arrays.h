@@ -30,10 +30,40 @@ std::vector<int> observed_array(const std::vector<core::BinRange>& observed);
 /// Copies bins [first, first + count) of [pair][bin] to rows with time slowest.
 void copy_rows(const core::Transient& transient, std::size_t first, std::size_t count, float* rows);
 
+/// The reverse of copy_rows().
+void copy_bins(const float* rows, std::size_t first, std::size_t count, core::Transient& transient);
+
 /// Copies consecutive members of a stack, each as H, to rows of (stack, T, pairs...).
 void copy_stack(const std::vector<core::Transient>& stack,
                 std::size_t first,
                 std::size_t count,
                 float* rows);
+
+/// Writes a transient of the shape of H, at the latest when the writer finishes. Not compressed
+/// beyond the least: the noise of rendered and measured histograms leaves deflate little to save
+/// for many times the writing time.
+template <class Writer>
+void write_transient(Writer& file,
+                     const std::string& name,
+                     const Shape& shape,
+                     const core::Transient& transient) {
+    file.write_rows(
+        name, shape, [&transient](std::size_t first, std::size_t count, std::vector<float>& rows) {
+            copy_rows(transient, first, count, rows.data());
+        });
+}
+
+/// Writes several transients as one array, each of them as H.
+template <class Writer>
+void write_stack(Writer& file,
+                 const std::string& name,
+                 Shape shape,
+                 const std::vector<core::Transient>& stack) {
+    shape.insert(shape.begin(), stack.size());
+    file.write_rows(
+        name, shape, [&stack](std::size_t first, std::size_t count, std::vector<float>& rows) {
+            copy_stack(stack, first, count, rows.data());
+        });
+}
 
 }  // namespace nlos

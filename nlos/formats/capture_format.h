@@ -11,8 +11,8 @@
 
 namespace nlos {
 
-/// One capture format that is read other than by a layout. To add one: write a .cpp with a function that returns its row,
-/// and list that function in capture_formats.cpp.
+/// One capture format that is read other than by a layout. To add one: write a .cpp with a function
+/// that returns its row, and list that function in capture_formats.cpp.
 struct CaptureFormat {
     const char* name;  ///< for people
 
@@ -24,17 +24,18 @@ struct CaptureFormat {
 /// All formats, in the order in which a file is tried.
 const std::vector<CaptureFormat>& capture_formats();
 
+/// Writes a capture and says, a sentence each, what the layout does not keep. Throws core::Error
+/// for a capture that it cannot hold.
+using WriteCapture = std::vector<std::string>(const std::string& path,
+                                              const core::Capture& capture,
+                                              const CaptureWriteSettings& settings);
+
 /// One layout that is written. To add one: write a .cpp with its `write`, and list it in
 /// capture_formats.cpp.
 struct CaptureWriter {
     const char* layout;                   ///< what CaptureWriteSettings::layout calls it
     std::array<const char*, 2> suffixes;  ///< of its files, with their dot
-
-    /// Writes a capture and says, a sentence each, what the layout does not keep. Throws
-    /// core::Error for a capture that it cannot hold.
-    std::vector<std::string> (*write)(const std::string& path,
-                                      const core::Capture& capture,
-                                      const CaptureWriteSettings& settings);
+    WriteCapture* write;
 };
 
 /// All layouts that are written. The first one of a suffix is taken when none is asked for.
@@ -46,5 +47,16 @@ std::optional<std::string> extras_left_out(const core::Capture& capture);
 
 /// The coordinates of points, one point after the other, in the precision of the files.
 std::vector<float> to_floats(const std::vector<core::Vec3>& points);
+
+/// Points from their coordinates, one point after the other.
+template <class T>
+std::vector<core::Vec3> to_points(const std::vector<T>& values) {
+    std::vector<core::Vec3> points;
+    points.reserve(values.size() / 3);
+    for (std::size_t i = 0; i + 2 < values.size(); i += 3) {
+        points.emplace_back(values[i], values[i + 1], values[i + 2]);
+    }
+    return points;
+}
 
 }  // namespace nlos

@@ -4,22 +4,14 @@
 namespace nlos {
 
 // Each is defined in the .cpp of its format.
-using Losses = std::vector<std::string>;
 CaptureFormat ytal_format();
 CaptureFormat npz_format();
 CaptureFormat exr_format();
-Losses write_ytal(const std::string&, const core::Capture&, const CaptureWriteSettings&);
-Losses write_npz(const std::string&, const core::Capture&, const CaptureWriteSettings&);
-Losses write_exr(const std::string&, const core::Capture&, const CaptureWriteSettings&);
-Losses write_stanford_2018(const std::string&, const core::Capture&, const CaptureWriteSettings&);
-Losses write_stanford_fk_2019(const std::string&,
-                              const core::Capture&,
-                              const CaptureWriteSettings&);
-Losses write_conv_nlos(const std::string&, const core::Capture&, const CaptureWriteSettings&);
+WriteCapture write_ytal, write_npz, write_exr;
+WriteCapture write_stanford_2018, write_stanford_fk_2019, write_conv_nlos;
 
 const std::vector<CaptureFormat>& capture_formats() {
-    static const std::vector<CaptureFormat> formats{
-        ytal_format(), npz_format(), exr_format()};
+    static const std::vector<CaptureFormat> formats{ytal_format(), npz_format(), exr_format()};
     return formats;
 }
 

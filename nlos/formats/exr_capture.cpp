@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/containers/exr_table.h"
 #include "nlos/formats/capture_format.h"
+#include "nlos/formats/exr_attributes.h"
 #include "nlos/formats/exr_image.h"
 #include "renderer/core/error.h"
 
@@ -8,7 +9,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <limits>
 
 namespace nlos {
@@ -16,7 +16,6 @@ namespace {
 
 using core::Capture;
 using core::Error;
-using core::Vec3;
 using core::WallPoints;
 
 // A scan as an OpenEXR image that any viewer shows: one row per measurement pair, one column per
@@ -41,12 +40,10 @@ using core::WallPoints;
 //
 // A confocal scan holds its points once, as the sensing ones. Pairs are numbered as in core::Scan.
 
-constexpr const char* kFormatKey = "nlosFormat";
 constexpr const char* kFormat = "capture 1";
 constexpr const char* kValues = "Y";
 constexpr const char* kVariance = "variance";
 constexpr const char* kOrder = "order.";
-constexpr const char* kObservedBins = "nlosObservedBins";
 
 void put_points(ExrTable& table, const std::string& device, const WallPoints& points) {
     table.lists["nlos" + device + "PointsM"] = to_floats(points.positions);
@@ -58,93 +55,12 @@ void put_points(ExrTable& table, const std::string& device, const WallPoints& po
 }
 
 void put_observed_bins(ExrTable& table, const std::vector<core::BinRange>& observed) {
-    std::vector<float>& bins = table.lists[kObservedBins];
+    std::vector<float>& bins = table.lists[kExrObservedBins];
     for (const core::BinRange& range : observed) {
         bins.push_back(static_cast<float>(range.begin));
         bins.push_back(static_cast<float>(range.end));
     }
 }
-
-/// A table of named values whose absence or shape is an error of the file.
-class Attributes {
- public:
-    Attributes(const std::string& path, const ExrTable& table) : path_(path), table_(table) {}
-
-    double number(const std::string& name) const {
-        const auto found = table_.numbers.find(name);
-        if (found == table_.numbers.end()) throw_missing(name, "a double");
-        return found->second;
-    }
-    const std::string& text(const std::string& name) const {
-        const auto found = table_.texts.find(name);
-        if (found == table_.texts.end()) throw_missing(name, "a text");
-        return found->second;
-    }
-    template <class E>
-    E choice(const std::string& name) const {
-        E value{};
-        core::read_value(core::Json(text(name)), path_ + ": " + name, value);
-        return value;
-    }
-    std::vector<Vec3> vectors(const std::string& name) const {
-        const auto found = table_.lists.find(name);
-        if (found == table_.lists.end() || found->second.empty() || found->second.size() % 3 != 0) {
-            throw_missing(name, "3 floats per point");
-        }
-        std::vector<Vec3> result;
-        for (std::size_t i = 0; i < found->second.size(); i += 3) {
-            result.emplace_back(found->second[i], found->second[i + 1], found->second[i + 2]);
-        }
-        return result;
-    }
-    Vec3 vector(const std::string& name) const {
-        const std::vector<Vec3> found = vectors(name);
-        if (found.size() != 1) throw_missing(name, "3 floats");
-        return found[0];
-    }
-    WallPoints points(const std::string& device) const {
-        WallPoints points;
-        points.positions = vectors("nlos" + device + "PointsM");
-        points.normals = vectors("nlos" + device + "Normals");
-        for (Vec3& normal : points.normals) {
-            if (normal.norm() > 0.0) normal.normalize();  // floats leave them slightly off
-        }
-        const auto grid = table_.lists.find("nlos" + device + "Grid");
-        if (grid == table_.lists.end()) return points;
-        const auto is_count = [](float value) { return value >= 1.0F && is_whole(value); };
-        if (grid->second.size() != 2 || !std::ranges::all_of(grid->second, is_count)) {
-            throw_missing(grid->first, "2 whole numbers");
-        }
-        points.grid = {static_cast<std::size_t>(grid->second[0]),
-                       static_cast<std::size_t>(grid->second[1])};
-        return points;
-    }
-
-    core::ObservedBins observed_bins(std::size_t num_pairs) const {
-        const auto bins = table_.lists.find(kObservedBins);
-        if (bins == table_.lists.end()) return std::nullopt;
-        if (bins->second.size() != 2 * num_pairs || !std::ranges::all_of(bins->second, is_whole)) {
-            throw_missing(kObservedBins, "2 whole numbers per pair");
-        }
-        std::vector<core::BinRange> observed;
-        for (std::size_t i = 0; i < bins->second.size(); i += 2) {
-            observed.push_back(
-                {static_cast<int>(bins->second[i]), static_cast<int>(bins->second[i + 1])});
-        }
-        return observed;
-    }
-
- private:
-    static bool is_whole(float value) {
-        return value >= 0.0F && value <= 1e7F && value == std::trunc(value);
-    }
-    [[noreturn]] void throw_missing(const std::string& name, const std::string& wanted) const {
-        throw Error(path_ + ": " + name, "is missing or of another kind", "must be " + wanted);
-    }
-
-    const std::string& path_;
-    const ExrTable& table_;
-};
 
 bool shows_wall(const Capture& capture) {
     return capture.time_axis.num_bins == 1 && capture.scan.sensing.grid &&
@@ -208,7 +124,7 @@ void check_size(const std::string& path, const ExrTable& table, const Capture& c
     }
 }
 
-void read_scan(const Attributes& attributes, core::Scan& scan) {
+void read_scan(const ExrAttributes& attributes, core::Scan& scan) {
     scan.pattern = attributes.choice<core::ScanPattern>("nlosPattern");
     scan.sensing = attributes.points("Sensing");
     scan.illumination = scan.pattern == core::ScanPattern::Confocal
@@ -225,7 +141,7 @@ bool recognise_exr(const std::string& path) {
 
 Capture read_exr(const std::string& path, const CaptureReadSettings& settings) {
     const ExrTable table = read_exr_table(path);
-    const auto format = table.texts.find(kFormatKey);
+    const auto format = table.texts.find(kExrFormatKey);
     if (format != table.texts.end() && format->second == kExrImageFormat) {
         Capture image = from_exr_image(path, table);
         image.time_axis.bin_width_m = settings.bin_width_m.value_or(image.time_axis.bin_width_m);
@@ -233,24 +149,18 @@ Capture read_exr(const std::string& path, const CaptureReadSettings& settings) {
     }
     if (format == table.texts.end() || format->second != kFormat) {
         throw Error(path,
-                    fmt::format("is an image without the header attribute {}", kFormatKey),
+                    fmt::format("is an image without the header attribute {}", kExrFormatKey),
                     "must be a capture written as OpenEXR");
     }
-    const Attributes attributes(path, table);
+    const ExrAttributes attributes(path, table);
     Capture capture;
     read_scan(attributes, capture.scan);
     const bool is_wall = attributes.text("nlosLayout") == "wall";
     if (table.width > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
         throw Error(path, fmt::format("has {} columns", table.width), "must have fewer than 2^31");
     }
-    capture.time_axis = {attributes.number("nlosOplStartM"),
-                         settings.bin_width_m.value_or(attributes.number("nlosBinWidthM")),
-                         is_wall ? 1 : static_cast<int>(table.width)};
-    capture.unit = attributes.choice<core::TransientUnit>("nlosUnit");
-    if (const auto scale = table.numbers.find("nlosCountsPerRadiance");
-        scale != table.numbers.end()) {
-        capture.counts_per_radiance = scale->second;
-    }
+    attributes.read_measurement(is_wall ? 1 : static_cast<int>(table.width), capture);
+    capture.time_axis.bin_width_m = settings.bin_width_m.value_or(capture.time_axis.bin_width_m);
     if (is_wall && !shows_wall(capture)) {
         throw Error(path + ": nlosLayout", "is wall for a list of points", "must be pairs");
     }
@@ -291,18 +201,10 @@ std::vector<std::string> write_exr(const std::string& path,
     ExrTable table;
     table.width = is_wall ? (*scan.sensing.grid)[0] : capture.transient.num_bins();
     table.height = is_wall ? (*scan.sensing.grid)[1] : scan.num_pairs();
-    table.texts[kFormatKey] = kFormat;
+    put_measurement(kFormat, capture, table);
     table.texts["nlosLayout"] = is_wall ? "wall" : "pairs";
     table.texts["nlosPattern"] = enum_name(scan.pattern);
-    table.texts["nlosUnit"] = enum_name(capture.unit);
     table.texts["nlosOplOrigin"] = enum_name(scan.opl_origin);
-    table.texts["nlosSceneInfo"] =
-        capture.scene_info.dump(-1, ' ', false, core::Json::error_handler_t::replace);
-    table.numbers["nlosOplStartM"] = capture.time_axis.opl_start_m;
-    table.numbers["nlosBinWidthM"] = capture.time_axis.bin_width_m;
-    if (capture.counts_per_radiance) {
-        table.numbers["nlosCountsPerRadiance"] = *capture.counts_per_radiance;
-    }
     table.lists["nlosLaserM"] = to_floats({scan.laser_position});
     table.lists["nlosDetectorM"] = to_floats({scan.detector_position});
     put_points(table, "Sensing", scan.sensing);

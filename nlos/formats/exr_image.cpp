@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/formats/exr_image.h"
 
+#include "nlos/formats/exr_attributes.h"
 #include "renderer/core/error.h"
 
 #include <fmt/core.h>
@@ -22,19 +23,8 @@ std::string channel_name(const char* kind, std::size_t bin, std::size_t num_bins
     return fmt::format("{}{:0{}}", kind, bin, digits);
 }
 
-template <class Map>
-const typename Map::mapped_type& at(const std::string& path,
-                                    const Map& map,
-                                    const std::string& name) {
-    const auto found = map.find(name);
-    if (found == map.end()) {
-        throw Error(path + ": " + name, "is missing or of another kind", "must be there");
-    }
-    return found->second;
-}
-
 core::Json parse_object(const std::string& path, const ExrTable& table, const std::string& name) {
-    core::Json json = core::parse_json(at(path, table.texts, name), path + ": " + name);
+    core::Json json = core::parse_json(ExrAttributes(path, table).text(name), path + ": " + name);
     if (!json.is_object()) throw Error(path + ": " + name, "is no JSON object", "must be one");
     return json;
 }
@@ -70,7 +60,7 @@ core::Transient read_channels(const std::string& path,
     core::Transient transient(camera.num_pixels(), num_bins);
     for (std::size_t bin = 0; bin < transient.num_bins(); ++bin) {
         const std::string name = channel_name(kind, bin, transient.num_bins());
-        const auto& channel = at(path, table.channels, name);
+        const auto& channel = ExrAttributes(path, table).channel(name);
         for_each_pixel(camera, [&](std::size_t pair, std::size_t place) {
             transient.histogram(pair)[bin] = channel[place];
         });
@@ -103,16 +93,8 @@ ExrTable to_exr_image(const Capture& capture) {
     ExrTable table;
     table.width = camera.width();
     table.height = camera.height();
-    table.texts["nlosFormat"] = kExrImageFormat;
+    put_measurement(kExrImageFormat, capture, table);
     table.texts["nlosCamera"] = core::write_value(camera).dump();
-    table.texts["nlosUnit"] = enum_name(capture.unit);
-    table.texts["nlosSceneInfo"] =
-        capture.scene_info.dump(-1, ' ', false, core::Json::error_handler_t::replace);
-    table.numbers["nlosOplStartM"] = capture.time_axis.opl_start_m;
-    table.numbers["nlosBinWidthM"] = capture.time_axis.bin_width_m;
-    if (capture.counts_per_radiance) {
-        table.numbers["nlosCountsPerRadiance"] = *capture.counts_per_radiance;
-    }
     put_channels(camera, kTimeBin, capture.transient, table);
     if (capture.velocity && !capture.velocity->axis.with_time) {
         table.texts["nlosVelocityAxis"] = core::write_value(capture.velocity->axis).dump();
@@ -141,15 +123,7 @@ Capture from_exr_image(const std::string& path, const ExrTable& table) {
         std::count_if(table.channels.begin(), table.channels.end(), [](const auto& channel) {
             return channel.first.starts_with(kTimeBin);
         });
-    capture.time_axis = {at(path, table.numbers, "nlosOplStartM"),
-                         at(path, table.numbers, "nlosBinWidthM"),
-                         static_cast<int>(num_bins)};
-    core::read_value(
-        core::Json(at(path, table.texts, "nlosUnit")), path + ": nlosUnit", capture.unit);
-    if (const auto scale = table.numbers.find("nlosCountsPerRadiance");
-        scale != table.numbers.end()) {
-        capture.counts_per_radiance = scale->second;
-    }
+    ExrAttributes(path, table).read_measurement(static_cast<int>(num_bins), capture);
     capture.scene_info = parse_object(path, table, "nlosSceneInfo");
     capture.transient = read_channels(path, camera, kTimeBin, capture.time_axis.num_bins, table);
     read_velocity(path, table, capture);

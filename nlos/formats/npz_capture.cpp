@@ -9,7 +9,6 @@ namespace nlos {
 namespace {
 
 using core::Capture;
-using core::Transient;
 using core::WallPoints;
 
 // A capture as a NumPy .npz file, for which numpy alone is needed. Names and shapes are y-tal's:
@@ -57,28 +56,6 @@ void write_scan(NpzWriter& file, const core::Scan& scan) {
     file.write("laser_xyz", {3}, std::span<const double>(scan.laser_position.data(), 3));
     file.write_text("pattern", std::string(enum_name(scan.pattern)));
     file.write_text("opl_origin", std::string(enum_name(scan.opl_origin)));
-}
-
-void write_transient(NpzWriter& file,
-                     const std::string& name,
-                     const Shape& shape,
-                     const Transient& transient) {
-    file.write_rows(
-        name, shape, [&transient](std::size_t first, std::size_t count, std::vector<float>& rows) {
-            copy_rows(transient, first, count, rows.data());
-        });
-}
-
-/// Several transients as one array, each of them as H.
-void write_stack(NpzWriter& file,
-                 const std::string& name,
-                 Shape shape,
-                 const std::vector<Transient>& stack) {
-    shape.insert(shape.begin(), stack.size());
-    file.write_rows(
-        name, shape, [&stack](std::size_t first, std::size_t count, std::vector<float>& rows) {
-            copy_stack(stack, first, count, rows.data());
-        });
 }
 
 bool recognise_npz(const std::string& path) {

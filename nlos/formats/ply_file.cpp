@@ -2,6 +2,7 @@
 #include "nlos/formats/ply_file.h"
 
 #include "nlos/containers/file_memory.h"
+#include "nlos/containers/stored_number.h"
 #include "renderer/core/error.h"
 #include "renderer/core/mapped_file.h"
 #include "renderer/core/output_file.h"
@@ -13,7 +14,6 @@
 #include <bit>
 #include <charconv>
 #include <cmath>
-#include <cstring>
 #include <fstream>
 #include <optional>
 #include <span>
@@ -27,24 +27,25 @@ static_assert(std::endian::native == std::endian::little, "PLY bodies are read a
 using core::Error;
 using core::Vec3;
 
-enum class Scalar { Int8, UInt8, Int16, UInt16, Int32, UInt32, Float32, Float64 };
-
-constexpr std::array<std::size_t, 8> kScalarBytes{1, 1, 2, 2, 4, 4, 4, 8};
-
 /// Both spellings that programs use for each type.
-constexpr std::array<std::pair<const char*, const char*>, 8> kScalarNames{{{"char", "int8"},
-                                                                           {"uchar", "uint8"},
-                                                                           {"short", "int16"},
-                                                                           {"ushort", "uint16"},
-                                                                           {"int", "int32"},
-                                                                           {"uint", "uint32"},
-                                                                           {"float", "float32"},
-                                                                           {"double", "float64"}}};
+struct ScalarName {
+    const char* name;
+    const char* other;
+    StoredNumber number;
+};
+constexpr std::array<ScalarName, 8> kScalarNames{{{"char", "int8", StoredNumber::Int8},
+                                                  {"uchar", "uint8", StoredNumber::UInt8},
+                                                  {"short", "int16", StoredNumber::Int16},
+                                                  {"ushort", "uint16", StoredNumber::UInt16},
+                                                  {"int", "int32", StoredNumber::Int32},
+                                                  {"uint", "uint32", StoredNumber::UInt32},
+                                                  {"float", "float32", StoredNumber::Float32},
+                                                  {"double", "float64", StoredNumber::Float64}}};
 
 struct Property {
     std::string name;
-    Scalar type;
-    std::optional<Scalar> list_count;  ///< type of the length of a list
+    StoredNumber type;
+    std::optional<StoredNumber> list_count;  ///< type of the length of a list
 };
 
 struct Element {
@@ -63,11 +64,9 @@ struct Header {
     throw Error(path, found, "must be a complete PLY file, ASCII or binary little endian");
 }
 
-Scalar parse_scalar(const std::string& path, const std::string& name) {
-    for (std::size_t i = 0; i < kScalarNames.size(); ++i) {
-        if (name == kScalarNames[i].first || name == kScalarNames[i].second) {
-            return static_cast<Scalar>(i);
-        }
+StoredNumber parse_scalar(const std::string& path, const std::string& name) {
+    for (const ScalarName& known : kScalarNames) {
+        if (name == known.name || name == known.other) return known.number;
     }
     throw_damaged(path, "has a property of unknown type '" + name.substr(0, 20) + "'");
 }
@@ -127,7 +126,7 @@ class Body {
     Body(const std::string& path, std::string_view text, const Header& header)
         : path_(path), ascii_(header.ascii), rest_(text.substr(header.body_begin)) {}
 
-    double next(Scalar type) { return ascii_ ? next_token() : next_bytes(type); }
+    double next(StoredNumber type) { return ascii_ ? next_token() : next_bytes(type); }
 
     /// Throws unless `count` items of at least `bytes` each can still follow.
     void expect(std::size_t count, std::size_t bytes) const {
@@ -148,35 +147,12 @@ class Body {
         return value;
     }
 
-    template <class T>
-    double take() {
-        T value{};
-        if (rest_.size() < sizeof(T)) throw_damaged(path_, "is cut short");
-        std::memcpy(&value, rest_.data(), sizeof(T));
-        rest_.remove_prefix(sizeof(T));
-        return static_cast<double>(value);
-    }
-
-    double next_bytes(Scalar type) {
-        switch (type) {
-            case Scalar::Int8:
-                return take<std::int8_t>();
-            case Scalar::UInt8:
-                return take<std::uint8_t>();
-            case Scalar::Int16:
-                return take<std::int16_t>();
-            case Scalar::UInt16:
-                return take<std::uint16_t>();
-            case Scalar::Int32:
-                return take<std::int32_t>();
-            case Scalar::UInt32:
-                return take<std::uint32_t>();
-            case Scalar::Float32:
-                return take<float>();
-            case Scalar::Float64:
-                return take<double>();
-        }
-        return 0.0;
+    double next_bytes(StoredNumber type) {
+        const std::size_t size = bytes_of(type);
+        if (rest_.size() < size) throw_damaged(path_, "is cut short");
+        const double value = number_at(rest_.data(), type, std::endian::little);
+        rest_.remove_prefix(size);
+        return value;
     }
 
     const std::string& path_;
@@ -190,7 +166,7 @@ void read_property(const Property& property, Body& body, std::vector<double>& va
     if (property.list_count) {
         const double length = body.next(*property.list_count);
         count = length >= 0.0 && length < 1e9 ? static_cast<std::size_t>(length) : 0;
-        body.expect(count, kScalarBytes[static_cast<std::size_t>(property.type)]);
+        body.expect(count, bytes_of(property.type));
     }
     values.clear();
     for (std::size_t i = 0; i < count; ++i) values.push_back(body.next(property.type));
@@ -255,8 +231,7 @@ void read_element(const std::string& path,
                   core::TriangleMesh& mesh) {
     std::size_t min_bytes = 0;
     for (const Property& property : element.properties) {
-        min_bytes +=
-            kScalarBytes[static_cast<std::size_t>(property.list_count.value_or(property.type))];
+        min_bytes += bytes_of(property.list_count.value_or(property.type));
     }
     body.expect(element.count, min_bytes);
     if (element.name == "vertex") return read_vertices(path, element, body, mesh);

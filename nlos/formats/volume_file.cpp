@@ -3,6 +3,7 @@
 
 #include "nlos/containers/array_reader.h"
 #include "nlos/containers/hdf5_writer.h"
+#include "nlos/formats/capture_format.h"
 #include "renderer/core/error.h"
 
 #include <fmt/core.h>
@@ -40,12 +41,7 @@ void write_vectors(Hdf5Writer& file, const std::string& name, Shape shape, const
 
 std::vector<Vec3> read_vectors(const ArrayReader& file, const std::string& name, Shape shape) {
     shape.push_back(3);
-    const std::vector<double> values = file.read_doubles(name, shape);
-    std::vector<Vec3> vectors;
-    for (std::size_t i = 0; i + 2 < values.size(); i += 3) {
-        vectors.emplace_back(values[i], values[i + 1], values[i + 2]);
-    }
-    return vectors;
+    return to_points(file.read_doubles(name, shape));
 }
 
 /// Throws unless every value is finite.

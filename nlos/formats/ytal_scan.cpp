@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/formats/ytal_scan.h"
 
+#include "nlos/formats/capture_format.h"
 #include "nlos/formats/ytal_layout.h"
+#include "nlos/layouts/layout_pairs.h"
 #include "renderer/core/error.h"
 
 #include <fmt/core.h>
@@ -15,15 +17,6 @@ using core::Capture;
 using core::Error;
 using core::Vec3;
 using core::WallPoints;
-
-std::vector<Vec3> to_points(const std::vector<double>& values) {
-    std::vector<Vec3> points;
-    points.reserve(values.size() / 3);
-    for (std::size_t i = 0; i + 2 < values.size(); i += 3) {
-        points.emplace_back(values[i], values[i + 1], values[i + 2]);
-    }
-    return points;
-}
 
 Vec3 read_position(const ArrayReader& file, const std::string& name) {
     return to_points(file.read_doubles(name, {3}))[0];
@@ -115,15 +108,6 @@ void read_illumination_normals(const ArrayReader& file,
                                                    shape_text(wanted))
                                      : name + " is missing") +
                             ": the wall's normals are used");
-}
-
-bool are_same_points(const WallPoints& a, const WallPoints& b) {
-    constexpr double kTolerance = 1e-5;  // [m]; files hold single precision
-    if (a.size() != b.size()) return false;
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        if (!((a.positions[i] - b.positions[i]).norm() <= kTolerance)) return false;
-    }
-    return true;
 }
 
 HFormat read_h_format(const ArrayReader& file, bool lists) {

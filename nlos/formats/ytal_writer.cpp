@@ -35,18 +35,6 @@ void write_points(Hdf5Writer& file,
                     static_cast<int>(layout.grids ? GridFormat::XY3 : GridFormat::N3));
 }
 
-/// Not compressed: the noise of rendered and measured histograms leaves deflate little to save for
-/// many times the writing time.
-void write_transient(Hdf5Writer& file,
-                     const std::string& name,
-                     const Shape& shape,
-                     const core::Transient& transient) {
-    file.write_rows(
-        name, shape, [&](std::size_t first, std::size_t count, std::vector<float>& rows) {
-            copy_rows(transient, first, count, rows.data());
-        });
-}
-
 /// Power by path velocity: (V, pairs...), or (V, T, pairs...) with time.
 void write_velocity(Hdf5Writer& file,
                     const Shape& h_shape,
@@ -72,19 +60,6 @@ void write_velocity(Hdf5Writer& file,
     attribute(kVelocityBinWidth, velocity.axis.bin_width_m_per_s);
     attribute(kVelocityCarrier, velocity.axis.carrier_hz);
     if (velocity.variance) write("nlos/velocity_variance", *velocity.variance);
-}
-
-/// Several transients as one array, each of them as H.
-void write_stack(Hdf5Writer& file,
-                 const std::string& name,
-                 const Shape& h_shape,
-                 const std::vector<core::Transient>& stack) {
-    Shape shape = h_shape;
-    shape.insert(shape.begin(), stack.size());
-    file.write_rows(
-        name, shape, [&](std::size_t first, std::size_t count, std::vector<float>& rows) {
-            copy_stack(stack, first, count, rows.data());
-        });
 }
 
 void write_observed_bins(Hdf5Writer& file,

@@ -41,18 +41,6 @@ Json write_value(const LayoutRanks& ranks) {
     return ranks.of;
 }
 
-void read_value(const Json& json, const std::string& where, LayoutValues& values) {
-    if (!json.is_object()) core::throw_wrong_type(where, json, "an object of numbers");
-    values.of.clear();
-    for (const auto& [name, value] : json.items()) {
-        core::read_value(value, where + "." + name, values.of[name]);
-    }
-}
-
-Json write_value(const LayoutValues& values) {
-    return values.of;
-}
-
 namespace {
 
 /// Axes of histograms that say which pair, bin or frame a value belongs to.

@@ -58,20 +58,13 @@ struct LayoutRanks {
 void read_value(const core::Json& json, const std::string& where, LayoutRanks& ranks);
 core::Json write_value(const LayoutRanks& ranks);
 
-/// Values of scalars by name. In JSON an object of numbers.
-struct LayoutValues {
-    std::map<std::string, double> of;
-};
-void read_value(const core::Json& json, const std::string& where, LayoutValues& values);
-core::Json write_value(const LayoutValues& values);
-
 struct LayoutRecognition {
-    std::vector<std::string> containers;  ///< as ArrayReader::container() says; none: any
-    LayoutRanks arrays;                   ///< that such files hold
-    LayoutValues values;                  ///< that some of them have
-    std::vector<std::string> absent;      ///< arrays that such files do not hold
-    std::vector<std::string> beside;      ///< files in the same folder
-    bool alone = false;                   ///< the histograms are all that such files hold
+    std::vector<std::string> containers;   ///< as ArrayReader::container() says; none: any
+    LayoutRanks arrays;                    ///< that such files hold
+    std::map<std::string, double> values;  ///< of scalars among these
+    std::vector<std::string> absent;       ///< arrays that such files do not hold
+    std::vector<std::string> beside;       ///< files in the same folder
+    bool alone = false;                    ///< the histograms are all that such files hold
 };
 
 template <class Visitor>

@@ -84,18 +84,14 @@ void take_off_delays(const std::vector<int>& delays, Capture& capture) {
     const int bins = capture.time_axis.num_bins;
     for (std::size_t pair = 0; pair < delays.size(); ++pair) {
         const int delay = std::clamp(delays[pair], -bins, bins);
-        const auto move = [&](core::Transient& transient) {
+        core::for_each_transient(capture, [&](const char*, core::Transient& transient, int) {
             const auto histogram = transient.histogram(pair);
             if (delay > 0) {
                 std::shift_left(histogram.begin(), histogram.end(), delay);
             } else {
                 std::shift_right(histogram.begin(), histogram.end(), -delay);
             }
-        };
-        move(capture.transient);
-        if (capture.sequence) {
-            for (core::Transient& frame : capture.sequence->frames) move(frame);
-        }
+        });
         observed.push_back({std::max(0, -delay), bins - std::max(0, delay)});
     }
     core::restrict_observed(capture, observed);
@@ -103,7 +99,7 @@ void take_off_delays(const std::vector<int>& delays, Capture& capture) {
 
 core::BinRange lit_bins(const Capture& capture) {
     core::BinRange lit{capture.time_axis.num_bins, 0};
-    const auto look_at = [&](const core::Transient& transient) {
+    core::for_each_transient(capture, [&](const char*, const core::Transient& transient, int) {
         for (std::size_t pair = 0; pair < transient.num_pairs(); ++pair) {
             const auto histogram = transient.histogram(pair);
             const auto is_lit = [](float value) { return value != 0.0F; };
@@ -113,11 +109,7 @@ core::BinRange lit_bins(const Capture& capture) {
             lit.begin = std::min(lit.begin, static_cast<int>(first - histogram.begin()));
             lit.end = std::max(lit.end, static_cast<int>(histogram.rend() - last));
         }
-    };
-    look_at(capture.transient);
-    if (capture.sequence) {
-        for (const core::Transient& frame : capture.sequence->frames) look_at(frame);
-    }
+    });
     return lit.begin < lit.end ? lit : core::BinRange{0, capture.time_axis.num_bins};
 }
 

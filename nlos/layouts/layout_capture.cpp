@@ -81,10 +81,9 @@ void describe(const LayoutFiles& files, const Layout& layout, Capture& capture) 
     for (const std::string& name : layout.keep) {
         constexpr std::size_t kLongest = 4096;
         if (!files.has(name)) continue;
-        const Shape shape = files.shape(name);
-        std::size_t count = 1;
-        for (const std::size_t extent : shape) count *= extent;
-        if (count <= kLongest) capture.scene_info["arrays"][name] = files.read(name);
+        if (total_bytes(files.shape(name), 1) <= kLongest) {
+            capture.scene_info["arrays"][name] = files.read(name);
+        }
     }
     const LayoutNumber& fwhm = layout.response_fwhm_s;
     if (fwhm.value || (!fwhm.array.empty() && files.has(fwhm.array))) {
@@ -142,12 +141,9 @@ Capture read_one(const std::string& path,
     if (!background.empty() && std::all_of(background.begin(),
                                            background.end(),
                                            [&](const auto& name) { return files.has(name); })) {
-        subtract_background(files, background, capture.transient);
-        if (capture.sequence) {
-            for (auto& frame : capture.sequence->frames) {
-                subtract_background(files, background, frame);
-            }
-        }
+        core::for_each_transient(capture, [&](const char*, core::Transient& transient, int) {
+            subtract_background(files, background, transient);
+        });
         capture.notes.push_back(
             fmt::format("the mean of {} is subtracted", fmt::join(background, ", ")));
     }

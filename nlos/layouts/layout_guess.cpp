@@ -3,11 +3,11 @@
 
 #include "nlos/layouts/layout_match.h"
 #include "renderer/core/error.h"
+#include "renderer/core/nearest_name.h"
 
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <functional>
@@ -24,7 +24,7 @@ constexpr std::size_t kFewestTimeBins = 16;
 constexpr std::size_t kMostRead = std::size_t{1} << 22;  // values, for a range in the list
 
 std::size_t count_of(const Shape& shape) {
-    return std::accumulate(shape.begin(), shape.end(), std::size_t{1}, std::multiplies<>());
+    return total_bytes(shape, 1);
 }
 
 bool is_numeric(const ArrayReader& file, const std::string& name) {
@@ -132,13 +132,6 @@ ArrayStatistics statistics_of(const LayoutFiles& files, const std::string& name)
     return statistics;
 }
 
-std::string lower_case(std::string text) {
-    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) {
-        return static_cast<char>(std::tolower(c));
-    });
-    return text;
-}
-
 /// The scalar whose name holds one of some words and whose value a test accepts.
 struct NamedScalar {
     std::string name;
@@ -151,7 +144,7 @@ std::optional<NamedScalar> find_scalar(const LayoutFiles& files,
     for (const std::string& name : files.main().names()) {
         if (!files.has(name) || !is_numeric(files.main(), name)) continue;
         if (count_of(files.shape(name)) != 1) continue;
-        const std::string lower = lower_case(name);
+        const std::string lower = core::lower_case(name);
         const double value = files.read(name).at(0);
         const bool is_named = std::any_of(words.begin(), words.end(), [&](const auto& word) {
             return lower.find(word) != std::string::npos;

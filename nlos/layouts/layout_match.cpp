@@ -112,7 +112,7 @@ std::vector<std::string> mismatches(const LayoutFiles& files, const Layout& layo
                                         fmt::join(ranks, " or ")));
         }
     }
-    for (const auto& [name, value] : wanted.values.of) {
+    for (const auto& [name, value] : wanted.values) {
         if (!has_value(files, name, value))
             lacks.push_back(fmt::format("{} is not {}", name, value));
     }

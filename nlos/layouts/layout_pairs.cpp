@@ -29,15 +29,6 @@ PointAxes point_axes(const LayoutFiles& files,
     return axes;
 }
 
-bool are_same_points(const core::WallPoints& a, const core::WallPoints& b) {
-    constexpr double kTolerance_m = 1e-5;  // files hold single precision
-    if (a.size() != b.size()) return false;
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        if (!((a.positions[i] - b.positions[i]).norm() <= kTolerance_m)) return false;
-    }
-    return true;
-}
-
 core::ScanPattern pattern_of(const Layout& layout,
                              const core::Scan& scan,
                              const PairNumbers& numbers,
@@ -88,6 +79,15 @@ void require_every_pair_once(const LayoutFiles& files,
 }
 
 }  // namespace
+
+bool are_same_points(const core::WallPoints& a, const core::WallPoints& b) {
+    constexpr double kTolerance_m = 1e-5;  // files hold single precision
+    if (a.size() != b.size()) return false;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        if (!((a.positions[i] - b.positions[i]).norm() <= kTolerance_m)) return false;
+    }
+    return true;
+}
 
 PairNumbers read_pairs(const LayoutFiles& files,
                        const Layout& layout,

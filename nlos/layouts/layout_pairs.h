@@ -5,6 +5,9 @@
 
 namespace nlos {
 
+/// Whether two lists hold the same points up to the single precision of files.
+bool are_same_points(const core::WallPoints& a, const core::WallPoints& b);
+
 /// Where the points are and how they pair up.
 ///
 /// scan      its origin of path lengths and its devices are known; gets points and pattern

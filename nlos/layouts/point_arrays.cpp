@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace nlos {
 namespace {
@@ -72,9 +71,7 @@ CoordinateArray read_coordinates(const LayoutFiles& files,
     CoordinateArray read;
     read.shape = files.shape(array);
     const std::size_t count = axes.count();
-    if (std::accumulate(
-            read.shape.begin(), read.shape.end(), std::size_t{1}, std::multiplies<>()) !=
-        3 * count) {
+    if (total_bytes(read.shape, 1) != 3 * count) {
         refuse_shape(files, array, read.shape, axes);
     }
     read.values = files.read(array);
@@ -125,7 +122,7 @@ std::size_t offset_of(const CoordinateArray& array,
 }  // namespace
 
 std::size_t PointAxes::count() const {
-    return std::accumulate(extents.begin(), extents.end(), std::size_t{1}, std::multiplies<>());
+    return total_bytes(extents, 1);
 }
 
 bool PointAxes::is_grid() const {

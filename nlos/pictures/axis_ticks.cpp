@@ -39,6 +39,16 @@ int common_exponent(double largest) {
     return 3 * static_cast<int>(std::floor(std::log10(largest) / 3.0));
 }
 
+/// "10⁻⁶".
+std::string power_of_ten(int exponent) {
+    constexpr std::array kRaised{"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+    std::string text = exponent < 0 ? "10⁻" : "10";
+    for (const char digit : std::to_string(std::abs(exponent))) {
+        text += kRaised[static_cast<std::size_t>(digit - '0')];
+    }
+    return text;
+}
+
 }  // namespace
 
 AxisTicks choose_ticks(double low, double high, int at_most) {
@@ -60,15 +70,6 @@ AxisTicks choose_ticks(double low, double high, int at_most) {
         ticks.labels.push_back((value < 0.0 ? "−" : "") + digits);
     }
     return ticks;
-}
-
-std::string power_of_ten(int exponent) {
-    constexpr std::array kRaised{"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
-    std::string text = exponent < 0 ? "10⁻" : "10";
-    for (const char digit : std::to_string(std::abs(exponent))) {
-        text += kRaised[static_cast<std::size_t>(digit - '0')];
-    }
-    return text;
 }
 
 std::string label_with_exponent(std::string label, int exponent) {

@@ -19,9 +19,6 @@ struct AxisTicks {
 /// at_most     the largest number of ticks wanted, at least 1
 AxisTicks choose_ticks(double low, double high, int at_most);
 
-/// "10⁻⁶".
-std::string power_of_ten(int exponent);
-
 /// The label of an axis with the power of ten that its numbers are multiples of, as a part of its
 /// unit: "light [W]" becomes "light [10⁻⁶ W]".
 std::string label_with_exponent(std::string label, int exponent);

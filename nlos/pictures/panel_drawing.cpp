@@ -194,6 +194,18 @@ void draw_colour_bar(Canvas& canvas,
                 upwards(fitted(kLabelText, label, bar.height + kTitleHeight)));
 }
 
+/// Draws frame, ticks and labels of a plot.
+template <class AnyPanel>
+void draw_axes(Canvas& canvas,
+               const PixelBox& plot,
+               const PixelAxis& x,
+               const PixelAxis& y,
+               const AnyPanel& panel) {
+    canvas.frame(plot, kAxisColour, kLine);
+    draw_x_axis(canvas, plot, x, panel.x_label);
+    draw_y_axis(canvas, plot, y, panel.y_label);
+}
+
 /// Draws a legend whose upper left corner is (x, y).
 void draw_legend(Canvas& canvas, int x, int y, const Legend& legend) {
     int row = y + kLegendStep / 2;
@@ -210,15 +222,11 @@ void draw_plot(Canvas& canvas, const PixelBox& plot, const ImagePanel& panel) {
                  static_cast<int>(panel.width),
                  static_cast<int>(panel.height),
                  panel_colours(panel, range));
-    canvas.frame(plot, kAxisColour, kLine);
-    draw_x_axis(canvas,
-                plot,
-                pixel_axis(panel.x_range, panel.x_direction, plot.x, plot.right()),
-                panel.x_label);
-    draw_y_axis(canvas,
-                plot,
-                pixel_axis(panel.y_range, panel.y_direction, plot.bottom(), plot.y),
-                panel.y_label);
+    draw_axes(canvas,
+              plot,
+              pixel_axis(panel.x_range, panel.x_direction, plot.x, plot.right()),
+              pixel_axis(panel.y_range, panel.y_direction, plot.bottom(), plot.y),
+              panel);
     const PixelSize room = room_of({plot.width, plot.height});
     const int bar_x = plot.x + (plot.width + room.width) / 2 + kBarGap;
     const int bar_y = plot.y + (plot.height - room.height) / 2;
@@ -250,9 +258,7 @@ void draw_plot(Canvas& canvas, const PixelBox& plot, const CurvePanel& panel) {
     draw_grid(canvas, plot, x, y);
     canvas.fill_polygon(area, kCurve, 0.15);
     canvas.polyline(line, kCurve, 4);
-    canvas.frame(plot, kAxisColour, kLine);
-    draw_x_axis(canvas, plot, x, panel.x_label);
-    draw_y_axis(canvas, plot, y, panel.y_label);
+    draw_axes(canvas, plot, x, y, panel);
 }
 
 // ---- Drawings ----------------------------------------------------------------------------------
@@ -274,9 +280,7 @@ void draw_plot(Canvas& canvas, const PixelBox& plot, const DrawingPanel& panel) 
             canvas.polyline(points, line.colour, line.thickness_px);
         }
     }
-    canvas.frame(plot, kAxisColour, kLine);
-    draw_x_axis(canvas, plot, x, panel.x_label);
-    draw_y_axis(canvas, plot, y, panel.y_label);
+    draw_axes(canvas, plot, x, y, panel);
     draw_legend(canvas, plot.right() + kBarGap, plot.y, panel.legend);
 }
 

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace nlos {
 namespace {
@@ -34,9 +35,7 @@ std::vector<double> sum_over_pairs(const core::Transient& values) {
 }
 
 double total_of(const std::vector<double>& values) {
-    double total = 0.0;
-    for (const double value : values) total += value;
-    return total;
+    return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
 /// Values per bin of velocity.

@@ -68,24 +68,6 @@ void validate_ranges(const Capture& capture,
     }
 }
 
-/// Visits every histogram by path length of one kind: what it is called, its values, and how many
-/// axes follow one another in each.
-template <class AnyCapture, class Visit>
-void for_each_transient(AnyCapture& capture, Visit&& visit) {
-    visit("H", capture.transient, 1);
-    if (capture.variance) visit("variance", *capture.variance, 1);
-    for (auto& order : capture.by_order) visit("H_by_order", order, 1);
-    if (capture.sequence) {
-        for (auto& frame : capture.sequence->frames) visit("frames", frame, 1);
-    }
-    if (!capture.velocity || !capture.velocity->axis.with_time) return;
-    const int num_velocities = capture.velocity->axis.num_bins;
-    visit("velocity", capture.velocity->values, num_velocities);
-    if (capture.velocity->variance) {
-        visit("velocity_variance", *capture.velocity->variance, num_velocities);
-    }
-}
-
 /// Visits the values of a pair outside its range.
 template <class Values, class Visit>
 void for_each_unobserved(const Values& histogram,

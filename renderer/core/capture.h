@@ -131,6 +131,24 @@ struct Capture {
     }
 };
 
+/// Visits all histograms by path length: what they are called, their values, and how many time axes
+/// follow one another in each.
+template <class AnyCapture, class Visit>
+void for_each_transient(AnyCapture& capture, Visit&& visit) {
+    visit("H", capture.transient, 1);
+    if (capture.variance) visit("variance", *capture.variance, 1);
+    for (auto& order : capture.by_order) visit("H_by_order", order, 1);
+    if (capture.sequence) {
+        for (auto& frame : capture.sequence->frames) visit("frames", frame, 1);
+    }
+    if (!capture.velocity || !capture.velocity->axis.with_time) return;
+    const int num_velocities = capture.velocity->axis.num_bins;
+    visit("velocity", capture.velocity->values, num_velocities);
+    if (capture.velocity->variance) {
+        visit("velocity_variance", *capture.velocity->variance, num_velocities);
+    }
+}
+
 /// Throws Error unless a scan has points, each with a normal, all of them finite, or a camera.
 ///
 /// where   prefix of messages

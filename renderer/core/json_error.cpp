@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/core/json_error.h"
 
+#include "renderer/core/nearest_name.h"
+
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -151,9 +153,7 @@ std::string hint_at(std::string_view text, std::size_t begin) {
     if ((word == "]" || word == "}") && last_before(text, begin) == ',') {
         return "the last item has no comma behind it";
     }
-    std::string lower = word;
-    std::ranges::transform(
-        lower, lower.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string lower = lower_case(word);
     if (lower == "nan" || lower == "inf" || lower == "infinity" || lower == "-inf" ||
         lower == "-infinity") {
         return "JSON has no numbers but finite ones, and null";

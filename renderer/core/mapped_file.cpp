@@ -10,6 +10,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <fstream>
 
 namespace core {
 namespace {
@@ -67,6 +68,14 @@ void MappedFile::require_stored() const {
                 "has " + std::to_string(bytes_.size()) + " bytes, of which " +
                     std::to_string(stored_bytes_) + " are stored",
                 allowed_);
+}
+
+std::string first_bytes(const std::string& path, std::size_t count) {
+    std::ifstream file(path, std::ios::binary);
+    std::string bytes(count, '\0');
+    file.read(bytes.data(), static_cast<std::streamsize>(count));
+    bytes.resize(static_cast<std::size_t>(file.gcount()));
+    return bytes;
 }
 
 }  // namespace core

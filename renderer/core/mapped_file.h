@@ -30,4 +30,7 @@ class MappedFile {
     std::string_view bytes_;
 };
 
+/// The first `count` bytes of a file; fewer of a shorter one, none of one that cannot be read.
+std::string first_bytes(const std::string& path, std::size_t count);
+
 }  // namespace core

@@ -12,10 +12,8 @@ constexpr std::size_t kShortestBeginning = 3;  // that says which name was meant
 constexpr std::size_t kCharactersPerChange = 3;
 
 std::string plain(std::string_view name) {
-    std::string text;
-    for (const char c : name) {
-        text += c == '_' ? '-' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    }
+    std::string text = lower_case(std::string(name));
+    std::ranges::replace(text, '_', '-');
     return text;
 }
 
@@ -41,6 +39,11 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 }
 
 }  // namespace
+
+std::string lower_case(std::string text) {
+    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return text;
+}
 
 std::string nearest_name(std::string_view found, const std::vector<std::string>& known) {
     if (found.empty() || found.size() > kLongest) return "";

@@ -12,6 +12,9 @@ namespace core {
 /// begins so. Empty when none is near.
 std::string nearest_name(std::string_view found, const std::vector<std::string>& known);
 
+/// A text with the letters of ASCII in lower case.
+std::string lower_case(std::string text);
+
 /// "did you mean 'NAME'? " to begin what is allowed with; empty when no name is near.
 std::string did_you_mean(std::string_view found, const std::vector<std::string>& known);
 

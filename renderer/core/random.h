@@ -16,6 +16,13 @@ class Rng {
     Rng(std::uint64_t seed, std::uint64_t work_item, std::uint64_t sample)
         : state_(mix(mix(mix(seed + kStep) ^ (work_item * kItemStep)) + sample * kSampleStep)) {}
 
+    /// A hash: all bits of the result depend on all bits of the argument.
+    static constexpr std::uint64_t mix(std::uint64_t bits) {
+        bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9ULL;
+        bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebULL;
+        return bits ^ (bits >> 31);
+    }
+
     std::uint64_t next_bits() { return mix(state_ += kStep); }
 
     /// Uniform in [0, 1), all 53 bits random.
@@ -34,12 +41,6 @@ class Rng {
     static constexpr std::uint64_t kStep = 0x9e3779b97f4a7c15ULL;
     static constexpr std::uint64_t kItemStep = 0xd1b54a32d192ed03ULL;
     static constexpr std::uint64_t kSampleStep = 0x8cb92ba72f3d8dd7ULL;
-
-    static constexpr std::uint64_t mix(std::uint64_t bits) {
-        bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9ULL;
-        bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebULL;
-        return bits ^ (bits >> 31);
-    }
 
     static constexpr double to_unit(std::uint64_t bits) {
         return static_cast<double>(bits >> 11) * 0x1.0p-53;

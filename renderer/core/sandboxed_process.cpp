@@ -40,26 +40,28 @@ enum class Kind : char { Bytes = 'b', Error = 'e', Failure = 'f', OutOfMemory = 
 constexpr std::size_t kMessageHeaderBytes = 1 + sizeof(std::uint64_t);
 constexpr std::uint64_t kLongestMessage = std::uint64_t{1} << 40;
 
-bool send_all(int socket, const char* bytes, std::size_t count) {
+/// Calls `move(bytes, count)`, which sends or receives some of them, until all are through.
+template <class Byte, class Move>
+bool move_all(Byte* bytes, std::size_t count, const Move& move) {
     while (count > 0) {
-        const ssize_t sent = ::send(socket, bytes, count, MSG_NOSIGNAL);
-        if (sent < 0 && errno == EINTR) continue;
-        if (sent <= 0) return false;
-        bytes += sent;
-        count -= static_cast<std::size_t>(sent);
+        const ssize_t moved = move(bytes, count);
+        if (moved < 0 && errno == EINTR) continue;
+        if (moved <= 0) return false;
+        bytes += moved;
+        count -= static_cast<std::size_t>(moved);
     }
     return true;
 }
 
+bool send_all(int socket, const char* bytes, std::size_t count) {
+    return move_all(bytes, count, [&](const char* next, std::size_t rest) {
+        return ::send(socket, next, rest, MSG_NOSIGNAL);
+    });
+}
+
 bool receive_all(int socket, char* bytes, std::size_t count) {
-    while (count > 0) {
-        const ssize_t received = ::recv(socket, bytes, count, 0);
-        if (received < 0 && errno == EINTR) continue;
-        if (received <= 0) return false;
-        bytes += received;
-        count -= static_cast<std::size_t>(received);
-    }
-    return true;
+    return move_all(
+        bytes, count, [&](char* next, std::size_t rest) { return ::recv(socket, next, rest, 0); });
 }
 
 bool send_message(int socket, Kind kind, const std::string& bytes) {
@@ -295,8 +297,26 @@ void bound_memory(std::uint64_t bytes) {
     if (!kReservesAddresses) limit(RLIMIT_AS, used_address_space() + bytes);
 }
 
-std::string run_sandboxed(const std::string& path, const std::function<std::string()>& work) {
-    return SandboxedProcess(path, [&](const std::string&) { return work(); }).ask("");
+Json run_sandboxed(const std::string& path,
+                   const std::function<Json()>& work,
+                   const std::function<Error(const std::string& message)>& failure) {
+    const auto serve = [&](const std::string&) {
+        std::string bytes;
+        try {
+            Json::to_cbor(work(), bytes);
+        } catch (const Error&) {
+            throw;
+        } catch (const Failure&) {
+            throw;
+        } catch (const std::bad_alloc&) {
+            throw;
+        } catch (const std::exception& error) {
+            if (!failure) throw;
+            throw failure(error.what());
+        }
+        return bytes;
+    };
+    return Json::from_cbor(SandboxedProcess(path, serve).ask(""));
 }
 
 }  // namespace core

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "renderer/core/settings.h"
+
 #include <chrono>
 #include <cstdint>
+#include <cstring>
 #include <functional>
 #include <mutex>
 #include <string>
+#include <vector>
 
 namespace core {
 
@@ -56,6 +60,26 @@ class SandboxedProcess {
 void bound_memory(std::uint64_t bytes);
 
 /// Runs `work` once in a SandboxedProcess and returns its answer.
-std::string run_sandboxed(const std::string& path, const std::function<std::string()>& work);
+///
+/// failure   what an exception of the library's own, with its message, or a text that is not UTF-8
+///           means; empty: the same as a crash
+Json run_sandboxed(const std::string& path,
+                   const std::function<Json()>& work,
+                   const std::function<Error(const std::string& message)>& failure = {});
+
+/// An answer that is a list of plain numbers, as its bytes.
+template <class T>
+Json to_binary(const std::vector<T>& items) {
+    const auto* bytes = reinterpret_cast<const std::uint8_t*>(items.data());
+    return Json::binary({bytes, bytes + items.size() * sizeof(T)});
+}
+
+/// Takes such a list out of an answer.
+template <class T>
+void from_binary(const Json& json, std::vector<T>& items) {
+    const auto& bytes = json.get_binary();
+    items.resize(bytes.size() / sizeof(T));
+    std::memcpy(items.data(), bytes.data(), items.size() * sizeof(T));
+}
 
 }  // namespace core

@@ -126,19 +126,11 @@ void require_any_seen(const SensorFootprints& footprints,
                       const SensorPose& pose,
                       const std::string& where) {
     if (footprints.num_dead() < footprints.zones.size()) return;
-    const Vec3& p = pose.position_m;
-    const Vec3& f = pose.forward;
-    throw Error(
-        where,
-        fmt::format("found ({:.4g}, {:.4g}, {:.4g}) looking along ({:.4g}, {:.4g}, {:.4g}), from "
-                    "where no zone sees the relay wall",
-                    p.x(),
-                    p.y(),
-                    p.z(),
-                    f.x(),
-                    f.y(),
-                    f.z()),
-        "must look at the front of the wall, within its size_m");
+    throw Error(where,
+                fmt::format("found {} looking along {}, from where no zone sees the relay wall",
+                            vector_text(pose.position_m),
+                            vector_text(pose.forward)),
+                "must look at the front of the wall, within its size_m");
 }
 
 }  // namespace
@@ -222,8 +214,6 @@ SensorFootprints make_footprints(const SensorSetup& setup, std::size_t frame) {
 std::vector<std::string> describe_sensor(const SensorSetup& setup) {
     const SensorModel& model = setup.model;
     const SensorPose& pose = setup.pose_of_frame(0);
-    const Vec3& p = pose.position_m;
-    const Vec3 f = pose.forward.normalized();
     const std::size_t dead = make_footprints(setup).num_dead();
     const bool floods = model.illumination == SensorIllumination::Flood;
     return {
@@ -237,14 +227,9 @@ std::vector<std::string> describe_sensor(const SensorSetup& setup) {
                     floods ? "flood light" : "each zone lights its own spot",
                     setup.subsamples,
                     setup.subsamples),
-        fmt::format("sensor at ({:.4g}, {:.4g}, {:.4g}) m, looking along ({:.4g}, {:.4g}, "
-                    "{:.4g}){}; {} of {} zones see the wall",
-                    p.x(),
-                    p.y(),
-                    p.z(),
-                    f.x(),
-                    f.y(),
-                    f.z(),
+        fmt::format("sensor at {} m, looking along {}{}; {} of {} zones see the wall",
+                    vector_text(pose.position_m),
+                    vector_text(pose.forward.normalized()),
                     setup.poses.size() > 1
                         ? fmt::format(" in the first of {} poses", setup.poses.size())
                         : "",

@@ -21,19 +21,6 @@ TimeAxis SensorModel::time_axis() const {
     return {opl_from_seconds(first_bin_s), opl_from_seconds(bin_width_s), num_bins};
 }
 
-void read_value(const Json& json, const std::string& where, SourceTable& sources) {
-    if (!json.is_object()) throw_wrong_type(where, json, "an object with one text per key");
-    for (const auto& [key, text] : json.items()) {
-        read_value(text, join_key(where, key), sources[key]);
-    }
-}
-
-Json write_value(const SourceTable& sources) {
-    Json json = Json::object();
-    for (const auto& [key, text] : sources) json[key] = text;
-    return json;
-}
-
 Json write_value(const SensorModel& model) {
     Json json = write_value<SensorModel>(model);
     json.erase("sources");

@@ -40,9 +40,6 @@ struct SensorDetector {
     double response_fwhm_ps() const;
 };
 
-/// Where numbers come from, by their key.
-struct SourceTable : std::map<std::string, std::string> {};
-
 /// A histogram camera as its data sheet describes it.
 ///
 /// Its zones are a grid of equal rectangles of a pinhole's image, numbered row by row from the top
@@ -58,7 +55,7 @@ struct SensorModel {
     int num_bins = 128;
     double first_bin_s = 0.0;  ///< start of bin 0 after the light has left
     SensorDetector detector;
-    SourceTable sources;
+    std::map<std::string, std::string> sources;  ///< where numbers come from, by their key
 
     int num_zones() const { return zones[0] * zones[1]; }
     TimeAxis time_axis() const;
@@ -99,10 +96,6 @@ void for_each_field(SensorDetector& d, Visitor&& visit) {
                    "bins after the direct return that the firmware sets to zero with it and "
                    "what is before; 0: nothing is cut"));
 }
-
-/// A table is an object with one text per key.
-void read_value(const Json& json, const std::string& where, SourceTable& sources);
-Json write_value(const SourceTable& sources);
 
 template <class Visitor>
 void for_each_field(SensorModel& s, Visitor&& visit) {

@@ -113,6 +113,10 @@ void check_keys(const Json& json, const std::string& where, const std::vector<st
     }
 }
 
+std::string vector_text(const Vec3& vector) {
+    return fmt::format("({:.4g}, {:.4g}, {:.4g})", vector.x(), vector.y(), vector.z());
+}
+
 std::string range_text(const Range& range) {
     std::string text;
     if (std::isfinite(range.low)) {
@@ -125,11 +129,6 @@ std::string range_text(const Range& range) {
                             range.high);
     }
     return text;
-}
-
-std::string SettingHelp::text() const {
-    const std::string limits = choices.empty() ? range : choices_text(choices);
-    return limits.empty() ? meaning : meaning + " (" + limits + ")";
 }
 
 void check_range(double value, const Range& range, const std::string& where) {

@@ -10,6 +10,7 @@
 #include <concepts>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -112,6 +113,9 @@ void require(bool holds,
              const std::string& found,
              const std::string& allowed);
 
+/// The name of a key below `where`, as errors print it.
+std::string join_key(const std::string& where, const std::string& key);
+
 /// Throws the error for a JSON value of the wrong type: `where: found <json>; must be <allowed>`.
 [[noreturn]] void throw_wrong_type(const std::string& where,
                                    const Json& found,
@@ -163,6 +167,15 @@ void read_value(const Json& json, const std::string& where, std::vector<T>& valu
     }
 }
 
+/// A table: an object with one value per key. Others of the table stay as they are.
+template <class T>
+void read_value(const Json& json, const std::string& where, std::map<std::string, T>& table) {
+    if (!json.is_object()) throw_wrong_type(where, json, "an object with one value per key");
+    for (const auto& [key, value] : json.items()) {
+        read_value(value, join_key(where, key), table[key]);
+    }
+}
+
 template <class S>
 requires SettingsStruct<S>
 void read_value(const Json& json, const std::string& where, S& settings);
@@ -179,9 +192,6 @@ void read_value(const Json& json, const std::string& where, std::optional<T>& va
 
 /// Throws Error for keys of `json` that are not among `known`, naming the nearest and all of them.
 void check_keys(const Json& json, const std::string& where, const std::vector<std::string>& known);
-
-/// The name of a key below `where`, as errors print it.
-std::string join_key(const std::string& where, const std::string& key);
 
 /// Reads the keys present in `json` into `settings` and leaves the others as they are.
 template <class S>
@@ -229,6 +239,12 @@ requires requires(const List& list) {
 }
 
 template <class T>
+Json write_value(const std::map<std::string, T>& table) {
+    Json json = Json::object();
+    for (const auto& [key, value] : table) json[key] = write_value(value);
+    return json;
+}
+template <class T>
 Json write_value(const std::optional<T>& value) {
     return value ? write_value(*value) : Json(nullptr);
 }
@@ -243,19 +259,19 @@ requires SettingsStruct<S> Json write_value(S settings) {
     return json;
 }
 
+/// A point or a direction in words: "(0.5, 0, 1.25)".
+std::string vector_text(const Vec3& vector);
+
 /// The range in words, as in "at least 0 and below 1"; empty for all numbers.
 std::string range_text(const Range& range);
 
 /// Throws Error unless a number is finite and in a range, each number of a list, and that of an
 /// optional if it has one; `where` is the full key.
 void check_range(double value, const Range& range, const std::string& where);
-inline void check_range(std::uint64_t value, const Range& range, const std::string& where) {
+template <std::integral T>
+void check_range(T value, const Range& range, const std::string& where) {
     check_range(static_cast<double>(value), range, where);
 }
-inline void check_range(int value, const Range& range, const std::string& where) {
-    check_range(static_cast<double>(value), range, where);
-}
-
 template <class T, std::size_t N>
 void check_range(const std::array<T, N>& values, const Range& range, const std::string& where) {
     for (const T& value : values) check_range(value, range, where);
@@ -284,63 +300,6 @@ Json parse_override(const std::string& text);
 template <SettingsStruct S>
 void apply_override(S& settings, const std::string& text) {
     read_value(parse_override(text), "--set", settings);
-}
-
-/// What help says of a setting.
-struct SettingHelp {
-    std::string key;  ///< full, dotted
-    std::string default_value;
-    std::string meaning;
-    std::vector<std::string> choices;  ///< the values that it may have; empty: no closed set
-    std::string range;                 ///< of its numbers, in words; empty: any
-
-    /// The meaning, with the choices or the range behind it.
-    std::string text() const;
-};
-
-template <class T>
-std::vector<std::string> choices_of(const T&) {
-    if constexpr (std::is_enum_v<T>) return enum_names<T>();
-    return {};
-}
-template <class T>
-std::vector<std::string> choices_of(const std::optional<T>&) {
-    return choices_of(T{});
-}
-
-/// The settings in a field, which is one of them or has fields of its own.
-template <class T>
-struct NestedSettings {
-    static constexpr bool exist = SettingsStruct<T>;
-    using Type = T;
-};
-template <class T>
-struct NestedSettings<std::optional<T>> : NestedSettings<T> {};
-
-/// Lists every field with default and meaning, nested ones by their dotted key; fields of what is
-/// null by default come behind the line that says so.
-template <SettingsStruct S>
-std::vector<SettingHelp> settings_help(S defaults, const std::string& prefix = "") {
-    std::vector<SettingHelp> lines;
-    for_each_field(defaults, [&](const char* name, auto& field, const auto& meaning) {
-        using Field = std::remove_cvref_t<decltype(field)>;
-        using Nested = NestedSettings<Field>;
-        if constexpr (!SettingsStruct<Field>) {
-            SettingHelp line{prefix + name, write_value(field).dump(), "", choices_of(field), ""};
-            line.meaning = static_cast<const char*>(meaning);
-            if constexpr (std::same_as<decltype(meaning), const Ranged&>) {
-                line.range = range_text(meaning.range);
-            }
-            lines.push_back(std::move(line));
-        }
-        if constexpr (Nested::exist) {
-            typename Nested::Type inner{};
-            if constexpr (SettingsStruct<Field>) inner = field;
-            const auto nested = settings_help(inner, prefix + name + ".");
-            lines.insert(lines.end(), nested.begin(), nested.end());
-        }
-    });
-    return lines;
 }
 
 /// Parses JSON text, which may come from anywhere.

@@ -8,10 +8,7 @@ namespace {
 std::vector<bool> wider_than(const core::TimeAxis& axis, const Scene& scene) {
     std::vector<Eigen::AlignedBox3d> boxes(scene.objects().size());
     for (const Facet& facet : scene.facets()) {
-        for (const core::Vec3& corner :
-             {facet.point(0.0, 0.0), facet.point(1.0, 0.0), facet.point(0.0, 1.0)}) {
-            boxes[facet.object].extend(corner);
-        }
+        for (const core::Vec3& corner : facet.corners()) boxes[facet.object].extend(corner);
     }
     std::vector<bool> is_wider;
     for (const Eigen::AlignedBox3d& box : boxes) {

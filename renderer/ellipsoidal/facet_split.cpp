@@ -28,9 +28,7 @@ struct Bin {
     bool empty = true;
 
     void add(const Facet& facet) {
-        box.extend(facet.corner);
-        box.extend(facet.point(1.0, 0.0));
-        box.extend(facet.point(0.0, 1.0));
+        for (const Vec3& corner : facet.corners()) box.extend(corner);
         area_m2 += facet.area_m2;
         empty = false;
     }

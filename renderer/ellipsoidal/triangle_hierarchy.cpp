@@ -23,9 +23,8 @@ constexpr float kNearestLeg = 0.1F;
 constexpr int kDeepestCut = 40;
 
 Eigen::AlignedBox3d box_of(const Facet& facet) {
-    Eigen::AlignedBox3d box(facet.corner);
-    box.extend(Vec3(facet.corner + facet.edge1));
-    box.extend(Vec3(facet.corner + facet.edge2));
+    Eigen::AlignedBox3d box;
+    for (const Vec3& corner : facet.corners()) box.extend(corner);
     return box;
 }
 

@@ -117,8 +117,7 @@ class ArcDensity {
 }  // namespace
 
 OplBand opl_band(const FocusPair& foci, const Facet& facet) {
-    const std::array<Vec3, 3> corners{
-        facet.corner, facet.corner + facet.edge1, facet.corner + facet.edge2};
+    const std::array<Vec3, 3> corners = facet.corners();
     OplBand band;
     for (const Vec3& corner : corners) band.high_m = std::max(band.high_m, foci.opl_m(corner));
 

@@ -17,10 +17,6 @@ using core::Vec3;
 constexpr double kCoplanar = 1e-10;  ///< of the object's size, and of a metre
 constexpr auto kFree = std::numeric_limits<std::uint32_t>::max();  ///< a facet without a patch
 
-std::array<Vec3, 3> corners_of(const Facet& facet) {
-    return {facet.corner, facet.corner + facet.edge1, facet.corner + facet.edge2};
-}
-
 // Which facets of the same object share an edge. Corners at the same place count as one: meshes
 // repeat vertices where texture coordinates jump.
 std::vector<std::vector<std::uint32_t>> neighbours_of(const Scene& scene) {
@@ -62,7 +58,7 @@ std::vector<double> coplanar_distances(std::span<const Facet> facets) {
     std::vector<Eigen::AlignedBox3d> boxes;
     for (const Facet& facet : facets) {
         if (facet.object >= boxes.size()) boxes.resize(facet.object + 1);
-        for (const Vec3& corner : corners_of(facet)) boxes[facet.object].extend(corner);
+        for (const Vec3& corner : facet.corners()) boxes[facet.object].extend(corner);
     }
     std::vector<double> distances;
     for (const auto& box : boxes) {
@@ -97,7 +93,7 @@ PlanarPatches::PlanarPatches(const Scene& scene)
         if (patch_of_facet_[seed] != kFree) continue;
         const Facet& plane = facets[seed];
         const auto is_coplanar = [&](const Facet& facet) {
-            const auto corners = corners_of(facet);
+            const auto corners = facet.corners();
             return std::all_of(corners.begin(), corners.end(), [&](const Vec3& corner) {
                 return std::abs(plane.normal.dot(corner - plane.corner)) <= distances[plane.object];
             });
@@ -136,7 +132,7 @@ void PlanarPatches::add_grid(Patch& patch, const std::vector<std::uint32_t>& mem
     };
     const auto box_of = [&](std::uint32_t facet) {
         Eigen::AlignedBox2d box;
-        for (const Vec3& corner : corners_of(facets_[facet])) box.extend(in_plane(corner));
+        for (const Vec3& corner : facets_[facet].corners()) box.extend(in_plane(corner));
         return box;
     };
     Eigen::AlignedBox2d box;

@@ -2,6 +2,7 @@
 #include "renderer/mesh_file/assimp_file.h"
 
 #include "renderer/core/error.h"
+#include "renderer/core/mapped_file.h"
 #include "renderer/core/sandboxed_process.h"
 #include "renderer/core/settings.h"
 
@@ -11,11 +12,9 @@
 #include <assimp/scene.h>
 
 #include <algorithm>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <new>
 #include <set>
 #include <sstream>
 #include <tuple>
@@ -169,10 +168,7 @@ void keep_one_format(Assimp::Importer& importer, const std::string& suffix) {
 /// In the header of a PLY file that does not end, assimp looks for its end forever.
 void require_ply_header(const std::string& path) {
     constexpr std::size_t kLongestHeader = 1 << 20;
-    std::string start(kLongestHeader, '\0');
-    std::ifstream file(path, std::ios::binary);
-    file.read(start.data(), static_cast<std::streamsize>(start.size()));
-    start.resize(static_cast<std::size_t>(file.gcount()));
+    const std::string start = core::first_bytes(path, kLongestHeader);
     if (start.starts_with("ply") && start.find("end_header") != std::string::npos) return;
     throw core::Error(path, "is damaged: its PLY header is not complete", kCompleteFile);
 }
@@ -198,27 +194,14 @@ AssimpFile read_with_library(const std::string& path, const std::string& suffix)
     return file;
 }
 
-template <class T>
-core::Json to_binary(const std::vector<T>& items) {
-    const auto* bytes = reinterpret_cast<const std::uint8_t*>(items.data());
-    return core::Json::binary({bytes, bytes + items.size() * sizeof(T)});
-}
-
-template <class T>
-void from_binary(const core::Json& json, std::vector<T>& items) {
-    const auto& bytes = json.get_binary();
-    items.resize(bytes.size() / sizeof(T));
-    std::memcpy(items.data(), bytes.data(), items.size() * sizeof(T));
-}
-
 core::Json to_json(const AssimpFile& file) {
     core::Json json = {{"warnings", file.warnings},
                        {"meshes", core::Json::array()},
                        {"materials", core::Json::array()}};
     for (const FileMesh& mesh : file.meshes) {
         json["meshes"].push_back({{"name", mesh.name},
-                                  {"vertices", to_binary(mesh.vertices)},
-                                  {"triangles", to_binary(mesh.triangles)},
+                                  {"vertices", core::to_binary(mesh.vertices)},
+                                  {"triangles", core::to_binary(mesh.triangles)},
                                   {"material", mesh.material}});
     }
     for (const FileMaterial& material : file.materials) {
@@ -237,8 +220,8 @@ AssimpFile from_json(const core::Json& json) {
     for (const core::Json& source : json.at("meshes")) {
         FileMesh& mesh = file.meshes.emplace_back();
         source.at("name").get_to(mesh.name);
-        from_binary(source.at("vertices"), mesh.vertices);
-        from_binary(source.at("triangles"), mesh.triangles);
+        core::from_binary(source.at("vertices"), mesh.vertices);
+        core::from_binary(source.at("triangles"), mesh.triangles);
         source.at("material").get_to(mesh.material);
     }
     for (const core::Json& source : json.at("materials")) {
@@ -255,21 +238,12 @@ AssimpFile from_json(const core::Json& json) {
 }  // namespace
 
 AssimpFile read_with_assimp(const std::string& path, const std::string& suffix) {
-    const std::string answer = core::run_sandboxed(path, [&] {
-        try {
-            std::string bytes;
-            core::Json::to_cbor(to_json(read_with_library(path, suffix)), bytes);
-            return bytes;
-        } catch (const core::Error&) {
-            throw;
-        } catch (const std::bad_alloc&) {
-            throw;
-        } catch (const std::exception& error) {  // the library's own, and names that are not UTF-8
-            throw core::Error(
-                path, "is damaged (" + part_of_a_line(error.what()) + ")", kCompleteFile);
-        }
-    });
-    return from_json(core::Json::from_cbor(answer));
+    return from_json(core::run_sandboxed(
+        path,
+        [&] { return to_json(read_with_library(path, suffix)); },
+        [&](const std::string& message) {
+            return core::Error(path, "is damaged (" + part_of_a_line(message) + ")", kCompleteFile);
+        }));
 }
 
 }  // namespace renderer

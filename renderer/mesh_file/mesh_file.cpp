@@ -3,12 +3,12 @@
 
 #include "renderer/core/error.h"
 #include "renderer/core/mapped_file.h"
+#include "renderer/core/nearest_name.h"
 #include "renderer/mesh_file/assimp_file.h"
 
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 
 namespace renderer {
@@ -18,11 +18,7 @@ namespace fs = std::filesystem;
 using core::Vec3;
 
 std::string lower_suffix(const std::string& path) {
-    std::string suffix = fs::path(path).extension().string();
-    std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) {
-        return static_cast<char>(std::tolower(c));
-    });
-    return suffix;
+    return core::lower_case(fs::path(path).extension().string());
 }
 
 /// The rows are where the world's x, y and z point in the file.

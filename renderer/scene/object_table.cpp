@@ -51,12 +51,6 @@ void read_value(const core::Json& json, const std::string& where, ObjectTable& o
     }
 }
 
-core::Json write_value(const ObjectTable& objects) {
-    core::Json json = core::Json::object();
-    for (const auto& [name, settings] : objects) json[name] = core::write_value(settings);
-    return json;
-}
-
 void validate(const ObjectTable& objects, const std::string& where) {
     for (const auto& [name, object] : objects) {
         const std::string place = core::join_key(where, name);

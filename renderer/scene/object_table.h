@@ -35,7 +35,7 @@ struct ObjectSettings {
 };
 
 /// Objects by their name.
-struct ObjectTable : std::map<std::string, ObjectSettings> {};
+using ObjectTable = std::map<std::string, ObjectSettings>;
 
 template <class Visitor>
 void for_each_field(MaterialSettings& material, Visitor&& visit) {
@@ -62,7 +62,6 @@ void for_each_field(ObjectSettings& object, Visitor&& visit) {
 /// A table is an object with one entry per name, or an array whose entries have a `name`, or that
 /// of their mesh's file.
 void read_value(const core::Json& json, const std::string& where, ObjectTable& objects);
-core::Json write_value(const ObjectTable& objects);
 
 /// Throws core::Error naming the key that is out of range, or says how a mesh lies where there is
 /// none.

@@ -72,9 +72,7 @@ std::vector<Facet> make_facets(const SceneGeometry& geometry) {
 
 std::vector<std::array<Vec3, 3>> corners_of(std::span<const Facet> facets) {
     std::vector<std::array<Vec3, 3>> corners;
-    for (const Facet& f : facets) {
-        corners.push_back({f.corner, f.corner + f.edge1, f.corner + f.edge2});
-    }
+    for (const Facet& facet : facets) corners.push_back(facet.corners());
     return corners;
 }
 

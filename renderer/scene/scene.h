@@ -6,6 +6,7 @@
 #include "renderer/scene/ray_caster.h"
 #include "renderer/scene/scene_file.h"
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -25,6 +26,7 @@ struct Facet {
 
     /// b1 and b2 are the weights of the second and the third corner.
     core::Vec3 point(double b1, double b2) const { return corner + b1 * edge1 + b2 * edge2; }
+    std::array<core::Vec3, 3> corners() const { return {corner, corner + edge1, corner + edge2}; }
     /// Orthonormal, third column the normal.
     core::Mat3 world_from_facet() const { return core::frame_from_normal(normal, edge1); }
 };

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 namespace renderer {
 namespace {
@@ -25,12 +26,7 @@ TriangleMesh mesh_of_file(const std::string& file, const std::string& where) {
     }
     TriangleMesh all;
     for (const Object& object : load_mesh_file(file, {}).objects) {
-        const auto base = static_cast<std::uint32_t>(all.vertices.size());
-        all.vertices.insert(
-            all.vertices.end(), object.mesh.vertices.begin(), object.mesh.vertices.end());
-        for (const auto& [a, b, c] : object.mesh.triangles) {
-            all.triangles.push_back({base + a, base + b, base + c});
-        }
+        core::append_mesh(object.mesh, all);
     }
     return all;
 }
@@ -39,14 +35,11 @@ TriangleMesh placed(const TriangleMesh& mesh, const core::Transform& to_world) {
     TriangleMesh result;
     for (const Vec3& vertex : mesh.vertices) result.vertices.push_back(to_world * vertex);
     const bool is_mirrored = to_world.linear().determinant() < 0.0;
-    for (const auto& [a, b, c] : mesh.triangles) {
+    for (auto [a, b, c] : mesh.triangles) {
         const Vec3& corner = result.vertices[a];
         if (!core::has_area(result.vertices[b] - corner, result.vertices[c] - corner)) continue;
-        if (is_mirrored) {
-            result.triangles.push_back({a, c, b});
-        } else {
-            result.triangles.push_back({a, b, c});
-        }
+        if (is_mirrored) std::swap(b, c);
+        result.triangles.push_back({a, b, c});
     }
     return result;
 }
@@ -65,6 +58,25 @@ void check_memory(const SceneGeometry& geometry, const std::string& where) {
     throw core::Error(where,
                       fmt::format("makes {:.3g} bytes of geometry", bytes),
                       fmt::format("must fit into half of the {:.3g} free bytes", available));
+}
+
+/// The relay wall that a rectangle becomes; its albedo stays as it is.
+RelayWall rectangle_wall(const core::Transform& to_world, const std::string& where) {
+    const Vec3 x = to_world.linear().col(0);
+    const Vec3 y = to_world.linear().col(1);
+    const double area = x.cross(y).norm();
+    if (!(area > 0.0) || std::abs(x.dot(y)) > 1e-6 * area) {
+        throw core::Error(
+            where, "is no rectangle in the world", "must have right angles and an area");
+    }
+    RelayWall wall;
+    wall.center_m = to_world.translation();
+    // Normals go with the inverse transpose, which turns over with a mirroring.
+    const double side = to_world.linear().determinant() < 0.0 ? -1.0 : 1.0;
+    wall.normal = side * x.cross(y).normalized();
+    wall.up = y.normalized();
+    wall.size_m = {2.0 * x.norm(), 2.0 * y.norm()};
+    return wall;
 }
 
 }  // namespace
@@ -100,35 +112,32 @@ void add_shape(const ForeignShape& shape,
     check_memory(scene.geometry, where);
 }
 
-RelayWall rectangle_wall(const core::Transform& to_world, const std::string& where) {
-    const Vec3 x = to_world.linear().col(0);
-    const Vec3 y = to_world.linear().col(1);
-    const double area = x.cross(y).norm();
-    if (!(area > 0.0) || std::abs(x.dot(y)) > 1e-6 * area) {
-        throw core::Error(
-            where, "is no rectangle in the world", "must have right angles and an area");
+void require_rectangle(const ForeignShape& shape, const std::string& where) {
+    if (shape.type == "rectangle") return;
+    throw core::Error(where,
+                      "is a relay wall of type " + shape.type.substr(0, 60),
+                      "must be a rectangle, whose points are known");
+}
+
+void set_relay_wall(const ForeignShape& shape, const std::string& where, ImportedScene& scene) {
+    scene.description.relay_wall = rectangle_wall(shape.to_world, where);
+    scene.description.relay_wall.albedo = shape.material.albedo;
+    if (!(shape.to_world.linear().determinant() > 0.0)) {
+        scene.not_translated.emplace_back(
+            "columns of wall points run against those of the foreign scene, whose wall is "
+            "mirrored");
     }
-    RelayWall wall;
-    wall.center_m = to_world.translation();
-    // Normals go with the inverse transpose, which turns over with a mirroring.
-    const double side = to_world.linear().determinant() < 0.0 ? -1.0 : 1.0;
-    wall.normal = side * x.cross(y).normalized();
-    wall.up = y.normalized();
-    wall.size_m = {2.0 * x.norm(), 2.0 * y.norm()};
-    return wall;
+    if (shape.material.model != SurfaceModel::Lambertian) {
+        scene.not_translated.emplace_back(
+            "the relay wall is diffuse here, with its reflectance as albedo");
+    }
 }
 
-void set_wall_material(const Material& material, ImportedScene& scene) {
-    scene.description.relay_wall.albedo = material.albedo;
-    if (material.model == SurfaceModel::Lambertian) return;
-    scene.not_translated.emplace_back(
-        "the relay wall is diffuse here, with its reflectance as albedo");
-}
-
-void note_mirrored_wall(const core::Transform& to_world, ImportedScene& scene) {
-    if (to_world.linear().determinant() > 0.0) return;
-    scene.not_translated.emplace_back(
-        "columns of wall points run against those of the foreign scene, whose wall is mirrored");
+void note_laser_power(const std::string& key, ImportedScene& scene) {
+    scene.not_translated.push_back(
+        key +
+        ": its power is not translated: each spot gets 1 W here, there the less the farther "
+        "it is");
 }
 
 void set_bounces(const ForeignBounces& bounces, ImportedScene& scene) {

@@ -27,15 +27,17 @@ void add_shape(const ForeignShape& shape,
                const std::string& where,
                ImportedScene& scene);
 
-/// The relay wall that a rectangle (x, y from -1 to 1) becomes; its albedo stays as it is.
+/// Throws core::Error naming `where` when a relay wall is no rectangle.
+void require_rectangle(const ForeignShape& shape, const std::string& where);
+
+/// Makes a rectangle (x, y from -1 to 1) the relay wall, which is Lambertian here. Says in the list
+/// when its material is not, and when columns of its points run against those of the foreign scene.
+///
 /// throws   core::Error naming `where` when it is no rectangle in the world
-RelayWall rectangle_wall(const core::Transform& to_world, const std::string& where);
+void set_relay_wall(const ForeignShape& shape, const std::string& where, ImportedScene& scene);
 
-/// Takes the material of the relay wall, which is Lambertian here.
-void set_wall_material(const Material& material, ImportedScene& scene);
-
-/// Says in the list when columns of the wall's points run against those of the foreign scene.
-void note_mirrored_wall(const core::Transform& to_world, ImportedScene& scene);
+/// Says in the list that a laser has its own power there.
+void note_laser_power(const std::string& key, ImportedScene& scene);
 
 /// How a scene of mitransient limits bounces.
 struct ForeignBounces {

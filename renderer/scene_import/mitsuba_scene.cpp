@@ -2,6 +2,7 @@
 #include "renderer/scene_import/mitsuba_scene.h"
 
 #include "renderer/core/error.h"
+#include "renderer/core/nearest_name.h"
 #include "renderer/scene_import/imported_shapes.h"
 #include "renderer/scene_import/key_reader.h"
 #include "renderer/scene_import/mitsuba_material.h"
@@ -12,7 +13,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 
 namespace renderer {
@@ -113,15 +113,10 @@ class MitsubaImport {
             throw core::Error(where(key), "is a second relay wall", "must be the only one");
         }
         KeyReader keys(value, where(key));
-        const ForeignShape shape = mitsuba_shape(keys, key);
-        if (shape.type != "rectangle") {
-            throw core::Error(where(key),
-                              "is a relay wall of type " + shape.type,
-                              "must be a rectangle, whose points are known");
-        }
-        scene_.description.relay_wall = rectangle_wall(shape.to_world, where(key));
-        note_mirrored_wall(shape.to_world, scene_);
-        set_wall_material(material_of(keys, value), scene_);
+        ForeignShape shape = mitsuba_shape(keys, key);
+        require_rectangle(shape, where(key));
+        shape.material = material_of(keys, value);
+        set_relay_wall(shape, where(key), scene_);
         const auto [sensor_key, sensor] = child_of_type(value, kSensor);
         keys.find(sensor_key);
         read_sensor(key + "." + sensor_key, *sensor);
@@ -199,10 +194,8 @@ class MitsubaImport {
         ScanSettings& scan = scene_.description.scan;
         const Json* value = keys.find("capture_type");
         if (value != nullptr) {
-            std::string name = value->is_string() ? value->get<std::string>() : value->dump();
-            std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) {
-                return static_cast<char>(std::tolower(c));
-            });
+            const std::string name =
+                core::lower_case(value->is_string() ? value->get<std::string>() : value->dump());
             if (name == "confocal" || name == "2") {
                 scan.pattern = core::ScanPattern::Confocal;
             } else if (name == "exhaustive" || name == "3") {
@@ -228,9 +221,7 @@ class MitsubaImport {
         laser_key_ = key;
         scene_.description.scan.laser_m = laser_->translation();
         if (keys.find("irradiance") != nullptr || keys.find("intensity") != nullptr) {
-            note(key,
-                 "its power is not translated: each spot gets 1 W here, there the less the farther "
-                 "it is");
+            note_laser_power(key, scene_);
         }
         keys.ignore({"type", "id", "fov", "cutoff_angle", "beam_width"});
         note_unread(keys, key);

@@ -214,7 +214,7 @@ class XmlReader {
     std::size_t num_elements_ = 0;
 };
 
-std::string parse_to_cbor(const std::string& text, const std::string& where) {
+Json parse_xml(const std::string& text, const std::string& where) {
     pugi::xml_document document;
     const pugi::xml_parse_result result =
         document.load_buffer(text.data(), text.size(), pugi::parse_default | pugi::parse_doctype);
@@ -224,9 +224,7 @@ std::string parse_to_cbor(const std::string& text, const std::string& where) {
             fmt::format("is no valid XML: {} at byte {}", result.description(), result.offset),
             "must be a scene of Mitsuba 3");
     }
-    std::string bytes;
-    Json::to_cbor(XmlReader(where).read(document), bytes);
-    return bytes;
+    return XmlReader(where).read(document);
 }
 
 }  // namespace
@@ -234,16 +232,15 @@ std::string parse_to_cbor(const std::string& text, const std::string& where) {
 core::Json parse_mitsuba_xml(const std::string& text,
                              const std::string& path,
                              const std::string& where) {
-    return Json::from_cbor(
-        core::run_sandboxed(path, [&] { return parse_to_cbor(text, path + ": " + where); }));
+    return core::run_sandboxed(path, [&] { return parse_xml(text, path + ": " + where); });
 }
 
 core::Json read_mitsuba_xml(const std::string& path) {
-    return Json::from_cbor(core::run_sandboxed(path, [&] {
+    return core::run_sandboxed(path, [&] {
         const core::MappedFile file(path, "must be a scene of Mitsuba 3");
         file.require_stored();
-        return parse_to_cbor(std::string(file.bytes()), path);
-    }));
+        return parse_xml(std::string(file.bytes()), path);
+    });
 }
 
 }  // namespace renderer

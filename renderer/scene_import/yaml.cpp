@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <new>
 
 namespace renderer {
 namespace {
@@ -88,23 +87,15 @@ class YamlReader {
 }  // namespace
 
 core::Json read_yaml(const std::string& path) {
-    return Json::from_cbor(core::run_sandboxed(path, [&] {
-        try {
-            const core::MappedFile file(path, "must be a scene of y-tal");
-            file.require_stored();
-            std::string bytes;
-            Json::to_cbor(YamlReader(path).read(YAML::Load(std::string(file.bytes()))), bytes);
-            return bytes;
-        } catch (const core::Error&) {
-            throw;
-        } catch (const std::bad_alloc&) {
-            throw;
-        } catch (const std::exception& error) {  // the library's own, and texts that are not UTF-8
-            throw core::Error(path,
-                              "is no valid YAML (" + std::string(error.what()).substr(0, 120) + ")",
-                              "must be a scene of y-tal");
-        }
-    }));
+    const auto read = [&] {
+        const core::MappedFile file(path, "must be a scene of y-tal");
+        file.require_stored();
+        return YamlReader(path).read(YAML::Load(std::string(file.bytes())));
+    };
+    return core::run_sandboxed(path, read, [&](const std::string& message) {
+        return core::Error(
+            path, "is no valid YAML (" + message.substr(0, 120) + ")", "must be a scene of y-tal");
+    });
 }
 
 }  // namespace renderer

@@ -40,11 +40,7 @@ class YtalImport {
                      keys_.get("integrator_nlos_laser_sampling", true)},
                     scene_);
         keys_.ignore({"name", "mitsuba_variant", "description", "histogram_mode"});
-        if (keys_.find("laser_emission") != nullptr) {
-            note("laser_emission",
-                 "its power is not translated: each spot gets 1 W here, there the less the farther "
-                 "it is");
-        }
+        if (keys_.find("laser_emission") != nullptr) note_laser_power("laser_emission", scene_);
         for (const std::string& key : keys_.unread()) note(key, "is not translated");
         return std::move(scene_);
     }
@@ -207,15 +203,9 @@ class YtalImport {
         keys.ignore({"description"});
         const bool is_wall = shape.name == wall_name;
         if (is_wall) {
-            if (shape.type != "rectangle") {
-                throw core::Error(keys.where("mesh"),
-                                  "is a relay wall of type " + shape.type.substr(0, 60),
-                                  "must be a rectangle, whose points are known");
-            }
-            scene_.description.relay_wall = rectangle_wall(shape.to_world, where);
+            require_rectangle(shape, keys.where("mesh"));
+            set_relay_wall(shape, where, scene_);
             wall_x_ = shape.to_world.linear().col(0).normalized();
-            note_mirrored_wall(shape.to_world, scene_);
-            set_wall_material(shape.material, scene_);
         } else {
             add_shape(shape, path_, where, scene_);
         }

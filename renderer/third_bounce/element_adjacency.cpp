@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "renderer/core/random.h"
 #include "renderer/third_bounce/element_clusters.h"
 
 #include <algorithm>
@@ -10,14 +11,9 @@ namespace {
 
 using core::Vec3;
 
-std::uint64_t mix(std::uint64_t bits) {
-    bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9ULL;
-    bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebULL;
-    return bits ^ (bits >> 31);
-}
-
 // Adding 0.0 turns -0.0 into 0.0.
 std::uint64_t key_of(const Vec3& p) {
+    constexpr auto mix = core::Rng::mix;
     const auto bits = [](double x) { return std::bit_cast<std::uint64_t>(x + 0.0); };
     return mix(mix(mix(bits(p.x())) + bits(p.y())) + bits(p.z()));
 }

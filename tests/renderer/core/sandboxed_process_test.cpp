@@ -56,7 +56,7 @@ TEST(SandboxedProcess, ACrashIsAnErrorOfTheFile) {
         EXPECT_ERROR_WITH(process.ask("crash"), "some file: is damaged");
         EXPECT_ERROR_WITH(process.ask("again"), "crashes");
     }
-    EXPECT_ERROR_WITH(run_sandboxed("some file", []() -> std::string { throw 1; }), "damaged");
+    EXPECT_ERROR_WITH(run_sandboxed("some file", []() -> Json { throw 1; }), "damaged");
 }
 
 TEST(SandboxedProcess, WhatDoesNotEndIsEnded) {
@@ -64,7 +64,7 @@ TEST(SandboxedProcess, WhatDoesNotEndIsEnded) {
                                     [] {
                                         // As the limit on CPU time does after seconds.
                                         std::raise(SIGXCPU);
-                                        return std::string();
+                                        return Json();
                                     }),
                       "does not end");
 }

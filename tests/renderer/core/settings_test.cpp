@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/core/settings.h"
-
+#include "renderer/core/settings_help.h"
 #include "tests/support/error_message.h"
 #include "tests/support/file_bytes.h"
 #include "tests/support/temporary_folder.h"
