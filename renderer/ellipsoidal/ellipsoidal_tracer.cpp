@@ -60,7 +60,8 @@ class EllipsoidalTracer::Walk : public PairWalk {
     void trace_samples(int count) override;
     void trace_pixel_samples(const SensorPairs& sensor_pairs,
                              std::size_t pixel,
-                             int count) override;
+                             int count,
+                             const LightSubpaths* subpaths) override;
 
  private:
     void cut_hierarchy(int num_samples);
@@ -153,7 +154,8 @@ void EllipsoidalTracer::Walk::finish_connections() {
 
 void EllipsoidalTracer::Walk::trace_pixel_samples(const SensorPairs& sensor_pairs,
                                                   std::size_t pixel,
-                                                  int count) {
+                                                  int count,
+                                                  const LightSubpaths*) {
     const SurfaceWalk& walk = tracer_.surface_walk_;
     const PixelPositionSampler::Band places = tracer_.pixel_places_->band(pixel, tracer_.lengths_);
     const Vec2 shift(rng_.uniform(), rng_.uniform());

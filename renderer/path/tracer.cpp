@@ -37,12 +37,19 @@ std::uint64_t Tracer::trace(const SensorPairs& sensor_pairs,
                             std::size_t pair,
                             int num_samples,
                             core::Rng& rng,
-                            PassHistogram& histogram) const {
+                            PassHistogram& histogram,
+                            const LightSubpaths* subpaths) const {
     const PathEndpoints ends = sensor_pairs.ends(pair);
     if (!sensor_pairs.is_image()) return trace(ends, num_samples, rng, histogram);
     const auto walk = start(ends, rng, histogram);
-    walk->trace_pixel_samples(sensor_pairs, pair, num_samples);
+    walk->trace_pixel_samples(sensor_pairs, pair, num_samples, subpaths);
     return walk->num_rays();
+}
+
+std::unique_ptr<const LightSubpaths> Tracer::trace_subpaths(const SensorPairs&,
+                                                            int,
+                                                            const core::Rng&) const {
+    return nullptr;
 }
 
 PairWalk::PairWalk(const Tracer& tracer,
