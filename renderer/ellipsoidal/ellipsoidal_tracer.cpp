@@ -146,9 +146,9 @@ void EllipsoidalTracer::Walk::finish_connections() {
     for (int i = 0; i < first_.size(); ++i) {
         weigh(i, ellipsoidal_pdf_[static_cast<std::size_t>(i)]);
     }
-    first_.keep_useful(true);
+    first_.keep_useful();
     num_rays_ += first_.trace_from_sensor(ends_);
-    if (!ends_.coincide) first_.keep_useful(true);
+    if (!ends_.coincide) first_.keep_useful();
     connect_first_vertices();
 }
 

@@ -107,6 +107,8 @@ class PairWalk {
 
  private:
     void finish_first_vertices(double weight);
+    /// Draws the first vertices of longer paths, as FirstVertexBatch::draw_by_throughput().
+    void draw_continued(double step_in_means);
 
     const Tracer& tracer_;
     std::vector<PathVertex> continued_;  ///< first vertices of longer paths
