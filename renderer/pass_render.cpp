@@ -25,6 +25,7 @@ constexpr std::size_t kPairsPerBlock = 16;
 // Passes run in rounds: all passes of a round for one pair, then for the next, so that the sums of
 // a pair stay in the cache. Between rounds the caller may stop the render.
 constexpr double kMaxSecondsPerRound = 0.1;
+constexpr int kMaxPassesPerRound = 64;  // what passes share is kept for the round
 
 struct PassPlan {
     int samples_per_pass = 1;
@@ -50,7 +51,9 @@ PassPlan plan_passes(const RenderSettings& settings, const PassWork& work) {
 int next_round(const PassPlan& plan, const RenderSettings& settings, int done, double elapsed_s) {
     if (done == 0 || is_open_ended(settings)) return 1;
     const double fit = kMaxSecondsPerRound * done / elapsed_s;
-    return static_cast<int>(std::clamp(fit, 1.0, static_cast<double>(plan.num_passes - done)));
+    const int left = plan.num_passes - done;
+    return static_cast<int>(
+        std::clamp(fit, 1.0, static_cast<double>(std::min(left, kMaxPassesPerRound))));
 }
 
 int channel_count(const RenderSettings& settings) {
@@ -105,16 +108,32 @@ struct PassLoop {
 
     /// Adds the tile's histograms, samples and rays to `result`.
     void run(const Tile& tile, const core::Progress& progress, RenderResult& result);
+    /// Of passes [first, first + count).
+    using Subpaths = std::vector<std::unique_ptr<const LightSubpaths>>;
+    Subpaths trace_subpaths(int first, int count, int samples) const;
     /// Returns the number of rays.
     std::uint64_t run_passes(
         const Tile& tile, int first, int count, int samples, HistogramSums& sums) const;
 };
+
+// Pairs have streams of random numbers up to num_pairs() - 1; what they share has the next one.
+PassLoop::Subpaths PassLoop::trace_subpaths(int first, int count, int samples) const {
+    Subpaths subpaths;
+    for (int pass = first; work.tracer != nullptr && pass < first + count; ++pass) {
+        const core::Rng rng(
+            task.settings.seed, task.scan.num_pairs(), static_cast<std::uint64_t>(pass));
+        subpaths.push_back(work.tracer->trace_subpaths(sensor_pairs, samples, rng));
+    }
+    return subpaths;
+}
 
 std::uint64_t PassLoop::run_passes(
     const Tile& tile, int first, int count, int samples, HistogramSums& sums) const {
     constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
     std::atomic<std::size_t> bad_pair{kNone};
     std::atomic<std::uint64_t> num_rays{0};
+    const Subpaths subpaths = trace_subpaths(first, count, samples);
+    for (const auto& of_pass : subpaths) num_rays += of_pass != nullptr ? of_pass->num_rays() : 0;
     core::parallel_blocks(tile.count, kPairsPerBlock, [&](std::size_t begin, std::size_t end) {
         PassHistogram histogram(task.axes, task.settings.gate, channel_count(task.settings));
         for (std::size_t i = begin; i < end; ++i) {
@@ -122,7 +141,9 @@ std::uint64_t PassLoop::run_passes(
             for (int pass = first; pass < first + count; ++pass) {
                 core::Rng rng(task.settings.seed, pair, static_cast<std::uint64_t>(pass));
                 if (work.tracer != nullptr) {
-                    num_rays += work.tracer->trace(sensor_pairs, pair, samples, rng, histogram);
+                    const auto& of_pass = subpaths[static_cast<std::size_t>(pass - first)];
+                    num_rays += work.tracer->trace(
+                        sensor_pairs, pair, samples, rng, histogram, of_pass.get());
                 }
                 if (!sensor_pairs.is_image()) {
                     add_short_paths(task.scene, sensor_pairs.ends(pair), task.settings, histogram);
@@ -215,8 +236,7 @@ RenderResult render_passes(const RenderTask& task, const PassWork& work) {
         };
         loop.run(tile, part, result);
         if (result.interrupted && tile.count < num_pairs) {
-            throw core::Failure("render",
-                                "interrupted before every part of the scan was traced");
+            throw core::Failure("render", "interrupted before every part of the scan was traced");
         }
     }
     result.seconds = watch.seconds();

@@ -60,7 +60,8 @@ class EllipsoidalTracer::Walk : public PairWalk {
     void trace_samples(int count) override;
     void trace_pixel_samples(const SensorPairs& sensor_pairs,
                              std::size_t pixel,
-                             int count) override;
+                             int count,
+                             const LightSubpaths* subpaths) override;
 
  private:
     void cut_hierarchy(int num_samples);
@@ -145,15 +146,16 @@ void EllipsoidalTracer::Walk::finish_connections() {
     for (int i = 0; i < first_.size(); ++i) {
         weigh(i, ellipsoidal_pdf_[static_cast<std::size_t>(i)]);
     }
-    first_.keep_useful(true);
+    first_.keep_useful();
     num_rays_ += first_.trace_from_sensor(ends_);
-    if (!ends_.coincide) first_.keep_useful(true);
+    if (!ends_.coincide) first_.keep_useful();
     connect_first_vertices();
 }
 
 void EllipsoidalTracer::Walk::trace_pixel_samples(const SensorPairs& sensor_pairs,
                                                   std::size_t pixel,
-                                                  int count) {
+                                                  int count,
+                                                  const LightSubpaths*) {
     const SurfaceWalk& walk = tracer_.surface_walk_;
     const PixelPositionSampler::Band places = tracer_.pixel_places_->band(pixel, tracer_.lengths_);
     const Vec2 shift(rng_.uniform(), rng_.uniform());

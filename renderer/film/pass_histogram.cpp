@@ -98,6 +98,15 @@ void PassHistogram::add(int channel,
     }
 }
 
+// A little wider than the axis, whose ends round.
+PassHistogram::LengthRange PassHistogram::counted_lengths() const {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    if (gate_ != GateShape::Box) return {-kInfinity, kInfinity};
+    constexpr double kMargin = 1e-6;  // of a bin
+    return {axis_.opl_start_m - kMargin * axis_.bin_width_m,
+            axis_.opl_end_m() + kMargin * axis_.bin_width_m};
+}
+
 bool PassHistogram::lets_through(double opl_m) const {
     int bin = 0;
     return gate_weight(opl_m, bin) > 1e-17;  // a Gaussian never ends, sums of doubles do

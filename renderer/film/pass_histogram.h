@@ -69,6 +69,12 @@ class PassHistogram {
         int bin = 0;
         return gate_weight(opl_m, bin) > 0.0;
     }
+    /// Path lengths outside this range do not count; some inside it may not either.
+    struct LengthRange {
+        double begin_m;
+        double end_m;
+    };
+    LengthRange counted_lengths() const;
     /// Adds many contributions; those of 0 are left out.
     ///
     /// opl_m, values   one entry per path, at most kMaxAtOnce

@@ -239,12 +239,58 @@ void FirstVertexBatch::keep_seen() {
     keep_if([this](int i) { return seen_[i]; });
 }
 
-void FirstVertexBatch::keep_useful(bool by_contribution) {
-    if (by_contribution) {
-        keep_if([this](int i) { return !(contribution_[i] <= 0.0); });
-    } else {
-        keep_if([this](int i) { return throughput_[i] > 0.0; });
+void FirstVertexBatch::keep_useful() {
+    keep_if([this](int i) { return !(contribution_[i] <= 0.0); });
+}
+
+double FirstVertexBatch::leave_out_other_lengths(const PassHistogram::LengthRange& counted) {
+    double all = 0.0;
+    double inside = 0.0;
+    for (int i = 0; i < count_; ++i) {
+        const bool counts = opl_m_[i] >= counted.begin_m && opl_m_[i] < counted.end_m;
+        all += contribution_[i];
+        contribution_[i] = counts ? contribution_[i] : 0.0;
+        inside += contribution_[i];
     }
+    return all > 0.0 ? inside / all : 0.0;
+}
+
+// A sum that is not finite keeps every vertex, so that the histogram counts what is wrong.
+void FirstVertexBatch::thin(double step_in_means, core::Rng& rng) {
+    double sum = 0.0;
+    for (int i = 0; i < count_; ++i) sum += contribution_[i];
+    const double step = step_in_means * sum / count_;
+    double left = rng.uniform() * step;
+    keep_if([&](int i) {
+        if (contribution_[i] <= 0.0) return false;
+        if (contribution_[i] >= step) return true;
+        left -= contribution_[i];
+        if (left >= 0.0) return false;
+        contribution_[i] = step;
+        left += step;
+        return true;
+    });
+}
+
+std::vector<FirstVertexBatch::Drawn> FirstVertexBatch::draw_by_throughput(double step_in_means,
+                                                                          core::Rng& rng) const {
+    double sum = 0.0;
+    for (int i = 0; i < count_; ++i) sum += throughput_[i];
+    const double step = step_in_means > 1.0 ? step_in_means * sum / count_ : 0.0;
+    double left = rng.uniform() * step;
+    std::vector<Drawn> drawn;
+    for (int i = 0; i < count_; ++i) {
+        if (throughput_[i] <= 0.0) continue;
+        if (throughput_[i] >= step) {
+            drawn.push_back({i, 1.0});
+            continue;
+        }
+        left -= throughput_[i];
+        if (left >= 0.0) continue;
+        drawn.push_back({i, step / throughput_[i]});
+        left += step;
+    }
+    return drawn;
 }
 
 std::span<const double> FirstVertexBatch::find_velocities(const PathEndpoints& ends) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "renderer/core/random.h"
+#include "renderer/film/pass_histogram.h"
 #include "renderer/path/endpoint_direction_sampler.h"
 #include "renderer/path/path_vertex.h"
 #include "renderer/scene/area_sampler.h"
@@ -112,8 +113,29 @@ class FirstVertexBatch {
     /// Drops the vertices that were blocked in the last call of trace_from_sensor() or
     /// trace_from_light().
     void keep_seen();
-    /// Drops vertices whose throughput, or whose own contribution, is zero.
-    void keep_useful(bool by_contribution);
+    /// Drops vertices whose own contribution is zero.
+    void keep_useful();
+    /// Sets contributions of path lengths that do not count to 0.
+    ///
+    /// returns   the share of all contributions that count; 0 when there are none
+    double leave_out_other_lengths(const PassHistogram::LengthRange& counted);
+    /// Drops vertices by systematic sampling in their order (source [Madow1949]). Those that
+    /// contribute at least a step are kept; of the others as many as have steps in their sum, each
+    /// of which then contributes a step.
+    ///
+    /// step_in_means   in mean contributions of all vertices
+    void thin(double step_in_means, core::Rng& rng);
+
+    /// A vertex, and the inverse of the probability that it is drawn.
+    struct Drawn {
+        int index;
+        double scale;
+    };
+    /// The same by throughput, without dropping any; all that carry light when the step is at most
+    /// one mean.
+    std::vector<Drawn> draw_by_throughput(double step_in_means, core::Rng& rng) const;
+    /// Whether it was found by a ray from the sensor.
+    bool is_in_sight(int index) const { return index < num_in_sight_; }
 
     /// The vertex of a path that starts at `sensor`.
     PathVertex vertex(int index, const PathEndpoint& sensor) const;

@@ -2,10 +2,23 @@
 #include "renderer/path/path_tracer.h"
 
 #include "renderer/core/sampling.h"
+#include "renderer/path/subpath_connections.h"
 
 #include <algorithm>
 
 namespace renderer {
+namespace {
+
+// Vertices that the hidden area draws for pixels are those that light subpaths draw better.
+constexpr double kAreaShareOfPixels = 0.0;
+
+// Enough that the pixels of an image use different ones, and few enough to cost little beside them.
+int num_subpaths(std::size_t num_pixels, int num_samples) {
+    constexpr double kMax = 16384.0;
+    return static_cast<int>(std::min(kMax, static_cast<double>(num_pixels) * num_samples));
+}
+
+}  // namespace
 
 class PathTracer::Walk : public PairWalk {
  public:
@@ -25,24 +38,64 @@ class PathTracer::Walk : public PairWalk {
 
     void trace_pixel_samples(const SensorPairs& sensor_pairs,
                              std::size_t pixel,
-                             int count) override {
+                             int count,
+                             const LightSubpaths* subpaths) override {
+        if (subpaths != nullptr) {
+            trace_and_connect(sensor_pairs, pixel, count, *subpaths);
+            return;
+        }
+        for_first_vertices(
+            sensor_pairs, pixel, count, [&](const PathVertex& vertex) { extend(vertex); });
+    }
+
+ private:
+    // Calls `use` for first vertices that are already connected to the light.
+    template <class Use>
+    void for_first_vertices(const SensorPairs& sensor_pairs,
+                            std::size_t pixel,
+                            int count,
+                            const Use& use) {
         const core::Vec2 shift(rng_.uniform(), rng_.uniform());
         for (int i = 0; i < count; ++i) {
             auto vertex = sensor_pairs.first_vertex(pixel, core::lattice_point(i, count, shift));
             ++num_rays_;
             if (!vertex || vertex->order > tracer_.max_order_) continue;
             vertex->throughput *= 1.0 / count;
-            connect_to_light(*vertex);
-            extend(*vertex);
+            connect_to_light(tracer_.surface_walk_, *vertex, 1.0);
+            use(*vertex);
         }
     }
 
- private:
-    void connect_to_light(const PathVertex& vertex) {
-        const double value = tracer_.surface_walk_.connection_value(vertex, ends_);
+    void trace_and_connect(const SensorPairs& sensor_pairs,
+                           std::size_t pixel,
+                           int count,
+                           const LightSubpaths& subpaths) {
+        SubpathConnections connections(scene_,
+                                       tracer_.pixel_walk_,
+                                       subpaths,
+                                       {tracer_.max_order_, tracer_.by_order_},
+                                       rng_,
+                                       histogram_);
+        // Systematic sampling: each vertex gets a walk with the probability of its split.
+        double turn = rng_.uniform();
+        for_first_vertices(sensor_pairs, pixel, count, [&](PathVertex vertex) {
+            const IndirectSplit split = IndirectSplit::at(vertex.bsdf);
+            connections.connect(vertex, split);
+            turn += split.walks;
+            if (turn < 1.0) return;
+            turn -= 1.0;
+            vertex.throughput /= split.walks;
+            extend_beside_connections(vertex, split);
+        });
+        connections.finish();
+        num_rays_ += connections.num_rays();
+    }
+
+    void connect_to_light(const SurfaceWalk& walk, const PathVertex& vertex, double mis_weight) {
+        const double value = mis_weight * walk.connection_value(vertex, ends_);
         if (!(value > 0.0)) return;
         ++num_rays_;
-        if (!tracer_.surface_walk_.light_is_hidden(vertex, ends_)) deposit(vertex, value);
+        if (!walk.light_is_hidden(vertex, ends_)) deposit(vertex, value);
     }
 
     void extend(PathVertex vertex) override {
@@ -50,7 +103,21 @@ class PathTracer::Walk : public PairWalk {
         while (vertex.order < tracer_.max_order_) {
             if (!walk.survives(vertex, rng_)) return;
             if (!walk.draw_next(vertex, rng_, num_rays_)) return;
-            connect_to_light(vertex);
+            connect_to_light(walk, vertex, 1.0);
+        }
+    }
+
+    // The same for a pixel's paths, which light subpaths draw too.
+    void extend_beside_connections(PathVertex vertex, const IndirectSplit& split) {
+        const SurfaceWalk& walk = tracer_.pixel_walk_;
+        SubpathDensity density(scene_, walk, ends_.light);
+        while (vertex.order < tracer_.max_order_) {
+            if (!walk.survives(vertex, rng_)) return;
+            const PathVertex from = vertex;
+            const auto pdf_area = walk.draw_next(vertex, rng_, num_rays_);
+            if (!pdf_area) return;
+            density.add_step(from, vertex, *pdf_area);
+            connect_to_light(walk, vertex, split.walk_weight(density.ratio()));
         }
     }
 
@@ -58,7 +125,22 @@ class PathTracer::Walk : public PairWalk {
 };
 
 PathTracer::PathTracer(const Scene& scene, const RenderSettings& settings, ThirdBounceScope scope)
-    : Tracer(scene, settings, scope) {}
+    : Tracer(scene, settings, scope),
+      pixel_walk_(scene, settings.laser_spot_m2, kAreaShareOfPixels) {}
+
+std::unique_ptr<const LightSubpaths> PathTracer::trace_subpaths(const SensorPairs& sensor_pairs,
+                                                                int num_samples,
+                                                                const core::Rng& rng) const {
+    const int max_vertices = max_order_ - sensor_pairs.first_order();
+    if (!sensor_pairs.is_image() || max_vertices < 1) return nullptr;
+    return std::make_unique<const LightSubpaths>(
+        *scene_,
+        pixel_walk_,
+        sensor_pairs.ends(0).light,
+        num_subpaths(sensor_pairs.num_pairs(), num_samples),
+        max_vertices,
+        rng);
+}
 
 std::unique_ptr<PairWalk> PathTracer::start(const PathEndpoints& ends,
                                             core::Rng& rng,

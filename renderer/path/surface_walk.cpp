@@ -10,10 +10,6 @@ namespace {
 using core::kPi;
 using core::Vec3;
 
-// The same after a vertex on a hidden surface, where BSDF samples follow lobes and find what is
-// near.
-constexpr double kAreaShareBetweenSurfaces = 0.25;
-
 // Paths are always continued up to this order; above it Russian roulette may end them.
 constexpr int kFirstRouletteOrder = 5;
 constexpr double kMinSurvival = 0.1;
@@ -23,6 +19,10 @@ constexpr double kMinSurvival = 0.1;
 constexpr double kMinCosine = 1e-12;
 
 }  // namespace
+
+double SurfaceWalk::area_share(const PathVertex& vertex) const {
+    return scene_->is_hidden(vertex.point.facet) ? area_share_ : kAreaShareFromWall;
+}
 
 double SurfaceWalk::evaluate(const PathVertex& vertex, const Vec3& outgoing) const {
     if (const auto* lambertian = std::get_if<Lambertian>(&vertex.bsdf)) {
@@ -84,20 +84,26 @@ std::optional<SurfaceWalk::Step> SurfaceWalk::step_to(const PathVertex& vertex,
         scene_->facet(vertex.point.facet).world_from_facet().transpose();
     const double pdf_direction = pdf_bsdf(
         vertex.bsdf, facet_from_world * vertex.to_previous, facet_from_world * step.direction);
-    const double area_share =
-        scene_->is_hidden(vertex.point.facet) ? kAreaShareBetweenSurfaces : kAreaShareFromWall;
+    const double area_share = this->area_share(vertex);
     const double area_pdf = scene_->is_hidden(next.facet) ? area_sampler_.pdf_area() : 0.0;
     step.pdf_area = area_share * area_pdf + (1.0 - area_share) * pdf_direction * per_area;
     return step;
 }
 
+double SurfaceWalk::pdf_area(const PathVertex& vertex,
+                             const Vec3& to_previous,
+                             const SurfacePoint& next) const {
+    PathVertex turned = vertex;
+    turned.to_previous = to_previous;
+    const auto step = step_to(turned, next);
+    return step ? step->pdf_area : 0.0;
+}
+
 std::optional<double> SurfaceWalk::draw_next(PathVertex& vertex,
                                              core::Rng& rng,
                                              std::uint64_t& num_rays) const {
-    const double area_share =
-        scene_->is_hidden(vertex.point.facet) ? kAreaShareBetweenSurfaces : kAreaShareFromWall;
     SurfacePoint next;
-    const bool from_area = rng.uniform() < area_share;
+    const bool from_area = rng.uniform() < area_share(vertex);
     if (from_area) {
         const double u1 = rng.uniform();
         next = area_sampler_.sample(u1, rng.uniform());

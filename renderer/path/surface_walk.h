@@ -12,6 +12,9 @@ namespace renderer {
 /// Share of the first vertices drawn from the hidden area, the others by direction. Seen from the
 /// wall, hidden objects are small and most directions miss them.
 inline constexpr double kAreaShareFromWall = 0.75;
+/// The same after a vertex on a hidden surface, where BSDF samples follow lobes and find what is
+/// near.
+inline constexpr double kAreaShareBetweenSurfaces = 0.25;
 
 /// How paths continue from surface vertices and connect to the light; shared by the estimators.
 ///
@@ -30,10 +33,18 @@ class SurfaceWalk {
 
     /// scene           must outlive the walk
     /// laser_spot_m2   area of the laser spot, for retroreflectors
-    SurfaceWalk(const Scene& scene, double laser_spot_m2)
-        : scene_(&scene), area_sampler_(scene), laser_spot_m2_(laser_spot_m2) {}
+    /// area_share      of the vertices after one on a hidden surface, drawn from the hidden area
+    SurfaceWalk(const Scene& scene,
+                double laser_spot_m2,
+                double area_share = kAreaShareBetweenSurfaces)
+        : scene_(&scene),
+          area_sampler_(scene),
+          laser_spot_m2_(laser_spot_m2),
+          area_share_(area_share) {}
 
     const AreaSampler& area_sampler() const { return area_sampler_; }
+    /// Share of the next vertices that draw_next() draws from the hidden area.
+    double area_share(const PathVertex& vertex) const;
 
     /// BSDF value [1/sr] at a vertex towards `outgoing` (unit).
     double evaluate(const PathVertex& vertex, const core::Vec3& outgoing) const;
@@ -53,6 +64,12 @@ class SurfaceWalk {
     /// The step from a vertex to a point; nothing when its transport is zero.
     std::optional<Step> step_to(const PathVertex& vertex, const SurfacePoint& next) const;
 
+    /// Density [1/m^2] with which draw_next() goes from a vertex to a point, if the vertex is come
+    /// to from the direction `to_previous` instead of its own; 0 when nothing is carried there.
+    double pdf_area(const PathVertex& vertex,
+                    const core::Vec3& to_previous,
+                    const SurfacePoint& next) const;
+
     /// Replaces `vertex` by the next one of the path.
     ///
     /// num_rays   raised by the rays traced
@@ -71,6 +88,7 @@ class SurfaceWalk {
     const Scene* scene_;
     AreaSampler area_sampler_;
     double laser_spot_m2_;
+    double area_share_;
 };
 
 }  // namespace renderer

@@ -4,6 +4,14 @@
 namespace renderer {
 namespace {
 
+// Third bounces that contribute less than this many means are drawn in proportion to what they
+// contribute before their shadow rays are traced.
+constexpr double kStepOfConnected = 0.75;
+// Likewise the vertices that paths continue from, where all third bounces count: these carry most
+// of the light and of its noise, and longer paths most of the cost (tuned on scenes/bars and
+// scenes/letter).
+constexpr double kStepOfContinued = 20.0;
+
 // Per object, whether first vertices on it may reflect straight to the light. The relay wall has no
 // third bounce; it takes part from order 4 on.
 std::vector<bool> objects_that_add(const Scene& scene, ThirdBounceScope scope) {
@@ -37,12 +45,19 @@ std::uint64_t Tracer::trace(const SensorPairs& sensor_pairs,
                             std::size_t pair,
                             int num_samples,
                             core::Rng& rng,
-                            PassHistogram& histogram) const {
+                            PassHistogram& histogram,
+                            const LightSubpaths* subpaths) const {
     const PathEndpoints ends = sensor_pairs.ends(pair);
     if (!sensor_pairs.is_image()) return trace(ends, num_samples, rng, histogram);
     const auto walk = start(ends, rng, histogram);
-    walk->trace_pixel_samples(sensor_pairs, pair, num_samples);
+    walk->trace_pixel_samples(sensor_pairs, pair, num_samples, subpaths);
     return walk->num_rays();
+}
+
+std::unique_ptr<const LightSubpaths> Tracer::trace_subpaths(const SensorPairs&,
+                                                            int,
+                                                            const core::Rng&) const {
+    return nullptr;
 }
 
 PairWalk::PairWalk(const Tracer& tracer,
@@ -69,17 +84,33 @@ void PairWalk::trace_walks(int num_area, int num_directions, double weight) {
 void PairWalk::finish_first_vertices(double weight) {
     evaluate_first_vertices(weight);
     weigh_first_vertices();
-    const bool continues = tracer_.max_order_ > 3;
-    first_.keep_useful(!continues);
-    num_rays_ += first_.trace_from_sensor(ends_);
-    if (continues || !ends_.coincide) first_.keep_seen();
+    const double counted = first_.leave_out_other_lengths(histogram_.counted_lengths());
     continued_.clear();
-    for (int i = 0; i < first_.size() && continues; ++i) {
-        continued_.push_back(first_.vertex(i, ends_.sensor));
+    if (tracer_.max_order_ > 3) {
+        draw_continued(tracer_.by_order_ ? 0.0 : kStepOfContinued * counted);
     }
-    if (continues && !ends_.coincide) first_.keep_useful(true);
+    first_.thin(kStepOfConnected, rng_);
+    num_rays_ += first_.trace_from_sensor(ends_);
+    if (!ends_.coincide) first_.keep_seen();
     connect_first_vertices();
     for (const PathVertex& vertex : continued_) extend(vertex);
+}
+
+void PairWalk::draw_continued(double step_in_means) {
+    for (const auto& [index, scale] : first_.draw_by_throughput(step_in_means, rng_)) {
+        PathVertex vertex = first_.vertex(index, ends_.sensor);
+        vertex.throughput *= scale;
+        if (!first_.is_in_sight(index)) {
+            ++num_rays_;
+            if (scene_.rays().is_blocked(ends_.sensor.position,
+                                         ends_.sensor.normal,
+                                         vertex.point.position,
+                                         vertex.normal)) {
+                continue;
+            }
+        }
+        continued_.push_back(vertex);
+    }
 }
 
 void PairWalk::evaluate_first_vertices(double weight) {

@@ -4,6 +4,7 @@
 #include "renderer/core/random.h"
 #include "renderer/film/pass_histogram.h"
 #include "renderer/path/first_vertex_batch.h"
+#include "renderer/path/light_subpaths.h"
 #include "renderer/path/path_vertex.h"
 #include "renderer/path/sensor_pairs.h"
 #include "renderer/path/surface_walk.h"
@@ -33,11 +34,21 @@ class Tracer {
 
     /// The same for a pair of a scan, or a pixel: its paths begin with the surface point that is
     /// seen through it.
+    ///
+    /// subpaths   of this pass; null: pixels do without
     std::uint64_t trace(const SensorPairs& sensor_pairs,
                         std::size_t pair,
                         int num_samples,
                         core::Rng& rng,
-                        PassHistogram& histogram) const;
+                        PassHistogram& histogram,
+                        const LightSubpaths* subpaths = nullptr) const;
+
+    /// What the pixels of an image share in a pass; null when its paths share nothing.
+    ///
+    /// rng   owned by this pass
+    virtual std::unique_ptr<const LightSubpaths> trace_subpaths(const SensorPairs& sensor_pairs,
+                                                                int num_samples,
+                                                                const core::Rng& rng) const;
 
  protected:
     friend class PairWalk;
@@ -67,7 +78,8 @@ class PairWalk {
     virtual void trace_samples(int count) = 0;
     virtual void trace_pixel_samples(const SensorPairs& sensor_pairs,
                                      std::size_t pixel,
-                                     int count) = 0;
+                                     int count,
+                                     const LightSubpaths* subpaths) = 0;
     std::uint64_t num_rays() const { return num_rays_; }
 
  protected:
@@ -95,6 +107,8 @@ class PairWalk {
 
  private:
     void finish_first_vertices(double weight);
+    /// Draws the first vertices of longer paths, as FirstVertexBatch::draw_by_throughput().
+    void draw_continued(double step_in_means);
 
     const Tracer& tracer_;
     std::vector<PathVertex> continued_;  ///< first vertices of longer paths

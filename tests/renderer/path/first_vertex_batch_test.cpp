@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace {
@@ -129,7 +130,7 @@ TEST_F(FirstVertexDraws, BothKindsTogetherAreSeenAsSingleRaysSee) {
         met += vertices.size() - (by_area.begin - begin);
         vertices.evaluate(ends, {1.0, 0.5, sampler.pdf_area()});
         for (int i = 0; i < vertices.size(); i += 3) vertices.set_contribution(i, 0.0);
-        vertices.keep_useful(true);
+        vertices.keep_useful();
         const auto num_rays = static_cast<int>(vertices.trace_from_sensor(ends));
         EXPECT_LE(num_rays, by_area.begin - begin);
         for (int i = 0; i < vertices.size(); ++i) {
@@ -150,6 +151,93 @@ TEST_F(FirstVertexDraws, BothKindsTogetherAreSeenAsSingleRaysSee) {
     EXPECT_EQ(drawn_by_area, 500);
     EXPECT_GT(met, 10);
     EXPECT_GT(hidden, 100);
+}
+
+// Vertices of a batch that an end sees at very different distances.
+FirstVertexBatch evaluated_batch(const renderer::Scene& scene,
+                                 const renderer::FacetTraits& traits,
+                                 core::Rng& rng) {
+    renderer::PathEndpoints ends;
+    ends.sensor.position = Vec3(0.1, -0.2, 0.38);
+    ends.light = ends.sensor;
+    ends.coincide = true;
+    const renderer::AreaSampler sampler(scene);
+    FirstVertexBatch vertices(scene, traits);
+    FirstVertexBatch::AreaDraws draws{100};
+    vertices.draw_by_area(sampler, draws, rng);
+    vertices.evaluate(ends, {1.0, 1.0, sampler.pdf_area()});
+    return vertices;
+}
+
+void expect_share(double found, double probability, int num_draws) {
+    const double sigma = std::sqrt(probability * (1.0 - probability) / num_draws);
+    EXPECT_LT(std::abs(found / num_draws - probability), 5.0 * sigma + 1e-12);
+}
+
+// The mean of what is left after thinning is what was there.
+TEST_F(FirstVertexDraws, ThinningKeepsTheMeanOfEveryContribution) {
+    constexpr int kDraws = 20'000;
+    core::Rng rng(test_support::seed_of("FirstVertexDraws.thin"), 0, 0);
+    const FirstVertexBatch all = evaluated_batch(scene_, traits_, rng);
+    const auto before = all.contributions();
+    const double step = 3.0 * test_support::sum_of(before) / all.size();
+    std::vector<double> times(before.size());
+    for (int draw = 0; draw < kDraws; ++draw) {
+        FirstVertexBatch thinned = all;
+        thinned.thin(3.0, rng);
+        std::size_t i = 0;
+        for (int kept = 0; kept < thinned.size(); ++kept, ++i) {
+            while (all.opl_m()[i] != thinned.opl_m()[static_cast<std::size_t>(kept)]) ++i;
+            EXPECT_EQ(thinned.contributions()[static_cast<std::size_t>(kept)],
+                      std::max(step, before[i]));
+            times[i] += 1.0;
+        }
+    }
+    int large = 0;
+    for (std::size_t i = 0; i < times.size(); ++i) {
+        expect_share(times[i], std::min(1.0, before[i] / step), kDraws);
+        large += before[i] >= step ? 1 : 0;
+    }
+    EXPECT_GT(large, 0);
+}
+
+TEST_F(FirstVertexDraws, ByThroughputAreWeighedByTheirProbability) {
+    constexpr int kDraws = 20'000;
+    core::Rng rng(test_support::seed_of("FirstVertexDraws.throughput"), 0, 0);
+    const FirstVertexBatch all = evaluated_batch(scene_, traits_, rng);
+    std::vector<double> times(static_cast<std::size_t>(all.size()));
+    std::vector<double> scales(times.size(), 1.0);
+    for (int draw = 0; draw < kDraws; ++draw) {
+        for (const auto& [index, scale] : all.draw_by_throughput(5.0, rng)) {
+            times[static_cast<std::size_t>(index)] += 1.0;
+            scales[static_cast<std::size_t>(index)] = scale;
+        }
+    }
+    for (std::size_t i = 0; i < times.size(); ++i) {
+        if (times[i] > 0.0) expect_share(times[i], 1.0 / scales[i], kDraws);
+    }
+    const auto carrying = all.draw_by_throughput(1.0, rng);
+    for (const auto& drawn : carrying) EXPECT_EQ(drawn.scale, 1.0);
+    EXPECT_EQ(static_cast<std::ptrdiff_t>(carrying.size()),
+              std::ranges::count_if(times, [](double t) { return t > 0.0; }))
+        << "every vertex that carries light is drawn at some time";
+}
+
+TEST_F(FirstVertexDraws, OtherLengthsAreLeftOut) {
+    core::Rng rng(test_support::seed_of("FirstVertexDraws.lengths"), 0, 0);
+    FirstVertexBatch vertices = evaluated_batch(scene_, traits_, rng);
+    const std::vector<double> before(vertices.contributions().begin(),
+                                     vertices.contributions().end());
+    const double share = vertices.leave_out_other_lengths({0.3, 0.6});
+    double inside = 0.0;
+    for (std::size_t i = 0; i < before.size(); ++i) {
+        const bool counts = vertices.opl_m()[i] >= 0.3 && vertices.opl_m()[i] < 0.6;
+        EXPECT_EQ(vertices.contributions()[i], counts ? before[i] : 0.0);
+        if (counts) inside += before[i];
+    }
+    EXPECT_GT(inside, 0.0);
+    EXPECT_NEAR(share, inside / test_support::sum_of(before), 1e-12);
+    EXPECT_EQ(vertices.leave_out_other_lengths({7.0, 8.0}), 0.0);
 }
 
 }  // namespace
