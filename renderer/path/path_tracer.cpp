@@ -18,6 +18,17 @@ int num_subpaths(std::size_t num_pixels, int num_samples) {
     return static_cast<int>(std::min(kMax, static_cast<double>(num_pixels) * num_samples));
 }
 
+// Connections seldom hit narrow lobes and leave them to few walks: images would become noisier than
+// by walks alone.
+bool has_narrow_lobes(const Scene& scene) {
+    constexpr double kNarrow = 0.4;  // roughness
+    return std::ranges::any_of(scene.objects(), [](const Object& object) {
+        const Material& material = object.material;
+        return material.roughness < kNarrow &&
+               (material.model == SurfaceModel::Ggx || material.model == SurfaceModel::Dielectric);
+    });
+}
+
 }  // namespace
 
 class PathTracer::Walk : public PairWalk {
@@ -132,7 +143,7 @@ std::unique_ptr<const LightSubpaths> PathTracer::trace_subpaths(const SensorPair
                                                                 int num_samples,
                                                                 const core::Rng& rng) const {
     const int max_vertices = max_order_ - sensor_pairs.first_order();
-    if (!sensor_pairs.is_image() || max_vertices < 1) return nullptr;
+    if (!sensor_pairs.is_image() || max_vertices < 1 || has_narrow_lobes(*scene_)) return nullptr;
     return std::make_unique<const LightSubpaths>(
         *scene_,
         pixel_walk_,

@@ -43,7 +43,8 @@ class Tracer {
                         PassHistogram& histogram,
                         const LightSubpaths* subpaths = nullptr) const;
 
-    /// What the pixels of an image share in a pass; null when its paths share nothing.
+    /// What the pixels of an image share in a pass; null when its paths share nothing, or
+    /// meet lobes that connections seldom hit.
     ///
     /// rng   owned by this pass
     virtual std::unique_ptr<const LightSubpaths> trace_subpaths(const SensorPairs& sensor_pairs,
