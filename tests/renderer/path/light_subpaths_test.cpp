@@ -21,7 +21,7 @@ using renderer::SurfaceModel;
 using test_support::image_of;
 using test_support::parallelogram_object;
 
-constexpr double kAlbedo = 0.6;
+constexpr double kRoomAlbedo = 0.6;
 
 // A closed room that is convex, with camera and light inside.
 std::vector<renderer::Object> closed_room() {
@@ -29,8 +29,8 @@ std::vector<renderer::Object> closed_room() {
     const Vec3 low(-0.5, -0.4, -0.6);
     std::vector<renderer::Object> objects;
     for (const auto& [u, v, w] : {std::tuple(x, y, z), std::tuple(y, z, x), std::tuple(z, x, y)}) {
-        objects.push_back(parallelogram_object({low, u, v, kAlbedo}));
-        objects.push_back(parallelogram_object({low + w, u, v, kAlbedo}));
+        objects.push_back(parallelogram_object({low, u, v, kRoomAlbedo}));
+        objects.push_back(parallelogram_object({low + w, u, v, kRoomAlbedo}));
     }
     return objects;
 }
