@@ -115,19 +115,6 @@ TEST(Surface, FindsDepthsBetweenVoxels) {
     }
 }
 
-TEST(Surface, FindsDepthsBetweenVoxelsBesideDarkness) {
-    Volume volume = sloped_plane(0.0);
-    for (std::size_t column = 0; column < 80; ++column) {
-        std::fill_n(volume.values.begin() + static_cast<std::ptrdiff_t>(20 * column), 20, 0.0F);
-        volume.values[20 * column + 7] = 0.5F;
-        volume.values[20 * column + 8] = 1.0F;
-    }
-    // The parabola through 0.5, 1 and 0.
-    for (const double z : depth_of(volume).depth_m) {
-        EXPECT_NEAR(z, volume.axes.z_m[8] - 0.01 / 6.0, 1e-9);
-    }
-}
-
 TEST(Surface, PointsLieInTheWorldWithNormalsTowardsTheWall) {
     const core::PointCloud points = surface_points(depth_of(sloped_plane(0.3)));
     ASSERT_EQ(points.positions.size(), 70U);
