@@ -49,7 +49,7 @@ PlateauShares plateau_shares(const ReconstructSettings& settings, bool has_noise
     if (!has_noise) return {};
     if (settings.method == Method::Fk) return {0.0, 0.45};
     if (uses_wave(settings) || settings.method == Method::Fbp) return {0.0, 0.5};
-    return {0.0, 0.55, 5.0};
+    return {0.0, 0.52, 5.0};
 }
 
 /// Waves and f-k migration give squares. The deviations of depth are those of random surfaces, see

@@ -359,7 +359,7 @@ TEST(HardFit, RenderedLightBehindAnOccluderIsFittedByAnotherMesh) {
     const core::Scan scan = test_support::confocal_grid(8);
     renderer::RenderSettings render_settings;
     render_settings.method = renderer::Estimator::Path;
-    render_settings.samples = 8192;
+    render_settings.samples = 32768;
     core::Capture capture =
         renderer::render(
             renderer::Scene(truth, scan, {}), scan, test_support::kFitAxis, render_settings, {})
