@@ -28,8 +28,8 @@ struct PlateauShares {
 /// Across a blurred edge brightness falls within a column or two; where a surface turns away, or is
 /// dim, it falls slowly. So a column is held against the mean brightness of the surfaces around it,
 /// and, less strictly, against that of all. The odds are the ratio to a share of the one to the
-/// power of 12, and of the other to a power of its own; the probabilities of both are multiplied. Means
-/// are weighted by brightness and the square of the probability itself. Shares and powers fit
+/// power of 12, and of the other to a power of its own; the probabilities of both are multiplied.
+/// Means are weighted by brightness and the square of the probability itself. Shares and powers fit
 /// simulated scenes.
 ///
 /// peaks     brightest value of each column of a grid (x, y), not negative
