@@ -2,6 +2,7 @@
 #include "renderer/path/first_vertex_batch.h"
 
 #include "renderer/core/sampling.h"
+#include "renderer/path/systematic_sampler.h"
 
 #include <algorithm>
 #include <array>
@@ -255,19 +256,15 @@ double FirstVertexBatch::leave_out_other_lengths(const PassHistogram::LengthRang
     return all > 0.0 ? inside / all : 0.0;
 }
 
-// A sum that is not finite keeps every vertex, so that the histogram counts what is wrong.
 void FirstVertexBatch::thin(double step_in_means, core::Rng& rng) {
     double sum = 0.0;
     for (int i = 0; i < count_; ++i) sum += contribution_[i];
-    const double step = step_in_means * sum / count_;
-    double left = rng.uniform() * step;
+    SystematicSampler sampler(step_in_means * sum / count_, rng);
     keep_if([&](int i) {
         if (contribution_[i] <= 0.0) return false;
-        if (contribution_[i] >= step) return true;
-        left -= contribution_[i];
-        if (left >= 0.0) return false;
-        contribution_[i] = step;
-        left += step;
+        const double drawn = sampler.draw(contribution_[i]);
+        if (drawn == 0.0) return false;
+        contribution_[i] = drawn;
         return true;
     });
 }
@@ -277,20 +274,14 @@ std::vector<FirstVertexBatch::Drawn> FirstVertexBatch::draw_by_throughput(double
     double sum = 0.0;
     for (int i = 0; i < count_; ++i) sum += throughput_[i];
     const double step = step_in_means > 1.0 ? step_in_means * sum / count_ : 0.0;
-    double left = rng.uniform() * step;
-    std::vector<Drawn> drawn;
+    SystematicSampler sampler(step, rng);
+    std::vector<Drawn> all;
     for (int i = 0; i < count_; ++i) {
         if (throughput_[i] <= 0.0) continue;
-        if (throughput_[i] >= step) {
-            drawn.push_back({i, 1.0});
-            continue;
-        }
-        left -= throughput_[i];
-        if (left >= 0.0) continue;
-        drawn.push_back({i, step / throughput_[i]});
-        left += step;
+        const double drawn = sampler.draw(throughput_[i]);
+        if (drawn != 0.0) all.push_back({i, drawn / throughput_[i]});
     }
-    return drawn;
+    return all;
 }
 
 std::span<const double> FirstVertexBatch::find_velocities(const PathEndpoints& ends) {

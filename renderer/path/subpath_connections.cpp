@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/path/subpath_connections.h"
 
+#include "renderer/path/systematic_sampler.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -230,18 +232,11 @@ void SubpathConnections::draw_shadow_rays() {
     for (std::size_t i = 0; i < num_candidates_; ++i) sum += candidates_.value[i];
     const double step = sum / (kRaysPerVertex * static_cast<double>(vertices_.size()));
     sort_by_length();
-    double left = rng_.uniform() * step;
+    SystematicSampler sampler(step, rng_);
     for (std::size_t i = 0; i < num_candidates_; ++i) {
         const std::size_t candidate = order_[i];
-        const double value = candidates_.value[candidate];
-        if (value >= step) {
-            append(candidate, value);
-            continue;
-        }
-        left -= value;
-        if (left >= 0.0) continue;
-        append(candidate, step);
-        left += step;
+        const double drawn = sampler.draw(candidates_.value[candidate]);
+        if (drawn != 0.0) append(candidate, drawn);
     }
     trace_packet();
 }
