@@ -21,7 +21,8 @@ namespace {
 
 using core::Vec3;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// A range that holds nothing yet.
+constexpr std::array<double, 2> kEmptyRange{std::numeric_limits<double>::infinity(), 0.0};
 constexpr std::size_t kMaxPilotPairs = 64;
 constexpr std::size_t kMaxCorners = 50'000;  // of facets, beside points drawn by area
 constexpr int kAreaPoints = 4096;
@@ -83,7 +84,7 @@ std::array<double, 2> possible_lengths(const Scene& scene,
                                        const SensorPairs& sensor_pairs,
                                        const std::vector<std::size_t>& pairs) {
     const std::vector<Vec3> points = hidden_points(scene);
-    std::vector<std::array<double, 2>> ranges(pairs.size(), {kInfinity, 0.0});
+    std::vector<std::array<double, 2>> ranges(pairs.size(), kEmptyRange);
     core::parallel_for(pairs.size(), [&](std::size_t i) {
         const PathEndpoints ends = sensor_pairs.ends(pairs[i]);
         for (const Vec3& point : points) {
@@ -95,7 +96,7 @@ std::array<double, 2> possible_lengths(const Scene& scene,
             ranges[i] = {std::min(ranges[i][0], length), std::max(ranges[i][1], length)};
         }
     });
-    std::array<double, 2> all{kInfinity, 0.0};
+    std::array<double, 2> all = kEmptyRange;
     for (const auto& [shortest, longest] : ranges) {
         all = {std::min(all[0], shortest), std::max(all[1], longest)};
     }

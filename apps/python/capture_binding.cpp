@@ -121,7 +121,7 @@ std::vector<std::string> write_capture(const Capture& capture,
     });
 }
 
-nb::bytes picture_of(const Capture& capture, const std::string& format) {
+nb::bytes capture_picture(const Capture& capture, const std::string& format) {
     return picture_bytes(nlos::capture_panels(capture), 3, format);
 }
 
@@ -169,7 +169,7 @@ nb::dict orders_of(nb::handle self) {
     return orders;
 }
 
-std::string text_of(const Capture& capture) {
+std::string capture_text(const Capture& capture) {
     return fmt::format("{}", fmt::join(nlos::describe_capture(capture), "\n"));
 }
 
@@ -304,11 +304,11 @@ void bind_capture(nb::module_& module) {
             },
             "H as an xarray.DataArray with named axes and units, in the same memory.")
         .def("picture",
-             &picture_of,
+             &capture_picture,
              nb::arg("format") = "png",
              "PNG, SVG or PDF: streak image, light over the wall, mean transient.")
-        .def("_repr_png_", [](const Capture& capture) { return picture_of(capture, "png"); })
-        .def("__repr__", &text_of);
+        .def("_repr_png_", [](const Capture& capture) { return capture_picture(capture, "png"); })
+        .def("__repr__", &capture_text);
     module.def("read_capture", &read_capture, nb::arg("paths"), nb::arg("settings"));
 }
 

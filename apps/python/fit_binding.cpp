@@ -83,11 +83,11 @@ SceneObject scene_of(const FitObject& fitted) {
     return scene;
 }
 
-nb::bytes picture_of(const FitObject& fitted, const std::string& format) {
+nb::bytes fitted_picture(const FitObject& fitted, const std::string& format) {
     return picture_bytes(apps::fit_panels(fitted.result), 3, format);
 }
 
-std::string text_of(const FitObject& fitted) {
+std::string fitted_text(const FitObject& fitted) {
     const calib::FitResult& result = fitted.result;
     return fmt::format("Fit{}: {} objects, deviance {:.4g} of {:.4g} expected, {} iterations",
                        result.converged ? "" : " that did not converge",
@@ -144,11 +144,11 @@ void bind_fit(nb::module_& module) {
             nb::arg("path").none(),
             "Writes FIT.json and, beside it, the fitted scene and a picture.")
         .def("picture",
-             &picture_of,
+             &fitted_picture,
              nb::arg("format") = "png",
              "PNG, SVG or PDF: data, model and their difference.")
-        .def("_repr_png_", [](const FitObject& fitted) { return picture_of(fitted, "png"); })
-        .def("__repr__", &text_of);
+        .def("_repr_png_", [](const FitObject& fitted) { return fitted_picture(fitted, "png"); })
+        .def("__repr__", &fitted_text);
     module.def("fit",
                &fit,
                nb::arg("capture"),

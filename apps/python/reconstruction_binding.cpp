@@ -69,11 +69,11 @@ void write(const Reconstruction& result, nb::handle target) {
     });
 }
 
-nb::bytes picture_of(const Reconstruction& result, const std::string& format) {
+nb::bytes reconstruction_picture(const Reconstruction& result, const std::string& format) {
     return picture_bytes(nlos::volume_panels(result), 2, format);
 }
 
-std::string text_of(const Reconstruction& result) {
+std::string reconstruction_text(const Reconstruction& result) {
     const nlos::VolumeAxes& axes = result.volume.axes;
     return fmt::format("Reconstruction by {}: {} x {} x {} voxels, {} surface points, {:.2f} s",
                        result.method,
@@ -152,11 +152,12 @@ void bind_reconstruction(nb::module_& module) {
              nb::arg("path").none(),
              "Writes the volume (.h5) or its points (.ply).")
         .def("picture",
-             &picture_of,
+             &reconstruction_picture,
              nb::arg("format") = "png",
              "PNG, SVG or PDF: projections, depth, and what is stated about it.")
-        .def("_repr_png_", [](const Reconstruction& result) { return picture_of(result, "png"); })
-        .def("__repr__", &text_of);
+        .def("_repr_png_",
+             [](const Reconstruction& result) { return reconstruction_picture(result, "png"); })
+        .def("__repr__", &reconstruction_text);
     module.def(
         "read_volume",
         [](const std::string& path) { return with_files([&] { return nlos::read_volume(path); }); },

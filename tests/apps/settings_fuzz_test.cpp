@@ -166,18 +166,18 @@ TEST_F(SettingsFuzz, OfSweep) {
         settings.push_back({"grid." + key, "", "", {}, ""});
         settings.push_back({"fixed." + key, "", "", {}, ""});
     }
-    try_settings("sweep data/sweep.json -o " + file("out") + " --slurm", settings, 120, 16);
+    try_settings("sweep data/sweep.json -o " + file("out") + " --slurm", settings, 60, 16);
 }
 
 TEST_F(SettingsFuzz, OfFitAndCalibrate) {
     try_settings("fit data/letter.h5 scenes/letter/model.json -o " + file("f.json") +
                      " --set start=given max_iterations=1 blur_schedule_m=[0]",
                  core::settings_help(calib::FitSettings{}),
-                 30,
+                 16,
                  14);
     try_settings("calibrate data/setup.json -o " + file("c.json"),
                  core::settings_help(calib::SetupSettings{}),
-                 20,
+                 10,
                  15);
 }
 

@@ -26,22 +26,20 @@ struct Place {
     std::string scene;
     double wall_m = 1.0;
     core::Vec3 middle_m = core::Vec3::Zero();
-    unsigned seed = 7;  ///< of noise
+    double peak = 0.0;  ///< counts in the brightest bin; 0: no noise
+    unsigned seed = 0;  ///< of noise
 
     bool has_bent_wall() const { return scene == "curved"; }
 };
 
-/// Counts in the brightest bin; 0: no noise. One of them suffices where the thresholds come from.
-const std::vector<double> kAllPeaks{0.0, 100.0, 20.0};
-const std::vector<double> kFewPhotons{20.0};
-
-/// The scenes that the thresholds of the recognition were chosen with, and others.
-const std::vector<Place> kKnown{{"letter"}, {"animal"}, {"bars"}, {"corner"}, {"curved"}};
-const std::vector<Place> kHeldOut{{"glossy", 1.0, {0.0, 0.0, 0.0}, 11},
-                                  {"letter", 1.3, {0.12, -0.08, 0.0}, 12},
-                                  {"animal", 0.8, {-0.1, 0.1, 0.0}, 13},
-                                  {"bars", 1.4, {0.1, 0.05, 0.0}, 14},
-                                  {"corner", 0.9, {0.05, 0.1, 0.0}, 15}};
+/// Scenes at other places than the thresholds of the recognition were chosen with; the curved wall
+/// was among those.
+const std::vector<Place> kPlaces{{"glossy", 1.0, {0.0, 0.0, 0.0}, 0.0, 11},
+                                 {"letter", 1.3, {0.12, -0.08, 0.0}, 100.0, 12},
+                                 {"animal", 0.8, {-0.1, 0.1, 0.0}, 20.0, 13},
+                                 {"bars", 1.4, {0.1, 0.05, 0.0}, 0.0, 14},
+                                 {"corner", 0.9, {0.05, 0.1, 0.0}, 100.0, 15},
+                                 {"curved", 1.0, {0.0, 0.0, 0.0}, 20.0, 16}};
 
 /// A scan of a wall; `size` in those of the place.
 struct ScanCase {
@@ -269,10 +267,10 @@ const Capture& right_capture(const Place& place, const ScanCase& scan) {
     return rendered.at(key);
 }
 
-/// A right capture: radiance, or counts where a peak is asked for.
-Capture seen(const Place& place, const ScanCase& scan, double peak) {
+/// A right capture: radiance, or counts where the place has a peak.
+Capture seen(const Place& place, const ScanCase& scan) {
     const Capture& right = right_capture(place, scan);
-    return peak > 0.0 ? counted(right, peak, place.seed) : right;
+    return place.peak > 0.0 ? counted(right, place.peak, place.seed) : right;
 }
 
 std::string warnings_of(const Capture& capture) {
@@ -284,31 +282,28 @@ struct Rate {
     int named = 0;
 };
 
-/// Tries every slip at every place with every peak, and prints the table.
-Rate recognised(const std::vector<Place>& places, const std::vector<double>& peaks) {
+/// Tries every slip at every place, and prints the table.
+Rate recognised() {
     Rate rate;
     std::string missed;
     fmt::print("{:<28}", "");
-    for (const Place& place : places) fmt::print("{:<14}", place.scene);
+    for (const Place& place : kPlaces) fmt::print("{:<8}", place.scene);
     for (const Slip& slip : all_slips()) {
         fmt::print("\n{:<28}", slip.name);
-        for (const Place& place : places) {
-            std::string cell;
-            for (const double peak : peaks) {
-                if (is_impossible(slip, place)) continue;
-                const Capture right = seen(place, slip.scan, peak);
-                Capture capture = right;
-                slip.make(capture);
-                const std::string warnings = warnings_of(capture);
-                const bool is_named = warnings.find(slip.remedy(right)) != std::string::npos;
-                ++rate.tried;
-                rate.named += is_named ? 1 : 0;
-                cell += is_named ? "yes " : "no ";
-                if (is_named) continue;
-                missed +=
-                    fmt::format("{}, {}, {} counts: {}\n", slip.name, place.scene, peak, warnings);
+        for (const Place& place : kPlaces) {
+            if (is_impossible(slip, place)) {
+                fmt::print("{:<8}", "-");
+                continue;
             }
-            fmt::print("{:<14}", cell.empty() ? "-" : cell);
+            const Capture right = seen(place, slip.scan);
+            Capture capture = right;
+            slip.make(capture);
+            const std::string warnings = warnings_of(capture);
+            const bool is_named = warnings.find(slip.remedy(right)) != std::string::npos;
+            ++rate.tried;
+            rate.named += is_named ? 1 : 0;
+            fmt::print("{:<8}", is_named ? "yes" : "no");
+            if (!is_named) missed += fmt::format("{}, {}: {}\n", slip.name, place.scene, warnings);
         }
         std::fflush(stdout);
     }
@@ -317,7 +312,7 @@ Rate recognised(const std::vector<Place>& places, const std::vector<double>& pea
 }
 
 /// Counts warnings about captures that are right.
-Rate alarmed(const std::vector<Place>& places, const std::vector<double>& peaks) {
+Rate alarmed() {
     const std::vector<ScanCase> scans{
         kConfocal,
         kOblong,
@@ -332,20 +327,17 @@ Rate alarmed(const std::vector<Place>& places, const std::vector<double>& peaks)
           "scan.sensing_points=[6,6]",
           "scan.illumination_points=[4,4]"}}};
     Rate rate;
-    for (const Place& place : places) {
+    for (const Place& place : kPlaces) {
         for (const ScanCase& scan : scans) {
             if (place.has_bent_wall() && &scan != &scans[0] && &scan != &scans[2] &&
                 &scan != &scans[3]) {
                 continue;  // the wall's points are its own
             }
-            for (const double peak : peaks) {
-                const std::string warnings = warnings_of(seen(place, scan, peak));
-                ++rate.tried;
-                if (warnings.empty()) continue;
-                ++rate.named;
-                fmt::print(
-                    "{} {} {}: {}\n", place.scene, fmt::join(scan.settings, " "), peak, warnings);
-            }
+            const std::string warnings = warnings_of(seen(place, scan));
+            ++rate.tried;
+            if (warnings.empty()) continue;
+            ++rate.named;
+            fmt::print("{} {}: {}\n", place.scene, fmt::join(scan.settings, " "), warnings);
         }
     }
     fmt::print("{} of {} false alarms\n", rate.named, rate.tried);
@@ -353,29 +345,17 @@ Rate alarmed(const std::vector<Place>& places, const std::vector<double>& peaks)
 }
 
 TEST(Slips, AreRecognisedAndRightlyNamed) {
-    const Rate rate = recognised(kKnown, kFewPhotons);
-    EXPECT_GE(rate.named, 0.95 * rate.tried);
-}
-
-TEST(Slips, AreRecognisedAtPlacesThatWereHeldOut) {
-    // 283 of 300, one in a hundred less than at the places above: a reversal of time must explain
-    // much more than the description does before it is named.
-    const Rate rate = recognised(kHeldOut, kAllPeaks);
+    const Rate rate = recognised();
     EXPECT_GE(rate.named, 0.94 * rate.tried);
 }
 
 TEST(Slips, AreNotSeenInCapturesThatAreRight) {
-    const Rate rate = alarmed(kKnown, kFewPhotons);
-    EXPECT_LE(rate.named, 0.02 * rate.tried);
-}
-
-TEST(Slips, AreNotSeenInRightCapturesThatWereHeldOut) {
-    const Rate rate = alarmed(kHeldOut, kAllPeaks);
+    const Rate rate = alarmed();
     EXPECT_LE(rate.named, 0.02 * rate.tried);
 }
 
 TEST(Slips, OfUnitsAreSeenInEveryScene) {
-    for (const Place& place : kKnown) {
+    for (const Place& place : kPlaces) {
         const Capture& right = right_capture(place, kConfocal);
         Capture counts = counted(right, 20.0, place.seed);
         counts.unit = core::TransientUnit::Radiance;

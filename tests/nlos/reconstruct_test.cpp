@@ -267,7 +267,7 @@ TEST(Reconstruct, RefusesMoreMemoryThanThereIs) {
 
 TEST(Reconstruct, WorksInSlabsWhenMemoryIsShort) {
     core::Capture capture = nlos_test::confocal_capture(
-        nlos_test::wall_grid({32, 32}, {0.03, 0.03}), {0.0, 0.016, 256});
+        nlos_test::wall_grid({16, 16}, {0.06, 0.06}), {0.0, 0.016, 256});
     nlos_test::add_scatterer(capture, Vec3(0.07, -0.13, 0.5), 4.0);
     for (const std::vector<std::string>& method :
          std::vector<std::vector<std::string>>{{"method=lct"},

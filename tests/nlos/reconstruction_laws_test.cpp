@@ -31,7 +31,7 @@ struct LawCase {
     std::vector<std::string> overrides;
     bool is_non_negative;
     bool is_linear;       ///< where the volume is not cut off at 0
-    int num_places = 20;  ///< tried
+    int num_places = 8;   ///< tried
     /// Whether the method gathers a point in one bin of squared range, of which there are as many
     /// as bins: anywhere in such a bin is the same to it.
     bool gathers_in_squared_range = false;

@@ -59,7 +59,7 @@ std::vector<char*> pointers_to(std::vector<std::string>& texts) {
     return pointers;
 }
 
-void limit(pid_t process, int resource, double most) {
+void limit_process(pid_t process, int resource, double most) {
     const auto value = static_cast<rlim_t>(most);
     // With a little more for the hard limit, the process is told (SIGXCPU) before it is killed.
     const rlimit bounds{value, value + 5};
@@ -105,8 +105,9 @@ MeasuredProcess run_measured(const std::vector<std::string>& arguments,
                              const ProcessLimits& limits) {
     const std::string output = log + ".out";
     const pid_t process = start(arguments, output, log);
-    limit(process, RLIMIT_CPU, std::ceil(limits.cpu_seconds));
-    if (limits.data_bytes) limit(process, RLIMIT_DATA, static_cast<double>(*limits.data_bytes));
+    limit_process(process, RLIMIT_CPU, std::ceil(limits.cpu_seconds));
+    if (limits.data_bytes)
+        limit_process(process, RLIMIT_DATA, static_cast<double>(*limits.data_bytes));
     int status = 0;
     rusage usage{};
     while (::wait4(process, &status, 0, &usage) < 0) {

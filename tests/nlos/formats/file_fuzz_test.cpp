@@ -29,7 +29,7 @@ using test_support::TemporaryFolder;
 /// Cases per format; NLOS_FUZZ_CASES in the environment asks for more.
 int case_count() {
     const char* wanted = std::getenv("NLOS_FUZZ_CASES");
-    return wanted == nullptr ? 100 : std::atoi(wanted);
+    return wanted == nullptr ? 50 : std::atoi(wanted);
 }
 
 /// Changes up to eight bytes, and cuts the file short in one case of eight.

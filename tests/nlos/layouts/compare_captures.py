@@ -1,10 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Whether two captures, or two volumes, are the same."""
+"""Whether two captures are the same."""
 from __future__ import annotations
 
-from pathlib import Path
-
-import h5py
 import numpy as np
 from scipy.spatial import cKDTree
 
@@ -13,7 +10,6 @@ from capture import Capture, pairs_of
 POINT_TOLERANCE_M = 1e-6
 AXIS_TOLERANCE = 1e-9
 NORMAL_TOLERANCE = 1e-6
-VOLUME_TOLERANCE = 1e-4
 
 
 def _scan_differences(expected: Capture, found: Capture) -> list[str]:
@@ -112,15 +108,3 @@ def capture_differences(expected: Capture, found: Capture) -> list[str]:
     for compare in (_angle_differences, _observed_differences, _histogram_differences):
         differences += compare(expected, found, order)
     return differences
-
-
-def volume_difference(expected: Path, found: Path) -> str | None:
-    """The relative difference of two volumes on the same voxels, where it is too large."""
-    with h5py.File(expected) as a, h5py.File(found) as b:
-        for axis in ("x_m", "y_m", "z_m"):
-            if a[axis].shape != b[axis].shape or np.abs(a[axis][()] - b[axis][()]).max() > 1e-6:
-                return f"the volumes differ in {axis}"
-        wanted, got = a["volume"][()].astype(np.float64), b["volume"][()]
-        norm = np.linalg.norm(wanted)
-        difference = np.linalg.norm(got - wanted) / norm if norm > 0.0 else np.inf
-    return f"the volumes differ by {difference:.3g}" if difference > VOLUME_TOLERANCE else None

@@ -54,7 +54,7 @@ TEST(ThirdBounceBehindOccluders, CombsAndDotsAreWithinTheTarget) {
 }
 
 TEST(ThirdBounceBehindOccluders, RandomScenesAreWithinTheTarget) {
-    constexpr std::uint64_t kScenes = 24;
+    constexpr std::uint64_t kScenes = 10;
     int above = 0;
     for (std::uint64_t number = 1000; number < 1000 + kScenes; ++number) {
         const OccluderScene setup = test_support::random_occluder_scene(number);

@@ -303,7 +303,7 @@ TEST(ThirdBounceScenes, ShadowsWithinFacetsOfARoughBallCount) {
     for (int i = 0; i < 25; ++i) points.emplace_back(0.2 * (i % 5) - 0.4, 0.2 * (i / 5) - 0.4, 0.0);
     const core::Scan scan = test_support::confocal_scan(points);
     const core::TimeAxis axis{0.6, 0.02, 50};
-    const renderer::Scene scene = scene_of({{ball}, {}}, scan);
+    const renderer::Scene scene = scene_of(renderer::SceneGeometry{{ball}, {}}, scan);
     const auto sum = [&](const renderer::RenderSettings& settings) {
         const auto result = renderer::render(scene, scan, axis, settings, {});
         const auto values = result.capture.transient.values();

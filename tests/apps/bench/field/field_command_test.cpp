@@ -63,19 +63,6 @@ TEST_F(BenchField, PeersThatFailCostTheirRowsOnly) {
     EXPECT_NE(page.find("solver"), std::string::npos);
 }
 
-TEST_F(BenchField, TwoRunsAgree) {
-    const Json first = bench("--part reconstruct");
-    const Json second = bench("--part reconstruct");
-    const Json& a = first["reconstruction_runs"];
-    const Json& b = second["reconstruction_runs"];
-    ASSERT_EQ(a.size(), b.size());
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        for (const char* figure : {"depth_mae_mm", "iou", "iou_best", "stated_mae_mm"}) {
-            EXPECT_EQ(a[i][figure], b[i][figure]) << a[i];
-        }
-    }
-}
-
 TEST_F(BenchField, ReadsCapturesWithKnownDistances) {
     const fs::path folder = file("captures");
     fs::create_directories(folder);
