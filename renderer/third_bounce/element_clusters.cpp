@@ -205,6 +205,9 @@ ElementClusters merge_elements(const Scene& scene,
 
     ElementClusters result;
     result.merged_of.resize(count);
+    std::size_t num_sets = 0;
+    for (std::uint32_t root = 0; root < count; ++root) num_sets += end[root] > begin[root];
+    result.elements.reserve(num_sets);
     for (std::uint32_t root = 0; root < count; ++root) {
         const auto members = std::span(sorted).subspan(begin[root], end[root] - begin[root]);
         if (members.empty()) continue;

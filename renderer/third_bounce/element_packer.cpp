@@ -6,6 +6,7 @@
 #include "renderer/third_bounce/element_clusters.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
 #include <utility>
@@ -71,14 +72,17 @@ class ElementPacker {
         scan_center_ = sum / static_cast<double>(scan.sensing.size());
     }
 
-    ElementSet pack(std::span<const SurfaceElement> elements,
-                    std::span<const std::uint32_t> clusters);
+    ElementSet pack(std::vector<SurfaceElement> elements, std::vector<std::uint32_t> clusters);
 
  private:
     struct Range {
         std::size_t begin;
         std::size_t end;
     };
+    ElementKind kind_of_element(const ElementCluster& element) const {
+        return kind_of(scene_.object_of(element.triangle.facet).material);
+    }
+    std::size_t num_blocks(const std::vector<ElementCluster>& elements) const;
     void append_blocks(const std::vector<ElementCluster>& elements, ElementKind kind);
     void fill_lane(ElementBlock& block, std::size_t lane, const ElementCluster& element) const;
     bool may_be_one_group(const ElementBlock& block, Range lanes) const;
@@ -124,12 +128,23 @@ void ElementPacker::fill_lane(ElementBlock& block,
     }
 }
 
+std::size_t ElementPacker::num_blocks(const std::vector<ElementCluster>& elements) const {
+    std::array<std::size_t, 3> of_kind{};
+    for (const ElementCluster& element : elements) {
+        ++of_kind[static_cast<std::size_t>(kind_of_element(element))];
+    }
+    std::size_t sum = 0;
+    for (const std::size_t count : of_kind) {
+        sum += (count + ElementBlock::kSize - 1) / ElementBlock::kSize;
+    }
+    return sum;
+}
+
 void ElementPacker::append_blocks(const std::vector<ElementCluster>& elements, ElementKind kind) {
     std::vector<ElementCenter> sorted;
     for (std::size_t i = 0; i < elements.size(); ++i) {
-        const SurfaceElement& triangle = elements[i].triangle;
-        if (kind_of(scene_.object_of(triangle.facet).material) == kind) {
-            sorted.push_back({triangle.center(), i});
+        if (kind_of_element(elements[i]) == kind) {
+            sorted.push_back({elements[i].triangle.center(), i});
         }
     }
     sort_into_blocks(sorted);
@@ -226,16 +241,20 @@ void ElementPacker::find_group_neighbours() {
     set_.group_neighbours = adjacency_lists(set_.groups.size(), pairs);
 }
 
-ElementSet ElementPacker::pack(std::span<const SurfaceElement> elements,
-                               std::span<const std::uint32_t> clusters) {
+ElementSet ElementPacker::pack(std::vector<SurfaceElement> elements,
+                               std::vector<std::uint32_t> clusters) {
     auto pairs = adjacent_elements(elements);
-    const ElementClusters merged = merge_elements(scene_, elements, clusters, pairs);
+    ElementClusters merged = merge_elements(scene_, elements, clusters, pairs);
+    elements = {};
+    clusters = {};
     set_.num_elements = merged.elements.size();
     element_ids_.resize(set_.num_elements);
+    set_.blocks.reserve(num_blocks(merged.elements));
     for (const ElementKind kind :
          {ElementKind::Lambertian, ElementKind::Glossy, ElementKind::Retroreflective}) {
         append_blocks(merged.elements, kind);
     }
+    merged.elements = {};
     for (auto& [a, b] : pairs) {
         a = element_ids_[merged.merged_of[a]];
         b = element_ids_[merged.merged_of[b]];
@@ -256,9 +275,9 @@ ElementSet ElementPacker::pack(std::span<const SurfaceElement> elements,
 ElementSet pack_elements(const Scene& scene,
                          const core::Scan& scan,
                          const PackingRules& rules,
-                         std::span<const SurfaceElement> elements,
-                         std::span<const std::uint32_t> clusters) {
-    return ElementPacker(scene, scan, rules).pack(elements, clusters);
+                         std::vector<SurfaceElement>&& elements,
+                         std::vector<std::uint32_t>&& clusters) {
+    return ElementPacker(scene, scan, rules).pack(std::move(elements), std::move(clusters));
 }
 
 }  // namespace renderer

@@ -4,7 +4,6 @@
 #include "renderer/scene/scene.h"
 #include "renderer/third_bounce/surface_elements.h"
 
-#include <span>
 #include <vector>
 
 namespace renderer {
@@ -18,11 +17,12 @@ struct PackingRules {
 
 /// Merges elements and arranges them into blocks of neighbours and groups within blocks.
 ///
+/// elements   freed, like `clusters`, as soon as they are merged
 /// clusters   of elements that may be merged, see cluster_elements()
 ElementSet pack_elements(const Scene& scene,
                          const core::Scan& scan,
                          const PackingRules& rules,
-                         std::span<const SurfaceElement> elements,
-                         std::span<const std::uint32_t> clusters);
+                         std::vector<SurfaceElement>&& elements,
+                         std::vector<std::uint32_t>&& clusters);
 
 }  // namespace renderer

@@ -66,25 +66,32 @@ PilotRuns::PilotRuns(const Scene& scene,
                      const core::Scan& scan,
                      const core::TimeAxis& axis,
                      double target,
-                     double laser_spot_m2)
+                     double laser_spot_m2,
+                     const CutLimits& limits)
     : scene_(scene),
       pilot_scan_(pilot_scan_for(scene, scan, axis.num_bins)),
       pilot_axis_(pilot_axis(axis)),
       target_(target),
-      subdivider_(scene, scan, axis, laser_spot_m2) {}
+      subdivider_(scene, scan, axis, laser_spot_m2, limits) {}
 
 double PilotRuns::tolerance(int level) const {
     return target_ * std::exp2(level);
 }
 
 // The level chosen is often the one before the last tried, which missed the target.
-const ElementSet& PilotRuns::cut(int level) {
+void PilotRuns::for_each_batch(int level,
+                               const std::function<bool(const ElementSet& batch)>& work) {
     constexpr std::size_t kMaxCuts = 2;
     for (const auto& [cut_level, elements] : cuts_) {
-        if (cut_level == level) return elements;
+        if (cut_level != level) continue;
+        work(elements);
+        return;
     }
     if (cuts_.size() == kMaxCuts) cuts_.pop_front();
-    return cuts_.emplace_back(level, subdivider_.cut(tolerance(level))).second;
+    subdivider_.cut(tolerance(level), [&](ElementSet&& batch) {
+        if (batch.share < 1.0) return work(batch);
+        return work(cuts_.emplace_back(level, std::move(batch)).second);
+    });
 }
 
 std::size_t PilotRuns::fewest_elements() const {
@@ -108,11 +115,14 @@ std::size_t PilotRuns::check_rays_per_pair() const {
 void PilotRuns::estimate_norm(int level) {
     constexpr std::size_t kPoints = 4;
     const core::Scan few = pilot_scan(scene_, pilot_scan_, kPoints);
-    ThirdBounceScan integrator(scene_, few, pilot_axis_, cut(level), rules(level));
     Transient transient(few.num_pairs(), pilot_axis_.num_bins);
-    integrator.integrate(
-        0, [](double) { return true; }, transient);
-    cost_ += integrator.cost();
+    for_each_batch(level, [&](const ElementSet& batch) {
+        ThirdBounceScan integrator(scene_, few, pilot_axis_, batch, rules(level));
+        integrator.integrate(
+            0, [](double) { return true; }, transient);
+        cost_ += integrator.cost();
+        return true;
+    });
     norm_per_pair_ = std::sqrt(squared_norm(transient) / static_cast<double>(few.num_pairs()));
 }
 
@@ -120,22 +130,29 @@ const Pilot& PilotRuns::run(int level) {
     const auto found = pilots_.find(level);
     if (found != pilots_.end()) return found->second;
     Pilot pilot;
-    const core::Stopwatch cutting;
-    const ElementSet& elements = cut(level);
-    pilot.cut_seconds = cutting.seconds();
-    pilot.num_elements = elements.num_elements;
-    const core::Stopwatch watch;
+    pilot.transient = Transient(pilot_scan_.num_pairs(), pilot_axis_.num_bins);
     ScanRules checked = rules(level);
     checked.check_rays = check_rays_per_pair();
-    ThirdBounceScan integrator(scene_, pilot_scan_, pilot_axis_, elements, checked);
-    pilot.transient = Transient(pilot_scan_.num_pairs(), pilot_axis_.num_bins);
-    integrator.integrate(
-        0, [](double) { return true; }, pilot.transient);
-    pilot.seconds = watch.seconds();
-    pilot.shadow_error = std::sqrt(integrator.squared_shadow_error());
-    const SquaredError missed = integrator.squared_visibility_error();
+    std::optional<ThirdBounceScan> integrator;
+    const core::Stopwatch watch;
+    for_each_batch(level, [&](const ElementSet& batch) {
+        const core::Stopwatch integrating;
+        if (integrator) {
+            integrator->go_on_with(batch);
+        } else {
+            integrator.emplace(scene_, pilot_scan_, pilot_axis_, batch, checked);
+        }
+        integrator->integrate(
+            0, [](double) { return true; }, pilot.transient);
+        pilot.num_elements += batch.num_elements;
+        pilot.seconds += integrating.seconds();
+        return true;
+    });
+    pilot.cut_seconds = watch.seconds() - pilot.seconds;
+    pilot.shadow_error = std::sqrt(integrator->squared_shadow_error());
+    const SquaredError missed = integrator->squared_visibility_error();
     pilot.missed_error = std::sqrt(std::max(0.0, missed.value - std::sqrt(missed.variance)));
-    cost_ += integrator.cost();
+    cost_ += integrator->cost();
     if (norm_per_pair_ == 0.0) {
         norm_per_pair_ =
             std::sqrt(squared_norm(pilot.transient) / static_cast<double>(pilot_scan_.num_pairs()));

@@ -7,6 +7,7 @@
 #include "renderer/third_bounce/third_bounce_scan.h"
 
 #include <deque>
+#include <functional>
 #include <map>
 #include <optional>
 #include <utility>
@@ -47,10 +48,11 @@ class PilotRuns {
               const core::Scan& scan,
               const core::TimeAxis& axis,
               double target,
-              double laser_spot_m2);
+              double laser_spot_m2,
+              const CutLimits& limits = {});
 
-    /// Valid until two others are asked for.
-    const ElementSet& cut(int level);
+    /// Calls work(batch) for all batches of a cut while it returns true.
+    void for_each_batch(int level, const std::function<bool(const ElementSet& batch)>& work);
     /// cut() makes at least this many elements at any level.
     std::size_t fewest_elements() const;
     /// How all of the scan is integrated at a level.
@@ -83,7 +85,7 @@ class PilotRuns {
     core::TimeAxis pilot_axis_;
     double target_;
     SurfaceSubdivider subdivider_;
-    std::deque<std::pair<int, ElementSet>> cuts_;  ///< the latest
+    std::deque<std::pair<int, ElementSet>> cuts_;  ///< the latest that are one batch
     double norm_per_pair_ = 0.0;
     ShadowRayPlan plan_ = ShadowRayPlan::WhereNeighboursDisagree;
     std::map<int, Pilot> pilots_;  ///< by level, all with this plan

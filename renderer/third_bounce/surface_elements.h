@@ -110,7 +110,8 @@ struct AdjacencyLists {
     }
 };
 
-/// The hidden surfaces cut into elements, element i in lane i % kSize of block i / kSize.
+/// The hidden surfaces cut into elements, or a batch of these, element i in lane i % kSize of block
+/// i / kSize.
 struct ElementSet {
     core::Vec3 origin = core::Vec3::Zero();  ///< world; keeps precision far from the world's origin
     std::vector<ElementBlock> blocks;
@@ -120,6 +121,8 @@ struct ElementSet {
     AdjacencyLists element_neighbours;       ///< elements that share an edge
     AdjacencyLists group_neighbours;
     std::size_t num_elements = 0;
+    std::uint32_t first_number = 0;  ///< SurfaceElement::number of the batch's first element
+    double share = 1.0;              ///< of all elements of the cut before any were merged
 };
 
 }  // namespace renderer

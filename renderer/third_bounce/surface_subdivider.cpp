@@ -7,8 +7,11 @@
 #include "renderer/third_bounce/element_clusters.h"
 #include "renderer/third_bounce/element_packer.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace renderer {
 namespace {
@@ -33,7 +36,6 @@ constexpr double kMaxSquaredTilt = 0.03;
 
 // Most bisections of a facet, even where it touches a wall point.
 constexpr int kMaxBisections = 28;
-constexpr std::size_t kMaxElements = 8'000'000;
 
 struct LongestEdge {
     std::size_t index = 0;
@@ -80,8 +82,10 @@ std::vector<SurfaceElement> clip(const SurfaceElement& element,
     return parts;
 }
 
-[[noreturn]] void throw_too_many() {
-    throw core::Failure("third_bounce", "needs more than 8 million elements of surface");
+[[noreturn]] void throw_too_many(std::size_t most) {
+    throw core::Failure("third_bounce",
+                        fmt::format("needs more than {:g} million elements of surface",
+                                    1e-6 * static_cast<double>(most)));
 }
 
 // Squared width of the BSDF's lobe relative to a cosine's.
@@ -96,11 +100,13 @@ double lobe_scale(const Material& material) {
 SurfaceSubdivider::SurfaceSubdivider(const Scene& scene,
                                      const core::Scan& scan,
                                      const core::TimeAxis& axis,
-                                     double laser_spot_m2)
+                                     double laser_spot_m2,
+                                     const CutLimits& limits)
     : scene_(scene),
       scan_(scan),
       axis_(axis),
       laser_spot_m2_(laser_spot_m2),
+      limits_(limits),
       origin_(scene.rays().origin()),
       returns_light_(CoincidingPoints(scan).any()),
       boxes_(scan, origin_) {
@@ -130,9 +136,16 @@ bool SurfaceSubdivider::is_small_enough(const LegBounds& legs,
     return holds(exact_light, exact_sensor);
 }
 
+bool SurfaceSubdivider::are_within_axis(const LegBounds& legs) const {
+    return legs.light.min_m + legs.sensor.min_m >= axis_.opl_start_m - boxes_.device_legs().max_m &&
+           legs.light.max_m + legs.sensor.max_m <= axis_.opl_end_m() - boxes_.device_legs().min_m;
+}
+
 double SurfaceSubdivider::least_parts(const SurfaceElement& element,
                                       const LegBounds& legs,
                                       double tolerance) const {
+    const bool is_whole = boxes_.common_plane() && are_within_axis(legs);
+    if (!is_whole) return 0.0;
     const double light = legs.light.max_m;
     const double sensor = legs.sensor.max_m;
     const double nearest = std::min(light, sensor);
@@ -145,15 +158,43 @@ double SurfaceSubdivider::least_parts(const SurfaceElement& element,
     return core::triangle_area_vector(a, b, c).norm() / largest_area;
 }
 
-void SurfaceSubdivider::bisect(const SurfaceElement& facet,
-                               double tolerance,
-                               std::vector<SurfaceElement>& elements) const {
+// Leaves no parts where the facet adds nothing.
+void SurfaceSubdivider::begin_facet(Cutting& cutting) const {
+    const std::uint32_t i = cutting.next_facet++;
+    const Object& object = scene_.object_of(i);
+    const Material& material = object.material;
+    if (!scene_.is_hidden(i) || !is_integrable(material) || material.albedo == 0.0) return;
+    if (kind_of(material) == ElementKind::Retroreflective && !returns_light_) return;
+    SurfaceElement whole;
+    whole.facet = i;
+    const auto& triangle = object.mesh.triangles[scene_.facet(i).triangle];
+    for (std::size_t c = 0; c < 3; ++c) {
+        whole.corners[c] = object.mesh.vertices[triangle[c]] - origin_;
+    }
+    cutting.facet_tolerance = cutting.tolerance * lobe_scale(material);
+    if (!boxes_.common_plane()) {
+        cutting.parts.push_back({whole, 0});
+        return;
+    }
+    const std::vector<SurfaceElement> in_front = clip(whole, *boxes_.common_plane());
+    for (auto part = in_front.rbegin(); part != in_front.rend(); ++part) {
+        cutting.parts.push_back({*part, 0});
+    }
+}
+
+// Appends the next element; false: there is none.
+bool SurfaceSubdivider::cut_next(Cutting& cutting, std::vector<SurfaceElement>& elements) const {
     const double begin = axis_.opl_start_m - boxes_.device_legs().max_m;
     const double end = axis_.opl_end_m() - boxes_.device_legs().min_m;
-    std::vector<std::pair<SurfaceElement, int>> stack{{facet, 0}};
-    while (!stack.empty()) {
-        const auto [element, depth] = stack.back();
-        stack.pop_back();
+    const auto most = static_cast<double>(limits_.in_all);
+    for (;;) {
+        if (cutting.parts.empty()) {
+            if (cutting.next_facet == scene_.facets().size()) return false;
+            begin_facet(cutting);
+            continue;
+        }
+        const auto [element, depth] = cutting.parts.back();
+        cutting.parts.pop_back();
         const LongestEdge longest = longest_edge(element);
         const Vec3 center = element.center();
         const double reach = reach_of(longest.squared);
@@ -161,53 +202,65 @@ void SurfaceSubdivider::bisect(const SurfaceElement& facet,
         if (legs.light.max_m + legs.sensor.max_m < begin) continue;
         if (legs.light.min_m + legs.sensor.min_m > end) continue;
         if (boxes_.is_behind(center, reach)) continue;
+        const double tolerance = cutting.facet_tolerance;
         if (depth == kMaxBisections || is_small_enough(legs, center, longest.squared, tolerance)) {
+            const auto& [a, b, c] = element.corners;
+            if (!(core::triangle_area_vector(a, b, c).squaredNorm() > 0.0)) continue;
+            if (cutting.num_elements == limits_.in_all) throw_too_many(limits_.in_all);
             elements.push_back(element);
-            if (elements.size() > kMaxElements) throw_too_many();
-            continue;
+            elements.back().number = cutting.num_elements++;
+            return true;
         }
-        const bool is_whole =  // none of its parts will be left out
-            boxes_.common_plane() && legs.light.min_m + legs.sensor.min_m >= begin &&
-            legs.light.max_m + legs.sensor.max_m <= end;
-        if (is_whole && least_parts(element, legs, tolerance) > double{kMaxElements})
-            throw_too_many();
+        if (cutting.num_elements + least_parts(element, legs, tolerance) > most) {
+            throw_too_many(limits_.in_all);
+        }
         const std::size_t i = longest.index;
         SurfaceElement first = element;
         SurfaceElement second = element;
         first.corners[(i + 1) % 3] = second.corners[i] = element.midpoint(i);
-        stack.emplace_back(second, depth + 1);
-        stack.emplace_back(first, depth + 1);
+        cutting.parts.push_back({second, depth + 1});
+        cutting.parts.push_back({first, depth + 1});
     }
 }
 
-std::vector<SurfaceElement> SurfaceSubdivider::cut_all(double tolerance) const {
-    std::vector<SurfaceElement> elements;
-    for (std::uint32_t i = 0; i < scene_.facets().size(); ++i) {
-        const Object& object = scene_.object_of(i);
-        const Material& material = object.material;
-        if (!scene_.is_hidden(i) || !is_integrable(material) || material.albedo == 0.0) continue;
-        if (kind_of(material) == ElementKind::Retroreflective && !returns_light_) continue;
-        SurfaceElement whole;
-        whole.facet = i;
-        const auto& triangle = object.mesh.triangles[scene_.facet(i).triangle];
-        for (std::size_t c = 0; c < 3; ++c) {
-            whole.corners[c] = object.mesh.vertices[triangle[c]] - origin_;
+// A cut has at least this many elements; far fewer than it has, but known at once.
+double SurfaceSubdivider::least_elements(double tolerance) const {
+    Cutting cutting{tolerance};
+    double sum = 0.0;
+    while (cutting.next_facet < scene_.facets().size()) {
+        begin_facet(cutting);
+        for (const auto& [triangle, depth] : cutting.parts) {
+            const double reach = reach_of(longest_edge(triangle).squared);
+            sum += least_parts(
+                triangle, boxes_.legs(triangle.center(), reach), cutting.facet_tolerance);
         }
-        const double facet_tolerance = tolerance * lobe_scale(material);
-        if (!boxes_.common_plane()) {
-            bisect(whole, facet_tolerance, elements);
-            continue;
-        }
-        for (const SurfaceElement& part : clip(whole, *boxes_.common_plane())) {
-            bisect(part, facet_tolerance, elements);
-        }
+        cutting.parts.clear();
     }
-    std::erase_if(elements, [](const SurfaceElement& element) {
-        const auto& [a, b, c] = element.corners;
-        return !(core::triangle_area_vector(a, b, c).squaredNorm() > 0.0);
-    });
-    for (std::uint32_t i = 0; i < elements.size(); ++i) elements[i].number = i;
-    return elements;
+    return sum;
+}
+
+// Counts all elements before any work where there is more than one batch.
+void SurfaceSubdivider::cut_batches(
+    double tolerance, const std::function<bool(Batch& batch, std::size_t num_all)>& work) const {
+    const std::size_t most = std::max(limits_.in_a_batch, scene_.facets().size());
+    Cutting cutting{tolerance};
+    std::optional<std::size_t> num_all;
+    bool is_more = true;
+    while (is_more) {
+        Batch batch;
+        while (batch.size() < most && is_more) is_more = cut_next(cutting, batch);
+        if (batch.empty() && num_all) return;
+        if (!num_all) {
+            if (is_more && least_elements(tolerance) > static_cast<double>(limits_.in_all)) {
+                throw_too_many(limits_.in_all);
+            }
+            Cutting ahead = cutting;
+            Batch counted;
+            while (is_more && cut_next(ahead, counted)) counted.clear();
+            num_all = ahead.num_elements;
+        }
+        if (!work(batch, *num_all)) return;
+    }
 }
 
 // Numbers of clusters of elements that may be merged.
@@ -226,16 +279,40 @@ std::vector<std::uint32_t> SurfaceSubdivider::cluster(std::span<const SurfaceEle
         });
 }
 
+void SurfaceSubdivider::cut(double tolerance,
+                            const std::function<bool(ElementSet&& batch)>& work) const {
+    const PackingRules rules{tolerance, laser_spot_m2_, visible_sides_};
+    cut_batches(tolerance, [&](Batch& elements, std::size_t num_all) {
+        const std::uint32_t first_number = elements.empty() ? 0 : elements[0].number;
+        const double share =
+            num_all > 0 ? static_cast<double>(elements.size()) / static_cast<double>(num_all) : 1.0;
+        std::vector<std::uint32_t> clusters = cluster(elements, tolerance);
+        ElementSet set =
+            pack_elements(scene_, scan_, rules, std::move(elements), std::move(clusters));
+        set.first_number = first_number;
+        set.share = share;
+        return work(std::move(set));
+    });
+}
+
 ElementSet SurfaceSubdivider::cut(double tolerance) const {
-    std::vector<SurfaceElement> elements = cut_all(tolerance);
-    std::vector<std::uint32_t> clusters = cluster(elements, tolerance);
-    return pack_elements(
-        scene_, scan_, {tolerance, laser_spot_m2_, visible_sides_}, elements, clusters);
+    ElementSet only;
+    cut(tolerance, [&](ElementSet&& batch) {
+        if (batch.share < 1.0) throw_too_many(limits_.in_a_batch);
+        only = std::move(batch);
+        return true;
+    });
+    return only;
 }
 
 std::size_t SurfaceSubdivider::min_elements(double tolerance) const {
-    const std::vector<std::uint32_t> clusters = cluster(cut_all(tolerance), tolerance);
-    return clusters.empty() ? 0 : 1 + *std::max_element(clusters.begin(), clusters.end());
+    std::size_t sum = 0;
+    cut_batches(tolerance, [&](const Batch& elements, std::size_t) {
+        const std::vector<std::uint32_t> clusters = cluster(elements, tolerance);
+        if (!clusters.empty()) sum += 1 + *std::max_element(clusters.begin(), clusters.end());
+        return true;
+    });
+    return sum;
 }
 
 }  // namespace renderer

@@ -26,6 +26,9 @@ constexpr int kReferenceSteps = PilotRuns::kReferenceSteps;
 // not merged beyond that.
 constexpr double kNearlyFewest = 1.05;
 
+// The target of pilot runs that take a second or so.
+constexpr double kSoonKnown = 3e-4;
+
 constexpr const char* kTrials = "trial runs for the error";
 
 // Finds the refinement level that meets the target, and integrates with it.
@@ -34,7 +37,8 @@ class Integrator {
     Integrator(const Scene& scene,
                const core::Scan& scan,
                const core::TimeAxis& axis,
-               const RenderSettings& settings)
+               const RenderSettings& settings,
+               const CutLimits& limits)
         : scene_(scene),
           scan_(scan),
           axis_(axis),
@@ -42,7 +46,9 @@ class Integrator {
               settings.target_error.value_or(kDefaultTargetError))),
           seconds_(settings.seconds),
           has_fixed_tolerance_(settings.element_tolerance),
-          pilots_(scene, scan, axis, target_, settings.laser_spot_m2) {}
+          laser_spot_m2_(settings.laser_spot_m2),
+          limits_(limits),
+          pilots_(scene, scan, axis, target_, settings.laser_spot_m2, limits) {}
 
     ThirdBounce run(const core::Progress& progress);
 
@@ -59,6 +65,8 @@ class Integrator {
     double target_;
     std::optional<double> seconds_;
     bool has_fixed_tolerance_;
+    double laser_spot_m2_;
+    CutLimits limits_;
     PilotRuns pilots_;
     bool stopped_ = false;  ///< before all pilot runs were made
     TracingCost cost_;
@@ -110,7 +118,8 @@ int Integrator::choose_level(const core::Progress& progress) {
             stopped_ = true;
             return kCoarsest;
         }
-        progress.update(0.0, fmt::format("{}, {} elements", kTrials, pilots_.run(level).num_elements));
+        progress.update(0.0,
+                        fmt::format("{}, {} elements", kTrials, pilots_.run(level).num_elements));
         if (pilots_.run(level).misses_shadows && pilots_.look_everywhere()) {
             may_be_coarser = true;
             continue;
@@ -130,20 +139,42 @@ int Integrator::choose_level(const core::Progress& progress) {
     return level;
 }
 
-// Integrates parts from `first_part` on; returns the first part that is left.
+// Integrates parts from `first_part` on; returns the first part that is left. Of a cut in several
+// batches, no pair is complete before the last: what an interrupted one has added is dropped.
 int Integrator::integrate(int level,
                           int first_part,
                           const core::Progress& progress,
                           ThirdBounce& result) {
-    const ElementSet& elements = pilots_.cut(level);
-    ThirdBounceScan scan(scene_, scan_, axis_, elements, pilots_.rules(level));
-    const auto go_on = [&](double share) {
-        progress.update(share, fmt::format("{} elements", elements.num_elements));
-        return !progress.should_stop();
-    };
-    const int part = scan.integrate(first_part, go_on, result.transient);
-    result.num_elements = std::max(result.num_elements, elements.num_elements);
-    cost_ += scan.cost();
+    std::optional<ThirdBounceScan> scan;
+    std::size_t num_elements = 0;
+    double share_before = 0.0;
+    bool is_whole_cut = true;
+    int part = first_part;
+    pilots_.for_each_batch(level, [&](const ElementSet& batch) {
+        part = first_part;
+        if (scan && progress.should_stop()) return false;
+        if (scan) {
+            scan->go_on_with(batch);
+        } else {
+            scan.emplace(scene_, scan_, axis_, batch, pilots_.rules(level));
+        }
+        num_elements += batch.num_elements;
+        const auto go_on = [&](double share) {
+            progress.update(share_before + share * batch.share,
+                            fmt::format("{} elements", num_elements));
+            return !progress.should_stop();
+        };
+        part = scan->integrate(first_part, go_on, result.transient);
+        share_before += batch.share;
+        is_whole_cut = batch.share >= 1.0;
+        return part == ThirdBounceScan::kParts;
+    });
+    if (!is_whole_cut && part < ThirdBounceScan::kParts) {
+        std::ranges::fill(result.transient.values(), 0.0F);
+        part = first_part;
+    }
+    result.num_elements = std::max(result.num_elements, num_elements);
+    cost_ += scan->cost();
     result.element_tolerance = std::max(result.element_tolerance, pilots_.tolerance(level));
     if (has_fixed_tolerance_) return part;
     const auto pilot = pilots_.by_level().find(level);
@@ -172,11 +203,14 @@ ThirdBounce Integrator::run(const core::Progress& progress) {
     }
 }
 
-// The smallest error known after a failure, that of the coarsest level if there is none yet.
+// The smallest error known after a failure. If there is none yet, that of a coarse level, which is
+// known soon whatever the target.
 std::optional<double> Integrator::error_within_reach() {
     if (const auto known = pilots_.smallest_error()) return known;
     try {
-        return pilots_.error_of(kCoarsest);
+        PilotRuns coarse(
+            scene_, scan_, axis_, std::max(target_, kSoonKnown), laser_spot_m2_, limits_);
+        return coarse.error_of(kCoarsest);
     } catch (const core::Failure&) {
         return std::nullopt;
     }
@@ -208,9 +242,10 @@ ThirdBounce integrate_third_bounce(const Scene& scene,
                                    const core::Scan& scan,
                                    const core::TimeAxis& axis,
                                    const RenderSettings& settings,
-                                   const core::Progress& progress) {
+                                   const core::Progress& progress,
+                                   const CutLimits& limits) {
     const core::Stopwatch watch;
-    ThirdBounce result = Integrator(scene, scan, axis, settings).run(progress);
+    ThirdBounce result = Integrator(scene, scan, axis, settings, limits).run(progress);
     result.seconds = watch.seconds();
     return result;
 }

@@ -5,6 +5,7 @@
 #include "renderer/core/progress.h"
 #include "renderer/scene/scene.h"
 #include "renderer/settings/render_settings.h"
+#include "renderer/third_bounce/surface_subdivider.h"
 
 #include <cstdint>
 #include <optional>
@@ -36,6 +37,7 @@ struct ThirdBounce {
 ///            seconds, for the finest level that this time allows; laser_spot_m2; the gate is a box
 /// progress   asked now and then whether to stop; the remaining pairs are then integrated at the
 ///            coarsest level, so that every pair has a result
+/// limits     of elements; surfaces are cut and integrated in batches, which bounds the memory
 /// returns    the radiance of order 3 that comes from surfaces with is_integrable() materials
 /// throws     core::Failure when memory does not suffice
 /// source     design by the authors; kernel in triangle_histogram.cpp, size rule in
@@ -44,6 +46,7 @@ ThirdBounce integrate_third_bounce(const Scene& scene,
                                    const core::Scan& scan,
                                    const core::TimeAxis& axis,
                                    const RenderSettings& settings,
-                                   const core::Progress& progress);
+                                   const core::Progress& progress,
+                                   const CutLimits& limits = {});
 
 }  // namespace renderer

@@ -51,25 +51,37 @@ ThirdBounceScan::ThirdBounceScan(const Scene& scene,
     : scene_(scene),
       scan_(scan),
       axis_(axis),
-      elements_(elements),
+      elements_(&elements),
       rules_(rules),
       lights_{scan.illumination,
               CoincidingPoints(scan).illumination,
               std::vector<double>(scan.illumination.size())},
       sensors_{
-          scan.sensing, CoincidingPoints(scan).sensing, std::vector<double>(scan.sensing.size())},
-      squared_visibility_errors_(scan.num_pairs()) {}
+          scan.sensing, CoincidingPoints(scan).sensing, std::vector<double>(scan.sensing.size())} {
+    if (rules.check_rays > 0) differences_.resize(scan.num_pairs());
+}
+
+void ThirdBounceScan::go_on_with(const ElementSet& elements) {
+    squared_shadow_error_of_others_ = squared_shadow_error();
+    for (Side* const side : {&lights_, &sensors_}) {
+        std::ranges::fill(side->squared_errors, 0.0);
+        side->range = {};
+        side->seen.clear();
+    }
+    elements_ = &elements;
+}
 
 double ThirdBounceScan::squared_shadow_error() const {
     const auto sum = [](const std::vector<double>& values) {
         return std::accumulate(values.begin(), values.end(), 0.0);
     };
-    return sum(sensors_.squared_errors) + sum(lights_.squared_errors);
+    return squared_shadow_error_of_others_ + sum(sensors_.squared_errors) +
+           sum(lights_.squared_errors);
 }
 
 SquaredError ThirdBounceScan::squared_visibility_error() const {
     SquaredError sum;
-    for (const SquaredError& of_pair : squared_visibility_errors_) sum += of_pair;
+    for (const VisibilityDifferences& of_pair : differences_) sum += squared_error_of(of_pair);
     return sum;
 }
 
@@ -118,12 +130,14 @@ void ThirdBounceScan::check(VisibilityCheck& check,
                             const VisibilityCheck::End& light,
                             const VisibilityCheck::End& sensor) {
     if (rules_.check_rays == 0) return;
-    squared_visibility_errors_[pair] =
-        check.squared_error(light,
-                            sensor,
-                            axis_of_pair(pair),
-                            rules_.check_rays,
-                            core::Rng(0, pair, /*sample=*/elements_.num_elements));
+    const double num_rays = elements_->share * static_cast<double>(rules_.check_rays);
+    check.add_differences(
+        light,
+        sensor,
+        axis_of_pair(pair),
+        std::max<std::size_t>(1, static_cast<std::size_t>(num_rays)),
+        core::Rng(0, pair, /*sample=*/elements_->num_elements + elements_->first_number),
+        differences_[pair]);
 }
 
 void ThirdBounceScan::add_costs(const VisibilityTracer& tracer) {
@@ -132,15 +146,15 @@ void ThirdBounceScan::add_costs(const VisibilityTracer& tracer) {
 }
 
 void ThirdBounceScan::store(std::size_t pair, std::span<const double> histogram) {
-    std::transform(
-        histogram.begin(), histogram.end(), result_->histogram(pair).begin(), [](double value) {
-            return static_cast<float>(value);
-        });
+    const std::span<float> sums = result_->histogram(pair);
+    for (std::size_t bin = 0; bin < sums.size(); ++bin) {
+        sums[bin] += static_cast<float>(histogram[bin]);
+    }
 }
 
 // Looks from all points [begin, end) together.
 void ThirdBounceScan::integrate_confocal(std::size_t begin, std::size_t end) {
-    const std::vector<WallPoint> points = sensors_.wall_points({begin, end}, elements_.origin);
+    const std::vector<WallPoint> points = sensors_.wall_points({begin, end}, elements_->origin);
     std::vector<core::TimeAxis> axes;
     VisibilityRules rules;
     rules.negligible_error = rules_.negligible_error;
@@ -150,10 +164,10 @@ void ThirdBounceScan::integrate_confocal(std::size_t begin, std::size_t end) {
         rules.opl.push_back({axes.back().opl_start_m, axes.back().opl_end_m()});
     }
     std::vector<VisibleElements> seen(points.size());
-    VisibilityTracer tracer(scene_, elements_);
+    VisibilityTracer tracer(scene_, *elements_);
     tracer.trace(points, rules, seen);
     add_costs(tracer);
-    VisibilityCheck visibility(scene_, elements_);
+    VisibilityCheck visibility(scene_, *elements_);
     for (std::size_t i = 0; i < points.size(); ++i) {
         check(visibility, begin + i, {points[i], seen[i]}, {points[i], seen[i]});
     }
@@ -164,14 +178,14 @@ void ThirdBounceScan::integrate_confocal(std::size_t begin, std::size_t end) {
     const auto histogram_of = [&](std::size_t i) {
         return std::span(histograms).subspan(i * num_bins, num_bins);
     };
-    for (std::size_t b = 0; b < elements_.blocks.size(); ++b) {
+    for (std::size_t b = 0; b < elements_->blocks.size(); ++b) {
         for (std::size_t i = 0; i < points.size(); ++i) {
             const SimdGroupMask simd_groups = seen[i].simd_groups[b];
             if (simd_groups == 0) continue;
-            compute_table(elements_.blocks[b], points[i], simd_groups, table);
+            compute_table(elements_->blocks[b], points[i], simd_groups, table);
             const PairEnd end_of_pair{
                 &points[i], &table, seen[i].masks.data() + b * ElementBlock::kSize};
-            add_pair(elements_.blocks[b], end_of_pair, end_of_pair, axes[i], histogram_of(i));
+            add_pair(elements_->blocks[b], end_of_pair, end_of_pair, axes[i], histogram_of(i));
         }
     }
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -193,13 +207,13 @@ VisibilityRules ThirdBounceScan::rules_towards(const Side& others, std::size_t n
     WallPoint& middle = rules.other_end.emplace(WallPoint{Vec3::Zero(), Vec3::Zero()});
     Eigen::AlignedBox3d box;
     for (std::size_t i = 0; i < others.points.size(); ++i) {
-        const WallPoint other = others.wall_point(i, elements_.origin);
+        const WallPoint other = others.wall_point(i, elements_->origin);
         box.extend(other.position);
         middle.position += other.position / static_cast<double>(others.points.size());
         middle.normal += other.normal / static_cast<double>(others.points.size());
     }
     if (others.points.size() > 1) {
-        for (const auto& [c, radius_m] : elements_.spheres) {
+        for (const auto& [c, radius_m] : elements_->spheres) {
             const Vec3 farthest = (c - box.min()).cwiseAbs().cwiseMax((c - box.max()).cwiseAbs());
             rules.other_legs.push_back(
                 {box.exteriorDistance(c) - radius_m, farthest.norm() + radius_m});
@@ -213,8 +227,8 @@ void ThirdBounceScan::look_from(Side& side, const PointRange& range, const Visib
     side.range = range;
     side.seen.resize(range.size());
     core::parallel_blocks(range.size(), kPointsPerBlock, [&](std::size_t begin, std::size_t end) {
-        VisibilityTracer tracer(scene_, elements_);
-        tracer.trace(side.wall_points({range.begin + begin, range.begin + end}, elements_.origin),
+        VisibilityTracer tracer(scene_, *elements_);
+        tracer.trace(side.wall_points({range.begin + begin, range.begin + end}, elements_->origin),
                      rules,
                      std::span(side.seen).subspan(begin, end - begin));
         add_costs(tracer);
@@ -226,14 +240,14 @@ void ThirdBounceScan::look_from(Side& side, const PointRange& range, const Visib
 
 int ThirdBounceScan::integrate_pairs(int first_part,
                                      const std::function<bool(double share)>& go_on) {
-    const auto bytes_per_point =
-        static_cast<double>(elements_.blocks.size() * ElementBlock::kSize * sizeof(VisibilityMask));
+    const auto bytes_per_point = static_cast<double>(elements_->blocks.size() *
+                                                     ElementBlock::kSize * sizeof(VisibilityMask));
     const double fitting = rules_.memory_bytes / bytes_per_point;
     if (fitting < PairTiles::kMinPoints) {
         throw core::Failure(
             "third_bounce",
             fmt::format("visibility of {} elements needs {:.2f} GB, {:.2f} GB are free for it",
-                        elements_.num_elements,
+                        elements_->num_elements,
                         PairTiles::kMinPoints * bytes_per_point * 1e-9,
                         rules_.memory_bytes * 1e-9));
     }
@@ -265,7 +279,7 @@ int ThirdBounceScan::integrate_pairs(int first_part,
 void ThirdBounceScan::integrate_tile(const PairTiles::Tile& tile) {
     const auto tables = [&](const Side& side, const PointRange& range) {
         return TileTables(
-            side.wall_points(range, elements_.origin),
+            side.wall_points(range, elements_->origin),
             std::span(side.seen).subspan(range.begin - side.range.begin, range.size()));
     };
     TileTables lights = tables(lights_, tile.lights);
@@ -276,8 +290,8 @@ void ThirdBounceScan::integrate_tile(const PairTiles::Tile& tile) {
     const auto pair_of = [&](std::size_t l, std::size_t s) {
         return (tile.lights.begin + l) * scan_.sensing.size() + tile.sensors.begin + s;
     };
-    for (std::size_t b = 0; b < elements_.blocks.size(); ++b) {
-        const ElementBlock& block = elements_.blocks[b];
+    for (std::size_t b = 0; b < elements_->blocks.size(); ++b) {
+        const ElementBlock& block = elements_->blocks[b];
         lights.compute(block, b);
         sensors.compute(block, b);
         for (std::size_t l = 0; l < tile.lights.size(); ++l) {
@@ -290,7 +304,7 @@ void ThirdBounceScan::integrate_tile(const PairTiles::Tile& tile) {
                     continue;
                 }
                 const core::TimeAxis axis = axis_of_pair(pair_of(l, s));
-                if (misses_axis(elements_.spheres[b], *light.point, *sensor.point, axis)) continue;
+                if (misses_axis(elements_->spheres[b], *light.point, *sensor.point, axis)) continue;
                 add_pair(block,
                          light,
                          sensor,
@@ -299,7 +313,7 @@ void ThirdBounceScan::integrate_tile(const PairTiles::Tile& tile) {
             }
         }
     }
-    VisibilityCheck visibility(scene_, elements_);
+    VisibilityCheck visibility(scene_, *elements_);
     for (std::size_t l = 0; l < tile.lights.size(); ++l) {
         for (std::size_t s = 0; s < num_sensors; ++s) {
             check(visibility, pair_of(l, s), lights.end(l), sensors.end(s));

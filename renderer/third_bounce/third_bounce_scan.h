@@ -21,13 +21,13 @@ struct ScanRules {
     /// visibility from some points is traced more than once.
     double memory_bytes = 0.0;
     ShadowRayPlan plan = ShadowRayPlan::WhereNeighboursDisagree;
-    std::size_t check_rays = 0;  ///< per pair, see VisibilityCheck; 0: none
+    std::size_t check_rays = 0;  ///< per pair and cut, see VisibilityCheck; 0: none
 };
 
-/// Integrates one cut of the surfaces for all pairs of a scan.
+/// Integrates one cut of the surfaces, in one or several batches, for all pairs of a scan.
 class ThirdBounceScan {
  public:
-    /// All references must outlive this.
+    /// All references must outlive this, `elements` until go_on_with().
     ///
     /// throws   core::Failure when masks of PairTiles::kMinPoints points take too much memory
     ThirdBounceScan(const Scene& scene,
@@ -36,10 +36,14 @@ class ThirdBounceScan {
                     const ElementSet& elements,
                     const ScanRules& rules);
 
+    /// Goes on to another batch of the cut, which must outlive this or the next call.
+    void go_on_with(const ElementSet& elements);
+
     /// The pairs are integrated in this many parts, the last of which may be empty.
     static constexpr int kParts = 16;
 
-    /// Fills the pairs of parts [first_part, kParts) of `result` with H for wall albedos of pi.
+    /// Adds H by way of the elements, for wall albedos of pi, to the pairs of parts [first_part,
+    /// kParts) of `result`.
     ///
     /// go_on     called from the calling thread with the share done after every part; false stops
     /// returns   the number of the first part not integrated; kParts: none is left
@@ -82,12 +86,13 @@ class ThirdBounceScan {
     const Scene& scene_;
     const core::Scan& scan_;
     const core::TimeAxis& axis_;
-    const ElementSet& elements_;
+    const ElementSet* elements_;
     ScanRules rules_;
     core::Transient* result_ = nullptr;  ///< while integrate() runs
     Side lights_;
     Side sensors_;
-    std::vector<SquaredError> squared_visibility_errors_;  ///< per pair
+    double squared_shadow_error_of_others_ = 0.0;       ///< of the batches before
+    std::vector<VisibilityDifferences> differences_{};  ///< per pair, where checks are asked for
     std::atomic<std::uint64_t> num_rays_{0};
     std::atomic<double> tracing_seconds_{0.0};
 };

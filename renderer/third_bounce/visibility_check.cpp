@@ -36,30 +36,33 @@ VisibilityMask mask_of(const VisibleElements& seen, std::uint32_t element) {
 
 }  // namespace
 
+SquaredError squared_error_of(const VisibilityDifferences& differences) {
+    SquaredError sum;
+    for (std::size_t bin = 0; bin < differences[0].size(); ++bin) {
+        const double product = differences[0][bin] * differences[1][bin];
+        sum += {product, product * product};
+    }
+    return sum;
+}
+
 VisibilityCheck::VisibilityCheck(const Scene& scene, const ElementSet& elements)
     : scene_(scene), set_(elements) {}
 
-SquaredError VisibilityCheck::squared_error(const End& light,
-                                            const End& sensor,
-                                            const core::TimeAxis& axis,
-                                            std::size_t num_rays,
-                                            core::Rng rng) {
+void VisibilityCheck::add_differences(const End& light,
+                                      const End& sensor,
+                                      const core::TimeAxis& axis,
+                                      std::size_t num_rays,
+                                      core::Rng rng,
+                                      VisibilityDifferences& sums) {
     sum_masses(light.point, sensor.point);
-    if (mass_up_to_.empty() || !(mass_up_to_.back() > 0.0)) return {};
-    std::array<std::vector<double>, 2> sets;
-    for (std::vector<double>& set : sets) {
+    if (mass_up_to_.empty() || !(mass_up_to_.back() > 0.0)) return;
+    for (std::vector<double>& set : sums) {
         draw_targets(num_rays, rng);
         is_blocked_.assign(num_rays, false);
         trace_from(light.point);
         if (!coincide(light.point, sensor.point)) trace_from(sensor.point);
-        set = differences(light, sensor, axis);
+        add(light, sensor, axis, set);
     }
-    SquaredError sum;
-    for (std::size_t bin = 0; bin < sets[0].size(); ++bin) {
-        const double product = sets[0][bin] * sets[1][bin];
-        sum += {product, product * product};
-    }
-    return sum;
 }
 
 void VisibilityCheck::sum_masses(const WallPoint& light, const WallPoint& sensor) {
@@ -157,10 +160,11 @@ double VisibilityCheck::weight_of(const Target& target,
 }
 
 // Per bin, the weight that the masks leave out, or below 0 what they add.
-std::vector<double> VisibilityCheck::differences(const End& light,
-                                                 const End& sensor,
-                                                 const core::TimeAxis& axis) const {
-    std::vector<double> sums(static_cast<std::size_t>(axis.num_bins));
+void VisibilityCheck::add(const End& light,
+                          const End& sensor,
+                          const core::TimeAxis& axis,
+                          std::vector<double>& sums) const {
+    sums.resize(static_cast<std::size_t>(axis.num_bins));
     const double mass_per_ray = mass_up_to_.back() / static_cast<double>(targets_.size());
     for (std::size_t i = 0; i < targets_.size(); ++i) {
         const Target& target = targets_[i];
@@ -182,7 +186,6 @@ std::vector<double> VisibilityCheck::differences(const End& light,
         sums[static_cast<std::size_t>(*bin)] +=
             per_target * weight_of(target, light.point, sensor.point) * difference;
     }
-    return sums;
 }
 
 }  // namespace renderer

@@ -23,6 +23,12 @@ struct SquaredError {
     }
 };
 
+/// Of a pair's histogram, per bin: what two independent sets of rays find missing.
+using VisibilityDifferences = std::array<std::vector<double>, 2>;
+
+/// The product of both, summed over bins.
+SquaredError squared_error_of(const VisibilityDifferences& differences);
+
 /// Compares what wall points are taken to see of the elements with what rays to random points find.
 ///
 /// The points are drawn by what the elements add to H. Where a ray contradicts the element's mask,
@@ -41,17 +47,19 @@ class VisibilityCheck {
     /// scene, elements   must outlive the check
     VisibilityCheck(const Scene& scene, const ElementSet& elements);
 
-    /// Squared error of a pair's histogram for wall albedos of pi.
+    /// Adds what is found for a pair's histogram and wall albedos of pi; several sets of elements
+    /// add up.
     ///
     /// light, sensor   the same one twice for a confocal pair
     /// axis            of the histogram, its start reduced by the pair's device legs
     /// num_rays        in each set, from each end
     /// rng             of the pair
-    SquaredError squared_error(const End& light,
-                               const End& sensor,
-                               const core::TimeAxis& axis,
-                               std::size_t num_rays,
-                               core::Rng rng);
+    void add_differences(const End& light,
+                         const End& sensor,
+                         const core::TimeAxis& axis,
+                         std::size_t num_rays,
+                         core::Rng rng,
+                         VisibilityDifferences& sums);
 
     std::uint64_t num_rays() const { return num_rays_; }
 
@@ -67,9 +75,10 @@ class VisibilityCheck {
     void draw_targets(std::size_t count, core::Rng& rng);
     void trace_from(const WallPoint& point);
     double weight_of(const Target& target, const WallPoint& light, const WallPoint& sensor) const;
-    std::vector<double> differences(const End& light,
-                                    const End& sensor,
-                                    const core::TimeAxis& axis) const;
+    void add(const End& light,
+             const End& sensor,
+             const core::TimeAxis& axis,
+             std::vector<double>& sums) const;
 
     const Scene& scene_;
     const ElementSet& set_;

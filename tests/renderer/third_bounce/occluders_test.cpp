@@ -3,6 +3,7 @@
 // occluder_stress does the same with more scenes and targets.
 #include "renderer/render.h"
 #include "renderer/third_bounce/pilot_runs.h"
+#include "renderer/third_bounce/third_bounce.h"
 #include "tests/support/occluder_scenes.h"
 
 #include <gtest/gtest.h>
@@ -67,6 +68,20 @@ TEST(ThirdBounceBehindOccluders, RandomScenesAreWithinTheTarget) {
     EXPECT_LE(above, 1);
 }
 
+// What rays to random points find adds up over batches before it is squared.
+TEST(ThirdBounceBehindOccluders, MissedShadowsOfBatchesAddUp) {
+    const OccluderScene setup = test_support::comb_of_thin_slats();
+    const renderer::Scene scene = setup.scene();
+    const auto missed_error = [&](std::size_t in_a_batch) {
+        const renderer::CutLimits limits{.in_all = 1'000'000, .in_a_batch = in_a_batch};
+        renderer::PilotRuns pilots(scene, setup.scan, setup.axis, 0.02, 0.0, limits);
+        return pilots.run(0).missed_error;
+    };
+    const double whole = missed_error(1'000'000);
+    EXPECT_GT(whole, 0.0);
+    EXPECT_NEAR(missed_error(500), whole, 0.25 * whole);
+}
+
 // A wide sheet, which takes many elements, behind a small one that is black.
 renderer::SceneGeometry wide_sheet() {
     renderer::SceneGeometry geometry;
@@ -77,13 +92,15 @@ renderer::SceneGeometry wide_sheet() {
     return geometry;
 }
 
+const renderer::CutLimits kSmallLimits{.in_all = 500'000, .in_a_batch = 100'000};
+
 // Where the usual reference has too many elements, a nearer one serves: its error is no smaller
 // than a third of the next coarser level's, and at most that.
 TEST(ThirdBounceBehindOccluders, ErrorsAreKnownUpToTheLastLevelButOne) {
     const core::Scan scan = test_support::confocal_scan({Vec3(0.0, 0.0, 0.0)});
     const renderer::Scene scene(wide_sheet(), scan, {});
-    renderer::PilotRuns pilots(scene, scan, {0.9, 0.05, 20}, 1e-4, 0.0);
-    const auto fits = [&](int level) { return failure_of([&] { pilots.cut(level); }).empty(); };
+    renderer::PilotRuns pilots(scene, scan, {0.9, 0.05, 20}, 1e-4, 0.0, kSmallLimits);
+    const auto fits = [&](int level) { return failure_of([&] { pilots.run(level); }).empty(); };
     int last = 0;
     while (fits(last - 1)) --last;
     const double coarser = pilots.error_of(last + 2);
@@ -100,16 +117,18 @@ TEST(ThirdBounceBehindOccluders, TargetsOutOfReachNameOneThatIsNot) {
     renderer::RenderSettings settings;
     settings.method = renderer::Estimator::ThirdBounce;
     const core::TimeAxis axis{0.9, 0.05, 20};
-    settings.target_error = 2e-6;
-    const std::string message = failure_of([&] { render(scene, scan, {axis, {}}, settings, {}); });
+    settings.target_error = 1e-5;
+    const auto render = [&] {
+        return integrate_third_bounce(scene, scan, axis, settings, {}, kSmallLimits);
+    };
+    const std::string message = failure_of(render);
     const std::string begins =
-        "third_bounce: needs more than 8 million elements of surface: a target error ";
+        "third_bounce: needs more than 0.5 million elements of surface: a target error ";
     ASSERT_EQ(message.substr(0, begins.size()), begins) << message;
     const double times = std::stod(message.substr(begins.size()));
     EXPECT_GT(times, 1.0);
     *settings.target_error *= times;
-    const auto result = render(scene, scan, {axis, {}}, settings, {});
-    EXPECT_LE(*result.estimated_error, *settings.target_error);
+    EXPECT_LE(*render().estimated_error, *settings.target_error);
 }
 
 }  // namespace

@@ -409,6 +409,71 @@ TEST(ThirdBounceScenes, AGivenToleranceSparesPilotRunsAndLeavesTheErrorUnknown) 
     EXPECT_ERROR_WITH(renderer::validate(both, "render"), "render.element_tolerance: found beside");
 }
 
+// The third bounce with at most so many elements in a batch.
+renderer::ThirdBounce integrate_by_batches(const std::vector<Parallelogram>& shapes,
+                                           const core::Scan& scan,
+                                           const renderer::RenderSettings& settings,
+                                           std::size_t in_a_batch) {
+    return integrate_third_bounce(scene_of(geometry_of(shapes), scan),
+                                  scan,
+                                  kAxis,
+                                  settings,
+                                  {},
+                                  {.in_all = 1'000'000, .in_a_batch = in_a_batch});
+}
+
+// Where nothing hides anything, only sums are rounded otherwise.
+TEST_P(ThirdBounce, BatchesOfElementsAddUp) {
+    renderer::RenderSettings settings = settings_for(0.01);
+    settings.target_error.reset();
+    settings.element_tolerance = 1e-3;
+    const auto whole = integrate_by_batches({kTiltedPanel}, scan(), settings, 1'000'000);
+    const auto parts = integrate_by_batches({kTiltedPanel}, scan(), settings, 150);
+    EXPECT_GT(whole.num_elements, 600U);
+    EXPECT_EQ(parts.num_elements, whole.num_elements);
+    EXPECT_LT(test_support::relative_l2(parts.transient.values(), whole.transient.values()), 1e-6);
+}
+
+// Shadow edges at the borders of batches are found from fewer neighbours.
+TEST_P(ThirdBounce, BatchesOfElementsKeepTheTarget) {
+    constexpr double kTarget = 0.004;
+    const auto expected = test_support::third_bounce_by_quadrature(
+        kTiltedPanel, kBlackScreen, scan(), kAxis, kWallAlbedo, /*steps=*/2000);
+    const auto parts =
+        integrate_by_batches({kTiltedPanel, kBlackScreen}, scan(), settings_for(kTarget), 300);
+    EXPECT_GT(parts.num_elements, 600U);
+    EXPECT_LE(*parts.estimated_error, kTarget);
+    EXPECT_LT(test_support::relative_l2(parts.transient.values(), expected), kTarget + 5e-4);
+}
+
+// No pair is complete before the last batch.
+TEST(ThirdBounceScenes, RenderInterruptedBetweenBatchesIsCompleteButCoarser) {
+    const core::Scan scan = test_support::confocal_scan(kThreeWallPoints);
+    const renderer::Scene scene = scene_of(geometry_of({kTiltedPanel, kBlackScreen}), scan);
+    const auto integrate = [&](const core::Progress& progress) {
+        return integrate_third_bounce(scene,
+                                      scan,
+                                      kAxis,
+                                      settings_for(4e-3),
+                                      progress,
+                                      {.in_all = 1'000'000, .in_a_batch = 300});
+    };
+    const renderer::ThirdBounce whole = integrate({});
+    core::Progress progress;
+    bool integrates = false;
+    progress.report = [&](double share, const std::string&) {
+        integrates = integrates || share > 0.0;
+    };
+    progress.stop_requested = [&] { return integrates; };
+    const renderer::ThirdBounce early = integrate(progress);
+    EXPECT_TRUE(early.interrupted);
+    EXPECT_GT(*early.estimated_error, *whole.estimated_error);
+    const double error =
+        test_support::relative_l2(early.transient.values(), whole.transient.values());
+    EXPECT_GT(error, 0.0);
+    EXPECT_LT(error, *early.estimated_error + *whole.estimated_error);
+}
+
 TEST(ThirdBounceScenes, MethodNamesWhatItCannotDo) {
     renderer::RenderSettings settings = settings_for(0.01);
     settings.max_bounces = 4;

@@ -56,8 +56,10 @@ struct CheckedPanel {
         VisibilityCheck check(scene, elements);
         const WallPoint light = wall_point(scan.illumination);
         const WallPoint sensor = wall_point(scan.sensing);
-        return check.squared_error(
-            {light, seen}, {sensor, seen}, kCheckAxis, kRaysPerSet, core::Rng(1, 0, sample));
+        renderer::VisibilityDifferences found;
+        check.add_differences(
+            {light, seen}, {sensor, seen}, kCheckAxis, kRaysPerSet, core::Rng(1, 0, sample), found);
+        return renderer::squared_error_of(found);
     }
 };
 
