@@ -136,6 +136,7 @@ const Pilot& PilotRuns::run(int level) {
     std::optional<ThirdBounceScan> integrator;
     const core::Stopwatch watch;
     for_each_batch(level, [&](const ElementSet& batch) {
+        if (integrator && should_stop_ && should_stop_()) throw Stopped{};
         const core::Stopwatch integrating;
         if (integrator) {
             integrator->go_on_with(batch);

@@ -58,6 +58,11 @@ class PilotRuns {
     /// How all of the scan is integrated at a level.
     ScanRules rules(int level) const;
 
+    /// From now on, runs in several batches ask this between two of them whether to throw Stopped;
+    /// what other runs found stays.
+    struct Stopped {};
+    void stop_when(std::function<bool()> should_stop) { should_stop_ = std::move(should_stop); }
+
     /// Estimates how much light a pair has, at a level, for rules(); cheaper than run().
     void estimate_norm(int level);
 
@@ -90,6 +95,7 @@ class PilotRuns {
     ShadowRayPlan plan_ = ShadowRayPlan::WhereNeighboursDisagree;
     std::map<int, Pilot> pilots_;  ///< by level, all with this plan
     std::optional<int> too_fine_;  ///< a level that has too many elements
+    std::function<bool()> should_stop_;
     TracingCost cost_;
 };
 

@@ -54,6 +54,7 @@ class Integrator {
 
  private:
     int choose_level(const core::Progress& progress);
+    int coarsest_that_meets_target(const core::Progress& progress);
     int finest_in_time(const core::Progress& progress);
     int integrate(int level, int first_part, const core::Progress& progress, ThirdBounce& result);
     ThirdBounce integrate_all(const core::Progress& progress);
@@ -98,15 +99,9 @@ int Integrator::finest_in_time(const core::Progress& progress) {
     return level;
 }
 
-// The coarsest refinement level that meets the target, or simply the coarsest when the caller asks
-// to stop. Where shadows are finer than elements, finer ones help little, and more rays to each of
-// them much: 16 rays to elements of a given size find what one ray finds at a sixteenth of it.
-int Integrator::choose_level(const core::Progress& progress) {
-    if (has_fixed_tolerance_) {
-        pilots_.estimate_norm(0);
-        return 0;
-    }
-    if (seconds_) return finest_in_time(progress);
+// Where shadows are finer than elements, finer ones help little, and more rays to each of them
+// much: 16 rays to elements of a given size find what one ray finds at a sixteenth of it.
+int Integrator::coarsest_that_meets_target(const core::Progress& progress) {
     int level = kFirst;
     progress.update(0.0, kTrials);
     // Fine enough as a reference for the next finer level, too. A coarser one would miss shadows
@@ -136,6 +131,23 @@ int Integrator::choose_level(const core::Progress& progress) {
     while (level < kCoarsest && can_be_coarser() && pilots_.error_of(level + 1) <= target_) {
         ++level;
     }
+    return level;
+}
+
+// The coarsest level of all when the caller asks to stop.
+int Integrator::choose_level(const core::Progress& progress) {
+    if (has_fixed_tolerance_) {
+        pilots_.estimate_norm(0);
+        return 0;
+    }
+    pilots_.stop_when([&] { return progress.should_stop(); });
+    int level = kCoarsest;
+    try {
+        level = seconds_ ? finest_in_time(progress) : coarsest_that_meets_target(progress);
+    } catch (const PilotRuns::Stopped&) {
+        stopped_ = true;
+    }
+    pilots_.stop_when({});
     return level;
 }
 
