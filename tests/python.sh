@@ -9,7 +9,8 @@ cd "$(dirname "$0")/.."
 if [ "${1:-}" = install ]; then
     build/python/bin/pip install --quiet --no-build-isolation --no-deps . \
         --config-settings=build-dir=build/check --config-settings=cmake.build-type=RelWithDebInfo \
-        --config-settings=cmake.define.BUILD_TESTING=ON
+        --config-settings=cmake.define.BUILD_TESTING=ON \
+        --config-settings=cmake.define.CMAKE_UNITY_BUILD_BATCH_SIZE=32
     exec build/python/bin/python tests/apps/python/installed_wheel.py
 fi
 bash apps/setup.sh python3-dev python3-venv python3-numpy python3-scipy python3-pytest python3-torch \
