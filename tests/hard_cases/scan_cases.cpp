@@ -63,7 +63,7 @@ double patch_error(const core::Scan& scan) {
     const renderer::Scene scene(std::move(geometry), scan, wall);
     renderer::RenderSettings settings;
     settings.method = renderer::Estimator::ThirdBounce;
-    settings.target_error = 1e-4;
+    settings.target_error = 1e-3;
     settings.by_order = true;  // order 2 goes straight between points of a bowl
     const core::TimeAxis axis{0.0, 8.0, 1};
     const auto result = renderer::render(scene, scan, axis, settings, {});
