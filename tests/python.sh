@@ -7,6 +7,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 if [ "${1:-}" = install ]; then
+    # Files are joined as in that build: with the package's own number all would be compiled again.
     build/python/bin/pip install --quiet --no-build-isolation --no-deps . \
         --config-settings=build-dir=build/check --config-settings=cmake.build-type=RelWithDebInfo \
         --config-settings=cmake.define.BUILD_TESTING=ON \

@@ -106,8 +106,9 @@ MeasuredProcess run_measured(const std::vector<std::string>& arguments,
     const std::string output = log + ".out";
     const pid_t process = start(arguments, output, log);
     limit_process(process, RLIMIT_CPU, std::ceil(limits.cpu_seconds));
-    if (limits.data_bytes)
+    if (limits.data_bytes) {
         limit_process(process, RLIMIT_DATA, static_cast<double>(*limits.data_bytes));
+    }
     int status = 0;
     rusage usage{};
     while (::wait4(process, &status, 0, &usage) < 0) {
