@@ -2,6 +2,7 @@
 #include "nlos/solver/pair_solver.h"
 
 #include "nlos/preparation/histogram_preparation.h"
+#include "nlos/solver/active_voxels.h"
 #include "nlos/solver/pair_operator.h"
 
 #include <fmt/format.h>
@@ -21,21 +22,8 @@ constexpr std::size_t kFirstPairs = 256;     // that choose voxels
 constexpr double kFirstShare = 0.1;          // of the voxels to start with, the brightest
 constexpr double kSmallestPairLight = 1e-3;  // of the brightest bin
 constexpr float kNothing = 2e-3F;            // of the brightest voxel
-constexpr int kTotalVariationSteps = 8;      // after each pass
 constexpr double kSparsityOfPairs = 0.1;     // of the weight of total variation, unless set
 constexpr double kWeight = 1.0;              // of total variation, unless set
-constexpr std::size_t kNone = static_cast<std::size_t>(-1);
-
-/// Voxels that may hold something: where they are, what they hold, who their neighbours are.
-struct ActiveVoxels {
-    std::vector<std::size_t> indices;  ///< in the volume, ascending
-    std::vector<float> albedo;
-    std::array<std::vector<float>, 3> duals;       ///< of total variation
-    std::array<std::vector<std::size_t>, 3> next;  ///< along x, y, z; kNone: holds nothing
-    std::array<std::vector<std::size_t>, 3> previous;
-
-    std::size_t size() const { return indices.size(); }
-};
 
 class PairSolver {
  public:
@@ -148,7 +136,8 @@ class PairSolver {
         }
         for (auto& dual : voxels_.duals) dual.assign(voxels_.size(), 0.0F);
         place(voxels_.indices);
-        link_neighbours();
+        voxels_.link_neighbours(size_);
+        sensitivity_.clear();
     }
 
     /// Voxels no farther from the wall than light can have come from.
@@ -177,24 +166,6 @@ class PairSolver {
                                     .cast<float>());
         }
         light_.set_voxels(std::move(positions));
-    }
-
-    void link_neighbours() {
-        std::vector<std::size_t> where(input_.axes.num_voxels(), kNone);
-        for (std::size_t i = 0; i < voxels_.size(); ++i) where[voxels_.indices[i]] = i;
-        const std::array<std::size_t, 3> strides{size_[1] * size_[2], size_[2], 1};
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            voxels_.next[axis].assign(voxels_.size(), kNone);
-            voxels_.previous[axis].assign(voxels_.size(), kNone);
-            for (std::size_t i = 0; i < voxels_.size(); ++i) {
-                const std::size_t at = voxels_.indices[i] / strides[axis] % size_[axis];
-                if (at + 1 == size_[axis]) continue;
-                const std::size_t neighbour = where[voxels_.indices[i] + strides[axis]];
-                voxels_.next[axis][i] = neighbour;
-                if (neighbour != kNone) voxels_.previous[axis][neighbour] = i;
-            }
-        }
-        sensitivity_.clear();
     }
 
     /// What a subset sees of each voxel: A' 1 over its observed bins.
@@ -269,8 +240,6 @@ class PairSolver {
                slope_noise(i);
     }
 
-    /// argmin over u of sum of seen (u - f)^2 / (2 f) + tv |grad u|, by projected gradients of the
-    /// dual, started from the last pass's.
     void smooth() {
         total_seen_.assign(voxels_.size(), 0.0F);
         for (const std::vector<float>& own : sensitivity_) {
@@ -278,44 +247,9 @@ class PairSolver {
         }
         const auto tv = static_cast<float>(settings_.tv.value_or(kWeight));
         if (!(tv > 0.0F)) return;
-        const std::size_t count = voxels_.size();
-        std::vector<float> step(count);  // f / seen: how far a voxel gives
-        for (std::size_t i = 0; i < count; ++i) {
-            step[i] = total_seen_[i] > 0.0F ? voxels_.albedo[i] / total_seen_[i] : 0.0F;
-        }
-        std::vector<float> u(count);
-        for (int k = 0; k <= kTotalVariationSteps; ++k) {
-            for (std::size_t i = 0; i < count; ++i) {
-                float divergence = 0.0F;
-                for (std::size_t axis = 0; axis < 3; ++axis) {
-                    const std::size_t before = voxels_.previous[axis][i];
-                    divergence += voxels_.duals[axis][i];
-                    if (before != kNone) divergence -= voxels_.duals[axis][before];
-                }
-                u[i] = std::max(0.0F, voxels_.albedo[i] + step[i] * divergence);
-            }
-            if (k == kTotalVariationSteps) break;
-            for (std::size_t i = 0; i < count; ++i) move_dual(i, tv * slope_noise(i), step, u);
-        }
-        voxels_.albedo = std::move(u);
-    }
-
-    void move_dual(std::size_t i,
-                   float weight,
-                   const std::vector<float>& step,
-                   const std::vector<float>& u) {
-        std::array<float, 3> moved{};
-        float norm = 0.0F;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            const std::size_t next = voxels_.next[axis][i];
-            const float other = next != kNone ? u[next] : 0.0F;
-            const float most = std::max(step[i], next != kNone ? step[next] : 0.0F);
-            const float rate = most > 0.0F ? 1.0F / (12.0F * most) : 0.0F;
-            moved[axis] = voxels_.duals[axis][i] + rate * (other - u[i]);
-            norm += moved[axis] * moved[axis];
-        }
-        const float shrink = std::sqrt(norm) > weight ? weight / std::sqrt(norm) : 1.0F;
-        for (std::size_t axis = 0; axis < 3; ++axis) voxels_.duals[axis][i] = shrink * moved[axis];
+        std::vector<float> weights(voxels_.size());
+        for (std::size_t i = 0; i < weights.size(); ++i) weights[i] = tv * slope_noise(i);
+        smooth_albedo(voxels_, total_seen_, weights);
     }
 
     double relative_change(const std::vector<float>& before) const {
@@ -331,19 +265,12 @@ class PairSolver {
     void leave_out_empty() {
         const float least =
             kNothing * (voxels_.size() > 0 ? *std::ranges::max_element(voxels_.albedo) : 0.0F);
-        ActiveVoxels kept;
-        for (std::size_t i = 0; i < voxels_.size(); ++i) {
-            if (!(voxels_.albedo[i] > least)) continue;
-            kept.indices.push_back(voxels_.indices[i]);
-            kept.albedo.push_back(voxels_.albedo[i]);
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                kept.duals[axis].push_back(voxels_.duals[axis][i]);
-            }
-        }
+        ActiveVoxels kept = voxels_.brighter_than(least);
         if (10 * kept.size() > 9 * voxels_.size()) return;
         voxels_ = std::move(kept);
         place(voxels_.indices);
-        link_neighbours();
+        voxels_.link_neighbours(size_);
+        sensitivity_.clear();
         total_seen_.clear();
     }
 

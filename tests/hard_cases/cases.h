@@ -2,7 +2,7 @@
 #pragma once
 
 // The measurement of every row of the catalogue, by the file it is in. Each returns what its row
-// bounds: see catalogue.cpp.
+// bounds: see catalogue.cpp, time_rows.cpp and transport_rows.cpp.
 
 namespace hard_cases {
 

@@ -20,6 +20,10 @@ struct HardCase {
 /// All cases, group by group.
 const std::vector<HardCase>& catalogue();
 
+/// The cases of the two largest groups; catalogue.cpp holds the others.
+std::vector<HardCase> time_rows();
+std::vector<HardCase> transport_rows();
+
 /// The largest of some errors; what is no number is infinitely wrong, and so is too little tried.
 class Worst {
  public:

@@ -3,6 +3,7 @@
 #include "renderer/core/parallel.h"
 #include "tests/nlos/methods/confocal_scene.h"
 #include "tests/nlos/methods/peak_fit.h"
+#include "tests/nlos/reconstruction_law.h"
 #include "tests/support/statistics.h"
 
 #include <gtest/gtest.h>
@@ -11,8 +12,8 @@
 #include <cmath>
 #include <random>
 
-// What must hold for every method on every kind of scan it serves. bp, fbp and, above 0, lct are
-// linear; all others are of the first power: twice the light, twice the volume.
+// What must hold for every method on every kind of scan it serves: where points and their images
+// are. Laws about how much light there is: reconstruction_light_laws_test.cpp.
 
 namespace nlos {
 namespace {
@@ -20,106 +21,10 @@ namespace {
 using core::ScanPattern;
 using core::Vec3;
 using nlos_test::brightest_point;
-
-constexpr std::size_t kColumns = 24;
-constexpr double kPitch_m = 0.04;
-const core::TimeAxis kAxis{0.0, 0.016, 144};
-
-struct LawCase {
-    std::string name;
-    ScanPattern pattern;
-    std::vector<std::string> overrides;
-    bool is_non_negative;
-    bool is_linear;       ///< where the volume is not cut off at 0
-    int num_places = 8;   ///< tried
-    /// Whether the method gathers a point in one bin of squared range, of which there are as many
-    /// as bins: anywhere in such a bin is the same to it.
-    bool gathers_in_squared_range = false;
-
-    bool is_wave() const { return name.starts_with("Phasor"); }
-};
-
-class ReconstructionLaw : public testing::TestWithParam<LawCase> {
- protected:
-    static core::Capture dark_capture(const core::Transform& pose = core::Transform::Identity(),
-                                      const core::TimeAxis& axis = kAxis) {
-        core::Capture capture = nlos_test::confocal_capture(
-            nlos_test::wall_grid({kColumns, kColumns}, {kPitch_m, kPitch_m}, pose), axis);
-        capture.scan.pattern = GetParam().pattern;
-        if (GetParam().pattern == ScanPattern::Single) {
-            capture.scan.illumination = nlos_test::wall_grid({1, 1}, {1.0, 1.0}, pose);
-        }
-        if (GetParam().pattern == ScanPattern::Exhaustive) {
-            capture.scan.illumination = nlos_test::wall_grid({3, 2}, {0.3, 0.4}, pose);
-        }
-        capture.transient = core::Transient(capture.scan.num_pairs(), axis.num_bins);
-        return capture;
-    }
-
-    static Reconstruction run(const core::Capture& capture,
-                              const VolumeSettings& volume = {std::array{24, 24, 75},
-                                                              std::array{0.3, 0.9}}) {
-        ReconstructSettings settings;
-        settings.volume = volume;
-        for (const std::string& text : GetParam().overrides) {
-            core::apply_override(settings, text);
-        }
-        return reconstruct(capture, settings, {});
-    }
-
-    /// The nearest column; one of the two that a point lies between where expectation maximisation
-    /// gathers all light in one.
-    static double lateral_tolerance_m() {
-        const bool gathers =
-            GetParam().name.starts_with("Solver") && GetParam().pattern != ScanPattern::Confocal;
-        return (gathers ? 1.0 : 0.5) * kPitch_m;
-    }
-
-    /// A tenth of a bin in path length, half as much in depth.
-    static double depth_tolerance_m(const Vec3& place, const core::TimeAxis& axis = kAxis) {
-        const double bin_m2 = std::pow(0.5 * axis.opl_end_m(), 2) / axis.num_bins;
-        const double half_bin_m = bin_m2 / (4.0 * place.z());  // dz = dv / (2 z)
-        return 0.05 * axis.bin_width_m + (GetParam().gathers_in_squared_range ? half_bin_m : 0.0);
-    }
-
-    /// A random place straight before a wall point, some columns away from the wall's edges.
-    static Vec3 random_place(std::mt19937_64& generator) {
-        std::uniform_int_distribution<int> column(5, kColumns - 6);
-        std::uniform_real_distribution<double> depth(0.4, 0.75);
-        const auto coordinate = [&] { return (column(generator) - 11.5) * kPitch_m; };
-        const double x = coordinate();
-        const double y = coordinate();
-        return {x, y, depth(generator)};
-    }
-
-    /// Smallest and largest depth at which paths as long as those to `place` meet its column.
-    static std::array<double, 2> depths_of_light(const core::Scan& scan,
-                                                 const Vec3& place,
-                                                 const Vec3& column) {
-        std::array<double, 2> range{1e300, 0.0};
-        for (std::size_t pair = 0; pair < scan.num_pairs(); ++pair) {
-            const Vec3& l = scan.illumination.positions[scan.illumination_index(pair)];
-            const Vec3& s = scan.sensing.positions[scan.sensing_index(pair)];
-            const auto length = [&](const Vec3& p) { return (l - p).norm() + (p - s).norm(); };
-            Vec3 p = column;
-            for (int step = 0; step < 5; ++step) {  // of Newton's method
-                const double slope = (p - l).normalized().z() + (p - s).normalized().z();
-                p.z() -= (length(p) - length(place)) / slope;
-            }
-            range = {std::min(range[0], p.z()), std::max(range[1], p.z())};
-        }
-        return range;
-    }
-
-    static void expect_finite(const Reconstruction& result, const char* what) {
-        for (const float value : result.volume.values) {
-            ASSERT_TRUE(std::isfinite(value)) << what;
-            if (GetParam().is_non_negative) {
-                ASSERT_GE(value, 0.0F) << what;
-            }
-        }
-    }
-};
+using nlos_test::kAxis;
+using nlos_test::kPitch_m;
+using nlos_test::LawCase;
+using nlos_test::ReconstructionLaw;
 
 TEST_P(ReconstructionLaw, APointBeforeAColumnIsBrightestAtItsPlace) {
     std::mt19937_64 generator(test_support::seed_of("APointBeforeAColumnIsBrightestAtItsPlace"));
@@ -239,35 +144,6 @@ TEST_P(ReconstructionLaw, DeviceLegsAreTakenOff) {
     EXPECT_LT(found.z(), farthest + depth_tolerance_m(place));
 }
 
-TEST_P(ReconstructionLaw, TwiceTheLightIsTwiceTheVolume) {
-    core::Capture capture = dark_capture();
-    nlos_test::add_scatterer(capture, Vec3(0.06, -0.1, 0.55), 4.0);
-    nlos_test::add_scatterer(capture, Vec3(-0.1, 0.14, 0.66), 4.0);
-    std::vector<float> once = run(capture).volume.values;
-    for (float& value : capture.transient.values()) value *= 2.0F;
-    for (float& value : once) value *= 2.0F;
-    EXPECT_LT(test_support::relative_l2(run(capture).volume.values, once), 1e-5);
-}
-
-TEST_P(ReconstructionLaw, SumsOfScenesAreSumsOfVolumes) {
-    if (!GetParam().is_linear) return;
-    core::Capture first = dark_capture();
-    core::Capture second = dark_capture();
-    nlos_test::add_scatterer(first, Vec3(0.06, -0.1, 0.55), 4.0);
-    nlos_test::add_scatterer(second, Vec3(-0.1, 0.14, 0.66), 4.0);
-    const std::vector<float> a = run(first).volume.values;
-    const std::vector<float> b = run(second).volume.values;
-    for (std::size_t i = 0; i < first.transient.values().size(); ++i) {
-        first.transient.values()[i] += second.transient.values()[i];
-    }
-    const std::vector<float> both = run(first).volume.values;
-    const float tolerance = 1e-5F * *std::ranges::max_element(both);
-    for (std::size_t i = 0; i < both.size(); ++i) {
-        if (GetParam().is_non_negative && (a[i] == 0.0F || b[i] == 0.0F)) continue;
-        ASSERT_NEAR(both[i], a[i] + b[i], tolerance);
-    }
-}
-
 TEST_P(ReconstructionLaw, ALargerWorldGivesTheSameVolume) {
     const double factor = 2.0;  // a power of two: not even rounding differs
     core::Capture small = dark_capture();
@@ -287,70 +163,6 @@ TEST_P(ReconstructionLaw, ALargerWorldGivesTheSameVolume) {
         *std::ranges::max_element(here.volume.values) / *std::ranges::max_element(there);
     for (float& value : there) value *= ratio;
     EXPECT_LT(test_support::relative_l2(there, here.volume.values), 1e-5);
-}
-
-TEST_P(ReconstructionLaw, DarknessIsDark) {
-    const Reconstruction result = run(dark_capture());
-    for (const float value : result.volume.values) ASSERT_EQ(value, 0.0F);
-    EXPECT_TRUE(result.points.positions.empty());
-}
-
-TEST_P(ReconstructionLaw, LightOfAnyMagnitudeGivesTheSameVolume) {
-    core::Capture capture = dark_capture();
-    nlos_test::add_scatterer(capture, Vec3(0.06, -0.1, 0.55), 4.0);
-    capture.transient.histogram(7).back() = 1.0F;  // a spike in the last bin
-    const core::Transient light = capture.transient;
-    std::vector<float> expected = run(capture).volume.values;
-    for (const float factor : {0x1p-40F, 0x1p+40F}) {
-        for (std::size_t i = 0; i < light.values().size(); ++i) {
-            capture.transient.values()[i] = factor * light.values()[i];
-        }
-        std::vector<float> values = run(capture).volume.values;
-        for (float& value : values) value /= factor;
-        EXPECT_LT(test_support::relative_l2(values, expected), 1e-5) << factor;
-    }
-}
-
-TEST_P(ReconstructionLaw, SaturationIsNoMoreThanMuchLight) {
-    core::Capture capture = dark_capture();
-    std::ranges::fill(capture.transient.values(), 1.0F);
-    std::vector<float> expected = run(capture).volume.values;
-    for (float& value : expected) value *= 65536.0F;
-    std::ranges::fill(capture.transient.values(), 65536.0F);
-    const Reconstruction saturated = run(capture);
-    expect_finite(saturated, "saturation");
-    EXPECT_LT(test_support::relative_l2(saturated.volume.values, expected), 1e-5);
-}
-
-// The squares of waves do not tell; other volumes change their sign or, where they are cut off, are
-// 0.
-TEST_P(ReconstructionLaw, NegativeLightIsNoSurface) {
-    core::Capture capture = dark_capture();
-    nlos_test::add_scatterer(capture, Vec3(0.06, -0.1, 0.55), 4.0);
-    const std::vector<float> positive = run(capture).volume.values;
-    for (float& value : capture.transient.values()) value = -value;
-    const std::vector<float> negative = run(capture).volume.values;
-    const auto brightest =
-        static_cast<std::size_t>(std::ranges::max_element(positive) - positive.begin());
-    if (GetParam().is_wave()) {
-        EXPECT_LT(test_support::relative_l2(negative, positive), 1e-5);
-    } else {
-        EXPECT_LE(negative[brightest], 0.0F);
-    }
-    for (const float value : negative) ASSERT_TRUE(std::isfinite(value));
-}
-
-// Transforms, which are periodic, may show some of it; voxels that a method asks for their light
-// have none.
-TEST_P(ReconstructionLaw, LightFromBehindTheVolumeIsNotInIt) {
-    core::Capture capture = dark_capture();
-    capture.time_axis.opl_start_m = 5.0;
-    std::ranges::fill(capture.transient.values(), 1.0F);
-    const Reconstruction result = run(capture);
-    expect_finite(result, "an axis behind the volume");
-    const std::string& name = GetParam().name;
-    if (!name.starts_with("Bp") && !name.starts_with("Lct")) return;
-    for (const float value : result.volume.values) ASSERT_EQ(value, 0.0F);
 }
 
 TEST_P(ReconstructionLaw, BitsAreTheSameForAnyNumberOfThreads) {

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Path velocities against closed forms, against moved scenes and between estimators.
+// Path velocities against closed forms and against moved scenes.
 #include "renderer/core/parallel.h"
 #include "renderer/core/random.h"
 #include "renderer/film/path_extent.h"
-#include "renderer/frame_sequence.h"
+#include "tests/renderer/doppler_scenes.h"
 #include "tests/support/error_message.h"
-#include "tests/support/repeated_estimates.h"
-#include "tests/support/statistics.h"
-#include "tests/support/test_scenes.h"
 
 #include <gtest/gtest.h>
 
@@ -18,6 +15,10 @@ namespace {
 
 using core::kPi;
 using core::Vec3;
+using doppler_test::doppler_settings;
+using doppler_test::four_points;
+using doppler_test::moving_scene;
+using doppler_test::nine_pixels;
 using renderer::Estimator;
 using test_support::image_of;
 using test_support::Parallelogram;
@@ -33,42 +34,6 @@ renderer::Object small_patch(const Vec3& center, const Vec3& velocity) {
         test_support::parallelogram_object({center - 0.5 * (u + v), u, v, 0.8});
     patch.velocity_m_per_s = velocity;
     return patch;
-}
-
-// Two surfaces that light each other and move apart, an occluder at rest before them.
-renderer::Scene moving_scene(const core::Scan& scan, double speed = 1.0) {
-    std::vector<renderer::Object> objects = test_support::facing_surfaces();
-    objects[0].velocity_m_per_s = speed * Vec3(1.0, 0.5, -2.0);
-    objects[1].velocity_m_per_s = speed * Vec3(-2.0, 0.0, 1.0);
-    return renderer::Scene({objects, {}}, scan, {});
-}
-
-core::Scan four_points(core::ScanPattern pattern) {
-    const std::vector<Vec3> points{{-0.3, -0.2, 0}, {0.1, 0.0, 0}, {-0.1, 0.3, 0}, {0.2, 0.25, 0}};
-    if (pattern == core::ScanPattern::Confocal) return test_support::confocal_scan(points);
-    return test_support::single_scan({0.1, 0.05, 0.0}, points);
-}
-
-core::Scan nine_pixels() {
-    core::PinholeCamera camera;
-    camera.position_m = Vec3(0.1, 0.1, -0.5);
-    camera.look_at_m = Vec3(0.05, 0, 0.8);
-    camera.light_m = Vec3(-0.3, 0.3, -0.1);
-    camera.resolution = {3, 3};
-    return image_of(camera);
-}
-
-renderer::RenderSettings doppler_settings(Estimator method, int samples, int max_bounces) {
-    renderer::RenderSettings settings;
-    settings.method = method;
-    settings.samples = samples;
-    settings.max_bounces = max_bounces;
-    settings.variance = true;
-    settings.seed = test_support::seed_of("Doppler");
-    settings.restir.shared_walks = 64;
-    settings.restir.neighbours = 2;
-    settings.restir.reuse_bins = true;
-    return settings;
 }
 
 // Centre of the bins that hold a pair's light, weighted by it.
@@ -297,96 +262,6 @@ INSTANTIATE_TEST_SUITE_P(Estimators,
                                          Estimator::Ellipsoidal,
                                          Estimator::Restir),
                          [](const auto& test) { return std::string(core::enum_name(test.param)); });
-
-struct Measured {
-    const char* name;
-    core::Scan scan;
-    core::HistogramAxes axes;
-    int max_bounces;
-};
-
-std::vector<Measured> measured() {
-    const core::VelocityAxis alone{-12.0, 1.5, 16};
-    const core::VelocityAxis joint{-12.0, 3.0, 8, true};
-    return {{"scan", four_points(core::ScanPattern::Confocal), {{1.2, 0.9, 2}, alone}, 5},
-            {"scan_with_time", four_points(core::ScanPattern::Single), {{1.2, 0.3, 6}, joint}, 4},
-            {"image", nine_pixels(), {{1.8, 1.0, 2}, alone}, 4},
-            {"image_with_time", nine_pixels(), {{1.8, 0.5, 4}, joint}, 3}};
-}
-
-class DopplerIn : public testing::TestWithParam<std::size_t> {};
-
-TEST_P(DopplerIn, EstimatorsAgreeBinByBin) {
-    const Measured setting = measured()[GetParam()];
-    const renderer::Scene scene = moving_scene(setting.scan);
-    const auto estimate = [&](const std::string& name, renderer::RenderSettings settings) {
-        settings.max_bounces = setting.max_bounces;
-        settings.variance = false;
-        return test_support::repeat(
-            [&](std::uint64_t seed) {
-                settings.seed = seed;
-                const auto capture =
-                    renderer::render(scene, setting.scan, setting.axes, settings, {}).capture;
-                test_support::Numbers numbers = test_support::sums_of(capture.transient);
-                const auto more = test_support::sums_of(capture.velocity->values);
-                numbers.insert(numbers.end(), more.begin(), more.end());
-                return numbers;
-            },
-            std::string("Doppler.") + setting.name + name);
-    };
-    const auto paths = estimate("paths", doppler_settings(Estimator::Path, 16384, 3));
-    const auto expect_the_same = [&](const std::string& name,
-                                     const renderer::RenderSettings& settings) {
-        SCOPED_TRACE(name);
-        test_support::expect_same_means(estimate(name, settings), paths, 0.04);
-    };
-    expect_the_same("ellipsoidal", doppler_settings(Estimator::Ellipsoidal, 4096, 3));
-    renderer::RenderSettings restir = doppler_settings(Estimator::Restir, 2080, 3);
-    expect_the_same("restir", restir);
-    restir.restir.rounds = 4;
-    expect_the_same("rounds", restir);
-    restir.restir.rounds = 1;
-    restir.restir.chart = renderer::Chart::Hemisphere;
-    expect_the_same("hemisphere", restir);
-    restir.restir.chart = renderer::Chart::Plane;
-    restir.restir.candidates = renderer::Candidates::Ellipsoidal;
-    restir.restir.walks = 16;
-    expect_the_same("plane", restir);
-    restir.restir.reuse = renderer::Reuse::Naive;
-    expect_the_same("naive", restir);
-}
-
-INSTANTIATE_TEST_SUITE_P(Measurements,
-                         DopplerIn,
-                         testing::Range<std::size_t>(0, 4),
-                         [](const auto& test) { return measured()[test.param].name; });
-
-// Objects move on between the frames, and paths with them.
-TEST(Doppler, FramesOfResampledPathsAgreeWithPathTracing) {
-    const core::Scan scan = four_points(core::ScanPattern::Confocal);
-    renderer::SceneDescription description;
-    description.time_axis = {1.2, 1.2, 1};
-    description.velocity_axis = core::VelocityAxis{-12.0, 2.0, 12};
-    description.frames = {5, 0.01, 0.005};
-    const auto sequence = [&](Estimator method, int samples) {
-        description.render = doppler_settings(method, samples, 4);
-        return test_support::repeat(
-            [&](std::uint64_t seed) {
-                description.render.seed = seed;
-                const auto scene = std::make_shared<const renderer::Scene>(moving_scene(scan));
-                const auto result =
-                    renderer::render_frames(scene,
-                                            scan,
-                                            description,
-                                            renderer::make_frame_renderer(scan, description.render),
-                                            {});
-                return test_support::sums_of(result.capture.velocity->values);
-            },
-            "Doppler.Frames");
-    };
-    test_support::expect_same_means(
-        sequence(Estimator::Restir, 1040), sequence(Estimator::Path, 8192), 0.04);
-}
 
 // A pixel so narrow that it sees a point: u = -v . (u_camera + u_light).
 TEST(Doppler, DirectLightOfAMovingSurfaceHasTheClosedForm) {

@@ -2,8 +2,6 @@
 #include "apps/report/report.h"
 
 #include "apps/estimate_text.h"
-#include "apps/page/html.h"
-#include "apps/report/metrics_table.h"
 #include "apps/report/result_labels.h"
 #include "calib/fit_file.h"
 #include "nlos/formats/capture_file.h"
@@ -11,6 +9,8 @@
 #include "nlos/pictures/picture.h"
 #include "nlos/pictures/pictures.h"
 #include "renderer/core/output_file.h"
+#include "tests/apps/page/page_text.h"
+#include "tests/apps/report/example_scores.h"
 #include "tests/support/error_message.h"
 #include "tests/support/example_capture.h"
 #include "tests/support/example_volume.h"
@@ -25,6 +25,9 @@
 namespace apps {
 namespace {
 
+using page_test::contains;
+using page_test::count_of;
+using report_test::scores;
 using test_support::TemporaryFolder;
 
 constexpr double kAllData = 1e9;  // bytes
@@ -36,25 +39,6 @@ std::string without_scripts(std::string html) {
         html.erase(begin, html.find("</script>", begin) + 9 - begin);
     }
     return html;
-}
-
-std::size_t count_of(const std::string& text, const std::string& part) {
-    std::size_t count = 0;
-    for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) {
-        ++count;
-    }
-    return count;
-}
-
-bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
-
-nlos::Metrics scores(double depth_mae_m, double mask_iou) {
-    nlos::Metrics metrics;
-    metrics.depth_mae_m = depth_mae_m;
-    metrics.mask_iou = mask_iou;
-    return metrics;
 }
 
 /// A folder with one capture, one volume, two scores, pictures and a file that is no HDF5.
@@ -245,51 +229,6 @@ TEST(Report, ListsFilesThatCannotBeRead) {
     EXPECT_TRUE(contains(html, "found &quot;much&quot;"));
 }
 
-TEST(Report, MarksTheBestValueOfEachMetric) {
-    ScoredResult a;
-    a.name = "first";
-    a.metrics = scores(0.003, 0.75);
-    a.metrics.chamfer_m = 0.002;
-    ScoredResult b;
-    b.name = "second";
-    b.metrics = scores(0.0015, 0.5);
-    b.metrics.chamfer_m = 0.001;
-    const std::string table = metrics_table({a, b});
-    EXPECT_TRUE(contains(table, "<td data-value=\"0.002\">2.00</td>"));
-    EXPECT_TRUE(contains(table, "<td class=\"best\" data-value=\"0.001\">1.00</td>"));  // mm, lower
-    EXPECT_TRUE(contains(table, "<td class=\"best\" data-value=\"0.75\">75.0</td>"));   // %, higher
-    EXPECT_TRUE(contains(table, "<td data-value=\"0.5\">50.0</td>"));
-    EXPECT_TRUE(contains(table, ">1.50</td>"));  // of another share of the surface: not the best
-    EXPECT_EQ(count_of(table, "class=\"best\""), 2U);
-    EXPECT_EQ(count_of(table, "<tr>"), 3U);
-    EXPECT_EQ(count_of(table, "<span class=\"unit\">"), 3U);  // metrics nobody has are left out
-    EXPECT_FALSE(contains(metrics_table({a}), "best\""));
-    EXPECT_FALSE(contains(metrics_table({a, a}), "best\""));
-    ScoredResult same = a;
-    same.metrics.chamfer_m = 0.002 + 1e-12;  // reads the same
-    EXPECT_FALSE(contains(metrics_table({a, same}), "best\""));
-}
-
-TEST(Report, HeadlinesAreOfTheResultWithTheHighestFScore) {
-    // The first has the smaller depth error, of next to nothing.
-    ScoredResult few;
-    few.name = "few";
-    few.metrics = scores(0.0001, 0.1);
-    few.metrics.depth_coverage = 0.02;
-    few.metrics.fscore = 0.04;
-    few.metrics.fscore_threshold_m = 0.01;
-    ScoredResult most = few;
-    most.name = "most";
-    most.metrics = scores(0.002, 0.9);
-    most.metrics.depth_coverage = 0.95;
-    most.metrics.fscore = 0.9;
-    const std::string tiles = metrics_tiles({few, most});
-    EXPECT_TRUE(contains(tiles, "<b>90.0<i>%</i></b><small>most</small>")) << tiles;
-    EXPECT_TRUE(contains(tiles, "<b>2.00<i>mm</i></b><small>over 95.0 % of the true surface"));
-    EXPECT_FALSE(contains(tiles, "0.100"));
-    EXPECT_EQ(metrics_tiles({}), "");
-}
-
 TEST(Report, ResultsAreNamedByMethodAndByTheSettingsInWhichTheyDiffer) {
     ResultsFolder results;
     const auto add = [&](const char* file, const char* method, core::Json settings) {
@@ -358,19 +297,6 @@ TEST(Report, FilesAreShownWithoutTheirFolder) {
     }
 }
 
-TEST(Report, TablesHaveOneThreshold) {
-    ScoredResult a;
-    a.metrics.fscore_threshold_m = 0.02;
-    ScoredResult b;
-    b.metrics.fscore_threshold_m = 0.01;
-    const ScoredResult none;
-    const auto groups = groups_by_threshold({a, b, none, a});
-    ASSERT_EQ(groups.size(), 2U);
-    EXPECT_EQ(groups[0].size(), 3U);
-    EXPECT_EQ(groups[1][0].metrics.fscore_threshold_m, 0.01);
-    EXPECT_EQ(groups_by_threshold({none, a, a}).size(), 1U);
-}
-
 TEST(Report, EstimatesReadWithTheirErrors) {
     EXPECT_EQ(estimate_text(0.7000213, 0.000128), "0.70002 +- 0.00013");
     EXPECT_EQ(estimate_text(12.3456, 3.21), "12.3 +- 3.2");
@@ -379,47 +305,10 @@ TEST(Report, EstimatesReadWithTheirErrors) {
     EXPECT_EQ(estimate_text(0.5, INFINITY), "0.5 (unknown)");
 }
 
-TEST(Report, EveryMetricHasALabelOfItsOwn) {
-    ScoredResult all;
-    std::vector<std::string> keys;
-    for_each_field(all.metrics, [&](const char* name, auto& field, const char*) {
-        field.emplace(1);
-        keys.emplace_back(name);
-    });
-    const std::string table = metrics_table({all});
-    EXPECT_EQ(count_of(table, "<td"), keys.size());
-    for (const std::string& key : keys) EXPECT_FALSE(contains(table, ">" + key + "<")) << key;
-}
-
 TEST(Report, FoldersWithoutResultsAreRefused) {
     const TemporaryFolder folder;
     EXPECT_ERROR_WITH(read_results_folder(folder.path().string()), "holds no result");
     EXPECT_ERROR_WITH(read_results_folder(folder.file("missing")), "is not a folder");
-}
-
-TEST(Html, Base64MatchesTheStandard) {
-    // RFC 4648, section 10.
-    EXPECT_EQ(encode_base64(""), "");
-    EXPECT_EQ(encode_base64("f"), "Zg==");
-    EXPECT_EQ(encode_base64("fo"), "Zm8=");
-    EXPECT_EQ(encode_base64("foo"), "Zm9v");
-    EXPECT_EQ(encode_base64("foobar"), "Zm9vYmFy");
-    EXPECT_EQ(encode_base64("\xff\xfe\xfd"), "//79");
-}
-
-TEST(Html, EscapesWhatHasAMeaning) {
-    EXPECT_EQ(escape_html("<a href=\"x\">'&'</a>"),
-              "&lt;a href=&quot;x&quot;&gt;&#39;&amp;&#39;&lt;/a&gt;");
-}
-
-TEST(Html, PicturesCarryTheirBytesAndWidth) {
-    const std::string png =
-        nlos::encode_panels({nlos::CurvePanel{"curve", {0.0, 1.0}, {1.0, 2.0}, "x", "y"}}, 1);
-    const std::string image = embedded_image(png, "image/png", "a \"curve\"");
-    EXPECT_TRUE(contains(image, "src=\"data:image/png;base64,iVBOR"));
-    EXPECT_TRUE(contains(image, " width=\""));
-    EXPECT_TRUE(contains(image, "alt=\"a &quot;curve&quot;\""));
-    EXPECT_FALSE(contains(embedded_image("<svg/>", "image/svg+xml", "plot"), "width"));
 }
 
 }  // namespace
