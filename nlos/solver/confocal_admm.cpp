@@ -31,7 +31,7 @@ constexpr int kGainInterval = 5;          // iterations from one update of gains
 
 // Weights of total variation, unless set. What radiance leaves unexplained is the model's error,
 // much alike at neighbouring points, where counts have noise of their own.
-constexpr double kPoissonWeight = 0.5;
+constexpr double kPoissonWeight = 0.35;
 constexpr double kGaussianWeight = 4.0;
 constexpr double kSparsityShare = 0.1;  // of the weight of total variation, unless set
 
