@@ -44,7 +44,7 @@ void take_normals(const Volume& volume, core::DepthMap& depth) {
 /// brightest surfaces alone. Backprojection leaves no edges, and the solver sharp ones. Fits random
 /// surfaces, see reconstruction/README.md.
 PlateauShares plateau_shares(const ReconstructSettings& settings, bool has_noise) {
-    if (settings.method == Method::Bp) return {0.0, 0.73, 7.0};
+    if (settings.method == Method::Bp) return {0.0, 0.74, 8.0};
     if (settings.method == Method::Solver) return {0.0, has_noise ? 0.4 : 0.25};
     if (!has_noise) return {};
     if (settings.method == Method::Fk) return {0.0, 0.45};
@@ -56,7 +56,7 @@ PlateauShares plateau_shares(const ReconstructSettings& settings, bool has_noise
 /// reconstruction/README.md.
 VolumeErrors volume_errors(const ReconstructSettings& settings, bool has_noise) {
     const PlateauShares shares = plateau_shares(settings, has_noise);
-    if (uses_wave(settings)) return {VolumeScale::Power, 0.4, 0.7, shares};
+    if (uses_wave(settings)) return {VolumeScale::Power, 0.38, 0.66, shares};
     switch (settings.method) {
         case Method::Solver:
             return {VolumeScale::Amplitude, 0.15, 0.38, shares};

@@ -2,6 +2,7 @@
 #include "apps/bench/reconstruct/coverage.h"
 
 #include "apps/bench/command.h"
+#include "apps/bench/gnuplot.h"
 #include "apps/bench/scene.h"
 #include "apps/commands.h"
 #include "apps/shapes/grid_mesh.h"
@@ -14,6 +15,8 @@
 #include "renderer/scene/ground_truth.h"
 #include "renderer/scene/scene.h"
 #include "renderer/scene/scene_file.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -218,6 +221,42 @@ void add_rows(const std::string& method,
     }
 }
 
+/// What is stated against what is true, with the line where both are equal.
+Plot probability_plot(const std::vector<ProbabilityReliability>& rows) {
+    Plot plot{"Columns that are surface", "stated probability", "true share", {}};
+    plot.x_scale = AxisScale::Linear;
+    plot.y_scale = AxisScale::Linear;
+    for (const ProbabilityReliability& row : rows) {
+        PlotLine& line = line_named(row.method, plot);
+        line.x.push_back(row.stated);
+        line.y.push_back(row.surface);
+    }
+    plot.lines.push_back({"as stated", {0.0, 1.0}, {0.0, 1.0}, LineStyle::Limit});
+    return plot;
+}
+
+/// Share of the depths within an interval over the signal, with the share that it states.
+Plot interval_plot(const std::vector<DepthCoverage>& rows,
+                   double DepthCoverage::*within,
+                   double stated) {
+    Plot plot{fmt::format("Depths within their intervals of {:g} %", 100.0 * stated),
+              "counts in the brightest bin",
+              "share of the depths",
+              {}};
+    plot.y_scale = AxisScale::Linear;
+    PlotLine limit{"as stated", {}, {}, LineStyle::Limit};
+    for (const DepthCoverage& row : rows) {
+        PlotLine& line = line_named(row.method, plot);
+        line.x.push_back(row.peak_counts);
+        line.y.push_back(row.*within);
+        if (row.method != rows.front().method) continue;
+        limit.x.push_back(row.peak_counts);
+        limit.y.push_back(stated);
+    }
+    plot.lines.push_back(limit);
+    return plot;
+}
+
 void declare_coverage(CLI::App& command, CoverageBenchSettings& settings) {
     add_setting(command, "--surfaces", settings.surfaces, "Random surfaces", {1, 10000});
     add_setting(command, "--first", settings.first, "Number of the first of them", {0, 1000000});
@@ -270,7 +309,12 @@ void add_bench_coverage_command(CLI::App& bench) {
          "nlos bench coverage -o out/bench --surfaces 1 --methods lct --peaks 100"},
         declare_coverage,
         [](const CoverageBenchSettings& settings, const core::Progress& progress) {
-            return BenchResult{core::write_value(cover(settings, progress))};
+            const CoverageBench bench = cover(settings, progress);
+            BenchResult result{core::write_value(bench)};
+            result.plots["probability"] = probability_plot(bench.probabilities);
+            result.plots["68"] = interval_plot(bench.depths, &DepthCoverage::within_68, 0.68);
+            result.plots["95"] = interval_plot(bench.depths, &DepthCoverage::within_95, 0.95);
+            return result;
         });
 }
 
