@@ -309,11 +309,11 @@ void add_bench_coverage_command(CLI::App& bench) {
          "nlos bench coverage -o out/bench --surfaces 1 --methods lct --peaks 100"},
         declare_coverage,
         [](const CoverageBenchSettings& settings, const core::Progress& progress) {
-            const CoverageBench bench = cover(settings, progress);
-            BenchResult result{core::write_value(bench)};
-            result.plots["probability"] = probability_plot(bench.probabilities);
-            result.plots["68"] = interval_plot(bench.depths, &DepthCoverage::within_68, 0.68);
-            result.plots["95"] = interval_plot(bench.depths, &DepthCoverage::within_95, 0.95);
+            const CoverageBench coverage = cover(settings, progress);
+            BenchResult result{core::write_value(coverage)};
+            result.plots["_probability"] = probability_plot(coverage.probabilities);
+            result.plots["_68"] = interval_plot(coverage.depths, &DepthCoverage::within_68, 0.68);
+            result.plots["_95"] = interval_plot(coverage.depths, &DepthCoverage::within_95, 0.95);
             return result;
         });
 }
