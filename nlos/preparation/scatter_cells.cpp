@@ -147,6 +147,7 @@ void ScatterTransport::fill(std::size_t pair,
     const Eigen::ArrayXf weight =
         out.cosine.abs() * back.cosine.abs() / (out.length * back.length).square();
     std::vector<Arrival>& arrivals = arrivals_[pair];
+    arrivals.reserve(num_cells_);
     for (std::size_t cell = 0; cell < num_cells_; ++cell) {
         if (cell % kBlock == 0) block_starts_[pair].push_back(arrivals.size());
         const auto i = static_cast<Eigen::Index>(cell);
