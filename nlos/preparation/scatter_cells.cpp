@@ -4,8 +4,10 @@
 #include "renderer/core/parallel.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
+#include <span>
 
 namespace nlos {
 namespace {
@@ -121,8 +123,8 @@ ScatterTransport::ScatterTransport(const HistogramSample& sample,
       num_cells_(cells.centers.size()),
       unit_m_(farthest_m(cells)),
       observed_(sample.observed),
-      position_(num_pairs_ * num_cells_),
-      weight_(num_pairs_ * num_cells_) {
+      arrivals_(num_pairs_),
+      block_starts_(num_pairs_) {
     Eigen::ArrayX3f positions(num_cells_, 3);
     for (std::size_t i = 0; i < num_cells_; ++i) {
         const Vec3 position = position_of(cells.centers[i], geometry.world_from_wall) / unit_m_;
@@ -136,17 +138,27 @@ void ScatterTransport::fill(std::size_t pair,
                             const Eigen::ArrayX3f& positions) {
     const Vec3 normal = geometry.world_from_wall.linear().col(2);
     const Legs out(positions, geometry.illumination[pair] / unit_m_, normal);
-    const Legs back(positions, geometry.sensing[pair] / unit_m_, normal);
+    const bool returns = geometry.illumination[pair] == geometry.sensing[pair];
+    const Legs back = returns ? out : Legs(positions, geometry.sensing[pair] / unit_m_, normal);
     const auto before =
         static_cast<float>((geometry.legs_m[pair] - geometry.opl_start_m) / unit_m_);
     const auto per_bin = static_cast<float>(unit_m_ / geometry.bin_width_m);
     const Eigen::ArrayXf bin = (out.length + back.length + before) * per_bin - 0.5F;
     const Eigen::ArrayXf weight =
         out.cosine.abs() * back.cosine.abs() / (out.length * back.length).square();
-    const auto is_inside = bin >= 0.0F && bin < static_cast<float>(num_bins_ - 1);
-    const std::size_t first = pair * num_cells_;
-    Eigen::ArrayXf::Map(position_.data() + first, bin.size()) = is_inside.select(bin, 0.0F);
-    Eigen::ArrayXf::Map(weight_.data() + first, bin.size()) = is_inside.select(weight, 0.0F);
+    std::vector<Arrival>& arrivals = arrivals_[pair];
+    arrivals.reserve(num_cells_);
+    for (std::size_t cell = 0; cell < num_cells_; ++cell) {
+        if (cell % kBlock == 0) block_starts_[pair].push_back(arrivals.size());
+        const auto i = static_cast<Eigen::Index>(cell);
+        if (!(bin[i] >= 0.0F && bin[i] < static_cast<float>(num_bins_ - 1))) continue;
+        const auto whole = static_cast<std::int32_t>(bin[i]);
+        arrivals.push_back({static_cast<std::uint32_t>(cell),
+                            whole,
+                            bin[i] - static_cast<float>(whole),
+                            weight[i]});
+    }
+    block_starts_[pair].push_back(arrivals.size());
 }
 
 std::vector<float> ScatterTransport::forward(const std::vector<double>& light,
@@ -155,13 +167,19 @@ std::vector<float> ScatterTransport::forward(const std::vector<double>& light,
     const std::size_t count = (num_pairs_ - subset.first + subset.step - 1) / subset.step;
     core::parallel_blocks(count, kPairsAtOnce, [&](std::size_t begin, std::size_t end) {
         std::vector<double> rows(kPairsAtOnce * num_bins_, 0.0);
-        for (std::size_t cell = 0; cell < num_cells_; ++cell) {
-            for (std::size_t lane = begin; lane < end; ++lane) {
-                const std::size_t i = (subset.first + lane * subset.step) * num_cells_ + cell;
-                const auto bin = static_cast<int>(position_[i]);
-                const double value = light[cell] * static_cast<double>(weight_[i]);
-                const double late = static_cast<double>(position_[i] - static_cast<float>(bin));
-                double* row = rows.data() + (lane - begin) * num_bins_ + bin;
+        std::array<std::span<const Arrival>, kPairsAtOnce> lanes;
+        std::size_t longest = 0;
+        for (std::size_t lane = begin; lane < end; ++lane) {
+            lanes[lane - begin] = arrivals_[subset.first + lane * subset.step];
+            longest = std::max(longest, lanes[lane - begin].size());
+        }
+        for (std::size_t k = 0; k < longest; ++k) {
+            for (std::size_t lane = 0; lane < end - begin; ++lane) {
+                if (k >= lanes[lane].size()) continue;
+                const Arrival& arrival = lanes[lane][k];
+                const double value = light[arrival.cell] * static_cast<double>(arrival.weight);
+                const auto late = static_cast<double>(arrival.late);
+                double* row = rows.data() + lane * num_bins_ + arrival.bin;
                 row[0] += value - late * value;
                 row[1] += late * value;
             }
@@ -181,16 +199,16 @@ CellReach ScatterTransport::backward(const std::vector<float>& ratio,
                                      const std::vector<double>& gain,
                                      const PairSubset& subset) const {
     CellReach reach{std::vector<float>(num_cells_), std::vector<float>(num_cells_)};
-    core::parallel_blocks(num_cells_, kBlock, [&](std::size_t begin, std::size_t end) {
+    core::parallel_blocks(num_cells_, kBlock, [&](std::size_t begin, std::size_t) {
         for (std::size_t pair = subset.first; pair < num_pairs_; pair += subset.step) {
             const float* seen = observed_.data() + pair * num_bins_;
             const float* rated = ratio.data() + pair * num_bins_;
             const auto pair_gain = static_cast<float>(gain[pair]);
-            for (std::size_t cell = begin; cell < end; ++cell) {
-                const std::size_t i = pair * num_cells_ + cell;
-                const auto bin = static_cast<int>(position_[i]);
-                const float late = position_[i] - static_cast<float>(bin);
-                const float weight = pair_gain * weight_[i];
+            const std::size_t block = begin / kBlock;
+            const std::size_t end = block_starts_[pair][block + 1];
+            for (std::size_t k = block_starts_[pair][block]; k < end; ++k) {
+                const auto& [cell, bin, late, ungained] = arrivals_[pair][k];
+                const float weight = pair_gain * ungained;
                 reach.plain[cell] += weight * (seen[bin] + late * (seen[bin + 1] - seen[bin]));
                 reach.rated[cell] += weight * (rated[bin] + late * (rated[bin + 1] - rated[bin]));
             }

@@ -3,6 +3,8 @@
 
 #include "nlos/preparation/histogram_sample.h"
 
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace nlos {
@@ -48,7 +50,8 @@ struct PairSubset {
 };
 
 /// How light of cells reaches the bins of a sample: a weight and a position between two bins for
-/// each pair and cell. Light falls with the squares of both legs and with the cosines at the wall.
+/// each pair and each cell that it sees within them. Light falls with the squares of both legs and
+/// with the cosines at the wall.
 class ScatterTransport {
  public:
     ScatterTransport(const HistogramSample& sample,
@@ -66,15 +69,23 @@ class ScatterTransport {
                        const PairSubset& subset) const;
 
  private:
+    /// Light of a cell that reaches the sample's bins.
+    struct Arrival {
+        std::uint32_t cell;
+        std::int32_t bin;
+        float late;  ///< share of the light that falls into the next bin
+        float weight;
+    };
+
     void fill(std::size_t pair, const PathGeometry& geometry, const Eigen::ArrayX3f& positions);
 
     std::size_t num_pairs_;
     std::size_t num_bins_;
     std::size_t num_cells_;
-    double unit_m_;                ///< of lengths in single precision
-    std::vector<float> observed_;  ///< [pair][bin], 1 or 0
-    std::vector<float> position_;  ///< [pair][cell], in bins
-    std::vector<float> weight_;    ///< [pair][cell]; 0 outside the sample's bins
+    double unit_m_;                               ///< of lengths in single precision
+    std::vector<float> observed_;                 ///< [pair][bin], 1 or 0
+    std::vector<std::vector<Arrival>> arrivals_;  ///< of each pair, in the order of the cells
+    std::vector<std::vector<std::size_t>> block_starts_;  ///< [pair][block of cells], in arrivals_
 };
 
 }  // namespace nlos
