@@ -2,6 +2,7 @@
 #include "nlos/canvas/canvas.h"
 
 #include "nlos/canvas/font.h"
+#include "nlos/canvas/png_file.h"
 #include "nlos/canvas/raster.h"
 #include "renderer/core/error.h"
 
@@ -247,7 +248,12 @@ void Canvas::image(const PixelBox& box, int columns, int rows, const std::vector
 std::string Canvas::finish() {
     check(cairo_status(drawing_->context.get()));
     if (drawing_->format == PictureFormat::Png) {
-        check(cairo_surface_write_to_png_stream(drawing_->surface.get(), append, &drawing_->bytes));
+        cairo_surface_t* const surface = drawing_->surface.get();
+        cairo_surface_flush(surface);
+        drawing_->bytes = encode_png(cairo_image_surface_get_data(surface),
+                                     cairo_image_surface_get_width(surface),
+                                     cairo_image_surface_get_height(surface),
+                                     cairo_image_surface_get_stride(surface));
     }
     cairo_surface_finish(drawing_->surface.get());
     check(cairo_surface_status(drawing_->surface.get()));
