@@ -44,10 +44,10 @@ void take_normals(const Volume& volume, core::DepthMap& depth) {
 /// brightest surfaces alone. Backprojection leaves no edges, and the solver sharp ones. Fits random
 /// surfaces, see reconstruction/README.md.
 PlateauShares plateau_shares(const ReconstructSettings& settings, bool has_noise) {
-    if (settings.method == Method::Bp) return {0.0, 0.75, 8.0};
+    if (settings.method == Method::Bp) return {0.0, 0.75, 7.0};
     if (settings.method == Method::Solver) return {0.0, has_noise ? 0.4 : 0.25};
     if (!has_noise) return {};
-    if (settings.method == Method::Fk) return {0.0, 0.45};
+    if (settings.method == Method::Fk) return {0.0, 0.47};
     if (uses_wave(settings) || settings.method == Method::Fbp) return {0.0, 0.5};
     return {0.0, 0.52, 5.0};
 }
