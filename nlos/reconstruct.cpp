@@ -63,8 +63,9 @@ VolumeErrors volume_errors(const ReconstructSettings& settings, bool has_noise) 
         case Method::Fk:
             return {VolumeScale::Power, 0.16, 0.35, shares};
         case Method::Bp:
-            return {VolumeScale::Amplitude, 0.15, 0.42, shares};
+            return {VolumeScale::Amplitude, 0.125, 0.46, shares};
         case Method::Fbp:
+            return {VolumeScale::Amplitude, 0.09, 0.53, shares};
         case Method::Dlct:
             return {VolumeScale::Amplitude, 0.1, 0.5, shares};
         default:

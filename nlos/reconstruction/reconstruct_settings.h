@@ -61,11 +61,11 @@ struct PhasorSettings {
 /// of what the noise of the data makes of a voxel.
 struct SolverSettings {
     Likelihood likelihood = Likelihood::Auto;
-    std::optional<double> tv;        ///< weight of total variation; empty: by the likelihood
-    std::optional<double> sparsity;  ///< weight of the sum; empty: a tenth of `tv`
-    double spot_m = 0.0;             ///< full width at half maximum of the spot on the wall
-    bool gains = false;              ///< finds a factor of every pair, see PairGains
-    double tolerance = 0.01;
+    std::optional<double> tv;         ///< weight of total variation; empty: by the likelihood
+    std::optional<double> sparsity;   ///< weight of the sum; empty: a tenth of `tv`
+    double spot_m = 0.0;              ///< full width at half maximum of the spot on the wall
+    bool gains = false;               ///< finds a factor of every pair, see PairGains
+    std::optional<double> tolerance;  ///< empty: by the solver
     int max_iterations = 200;
 };
 
@@ -129,7 +129,7 @@ void for_each_field(SolverSettings& s, Visitor&& visit) {
           s.tv,
           core::at_least(0,
                          "weight of total variation, in standard deviations of a voxel's noise; "
-                         "null: for confocal grids 0.35 of counts and 4 of radiance, else 1"));
+                         "null: for confocal grids 0.35 of counts and 2 of radiance, else 1"));
     visit(
         "sparsity",
         s.sparsity,
@@ -144,7 +144,10 @@ void for_each_field(SolverSettings& s, Visitor&& visit) {
         "to three tenths, is found with the scene");
     visit("tolerance",
           s.tolerance,
-          core::strictly_between(0, 1, "relative change of the result at which iterations stop"));
+          core::strictly_between(0,
+                                 1,
+                                 "relative change of the result at which iterations stop; null: "
+                                 "0.015 for confocal grids, else 0.01"));
     visit("max_iterations", s.max_iterations, core::at_least(1, "iterations at most"));
 }
 

@@ -23,16 +23,18 @@
 namespace nlos {
 namespace {
 
-// They change speed, hardly the result, but what light from outside the footprint costs.
-constexpr double kGradientPenalty = 1.0;  // mu
-constexpr double kAlbedoPenalty = 10.0;   // nu
-constexpr float kRelaxation = 1.7F;       // of f and h away from their splits
+// They change what light from outside the footprint costs, and speed. Larger ones take fewer
+// iterations to the same change, but stop farther from the minimum: tilted surfaces are too near.
+constexpr double kGradientPenalty = 0.3;  // mu
+constexpr double kAlbedoPenalty = 3.0;    // nu
+constexpr float kRelaxation = 1.9F;       // of f and h away from their splits
+constexpr double kTolerance = 0.015;      // of the relative change, unless set
 constexpr int kGainInterval = 5;          // iterations from one update of gains to the next
 
 // Weights of total variation, unless set. What radiance leaves unexplained is the model's error,
 // much alike at neighbouring points, where counts have noise of their own.
 constexpr double kPoissonWeight = 0.35;
-constexpr double kGaussianWeight = 4.0;
+constexpr double kGaussianWeight = 2.0;
 constexpr double kSparsityShare = 0.1;  // of the weight of total variation, unless set
 
 /// What the noise of light at v makes of a voxel at u, in units of its standard deviation: the
@@ -76,7 +78,7 @@ ConfocalAdmm::ConfocalAdmm(const MethodInput& input,
                            const SolverSettings& settings)
     : data_(data),
       cone_(data.cone),
-      tolerance_(settings.tolerance),
+      tolerance_(settings.tolerance.value_or(kTolerance)),
       time_(data.time),
       convolution_(cone_, *input.wall.grid, settings.spot_m, kGradientPenalty, kAlbedoPenalty),
       num_bins_(static_cast<std::size_t>(data.axis.num_bins)),

@@ -22,6 +22,7 @@ constexpr std::size_t kFirstPairs = 256;     // that choose voxels
 constexpr double kFirstShare = 0.1;          // of the voxels to start with, the brightest
 constexpr double kSmallestPairLight = 1e-3;  // of the brightest bin
 constexpr float kNothing = 2e-3F;            // of the brightest voxel
+constexpr double kToleranceOfPairs = 0.01;   // of the relative change, unless set
 constexpr double kSparsityOfPairs = 0.1;     // of the weight of total variation, unless set
 constexpr double kWeight = 1.0;              // of total variation, unless set
 
@@ -55,6 +56,7 @@ class PairSolver {
         choose_first_voxels();
         const std::size_t most =
             std::clamp<std::size_t>(seen_pairs_.size() / kPairsPerSubset, 1, kMaxSubsets);
+        const double tolerance = settings_.tolerance.value_or(kToleranceOfPairs);
         int pass = 0;
         for (; pass < settings_.max_iterations && voxels_.size() > 0; ++pass) {
             check_stop(input_.progress);
@@ -68,9 +70,8 @@ class PairSolver {
             smooth();
             const double change = relative_change(before);
             input_.progress.update(
-                0.95 * std::clamp(std::log(change) / std::log(settings_.tolerance), 0.0, 1.0),
-                "solver");
-            if (num_subsets == 1 && change <= settings_.tolerance) break;
+                0.95 * std::clamp(std::log(change) / std::log(tolerance), 0.0, 1.0), "solver");
+            if (num_subsets == 1 && change <= tolerance) break;
             leave_out_empty();
         }
         if (input_.progress.announce) {
