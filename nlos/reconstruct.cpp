@@ -56,16 +56,16 @@ PlateauShares plateau_shares(const ReconstructSettings& settings, bool has_noise
 /// reconstruction/README.md.
 VolumeErrors volume_errors(const ReconstructSettings& settings, bool has_noise) {
     const PlateauShares shares = plateau_shares(settings, has_noise);
-    if (uses_wave(settings)) return {VolumeScale::Power, 0.38, 0.66, shares};
+    if (uses_wave(settings)) return {VolumeScale::Power, 0.38, 0.69, shares};
     switch (settings.method) {
         case Method::Solver:
             return {VolumeScale::Amplitude, 0.15, 0.38, shares};
         case Method::Fk:
             return {VolumeScale::Power, 0.16, 0.35, shares};
         case Method::Bp:
-            return {VolumeScale::Amplitude, 0.125, 0.46, shares};
+            return {VolumeScale::Amplitude, 0.125, 0.53, shares};
         case Method::Fbp:
-            return {VolumeScale::Amplitude, 0.09, 0.53, shares};
+            return {VolumeScale::Amplitude, 0.085, 0.56, shares};
         case Method::Dlct:
             return {VolumeScale::Amplitude, 0.1, 0.5, shares};
         default:
