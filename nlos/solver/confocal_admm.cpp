@@ -25,11 +25,11 @@ namespace {
 
 // They change what light from outside the footprint costs, and speed. Larger ones take fewer
 // iterations to the same change, but stop farther from the minimum: tilted surfaces are too near.
-constexpr double kGradientPenalty = 0.3;  // mu
-constexpr double kAlbedoPenalty = 3.0;    // nu
-constexpr float kRelaxation = 1.9F;       // of f and h away from their splits
-constexpr double kTolerance = 0.015;      // of the relative change, unless set
-constexpr int kGainInterval = 5;          // iterations from one update of gains to the next
+constexpr double kGradientPenalty = 0.3;     // mu
+constexpr double kAlbedoPenalty = 3.0;       // nu
+constexpr float kRelaxation = 1.9F;          // of f and h away from their splits
+constexpr double kToleranceOfGrids = 0.015;  // of the relative change, unless set
+constexpr int kGainInterval = 5;             // iterations from one update of gains to the next
 
 // Weights of total variation, unless set. What radiance leaves unexplained is the model's error,
 // much alike at neighbouring points, where counts have noise of their own.
@@ -78,7 +78,7 @@ ConfocalAdmm::ConfocalAdmm(const MethodInput& input,
                            const SolverSettings& settings)
     : data_(data),
       cone_(data.cone),
-      tolerance_(settings.tolerance.value_or(kTolerance)),
+      tolerance_(settings.tolerance.value_or(kToleranceOfGrids)),
       time_(data.time),
       convolution_(cone_, *input.wall.grid, settings.spot_m, kGradientPenalty, kAlbedoPenalty),
       num_bins_(static_cast<std::size_t>(data.axis.num_bins)),
