@@ -56,20 +56,20 @@ PlateauShares plateau_shares(const ReconstructSettings& settings, bool has_noise
 /// reconstruction/README.md.
 VolumeErrors volume_errors(const ReconstructSettings& settings, bool has_noise) {
     const PlateauShares shares = plateau_shares(settings, has_noise);
-    if (uses_wave(settings)) return {VolumeScale::Power, 0.38, 0.69, shares};
+    if (uses_wave(settings)) return {VolumeScale::Power, 0.115, 0.3, 7.0, 0.0, shares};
     switch (settings.method) {
         case Method::Solver:
-            return {VolumeScale::Amplitude, 0.15, 0.38, shares};
+            return {VolumeScale::Amplitude, 0.102, 0.35, 10.5, 0.0, shares};
         case Method::Fk:
-            return {VolumeScale::Power, 0.16, 0.35, shares};
+            return {VolumeScale::Power, 0.115, 0.17, 0.4, 0.4, shares};
         case Method::Bp:
-            return {VolumeScale::Amplitude, 0.125, 0.53, shares};
+            return {VolumeScale::Amplitude, 0.042, 0.45, 5.0, 0.0, shares};
         case Method::Fbp:
-            return {VolumeScale::Amplitude, 0.085, 0.56, shares};
+            return {VolumeScale::Amplitude, 0.055, 0.39, 5.5, 0.0, shares};
         case Method::Dlct:
-            return {VolumeScale::Amplitude, 0.1, 0.5, shares};
+            return {VolumeScale::Amplitude, 0.047, 0.48, 5.5, 0.0, shares};
         default:
-            return {VolumeScale::Amplitude, 0.07, 0.5, shares};
+            return {VolumeScale::Amplitude, 0.025, 0.34, 16.0, 0.0, shares};
     }
 }
 

@@ -13,40 +13,57 @@
 namespace nlos {
 namespace {
 
-constexpr double kDoubtFactor = 12.0;  // of odds against a surface to this power
-constexpr double kDoubtPower = 1.75;
-constexpr double kRoughnessShare = 0.65;
-constexpr std::size_t kPlaneColumns = 2;   // on either side
+constexpr double kOwnShare = 0.8;          // of a depth's distance from its plane
+constexpr std::size_t kPlaneReach = 2;     // columns on either side
 constexpr double kFewestForPlane = 6.0;    // columns
 constexpr double kUnknownRoughness = 3.0;  // voxels, where there are fewer
+constexpr double kRoughest = 12.0;         // voxels, of one column among its neighbours
+constexpr double kWidest = 10.0;           // voxels
 constexpr std::size_t kSearched = 6;       // voxels on either side
-constexpr std::size_t kPooledColumns = 4;  // columns
+constexpr std::size_t kPooledReach = 4;    // columns on either side
 constexpr double kPriorColumns = 16.0;     // of the whole map, beside those within reach
 
-/// Sizes of slopes of noise, and of how many columns. Few peaks that jump to another one must not
-/// speak for all: the deviation is told from the mean size.
-struct SlopePool {
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+/// A mean of positive values.
+struct Mean {
     double sum = 0.0;
     double count = 0.0;
 
-    void add(double size) {
-        if (std::isnan(size)) return;
-        sum += size;
-        count += 1.0;
+    void add(double value, double weight = 1.0) {
+        sum += weight * value;
+        count += weight;
     }
-    double mean() const { return count > 0.0 ? sum / count : 0.0; }
+    double value() const { return count > 0.0 ? sum / count : 0.0; }
 };
 
-/// How firmly a peak stands: brightness in deviations times curvature [1 / voxels^2].
-double firmness(const Volume& volume,
-                std::size_t column,
-                const ColumnPeak& peak,
-                VolumeScale scale,
-                const VolumeNoise& noise) {
-    const float value = volume.values[column * volume.axes.z_m.size() + peak.voxel];
-    constexpr double kFlattest = 1e-6;
-    return std::max(kFlattest, peak.curvature) *
-           noise.significance(amplitude_of(value, scale), peak.voxel);
+/// Calls visit(jx, jy) for the foreground columns within reach of a column, itself included.
+template <class Visit>
+void visit_near(const core::DepthMap& depth,
+                std::size_t ix,
+                std::size_t iy,
+                std::size_t reach,
+                const Visit& visit) {
+    const std::size_t end_x = std::min(depth.x_m.size(), ix + reach + 1);
+    const std::size_t end_y = std::min(depth.y_m.size(), iy + reach + 1);
+    for (std::size_t jx = ix - std::min(ix, reach); jx < end_x; ++jx) {
+        for (std::size_t jy = iy - std::min(iy, reach); jy < end_y; ++jy) {
+            if (depth.is_foreground(depth.index(jx, jy))) visit(jx, jy);
+        }
+    }
+}
+
+/// The mean of the values of foreground columns within reach.
+Mean mean_near(const std::vector<double>& values,
+               const core::DepthMap& depth,
+               std::size_t ix,
+               std::size_t iy,
+               std::size_t reach) {
+    Mean mean;
+    visit_near(depth, ix, iy, reach, [&](std::size_t jx, std::size_t jy) {
+        mean.add(values[depth.index(jx, jy)]);
+    });
+    return mean;
 }
 
 /// By how far noise of the measurement's own deviation moves a peak [voxels]: half the distance of
@@ -70,25 +87,7 @@ double movement(std::span<const float> column,
         const auto highest = std::ranges::max_element(values) - values.begin();
         return find_peak(values, static_cast<std::size_t>(highest)).position;
     };
-    return 0.5 * (position(half) - position(other));
-}
-
-double pooled_size(const std::vector<double>& sizes,
-                   const core::DepthMap& depth,
-                   std::size_t ix,
-                   std::size_t iy,
-                   double prior) {
-    SlopePool near;
-    for (std::size_t jx = ix - std::min(ix, kPooledColumns);
-         jx < std::min(depth.x_m.size(), ix + kPooledColumns + 1);
-         ++jx) {
-        for (std::size_t jy = iy - std::min(iy, kPooledColumns);
-             jy < std::min(depth.y_m.size(), iy + kPooledColumns + 1);
-             ++jy) {
-            near.add(sizes[depth.index(jx, jy)]);
-        }
-    }
-    return (near.sum + kPriorColumns * prior) / (near.count + kPriorColumns);
+    return 0.5 * std::abs(position(half) - position(other));
 }
 
 /// Distance of a depth from the plane through the foreground columns around it [m]; NaN where these
@@ -96,26 +95,17 @@ double pooled_size(const std::vector<double>& sizes,
 double off_plane_m(const core::DepthMap& depth, std::size_t ix, std::size_t iy) {
     core::Mat3 lhs = core::Mat3::Zero();
     core::Vec3 rhs = core::Vec3::Zero();
-    for (std::size_t jx = ix - std::min(ix, kPlaneColumns);
-         jx < std::min(depth.x_m.size(), ix + kPlaneColumns + 1);
-         ++jx) {
-        for (std::size_t jy = iy - std::min(iy, kPlaneColumns);
-             jy < std::min(depth.y_m.size(), iy + kPlaneColumns + 1);
-             ++jy) {
-            const std::size_t j = depth.index(jx, jy);
-            if ((jx == ix && jy == iy) || !depth.is_foreground(j)) continue;
-            const core::Vec3 row(1.0,
-                                 static_cast<double>(jx) - static_cast<double>(ix),
-                                 static_cast<double>(jy) - static_cast<double>(iy));
-            lhs += row * row.transpose();
-            rhs += row * depth.depth_m[j];
-        }
-    }
+    visit_near(depth, ix, iy, kPlaneReach, [&](std::size_t jx, std::size_t jy) {
+        if (jx == ix && jy == iy) return;
+        const core::Vec3 row(1.0,
+                             static_cast<double>(jx) - static_cast<double>(ix),
+                             static_cast<double>(jy) - static_cast<double>(iy));
+        lhs += row * row.transpose();
+        rhs += row * depth.depth_m[depth.index(jx, jy)];
+    });
     const Eigen::LDLT<core::Mat3> solver(lhs);
     constexpr double kLeastPivot = 1e-9;  // all columns on a line
-    if (lhs(0, 0) < kFewestForPlane || solver.vectorD().minCoeff() < kLeastPivot) {
-        return std::numeric_limits<double>::quiet_NaN();
-    }
+    if (lhs(0, 0) < kFewestForPlane || solver.vectorD().minCoeff() < kLeastPivot) return kNone;
     return std::abs(depth.depth_m[depth.index(ix, iy)] - solver.solve(rhs).x());
 }
 
@@ -125,42 +115,43 @@ std::vector<double> depth_sigmas(const Volume& volume,
                                  const std::vector<ColumnPeak>& peaks,
                                  const Surface& surface,
                                  const Volume& again,
-                                 const VolumeErrors& errors,
-                                 const VolumeNoise& noise) {
+                                 const VolumeErrors& errors) {
     const core::DepthMap& depth = surface.depth;
-    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
     const std::size_t nz = volume.axes.z_m.size();
-    std::vector<double> firm(peaks.size(), kNone);
-    std::vector<double> sizes(peaks.size(), kNone);
-    SlopePool all;
-    for (std::size_t i = 0; i < peaks.size(); ++i) {
-        if (!depth.is_foreground(i)) continue;
-        firm[i] = firmness(volume, i, peaks[i], errors.scale, noise);
-        const double moved = movement({volume.values.data() + i * nz, nz},
-                                      {again.values.data() + i * nz, nz},
-                                      peaks[i].voxel,
-                                      errors.scale);
-        sizes[i] = std::abs(moved) * firm[i];
-        all.add(sizes[i]);
-    }
     const double step_m =
         nz > 1 ? (volume.axes.z_m.back() - volume.axes.z_m.front()) / static_cast<double>(nz - 1)
                : 0.0;
+    std::vector<double> moved(peaks.size(), kNone);  // [voxels]
+    std::vector<double> off_m(peaks.size(), kNone);
+    std::vector<double> rough_m(peaks.size(), kNone);
+    Mean all_moved;
+    for (std::size_t i = 0; i < peaks.size(); ++i) {
+        if (!depth.is_foreground(i)) continue;
+        moved[i] = movement({volume.values.data() + i * nz, nz},
+                            {again.values.data() + i * nz, nz},
+                            peaks[i].voxel,
+                            errors.scale);
+        all_moved.add(moved[i]);
+        const double off = off_plane_m(depth, i / depth.y_m.size(), i % depth.y_m.size());
+        off_m[i] = std::isnan(off) ? kUnknownRoughness * step_m : off;
+        rough_m[i] = std::min(off_m[i], kRoughest * step_m);
+    }
+
     std::vector<double> sigmas(peaks.size(), kNone);
     for (std::size_t ix = 0; ix < depth.x_m.size(); ++ix) {
         for (std::size_t iy = 0; iy < depth.y_m.size(); ++iy) {
             const std::size_t i = depth.index(ix, iy);
             if (!depth.is_foreground(i)) continue;
-            const double slope =
-                std::sqrt(0.5 * core::kPi) * pooled_size(sizes, depth, ix, iy, all.mean());
+            Mean movement = mean_near(moved, depth, ix, iy, kPooledReach);
+            movement.add(all_moved.value(), kPriorColumns);
+            const double noise = std::sqrt(0.5 * core::kPi) * movement.value();
+            const double width = std::min(kWidest, 1.0 / std::sqrt(peaks[i].curvature));
             const double odds_against = 1.0 / surface.probability[i] - 1.0;
-            const double factor = 1.0 + kDoubtFactor * std::pow(odds_against, kDoubtPower);
-            const double moved = firm[i] > 0.0 ? slope / firm[i] : 0.0;
-            const double off_plane = off_plane_m(depth, ix, iy);
-            const double rough_m = std::isnan(off_plane) ? kUnknownRoughness * step_m : off_plane;
-            sigmas[i] = std::hypot(step_m * factor * errors.noise_share * moved,
-                                   step_m * factor * errors.model_voxels,
-                                   kRoughnessShare * rough_m);
+            const double sure = std::hypot(errors.noise_share * noise, errors.model_share * width);
+            const double near_m = mean_near(rough_m, depth, ix, iy, kPlaneReach).value();
+            sigmas[i] = std::hypot(step_m * sure * std::hypot(1.0, errors.doubt * odds_against),
+                                   kOwnShare * off_m[i],
+                                   errors.near_share * near_m);
         }
     }
     return sigmas;

@@ -3,7 +3,6 @@
 
 #include "nlos/reconstruction/column_peak.h"
 #include "nlos/reconstruction/surface.h"
-#include "nlos/reconstruction/volume_noise.h"
 
 #include <vector>
 
@@ -11,14 +10,18 @@ namespace nlos {
 
 /// Standard deviations of a surface's depths, NaN where there is no depth.
 ///
-/// A peak of brightness v and curvature v'' moves by n'/v'' under noise of slope n'. That slope's
-/// deviation is told from how far peaks move between volumes of the same scene, pooled over
-/// foreground columns nearby; it stands relative to the noise's deviation at that depth, which
-/// falloff raises. What the method leaves of its own is added in squares. Where a column may be
-/// none of the surface's, depths are worse than either says: the sum is multiplied by a factor of
-/// the odds. How far a depth lies off the plane through its neighbours tells the columns that went
-/// wrong from those that did not; its share is added in squares, too. The shares are those that
-/// random surfaces ask for, and `nlos bench coverage` says how well they do on others.
+/// Four parts, added in squares, with shares of the method's own (VolumeErrors):
+/// * how far peaks move between one half of the photons and the other, the mean of foreground
+///   columns nearby, where few that jump to another peak must not speak for all;
+/// * what the method leaves without noise, a share of the peak's width: where light of other depths
+///   blurs or skews a peak it is wide, and it is off by about as large a part of its width on every
+///   surface;
+/// * how far the depth lies off the plane through its neighbours, which tells the columns that went
+///   wrong from those that did not;
+/// * how far its neighbours lie off theirs, where a method's noise is alike in neighbours.
+///
+/// The first two grow with the odds that the column is none of the surface's. The shares are those
+/// that random surfaces ask for, and `nlos bench coverage` says how well they do on others.
 ///
 /// peaks     of the volume, per column
 /// surface   with depths and probabilities of the same columns
@@ -27,7 +30,6 @@ std::vector<double> depth_sigmas(const Volume& volume,
                                  const std::vector<ColumnPeak>& peaks,
                                  const Surface& surface,
                                  const Volume& again,
-                                 const VolumeErrors& errors,
-                                 const VolumeNoise& noise);
+                                 const VolumeErrors& errors);
 
 }  // namespace nlos

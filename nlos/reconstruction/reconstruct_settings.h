@@ -147,7 +147,8 @@ void for_each_field(SolverSettings& s, Visitor&& visit) {
           core::strictly_between(0,
                                  1,
                                  "relative change of the result at which iterations stop; null: "
-                                 "0.015 for confocal grids, else 0.01"));
+                                 "0.015 for confocal grids, times the root of the share of their "
+                                 "points that were observed; else 0.01"));
     visit("max_iterations", s.max_iterations, core::at_least(1, "iterations at most"));
 }
 

@@ -161,7 +161,7 @@ Surface find_surface(const Volume& volume,
     }
     fit_normals(surface.depth);
     if (noise) {
-        surface.depth_sigma_m = depth_sigmas(volume, peaks, surface, *again, errors, *noise);
+        surface.depth_sigma_m = depth_sigmas(volume, peaks, surface, *again, errors);
     }
     return surface;
 }

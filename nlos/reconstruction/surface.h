@@ -20,8 +20,10 @@ struct Surface {
 /// What a method's volume says of noise and depth.
 struct VolumeErrors {
     VolumeScale scale = VolumeScale::Amplitude;
-    double model_voxels = 0.0;  ///< deviation of depths without noise, inside surfaces
-    double noise_share = 0.5;   ///< of the noise's deviation that roughness does not show
+    double model_share = 0.0;  ///< of a peak's width: deviation of depths without noise
+    double noise_share = 0.5;  ///< of the noise's deviation that roughness does not show
+    double doubt = 0.0;        ///< how both grow with the odds against a surface
+    double near_share = 0.0;   ///< of the neighbours' roughness
     PlateauShares shares = {};
 };
 
