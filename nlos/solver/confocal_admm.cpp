@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -28,7 +29,8 @@ namespace {
 constexpr double kGradientPenalty = 0.3;     // mu
 constexpr double kAlbedoPenalty = 3.0;       // nu
 constexpr float kRelaxation = 1.9F;          // of f and h away from their splits
-constexpr double kToleranceOfGrids = 0.015;  // of the relative change, unless set
+constexpr double kToleranceOfGrids = 0.015;  // of the relative change, unless set; few points pull
+                                             // weakly: times the root of their share
 constexpr int kGainInterval = 5;             // iterations from one update of gains to the next
 
 // Weights of total variation, unless set. What radiance leaves unexplained is the model's error,
@@ -37,8 +39,16 @@ constexpr double kPoissonWeight = 0.35;
 constexpr double kGaussianWeight = 2.0;
 constexpr double kSparsityShare = 0.1;  // of the weight of total variation, unless set
 
+/// Share of the wall points that were observed at all.
+double observed_share(const ConfocalProblem& data) {
+    const auto num_seen = std::ranges::count_if(
+        data.observed, [](const core::BinRange& seen) { return seen.size() > 0; });
+    return static_cast<double>(num_seen) / static_cast<double>(data.observed.size());
+}
+
 /// What the noise of light at v makes of a voxel at u, in units of its standard deviation: the
-/// root of its mean square over the wall points that see the voxel.
+/// root of its mean square over the wall points that see the voxel, and of the share of these that
+/// were observed.
 std::vector<double> voxel_noise(const ConfocalProblem& data, const WallGrid& grid) {
     const ConeKernel kernel(data.cone, grid);
     const std::size_t num_v = data.cone.num_v();
@@ -51,6 +61,7 @@ std::vector<double> voxel_noise(const ConfocalProblem& data, const WallGrid& gri
         }
     }
     const std::vector<double> light = data.time.normal_diagonal(data.precision);
+    const double observed = observed_share(data);
     std::vector<double> noise(num_v);
     for (std::size_t u = 0; u < num_v; ++u) {
         double sum = 0.0;
@@ -59,7 +70,7 @@ std::vector<double> voxel_noise(const ConfocalProblem& data, const WallGrid& gri
             sum += share[shift] * light[u + shift];
             weights += share[shift];
         }
-        noise[u] = weights > 0.0 ? std::sqrt(sum / weights) : 0.0;
+        noise[u] = weights > 0.0 ? std::sqrt(observed * sum / weights) : 0.0;
     }
     return noise;
 }
@@ -78,7 +89,7 @@ ConfocalAdmm::ConfocalAdmm(const MethodInput& input,
                            const SolverSettings& settings)
     : data_(data),
       cone_(data.cone),
-      tolerance_(settings.tolerance.value_or(kToleranceOfGrids)),
+      tolerance_(settings.tolerance.value_or(kToleranceOfGrids * std::sqrt(observed_share(data)))),
       time_(data.time),
       convolution_(cone_, *input.wall.grid, settings.spot_m, kGradientPenalty, kAlbedoPenalty),
       num_bins_(static_cast<std::size_t>(data.axis.num_bins)),

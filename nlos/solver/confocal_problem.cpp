@@ -12,6 +12,7 @@ constexpr int kWindowParts = 64;             // of the axis: light begins and en
 constexpr double kSmallestLight = 1e-4;      // of the brightest part
 constexpr double kSignificance = 5.0;        // standard deviations of counts
 constexpr double kSmallestIntensity = 0.02;  // of the brightest bin: what a bin's noise is at least
+constexpr double kFarthestNeighbour = 4.0;   // points to the next that was observed
 
 /// Histograms of columns from the wall to the wall, cut to some bins.
 class WallHistograms {
@@ -156,29 +157,42 @@ std::vector<double> poisson_precision(const TotalLight& total, const core::BinRa
     return intensity;
 }
 
-/// Standard deviation of light times range^power, from second differences between neighbouring
-/// points along y: what light leaves that no smooth scene explains.
-double difference_noise(const ConfocalProblem& data, double power) {
+/// Standard deviation of light times range^power, from what interpolation between the nearest
+/// observed points along y leaves: what no smooth scene explains. Light of a scene leaves the more,
+/// the farther apart they are: a share in inverse proportion is what neighbours would have left.
+/// Noise does not, and is taken for less than it is where few points were observed.
+double interpolation_noise(const ConfocalProblem& data, double power) {
     const std::size_t ny = data.cone.ny;
     const auto num_bins = static_cast<std::size_t>(data.axis.num_bins);
-    double sum = 0.0;
+    double sum = 0.0;  // of squares in units of those of independent noise
     double count = 0.0;
     double largest = 0.0;
+    std::vector<std::size_t> seen;  // points of a row that observed a bin
     for (std::size_t ix = 0; ix < data.cone.nx; ++ix) {
         for (std::size_t bin = 0; bin < num_bins; ++bin) {
             const double range =
                 0.5 * std::max(0.0, data.axis.bin_center_m(static_cast<double>(bin)));
             const double factor = std::pow(range, power);
             const float* row = data.values.data() + (ix * num_bins + bin) * ny;
-            for (std::size_t iy = 0; iy + 2 < ny; ++iy) {
-                const std::size_t column = ix * ny + iy;
-                largest = std::max(largest, factor * static_cast<double>(row[iy]));
-                const bool is_seen = data.observed[column].holds(static_cast<int>(bin)) &&
-                                     data.observed[column + 1].holds(static_cast<int>(bin)) &&
-                                     data.observed[column + 2].holds(static_cast<int>(bin));
-                if (!is_seen) continue;
-                const auto second = static_cast<double>(row[iy] - 2.0F * row[iy + 1] + row[iy + 2]);
-                sum += std::pow(factor * second, 2) / 6.0;
+            const auto light = [&](std::size_t iy) {
+                return factor * static_cast<double>(row[iy]);
+            };
+            seen.clear();
+            for (std::size_t iy = 0; iy < ny; ++iy) {
+                if (!data.observed[ix * ny + iy].holds(static_cast<int>(bin))) continue;
+                seen.push_back(iy);
+                largest = std::max(largest, light(iy));
+            }
+            for (std::size_t i = 1; i + 1 < seen.size(); ++i) {
+                const auto before = static_cast<double>(seen[i] - seen[i - 1]);
+                const auto behind = static_cast<double>(seen[i + 1] - seen[i]);
+                if (std::max(before, behind) > kFarthestNeighbour) continue;
+                const double share = before / (before + behind);  // of the point behind
+                const double expected =
+                    (1.0 - share) * light(seen[i - 1]) + share * light(seen[i + 1]);
+                const double distance = 0.5 * (before + behind);
+                sum += std::pow((light(seen[i]) - expected) / distance, 2) /
+                       (1.0 + share * share + (1.0 - share) * (1.0 - share));
                 count += 1.0;
             }
         }
@@ -188,7 +202,7 @@ double difference_noise(const ConfocalProblem& data, double power) {
 }
 
 std::vector<double> gaussian_precision(const ConfocalProblem& data, double power) {
-    const double noise = difference_noise(data, power);
+    const double noise = interpolation_noise(data, power);
     std::vector<double> precision;
     for (int bin = 0; bin < data.axis.num_bins; ++bin) {
         const double range = 0.5 * std::max(0.0, data.axis.bin_center_m(bin));

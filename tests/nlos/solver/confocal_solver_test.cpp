@@ -97,6 +97,26 @@ double unevenness(const Reconstruction& result) {
     return std::sqrt(squares * count / (sum * sum) - 1.0);
 }
 
+// No point has a neighbour that tells noise, and few points pull weakly: the weights of the priors
+// and the tolerance follow their share. Depths are within a voxel.
+TEST(ConfocalSolver, FindsThePlateFromOnePointInSixteen) {
+    core::Capture capture = plate_capture();
+    std::vector<core::BinRange> observed;
+    for (int ix = 0; ix < 24; ++ix) {
+        for (int iy = 0; iy < 24; ++iy) {
+            observed.push_back({0, (ix + 4 * iy) % 16 == 0 ? capture.time_axis.num_bins : 0});
+        }
+    }
+    core::restrict_observed(capture, observed);
+    const Reconstruction result = run(capture, {"prior=tv"});
+    EXPECT_LT(error(result), 0.11);
+    for (std::size_t ix = 9; ix < 15; ++ix) {
+        for (std::size_t iy = 9; iy < 15; ++iy) {
+            EXPECT_NEAR(result.depth.depth_m[result.depth.index(ix, iy)], 0.56, 0.008);
+        }
+    }
+}
+
 // Where three points in ten are dead without anybody saying so, these must not appear as structure.
 TEST(ConfocalSolver, FindsTheGainsOfPointsWithTheScene) {
     core::Capture capture = plate_capture();
