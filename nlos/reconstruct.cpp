@@ -52,8 +52,8 @@ PlateauShares plateau_shares(const ReconstructSettings& settings, bool has_noise
     return {0.0, 0.52, 5.0};
 }
 
-/// Waves and f-k migration give squares. The deviations of depth are those of random surfaces, see
-/// reconstruction/README.md.
+/// Waves and f-k migration give squares. The shares of the deviations of depth (model, noise,
+/// doubt, neighbours) are those of random surfaces, see reconstruction/README.md.
 VolumeErrors volume_errors(const ReconstructSettings& settings, bool has_noise) {
     const PlateauShares shares = plateau_shares(settings, has_noise);
     if (uses_wave(settings)) return {VolumeScale::Power, 0.115, 0.3, 7.0, 0.0, shares};
