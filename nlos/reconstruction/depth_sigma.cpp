@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/reconstruction/depth_sigma.h"
 
+#include "nlos/reconstruction/near_columns.h"
 #include "renderer/core/types.h"
 
 #include <Eigen/Cholesky>
@@ -37,31 +38,16 @@ struct Mean {
     double value() const { return count > 0.0 ? sum / count : 0.0; }
 };
 
-/// Calls visit(jx, jy) for the foreground columns within reach of a column, itself included.
-template <class Visit>
-void visit_near(const core::DepthMap& depth,
-                std::size_t ix,
-                std::size_t iy,
-                std::size_t reach,
-                const Visit& visit) {
-    const std::size_t end_x = std::min(depth.x_m.size(), ix + reach + 1);
-    const std::size_t end_y = std::min(depth.y_m.size(), iy + reach + 1);
-    for (std::size_t jx = ix - std::min(ix, reach); jx < end_x; ++jx) {
-        for (std::size_t jy = iy - std::min(iy, reach); jy < end_y; ++jy) {
-            if (depth.is_foreground(depth.index(jx, jy))) visit(jx, jy);
-        }
-    }
-}
-
-/// The mean of the values of foreground columns within reach.
-Mean mean_near(const std::vector<double>& values,
-               const core::DepthMap& depth,
+/// The mean of value(column) over the foreground columns within reach.
+template <class Value>
+Mean mean_near(const core::DepthMap& depth,
                std::size_t ix,
                std::size_t iy,
-               std::size_t reach) {
+               std::size_t reach,
+               const Value& value) {
     Mean mean;
     visit_near(depth, ix, iy, reach, [&](std::size_t jx, std::size_t jy) {
-        mean.add(values[depth.index(jx, jy)]);
+        mean.add(value(depth.index(jx, jy)));
     });
     return mean;
 }
@@ -123,7 +109,6 @@ std::vector<double> depth_sigmas(const Volume& volume,
                : 0.0;
     std::vector<double> moved(peaks.size(), kNone);  // [voxels]
     std::vector<double> off_m(peaks.size(), kNone);
-    std::vector<double> rough_m(peaks.size(), kNone);
     Mean all_moved;
     for (std::size_t i = 0; i < peaks.size(); ++i) {
         if (!depth.is_foreground(i)) continue;
@@ -134,7 +119,6 @@ std::vector<double> depth_sigmas(const Volume& volume,
         all_moved.add(moved[i]);
         const double off = off_plane_m(depth, i / depth.y_m.size(), i % depth.y_m.size());
         off_m[i] = std::isnan(off) ? kUnknownRoughness * step_m : off;
-        rough_m[i] = std::min(off_m[i], kRoughest * step_m);
     }
 
     std::vector<double> sigmas(peaks.size(), kNone);
@@ -142,16 +126,19 @@ std::vector<double> depth_sigmas(const Volume& volume,
         for (std::size_t iy = 0; iy < depth.y_m.size(); ++iy) {
             const std::size_t i = depth.index(ix, iy);
             if (!depth.is_foreground(i)) continue;
-            Mean movement = mean_near(moved, depth, ix, iy, kPooledReach);
+            Mean movement =
+                mean_near(depth, ix, iy, kPooledReach, [&](std::size_t j) { return moved[j]; });
             movement.add(all_moved.value(), kPriorColumns);
             const double noise = std::sqrt(0.5 * core::kPi) * movement.value();
             const double width = std::min(kWidest, 1.0 / std::sqrt(peaks[i].curvature));
             const double odds_against = 1.0 / surface.probability[i] - 1.0;
             const double sure = std::hypot(errors.noise_share * noise, errors.model_share * width);
-            const double near_m = mean_near(rough_m, depth, ix, iy, kPlaneReach).value();
+            const Mean rough_m = mean_near(depth, ix, iy, kPlaneReach, [&](std::size_t j) {
+                return std::min(off_m[j], kRoughest * step_m);
+            });
             sigmas[i] = std::hypot(step_m * sure * std::hypot(1.0, errors.doubt * odds_against),
                                    kOwnShare * off_m[i],
-                                   errors.near_share * near_m);
+                                   errors.near_share * rough_m.value());
         }
     }
     return sigmas;

@@ -3,6 +3,7 @@
 
 #include "nlos/reconstruction/column_peak.h"
 #include "nlos/reconstruction/depth_sigma.h"
+#include "nlos/reconstruction/near_columns.h"
 #include "nlos/reconstruction/surface_probability.h"
 
 #include <Eigen/Cholesky>
@@ -34,23 +35,17 @@ Vec3 fitted_normal(const core::DepthMap& depth, std::size_t ix, std::size_t iy) 
     core::Mat3 lhs = 1e-9 * core::Mat3::Identity();
     Vec3 rhs = Vec3::Zero();
     double scale = 0.0;
-    const std::size_t end_x = std::min(depth.x_m.size(), ix + kReach + 1);
-    const std::size_t end_y = std::min(depth.y_m.size(), iy + kReach + 1);
-    for (std::size_t jx = ix - std::min(ix, kReach); jx < end_x; ++jx) {
-        for (std::size_t jy = iy - std::min(iy, kReach); jy < end_y; ++jy) {
-            const std::size_t j = depth.index(jx, jy);
-            if (!depth.is_foreground(j)) continue;
-            const double dx = depth.x_m[jx] - depth.x_m[ix];
-            const double dy = depth.y_m[jy] - depth.y_m[iy];
-            const double dz = depth.depth_m[j] - z;
-            const double distance = std::hypot(dx, dy);
-            if (std::abs(dz) > kSteepest * distance) continue;
-            if (scale == 0.0) scale = distance;
-            const Vec3 row(dx / std::max(scale, 1e-12), dy / std::max(scale, 1e-12), 1.0);
-            lhs += row * row.transpose();
-            rhs += row * dz;
-        }
-    }
+    visit_near(depth, ix, iy, kReach, [&](std::size_t jx, std::size_t jy) {
+        const double dx = depth.x_m[jx] - depth.x_m[ix];
+        const double dy = depth.y_m[jy] - depth.y_m[iy];
+        const double dz = depth.depth_m[depth.index(jx, jy)] - z;
+        const double distance = std::hypot(dx, dy);
+        if (std::abs(dz) > kSteepest * distance) return;
+        if (scale == 0.0) scale = distance;
+        const Vec3 row(dx / std::max(scale, 1e-12), dy / std::max(scale, 1e-12), 1.0);
+        lhs += row * row.transpose();
+        rhs += row * dz;
+    });
     if (scale == 0.0) return -Vec3::UnitZ();
     const Vec3 plane = lhs.ldlt().solve(rhs) / scale;
     return Vec3(plane.x(), plane.y(), -1.0).normalized();
