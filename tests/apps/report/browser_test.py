@@ -140,6 +140,20 @@ class Browser:
         self.opened.add(page.as_uri())
         self.driver.get(page.as_uri())
         self.start_views()
+        self.settle()
+
+    def settle(self) -> None:
+        """Waits until the page keeps its size: views follow a new width some frames later."""
+        frames = """const done = arguments[0], page = document.documentElement;
+            requestAnimationFrame(() => requestAnimationFrame(
+                () => done([page.scrollWidth, page.scrollHeight])));"""
+        sizes = [None] * 4
+
+        def is_still():
+            sizes.append(self.driver.execute_async_script(frames))
+            return sizes[-4:] == [sizes[-1]] * 4
+
+        self.wait(is_still, "a page that keeps its size")
 
     def start_views(self) -> None:
         for view in self.views():
