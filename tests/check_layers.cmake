@@ -18,7 +18,7 @@ set(floors_renderer
     "renderer")
 set(floors_nlos
     "nlos/containers|nlos/fourier|nlos/detector|nlos/reconstruction|nlos/canvas"
-    "nlos/layouts"
+    "nlos/layouts|nlos/containers/writers"
     "nlos/formats|nlos/compare|nlos/preparation"
     "nlos/methods|nlos/pictures"
     "nlos/solver"
@@ -56,7 +56,8 @@ set(third_renderer/gltf "tiny_gltf")
 set(third_renderer/mesh_file "assimp/")
 set(third_renderer/scene "embree[34]/")
 set(third_renderer/scene_import "pugixml\\.hpp|yaml-cpp/")
-set(third_nlos/containers "zlib\\.h|hdf5\\.h|matio\\.h|zip\\.h|OpenEXR/")
+set(third_nlos/containers "hdf5\\.h|matio\\.h|zip\\.h|OpenEXR/")
+set(third_nlos/containers/writers "zlib\\.h|hdf5\\.h|matio\\.h|zip\\.h")
 set(third_nlos/fourier "fftw3\\.h")
 set(third_nlos/canvas "cairo-|png\\.h|zlib\\.h")
 set(third_calib/setup "ceres/|opencv2/|png\\.h|turbojpeg\\.h")

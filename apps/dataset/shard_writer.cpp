@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "apps/dataset/shard_writer.h"
 
-#include "nlos/containers/npz_writer.h"
-#include "nlos/containers/packed_chunk.h"
+#include "nlos/containers/writers/npz_writer.h"
+#include "nlos/containers/writers/packed_chunk.h"
 
 #include <fmt/core.h>
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "apps/dataset/item.h"
-#include "nlos/containers/hdf5_writer.h"
-#include "nlos/containers/tar_writer.h"
+#include "nlos/containers/writers/hdf5_writer.h"
+#include "nlos/containers/writers/tar_writer.h"
 
 #include <cstdint>
 #include <memory>

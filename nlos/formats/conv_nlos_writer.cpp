@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/containers/mat5_writer.h"
+#include "nlos/containers/writers/mat5_writer.h"
 #include "nlos/formats/capture_format.h"
 #include "nlos/formats/matlab_order.h"
 #include "renderer/core/error.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/containers/npz_writer.h"
+#include "nlos/containers/writers/npz_writer.h"
 #include "nlos/formats/capture_array_reader.h"
 #include "nlos/formats/capture_arrays.h"
 #include "nlos/formats/capture_format.h"

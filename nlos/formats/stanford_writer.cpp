@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/containers/mat5_writer.h"
-#include "nlos/containers/mat73_writer.h"
+#include "nlos/containers/writers/mat5_writer.h"
+#include "nlos/containers/writers/mat73_writer.h"
 #include "nlos/formats/capture_format.h"
 #include "nlos/formats/matlab_order.h"
 #include "nlos/formats/stanford_scan.h"

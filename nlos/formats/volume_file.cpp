@@ -2,7 +2,7 @@
 #include "nlos/formats/volume_file.h"
 
 #include "nlos/containers/array_reader.h"
-#include "nlos/containers/hdf5_writer.h"
+#include "nlos/containers/writers/hdf5_writer.h"
 #include "nlos/formats/capture_format.h"
 #include "renderer/core/error.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/containers/array_reader.h"
 
-#include "nlos/containers/hdf5_writer.h"
+#include "nlos/containers/writers/hdf5_writer.h"
 #include "tests/nlos/containers/example_bytes.h"
 #include "tests/nlos/containers/example_mat5.h"
 #include "tests/nlos/containers/example_mat73.h"

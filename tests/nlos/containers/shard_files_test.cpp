@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/containers/array_reader.h"
-#include "nlos/containers/hdf5_writer.h"
-#include "nlos/containers/npz_writer.h"
-#include "nlos/containers/packed_chunk.h"
-#include "nlos/containers/tar_writer.h"
+#include "nlos/containers/writers/hdf5_writer.h"
+#include "nlos/containers/writers/npz_writer.h"
+#include "nlos/containers/writers/packed_chunk.h"
+#include "nlos/containers/writers/tar_writer.h"
 #include "tests/support/file_bytes.h"
 #include "tests/support/temporary_folder.h"
 

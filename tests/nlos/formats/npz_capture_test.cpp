@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Captures to .npz and back.
-#include "nlos/containers/npz_writer.h"
+#include "nlos/containers/writers/npz_writer.h"
 #include "nlos/formats/capture_file.h"
 #include "tests/nlos/formats/ytal_capture_file.h"
 #include "tests/support/error_message.h"

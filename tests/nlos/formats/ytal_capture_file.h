@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "nlos/containers/hdf5_writer.h"
+#include "nlos/containers/writers/hdf5_writer.h"
 #include "nlos/formats/capture_file.h"
 #include "tests/support/temporary_folder.h"
 

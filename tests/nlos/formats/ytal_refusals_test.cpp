@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Captures in y-tal's layout that cannot be read or written.
-#include "nlos/containers/hdf5_writer.h"
+#include "nlos/containers/writers/hdf5_writer.h"
 #include "nlos/formats/capture_file.h"
 #include "nlos/formats/volume_file.h"
 #include "tests/nlos/formats/ytal_capture_file.h"

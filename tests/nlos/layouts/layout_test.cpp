@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/layouts/layout.h"
 
-#include "nlos/containers/npz_writer.h"
+#include "nlos/containers/writers/npz_writer.h"
 #include "nlos/formats/capture_file.h"
 #include "nlos/layouts/layout_guess.h"
 #include "nlos/layouts/layout_points.h"

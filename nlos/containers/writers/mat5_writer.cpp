@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/containers/mat5_writer.h"
+#include "nlos/containers/writers/mat5_writer.h"
 
 #include "renderer/core/error.h"
 #include "renderer/core/output_file.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/containers/tar_writer.h"
+#include "nlos/containers/writers/tar_writer.h"
 
 #include "renderer/core/error.h"
 

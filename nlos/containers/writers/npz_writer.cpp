@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/containers/npz_writer.h"
+#include "nlos/containers/writers/npz_writer.h"
 
 #include "renderer/core/error.h"
 

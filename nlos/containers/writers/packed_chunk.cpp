@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/containers/packed_chunk.h"
+#include "nlos/containers/writers/packed_chunk.h"
 
 #include "renderer/core/error.h"
 

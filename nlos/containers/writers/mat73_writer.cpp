@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/containers/mat73_writer.h"
+#include "nlos/containers/writers/mat73_writer.h"
 
 namespace nlos {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/containers/hdf5_writer.h"
+#include "nlos/containers/writers/hdf5_writer.h"
 
 #include "renderer/core/error.h"
 
