@@ -4,8 +4,8 @@
 #include "calib/setup/boards.h"
 #include "calib/setup/direct_returns.h"
 #include "calib/setup/setup_geometry.h"
-#include "renderer/core/capture.h"
-#include "renderer/core/instrument_response.h"
+#include "renderer/core/capture/capture.h"
+#include "renderer/core/capture/instrument_response.h"
 
 #include <optional>
 #include <string>

@@ -3,7 +3,7 @@
 
 #include "calib/adjoint/adjoint_scene.h"
 #include "calib/adjoint/facet_tree.h"
-#include "renderer/core/capture.h"
+#include "renderer/core/capture/capture.h"
 #include "renderer/core/mesh.h"
 #include "renderer/core/progress.h"
 #include "renderer/core/settings.h"

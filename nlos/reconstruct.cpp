@@ -19,8 +19,8 @@
 #include "nlos/reconstruction/surface.h"
 #include "nlos/solver/confocal_solver.h"
 #include "nlos/solver/solver.h"
+#include "renderer/core/capture/recorded_detector.h"
 #include "renderer/core/process.h"
-#include "renderer/core/recorded_detector.h"
 #include "renderer/core/stopwatch.h"
 
 #include <fmt/format.h>

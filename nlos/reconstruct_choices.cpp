@@ -2,7 +2,7 @@
 #include "nlos/reconstruct_choices.h"
 
 #include "nlos/preparation/wiener_snr.h"
-#include "renderer/core/recorded_detector.h"
+#include "renderer/core/capture/recorded_detector.h"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/frame_sequence.h"
 
+#include "renderer/core/capture/sensor_footprint.h"
 #include "renderer/core/random.h"
-#include "renderer/core/sensor_footprint.h"
 #include "renderer/render.h"
 #include "renderer/restir_render.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/core/capture.h"
+#include "renderer/core/capture/capture.h"
 #include "renderer/ellipsoidal/excluded_facets.h"
 #include "renderer/restir/restir_counts.h"
 #include "renderer/settings/render_settings.h"
@@ -32,11 +32,11 @@ struct LeftOutOrders {
 /// What render() computed and what it took.
 struct RenderResult {
     core::Capture capture;
-    std::vector<OrderSource> sources;       ///< orders 1 and 2 need no estimator
-    std::optional<double> estimated_error;  ///< relative L2 over all of H; empty: not known
+    std::vector<OrderSource> sources;         ///< orders 1 and 2 need no estimator
+    std::optional<double> estimated_error;    ///< relative L2 over all of H; empty: not known
     std::optional<double> element_tolerance;  ///< of third bounces, see RenderSettings
-    std::optional<LeftOutOrders> left_out;  ///< counts as part of the error
-    std::uint64_t samples_per_pair = 0;     ///< candidate paths used, whole passes
+    std::optional<LeftOutOrders> left_out;    ///< counts as part of the error
+    std::uint64_t samples_per_pair = 0;       ///< candidate paths used, whole passes
     std::uint64_t num_rays = 0;
     double seconds = 0.0;
     ExcludedObjects excluded;  ///< from ellipsoidal connections, when there are any

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/core/capture.h"
+#include "renderer/core/capture/capture.h"
 #include "renderer/core/progress.h"
 #include "renderer/scene/scene.h"
 #include "renderer/settings/render_settings.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "renderer/core/capture/sensor_footprint.h"
 #include "renderer/core/progress.h"
-#include "renderer/core/sensor_footprint.h"
 #include "renderer/render_result.h"
 #include "renderer/scene/scene.h"
 #include "renderer/settings/render_settings.h"

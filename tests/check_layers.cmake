@@ -9,6 +9,7 @@ cmake_minimum_required(VERSION 3.25)
 
 set(floors_renderer
     "renderer/core"
+    "renderer/core/capture"
     "renderer/settings|renderer/material|renderer/triangle"
     "renderer/gltf|renderer/mesh_file|renderer/film"
     "renderer/scene"

@@ -10,7 +10,7 @@
 #include "nlos/formats/volume_file.h"
 #include "nlos/layouts/layout_guess.h"
 #include "nlos/preparation/capture_check.h"
-#include "renderer/core/recorded_detector.h"
+#include "renderer/core/capture/recorded_detector.h"
 
 #include <fmt/ranges.h>
 

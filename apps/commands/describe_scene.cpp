@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/commands/describe_scene.h"
 
-#include "renderer/core/sensor_footprint.h"
+#include "renderer/core/capture/sensor_footprint.h"
 #include "renderer/light_range.h"
 #include "renderer/scene/load_geometry.h"
 

@@ -12,7 +12,7 @@
 #include "nlos/layouts/layout_guess.h"
 #include "nlos/pictures/film.h"
 #include "nlos/pictures/picture.h"
-#include "renderer/core/capture.h"
+#include "renderer/core/capture/capture.h"
 #include "renderer/core/output_file.h"
 #include "renderer/core/parallel.h"
 #include "renderer/core/progress.h"

@@ -9,9 +9,9 @@
 #include "nlos/detector/detector.h"
 #include "nlos/detector/sensor_counts.h"
 #include "nlos/formats/capture_file.h"
+#include "renderer/core/capture/sensor_footprint.h"
 #include "renderer/core/output_file.h"
 #include "renderer/core/parallel.h"
-#include "renderer/core/sensor_footprint.h"
 
 #include <algorithm>
 #include <memory>

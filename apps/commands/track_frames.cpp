@@ -3,8 +3,8 @@
 
 #include "nlos/formats/capture_file.h"
 #include "nlos/layouts/layout_capture.h"
-#include "renderer/core/instrument_response.h"
-#include "renderer/core/recorded_detector.h"
+#include "renderer/core/capture/instrument_response.h"
+#include "renderer/core/capture/recorded_detector.h"
 
 #include <fmt/core.h>
 

@@ -2,7 +2,7 @@
 #include "apps/dataset/item.h"
 
 #include "nlos/formats/capture_arrays.h"
-#include "renderer/core/capture.h"
+#include "renderer/core/capture/capture.h"
 #include "renderer/core/stopwatch.h"
 #include "renderer/render.h"
 #include "renderer/scene/ground_truth.h"

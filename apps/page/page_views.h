@@ -2,7 +2,7 @@
 #pragma once
 
 #include "apps/page/result_view.h"
-#include "renderer/core/capture.h"
+#include "renderer/core/capture/capture.h"
 #include "renderer/core/mesh.h"
 
 #include <array>

@@ -5,7 +5,7 @@
 #include "apps/python/json_values.h"
 #include "apps/python/long_call.h"
 #include "calib/fit.h"
-#include "renderer/core/capture.h"
+#include "renderer/core/capture/capture.h"
 #include "renderer/material/scene_geometry.h"
 #include "renderer/scene/scene_file.h"
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "apps/python/arrays.h"
-#include "renderer/core/capture.h"
+#include "renderer/core/capture/capture.h"
 
 namespace python {
 

@@ -13,7 +13,7 @@
 #include "nlos/detector/detector.h"
 #include "nlos/detector/sensor_counts.h"
 #include "nlos/formats/capture_file.h"
-#include "renderer/core/sensor_footprint.h"
+#include "renderer/core/capture/sensor_footprint.h"
 #include "renderer/core/settings_help.h"
 
 #include <nanobind/stl/optional.h>

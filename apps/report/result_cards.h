@@ -2,7 +2,7 @@
 #pragma once
 
 #include "nlos/reconstruction/reconstruction.h"
-#include "renderer/core/capture.h"
+#include "renderer/core/capture/capture.h"
 #include "renderer/core/settings.h"
 
 #include <string>

@@ -3,7 +3,7 @@
 
 #include "apps/batch/checksum.h"
 #include "apps/sweep/sweep_plots.h"
-#include "renderer/core/instrument_response.h"
+#include "renderer/core/capture/instrument_response.h"
 #include "renderer/core/mapped_file.h"
 #include "renderer/scene/load_geometry.h"
 

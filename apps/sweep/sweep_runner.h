@@ -4,7 +4,7 @@
 #include "apps/scene_truth.h"
 #include "apps/sweep/sweep_plan.h"
 #include "nlos/compare/metrics.h"
-#include "renderer/core/capture.h"
+#include "renderer/core/capture/capture.h"
 #include "renderer/core/progress.h"
 
 #include <optional>

@@ -3,7 +3,7 @@
 
 #include "calib/adjoint/facet_tree.h"
 #include "calib/adjoint/mesh_elements.h"
-#include "renderer/core/capture.h"
+#include "renderer/core/capture/capture.h"
 #include "renderer/core/mesh.h"
 
 #include <vector>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "calib/forward/path_legs.h"
-#include "renderer/core/time_axis.h"
+#include "renderer/core/capture/time_axis.h"
 #include "renderer/triangle/triangle_histogram.h"
 
 #include <array>

@@ -3,7 +3,7 @@
 
 #include "calib/statistics/median.h"
 #include "calib/statistics/poisson_deviance.h"
-#include "renderer/core/recorded_detector.h"
+#include "renderer/core/capture/recorded_detector.h"
 
 #include <Eigen/Dense>
 #include <fmt/core.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "calib/fit/fit_data.h"
 
-#include "renderer/core/instrument_response.h"
+#include "renderer/core/capture/instrument_response.h"
 #include "renderer/core/parallel.h"
 
 #include <fmt/core.h>

@@ -3,9 +3,9 @@
 
 #include "calib/fit/initial_guesses.h"
 #include "calib/model/pose_ambiguity.h"
+#include "renderer/core/capture/recorded_detector.h"
 #include "renderer/core/error.h"
 #include "renderer/core/parallel.h"
-#include "renderer/core/recorded_detector.h"
 
 #include <fmt/core.h>
 

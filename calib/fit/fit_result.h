@@ -3,7 +3,7 @@
 
 #include "calib/model/fit_settings.h"
 #include "calib/statistics/uncertainty.h"
-#include "renderer/core/capture.h"
+#include "renderer/core/capture/capture.h"
 #include "renderer/material/scene_geometry.h"
 #include "renderer/scene/scene_file.h"
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "calib/fit/fit_data.h"
-#include "renderer/core/capture.h"
+#include "renderer/core/capture/capture.h"
 
 #include <vector>
 

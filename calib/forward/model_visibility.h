@@ -3,7 +3,7 @@
 
 #include "calib/forward/model_elements.h"
 #include "calib/model/scene_model.h"
-#include "renderer/core/capture.h"
+#include "renderer/core/capture/capture.h"
 #include "renderer/geometry/visibility_mask.h"
 
 #include <vector>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "calib/model/scene_model.h"
-#include "renderer/core/capture.h"
+#include "renderer/core/capture/capture.h"
 
 #include <array>
 #include <vector>

@@ -2,7 +2,7 @@
 #include "calib/setup/direct_returns.h"
 
 #include "calib/statistics/poisson_deviance.h"
-#include "renderer/core/instrument_response.h"
+#include "renderer/core/capture/instrument_response.h"
 
 #include <ceres/ceres.h>
 #include <fmt/core.h>

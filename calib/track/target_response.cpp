@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "calib/track/target_response.h"
 
-#include "renderer/core/instrument_response.h"
+#include "renderer/core/capture/instrument_response.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "calib/track/track_settings.h"
-#include "renderer/core/capture.h"
-#include "renderer/core/sensor_footprint.h"
-#include "renderer/core/time_axis.h"
+#include "renderer/core/capture/capture.h"
+#include "renderer/core/capture/sensor_footprint.h"
+#include "renderer/core/capture/time_axis.h"
 #include "renderer/core/types.h"
 
 #include <cstddef>

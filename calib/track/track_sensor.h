@@ -4,10 +4,10 @@
 #include "calib/track/target_response.h"
 #include "calib/track/target_search.h"
 #include "calib/track/track_settings.h"
-#include "renderer/core/capture.h"
-#include "renderer/core/relay_wall.h"
-#include "renderer/core/sensor_footprint.h"
-#include "renderer/core/time_axis.h"
+#include "renderer/core/capture/capture.h"
+#include "renderer/core/capture/relay_wall.h"
+#include "renderer/core/capture/sensor_footprint.h"
+#include "renderer/core/capture/time_axis.h"
 
 #include <optional>
 #include <string>

@@ -7,7 +7,7 @@
 #include "calib/track/target_state.h"
 #include "calib/track/track_sensor.h"
 #include "calib/track/track_settings.h"
-#include "renderer/core/observed_bins.h"
+#include "renderer/core/capture/observed_bins.h"
 
 #include <memory>
 #include <optional>

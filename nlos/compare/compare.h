@@ -3,7 +3,7 @@
 
 #include "nlos/compare/metrics.h"
 #include "nlos/reconstruction/reconstruction.h"
-#include "renderer/core/capture.h"
+#include "renderer/core/capture/capture.h"
 #include "renderer/core/depth_map.h"
 #include "renderer/core/mesh.h"
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "nlos/detector/detector.h"
-#include "renderer/core/sensor_footprint.h"
+#include "renderer/core/capture/sensor_footprint.h"
 
 namespace nlos {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/formats/capture_adjustment.h"
 
+#include "renderer/core/capture/scan_extent.h"
 #include "renderer/core/error.h"
-#include "renderer/core/scan_extent.h"
 
 #include <fmt/core.h>
 

@@ -3,7 +3,7 @@
 
 #include "nlos/containers/array_reader.h"
 #include "nlos/layouts/capture_settings.h"
-#include "renderer/core/capture.h"
+#include "renderer/core/capture/capture.h"
 
 namespace nlos {
 

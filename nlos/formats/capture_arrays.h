@@ -2,7 +2,7 @@
 #pragma once
 
 #include "nlos/containers/shape.h"
-#include "renderer/core/capture.h"
+#include "renderer/core/capture/capture.h"
 
 namespace nlos {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/formats/capture_file.h"
-#include "renderer/core/sensor_footprint.h"
+#include "renderer/core/capture/sensor_footprint.h"
 
 #include <fmt/core.h>
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "nlos/layouts/capture_settings.h"
-#include "renderer/core/capture.h"
+#include "renderer/core/capture/capture.h"
 
 #include <optional>
 #include <string>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "nlos/containers/exr_table.h"
-#include "renderer/core/capture.h"
+#include "renderer/core/capture/capture.h"
 
 #include <string>
 #include <vector>

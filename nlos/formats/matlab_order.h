@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/core/transient.h"
+#include "renderer/core/capture/transient.h"
 
 #include <vector>
 

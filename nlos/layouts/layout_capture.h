@@ -3,7 +3,7 @@
 
 #include "nlos/layouts/capture_settings.h"
 #include "nlos/layouts/layout_source.h"
-#include "renderer/core/capture.h"
+#include "renderer/core/capture/capture.h"
 
 #include <string>
 #include <vector>

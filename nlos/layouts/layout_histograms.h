@@ -3,7 +3,7 @@
 
 #include "nlos/layouts/layout_match.h"
 #include "nlos/layouts/layout_points.h"
-#include "renderer/core/capture.h"
+#include "renderer/core/capture/capture.h"
 
 #include <optional>
 #include <vector>

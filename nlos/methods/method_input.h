@@ -3,9 +3,9 @@
 
 #include "nlos/preparation/wall_frame.h"
 #include "nlos/reconstruction/volume.h"
-#include "renderer/core/capture.h"
+#include "renderer/core/capture/capture.h"
+#include "renderer/core/capture/instrument_response.h"
 #include "renderer/core/error.h"
-#include "renderer/core/instrument_response.h"
 #include "renderer/core/parallel.h"
 #include "renderer/core/progress.h"
 #include "renderer/core/stopwatch.h"

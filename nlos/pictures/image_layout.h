@@ -3,7 +3,7 @@
 
 #include "nlos/pictures/picture.h"
 #include "nlos/preparation/wall_frame.h"
-#include "renderer/core/pinhole_camera.h"
+#include "renderer/core/capture/pinhole_camera.h"
 
 #include <array>
 #include <cstddef>

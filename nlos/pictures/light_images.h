@@ -3,7 +3,7 @@
 
 #include "nlos/pictures/panel.h"
 #include "nlos/preparation/wall_frame.h"
-#include "renderer/core/capture.h"
+#include "renderer/core/capture/capture.h"
 
 #include <array>
 #include <cstddef>

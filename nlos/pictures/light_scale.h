@@ -2,7 +2,7 @@
 #pragma once
 
 #include "nlos/pictures/panel.h"
-#include "renderer/core/capture.h"
+#include "renderer/core/capture/capture.h"
 
 #include <array>
 #include <cstddef>

@@ -4,7 +4,7 @@
 #include "nlos/preparation/first_light.h"
 #include "nlos/preparation/histogram_preparation.h"
 #include "nlos/preparation/slip_recognition.h"
-#include "renderer/core/sensor_footprint.h"
+#include "renderer/core/capture/sensor_footprint.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/preparation/capture_survey.h"
 
-#include "renderer/core/recorded_detector.h"
+#include "renderer/core/capture/recorded_detector.h"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/core/capture.h"
-#include "renderer/core/instrument_response.h"
+#include "renderer/core/capture/capture.h"
+#include "renderer/core/capture/instrument_response.h"
 
 #include <optional>
 #include <string>

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "nlos/preparation/response_deconvolution.h"
-#include "renderer/core/capture.h"
-#include "renderer/core/time_axis.h"
-#include "renderer/core/transient.h"
+#include "renderer/core/capture/capture.h"
+#include "renderer/core/capture/time_axis.h"
+#include "renderer/core/capture/transient.h"
 
 #include <memory>
 #include <optional>

@@ -3,7 +3,7 @@
 
 #include "nlos/preparation/wall_frame.h"
 #include "nlos/reconstruction/reconstruct_settings.h"
-#include "renderer/core/capture.h"
+#include "renderer/core/capture/capture.h"
 
 #include <string>
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "nlos/fourier/fft.h"
-#include "renderer/core/instrument_response.h"
+#include "renderer/core/capture/instrument_response.h"
 
 #include <memory>
 #include <span>

@@ -3,7 +3,7 @@
 
 #include "nlos/preparation/histogram_preparation.h"
 #include "nlos/reconstruction/reconstruct_settings.h"
-#include "renderer/core/capture.h"
+#include "renderer/core/capture/capture.h"
 
 namespace nlos {
 

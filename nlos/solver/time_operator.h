@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/core/instrument_response.h"
-#include "renderer/core/time_axis.h"
+#include "renderer/core/capture/instrument_response.h"
+#include "renderer/core/capture/time_axis.h"
 
 #include <cstddef>
 #include <span>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/core/capture.h"
+#include "renderer/core/capture/capture.h"
 #include "renderer/core/random.h"
 #include "renderer/ellipsoidal/excluded_facets.h"
 #include "renderer/ellipsoidal/hierarchy_cut.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/core/velocity_axis.h"
+#include "renderer/core/capture/velocity_axis.h"
 #include "renderer/film/path_extent.h"
 #include "renderer/settings/render_settings.h"
 

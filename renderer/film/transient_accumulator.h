@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/core/capture.h"
+#include "renderer/core/capture/capture.h"
 #include "renderer/film/pass_histogram.h"
 
 #include <Eigen/Core>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/core/capture.h"
-#include "renderer/core/relay_wall.h"
-#include "renderer/core/sensor_footprint.h"
+#include "renderer/core/capture/capture.h"
+#include "renderer/core/capture/relay_wall.h"
+#include "renderer/core/capture/sensor_footprint.h"
 #include "renderer/scene/object_table.h"
 #include "renderer/settings/render_settings.h"
 

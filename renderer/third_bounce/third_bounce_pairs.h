@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/core/time_axis.h"
+#include "renderer/core/capture/time_axis.h"
 #include "renderer/third_bounce/third_bounce_visibility.h"
 
 #include <span>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/core/capture.h"
+#include "renderer/core/capture/capture.h"
 #include "renderer/film/pair_tiles.h"
 #include "renderer/third_bounce/third_bounce_visibility.h"
 #include "renderer/third_bounce/visibility_check.h"

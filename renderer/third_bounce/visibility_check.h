@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "renderer/core/capture/time_axis.h"
 #include "renderer/core/random.h"
-#include "renderer/core/time_axis.h"
 #include "renderer/third_bounce/third_bounce_visibility.h"
 
 #include <array>

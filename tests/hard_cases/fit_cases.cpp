@@ -5,7 +5,7 @@
 #include "calib/forward/forward_model.h"
 #include "calib/setup/direct_returns.h"
 #include "calib/statistics/uncertainty.h"
-#include "renderer/core/instrument_response.h"
+#include "renderer/core/capture/instrument_response.h"
 #include "renderer/core/random.h"
 #include "tests/hard_cases/cases.h"
 #include "tests/hard_cases/extended_precision.h"

@@ -2,7 +2,7 @@
 // Instrument responses and resampling of the time axis.
 #include "nlos/fourier/unit_phasor.h"
 #include "nlos/preparation/conservative_resampling.h"
-#include "renderer/core/instrument_response.h"
+#include "renderer/core/capture/instrument_response.h"
 #include "renderer/core/random.h"
 #include "tests/hard_cases/cases.h"
 #include "tests/hard_cases/extended_precision.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Bins, gates and bounds of lengths. Axes before and behind the light for every reconstruction
 // method: tests/nlos/reconstruction_hard_cases_test.cpp.
-#include "renderer/core/capture.h"
-#include "renderer/core/velocity_axis.h"
+#include "renderer/core/capture/capture.h"
+#include "renderer/core/capture/velocity_axis.h"
 #include "renderer/film/time_gate.h"
 #include "renderer/render.h"
 #include "tests/hard_cases/cases.h"

@@ -6,7 +6,7 @@
 #include "apps/bench/output.h"
 #include "nlos/pictures/panel.h"
 #include "nlos/reconstruction/volume.h"
-#include "renderer/core/capture.h"
+#include "renderer/core/capture/capture.h"
 #include "renderer/core/depth_map.h"
 #include "renderer/core/progress.h"
 

@@ -9,7 +9,7 @@
 #include "calib/statistics/median.h"
 #include "nlos/detector/detector.h"
 #include "nlos/reconstruct.h"
-#include "renderer/core/capture.h"
+#include "renderer/core/capture/capture.h"
 #include "renderer/core/random.h"
 #include "renderer/render.h"
 #include "renderer/scene/ground_truth.h"

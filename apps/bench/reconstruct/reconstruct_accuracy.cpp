@@ -6,7 +6,7 @@
 #include "nlos/compare/compare.h"
 #include "nlos/detector/detector.h"
 #include "nlos/formats/capture_file.h"
-#include "renderer/core/capture.h"
+#include "renderer/core/capture/capture.h"
 #include "renderer/core/depth_map.h"
 #include "renderer/core/parallel.h"
 #include "renderer/scene/scene_file.h"

@@ -2,9 +2,9 @@
 #include "apps/bench/track/simulated_walk.h"
 
 #include "nlos/detector/count_sampling.h"
-#include "renderer/core/instrument_response.h"
+#include "renderer/core/capture/instrument_response.h"
+#include "renderer/core/capture/sensor_model.h"
 #include "renderer/core/random.h"
-#include "renderer/core/sensor_model.h"
 
 #include <algorithm>
 #include <array>

@@ -3,7 +3,7 @@
 
 #include "calib/track/track_file.h"
 #include "calib/track/tracker.h"
-#include "renderer/core/sensor_footprint.h"
+#include "renderer/core/capture/sensor_footprint.h"
 
 #include <cstdint>
 #include <vector>

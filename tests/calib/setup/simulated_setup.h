@@ -2,7 +2,7 @@
 #pragma once
 
 #include "calib/calibrate.h"
-#include "renderer/core/instrument_response.h"
+#include "renderer/core/capture/instrument_response.h"
 #include "tests/support/statistics.h"
 #include "tests/support/test_scenes.h"
 

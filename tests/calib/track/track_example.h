@@ -3,7 +3,7 @@
 
 #include "calib/track/tracker.h"
 #include "nlos/detector/count_sampling.h"
-#include "renderer/core/instrument_response.h"
+#include "renderer/core/capture/instrument_response.h"
 #include "renderer/core/random.h"
 
 #include <cmath>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "nlos/containers/hdf5_handle.h"
-#include "renderer/core/capture.h"
+#include "renderer/core/capture/capture.h"
 
 #include <hdf5.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/preparation/response_deconvolution.h"
 
-#include "renderer/core/instrument_response.h"
+#include "renderer/core/capture/instrument_response.h"
 #include "renderer/core/random.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The kernel seen through a response: values against convolution, derivatives against differences.
-#include "renderer/core/instrument_response.h"
+#include "renderer/core/capture/instrument_response.h"
 #include "renderer/core/random.h"
 #include "renderer/triangle/triangle_histogram.h"
 #include "tests/support/single_triangle.h"

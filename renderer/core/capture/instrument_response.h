@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "renderer/core/capture/transient.h"
 #include "renderer/core/settings.h"
-#include "renderer/core/transient.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/core/recorded_detector.h"
+#include "renderer/core/capture/recorded_detector.h"
 
 #include "tests/support/error_message.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/core/scan_extent.h"
+#include "renderer/core/capture/scan_extent.h"
 
 #include <algorithm>
 

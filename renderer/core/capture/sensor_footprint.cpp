@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/core/sensor_footprint.h"
+#include "renderer/core/capture/sensor_footprint.h"
 
-#include "renderer/core/capture.h"
+#include "renderer/core/capture/capture.h"
 
 #include <fmt/core.h>
 

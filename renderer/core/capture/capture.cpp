@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/core/capture.h"
+#include "renderer/core/capture/capture.h"
 
 #include <fmt/core.h>
 

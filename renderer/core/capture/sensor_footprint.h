@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/core/relay_wall.h"
-#include "renderer/core/sensor_model.h"
+#include "renderer/core/capture/relay_wall.h"
+#include "renderer/core/capture/sensor_model.h"
 #include "renderer/core/types.h"
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/core/instrument_response.h"
+#include "renderer/core/capture/instrument_response.h"
 
 #include "renderer/core/mapped_file.h"
 #include "renderer/core/parallel.h"

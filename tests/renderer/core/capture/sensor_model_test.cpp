@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/core/sensor_model.h"
+#include "renderer/core/capture/sensor_model.h"
 
 #include "tests/support/error_message.h"
 #include "tests/support/file_bytes.h"
@@ -64,9 +64,9 @@ TEST(SensorModel, FilesAreReadAndWrittenUnchanged) {
 }
 
 TEST(SensorModel, MessagesNameFileKeyAndRange) {
-    EXPECT_ERROR_WITH(
-        core::read_sensor_model("vl53l9", "scan.sensor"),
-        "scan.sensor: found \"vl53l9\"; did you mean 'vl53l8'? must be one of vl53l8, tmf8828, tmf8829 or a");
+    EXPECT_ERROR_WITH(core::read_sensor_model("vl53l9", "scan.sensor"),
+                      "scan.sensor: found \"vl53l9\"; did you mean 'vl53l8'? must be one of "
+                      "vl53l8, tmf8828, tmf8829 or a");
     EXPECT_ERROR_WITH(core::read_sensor_model("nowhere.json"), "nowhere.json");
     EXPECT_ERROR_WITH(shipped_model_with({{"zones", {0, 4}}}), "other.json: zones");
     EXPECT_ERROR_WITH(shipped_model_with({{"zones", {128, 128}}}), "16384 zones");

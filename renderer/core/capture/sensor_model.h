@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "renderer/core/capture/time_axis.h"
 #include "renderer/core/settings.h"
-#include "renderer/core/time_axis.h"
 
 #include <array>
 #include <map>

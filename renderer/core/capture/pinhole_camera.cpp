@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/core/pinhole_camera.h"
+#include "renderer/core/capture/pinhole_camera.h"
 
 #include <fmt/core.h>
 

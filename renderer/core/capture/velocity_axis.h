@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/core/time_axis.h"
-#include "renderer/core/transient.h"
+#include "renderer/core/capture/time_axis.h"
+#include "renderer/core/capture/transient.h"
 #include "renderer/core/types.h"
 
 #include <optional>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/core/observed_bins.h"
+#include "renderer/core/capture/observed_bins.h"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/core/instrument_response.h"
+#include "renderer/core/capture/instrument_response.h"
 
 #include "tests/support/error_message.h"
 #include "tests/support/file_bytes.h"

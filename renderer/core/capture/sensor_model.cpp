@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/core/sensor_model.h"
+#include "renderer/core/capture/sensor_model.h"
 
+#include "renderer/core/capture/shipped_sensors.h"
 #include "renderer/core/nearest_name.h"
-#include "renderer/core/shipped_sensors.h"
 
 #include <fmt/core.h>
 #include <fmt/ranges.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/core/time_axis.h"
+#include "renderer/core/capture/time_axis.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/core/observed_bins.h"
+#include "renderer/core/capture/observed_bins.h"
 
-#include "renderer/core/capture.h"
+#include "renderer/core/capture/capture.h"
 #include "tests/support/error_message.h"
 #include "tests/support/example_capture.h"
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/core/observed_bins.h"
-#include "renderer/core/pinhole_camera.h"
+#include "renderer/core/capture/observed_bins.h"
+#include "renderer/core/capture/pinhole_camera.h"
+#include "renderer/core/capture/time_axis.h"
+#include "renderer/core/capture/transient.h"
+#include "renderer/core/capture/velocity_axis.h"
 #include "renderer/core/settings.h"
-#include "renderer/core/time_axis.h"
-#include "renderer/core/transient.h"
 #include "renderer/core/types.h"
-#include "renderer/core/velocity_axis.h"
 
 #include <array>
 #include <memory>
