@@ -46,22 +46,24 @@ void take_normals(const Volume& volume, core::DepthMap& depth) {
 PlateauShares plateau_shares(const ReconstructSettings& settings, bool has_noise) {
     if (settings.method == Method::Bp) return {0.0, 0.75, 7.0};
     if (settings.method == Method::Solver) return {0.0, has_noise ? 0.4 : 0.25};
+    if (settings.method == Method::Fk) {
+        return has_noise ? PlateauShares{0.0, 0.6, 8.0} : PlateauShares{0.84, 0.45, 8.0};
+    }
     if (!has_noise) return {};
-    if (settings.method == Method::Fk) return {0.0, 0.47};
     if (uses_wave(settings) || settings.method == Method::Fbp) return {0.0, 0.5};
     return {0.0, 0.52, 5.0};
 }
 
-/// Waves and f-k migration give squares. The shares of the deviations of depth (model, noise,
+/// Waves and f-k migration give magnitudes. The shares of the deviations of depth (model, noise,
 /// doubt, neighbours) are those of random surfaces, see reconstruction/README.md.
 VolumeErrors volume_errors(const ReconstructSettings& settings, bool has_noise) {
     const PlateauShares shares = plateau_shares(settings, has_noise);
-    if (uses_wave(settings)) return {VolumeScale::Power, 0.115, 0.3, 7.0, 0.0, shares};
+    if (uses_wave(settings)) return {VolumeScale::Magnitude, 0.115, 0.3, 7.0, 0.0, shares};
     switch (settings.method) {
         case Method::Solver:
             return {VolumeScale::Amplitude, 0.102, 0.35, 10.5, 0.0, shares};
         case Method::Fk:
-            return {VolumeScale::Power, 0.115, 0.17, 0.4, 0.4, shares};
+            return {VolumeScale::Magnitude, 0.085, 0.35, 0.15, 0.38, shares};
         case Method::Bp:
             return {VolumeScale::Amplitude, 0.042, 0.45, 5.0, 0.0, shares};
         case Method::Fbp:

@@ -102,12 +102,10 @@ class RangeTransform {
         const double first = range_m(pair, 0);
         for (std::size_t bin = 0; bin < histogram.size(); ++bin) {
             const double range = first + static_cast<double>(bin) * grids_.bin_m;
-            const double power = falloff_ == Falloff::Diffuse ? range : 1.0;
+            const double weight = falloff_ == Falloff::Diffuse ? range * range * range : range;
             const double damping = squared_sinc((range - grids_.center_m) / grids_.period_m());
             const double amplitude =
-                range > 0.0 && histogram[bin] > 0.0F
-                    ? power * std::sqrt(static_cast<double>(histogram[bin])) / damping
-                    : 0.0;
+                range > 0.0 ? weight * static_cast<double>(histogram[bin]) / damping : 0.0;
             amplitudes[bin] = static_cast<float>(amplitude);
         }
     }
@@ -183,7 +181,7 @@ class LateralTransform {
     PaddedPlane plane_;
 };
 
-/// Squared magnitudes of voxels [begin, end) along z, each an average over its depth samples.
+/// Magnitudes of voxels [begin, end) along z, each an average over its depth samples.
 ///
 /// field    of the last slab
 /// others   amplitudes of the slabs before it [z][x][y]; empty: there are none
@@ -211,7 +209,7 @@ void fill_voxels(const FkGrids& grids,
         float* sum = sums.data() + z / grids.samples - begin;
         for (std::size_t column = 0; column < num_columns; ++column) {
             const ComplexF a = amplitudes[column];
-            sum[column * count] += share * (a.real() * a.real() + a.imag() * a.imag());
+            sum[column * count] += share * std::sqrt(a.real() * a.real() + a.imag() * a.imag());
         }
     }
     for (std::size_t column = 0; column < num_columns; ++column) {

@@ -11,14 +11,15 @@ namespace nlos {
 /// spectrum is moved from (kx, ky, f) to (kx, ky, kz) with f^2 = kx^2 + ky^2 + kz^2, which gives
 /// the field at the start.
 ///
-/// The measured intensity enters by its root as amplitude, negative values as 0; the squared
-/// magnitude of the field is proportional to the data again.
+/// The wave falls off as 1 / r, what is measured as r^-4 on diffuse and r^-2 on retroreflecting
+/// surfaces: times r^3 or r it is the wave. Light of several surfaces adds up, and so do waves. The
+/// root of what is measured, which [Lindell2019] takes, does not: surfaces blur each other's depths.
 ///
 /// input     confocal scan with input.wall.grid; x and y of input.axes at the grid's points
 /// settings  falloff
 /// num_slabs of |kx|, worked on one after another: the result is the same up to rounding, each
 ///           repeats the lateral transforms
-/// returns   intensity, up to a common factor; not negative
+/// returns   magnitude of the field, up to a common factor
 /// throws    core::Failure when asked to stop
 /// source    [Lindell2019]
 Volume fk_migration(const MethodInput& input,

@@ -56,18 +56,15 @@ Mean mean_near(const core::DepthMap& depth,
 /// the peaks that half of all photons and the other half show, a value of which is as far below the
 /// measurement's as that of the other is above. A single half's distance from the measurement would
 /// be too small where noise is strong: the peak is already at the noise's.
-double movement(std::span<const float> column,
-                std::span<const float> again,
-                std::size_t voxel,
-                VolumeScale scale) {
+double movement(std::span<const float> column, std::span<const float> again, std::size_t voxel) {
     const std::size_t begin = voxel - std::min(voxel, kSearched);
     const std::size_t end = std::min(column.size(), voxel + kSearched + 1);
     std::vector<float> half(end - begin);
     std::vector<float> other(end - begin);
     for (std::size_t i = 0; i < half.size(); ++i) {
-        const double here = amplitude_of(again[begin + i], scale);
+        const double here = brightness_of(again[begin + i]);
         half[i] = static_cast<float>(here);
-        other[i] = static_cast<float>(2.0 * amplitude_of(column[begin + i], scale) - here);
+        other[i] = static_cast<float>(2.0 * brightness_of(column[begin + i]) - here);
     }
     const auto position = [](const std::vector<float>& values) {
         const auto highest = std::ranges::max_element(values) - values.begin();
@@ -114,8 +111,7 @@ std::vector<double> depth_sigmas(const Volume& volume,
         if (!depth.is_foreground(i)) continue;
         moved[i] = movement({volume.values.data() + i * nz, nz},
                             {again.values.data() + i * nz, nz},
-                            peaks[i].voxel,
-                            errors.scale);
+                            peaks[i].voxel);
         all_moved.add(moved[i]);
         const double off = off_plane_m(depth, i / depth.y_m.size(), i % depth.y_m.size());
         off_m[i] = std::isnan(off) ? kUnknownRoughness * step_m : off;

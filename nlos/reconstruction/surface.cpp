@@ -55,14 +55,13 @@ Vec3 fitted_normal(const core::DepthMap& depth, std::size_t ix, std::size_t iy) 
 /// thousandth of all columns; where there is none, the one that noise explains least. Far noise
 /// that falloff has raised may be brighter.
 std::size_t surface_voxel(std::span<const float> column,
-                          VolumeScale scale,
                           const VolumeNoise& noise,
                           double significant) {
     std::size_t brightest = column.size();
     std::size_t least_explained = 0;
     double largest = 0.0;
     for (std::size_t iz = 0; iz < column.size(); ++iz) {
-        const double significance = noise.significance(amplitude_of(column[iz], scale), iz);
+        const double significance = noise.significance(brightness_of(column[iz]), iz);
         if (significance > largest) {
             largest = significance;
             least_explained = iz;
@@ -78,9 +77,7 @@ std::size_t brightest_voxel(std::span<const float> column) {
 }
 
 /// The peak of every column.
-std::vector<ColumnPeak> find_peaks(const Volume& volume,
-                                   VolumeScale scale,
-                                   const std::optional<VolumeNoise>& noise) {
+std::vector<ColumnPeak> find_peaks(const Volume& volume, const std::optional<VolumeNoise>& noise) {
     constexpr double kChance = 1e-3;
     const std::size_t nz = volume.axes.z_m.size();
     const double significant = noise ? noise->significance_of_chance(kChance) : 0.0;
@@ -88,8 +85,7 @@ std::vector<ColumnPeak> find_peaks(const Volume& volume,
     for (std::size_t i = 0; i * nz < volume.values.size(); ++i) {
         const std::span<const float> column(volume.values.data() + i * nz, nz);
         peaks.push_back(find_peak(
-            column,
-            noise ? surface_voxel(column, scale, *noise, significant) : brightest_voxel(column)));
+            column, noise ? surface_voxel(column, *noise, significant) : brightest_voxel(column)));
     }
     return peaks;
 }
@@ -103,11 +99,10 @@ std::vector<double> surface_probabilities(const Volume& volume,
     std::vector<double> brightness;
     std::vector<double> chances;
     for (std::size_t i = 0; i < peaks.size(); ++i) {
-        const float value = std::max(0.0F, volume.values[i * nz + peaks[i].voxel]);
+        const double value = brightness_of(volume.values[i * nz + peaks[i].voxel]);
         brightness.push_back(value);
         if (!noise) continue;
-        const double amplitude = amplitude_of(value, errors.scale);
-        chances.push_back(noise->chance_in_column(noise->significance(amplitude, peaks[i].voxel)));
+        chances.push_back(noise->chance_in_column(noise->significance(value, peaks[i].voxel)));
     }
     std::vector<double> probabilities(peaks.size(), 1.0);
     if (noise) {
@@ -148,7 +143,7 @@ Surface find_surface(const Volume& volume,
 
     std::optional<VolumeNoise> noise;
     if (again) noise.emplace(volume, *again, errors.scale);
-    const std::vector<ColumnPeak> peaks = find_peaks(volume, errors.scale, noise);
+    const std::vector<ColumnPeak> peaks = find_peaks(volume, noise);
     surface.probability = surface_probabilities(volume, peaks, errors, noise);
     for (std::size_t i = 0; i < peaks.size(); ++i) {
         if (!(surface.probability[i] >= mask_threshold)) continue;

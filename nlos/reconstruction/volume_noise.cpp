@@ -12,7 +12,7 @@ constexpr double kSafety = 2.0;           // more independent values than were f
 
 /// Chance that one value exceeds `t` deviations by noise alone.
 double chance_of_one(double t, VolumeScale scale) {
-    if (scale == VolumeScale::Power) return std::exp(-0.5 * t * t);  // the length of a phasor
+    if (scale == VolumeScale::Magnitude) return std::exp(-0.5 * t * t);  // the length of a phasor
     return 0.5 * std::erfc(t / std::sqrt(2.0));
 }
 
@@ -22,15 +22,12 @@ struct SquaredDifferences {
     std::vector<double> count;
 };
 
-SquaredDifferences upward_differences(const Volume& volume,
-                                      const Volume& again,
-                                      VolumeScale scale) {
+SquaredDifferences upward_differences(const Volume& volume, const Volume& again) {
     const std::size_t nz = volume.axes.z_m.size();
     SquaredDifferences differences{std::vector<double>(nz), std::vector<double>(nz)};
     for (std::size_t i = 0; i < volume.values.size(); ++i) {
         if (!(volume.values[i] > 0.0F && again.values[i] > volume.values[i])) continue;
-        const double rise =
-            amplitude_of(again.values[i], scale) - amplitude_of(volume.values[i], scale);
+        const double rise = brightness_of(again.values[i]) - brightness_of(volume.values[i]);
         differences.sum[i % nz] += rise * rise;
         differences.count[i % nz] += 1.0;
     }
@@ -38,15 +35,11 @@ SquaredDifferences upward_differences(const Volume& volume,
 }
 
 /// The median of the largest rise in every column, in deviations.
-double median_largest_rise(const Volume& volume,
-                           const Volume& again,
-                           VolumeScale scale,
-                           const VolumeNoise& noise) {
+double median_largest_rise(const Volume& volume, const Volume& again, const VolumeNoise& noise) {
     const std::size_t nz = volume.axes.z_m.size();
     std::vector<double> largest(volume.values.size() / nz, 0.0);
     for (std::size_t i = 0; i < volume.values.size(); ++i) {
-        const double rise =
-            amplitude_of(again.values[i], scale) - amplitude_of(volume.values[i], scale);
+        const double rise = brightness_of(again.values[i]) - brightness_of(volume.values[i]);
         double& top = largest[i / nz];
         top = std::max(top, noise.significance(rise, i % nz));
     }
@@ -57,14 +50,13 @@ double median_largest_rise(const Volume& volume,
 
 }  // namespace
 
-double amplitude_of(float value, VolumeScale scale) {
-    const double positive = std::max(0.0, static_cast<double>(value));
-    return scale == VolumeScale::Power ? std::sqrt(positive) : positive;
+double brightness_of(float value) {
+    return std::max(0.0, static_cast<double>(value));
 }
 
 VolumeNoise::VolumeNoise(const Volume& volume, const Volume& again, VolumeScale scale)
     : scale_(scale), sigma_(volume.axes.z_m.size(), 0.0) {
-    const SquaredDifferences squares = upward_differences(volume, again, scale);
+    const SquaredDifferences squares = upward_differences(volume, again);
     const std::size_t nz = sigma_.size();
     for (std::size_t iz = 0; iz < nz; ++iz) {
         double sum = 0.0;
@@ -78,7 +70,7 @@ VolumeNoise::VolumeNoise(const Volume& volume, const Volume& again, VolumeScale 
         if (count > 0.0) sigma_[iz] = std::sqrt(sum / count);
     }
     if (volume.values.empty()) return;
-    const double median = median_largest_rise(volume, again, scale, *this);
+    const double median = median_largest_rise(volume, again, *this);
     const double below = 1.0 - chance_of_one(median, VolumeScale::Amplitude);
     independent_values_ = std::max(1.0, kSafety * std::log(0.5) / std::log(below));
 }

@@ -8,11 +8,12 @@
 
 namespace nlos {
 
-/// What a method's values are: amplitudes, in which noise adds, or their squares.
-enum class VolumeScale { Amplitude, Power };
+/// What a method's values are: amplitudes, to which noise adds, or magnitudes of a complex field, to
+/// which it adds.
+enum class VolumeScale { Amplitude, Magnitude };
 
-/// A voxel's value as an amplitude; values below 0 count as 0.
-double amplitude_of(float value, VolumeScale scale);
+/// A voxel's value; 0 for those below it.
+double brightness_of(float value);
 
 /// How much of a volume can be noise, told from the same scene measured again.
 ///

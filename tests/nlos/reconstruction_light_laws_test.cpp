@@ -11,8 +11,8 @@
 #include <vector>
 
 // What must hold for every method whatever the light: none, twice as much, too much, negative, or
-// from elsewhere. bp, fbp and, above 0, lct are linear; all others are of
-// the first power: twice the light, twice the volume.
+// from elsewhere. bp, fbp and, above 0, lct are linear; fk and phasor show the magnitude of a field
+// that is; all others are of the first power: twice the light, twice the volume.
 
 namespace nlos {
 namespace {
@@ -49,6 +49,32 @@ TEST_P(ReconstructionLaw, SumsOfScenesAreSumsOfVolumes) {
     }
 }
 
+// The parallelogram law: magnitudes alone tell whether their field is linear.
+TEST_P(ReconstructionLaw, SumsOfScenesAreSumsOfFields) {
+    if (!GetParam().shows_magnitudes()) return;
+    core::Capture first = dark_capture();
+    core::Capture second = dark_capture();
+    nlos_test::add_scatterer(first, Vec3(0.06, -0.1, 0.55), 4.0);
+    nlos_test::add_scatterer(second, Vec3(-0.1, 0.14, 0.66), 4.0);
+    const std::vector<float> a = run(first).volume.values;
+    const std::vector<float> b = run(second).volume.values;
+    for (std::size_t i = 0; i < first.transient.values().size(); ++i) {
+        first.transient.values()[i] += second.transient.values()[i];
+    }
+    const std::vector<float> sum = run(first).volume.values;
+    for (std::size_t i = 0; i < first.transient.values().size(); ++i) {
+        first.transient.values()[i] -= 2.0F * second.transient.values()[i];
+    }
+    const std::vector<float> difference = run(first).volume.values;
+    const auto square = [](float value) { return double{value} * double{value}; };
+    const double tolerance = 1e-5 * square(*std::ranges::max_element(sum));
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        ASSERT_NEAR(square(sum[i]) + square(difference[i]),
+                    2.0 * (square(a[i]) + square(b[i])),
+                    tolerance);
+    }
+}
+
 TEST_P(ReconstructionLaw, DarknessIsDark) {
     const Reconstruction result = run(dark_capture());
     for (const float value : result.volume.values) ASSERT_EQ(value, 0.0F);
@@ -82,8 +108,7 @@ TEST_P(ReconstructionLaw, SaturationIsNoMoreThanMuchLight) {
     EXPECT_LT(test_support::relative_l2(saturated.volume.values, expected), 1e-5);
 }
 
-// The squares of waves do not tell; other volumes change their sign or, where they are cut off, are
-// 0.
+// Magnitudes do not tell; other volumes change their sign or, where they are cut off, are 0.
 TEST_P(ReconstructionLaw, NegativeLightIsNoSurface) {
     core::Capture capture = dark_capture();
     nlos_test::add_scatterer(capture, Vec3(0.06, -0.1, 0.55), 4.0);
@@ -92,7 +117,7 @@ TEST_P(ReconstructionLaw, NegativeLightIsNoSurface) {
     const std::vector<float> negative = run(capture).volume.values;
     const auto brightest =
         static_cast<std::size_t>(std::ranges::max_element(positive) - positive.begin());
-    if (GetParam().is_wave()) {
+    if (GetParam().shows_magnitudes()) {
         EXPECT_LT(test_support::relative_l2(negative, positive), 1e-5);
     } else {
         EXPECT_LE(negative[brightest], 0.0F);

@@ -22,10 +22,10 @@ std::complex<double> complex_deviate(core::Rng& rng) {
     return std::polar(radius, 2.0 * core::kPi * rng.uniform());
 }
 
-/// Noise as a method shows it: cut off at 0, or the square of a complex amplitude.
+/// Noise as a method shows it: cut off at 0, or the magnitude of a complex field.
 float shown(std::complex<double> noise, VolumeScale scale) {
-    return static_cast<float>(scale == VolumeScale::Power ? std::norm(noise)
-                                                          : std::max(0.0, noise.real()));
+    return static_cast<float>(scale == VolumeScale::Magnitude ? std::abs(noise)
+                                                              : std::max(0.0, noise.real()));
 }
 
 class NoiseVolume : public testing::TestWithParam<VolumeScale> {
@@ -64,8 +64,7 @@ TEST_P(NoiseVolume, ColumnsExceedAChanceNoMoreOftenThanItSays) {
             double largest = 0.0;
             for (std::size_t iz = 0; iz < kNoiseDepths; ++iz) {
                 const float value = volume_.values[column * kNoiseDepths + iz];
-                largest =
-                    std::max(largest, noise.significance(amplitude_of(value, GetParam()), iz));
+                largest = std::max(largest, noise.significance(brightness_of(value), iz));
             }
             num_above += largest > limit ? 1 : 0;
         }
@@ -76,7 +75,7 @@ TEST_P(NoiseVolume, ColumnsExceedAChanceNoMoreOftenThanItSays) {
 
 INSTANTIATE_TEST_SUITE_P(BothScales,
                          NoiseVolume,
-                         testing::Values(VolumeScale::Amplitude, VolumeScale::Power));
+                         testing::Values(VolumeScale::Amplitude, VolumeScale::Magnitude));
 
 }  // namespace
 }  // namespace nlos
