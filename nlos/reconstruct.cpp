@@ -47,7 +47,7 @@ PlateauShares plateau_shares(const ReconstructSettings& settings, bool has_noise
     if (settings.method == Method::Bp) return {0.0, 0.75, 7.0};
     if (settings.method == Method::Solver) return {0.0, has_noise ? 0.4 : 0.25};
     if (settings.method == Method::Fk) {
-        return has_noise ? PlateauShares{0.0, 0.6, 8.0} : PlateauShares{0.84, 0.45, 8.0};
+        return has_noise ? PlateauShares{0.0, 0.6, 8.0} : PlateauShares{0.7, 0.45, 8.0};
     }
     if (!has_noise) return {};
     if (uses_wave(settings) || settings.method == Method::Fbp) return {0.0, 0.5};
