@@ -47,7 +47,7 @@ PlateauShares plateau_shares(const ReconstructSettings& settings, bool has_noise
     if (settings.method == Method::Bp) return {0.0, 0.75, 7.0};
     if (settings.method == Method::Solver) return {0.0, has_noise ? 0.4 : 0.25};
     if (settings.method == Method::Fk) {
-        return has_noise ? PlateauShares{0.0, 0.63, 8.0} : PlateauShares{0.7, 0.45, 8.0};
+        return has_noise ? PlateauShares{0.0, 0.53, 8.0} : PlateauShares{0.7, 0.4, 8.0};
     }
     if (!has_noise) return {};
     if (uses_wave(settings) || settings.method == Method::Fbp) return {0.0, 0.5};
@@ -63,7 +63,7 @@ VolumeErrors volume_errors(const ReconstructSettings& settings, bool has_noise) 
         case Method::Solver:
             return {VolumeScale::Amplitude, 0.102, 0.35, 10.5, 0.0, shares};
         case Method::Fk:
-            return {VolumeScale::Magnitude, 0.08, 0.35, 0.15, 0.37, shares};
+            return {VolumeScale::Magnitude, 0.042, 0.35, 0.15, 0.35, shares};
         case Method::Bp:
             return {VolumeScale::Amplitude, 0.042, 0.45, 5.0, 0.0, shares};
         case Method::Fbp:

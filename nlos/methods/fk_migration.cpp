@@ -26,6 +26,13 @@ double squared_sinc(double x) {
     return std::abs(angle) < 1e-9 ? 1.0 : std::pow(std::sin(angle) / angle, 2);
 }
 
+/// The derivative along range, up to a phase, of a frequency in shares of the bins' highest. Near
+/// that one bins alias and counts are noise: a window closes there.
+double derivative(double frequency) {
+    constexpr double kWindowPower = 6.0;
+    return frequency * std::pow(std::cos(0.5 * core::kPi * frequency), kWindowPower);
+}
+
 FkGrids make_grids(const MethodInput& input) {
     const core::TimeAxis& axis = input.time_axis;
     const auto [shortest, longest] = core::device_leg_range_m(input.scan);
@@ -78,11 +85,13 @@ class RangeTransform {
         }
         for (std::size_t f = 0; f < grids_.num_frequencies(); ++f) {
             const double frequency = static_cast<double>(f) / grids_.period_m();
+            const float weight = static_cast<float>(derivative(2.0 * grids_.bin_m * frequency));
             for (std::size_t i = 0; i < end - begin; ++i) {
                 const UnitPhasor phase =
                     unit_phasor(-frequency * (first_range_m[i] - grids_.center_m));
                 out[f * num_columns + begin + i] =
-                    multiply(rows.complex()[i * (row_floats / 2) + f], {phase.re, phase.im});
+                    multiply(rows.complex()[i * (row_floats / 2) + f],
+                             {weight * phase.re, weight * phase.im});
             }
         }
     }

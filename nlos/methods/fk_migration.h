@@ -11,9 +11,12 @@ namespace nlos {
 /// spectrum is moved from (kx, ky, f) to (kx, ky, kz) with f^2 = kx^2 + ky^2 + kz^2, which gives
 /// the field at the start.
 ///
-/// The wave falls off as 1 / r, what is measured as r^-4 on diffuse and r^-2 on retroreflecting
-/// surfaces: times r^3 or r it is the wave. Light of several surfaces adds up, and so do waves. The
-/// root of what is measured, which [Lindell2019] takes, does not: surfaces blur each other's depths.
+/// That wave, of amplitude f at the start, is d/dr (r M) at range r, M being the mean of f over the
+/// sphere of that radius. What is measured is the sum of f / r^4 over the sphere on diffuse
+/// surfaces and of f / r^2 on retroreflecting ones: times r^3 or r, and derived along range, it is
+/// the wave. [Lindell2019] takes the root of what is measured for it. But light of several surfaces
+/// adds up, its root does not, so that they blur each other's depths; and without the derivative a
+/// haze of low frequencies lies about them.
 ///
 /// input     confocal scan with input.wall.grid; x and y of input.axes at the grid's points
 /// settings  falloff
