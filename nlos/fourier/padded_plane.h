@@ -4,13 +4,17 @@
 #include "nlos/fourier/fft.h"
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 
 namespace nlos {
 
-// std::complex multiplication checks for infinities unless told otherwise; these are finite.
+// std::complex guards against infinities and overflow unless told otherwise; these have none.
 inline ComplexF multiply(ComplexF a, ComplexF b) {
     return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
+}
+inline float magnitude(ComplexF a) {
+    return std::sqrt(a.real() * a.real() + a.imag() * a.imag());
 }
 
 /// Lateral transforms of complex values (nx, ny) padded by zeros to (px, py). Rows along y that

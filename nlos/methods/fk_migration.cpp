@@ -28,7 +28,7 @@ double squared_sinc(double x) {
 
 /// The derivative along range, up to a phase, of a frequency in shares of the bins' highest. Near
 /// that one bins alias and counts are noise: a window closes there.
-double derivative(double frequency) {
+double windowed_derivative(double frequency) {
     constexpr double kWindowPower = 6.0;
     return frequency * std::pow(std::cos(0.5 * core::kPi * frequency), kWindowPower);
 }
@@ -61,15 +61,20 @@ FkGrids make_grids(const MethodInput& input) {
     return grids;
 }
 
-/// Amplitude of the virtual wave at each wall point, transformed along range with its phase
-/// relative to the centre; `out` is stored [frequency][x][y].
+/// The wave at each wall point, transformed along range with its phase relative to the centre.
+/// `out` is stored [frequency][x][y].
 class RangeTransform {
  public:
     RangeTransform(const MethodInput& input, const FkGrids& grids, Falloff falloff)
         : input_(input),
           grids_(grids),
           falloff_(falloff),
-          forward_(Fft::real_to_complex(grids.length, kColumnsPerBatch)) {}
+          forward_(Fft::real_to_complex(grids.length, kColumnsPerBatch)) {
+        for (std::size_t f = 0; f < grids.num_frequencies(); ++f) {
+            const double share = 2.0 * static_cast<double>(f) / static_cast<double>(grids.length);
+            derivative_.push_back(static_cast<float>(windowed_derivative(share)));
+        }
+    }
 
     void fill(std::size_t begin, std::size_t end, ComplexF* out) const {
         const std::size_t row_floats = grids_.length + 2;
@@ -85,13 +90,12 @@ class RangeTransform {
         }
         for (std::size_t f = 0; f < grids_.num_frequencies(); ++f) {
             const double frequency = static_cast<double>(f) / grids_.period_m();
-            const float weight = static_cast<float>(derivative(2.0 * grids_.bin_m * frequency));
             for (std::size_t i = 0; i < end - begin; ++i) {
                 const UnitPhasor phase =
                     unit_phasor(-frequency * (first_range_m[i] - grids_.center_m));
                 out[f * num_columns + begin + i] =
                     multiply(rows.complex()[i * (row_floats / 2) + f],
-                             {weight * phase.re, weight * phase.im});
+                             {derivative_[f] * phase.re, derivative_[f] * phase.im});
             }
         }
     }
@@ -123,6 +127,7 @@ class RangeTransform {
     const FkGrids& grids_;
     Falloff falloff_;
     Fft forward_;
+    std::vector<float> derivative_;  ///< of every frequency
 };
 
 /// How many |kx| a grid has.
@@ -217,8 +222,7 @@ void fill_voxels(const FkGrids& grids,
         lateral.add_amplitudes(field, slab, z, work, amplitudes.data());
         float* sum = sums.data() + z / grids.samples - begin;
         for (std::size_t column = 0; column < num_columns; ++column) {
-            const ComplexF a = amplitudes[column];
-            sum[column * count] += share * std::sqrt(a.real() * a.real() + a.imag() * a.imag());
+            sum[column * count] += share * magnitude(amplitudes[column]);
         }
     }
     for (std::size_t column = 0; column < num_columns; ++column) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/methods/phasor_field.h"
 
+#include "nlos/fourier/padded_plane.h"
 #include "nlos/methods/filtered_backprojection.h"
 #include "nlos/methods/plane_propagator.h"
 #include "nlos/methods/slabs.h"
@@ -164,9 +165,8 @@ void propagate_to(const Slab& planes,
     }
     for (std::size_t column = 0; column < num_columns; ++column) {
         for (std::size_t iz = planes.begin; iz < planes.end; ++iz) {
-            const ComplexF value = field[(iz - planes.begin) * num_columns + column];
             volume.values[column * num_z + iz] =
-                std::sqrt(value.real() * value.real() + value.imag() * value.imag());
+                magnitude(field[(iz - planes.begin) * num_columns + column]);
         }
     }
 }
