@@ -45,7 +45,7 @@ void take_normals(const Volume& volume, core::DepthMap& depth) {
 /// surfaces, see reconstruction/README.md.
 PlateauShares plateau_shares(const ReconstructSettings& settings, bool has_noise) {
     if (settings.method == Method::Bp) return {0.0, 0.75, 7.0};
-    if (settings.method == Method::Solver) return {0.0, has_noise ? 0.4 : 0.25};
+    if (settings.method == Method::Solver) return {0.0, has_noise ? 0.4 : 0.3};
     if (settings.method == Method::Fk) {
         return has_noise ? PlateauShares{0.0, 0.53, 8.0} : PlateauShares{0.7, 0.4, 8.0};
     }
@@ -61,7 +61,7 @@ VolumeErrors volume_errors(const ReconstructSettings& settings, bool has_noise) 
     if (uses_wave(settings)) return {VolumeScale::Magnitude, 0.115, 0.3, 7.0, 0.0, shares};
     switch (settings.method) {
         case Method::Solver:
-            return {VolumeScale::Amplitude, 0.102, 0.35, 10.5, 0.0, shares};
+            return {VolumeScale::Amplitude, 0.08, 0.34, 15.0, 0.0, shares};
         case Method::Fk:
             return {VolumeScale::Magnitude, 0.042, 0.35, 0.15, 0.35, shares};
         case Method::Bp:

@@ -33,7 +33,7 @@ ConservativeResampling path_length_to_squared_range(const core::TimeAxis& axis,
 
 }  // namespace
 
-Cone make_cone(const MethodInput& input, std::size_t bins_per_bin) {
+Cone make_cone(const MethodInput& input, double bins_per_bin) {
     Cone cone;
     const auto [shortest_leg, longest_leg] = core::device_leg_range_m(input.scan);
     cone.min_leg_m = shortest_leg;
@@ -50,8 +50,8 @@ Cone make_cone(const MethodInput& input, std::size_t bins_per_bin) {
                           "lct was given a time axis with fewer than 4 bins of positive range",
                           "method=bp works for any axis");
     }
-    cone.v_edges =
-        even_edges(begin * begin, end * end, bins_per_bin * static_cast<std::size_t>(num_bins));
+    cone.v_edges = even_edges(
+        begin * begin, end * end, static_cast<std::size_t>(std::ceil(bins_per_bin * num_bins)));
     cone.nx = input.wall.grid->size[0];
     cone.ny = input.wall.grid->size[1];
     cone.px = 2 * good_fft_size(cone.nx);
@@ -100,12 +100,14 @@ core::BinRange ConeData::observed(std::size_t column) const {
     return range.size() > 0 ? core::intersection(seen, {0, num_v}) : core::BinRange{};
 }
 
-ConservativeResampling squared_range_to_depth(const MethodInput& input, const Cone& cone) {
+ConservativeResampling squared_range_to_depth(const MethodInput& input,
+                                              const Cone& cone,
+                                              BinSpread spread) {
     const std::size_t nz = input.axes.z_m.size();
     std::vector<double> z_edges = even_edges(input.z_range_m[0], input.z_range_m[1], nz);
     const double per_metre = 1.0 / (z_edges[1] - z_edges[0]);
     for (double& edge : z_edges) edge *= edge;
-    return {cone.v_edges, z_edges, std::vector<double>(cone.num_v(), per_metre)};
+    return {cone.v_edges, z_edges, std::vector<double>(cone.num_v(), per_metre), spread};
 }
 
 ConeKernel::ConeKernel(const Cone& cone, const WallGrid& grid)
@@ -184,7 +186,7 @@ void add_spectrum_to_depth(const MethodInput& input,
     const std::size_t row_floats = cone.length + 2;
     const std::size_t nz = input.axes.z_m.size();
     const Fft inverse = Fft::complex_to_real(cone.length, kColumnsPerBlock);
-    const ConservativeResampling to_depth = squared_range_to_depth(input, cone);
+    const ConservativeResampling to_depth = squared_range_to_depth(input, cone, BinSpread::Even);
     parallel_blocks_with_progress(
         num_columns, kColumnsPerBlock, span, [&](std::size_t begin, std::size_t end) {
             FftBuffer rows(kColumnsPerBlock * row_floats);

@@ -15,7 +15,7 @@ inline constexpr std::size_t kSlabsPerBlock = 8;
 
 /// Even bins of v = r^2 are 1 / (2 r) wide in r: as many as there are range bins would be coarser
 /// than those in the near half of the volume and pull depths there towards the wall.
-inline constexpr std::size_t kSquaredRangeBinsPerBin = 2;
+inline constexpr double kSquaredRangeBinsPerBin = 2.0;
 
 /// The light cone: with v = (path length / 2)^2 and u = z^2, light from (x, y, u) reaches a wall
 /// point (dx, dy) away at v = u + dx^2 + dy^2. Even bins of v, and the padded sizes of transforms;
@@ -37,7 +37,7 @@ struct Cone {
 /// input          confocal scan with input.wall.grid
 /// bins_per_bin   bins of v for every bin of range
 /// throws         core::Error when the axis has no positive range
-Cone make_cone(const MethodInput& input, std::size_t bins_per_bin);
+Cone make_cone(const MethodInput& input, double bins_per_bin);
 
 /// The convolution's data g(v) of one wall point: bins of range [r_k, r_k+1] moved to bins of
 /// v = r^2, each multiplied by r^power; dr/dv is in the bins' widths.
@@ -60,7 +60,9 @@ class ConeData {
 
 /// f(u) -> rho(z): contents of the bins of u = z^2 moved to bins of z, per metre; this is
 /// rho = 2 z f(z^2).
-ConservativeResampling squared_range_to_depth(const MethodInput& input, const Cone& cone);
+ConservativeResampling squared_range_to_depth(const MethodInput& input,
+                                              const Cone& cone,
+                                              BinSpread spread);
 
 /// Where the cone meets one lateral offset: bin `shift` with weight `here`, the next one with
 /// `next`; the two sum to 1 unless the offset is off the axis.

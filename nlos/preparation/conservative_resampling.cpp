@@ -1,30 +1,63 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/preparation/conservative_resampling.h"
 
-#include <algorithm>
-
 namespace nlos {
+namespace {
+
+/// Where the content of one bin lies.
+class Content {
+ public:
+    Content(std::span<const double> edges, std::size_t bin, BinSpread spread)
+        : begin_(edges[bin]), end_(edges[bin + 1]), spread_(spread) {
+        if (spread == BinSpread::Even) return;
+        middle_ = 0.5 * (begin_ + end_);
+        const double width = end_ - begin_;
+        begin_ = bin > 0 ? 0.5 * (edges[bin - 1] + begin_) : middle_ - width;
+        end_ = bin + 2 < edges.size() ? 0.5 * (end_ + edges[bin + 2]) : middle_ + width;
+    }
+
+    double begin() const { return begin_; }
+    double end() const { return end_; }
+
+    /// The share of it before a place on the axis.
+    double before(double place) const {
+        const double width = end_ - begin_;
+        if (place <= begin_ || !(width > 0.0)) return 0.0;
+        if (place >= end_) return 1.0;
+        if (spread_ == BinSpread::Even) return (place - begin_) / width;
+        const double from_begin = place - begin_;
+        const double to_end = end_ - place;
+        return place < middle_ ? from_begin * from_begin / (width * (middle_ - begin_))
+                               : 1.0 - to_end * to_end / (width * (end_ - middle_));
+    }
+
+ private:
+    double begin_, end_;
+    double middle_ = 0.0;
+    BinSpread spread_;
+};
+
+}  // namespace
 
 ConservativeResampling::ConservativeResampling(std::span<const double> from_edges,
                                                std::span<const double> to_edges,
-                                               std::span<const double> from_scale) {
+                                               std::span<const double> from_scale,
+                                               BinSpread spread) {
     const std::size_t num_inputs = from_edges.size() - 1;
+    std::vector<Content> contents;
+    for (std::size_t i = 0; i < num_inputs; ++i) contents.emplace_back(from_edges, i, spread);
     rows_.resize(to_edges.size() - 1);
     weights_.reserve(num_inputs + rows_.size());
     std::size_t first = 0;
     for (std::size_t row = 0; row < rows_.size(); ++row) {
         const double begin = to_edges[row];
         const double end = to_edges[row + 1];
-        while (first < num_inputs && from_edges[first + 1] <= begin) ++first;
+        while (first < num_inputs && contents[first].end() <= begin) ++first;
         rows_[row].first_input = first;
         rows_[row].first_weight = weights_.size();
-        for (std::size_t i = first; i < num_inputs && from_edges[i] < end; ++i) {
-            const double overlap =
-                std::min(end, from_edges[i + 1]) - std::max(begin, from_edges[i]);
-            const double width = from_edges[i + 1] - from_edges[i];
-            weights_.push_back(
-                width > 0.0 ? static_cast<float>(from_scale[i] * std::max(0.0, overlap) / width)
-                            : 0.0F);
+        for (std::size_t i = first; i < num_inputs && contents[i].begin() < end; ++i) {
+            const double share = contents[i].before(end) - contents[i].before(begin);
+            weights_.push_back(static_cast<float>(from_scale[i] * share));
             ++rows_[row].count;
         }
     }

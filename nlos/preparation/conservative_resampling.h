@@ -7,6 +7,13 @@
 
 namespace nlos {
 
+/// How the content of a bin lies along the axis.
+enum class BinSpread {
+    Even,   ///< evenly over the bin
+    Linear  ///< densest in its middle and falling to nothing at those of its neighbours, so that
+            ///< the density of even bins is linear between their middles
+};
+
 /// Moves the contents of histogram bins to other bins, each share by overlap, so that the total is
 /// kept where the new bins cover the old ones. A sparse matrix, built directly.
 class ConservativeResampling {
@@ -16,7 +23,8 @@ class ConservativeResampling {
     /// from_scale   factor for each input bin
     ConservativeResampling(std::span<const double> from_edges,
                            std::span<const double> to_edges,
-                           std::span<const double> from_scale);
+                           std::span<const double> from_scale,
+                           BinSpread spread = BinSpread::Even);
 
     std::size_t num_outputs() const { return rows_.size(); }
 

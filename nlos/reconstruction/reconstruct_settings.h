@@ -129,7 +129,7 @@ void for_each_field(SolverSettings& s, Visitor&& visit) {
           s.tv,
           core::at_least(0,
                          "weight of total variation, in standard deviations of a voxel's noise; "
-                         "null: for confocal grids 0.35 of counts and 2 of radiance, else 1"));
+                         "null: 0.35 for counts of confocal grids, else 1"));
     visit(
         "sparsity",
         s.sparsity,

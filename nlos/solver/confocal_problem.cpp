@@ -124,7 +124,8 @@ core::BinRange find_window(const MethodInput& input, const TotalLight& total, bo
 Cone make_window_cone(const MethodInput& input, const core::TimeAxis& axis) {
     const double begin = std::max(0.0, 0.5 * axis.opl_start_m);
     const double end = 0.5 * axis.opl_end_m();
-    const double num_bins = std::ceil((end - begin) / (0.5 * axis.bin_width_m) - 1e-6);
+    const double num_bins =
+        std::ceil(kVBinsPerRangeBin * (end - begin) / (0.5 * axis.bin_width_m) - 1e-6);
     if (!(num_bins >= 4.0)) {
         throw core::Error("method",
                           "the solver was given light of fewer than 4 bins of positive range",

@@ -48,7 +48,8 @@ Volume solve_confocal(const MethodInput& input,
                         iterations,
                         solver.misfit() / num_observed_bins(data)));
     }
-    const ConservativeResampling to_depth = squared_range_to_depth(input, cone);
+    // A surface fills few bins: its depth is where they lie together.
+    const ConservativeResampling to_depth = squared_range_to_depth(input, cone, BinSpread::Linear);
     const std::size_t num_z = input.axes.z_m.size();
     const ConeKernel kernel(cone, *input.wall.grid);
     const auto unit = static_cast<float>(data.unit / std::sqrt(kernel.squared_norm()));
@@ -90,7 +91,7 @@ FalloffChoice choose_falloff(const MethodInput& input, ReconstructSettings setti
 double solve_confocal_bytes(const MethodInput& input,
                             const ReconstructSettings& /*settings*/,
                             std::size_t /*num_slabs*/) {
-    const Cone cone = make_cone(input, 1);
+    const Cone cone = make_cone(input, kVBinsPerRangeBin);
     return ConfocalAdmm::bytes(cone) + 4.0 * static_cast<double>(input.axes.num_voxels());
 }
 

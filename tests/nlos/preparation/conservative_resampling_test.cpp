@@ -30,6 +30,31 @@ TEST(ConservativeResampling, SplitsABinByOverlap) {
     EXPECT_FLOAT_EQ(output[2], 10.0F);
 }
 
+TEST(ConservativeResampling, MakesDensitiesLinearBetweenMiddles) {
+    const std::vector<double> from = even_edges(0.0, 10.0, 10);
+    const std::vector<double> to{1.0, 2.3, 2.4, 4.0, 6.7, 9.0};
+    const ConservativeResampling resampling(
+        from, to, std::vector<double>(10, 1.0), BinSpread::Linear);
+    std::vector<float> ramp;
+    for (int i = 0; i < 10; ++i) ramp.push_back(static_cast<float>(i) + 0.5F);
+    std::vector<float> output(5);
+    resampling.apply(ramp.data(), output.data());
+    for (std::size_t i = 0; i < output.size(); ++i) {
+        EXPECT_NEAR(output[i], 0.5 * (to[i + 1] * to[i + 1] - to[i] * to[i]), 1e-5);
+    }
+}
+
+TEST(ConservativeResampling, KeepsTheTotalOfLinearDensities) {
+    const std::vector<double> from{0.0, 0.1, 0.4, 0.9, 1.6};
+    const std::vector<double> to = even_edges(-1.0, 2.5, 9);
+    const ConservativeResampling resampling(
+        from, to, std::vector<double>(4, 1.0), BinSpread::Linear);
+    const std::vector<float> input{1.0F, 5.0F, 2.0F, 3.0F};
+    std::vector<float> output(resampling.num_outputs());
+    resampling.apply(input.data(), output.data());
+    EXPECT_NEAR(std::accumulate(output.begin(), output.end(), 0.0), 11.0, 1e-5);
+}
+
 TEST(ConservativeResampling, IgnoresEmptyBins) {
     const std::vector<double> from{0.0, 0.0, 1.0};
     const std::vector<double> to{0.0, 1.0};

@@ -14,13 +14,13 @@ namespace {
 
 using core::Vec3;
 
-/// A flat square plate of points 0.56 m before the wall.
-core::Capture plate_capture() {
+/// A flat square plate of points before the wall.
+core::Capture plate_capture(double z_m = 0.56) {
     core::Capture capture =
         nlos_test::confocal_capture(nlos_test::wall_grid({24, 24}, {0.04, 0.04}), {0.8, 0.016, 64});
     for (int ix = -10; ix <= 10; ++ix) {
         for (int iy = -10; iy <= 10; ++iy) {
-            nlos_test::add_scatterer(capture, Vec3(0.02 * ix, 0.02 * iy, 0.56), 4.0);
+            nlos_test::add_scatterer(capture, Vec3(0.02 * ix, 0.02 * iy, z_m), 4.0);
         }
     }
     return capture;
@@ -59,11 +59,15 @@ TEST(ConfocalSolver, SharpensANoisyPlateMoreThanTheWienerFilter) {
     EXPECT_LT(with_prior, 0.8 * error(run(capture, {"snr=0.1"})));
 }
 
+// To a third of a bin, wherever in it the plate lies.
 TEST(ConfocalSolver, FindsTheDepthOfThePlate) {
-    const Reconstruction result = run(plate_capture(), {"prior=tv"});
-    for (std::size_t ix = 8; ix < 16; ++ix) {
-        for (std::size_t iy = 8; iy < 16; ++iy) {
-            EXPECT_NEAR(result.depth.depth_m[result.depth.index(ix, iy)], 0.56, 0.004);
+    constexpr double kBin = 0.008;
+    for (const double z_m : {0.44, 0.442, 0.444, 0.446, 0.56}) {
+        const Reconstruction result = run(plate_capture(z_m), {"prior=tv"});
+        for (std::size_t ix = 8; ix < 16; ++ix) {
+            for (std::size_t iy = 8; iy < 16; ++iy) {
+                EXPECT_NEAR(result.depth.depth_m[result.depth.index(ix, iy)], z_m, kBin / 3.0);
+            }
         }
     }
 }
@@ -109,7 +113,7 @@ TEST(ConfocalSolver, FindsThePlateFromOnePointInSixteen) {
     }
     core::restrict_observed(capture, observed);
     const Reconstruction result = run(capture, {"prior=tv"});
-    EXPECT_LT(error(result), 0.11);
+    EXPECT_LT(error(result), 0.12);
     for (std::size_t ix = 9; ix < 15; ++ix) {
         for (std::size_t iy = 9; iy < 15; ++iy) {
             EXPECT_NEAR(result.depth.depth_m[result.depth.index(ix, iy)], 0.56, 0.008);
