@@ -8,7 +8,7 @@
 namespace nlos {
 namespace {
 
-constexpr std::size_t kRowsPerBatch = 16;  // wall points whose rows are transformed together
+constexpr std::size_t kRowsPerBatch = 32;  // wall points whose rows are transformed together
 
 /// |grad|^2 of forward differences along one axis, per frequency.
 std::vector<float> difference_power(std::size_t period) {
