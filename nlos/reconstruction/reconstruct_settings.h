@@ -129,7 +129,7 @@ void for_each_field(SolverSettings& s, Visitor&& visit) {
           s.tv,
           core::at_least(0,
                          "weight of total variation, in standard deviations of a voxel's noise; "
-                         "null: 0.35 for counts of confocal grids, else 1"));
+                         "null: for confocal grids 0.35 of counts and 1.4 of radiance, else 1"));
     visit(
         "sparsity",
         s.sparsity,

@@ -36,7 +36,7 @@ constexpr int kGainInterval = 5;             // iterations from one update of ga
 // Weights of total variation, unless set. What radiance leaves unexplained is the model's error,
 // much alike at neighbouring points, where counts have noise of their own.
 constexpr double kPoissonWeight = 0.35;
-constexpr double kGaussianWeight = 1.0;
+constexpr double kGaussianWeight = 1.4;
 constexpr double kSparsityShare = 0.1;  // of the weight of total variation, unless set
 
 /// Share of the wall points that were observed at all.

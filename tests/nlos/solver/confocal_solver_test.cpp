@@ -113,7 +113,7 @@ TEST(ConfocalSolver, FindsThePlateFromOnePointInSixteen) {
     }
     core::restrict_observed(capture, observed);
     const Reconstruction result = run(capture, {"prior=tv"});
-    EXPECT_LT(error(result), 0.12);
+    EXPECT_LT(error(result), 0.11);
     for (std::size_t ix = 9; ix < 15; ++ix) {
         for (std::size_t iy = 9; iy < 15; ++iy) {
             EXPECT_NEAR(result.depth.depth_m[result.depth.index(ix, iy)], 0.56, 0.008);
