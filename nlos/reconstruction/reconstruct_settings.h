@@ -61,7 +61,7 @@ struct PhasorSettings {
 /// of what the noise of the data makes of a voxel.
 struct SolverSettings {
     Likelihood likelihood = Likelihood::Auto;
-    std::optional<double> tv;         ///< weight of total variation; empty: by the likelihood
+    std::optional<double> tv;         ///< weight of total variation; empty: by the light
     std::optional<double> sparsity;   ///< weight of the sum; empty: a tenth of `tv`
     double spot_m = 0.0;              ///< full width at half maximum of the spot on the wall
     bool gains = false;               ///< finds a factor of every pair, see PairGains
@@ -129,7 +129,8 @@ void for_each_field(SolverSettings& s, Visitor&& visit) {
           s.tv,
           core::at_least(0,
                          "weight of total variation, in standard deviations of a voxel's noise; "
-                         "null: for confocal grids 0.35 of counts and 1.4 of radiance, else 1"));
+                         "null: for confocal grids 0.35 of counts and 0.6 of radiance, more where "
+                         "light is scarce, else 1"));
     visit(
         "sparsity",
         s.sparsity,

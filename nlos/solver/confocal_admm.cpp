@@ -33,10 +33,14 @@ constexpr double kToleranceOfGrids = 0.015;  // of the relative change, unless s
                                              // weakly: times the root of their share
 constexpr int kGainInterval = 5;             // iterations from one update of gains to the next
 
-// Weights of total variation, unless set. What radiance leaves unexplained is the model's error,
-// much alike at neighbouring points, where counts have noise of their own.
+// Weights of total variation where light is plenty, unless set: the fourth root of how scarce it is
+// multiplies them. `nlos bench weights` holds what follows from them against a search. What
+// radiance leaves unexplained is the model's error, much alike at neighbouring points, where counts
+// have noise of their own.
 constexpr double kPoissonWeight = 0.35;
-constexpr double kGaussianWeight = 1.4;
+constexpr double kGaussianWeight = 0.6;
+constexpr double kPlenty = 150.0;       // photons per wall point
+constexpr double kFewest = 0.6;         // fewer weigh as these
 constexpr double kSparsityShare = 0.1;  // of the weight of total variation, unless set
 
 /// Share of the wall points that were observed at all.
@@ -44,6 +48,37 @@ double observed_share(const ConfocalProblem& data) {
     const auto num_seen = std::ranges::count_if(
         data.observed, [](const core::BinRange& seen) { return seen.size() > 0; });
     return static_cast<double>(num_seen) / static_cast<double>(data.observed.size());
+}
+
+/// Photons above the background per wall point of the grid, observed or not. Background counts by
+/// the noise that it adds, so that this is what the light is known by.
+double photons_per_point(const ConfocalProblem& data) {
+    const std::size_t ny = data.cone.ny;
+    const auto num_bins = static_cast<std::size_t>(data.axis.num_bins);
+    std::vector<double> sum(num_bins, 0.0);
+    std::vector<double> excess(num_bins, 0.0);
+    for (std::size_t i = 0; i < data.values.size(); ++i) {
+        const std::size_t t = i / ny % num_bins;
+        const std::size_t column = i / (ny * num_bins) * ny + i % ny;
+        if (!data.observed[column].holds(static_cast<int>(t))) continue;
+        const double value = static_cast<double>(data.values[i]);
+        sum[t] += value;
+        excess[t] += value - static_cast<double>(data.background_per_bin[column]);
+    }
+    double photons = 0.0;
+    for (std::size_t t = 0; t < num_bins; ++t) {
+        if (sum[t] > 0.0) photons += excess[t] * excess[t] / sum[t] - 1.0;
+    }
+    return photons / static_cast<double>(data.cone.num_columns());
+}
+
+/// The weight of total variation by default: more where photons, or points with radiance, are few.
+double default_weight(const ConfocalProblem& data) {
+    if (data.likelihood == Likelihood::Gaussian) {
+        return kGaussianWeight * std::pow(observed_share(data), -0.25);
+    }
+    const double photons = std::max(kFewest, photons_per_point(data));
+    return kPoissonWeight * std::pow(std::max(1.0, kPlenty / photons), 0.25);
 }
 
 /// What the noise of light at v makes of a voxel at u, in units of its standard deviation: the
@@ -90,6 +125,7 @@ ConfocalAdmm::ConfocalAdmm(const MethodInput& input,
     : data_(data),
       cone_(data.cone),
       tolerance_(settings.tolerance.value_or(kToleranceOfGrids * std::sqrt(observed_share(data)))),
+      weight_(settings.tv.value_or(default_weight(data))),
       time_(data.time),
       convolution_(cone_, *input.wall.grid, settings.spot_m, kGradientPenalty, kAlbedoPenalty),
       num_bins_(static_cast<std::size_t>(data.axis.num_bins)),
@@ -105,11 +141,9 @@ ConfocalAdmm::ConfocalAdmm(const MethodInput& input,
     time_.factorize(data.precision);
     for (ConeField& u : u_) u.resize(right_.size());
     for (ConeField& b : b_) b.resize(right_.size());
-    const double tv = settings.tv.value_or(
-        data.likelihood == Likelihood::Poisson ? kPoissonWeight : kGaussianWeight);
-    const double sparsity = settings.sparsity.value_or(kSparsityShare * tv);
+    const double sparsity = settings.sparsity.value_or(kSparsityShare * weight_);
     for (const double noise : voxel_noise(data, *input.wall.grid)) {
-        tv_.push_back(static_cast<float>(tv * noise / kGradientPenalty));
+        tv_.push_back(static_cast<float>(weight_ * noise / kGradientPenalty));
         sparsity_.push_back(static_cast<float>(sparsity * noise / kAlbedoPenalty));
     }
 }

@@ -22,6 +22,9 @@ class ConfocalAdmm {
     /// Returns the number of iterations.
     int run(const core::Progress& progress, int max_iterations);
 
+    /// The weight of total variation, as set or by default.
+    double weight() const { return weight_; }
+
     /// The albedo that it found, per bin of v.
     const ConeField& albedo() const { return w_; }
 
@@ -65,7 +68,7 @@ class ConfocalAdmm {
 
     const ConfocalProblem& data_;
     const Cone& cone_;
-    double tolerance_;
+    double tolerance_, weight_;
     TimeOperator time_;
     ConeConvolution convolution_;
     std::size_t num_bins_;

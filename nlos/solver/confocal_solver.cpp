@@ -44,7 +44,9 @@ Volume solve_confocal(const MethodInput& input,
     const int iterations = solver.run(input.progress, settings.solver.max_iterations);
     if (input.progress.announce) {
         input.progress.announce(
-            fmt::format("solver: {} iterations, {:.3g} of deviance per observed bin",
+            fmt::format("solver: weight {:.2g} of total variation, {} iterations, {:.3g} of "
+                        "deviance per observed bin",
+                        solver.weight(),
                         iterations,
                         solver.misfit() / num_observed_bins(data)));
     }

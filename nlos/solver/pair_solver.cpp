@@ -24,7 +24,7 @@ constexpr double kSmallestPairLight = 1e-3;  // of the brightest bin
 constexpr float kNothing = 2e-3F;            // of the brightest voxel
 constexpr double kToleranceOfPairs = 0.01;   // of the relative change, unless set
 constexpr double kSparsityOfPairs = 0.1;     // of the weight of total variation, unless set
-constexpr double kWeight = 1.0;              // of total variation, unless set
+constexpr double kWeightOfPairs = 1.0;       // of total variation, unless set
 
 class PairSolver {
  public:
@@ -236,7 +236,7 @@ class PairSolver {
                          std::sqrt(intensity_ * static_cast<float>(seen_pairs_.size()));
     }
     float sparsity_weight(std::size_t i) const {
-        const double tv = settings_.tv.value_or(kWeight);
+        const double tv = settings_.tv.value_or(kWeightOfPairs);
         return static_cast<float>(settings_.sparsity.value_or(kSparsityOfPairs * tv)) *
                slope_noise(i);
     }
@@ -246,7 +246,7 @@ class PairSolver {
         for (const std::vector<float>& own : sensitivity_) {
             for (std::size_t i = 0; i < own.size(); ++i) total_seen_[i] += own[i];
         }
-        const auto tv = static_cast<float>(settings_.tv.value_or(kWeight));
+        const auto tv = static_cast<float>(settings_.tv.value_or(kWeightOfPairs));
         if (!(tv > 0.0F)) return;
         std::vector<float> weights(voxels_.size());
         for (std::size_t i = 0; i < weights.size(); ++i) weights[i] = tv * slope_noise(i);

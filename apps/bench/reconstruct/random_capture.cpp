@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+#include "apps/bench/reconstruct/random_capture.h"
+
+#include "apps/bench/scene.h"
+#include "apps/shapes/grid_mesh.h"
+#include "nlos/detector/detector.h"
+#include "renderer/core/random.h"
+#include "renderer/render.h"
+#include "renderer/scene/scene_file.h"
+
+#include <cmath>
+
+namespace apps {
+namespace {
+
+using core::Vec3;
+
+constexpr int kPointsPerAxis = 32;
+constexpr core::TimeAxis kAxis{0.0, 0.008, 256};
+constexpr double kBackgroundShare = 0.02;  // of the brightest bin
+
+renderer::SceneGeometry random_surface(int number) {
+    core::Rng rng(0, static_cast<std::uint64_t>(number), 0);
+    const auto between = [&](double low, double high) {
+        return low + (high - low) * rng.uniform();
+    };
+    const double half_width = between(0.12, 0.35);
+    const double half_height = between(0.12, 0.35);
+    const Vec3 center(between(half_width - 0.45, 0.45 - half_width),
+                      between(half_height - 0.45, 0.45 - half_height),
+                      between(0.5, 0.9));
+    const double steepest = std::tan(core::kPi * 25.0 / 180.0);
+    const double slope = steepest * rng.uniform();
+    const double direction = 2.0 * core::kPi * rng.uniform();
+    const bool is_flat = number % 2 == 0;
+    const double bend = is_flat ? 0.0 : between(-0.2, 0.2) * half_width;
+    const double waves = between(0.5, 1.0) * core::kPi;
+    renderer::SceneGeometry geometry;
+    renderer::Object& object = geometry.objects.emplace_back();
+    object.material.albedo = 0.8;
+    object.mesh = make_grid_mesh(is_flat ? 1 : 12, [&](double u, double v) {
+        const double x = half_width * u;
+        const double y = half_height * v;
+        const double tilt = slope * (std::cos(direction) * x + std::sin(direction) * y);
+        const double wave = bend * std::cos(waves * u) * std::cos(waves * v);
+        return Vec3(center + Vec3(x, y, tilt + wave));
+    });
+    return geometry;
+}
+
+}  // namespace
+
+RandomCapture make_random_capture(int number, core::ScanPattern pattern) {
+    renderer::SceneDescription description;
+    description.scan.pattern = pattern;
+    description.scan.sensing_points = {kPointsPerAxis, kPointsPerAxis};
+    const core::Scan scan = renderer::make_scan(description);
+    renderer::Scene scene(random_surface(number), scan, renderer::RelayWall{});
+    core::Capture capture = renderer::render(scene, scan, kAxis, {}, {}).capture;
+    return {std::move(scene), std::move(capture)};
+}
+
+core::Capture random_counts(const core::Capture& clean, double peak_counts, int seed) {
+    nlos::DetectorSettings settings;
+    settings.photons = photons_for_peak(clean, peak_counts);
+    settings.ambient = kBackgroundShare * peak_counts;
+    settings.seed = static_cast<std::uint64_t>(seed);
+    return nlos::detect(clean, settings);
+}
+
+}  // namespace apps
