@@ -61,7 +61,7 @@ VolumeErrors volume_errors(const ReconstructSettings& settings, bool has_noise) 
     if (uses_wave(settings)) return {VolumeScale::Magnitude, 0.115, 0.3, 7.0, 0.0, shares};
     switch (settings.method) {
         case Method::Solver:
-            return {VolumeScale::Amplitude, 0.077, 0.34, 15.0, 0.0, shares};
+            return {VolumeScale::Amplitude, 0.067, 0.345, 23.0, 0.0, shares};
         case Method::Fk:
             return {VolumeScale::Magnitude, 0.042, 0.35, 0.15, 0.35, shares};
         case Method::Bp:
