@@ -50,34 +50,12 @@ double observed_share(const ConfocalProblem& data) {
     return static_cast<double>(num_seen) / static_cast<double>(data.observed.size());
 }
 
-/// Photons above the background per wall point of the grid, observed or not. Background counts by
-/// the noise that it adds, so that this is what the light is known by.
-double photons_per_point(const ConfocalProblem& data) {
-    const std::size_t ny = data.cone.ny;
-    const auto num_bins = static_cast<std::size_t>(data.axis.num_bins);
-    std::vector<double> sum(num_bins, 0.0);
-    std::vector<double> excess(num_bins, 0.0);
-    for (std::size_t i = 0; i < data.values.size(); ++i) {
-        const std::size_t t = i / ny % num_bins;
-        const std::size_t column = i / (ny * num_bins) * ny + i % ny;
-        if (!data.observed[column].holds(static_cast<int>(t))) continue;
-        const double value = static_cast<double>(data.values[i]);
-        sum[t] += value;
-        excess[t] += value - static_cast<double>(data.background_per_bin[column]);
-    }
-    double photons = 0.0;
-    for (std::size_t t = 0; t < num_bins; ++t) {
-        if (sum[t] > 0.0) photons += excess[t] * excess[t] / sum[t] - 1.0;
-    }
-    return photons / static_cast<double>(data.cone.num_columns());
-}
-
 /// The weight of total variation by default: more where photons, or points with radiance, are few.
 double default_weight(const ConfocalProblem& data) {
     if (data.likelihood == Likelihood::Gaussian) {
         return kGaussianWeight * std::pow(observed_share(data), -0.25);
     }
-    const double photons = std::max(kFewest, photons_per_point(data));
+    const double photons = std::max(kFewest, data.photons_per_point);
     return kPoissonWeight * std::pow(std::max(1.0, kPlenty / photons), 0.25);
 }
 

@@ -158,6 +158,18 @@ std::vector<double> poisson_precision(const TotalLight& total, const core::BinRa
     return intensity;
 }
 
+/// Each bin's excess by its own noise, which background adds to.
+double photons_per_point(const TotalLight& total,
+                         const core::BinRange& window,
+                         std::size_t num_points) {
+    double photons = 0.0;
+    for (int bin = window.begin; bin < window.end; ++bin) {
+        const auto i = static_cast<std::size_t>(bin);
+        if (total.sum[i] > 0.0) photons += std::pow(total.excess[i], 2) / total.sum[i] - 1.0;
+    }
+    return photons / static_cast<double>(num_points);
+}
+
 /// Standard deviation of light times range^power, from what interpolation between the nearest
 /// observed points along y leaves: what no smooth scene explains. Light of a scene leaves the more,
 /// the farther apart they are: a share in inverse proportion is what neighbours would have left.
@@ -273,6 +285,7 @@ ConfocalProblem make_confocal_problem(const MethodInput& input,
     }
     data.precision =
         is_poisson ? poisson_precision(total, window) : gaussian_precision(data, power);
+    data.photons_per_point = photons_per_point(total, window, data.cone.num_columns());
     data.unit = light_unit(data);
     data.time.scale(data.unit);
     return data;

@@ -25,6 +25,7 @@ struct ConfocalProblem {
     std::vector<double> precision;          ///< per bin: about 1 / variance of its light
     TimeOperator time;  ///< of light in a unit in which its standard deviation is about 1
     double unit = 1.0;  ///< that unit, as content of a bin of v times range^power
+    double photons_per_point = 0.0;  ///< of light, had it no background, that were as well known
 };
 
 /// Cuts the bins with light out of a capture, takes device legs off and weighs what is left.

@@ -30,10 +30,10 @@ core::Capture thinned(core::Capture capture, double observed, int seed) {
 /// Errors of the depths of one run [m], NaN where a true column was given none.
 std::vector<double> errors_of(const core::Capture& capture,
                               const renderer::Scene& scene,
-                              const std::vector<std::string>& overrides) {
+                              const std::string& weight) {
     nlos::ReconstructSettings settings;
     core::apply_override(settings, "method=solver");
-    for (const std::string& text : overrides) core::apply_override(settings, text);
+    core::apply_override(settings, "solver.tv=" + weight);
     const nlos::Reconstruction result = nlos::reconstruct(capture, settings, {});
     const nlos::VolumeAxes& axes = result.volume.axes;
     const core::DepthMap truth =
@@ -48,12 +48,14 @@ std::vector<double> errors_of(const core::Capture& capture,
 
 /// Sums over true columns of what one weight found, beside what the default found.
 struct WeightTally {
+    std::size_t columns = 0;
     std::size_t found = 0;
     std::size_t both = 0;
     double error_m = 0.0;          // of those both found
     double default_error_m = 0.0;  // of the same columns
 
     void add(const std::vector<double>& errors, const std::vector<double>& default_errors) {
+        columns += errors.size();
         for (std::size_t i = 0; i < errors.size(); ++i) {
             if (std::isnan(errors[i])) continue;
             ++found;
@@ -63,47 +65,55 @@ struct WeightTally {
             default_error_m += default_errors[i];
         }
     }
+    double found_share() const {
+        return columns > 0 ? static_cast<double>(found) / static_cast<double>(columns) : 0.0;
+    }
 };
 
-WeightSearch search(const WeightsBenchSettings& settings, double peak_counts, double observed) {
-    core::ScanPattern pattern{};
-    core::read_value(settings.pattern, "--pattern", pattern);
-    std::vector<WeightTally> tallies(settings.weights.size());
-    WeightTally own;
-    std::size_t num_columns = 0;
-    for (int number = 0; number < settings.surfaces; ++number) {
-        const RandomCapture random = make_random_capture(settings.first + number, pattern);
-        const core::Capture capture = thinned(
-            peak_counts > 0.0 ? random_counts(random.capture, peak_counts, number) : random.capture,
-            observed,
-            number);
-        const std::vector<double> errors = errors_of(capture, random.scene, {});
-        num_columns += errors.size();
-        own.add(errors, errors);
-        for (std::size_t w = 0; w < tallies.size(); ++w) {
-            const std::string weight = fmt::format("solver.tv={}", settings.weights[w]);
-            tallies[w].add(errors_of(capture, random.scene, {weight}), errors);
-        }
+/// One signal level and share of points.
+struct Search {
+    double peak_counts = 0.0;
+    double observed = 1.0;
+    WeightTally own;                   // of the default
+    std::vector<WeightTally> tallies;  // per weight
+};
+
+void add_surface(const RandomCapture& random,
+                 int number,
+                 const std::vector<double>& weights,
+                 Search& search) {
+    const core::Capture capture =
+        thinned(search.peak_counts > 0.0 ? random_counts(random.capture, search.peak_counts, number)
+                                         : random.capture,
+                search.observed,
+                number);
+    const std::vector<double> errors = errors_of(capture, random.scene, "null");
+    search.own.add(errors, errors);
+    for (std::size_t w = 0; w < weights.size(); ++w) {
+        search.tallies[w].add(errors_of(capture, random.scene, fmt::format("{}", weights[w])),
+                              errors);
     }
-    const auto share = [](double part, std::size_t whole) {
-        return whole > 0 ? part / static_cast<double>(whole) : 0.0;
-    };
-    WeightSearch result;
-    result.peak_counts = peak_counts;
-    result.observed = observed;
-    result.captures = settings.surfaces;
-    result.found = share(static_cast<double>(own.found), num_columns);
-    result.depth_mae_m = share(own.error_m, own.both);
-    for (std::size_t w = 0; w < tallies.size(); ++w) {
-        const WeightTally& tally = tallies[w];
-        if (tally.both == 0 || tally.default_error_m < result.error_over_best * tally.error_m) {
+}
+
+WeightSearch row_of(const Search& search, const WeightsBenchSettings& settings) {
+    WeightSearch row;
+    row.peak_counts = search.peak_counts;
+    row.observed = search.observed;
+    row.captures = settings.surfaces;
+    row.found = search.own.found_share();
+    if (search.own.found > 0) {
+        row.depth_mae_m = search.own.error_m / static_cast<double>(search.own.found);
+    }
+    for (std::size_t w = 0; w < search.tallies.size(); ++w) {
+        const WeightTally& tally = search.tallies[w];
+        if (tally.both == 0 || tally.default_error_m < row.error_over_best * tally.error_m) {
             continue;
         }
-        result.error_over_best = tally.default_error_m / tally.error_m;
-        result.best_weight = settings.weights[w];
-        result.best_found = share(static_cast<double>(tally.found), num_columns);
+        row.error_over_best = tally.default_error_m / tally.error_m;
+        row.best_weight = settings.weights[w];
+        row.best_found = tally.found_share();
     }
-    return result;
+    return row;
 }
 
 void declare_weights(CLI::App& command, WeightsBenchSettings& settings) {
@@ -119,17 +129,25 @@ void declare_weights(CLI::App& command, WeightsBenchSettings& settings) {
 }  // namespace
 
 WeightsBench search_weights(const WeightsBenchSettings& settings, const core::Progress& progress) {
-    WeightsBench bench;
-    const std::size_t num_searches = settings.peaks.size() * settings.observed.size();
+    core::ScanPattern pattern{};
+    core::read_value(settings.pattern, "--pattern", pattern);
+    std::vector<Search> searches;
     for (const double observed : settings.observed) {
         for (const double peak : settings.peaks) {
-            if (progress.should_stop()) throw core::Failure("bench", "interrupted");
-            progress.update(
-                static_cast<double>(bench.searches.size()) / static_cast<double>(num_searches),
-                "searches");
-            bench.searches.push_back(search(settings, peak, observed));
+            searches.push_back(
+                {peak, observed, {}, std::vector<WeightTally>(settings.weights.size())});
         }
     }
+    for (int number = 0; number < settings.surfaces; ++number) {
+        progress.update(static_cast<double>(number) / settings.surfaces, "surfaces");
+        const RandomCapture random = make_random_capture(settings.first + number, pattern);
+        for (Search& search : searches) {
+            if (progress.should_stop()) throw core::Failure("bench", "interrupted");
+            add_surface(random, number, settings.weights, search);
+        }
+    }
+    WeightsBench bench;
+    for (const Search& search : searches) bench.searches.push_back(row_of(search, settings));
     return bench;
 }
 
