@@ -174,14 +174,13 @@ class Job {
             for (const std::string& found : result_.findings) progress_.announce("found: " + found);
         }
         const ReconstructSettings& settings = result_.settings;
-        result_.volume = functions_of(settings).run(input, settings, num_slabs);
+        result_.volume = reconstruct_volume(input, num_slabs);
         std::optional<Volume> again;
         if (const auto second = measure_again(capture_)) {
             PreparedCapture prepared = crop_capture(*second, settings.crop);
             if (!prepared_.conversion.empty()) convert_to_confocal(prepared);
             histograms = prepare(prepared.transient());
-            again = functions_of(settings).run(
-                input_with(histograms, second_run_), settings, num_slabs);
+            again = reconstruct_volume(input_with(histograms, second_run_), num_slabs);
         }
         take_surface(again ? &*again : nullptr, result_);
         return std::move(result_);
@@ -297,12 +296,20 @@ class Job {
                 measurement_};
     }
 
-    /// Enters how light falls off: as counts say where `auto` took the solver, else diffuse.
+    Volume reconstruct_volume(const MethodInput& input, std::size_t num_slabs) const {
+        const ReconstructSettings& settings = result_.settings;
+        Volume volume = functions_of(settings).run(input, settings, num_slabs);
+        divide_by_depth(albedo_power(settings.falloff), volume);
+        return volume;
+    }
+
+    /// Enters how light falls off: as the data say where they do, else diffuse.
     void choose_falloff_of(const MethodInput& input) {
         ReconstructSettings& settings = result_.settings;
         if (settings.falloff != Falloff::Auto) return;
         settings.falloff = Falloff::Diffuse;
-        if (!is_auto_ || settings.method != Method::Solver || !is_confocal_grid(input)) return;
+        if (settings.method != Method::Solver || !is_confocal_grid(input)) return;
+        if (!is_auto_ && !needs_falloff_choice(input)) return;
         FalloffChoice choice = choose_falloff(input, settings);
         settings.falloff = choice.falloff;
         result_.findings.push_back(std::move(choice.reason));

@@ -13,15 +13,21 @@ namespace nlos {
 namespace {
 
 constexpr std::size_t kDefaultColumns = 64;
+constexpr double kBinOfResponse = 0.4;  // standard deviations: widens it by less than 1 %
 
 /// As many bins as keep the range they cover within a quarter of the wall points' distance: finer
 /// depth than that no aperture of this sampling resolves, and noise and work shrink with the bins.
-/// A gate keeps some bins too.
-int default_merge_bins(const PreparedCapture& prepared) {
+/// A gate keeps some bins too. The solver takes wider ones where its response smears more.
+int default_merge_bins(const PreparedCapture& prepared, const ReconstructSettings& settings) {
     const core::TimeAxis& axis = prepared.time_axis;
     if (!prepared.wall.grid) return 1;
-    const double limit_m =
+    double limit_m =
         0.25 * std::min(prepared.wall.grid->pitch_m[0], prepared.wall.grid->pitch_m[1]);
+    if (settings.method == Method::Solver && core::is_stated(settings.response)) {
+        const auto response = core::make_response(settings.response, "response");
+        const double range_m = 0.5 * std::sqrt(core::moments(response).variance_m2);
+        limit_m = std::max(limit_m, kBinOfResponse * range_m);
+    }
     int num_bins = axis.num_bins;
     for (std::size_t pair = 0; pair < prepared.scan.num_pairs(); ++pair) {
         const int seen = core::observed_range(prepared.observed, pair, axis.num_bins).size();
@@ -78,7 +84,7 @@ PreparationPlan choose_preparation(const PreparedCapture& prepared, ReconstructS
     if (settings.ambient == Ambient::Auto) {
         settings.ambient = is_counts || settings.noise_floor ? Ambient::Subtract : Ambient::Keep;
     }
-    if (!settings.merge_bins) settings.merge_bins = default_merge_bins(prepared);
+    if (!settings.merge_bins) settings.merge_bins = default_merge_bins(prepared, settings);
     PreparationPlan plan;
     plan.observed = prepared.observed;
     plan.merge_bins = *settings.merge_bins;

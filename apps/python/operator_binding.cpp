@@ -17,7 +17,7 @@ OperatorSettings read_settings(const nb::dict& keywords) {
     const auto settings = settings_from_python<OperatorSettings>(keywords);
     core::check_ranges(settings, "");
     if (settings.falloff == nlos::Falloff::Auto) {
-        throw core::Error("falloff", "found auto", "must be diffuse or retro");
+        throw core::Error("falloff", "found auto", "must be diffuse, retro or facing");
     }
     return settings;
 }

@@ -22,7 +22,9 @@ struct OperatorSettings {
 
 template <class Visitor>
 void for_each_field(OperatorSettings& s, Visitor&& visit) {
-    visit("falloff", s.falloff, "by range: diffuse (r^4) or retro (r^2)");
+    visit("falloff",
+          s.falloff,
+          "by range: diffuse (r^4), retro (r^2) or facing (r^8; albedo counts times z^4)");
     visit("response", s.response, "instrument response");
     visit("spot_m", s.spot_m, core::at_least(0, "full width of the spot on the wall [m]"));
 }

@@ -30,10 +30,11 @@ double spot_factor(std::size_t k, std::size_t period, double fwhm_m, double pitc
 }  // namespace
 
 ConeConvolution::ConeConvolution(
-    const Cone& cone, const WallGrid& grid, double spot_m, double mu, double nu)
+    const Cone& cone, const WallGrid& grid, double spot_m, double mu, double nu, bool is_confined)
     : cone_(cone),
       mu_(static_cast<float>(mu)),
       nu_(static_cast<float>(nu)),
+      is_confined_(is_confined),
       plane_({cone.nx, cone.ny}, {cone.px, cone.py}),
       forward_(Fft::real_to_complex(cone.length, kRowsPerBatch)),
       inverse_(Fft::complex_to_real(cone.length, kRowsPerBatch)),
@@ -154,12 +155,16 @@ void ConeConvolution::solve_plane(std::size_t k,
                                   PaddedPlane::Workspace& right) {
     const ComplexF* kernel = kernel_.data() + k * qx_ * qy_;
     ComplexF* solution = solution_.data() + k * cone_.px * cone_.py;
+    const ComplexF* outside = is_confined_ ? outside_.data() + k * cone_.px * cone_.py : nullptr;
     for (std::size_t ix = 0; ix < cone_.px; ++ix) {
         const ComplexF* quadrant = kernel + std::min(ix, cone_.px - ix) * qy_;
         const float base = nu_ + mu_ * (gradient_power_[0][ix] + gradient_power_[2][k]);
         ComplexF* d = plane_.row(difference, ix);
         ComplexF* b = plane_.row(right, ix);
         ComplexF* f = solution + ix * cone_.py;
+        for (std::size_t iy = 0; is_confined_ && iy < cone_.py; ++iy) {
+            b[iy] -= nu_ * outside[ix * cone_.py + iy];
+        }
         for (std::size_t iy = 0; iy < cone_.py; ++iy) {
             const ComplexF h = quadrant[std::min(iy, cone_.py - iy)];
             const float power = h.real() * h.real() + h.imag() * h.imag();
@@ -171,10 +176,26 @@ void ConeConvolution::solve_plane(std::size_t k,
     }
 }
 
+void ConeConvolution::sum_outside(std::size_t k,
+                                  const ComplexF* inside,
+                                  PaddedPlane::Workspace& work) {
+    plane_.load(inside, work);
+    plane_.forward(work);
+    const float scale = 1.0F / static_cast<float>(cone_.px * cone_.py);
+    for (std::size_t ix = 0; ix < cone_.px; ++ix) {
+        const std::size_t first = (k * cone_.px + ix) * cone_.py;
+        const ComplexF* row = plane_.row(work, ix);
+        for (std::size_t iy = 0; iy < cone_.py; ++iy) {
+            outside_[first + iy] += solution_[first + iy] - scale * row[iy];
+        }
+    }
+}
+
 void ConeConvolution::solve(ConeField& difference, ConeField& right) {
     if (solution_.empty()) {
         second_.resize(first_.size());
         solution_.resize(cone_.num_frequencies() * cone_.px * cone_.py);
+        if (is_confined_) outside_.resize(solution_.size());
     }
     to_frequencies(difference, first_);
     to_frequencies(right, second_);
@@ -194,18 +215,19 @@ void ConeConvolution::solve(ConeField& difference, ConeField& right) {
                 plane_.inverse(b);
                 plane_.store(a, difference_plane);
                 plane_.store(b, right_plane);
+                if (is_confined_) sum_outside(k, right_plane, b);
             }
         });
     from_frequencies(first_, difference);
     from_frequencies(second_, right);
 }
 
-double ConeConvolution::bytes(const Cone& cone, double num_fields) {
+double ConeConvolution::bytes(const Cone& cone, double num_fields, bool is_confined) {
     const double frequencies = static_cast<double>(cone.num_frequencies());
     const double columns = static_cast<double>(cone.num_columns());
     const double padded = static_cast<double>(cone.px * cone.py);
     const double quadrant = static_cast<double>((cone.px / 2 + 1) * (cone.py / 2 + 1));
-    return 8.0 * frequencies * (padded + quadrant + 2.0 * columns) +
+    return 8.0 * frequencies * ((is_confined ? 2.0 : 1.0) * padded + quadrant + 2.0 * columns) +
            4.0 * num_fields * columns * static_cast<double>(cone.num_v());
 }
 

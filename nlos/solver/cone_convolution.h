@@ -19,12 +19,19 @@ using ConeField = std::vector<float>;
 ///     (K'K + mu grad'grad + nu) f = K'c + b
 ///
 /// for fields f that may reach beyond the footprint, with differences between neighbouring voxels
-/// and b = 0 out there. All are diagonal after a Fourier transform over the padded period.
+/// and b = 0 out there; or b = -nu times the sum of all earlier f out there, which drives f to 0
+/// beside the footprint. All are diagonal after a Fourier transform over the padded period.
 class ConeConvolution {
  public:
-    /// spot_m   full width at half maximum of the illuminated and observed spot [m]
-    /// mu, nu   see above
-    ConeConvolution(const Cone& cone, const WallGrid& grid, double spot_m, double mu, double nu);
+    /// spot_m        full width at half maximum of the illuminated and observed spot [m]
+    /// mu, nu        see above
+    /// is_confined   whether f is driven to 0 beside the footprint
+    ConeConvolution(const Cone& cone,
+                    const WallGrid& grid,
+                    double spot_m,
+                    double mu,
+                    double nu,
+                    bool is_confined = false);
 
     std::size_t num_values() const { return cone_.num_columns() * cone_.num_v(); }
 
@@ -40,7 +47,7 @@ class ConeConvolution {
     void solve(ConeField& difference, ConeField& right);
 
     /// Bytes that it takes, with `num_fields` more fields over the footprint.
-    static double bytes(const Cone& cone, double num_fields);
+    static double bytes(const Cone& cone, double num_fields, bool is_confined);
 
  private:
     using Planes = std::vector<ComplexF>;  ///< [frequency along v][x][y]
@@ -49,9 +56,12 @@ class ConeConvolution {
     void from_frequencies(Planes& planes, ConeField& field) const;
     void convolve(const ConeField& field, ConeField& result, bool is_adjoint);
     void solve_plane(std::size_t k, PaddedPlane::Workspace& a, PaddedPlane::Workspace& b);
+    /// Adds the solution beside the footprint to outside_; `inside` has its values on it.
+    void sum_outside(std::size_t k, const ComplexF* inside, PaddedPlane::Workspace& work);
 
     Cone cone_;
     float mu_, nu_;
+    bool is_confined_;
     PaddedPlane plane_;
     Fft forward_, inverse_;
     std::size_t qx_, qy_;
@@ -59,6 +69,7 @@ class ConeConvolution {
     std::array<std::vector<float>, 3> gradient_power_;
     Planes first_, second_;
     Planes solution_;  ///< the last one's spectrum, [frequency along v][padded x][padded y]
+    Planes outside_;   ///< likewise, of the sum of all solutions beside the footprint
 };
 
 }  // namespace nlos

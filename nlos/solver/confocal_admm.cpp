@@ -43,6 +43,11 @@ constexpr double kPlenty = 150.0;       // photons per wall point
 constexpr double kFewest = 0.6;         // fewer weigh as these
 constexpr double kSparsityShare = 0.1;  // of the weight of total variation, unless set
 
+// Powers of how far the response smears depth, where the model tells all of the light: then a
+// smaller weight shows more of the shape, and takes longer to settle.
+constexpr double kSmearedWeight = -2.5;
+constexpr double kSmearedTolerance = -2.0;
+
 /// Share of the wall points that were observed at all.
 double observed_share(const ConfocalProblem& data) {
     const auto num_seen = std::ranges::count_if(
@@ -52,11 +57,18 @@ double observed_share(const ConfocalProblem& data) {
 
 /// The weight of total variation by default: more where photons, or points with radiance, are few.
 double default_weight(const ConfocalProblem& data) {
+    const double smeared = data.is_confined ? std::pow(data.blur, kSmearedWeight) : 1.0;
     if (data.likelihood == Likelihood::Gaussian) {
-        return kGaussianWeight * std::pow(observed_share(data), -0.25);
+        return kGaussianWeight * smeared * std::pow(observed_share(data), -0.25);
     }
     const double photons = std::max(kFewest, data.photons_per_point);
-    return kPoissonWeight * std::pow(std::max(1.0, kPlenty / photons), 0.25);
+    return kPoissonWeight * smeared * std::pow(std::max(1.0, kPlenty / photons), 0.25);
+}
+
+/// The relative change at which iterations stop by default.
+double default_tolerance(const ConfocalProblem& data) {
+    const double smeared = data.is_confined ? std::pow(data.blur, kSmearedTolerance) : 1.0;
+    return kToleranceOfGrids * smeared * std::sqrt(observed_share(data));
 }
 
 /// What the noise of light at v makes of a voxel at u, in units of its standard deviation: the
@@ -102,10 +114,15 @@ ConfocalAdmm::ConfocalAdmm(const MethodInput& input,
                            const SolverSettings& settings)
     : data_(data),
       cone_(data.cone),
-      tolerance_(settings.tolerance.value_or(kToleranceOfGrids * std::sqrt(observed_share(data)))),
+      tolerance_(settings.tolerance.value_or(default_tolerance(data))),
       weight_(settings.tv.value_or(default_weight(data))),
       time_(data.time),
-      convolution_(cone_, *input.wall.grid, settings.spot_m, kGradientPenalty, kAlbedoPenalty),
+      convolution_(cone_,
+                   *input.wall.grid,
+                   settings.spot_m,
+                   kGradientPenalty,
+                   kAlbedoPenalty,
+                   data.is_confined),
       num_bins_(static_cast<std::size_t>(data.axis.num_bins)),
       has_gains_(settings.gains),
       gains_(cone_.num_columns()),
@@ -143,12 +160,14 @@ int ConfocalAdmm::run(const core::Progress& progress, int max_iterations) {
     return max_iterations;
 }
 
-double ConfocalAdmm::misfit() const {
+double ConfocalAdmm::misfit() {
+    if (data_.is_confined) convolution_.forward(w_, light_);
+    const ConeField& light = data_.is_confined ? light_ : c_;
     std::vector<double> rows(cone_.nx, 0.0);
     core::parallel_for(cone_.nx, [&](std::size_t ix) {
         const std::size_t lanes = cone_.ny;
         std::vector<float> time(num_bins_ * lanes);
-        time_.apply(c_.data() + ix * cone_.num_v() * lanes, time.data(), lanes);
+        time_.apply(light.data() + ix * cone_.num_v() * lanes, time.data(), lanes);
         for (std::size_t i = 0; i < time.size(); ++i) {
             const std::size_t column = ix * lanes + i % lanes;
             const std::size_t t = i / lanes;
@@ -310,8 +329,8 @@ ConfocalAdmm::Change ConfocalAdmm::split_albedo(std::size_t ix, std::size_t v) {
     return change;
 }
 
-double ConfocalAdmm::bytes(const Cone& cone) {
-    return ConeConvolution::bytes(cone, kNumFields);
+double ConfocalAdmm::bytes(const Cone& cone, bool is_confined) {
+    return ConeConvolution::bytes(cone, kNumFields, is_confined);
 }
 
 }  // namespace nlos

@@ -28,12 +28,12 @@ class ConfocalAdmm {
     /// The albedo that it found, per bin of v.
     const ConeField& albedo() const { return w_; }
 
-    /// Twice how much less likely the observed bins are than under their own values (the
-    /// deviance), all scatterers included.
-    double misfit() const;
+    /// Twice how much less likely the observed bins are under the light of all scatterers than
+    /// under their own values (the deviance). To be called once it has run.
+    double misfit();
 
     /// Memory that it takes on top of its input [bytes].
-    static double bytes(const Cone& cone);
+    static double bytes(const Cone& cone, bool is_confined);
 
  private:
     /// Squares that say how far the iterations have come.

@@ -14,6 +14,12 @@ constexpr double kSignificance = 5.0;        // standard deviations of counts
 constexpr double kSmallestIntensity = 0.02;  // of the brightest bin: what a bin's noise is at least
 constexpr double kFarthestNeighbour = 4.0;   // points to the next that was observed
 
+// A larger unit makes the solver's penalties smaller against the likelihood. The more a response
+// smears, the less the data say of single voxels, and the longer large penalties hold these back.
+// Scatterers beside the footprint cost their square by them, and must not come too cheap.
+constexpr double kConfinedUnitPower = 3.5;
+constexpr double kUnitPower = 0.5;
+
 /// Histograms of columns from the wall to the wall, cut to some bins.
 class WallHistograms {
  public:
@@ -121,9 +127,23 @@ core::BinRange find_window(const MethodInput& input, const TotalLight& total, bo
     return window;
 }
 
-Cone make_window_cone(const MethodInput& input, const core::TimeAxis& axis) {
+/// Standard deviation of the response, as range.
+double response_deviation_m(const MethodInput& input) {
+    double sum = 0.0;
+    double squares = 0.0;
+    double delay = 0.0;
+    for (const double weight : input.measurement.response.weights) {
+        sum += weight * delay;
+        squares += weight * delay * delay;
+        delay += 1.0;
+    }
+    return 0.5 * input.time_axis.bin_width_m * std::sqrt(std::max(0.0, squares - sum * sum));
+}
+
+/// margin_m   of ranges behind the axis, whose light a response brings into it
+Cone make_window_cone(const MethodInput& input, const core::TimeAxis& axis, double margin_m) {
     const double begin = std::max(0.0, 0.5 * axis.opl_start_m);
-    const double end = 0.5 * axis.opl_end_m();
+    const double end = 0.5 * axis.opl_end_m() + margin_m;
     const double num_bins =
         std::ceil(kVBinsPerRangeBin * (end - begin) / (0.5 * axis.bin_width_m) - 1e-6);
     if (!(num_bins >= 4.0)) {
@@ -251,8 +271,14 @@ bool holds_counts(const MethodInput& input) {
 
 }  // namespace
 
+double depth_blur(const MethodInput& input) {
+    const auto& pitch = input.wall.grid->pitch_m;
+    return response_deviation_m(input) / std::min(pitch[0], pitch[1]);
+}
+
 ConfocalProblem make_confocal_problem(const MethodInput& input,
-                                      const ReconstructSettings& settings) {
+                                      const ReconstructSettings& settings,
+                                      bool is_confined) {
     const WallHistograms histograms(input);
     const double power = falloff_power(settings.falloff);
     Likelihood likelihood = settings.solver.likelihood;
@@ -266,7 +292,7 @@ ConfocalProblem make_confocal_problem(const MethodInput& input,
     axis.opl_start_m += window.begin * axis.bin_width_m;
     axis.num_bins = window.size();
 
-    Cone cone = make_window_cone(input, axis);
+    Cone cone = make_window_cone(input, axis, is_confined ? response_deviation_m(input) : 0.0);
     TimeOperator time(axis, cone.v_edges, power, input.measurement.response);
     ConfocalProblem data{std::move(cone), axis, {}, {}, {}, likelihood, {}, std::move(time)};
     const std::size_t ny = data.cone.ny;
@@ -286,7 +312,10 @@ ConfocalProblem make_confocal_problem(const MethodInput& input,
     data.precision =
         is_poisson ? poisson_precision(total, window) : gaussian_precision(data, power);
     data.photons_per_point = photons_per_point(total, window, data.cone.num_columns());
-    data.unit = light_unit(data);
+    data.is_confined = is_confined;
+    data.blur = std::max(1.0, depth_blur(input));
+    data.unit =
+        light_unit(data) * std::pow(data.blur, is_confined ? kConfinedUnitPower : kUnitPower);
     data.time.scale(data.unit);
     return data;
 }

@@ -23,17 +23,27 @@ struct ConfocalProblem {
     std::vector<float> background_per_bin;  ///< per column
     Likelihood likelihood;                  ///< not Auto
     std::vector<double> precision;          ///< per bin: about 1 / variance of its light
-    TimeOperator time;  ///< of light in a unit in which its standard deviation is about 1
+    TimeOperator time;  ///< of light in a unit in which its standard deviation is about 1 (less
+                        ///< where the solver is confined and depth smeared)
     double unit = 1.0;  ///< that unit, as content of a bin of v times range^power
     double photons_per_point = 0.0;  ///< of light, had it no background, that were as well known
+    bool is_confined = false;        ///< all scatterers lie before the wall's footprint
+    double blur = 1.0;               ///< depth_blur(), at least 1
 };
+
+/// How far the response smears depth: its standard deviation as range, in distances of wall points;
+/// 0 without one.
+double depth_blur(const MethodInput& input);
 
 /// Cuts the bins with light out of a capture, takes device legs off and weighs what is left.
 ///
 /// Where device legs differ by no whole number of bins, a bin is split between two.
 ///
-/// throws     core::Error when the axis has no positive range
+/// is_confined   whether all scatterers lie before the wall's footprint, and the model tells all
+///               of their light
+/// throws        core::Error when the axis has no positive range
 ConfocalProblem make_confocal_problem(const MethodInput& input,
-                                      const ReconstructSettings& settings);
+                                      const ReconstructSettings& settings,
+                                      bool is_confined);
 
 }  // namespace nlos

@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <cmath>
+#include <optional>
 
 namespace nlos {
 namespace {
@@ -15,6 +15,7 @@ namespace {
 constexpr int kTrialIterations = 20;
 constexpr double kFewCounts = 5.0;      // in the bins that hold most of the light
 constexpr double kClearlyBetter = 0.8;  // share of the misfit
+constexpr double kMuchBlur = 1.0;       // of depth: cosines left out look like surfaces
 
 /// The mean of counts, weighted by themselves.
 double mean_intensity(const ConfocalProblem& data) {
@@ -25,6 +26,18 @@ double mean_intensity(const ConfocalProblem& data) {
         squares += static_cast<double>(value) * static_cast<double>(value);
     }
     return sum > 0.0 ? squares / sum : 0.0;
+}
+
+/// What a few iterations leave unexplained of the data; null where they would not tell: of radiance
+/// that is not smeared, and of few counts.
+std::optional<double> trial_misfit(const MethodInput& input, const ReconstructSettings& settings) {
+    const bool is_smeared = needs_falloff_choice(input);
+    const ConfocalProblem data = make_confocal_problem(input, settings, is_smeared);
+    const bool is_poisson = data.likelihood == Likelihood::Poisson;
+    if (is_poisson ? mean_intensity(data) < kFewCounts : !is_smeared) return {};
+    ConfocalAdmm solver(input, data, settings.solver);
+    solver.run(input.progress.part(0.0, 0.0), kTrialIterations);
+    return solver.misfit();
 }
 
 double num_observed_bins(const ConfocalProblem& data) {
@@ -38,7 +51,8 @@ double num_observed_bins(const ConfocalProblem& data) {
 Volume solve_confocal(const MethodInput& input,
                       const ReconstructSettings& settings,
                       std::size_t /*num_slabs*/) {
-    const ConfocalProblem data = make_confocal_problem(input, settings);
+    const ConfocalProblem data =
+        make_confocal_problem(input, settings, settings.falloff == Falloff::Facing);
     const Cone& cone = data.cone;
     ConfocalAdmm solver(input, data, settings.solver);
     const int iterations = solver.run(input.progress, settings.solver.max_iterations);
@@ -69,32 +83,45 @@ Volume solve_confocal(const MethodInput& input,
     return volume;
 }
 
+bool needs_falloff_choice(const MethodInput& input) {
+    return depth_blur(input) > kMuchBlur;
+}
+
 FalloffChoice choose_falloff(const MethodInput& input, ReconstructSettings settings) {
-    const core::Progress silent = input.progress.part(0.0, 0.0);
-    std::array<double, 2> misfits{};
-    for (const Falloff falloff : {Falloff::Diffuse, Falloff::Retro}) {
+    FalloffChoice choice{Falloff::Diffuse,
+                         "falloff: taken for diffuse, which only many counts tell"};
+    std::vector<Falloff> others{Falloff::Retro};
+    if (needs_falloff_choice(input)) others.push_back(Falloff::Facing);
+    settings.falloff = Falloff::Diffuse;
+    const std::optional<double> diffuse = trial_misfit(input, settings);
+    if (!diffuse) return choice;
+    double least = kClearlyBetter;
+    std::string ratios;
+    for (const Falloff falloff : others) {
         settings.falloff = falloff;
-        const ConfocalProblem data = make_confocal_problem(input, settings);
-        if (data.likelihood != Likelihood::Poisson || mean_intensity(data) < kFewCounts) {
-            return {Falloff::Diffuse, "falloff: taken for diffuse, which only many counts tell"};
-        }
-        ConfocalAdmm solver(input, data, settings.solver);
-        solver.run(silent, kTrialIterations);
-        misfits[static_cast<std::size_t>(falloff)] = solver.misfit();
+        const double ratio = *trial_misfit(input, settings) / *diffuse;
+        ratios += fmt::format(", {} {:.2f}", core::enum_name(falloff), ratio);
+        if (ratio >= least) continue;
+        least = ratio;
+        choice.falloff = falloff;
     }
-    const double ratio = misfits[1] / misfits[0];
-    const bool is_retro = ratio < kClearlyBetter;
-    return {is_retro ? Falloff::Retro : Falloff::Diffuse,
-            fmt::format("falloff: {}, misfit of retroreflective over diffuse light {:.2f}",
-                        is_retro ? "retroreflective" : "diffuse",
-                        ratio)};
+    choice.reason =
+        fmt::format("falloff: {}; misfit: diffuse 1{}", core::enum_name(choice.falloff), ratios);
+    return choice;
 }
 
 double solve_confocal_bytes(const MethodInput& input,
-                            const ReconstructSettings& /*settings*/,
+                            const ReconstructSettings& settings,
                             std::size_t /*num_slabs*/) {
-    const Cone cone = make_cone(input, kVBinsPerRangeBin);
-    return ConfocalAdmm::bytes(cone) + 4.0 * static_cast<double>(input.axes.num_voxels());
+    const bool may_be_confined = settings.falloff == Falloff::Facing ||
+                                 (settings.falloff == Falloff::Auto && needs_falloff_choice(input));
+    core::TimeAxis axis = input.time_axis;
+    if (may_be_confined)
+        axis.num_bins += static_cast<int>(input.measurement.response.weights.size());
+    const Cone cone =
+        make_cone(with_histograms(input, axis, input.transient, input.progress), kVBinsPerRangeBin);
+    return ConfocalAdmm::bytes(cone, may_be_confined) +
+           4.0 * static_cast<double>(input.axes.num_voxels());
 }
 
 }  // namespace nlos

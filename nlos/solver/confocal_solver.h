@@ -15,7 +15,8 @@ namespace nlos {
 /// K the light-cone convolution (ConeConvolution), B what follows it in time (TimeOperator), over
 /// the observed bins alone. The weights of both norms are multiples of what the data's own noise
 /// makes of a voxel (settings.solver). Scatterers outside the wall's footprint are allowed, but
-/// cost their square. By the alternating direction method of multipliers, until neither the result
+/// cost their square, for what the model leaves out; with falloff=facing it knows the cosines too,
+/// and there are none. By the alternating direction method of multipliers, until neither the result
 /// nor the constraints change by more than settings.solver.tolerance.
 ///
 /// num_slabs  not used: every iteration needs all frequencies
@@ -32,8 +33,12 @@ struct FalloffChoice {
     std::string reason;
 };
 
-/// Finds how light falls off in confocal counts: retroreflective where a few iterations of the
-/// solver explain them clearly better that way, else, and where counts are few, diffuse.
+/// Whether the response smears depth so far that what a model leaves out looks like surfaces.
+bool needs_falloff_choice(const MethodInput& input);
+
+/// Finds how light falls off on a confocal grid: diffuse, unless a few iterations of the solver
+/// explain the data clearly better another way. Counts tell retroreflective light where they are
+/// many, and data whose depth is smeared surfaces that face the wall too.
 ///
 /// settings   falloff is not used
 /// throws     core::Failure when asked to stop

@@ -35,7 +35,7 @@ PairOperator::PairOperator(const MethodInput& input, Falloff falloff, double spo
       axis_(input.time_axis),
       num_bins_(static_cast<std::size_t>(input.time_axis.num_bins)),
       response_(input.measurement.response),
-      is_retro_(falloff == Falloff::Retro),
+      falloff_(falloff),
       spot_{{0.0F, 1.0F}},
       gains_(input.scan.num_pairs()),
       illumination_(to_wall_frame(input.axes.world_from_wall, input.scan.illumination)),
@@ -84,6 +84,8 @@ void PairOperator::fill_legs(std::size_t pair,
     int* __restrict bins = legs.bins.data();
     float* __restrict late = legs.late.data();
     float* __restrict factors = legs.factors.data();
+    const bool is_retro = falloff_ == Falloff::Retro;
+    const bool is_facing = falloff_ == Falloff::Facing;
     for (std::size_t i = 0; i < end - begin; ++i) {
         const float lx = x[i] - l.x(), ly = y[i] - l.y(), lz = z[i] - l.z();
         const float sx = x[i] - s.x(), sy = y[i] - s.y(), sz = z[i] - s.z();
@@ -98,7 +100,8 @@ void PairOperator::fill_legs(std::size_t pair,
         position = position < last ? position : last;
         bins[i] = static_cast<int>(position);
         late[i] = position - static_cast<float>(bins[i]);
-        factors[i] = weight / (is_retro_ ? product : product * product);
+        const float square = product * product;
+        factors[i] = weight / (is_retro ? product : is_facing ? square * square : square);
     }
 }
 

@@ -64,7 +64,7 @@ class PairOperator {
     core::TimeAxis axis_;
     std::size_t num_bins_;
     core::ResponseFilter response_;
-    bool is_retro_;
+    Falloff falloff_;
     std::vector<SpotPoint> spot_;
     PairGains gains_;
     std::vector<core::BinRange> observed_;                 ///< per pair

@@ -13,8 +13,9 @@ void add_scaled(float a, const float* __restrict x, float* __restrict y, std::si
 }
 
 /// The share of each bin of v that falls into each bin of time, without a response, times the
-/// falloff: dense rows, one per bin of time.
+/// falloff: dense rows, one per bin of time and of `margin` more on both sides.
 std::vector<std::vector<double>> resampling_rows(const core::TimeAxis& axis,
+                                                 int margin,
                                                  std::span<const double> v_edges,
                                                  double power) {
     const std::size_t num_v = v_edges.size() - 1;
@@ -22,37 +23,42 @@ std::vector<std::vector<double>> resampling_rows(const core::TimeAxis& axis,
     const auto edge = [&](int bin) {
         return std::pow(std::max(0.0, 0.5 * axis.bin_begin_m(bin)), 2);
     };
-    std::vector<std::vector<double>> rows(static_cast<std::size_t>(axis.num_bins),
+    std::vector<std::vector<double>> rows(static_cast<std::size_t>(axis.num_bins + 2 * margin),
                                           std::vector<double>(num_v, 0.0));
-    for (int bin = 0; bin < axis.num_bins; ++bin) {
+    for (int bin = -margin; bin < axis.num_bins + margin; ++bin) {
         const double begin = edge(bin);
         const double end = edge(bin + 1);
         const double first = std::max(0.0, std::floor((begin - v_edges.front()) / width));
         for (auto v = static_cast<std::size_t>(first); v < num_v && v_edges[v] < end; ++v) {
             const double overlap = std::min(end, v_edges[v + 1]) - std::max(begin, v_edges[v]);
             const double range = std::sqrt(0.5 * (v_edges[v] + v_edges[v + 1]));
-            rows[static_cast<std::size_t>(bin)][v] =
+            rows[static_cast<std::size_t>(bin + margin)][v] =
                 std::max(0.0, overlap) / width * std::pow(range, -power);
         }
     }
     return rows;
 }
 
-/// Rows convolved with the response along time.
-std::vector<std::vector<double>> blurred_rows(const std::vector<std::vector<double>>& rows,
+/// Rows convolved with the response along time, those of the axis: light from bins that the
+/// response reaches beyond it counts too.
+std::vector<std::vector<double>> blurred_rows(const core::TimeAxis& axis,
+                                              std::span<const double> v_edges,
+                                              double power,
                                               const core::ResponseFilter& response) {
-    if (response.weights.empty()) return rows;
-    std::vector<std::vector<double>> result(rows.size(),
+    if (response.weights.empty()) return resampling_rows(axis, 0, v_edges, power);
+    const int taps = static_cast<int>(response.weights.size());
+    const int margin = std::max(std::abs(response.first_delay), response.first_delay + taps);
+    const std::vector<std::vector<double>> rows = resampling_rows(axis, margin, v_edges, power);
+    std::vector<std::vector<double>> result(static_cast<std::size_t>(axis.num_bins),
                                             std::vector<double>(rows.front().size(), 0.0));
-    const auto count = static_cast<std::ptrdiff_t>(rows.size());
-    for (std::ptrdiff_t to = 0; to < count; ++to) {
-        for (std::size_t k = 0; k < response.weights.size(); ++k) {
-            const std::ptrdiff_t from = to - response.first_delay - static_cast<std::ptrdiff_t>(k);
-            if (from < 0 || from >= count) continue;
+    for (int to = 0; to < axis.num_bins; ++to) {
+        for (int k = 0; k < taps; ++k) {
+            const int from = to - response.first_delay - k + margin;
+            const double weight = response.weights[static_cast<std::size_t>(k)];
             const std::vector<double>& source = rows[static_cast<std::size_t>(from)];
             std::vector<double>& sum = result[static_cast<std::size_t>(to)];
             for (std::size_t v = 0; v < sum.size(); ++v) {
-                sum[v] += response.weights[k] * source[v];
+                sum[v] += weight * source[v];
             }
         }
     }
@@ -66,8 +72,7 @@ TimeOperator::TimeOperator(const core::TimeAxis& axis,
                            double power,
                            const core::ResponseFilter& response)
     : num_v_(v_edges.size() - 1) {
-    for (const std::vector<double>& dense :
-         blurred_rows(resampling_rows(axis, v_edges, power), response)) {
+    for (const std::vector<double>& dense : blurred_rows(axis, v_edges, power, response)) {
         const auto is_set = [](double weight) { return weight != 0.0; };
         const auto first = std::ranges::find_if(dense, is_set);
         const auto last = std::find_if(dense.rbegin(), dense.rend(), is_set).base();

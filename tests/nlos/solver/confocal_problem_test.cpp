@@ -29,7 +29,7 @@ ConfocalProblem problem_of(const core::Capture& capture, bool is_counts) {
     MethodInput input{
         capture.scan, capture.time_axis, capture.transient, wall, axes, {0.4, 0.8}, progress};
     input.measurement.is_counts = is_counts;
-    return make_confocal_problem(input, {});
+    return make_confocal_problem(input, {}, false);
 }
 
 double range_of(const ConfocalProblem& problem, int bin) {

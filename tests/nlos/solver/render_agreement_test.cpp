@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The solver's operators against the renderer's third bounce of a small square parallel to the
-// wall. The operators leave cosines out, which are put to them here as those of the square's
-// centre.
+// wall. Diffuse operators leave cosines out, which are put to them here as those of the square's
+// centre; those of surfaces that face the wall leave out its depth alone.
 #include "nlos/preparation/wall_frame.h"
 #include "nlos/solver/cone_convolution.h"
 #include "nlos/solver/confocal_problem.h"
@@ -46,13 +46,15 @@ core::Capture render_square(const core::Scan& scan, double side_m, const core::T
     return capture;
 }
 
-/// What cosines make of the light of a pair, times the albedos and 1 / pi^3.
-double factor_of_pair(const core::Scan& scan, std::size_t pair) {
+/// What the operators leave out of the light of a pair, times the albedos and 1 / pi^3.
+double factor_of_pair(Falloff falloff, const core::Scan& scan, std::size_t pair) {
+    const double constants = kWallAlbedo * kWallAlbedo * kSquareAlbedo / std::pow(core::kPi, 3);
+    if (falloff == Falloff::Facing) return constants * std::pow(kCenter.z(), 4);
     const Vec3 l = scan.illumination.positions[scan.illumination_index(pair)];
     const Vec3 s = scan.sensing.positions[scan.sensing_index(pair)];
     const double cosines =
         std::pow(kCenter.z() / (kCenter - l).norm() * kCenter.z() / (kCenter - s).norm(), 2);
-    return cosines * kWallAlbedo * kWallAlbedo * kSquareAlbedo / std::pow(core::kPi, 3);
+    return cosines * constants;
 }
 
 double relative_error(const std::vector<double>& values, const std::vector<double>& truth) {
@@ -76,48 +78,55 @@ MethodInput input_of(const core::Capture& capture,
     return input;
 }
 
-// Absolute values, of every pattern. What is left are the square's own differences of cosines, and
-// that the renderer's bins hold light evenly where the operator shares it between bin centres.
-TEST(OperatorsAgainstTheRenderer, PairOperatorMakesTheSameLight) {
+/// The operator's light of the square, absolute, over the renderer's.
+double pair_operator_error(Falloff falloff, const core::Scan& scan) {
     const double side = 0.06;
+    const core::Capture capture = render_square(scan, side, {1.2, 0.004, 256});
+    const WallFrame wall = derive_wall_frame(capture.scan);
+    const core::Progress progress;
+    const VolumeAxes axes{{0.0}, {0.0}, {0.7}, wall.world_from_wall};
+    PairOperator light(input_of(capture, wall, axes, progress), falloff, 0.0);
+    constexpr int kSteps = 30;
+    std::vector<Eigen::Vector3f> voxels;
+    for (int i = 0; i < kSteps * kSteps; ++i) {
+        const Vec3 place((i / kSteps + 0.5) / kSteps - 0.5, (i % kSteps + 0.5) / kSteps - 0.5, 0.0);
+        const Vec3 in_wall_frame =
+            wall.world_from_wall.inverse(Eigen::Isometry) * Vec3(kCenter + side * place);
+        voxels.push_back(in_wall_frame.cast<float>());
+    }
+    light.set_voxels(voxels);
+    std::vector<std::size_t> pairs(capture.scan.num_pairs());
+    std::iota(pairs.begin(), pairs.end(), std::size_t{0});
+    std::vector<float> histograms(pairs.size() * 256);
+    const auto area = static_cast<float>(side * side / (kSteps * kSteps));
+    light.forward(std::vector<float>(voxels.size(), area), pairs, histograms);
+    std::vector<double> values;
+    for (std::size_t i = 0; i < histograms.size(); ++i) {
+        values.push_back(static_cast<double>(histograms[i]) *
+                         factor_of_pair(falloff, capture.scan, i / 256));
+    }
+    const auto rendered = capture.transient.values();
+    return relative_error(values, {rendered.begin(), rendered.end()});
+}
+
+// What is left are the square's own differences of cosines, and that the renderer's bins hold light
+// evenly where the operator shares it between bin centres.
+TEST(OperatorsAgainstTheRenderer, PairOperatorMakesTheSameLight) {
     const std::vector<Vec3> points{
         {-0.4, 0.3, 0.0}, {-0.1, 0.0, 0.0}, {0.2, -0.3, 0.0}, {0.4, 0.1, 0.0}};
     for (const core::Scan& scan : {test_support::confocal_scan(points),
                                    test_support::single_scan({0.0, 0.2, 0.0}, points),
                                    test_support::exhaustive_scan(points, points)}) {
-        const core::Capture capture = render_square(scan, side, {1.2, 0.004, 256});
-        const WallFrame wall = derive_wall_frame(capture.scan);
-        const core::Progress progress;
-        const VolumeAxes axes{{0.0}, {0.0}, {0.7}, wall.world_from_wall};
-        PairOperator light(input_of(capture, wall, axes, progress), Falloff::Diffuse, 0.0);
-        constexpr int kSteps = 30;
-        std::vector<Eigen::Vector3f> voxels;
-        for (int i = 0; i < kSteps * kSteps; ++i) {
-            const Vec3 place(
-                (i / kSteps + 0.5) / kSteps - 0.5, (i % kSteps + 0.5) / kSteps - 0.5, 0.0);
-            const Vec3 in_wall_frame =
-                wall.world_from_wall.inverse(Eigen::Isometry) * Vec3(kCenter + side * place);
-            voxels.push_back(in_wall_frame.cast<float>());
-        }
-        light.set_voxels(voxels);
-        std::vector<std::size_t> pairs(capture.scan.num_pairs());
-        std::iota(pairs.begin(), pairs.end(), std::size_t{0});
-        std::vector<float> histograms(pairs.size() * 256);
-        const auto area = static_cast<float>(side * side / (kSteps * kSteps));
-        light.forward(std::vector<float>(voxels.size(), area), pairs, histograms);
-        std::vector<double> values;
-        for (std::size_t i = 0; i < histograms.size(); ++i) {
-            values.push_back(static_cast<double>(histograms[i]) *
-                             factor_of_pair(capture.scan, i / 256));
-        }
-        const auto rendered = capture.transient.values();
-        EXPECT_LT(relative_error(values, {rendered.begin(), rendered.end()}), 0.03);
+        const double diffuse = pair_operator_error(Falloff::Diffuse, scan);
+        const double facing = pair_operator_error(Falloff::Facing, scan);
+        EXPECT_LT(diffuse, 0.03);
+        EXPECT_LT(facing, diffuse);
     }
 }
 
-// Up to a common factor, which the convolution's unit norm leaves open. Columns 0.04 m apart show
-// three of them as a square of 0.12 m.
-TEST(OperatorsAgainstTheRenderer, ConeConvolutionAndFalloffMakeTheSameLight) {
+/// The operators' light of a square over the renderer's, up to a common factor, which the
+/// convolution's unit norm leaves open. Columns 0.04 m apart show three of them as 0.12 m.
+double cone_operators_error(Falloff falloff) {
     core::Scan scan;
     scan.pattern = core::ScanPattern::Confocal;
     scan.sensing = nlos_test::wall_grid({24, 24}, {0.04, 0.04});
@@ -128,7 +137,9 @@ TEST(OperatorsAgainstTheRenderer, ConeConvolutionAndFalloffMakeTheSameLight) {
     const VolumeAxes axes{
         std::vector<double>(24), std::vector<double>(24), {0.7}, wall.world_from_wall};
     const MethodInput input = input_of(capture, wall, axes, progress);
-    const ConfocalProblem problem = make_confocal_problem(input, {});
+    ReconstructSettings settings;
+    settings.falloff = falloff;
+    const ConfocalProblem problem = make_confocal_problem(input, settings, false);
     const Cone& cone = problem.cone;
     ConeConvolution convolution(cone, *wall.grid, 0.0, 1.0, 1.0);
     ConeField albedo(convolution.num_values(), 0.0F);
@@ -154,14 +165,19 @@ TEST(OperatorsAgainstTheRenderer, ConeConvolutionAndFalloffMakeTheSameLight) {
         problem.time.apply(light.data() + ix * cone.num_v() * 24, time.data(), 24);
         for (std::size_t i = 0; i < time.size(); ++i) {
             const std::size_t pair = wall.grid->point(ix, i % 24);
-            values.push_back(static_cast<double>(time[i]) * factor_of_pair(scan, pair));
+            values.push_back(static_cast<double>(time[i]) * factor_of_pair(falloff, scan, pair));
             rendered.push_back(static_cast<double>(problem.values[ix * time.size() + i]));
         }
     }
     const double scale = std::inner_product(values.begin(), values.end(), rendered.begin(), 0.0) /
                          std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
     for (double& value : values) value *= scale;
-    EXPECT_LT(relative_error(values, rendered), 0.1);
+    return relative_error(values, rendered);
+}
+
+TEST(OperatorsAgainstTheRenderer, ConeConvolutionAndFalloffMakeTheSameLight) {
+    EXPECT_LT(cone_operators_error(Falloff::Diffuse), 0.1);
+    EXPECT_LT(cone_operators_error(Falloff::Facing), 0.1);
 }
 
 }  // namespace
