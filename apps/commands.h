@@ -28,6 +28,7 @@ void add_manual_command(CLI::App& app);
 void add_bench_noise_command(CLI::App& bench);
 void add_bench_coverage_command(CLI::App& bench);
 void add_bench_weights_command(CLI::App& bench);
+void add_bench_long_range_command(CLI::App& bench);
 void add_bench_sequences_command(CLI::App& bench);
 void add_bench_shift_command(CLI::App& bench);
 void add_bench_render_command(CLI::App& bench);

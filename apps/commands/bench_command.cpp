@@ -70,6 +70,7 @@ void add_bench_command(CLI::App& app) {
     add_bench_noise_command(command);
     add_bench_coverage_command(command);
     add_bench_weights_command(command);
+    add_bench_long_range_command(command);
     add_bench_comparisons_command(command);
     add_bench_sequences_command(command);
     add_bench_shift_command(command);

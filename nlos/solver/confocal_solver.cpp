@@ -113,15 +113,15 @@ FalloffChoice choose_falloff(const MethodInput& input, ReconstructSettings setti
 double solve_confocal_bytes(const MethodInput& input,
                             const ReconstructSettings& settings,
                             std::size_t /*num_slabs*/) {
-    const bool may_be_confined = settings.falloff == Falloff::Facing ||
-                                 (settings.falloff == Falloff::Auto && needs_falloff_choice(input));
-    core::TimeAxis axis = input.time_axis;
-    if (may_be_confined)
-        axis.num_bins += static_cast<int>(input.measurement.response.weights.size());
-    const Cone cone =
-        make_cone(with_histograms(input, axis, input.transient, input.progress), kVBinsPerRangeBin);
-    return ConfocalAdmm::bytes(cone, may_be_confined) +
-           4.0 * static_cast<double>(input.axes.num_voxels());
+    const Cone cone = make_cone(input, kVBinsPerRangeBin);
+    const double volume = 4.0 * static_cast<double>(input.axes.num_voxels());
+    const bool may_be_confined =
+        settings.falloff == Falloff::Facing ||
+        (settings.falloff == Falloff::Auto && needs_falloff_choice(input));
+    if (!may_be_confined) return ConfocalAdmm::bytes(cone, false) + volume;
+    const double num_bins = static_cast<double>(input.time_axis.num_bins);
+    const double reach = static_cast<double>(input.measurement.response.weights.size());
+    return ConfocalAdmm::bytes(cone, true) * (1.0 + reach / num_bins) + volume;
 }
 
 }  // namespace nlos

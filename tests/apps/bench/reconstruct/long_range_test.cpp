@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+// What `nlos bench long_range` measures, of one capture.
+#include "apps/bench/reconstruct/long_range.h"
+
+#include <gtest/gtest.h>
+
+namespace apps {
+namespace {
+
+// Draws of the photons differ by 0.03.
+TEST(LongRange, TheSolverReadsALetterThatTheDirectInversionDoesNot) {
+    LongRangeBenchSettings settings;
+    settings.photons = {5000.0};
+    settings.spots_m = {0.08};
+    settings.methods = {"lct", "solver"};
+    const LongRangeBench bench = measure_long_range(settings, {});
+    ASSERT_EQ(bench.scores.size(), 2U);
+    EXPECT_LT(bench.scores[0].mask_iou_best, 0.4);
+    EXPECT_GT(bench.scores[1].mask_iou_stated, 0.5);
+    EXPECT_GT(bench.scores[1].mask_iou_best, 0.52);
+    EXPECT_LT(bench.scores[1].depth_mae_m.value(), 0.006);
+}
+
+}  // namespace
+}  // namespace apps
