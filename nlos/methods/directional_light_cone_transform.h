@@ -12,7 +12,7 @@ namespace nlos {
 /// Wiener filter. Surfaces whose light carries further cosines come out tilted.
 ///
 /// input     as light_cone_transform()
-/// settings  snr, which must be set, and falloff: diffuse, gamma = 4, or retro, gamma = 2
+/// settings  snr, which must be set, and falloff, whose power is gamma
 /// num_slabs as light_cone_transform()
 /// returns   |rho n| per metre of depth, up to a common factor, 0 where it faces away from the
 ///           wall; a normal towards the wall for each column, at its brightest voxel
