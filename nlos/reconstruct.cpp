@@ -174,13 +174,14 @@ class Job {
             for (const std::string& found : result_.findings) progress_.announce("found: " + found);
         }
         const ReconstructSettings& settings = result_.settings;
-        result_.volume = reconstruct_volume(input, num_slabs);
+        result_.volume = functions_of(settings).run(input, settings, num_slabs);
         std::optional<Volume> again;
         if (const auto second = measure_again(capture_)) {
             PreparedCapture prepared = crop_capture(*second, settings.crop);
             if (!prepared_.conversion.empty()) convert_to_confocal(prepared);
             histograms = prepare(prepared.transient());
-            again = reconstruct_volume(input_with(histograms, second_run_), num_slabs);
+            again = functions_of(settings).run(
+                input_with(histograms, second_run_), settings, num_slabs);
         }
         take_surface(again ? &*again : nullptr, result_);
         return std::move(result_);
@@ -194,6 +195,10 @@ class Job {
         if (is_auto_) leave_out_direct_return();
         prepared_ = crop_capture(capture_, settings.crop);
         const MethodChoice choice = choose_and_enter_method(capture_, settings, prepared_);
+        core::require(settings.falloff != Falloff::Facing || choice.method == Method::Solver,
+                      "falloff",
+                      fmt::format("facing with method {}", core::enum_name(choice.method)),
+                      "diffuse or retro; method=solver knows facing");
         result_.method = core::enum_name(choice.method);
         result_.reason = choice.reason;
         result_.warnings = capture_warnings(capture_);
@@ -294,13 +299,6 @@ class Job {
                 observed_ ? &*observed_ : nullptr,
                 prepared_.unobserved_before_m,
                 measurement_};
-    }
-
-    Volume reconstruct_volume(const MethodInput& input, std::size_t num_slabs) const {
-        const ReconstructSettings& settings = result_.settings;
-        Volume volume = functions_of(settings).run(input, settings, num_slabs);
-        divide_by_depth(albedo_power(settings.falloff), volume);
-        return volume;
     }
 
     /// Enters how light falls off: as the data say where they do, else diffuse.

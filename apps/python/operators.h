@@ -24,7 +24,7 @@ template <class Visitor>
 void for_each_field(OperatorSettings& s, Visitor&& visit) {
     visit("falloff",
           s.falloff,
-          "by range: diffuse (r^4), retro (r^2) or facing (r^8; albedo counts times z^4)");
+          "by range: diffuse (r^4), retro (r^2) or, of PairOperator, facing (z^4 / r^8)");
     visit("response", s.response, "instrument response");
     visit("spot_m", s.spot_m, core::at_least(0, "full width of the spot on the wall [m]"));
 }
@@ -187,6 +187,10 @@ class LightCone {
                               "has device legs that differ from point to point",
                               "must have path lengths between wall points; PairOperator takes any");
         }
+        core::require(settings.falloff != nlos::Falloff::Facing,
+                      "falloff",
+                      "facing",
+                      "diffuse or retro; PairOperator takes any");
         return cone;
     }
     core::TimeAxis axis_from_wall() const {

@@ -68,7 +68,7 @@ class RangeTransform {
     RangeTransform(const MethodInput& input, const FkGrids& grids, Falloff falloff)
         : input_(input),
           grids_(grids),
-          falloff_power_(falloff_power(falloff)),
+          falloff_(falloff),
           forward_(Fft::real_to_complex(grids.length, kColumnsPerBatch)) {
         for (std::size_t f = 0; f < grids.num_frequencies(); ++f) {
             const double share = 2.0 * static_cast<double>(f) / static_cast<double>(grids.length);
@@ -115,7 +115,7 @@ class RangeTransform {
         const double first = range_m(pair, 0);
         for (std::size_t bin = 0; bin < histogram.size(); ++bin) {
             const double range = first + static_cast<double>(bin) * grids_.bin_m;
-            const double weight = std::pow(range, falloff_power_ - 1.0);
+            const double weight = falloff_ == Falloff::Diffuse ? range * range * range : range;
             const double damping = squared_sinc((range - grids_.center_m) / grids_.period_m());
             const double amplitude =
                 range > 0.0 ? weight * static_cast<double>(histogram[bin]) / damping : 0.0;
@@ -125,7 +125,7 @@ class RangeTransform {
 
     const MethodInput& input_;
     const FkGrids& grids_;
-    double falloff_power_;
+    Falloff falloff_;
     Fft forward_;
     std::vector<float> derivative_;  ///< of every frequency
 };

@@ -15,7 +15,7 @@ enum class Method { Auto, Lct, Bp, Fbp, Fk, Phasor, Dlct, Solver };
 
 /// How hidden surfaces reflect: diffuse light falls off with r^4, retroreflected light with r^2.
 /// Diffuse surfaces that face the wall add the cosines z / r of wall and surface, there and back:
-/// z^4 / r^8. Auto: as the data say, see choose_falloff().
+/// z^4 / r^8, which the solver alone models. Auto: as the data say, see choose_falloff().
 enum class Falloff { Diffuse, Retro, Facing, Auto };
 
 /// The power of range by which light falls off on its way there and back.
@@ -28,11 +28,6 @@ constexpr double falloff_power(Falloff falloff) {
         default:
             return 4.0;
     }
-}
-
-/// The power of depth by which reconstructed albedo is too large where methods know of range alone.
-constexpr double albedo_power(Falloff falloff) {
-    return falloff == Falloff::Facing ? 4.0 : 0.0;
 }
 
 /// What backprojection multiplies each term by, to make up for the light lost on its way.
@@ -170,12 +165,13 @@ template <class Visitor>
 void for_each_field(ReconstructSettings& s, Visitor&& visit) {
     visit("method", s.method, "reconstruction method");
     visit("volume", s.volume, "where to reconstruct");
-    visit("falloff",
-          s.falloff,
-          "how the hidden surface reflects (lct, dlct, fk, phasor, fbp by phasor, solver); facing: "
-          "diffuse, and parallel to the wall; auto: as the data of confocal grids say where "
-          "method=auto takes the solver for counts, or where the solver explains a response wider "
-          "than the distance of wall points, else diffuse");
+    visit(
+        "falloff",
+        s.falloff,
+        "how the hidden surface reflects (lct, dlct, fk, phasor, fbp by phasor, solver); facing: "
+        "diffuse, and parallel to the wall (solver); auto: as the data of confocal grids say where "
+        "method=auto takes the solver for counts, or where the solver explains a response wider "
+        "than the distance of wall points, else diffuse");
     visit("prior", s.prior, "assumption about the hidden scene (lct); tv: as method solver");
     visit("solver", s.solver, "the statistical solver");
     visit("compensation",

@@ -2,7 +2,6 @@
 #include "nlos/reconstruction/volume.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace nlos {
 
@@ -15,17 +14,6 @@ std::vector<float> max_projection(const Volume& volume) {
         projection[column] = *std::max_element(values, values + nz);
     }
     return projection;
-}
-
-void divide_by_depth(double power, Volume& volume) {
-    if (power == 0.0) return;
-    std::vector<float> factors;
-    for (const double z : volume.axes.z_m) {
-        factors.push_back(z > 0.0 ? static_cast<float>(std::pow(z, -power)) : 0.0F);
-    }
-    for (std::size_t i = 0; i < volume.values.size(); ++i) {
-        volume.values[i] *= factors[i % factors.size()];
-    }
 }
 
 std::vector<double> cell_centers(double begin, double end, std::size_t count) {

@@ -29,10 +29,6 @@ struct Volume {
     }
 };
 
-/// Divides every value by z^power; 0 leaves the volume as it is. Depths are positive where light
-/// comes from.
-void divide_by_depth(double power, Volume& volume);
-
 /// The brightest value along z of every column, stored [x][y].
 std::vector<float> max_projection(const Volume& volume);
 

@@ -51,8 +51,8 @@ double num_observed_bins(const ConfocalProblem& data) {
 Volume solve_confocal(const MethodInput& input,
                       const ReconstructSettings& settings,
                       std::size_t /*num_slabs*/) {
-    const ConfocalProblem data =
-        make_confocal_problem(input, settings, settings.falloff == Falloff::Facing);
+    const bool is_facing = settings.falloff == Falloff::Facing;
+    const ConfocalProblem data = make_confocal_problem(input, settings, is_facing);
     const Cone& cone = data.cone;
     ConfocalAdmm solver(input, data, settings.solver);
     const int iterations = solver.run(input.progress, settings.solver.max_iterations);
@@ -68,13 +68,18 @@ Volume solve_confocal(const MethodInput& input,
     const ConservativeResampling to_depth = squared_range_to_depth(input, cone, BinSpread::Linear);
     const std::size_t num_z = input.axes.z_m.size();
     const ConeKernel kernel(cone, *input.wall.grid);
-    const auto unit = static_cast<float>(data.unit / std::sqrt(kernel.squared_norm()));
+    const double unit = data.unit / std::sqrt(kernel.squared_norm());
+    std::vector<float> units;  // per bin of v; cosines leave z^4 to the albedo
+    for (std::size_t v = 0; v < cone.num_v(); ++v) {
+        const double squared_depth = 0.5 * (cone.v_edges[v] + cone.v_edges[v + 1]);
+        units.push_back(static_cast<float>(is_facing ? unit / std::pow(squared_depth, 2) : unit));
+    }
     Volume volume{input.axes, std::vector<float>(cone.num_columns() * num_z), {}};
     core::parallel_for(cone.num_columns(), [&](std::size_t column) {
         std::vector<float> row(cone.num_v());
         for (std::size_t v = 0; v < cone.num_v(); ++v) {
             row[v] =
-                unit *
+                units[v] *
                 solver.albedo()[(column / cone.ny * cone.num_v() + v) * cone.ny + column % cone.ny];
         }
         to_depth.apply(row.data(), volume.values.data() + column * num_z);
@@ -115,9 +120,8 @@ double solve_confocal_bytes(const MethodInput& input,
                             std::size_t /*num_slabs*/) {
     const Cone cone = make_cone(input, kVBinsPerRangeBin);
     const double volume = 4.0 * static_cast<double>(input.axes.num_voxels());
-    const bool may_be_confined =
-        settings.falloff == Falloff::Facing ||
-        (settings.falloff == Falloff::Auto && needs_falloff_choice(input));
+    const bool may_be_confined = settings.falloff == Falloff::Facing ||
+                                 (settings.falloff == Falloff::Auto && needs_falloff_choice(input));
     if (!may_be_confined) return ConfocalAdmm::bytes(cone, false) + volume;
     const double num_bins = static_cast<double>(input.time_axis.num_bins);
     const double reach = static_cast<double>(input.measurement.response.weights.size());

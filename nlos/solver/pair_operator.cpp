@@ -100,8 +100,8 @@ void PairOperator::fill_legs(std::size_t pair,
         position = position < last ? position : last;
         bins[i] = static_cast<int>(position);
         late[i] = position - static_cast<float>(bins[i]);
-        const float square = product * product;
-        factors[i] = weight / (is_retro ? product : is_facing ? square * square : square);
+        const float cosines = is_facing ? lz * sz / product : 1.0F;
+        factors[i] = weight * cosines * cosines / (is_retro ? product : product * product);
     }
 }
 

@@ -12,10 +12,10 @@
 namespace nlos {
 
 /// Light of voxels at any pairs of wall points, and its exact adjoint: albedo times
-/// 1 / (r_l r_s)^2 (diffuse) or 1 / (r_l r_s) (retroreflective) and the pair's gain, shared
-/// linearly by the two bins whose centres enclose the path length, blurred by the response, and 0
-/// in bins that were not observed. The factors are those of backproject() with compensation, the
-/// other way round.
+/// 1 / (r_l r_s)^2 (diffuse), the same with all cosines, (z_l z_s)^2 / (r_l r_s)^4 (facing), or
+/// 1 / (r_l r_s) (retroreflective) and the pair's gain, shared linearly by the two bins whose
+/// centres enclose the path length, blurred by the response, and 0 in bins that were not observed.
+/// The factors are those of backproject() with compensation, the other way round.
 ///
 /// A spot spreads path lengths, to first order as a Gaussian whose deviation is the spot's times
 /// the slope of the path length along the wall; three points of the same moments up to the fifth

@@ -278,6 +278,8 @@ TEST(Reconstruct, NamesSettingsOutOfRange) {
     EXPECT_ERROR_WITH(reconstruct(example(), with({"noise_floor=1", "ambient=keep"}), {}),
                       "ambient=auto or subtract");
     EXPECT_ERROR_WITH(reconstruct(example(), with({"snr=0"}), {}), "snr: found 0");
+    EXPECT_ERROR_WITH(reconstruct(example(), with({"method=lct", "falloff=facing"}), {}),
+                      "method=solver knows facing");
     EXPECT_ERROR_WITH(reconstruct(example(), with({"mask_threshold=1.5"}), {}), "mask_threshold");
     EXPECT_ERROR_WITH(reconstruct(example(), with({"merge_bins=500"}), {}), "128 bins");
     EXPECT_ERROR_WITH(

@@ -64,7 +64,8 @@ core::Capture with_spot(const core::Capture& all, double fwhm_m) {
     std::vector<float> weights;
     float sum = 0.0F;
     for (int i = -kSpotMargin; i <= kSpotMargin; ++i) {
-        weights.push_back(static_cast<float>(std::exp(-0.5 * std::pow(i / sigma, 2))));
+        weights.push_back(
+            static_cast<float>(i == 0 ? 1.0 : std::exp(-0.5 * std::pow(i / sigma, 2))));
         sum += weights.back();
     }
     for (float& weight : weights) weight /= sum;

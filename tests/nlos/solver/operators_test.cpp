@@ -360,15 +360,23 @@ TEST(PairOperator, ShowsAPointAsTheClosedFormDoes) {
         const MethodInput input{
             capture.scan, capture.time_axis, capture.transient, wall, axes, {0.4, 0.6}, progress};
         PairOperator light(input, falloff, 0.0);
-        light.set_voxels({(wall.world_from_wall.inverse(Eigen::Isometry) * point).cast<float>()});
+        const core::Transform to_wall = wall.world_from_wall.inverse(Eigen::Isometry);
+        light.set_voxels({(to_wall * point).cast<float>()});
+        const auto depth_from = [&](const core::Vec3& place) {
+            return (to_wall * point).z() - (to_wall * place).z();
+        };
         std::vector<std::size_t> pairs(40);
         std::iota(pairs.begin(), pairs.end(), std::size_t{0});
         std::vector<float> histograms(40 * 90);
         light.forward(std::vector<float>{1.0F}, pairs, histograms);
         const auto expected = capture.transient.values();
         const float largest = *std::ranges::max_element(expected);
+        const double illumination_depth = depth_from(capture.scan.illumination.positions[0]);
         for (std::size_t i = 0; i < histograms.size(); ++i) {
-            ASSERT_NEAR(histograms[i], expected[i], 1e-4F * largest);
+            const double depths =
+                illumination_depth * depth_from(capture.scan.sensing.positions[i / 90]);
+            const double cosines = falloff == Falloff::Facing ? depths * depths : 1.0;
+            ASSERT_NEAR(histograms[i], cosines * expected[i], 1e-4 * largest);
         }
     }
 }

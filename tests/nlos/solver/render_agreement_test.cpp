@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The solver's operators against the renderer's third bounce of a small square parallel to the
 // wall. Diffuse operators leave cosines out, which are put to them here as those of the square's
-// centre; those of surfaces that face the wall leave out its depth alone.
+// centre.
 #include "nlos/preparation/wall_frame.h"
 #include "nlos/solver/cone_convolution.h"
 #include "nlos/solver/confocal_problem.h"
@@ -49,7 +49,7 @@ core::Capture render_square(const core::Scan& scan, double side_m, const core::T
 /// What the operators leave out of the light of a pair, times the albedos and 1 / pi^3.
 double factor_of_pair(Falloff falloff, const core::Scan& scan, std::size_t pair) {
     const double constants = kWallAlbedo * kWallAlbedo * kSquareAlbedo / std::pow(core::kPi, 3);
-    if (falloff == Falloff::Facing) return constants * std::pow(kCenter.z(), 4);
+    if (falloff == Falloff::Facing) return constants;
     const Vec3 l = scan.illumination.positions[scan.illumination_index(pair)];
     const Vec3 s = scan.sensing.positions[scan.sensing_index(pair)];
     const double cosines =
