@@ -18,7 +18,7 @@ constexpr double kFarthestNeighbour = 4.0;   // points to the next that was obse
 // smears, the less the data say of single voxels, and the longer large penalties hold these back.
 // Scatterers beside the footprint cost their square by them, and must not come too cheap.
 constexpr double kConfinedUnitPower = 3.5;
-constexpr double kUnitPower = 0.5;
+constexpr double kUnitPower = 1.0;
 
 /// Histograms of columns from the wall to the wall, cut to some bins.
 class WallHistograms {

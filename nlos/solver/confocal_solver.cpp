@@ -106,7 +106,7 @@ FalloffChoice choose_falloff(const MethodInput& input, ReconstructSettings setti
         settings.falloff = falloff;
         const double ratio = *trial_misfit(input, settings) / *diffuse;
         ratios += fmt::format(", {} {:.2f}", core::enum_name(falloff), ratio);
-        if (ratio >= least) continue;
+        if (!(ratio < least)) continue;  // nor where there is no light
         least = ratio;
         choice.falloff = falloff;
     }
