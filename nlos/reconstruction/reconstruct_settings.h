@@ -69,12 +69,12 @@ struct PhasorSettings {
 /// of what the noise of the data makes of a voxel.
 struct SolverSettings {
     Likelihood likelihood = Likelihood::Auto;
-    std::optional<double> tv;         ///< weight of total variation; empty: by the light
-    std::optional<double> sparsity;   ///< weight of the sum; empty: a tenth of `tv`
-    double spot_m = 0.0;              ///< full width at half maximum of the spot on the wall
-    bool gains = false;               ///< finds a factor of every pair, see PairGains
-    std::optional<double> tolerance;  ///< empty: by the solver
-    int max_iterations = 200;
+    std::optional<double> tv;           ///< weight of total variation; empty: by the light
+    std::optional<double> sparsity;     ///< weight of the sum; empty: a tenth of `tv`
+    double spot_m = 0.0;                ///< full width at half maximum of the spot on the wall
+    bool gains = false;                 ///< finds a factor of every pair, see PairGains
+    std::optional<double> tolerance;    ///< empty: by the solver
+    std::optional<int> max_iterations;  ///< empty: by the solver
 };
 
 /// How to reconstruct. To add a method: a name in Method, a row in functions_of() of
@@ -139,10 +139,11 @@ void for_each_field(SolverSettings& s, Visitor&& visit) {
                          "weight of total variation, in standard deviations of a voxel's noise; "
                          "null: for confocal grids 0.35 of counts and 0.6 of radiance, more where "
                          "light is scarce, else 1"));
-    visit(
-        "sparsity",
-        s.sparsity,
-        core::at_least(0, "weight of the sum of all voxels, likewise; null: a tenth of solver.tv"));
+    visit("sparsity",
+          s.sparsity,
+          core::at_least(0,
+                         "weight of the sum of all voxels, likewise; null: a tenth of solver.tv, "
+                         "or reweighted where spot and response are wide"));
     visit("spot_m",
           s.spot_m,
           core::at_least(0, "full width at half maximum of the spot on the wall [m]"));
@@ -156,9 +157,13 @@ void for_each_field(SolverSettings& s, Visitor&& visit) {
           core::strictly_between(0,
                                  1,
                                  "relative change of the result at which iterations stop; null: "
-                                 "0.015 for confocal grids, times the root of the share of their "
-                                 "points that were observed; else 0.01"));
-    visit("max_iterations", s.max_iterations, core::at_least(1, "iterations at most"));
+                                 "0.015 for confocal grids (0.001 where spot and response are "
+                                 "wide), times the root of the share of their points that were "
+                                 "observed; else 0.01"));
+    visit("max_iterations",
+          s.max_iterations,
+          core::at_least(1,
+                         "iterations at most; null: 200, or 600 where spot and response are wide"));
 }
 
 template <class Visitor>

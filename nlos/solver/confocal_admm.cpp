@@ -20,6 +20,10 @@
 // each of f and h taken beyond where they moved from their splits (over-relaxation). Outside the
 // wall's footprint nothing was measured: there c - p = K f, and d, u, w and q are 0. Where points
 // have gains g of their own, light of h counts g h + background.
+//
+// Where all light is the model's, a factor of the background is found with the scene, from 0: a
+// gate full of light has no dark bins. Under a wide spot too, sparsity is reweighted (Candes, Wakin
+// and Boyd, "Enhancing sparsity by reweighted l1 minimization", 2008): empty columns cost the most.
 
 namespace nlos {
 namespace {
@@ -31,7 +35,7 @@ constexpr double kAlbedoPenalty = 3.0;       // nu
 constexpr float kRelaxation = 1.9F;          // of f and h away from their splits
 constexpr double kToleranceOfGrids = 0.015;  // of the relative change, unless set; few points pull
                                              // weakly: times the root of their share
-constexpr int kGainInterval = 5;             // iterations from one update of gains to the next
+constexpr int kGainInterval = 5;             // iterations from one update of gains or background
 
 // Weights of total variation where light is plenty, unless set: the fourth root of how scarce it is
 // multiplies them. `nlos bench weights` holds what follows from them against a search. What
@@ -47,6 +51,17 @@ constexpr double kSparsityShare = 0.1;  // of the weight of total variation, unl
 // smaller weight shows more of the shape, and takes longer to settle.
 constexpr double kSmearedWeight = -2.5;
 constexpr double kSmearedTolerance = -2.0;
+
+// Reweighted sparsity. What a voxel of an empty column costs is a share of what would hold back one
+// as bright as the brightest, were it alone: so it does not depend on how many photons there are.
+// Where the model leaves more of the data unexplained than noise, total variation weighs as for
+// noise as large: else surfaces that do not quite face the wall fall apart.
+constexpr double kEmptyCost = 0.04;
+constexpr double kHalfCost = 0.1;      // of the brightest: such a column costs half
+constexpr int kReweightInterval = 50;  // iterations
+constexpr double kReweightedWeight = 2.0;
+constexpr double kToleranceUnderSpot = 0.001;
+constexpr std::array<int, 2> kMaxIterations{200, 600};  // without and under a wide spot
 
 /// Share of the wall points that were observed at all.
 double observed_share(const ConfocalProblem& data) {
@@ -68,7 +83,8 @@ double default_weight(const ConfocalProblem& data) {
 /// The relative change at which iterations stop by default.
 double default_tolerance(const ConfocalProblem& data) {
     const double smeared = data.is_confined ? std::pow(data.blur, kSmearedTolerance) : 1.0;
-    return kToleranceOfGrids * smeared * std::sqrt(observed_share(data));
+    const double full = data.is_under_spot ? kToleranceUnderSpot : kToleranceOfGrids * smeared;
+    return full * std::sqrt(observed_share(data));
 }
 
 /// What the noise of light at v makes of a voxel at u, in units of its standard deviation: the
@@ -115,6 +131,7 @@ ConfocalAdmm::ConfocalAdmm(const MethodInput& input,
     : data_(data),
       cone_(data.cone),
       tolerance_(settings.tolerance.value_or(default_tolerance(data))),
+      max_iterations_(settings.max_iterations.value_or(kMaxIterations[data.is_under_spot ? 1 : 0])),
       weight_(settings.tv.value_or(default_weight(data))),
       time_(data.time),
       convolution_(cone_,
@@ -132,25 +149,32 @@ ConfocalAdmm::ConfocalAdmm(const MethodInput& input,
       p_(right_.size()),
       q_(right_.size()),
       w_(right_.size()),
-      r_(data.values.size()) {
+      r_(data.values.size()),
+      costs_(data.is_under_spot && !settings.sparsity ? right_.size() : 0),
+      is_weight_set_(settings.tv.has_value()),
+      background_factor_(data.finds_background ? 0.0F : 1.0F) {
     time_.factorize(data.precision);
     for (ConeField& u : u_) u.resize(right_.size());
     for (ConeField& b : b_) b.resize(right_.size());
     const double sparsity = settings.sparsity.value_or(kSparsityShare * weight_);
     for (const double noise : voxel_noise(data, *input.wall.grid)) {
         tv_.push_back(static_cast<float>(weight_ * noise / kGradientPenalty));
-        sparsity_.push_back(static_cast<float>(sparsity * noise / kAlbedoPenalty));
+        const double cost = costs_.empty() ? sparsity * noise : kEmptyCost * noise * noise;
+        sparsity_.push_back(static_cast<float>(cost / kAlbedoPenalty));
     }
 }
 
-int ConfocalAdmm::run(const core::Progress& progress, int max_iterations) {
+int ConfocalAdmm::run(const core::Progress& progress, std::optional<int> at_most) {
+    const int max_iterations = at_most.value_or(max_iterations_);
     split_data(true);
     for (int i = 1; i <= max_iterations; ++i) {
         check_stop(progress);
         convolution_.solve(light_, right_);
         if (has_gains_ && i % kGainInterval == 0) update_gains();
+        if (data_.finds_background && i % kGainInterval == 0) update_background();
         split_data(false);
         const Change change = split_field();
+        if (!costs_.empty() && i % kReweightInterval == 0) reweight();
         const double share =
             std::max(static_cast<double>(i) / max_iterations,
                      std::min(1.0, std::log(change.relative()) / std::log(tolerance_)));
@@ -160,25 +184,30 @@ int ConfocalAdmm::run(const core::Progress& progress, int max_iterations) {
     return max_iterations;
 }
 
+template <class Visit>
+void ConfocalAdmm::visit_light(std::size_t ix, const Visit& visit) {
+    const std::size_t lanes = cone_.ny;
+    std::vector<float> time(num_bins_ * lanes);
+    time_.apply(light_.data() + ix * cone_.num_v() * lanes, time.data(), lanes);
+    for (std::size_t i = 0; i < time.size(); ++i) {
+        const std::size_t column = ix * lanes + i % lanes;
+        if (!data_.observed[column].holds(static_cast<int>(i / lanes))) continue;
+        visit(column, i / lanes, time[i], data_.values[ix * time.size() + i]);
+    }
+}
+
 double ConfocalAdmm::misfit() {
+    light_ = c_;
     if (data_.is_confined) convolution_.forward(w_, light_);
-    const ConeField& light = data_.is_confined ? light_ : c_;
     std::vector<double> rows(cone_.nx, 0.0);
     core::parallel_for(cone_.nx, [&](std::size_t ix) {
-        const std::size_t lanes = cone_.ny;
-        std::vector<float> time(num_bins_ * lanes);
-        time_.apply(light.data() + ix * cone_.num_v() * lanes, time.data(), lanes);
-        for (std::size_t i = 0; i < time.size(); ++i) {
-            const std::size_t column = ix * lanes + i % lanes;
-            const std::size_t t = i / lanes;
-            if (!data_.observed[column].holds(static_cast<int>(t))) continue;
-            const double y = static_cast<double>(data_.values[ix * num_bins_ * lanes + i]);
-            const double m =
-                static_cast<double>(gains_[column] * time[i] + data_.background_per_bin[column]);
+        visit_light(ix, [&](std::size_t column, std::size_t t, float light, float value) {
+            const auto y = static_cast<double>(value);
+            const auto m = static_cast<double>(gains_[column] * light + background(column));
             rows[ix] += data_.likelihood == Likelihood::Poisson
                             ? poisson_deviance(y, m)
                             : data_.precision[t] * (y - m) * (y - m);
-        }
+        });
     });
     return std::accumulate(rows.begin(), rows.end(), 0.0);
 }
@@ -217,26 +246,58 @@ void ConfocalAdmm::update_gains() {
     std::vector<double> measured(cone_.num_columns(), 0.0);
     std::vector<double> expected(cone_.num_columns(), 0.0);
     core::parallel_for(cone_.nx, [&](std::size_t ix) {
-        const std::size_t lanes = cone_.ny;
-        std::vector<float> time(num_bins_ * lanes);
-        time_.apply(light_.data() + ix * cone_.num_v() * lanes, time.data(), lanes);
-        for (std::size_t i = 0; i < time.size(); ++i) {
-            const std::size_t column = ix * lanes + i % lanes;
-            if (!data_.observed[column].holds(static_cast<int>(i / lanes))) continue;
-            const double m = data_.precision[i / lanes] * static_cast<double>(time[i]);
-            measured[column] += m * static_cast<double>(data_.values[ix * time.size() + i] -
-                                                        data_.background_per_bin[column]);
-            expected[column] += m * static_cast<double>(time[i]);
-        }
+        visit_light(ix, [&](std::size_t column, std::size_t t, float light, float value) {
+            const double m = data_.precision[t] * static_cast<double>(light);
+            measured[column] += m * static_cast<double>(value - background(column));
+            expected[column] += m * static_cast<double>(light);
+        });
     });
     gains_.update(measured, expected);
+}
+
+void ConfocalAdmm::update_background() {
+    std::vector<double> excess(cone_.nx, 0.0);  // over light and background of factor 1
+    std::vector<double> squares(cone_.nx, 0.0);
+    core::parallel_for(cone_.nx, [&](std::size_t ix) {
+        visit_light(ix, [&](std::size_t column, std::size_t t, float light, float value) {
+            const auto b = static_cast<double>(data_.background_per_bin[column]);
+            const auto left = static_cast<double>(value - gains_[column] * light);
+            excess[ix] += data_.precision[t] * b * left;
+            squares[ix] += data_.precision[t] * b * b;
+        });
+    });
+    const double sum = std::accumulate(squares.begin(), squares.end(), 0.0);
+    const double left = std::accumulate(excess.begin(), excess.end(), 0.0);
+    if (sum > 0.0) background_factor_ = static_cast<float>(std::max(0.0, left / sum));
+}
+
+void ConfocalAdmm::reweight() {
+    std::vector<float> columns(cone_.num_columns(), 0.0F);
+    double sum = 0.0;
+    double norm = 0.0;
+    for (std::size_t i = 0; i < w_.size(); ++i) {
+        columns[column_of(i)] += w_[i];
+        sum += static_cast<double>(w_[i]);
+        norm += static_cast<double>(w_[i] * w_[i]);
+    }
+    if (!(sum > 0.0)) return;
+    double squares = 0.0;
+    for (const float column : columns) squares += static_cast<double>(column * column);
+    const auto brightest = static_cast<float>(norm / sum);
+    const auto half = static_cast<float>(kHalfCost * squares / sum);
+    for (std::size_t i = 0; i < w_.size(); ++i) {
+        costs_[i] = brightest * half / (columns[column_of(i)] + half);
+    }
+    if (is_weight_set_) return;
+    ConeField light = light_;  // misfit() takes its place
+    tv_factor_ = kReweightedWeight * std::sqrt(std::max(1.0, misfit() / num_observed_bins(data_)));
+    light_ = std::move(light);
 }
 
 void ConfocalAdmm::explain_bins(
     std::size_t ix, std::size_t t, bool is_first, float* time, float* r) const {
     const std::size_t lanes = cone_.ny;
     const float* values = data_.values.data() + (ix * num_bins_ + t) * lanes;
-    const float* background = data_.background_per_bin.data() + ix * lanes;
     const core::BinRange* observed = data_.observed.data() + ix * lanes;
     const auto penalty = static_cast<float>(data_.precision[t]);
     const bool is_poisson = data_.likelihood == Likelihood::Poisson;
@@ -247,12 +308,13 @@ void ConfocalAdmm::explain_bins(
         float h = is_first ? 0.0F : e;
         if (is_seen) {
             const float y = values[lane];
-            const float expected = gain * e + background[lane];
+            const float dark = background(ix * lanes + lane);
+            const float expected = gain * e + dark;
             const float own_penalty = penalty / (gain * gain);  // of counts instead of light
             const float m = is_first     ? y
                             : is_poisson ? poisson_proximal(y, expected, own_penalty)
                                          : gaussian_proximal(y, expected, penalty, own_penalty);
-            h = (m - background[lane]) / gain;
+            h = (m - dark) / gain;
         }
         r[lane] += is_first ? h : relaxed(h, time[lane]);
         time[lane] = penalty * r[lane];
@@ -284,7 +346,7 @@ void ConfocalAdmm::split_gradients(std::size_t ix, std::size_t v) {
     float* __restrict bx = b_[0].data() + here;
     float* __restrict by = b_[1].data() + here;
     float* __restrict bv = b_[2].data() + here;
-    const float tv = tv_[v];
+    const float tv = static_cast<float>(tv_factor_) * tv_[v];
     for (std::size_t iy = 0; iy < ny; ++iy) {
         const float next_y = iy + 1 < ny ? f[iy + 1] : f[iy];
         const float ex = relaxed(next_x[iy] - f[iy], bx[iy] + ux[iy]) + ux[iy];
@@ -309,12 +371,13 @@ ConfocalAdmm::Change ConfocalAdmm::split_albedo(std::size_t ix, std::size_t v) {
     const float* bx = b_[0].data() + here;
     const float* by = b_[1].data() + here;
     const float* bv = b_[2].data() + here;
+    const float* costs = costs_.empty() ? nullptr : costs_.data();
     Change change;
     for (std::size_t iy = 0; iy < ny; ++iy) {
         const std::size_t i = here + iy;
         const float f = right_[i];
         const float e = relaxed(f, w_[i]) + q_[i];
-        const float w = std::max(0.0F, e - sparsity_[v]);
+        const float w = std::max(0.0F, e - (costs ? costs[i] : 1.0F) * sparsity_[v]);
         change.step += static_cast<double>((w - w_[i]) * (w - w_[i]));
         change.gap += static_cast<double>((w - f) * (w - f));
         change.norm += static_cast<double>(w * w);
@@ -330,7 +393,7 @@ ConfocalAdmm::Change ConfocalAdmm::split_albedo(std::size_t ix, std::size_t v) {
 }
 
 double ConfocalAdmm::bytes(const Cone& cone, bool is_confined) {
-    return ConeConvolution::bytes(cone, kNumFields, is_confined);
+    return ConeConvolution::bytes(cone, kNumFields + (is_confined ? 2.0 : 0.0), is_confined);
 }
 
 }  // namespace nlos

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 namespace nlos {
@@ -19,11 +20,12 @@ class ConfocalAdmm {
                  const ConfocalProblem& data,
                  const SolverSettings& settings);
 
-    /// Returns the number of iterations.
-    int run(const core::Progress& progress, int max_iterations);
+    /// at_most   iterations; as set or by default where nothing is given
+    /// returns   the number of iterations
+    int run(const core::Progress& progress, std::optional<int> at_most = {});
 
     /// The weight of total variation, as set or by default.
-    double weight() const { return weight_; }
+    double weight() const { return tv_factor_ * weight_; }
 
     /// The albedo that it found, per bin of v.
     const ConeField& albedo() const { return w_; }
@@ -52,8 +54,21 @@ class ConfocalAdmm {
     /// From K f in light_ to the next c, p and r and, in light_, c - p - K f; or from the data
     /// alone to the first of them.
     void split_data(bool is_first);
-    /// The gains that explain the data best by K f, in light_.
+    /// Calls visit(column, bin, light, value) for the observed bins of a row, with the light of a
+    /// gain of 1 that light_ makes of each.
+    template <class Visit>
+    void visit_light(std::size_t ix, const Visit& visit);
+    /// The gains, or the factor of the background, that explain the data best by K f, in light_.
     void update_gains();
+    void update_background();
+    /// What voxels of w cost by reweighted sparsity, and how total variation weighs beside it.
+    void reweight();
+    std::size_t column_of(std::size_t i) const {
+        return i / (cone_.num_v() * cone_.ny) * cone_.ny + i % cone_.ny;
+    }
+    float background(std::size_t column) const {
+        return background_factor_ * data_.background_per_bin[column];
+    }
     /// From B c of one bin to P (h + r) in its place; h + r stays in `r`.
     void explain_bins(std::size_t ix, std::size_t t, bool is_first, float* time, float* r) const;
     /// Updates d, u, w and q from f in right_ and leaves grad'(d - u) + w - q there.
@@ -68,7 +83,9 @@ class ConfocalAdmm {
 
     const ConfocalProblem& data_;
     const Cone& cone_;
-    double tolerance_, weight_;
+    double tolerance_;
+    int max_iterations_;
+    double weight_;
     TimeOperator time_;
     ConeConvolution convolution_;
     std::size_t num_bins_;
@@ -77,7 +94,11 @@ class ConfocalAdmm {
     ConeField right_, light_;  ///< f and K f, or what the next of them is computed from
     ConeField c_, p_, q_, w_;
     std::array<ConeField, 3> u_, b_;
-    std::vector<float> r_;              ///< [x][bin][y]
+    std::vector<float> r_;  ///< [x][bin][y]
+    ConeField costs_;       ///< factors of sparsity_; empty: all 1
+    bool is_weight_set_;
+    double tv_factor_ = 1.0;
+    float background_factor_;
     std::vector<float> tv_, sparsity_;  ///< thresholds, per bin of v
 };
 

@@ -17,8 +17,11 @@ constexpr double kFarthestNeighbour = 4.0;   // points to the next that was obse
 // A larger unit makes the solver's penalties smaller against the likelihood. The more a response
 // smears, the less the data say of single voxels, and the longer large penalties hold these back.
 // Scatterers beside the footprint cost their square by them, and must not come too cheap.
+// Under a wide spot, too weak penalties gather light in few voxels.
 constexpr double kConfinedUnitPower = 3.5;
+constexpr double kSpotUnitPower = 2.0;
 constexpr double kUnitPower = 1.0;
+constexpr double kWideSpot = 2.4;  // full width at half maximum, in distances of wall points
 
 /// Histograms of columns from the wall to the wall, cut to some bins.
 class WallHistograms {
@@ -271,6 +274,12 @@ bool holds_counts(const MethodInput& input) {
 
 }  // namespace
 
+double num_observed_bins(const ConfocalProblem& data) {
+    double count = 0.0;
+    for (const core::BinRange& range : data.observed) count += range.size();
+    return std::max(1.0, count);
+}
+
 double depth_blur(const MethodInput& input) {
     const auto& pitch = input.wall.grid->pitch_m;
     return response_deviation_m(input) / std::min(pitch[0], pitch[1]);
@@ -313,9 +322,15 @@ ConfocalProblem make_confocal_problem(const MethodInput& input,
         is_poisson ? poisson_precision(total, window) : gaussian_precision(data, power);
     data.photons_per_point = photons_per_point(total, window, data.cone.num_columns());
     data.is_confined = is_confined;
+    data.finds_background = is_confined && !settings.noise_floor;
     data.blur = std::max(1.0, depth_blur(input));
-    data.unit =
-        light_unit(data) * std::pow(data.blur, is_confined ? kConfinedUnitPower : kUnitPower);
+    const auto& pitch = input.wall.grid->pitch_m;
+    data.is_under_spot =
+        is_confined && settings.solver.spot_m > kWideSpot * std::min(pitch[0], pitch[1]);
+    data.unit = light_unit(data) * std::pow(data.blur,
+                                            data.is_under_spot ? kSpotUnitPower
+                                            : is_confined      ? kConfinedUnitPower
+                                                               : kUnitPower);
     data.time.scale(data.unit);
     return data;
 }

@@ -28,8 +28,13 @@ struct ConfocalProblem {
     double unit = 1.0;  ///< that unit, as content of a bin of v times range^power
     double photons_per_point = 0.0;  ///< of light, had it no background, that were as well known
     bool is_confined = false;        ///< all scatterers lie before the wall's footprint
+    bool finds_background = false;   ///< so, and none was stated
+    bool is_under_spot = false;      ///< so, and a spot blurs light over wall points
     double blur = 1.0;               ///< depth_blur(), at least 1
 };
+
+/// Observed bins of all columns, at least 1.
+double num_observed_bins(const ConfocalProblem& data);
 
 /// How far the response smears depth: its standard deviation as range, in distances of wall points;
 /// 0 without one.

@@ -40,12 +40,6 @@ std::optional<double> trial_misfit(const MethodInput& input, const ReconstructSe
     return solver.misfit();
 }
 
-double num_observed_bins(const ConfocalProblem& data) {
-    double count = 0.0;
-    for (const core::BinRange& range : data.observed) count += range.size();
-    return std::max(1.0, count);
-}
-
 }  // namespace
 
 Volume solve_confocal(const MethodInput& input,
@@ -55,7 +49,7 @@ Volume solve_confocal(const MethodInput& input,
     const ConfocalProblem data = make_confocal_problem(input, settings, is_facing);
     const Cone& cone = data.cone;
     ConfocalAdmm solver(input, data, settings.solver);
-    const int iterations = solver.run(input.progress, settings.solver.max_iterations);
+    const int iterations = solver.run(input.progress);
     if (input.progress.announce) {
         input.progress.announce(
             fmt::format("solver: weight {:.2g} of total variation, {} iterations, {:.3g} of "

@@ -23,6 +23,7 @@ constexpr double kFirstShare = 0.1;          // of the voxels to start with, the
 constexpr double kSmallestPairLight = 1e-3;  // of the brightest bin
 constexpr float kNothing = 2e-3F;            // of the brightest voxel
 constexpr double kToleranceOfPairs = 0.01;   // of the relative change, unless set
+constexpr int kMaxPasses = 200;              // unless set
 constexpr double kSparsityOfPairs = 0.1;     // of the weight of total variation, unless set
 constexpr double kWeightOfPairs = 1.0;       // of total variation, unless set
 
@@ -58,7 +59,7 @@ class PairSolver {
             std::clamp<std::size_t>(seen_pairs_.size() / kPairsPerSubset, 1, kMaxSubsets);
         const double tolerance = settings_.tolerance.value_or(kToleranceOfPairs);
         int pass = 0;
-        for (; pass < settings_.max_iterations && voxels_.size() > 0; ++pass) {
+        for (; pass < settings_.max_iterations.value_or(kMaxPasses) && voxels_.size() > 0; ++pass) {
             check_stop(input_.progress);
             const std::size_t num_subsets =
                 std::max<std::size_t>(1, most >> std::min<int>(pass / kPassesPerDoubling, 16));

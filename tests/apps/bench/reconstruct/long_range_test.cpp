@@ -7,7 +7,8 @@
 namespace apps {
 namespace {
 
-// Draws of the photons differ by 0.03.
+// Draws of the photons differ by 0.03. With the background that the gate seems to have, 0.46 are
+// stated; without reweighted sparsity, 0.58.
 TEST(LongRange, TheSolverReadsALetterThatTheDirectInversionDoesNot) {
     LongRangeBenchSettings settings;
     settings.photons = {5000.0};
@@ -16,9 +17,19 @@ TEST(LongRange, TheSolverReadsALetterThatTheDirectInversionDoesNot) {
     const LongRangeBench bench = measure_long_range(settings, {});
     ASSERT_EQ(bench.scores.size(), 2U);
     EXPECT_LT(bench.scores[0].mask_iou_best, 0.4);
-    EXPECT_GT(bench.scores[1].mask_iou_stated, 0.5);
-    EXPECT_GT(bench.scores[1].mask_iou_best, 0.52);
-    EXPECT_LT(bench.scores[1].depth_mae_m.value(), 0.006);
+    EXPECT_GT(bench.scores[1].mask_iou_stated, 0.63);
+    EXPECT_GT(bench.scores[1].mask_iou_best, 0.65);
+    EXPECT_LT(bench.scores[1].depth_mae_m.value(), 0.003);
+}
+
+TEST(LongRange, ManyPhotonsShowStrokesOfHalfTheSpot) {
+    LongRangeBenchSettings settings;
+    settings.photons = {100000.0};
+    settings.spots_m = {0.08};
+    settings.methods = {"solver"};
+    const LongRangeBench bench = measure_long_range(settings, {});
+    ASSERT_EQ(bench.scores.size(), 1U);
+    EXPECT_GT(bench.scores[0].mask_iou_stated, 0.7);
 }
 
 }  // namespace
