@@ -22,8 +22,8 @@
 // have gains g of their own, light of h counts g h + background.
 //
 // Where all light is the model's, a factor of the background is found with the scene, from 0: a
-// gate full of light has no dark bins. Under a wide spot too, sparsity is reweighted (Candes, Wakin
-// and Boyd, "Enhancing sparsity by reweighted l1 minimization", 2008): empty columns cost the most.
+// gate full of light has no dark bins. Under a wide spot too, sparsity is reweighted [Candes2008]:
+// an empty column costs the most, a bright one next to nothing.
 
 namespace nlos {
 namespace {

@@ -22,7 +22,8 @@ namespace nlos {
 /// num_slabs  not used: every iteration needs all frequencies
 /// returns    albedo per metre of depth, up to a common factor; not negative
 /// throws     core::Failure when asked to stop
-/// source     [OToole2018], supplement; [Boyd2011]; Poisson likelihood [Figueiredo2010]
+/// source     [OToole2018], supplement; [Boyd2011]; [Candes2008]; Poisson likelihood
+/// [Figueiredo2010]
 Volume solve_confocal(const MethodInput& input,
                       const ReconstructSettings& settings,
                       std::size_t num_slabs);

@@ -7,8 +7,8 @@
 namespace apps {
 namespace {
 
-// Draws of the photons differ by 0.03. With the background that the gate seems to have, 0.46 are
-// stated; without reweighted sparsity, 0.58.
+// Draws of the photons differ by 0.03. With the background that the gate seems to have, 0.58 are
+// stated; without reweighted sparsity, 0.60.
 TEST(LongRange, TheSolverReadsALetterThatTheDirectInversionDoesNot) {
     LongRangeBenchSettings settings;
     settings.photons = {5000.0};
