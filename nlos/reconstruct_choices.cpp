@@ -173,6 +173,9 @@ void choose_axes(const core::Scan& scan,
 MethodChoice choose_and_enter_method(const core::Capture& capture,
                                      ReconstructSettings& settings,
                                      PreparedCapture& prepared) {
+    if (!settings.solver.spot_m) {
+        settings.solver.spot_m = core::recorded_spot_m(capture).value_or(0.0);
+    }
     ReconstructSettings with_response = settings;
     if (settings.method == Method::Auto && !core::is_stated(settings.response)) {
         with_response.response = core::recorded_response(capture).value_or(settings.response);

@@ -286,6 +286,7 @@ struct Layout {
     LayoutDevices devices;
     bool files_are_frames = false;   ///< several such files, or a folder of them, are a sequence
     LayoutNumber response_fwhm_s;    ///< of the detector, goes to the provenance
+    LayoutNumber spot_fwhm_m;        ///< on the wall, likewise
     std::vector<std::string> keep;   ///< short arrays that go to the provenance
     std::vector<std::string> notes;  ///< what a user should know, shown by `nlos info`
 };
@@ -305,6 +306,7 @@ void for_each_field(Layout& l, Visitor&& visit) {
     visit("devices", l.devices, "laser and detector");
     visit("files_are_frames", l.files_are_frames, "several files are frames");
     visit("response_fwhm_s", l.response_fwhm_s, "full width at half maximum of the response [s]");
+    visit("spot_fwhm_m", l.spot_fwhm_m, "full width at half maximum of the spot on the wall [m]");
     visit("keep", l.keep, "short arrays that go to the provenance");
     visit("notes", l.notes, "what a user should know");
 }

@@ -85,10 +85,15 @@ void describe(const LayoutFiles& files, const Layout& layout, Capture& capture) 
             capture.scene_info["arrays"][name] = files.read(name);
         }
     }
-    const LayoutNumber& fwhm = layout.response_fwhm_s;
-    if (fwhm.value || (!fwhm.array.empty() && files.has(fwhm.array))) {
-        const double fwhm_s = *files.number(fwhm, "response");
-        capture.scene_info["detector"]["response"]["jitter_fwhm_ps"] = fwhm_s * 1e12;
+    const auto number = [&](const LayoutNumber& stated, const char* what) {
+        const bool is_there = stated.value || (!stated.array.empty() && files.has(stated.array));
+        return is_there ? files.number(stated, what) : std::nullopt;
+    };
+    if (const auto fwhm_s = number(layout.response_fwhm_s, "response")) {
+        capture.scene_info["detector"]["response"]["jitter_fwhm_ps"] = *fwhm_s * 1e12;
+    }
+    if (const auto fwhm_m = number(layout.spot_fwhm_m, "solver.spot_m")) {
+        capture.scene_info["detector"]["spot_m"] = *fwhm_m;
     }
     capture.notes.push_back(fmt::format("layout {}{}{}",
                                         layout.name,

@@ -71,7 +71,8 @@ struct SolverSettings {
     Likelihood likelihood = Likelihood::Auto;
     std::optional<double> tv;           ///< weight of total variation; empty: by the light
     std::optional<double> sparsity;     ///< weight of the sum; empty: a tenth of `tv`
-    double spot_m = 0.0;                ///< full width at half maximum of the spot on the wall
+    std::optional<double> spot_m;       ///< full width at half maximum of the spot on the wall;
+                                        ///< empty: as the capture states, else 0
     bool gains = false;                 ///< finds a factor of every pair, see PairGains
     std::optional<double> tolerance;    ///< empty: by the solver
     std::optional<int> max_iterations;  ///< empty: by the solver
@@ -146,7 +147,9 @@ void for_each_field(SolverSettings& s, Visitor&& visit) {
                          "or reweighted where spot and response are wide"));
     visit("spot_m",
           s.spot_m,
-          core::at_least(0, "full width at half maximum of the spot on the wall [m]"));
+          core::at_least(0,
+                         "full width at half maximum of the spot on the wall [m]; null: as the "
+                         "capture states, else 0"));
     visit(
         "gains",
         s.gains,

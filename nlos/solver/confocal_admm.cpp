@@ -59,6 +59,7 @@ constexpr double kSmearedTolerance = -2.0;
 constexpr double kEmptyCost = 0.04;
 constexpr double kHalfCost = 0.1;      // of the brightest: such a column costs half
 constexpr int kReweightInterval = 50;  // iterations
+constexpr int kReweightUntil = 600;    // then columns' costs stay: else few columns take all light
 constexpr double kReweightedWeight = 2.0;
 constexpr double kToleranceUnderSpot = 0.001;
 constexpr std::array<int, 2> kMaxIterations{200, 600};  // without and under a wide spot
@@ -136,7 +137,7 @@ ConfocalAdmm::ConfocalAdmm(const MethodInput& input,
       time_(data.time),
       convolution_(cone_,
                    *input.wall.grid,
-                   settings.spot_m,
+                   settings.spot_m.value_or(0.0),
                    kGradientPenalty,
                    kAlbedoPenalty,
                    data.is_confined),
@@ -174,7 +175,7 @@ int ConfocalAdmm::run(const core::Progress& progress, std::optional<int> at_most
         if (data_.finds_background && i % kGainInterval == 0) update_background();
         split_data(false);
         const Change change = split_field();
-        if (!costs_.empty() && i % kReweightInterval == 0) reweight();
+        if (!costs_.empty() && i % kReweightInterval == 0 && i <= kReweightUntil) reweight();
         const double share =
             std::max(static_cast<double>(i) / max_iterations,
                      std::min(1.0, std::log(change.relative()) / std::log(tolerance_)));

@@ -325,8 +325,8 @@ ConfocalProblem make_confocal_problem(const MethodInput& input,
     data.finds_background = is_confined && !settings.noise_floor;
     data.blur = std::max(1.0, depth_blur(input));
     const auto& pitch = input.wall.grid->pitch_m;
-    data.is_under_spot =
-        is_confined && settings.solver.spot_m > kWideSpot * std::min(pitch[0], pitch[1]);
+    data.is_under_spot = is_confined && settings.solver.spot_m.value_or(0.0) >
+                                            kWideSpot * std::min(pitch[0], pitch[1]);
     data.unit = light_unit(data) * std::pow(data.blur,
                                             data.is_under_spot ? kSpotUnitPower
                                             : is_confined      ? kConfinedUnitPower

@@ -32,7 +32,7 @@ class PairSolver {
     PairSolver(const MethodInput& input, const ReconstructSettings& settings)
         : input_(input),
           settings_(settings.solver),
-          light_(input, settings.falloff, settings.solver.spot_m),
+          light_(input, settings.falloff, settings.solver.spot_m.value_or(0.0)),
           gains_(input.scan.num_pairs()),
           size_{input.axes.x_m.size(), input.axes.y_m.size(), input.axes.z_m.size()} {
         const bool is_counts =

@@ -57,6 +57,18 @@ TEST(ReconstructChoices, AutoTellsRetroreflectiveFromDiffuseCounts) {
     }
 }
 
+TEST(ReconstructChoices, TakesTheSpotThatTheCaptureStates) {
+    core::Capture capture =
+        nlos_test::confocal_capture(nlos_test::wall_grid({8, 8}, {0.05, 0.05}), {0.0, 0.0048, 256});
+    const auto spot_m = [&](const std::vector<std::string>& overrides) {
+        return reconstruct(capture, chosen_with(overrides), {}).settings.solver.spot_m;
+    };
+    EXPECT_EQ(spot_m({"method=solver"}), 0.0);
+    capture.scene_info["detector"]["spot_m"] = 0.08;
+    EXPECT_EQ(spot_m({"method=solver"}), 0.08);
+    EXPECT_EQ(spot_m({"method=solver", "solver.spot_m=0.05"}), 0.05);
+}
+
 // Depth smeared by 1.3 distances of wall points. The solver tells how light falls off from radiance
 // too, and finds the plate to a third of the 0.13 m by which the response deviates.
 TEST(ReconstructChoices, TellsSurfacesThatFaceTheWallWhereTheResponseSmearsDepth) {

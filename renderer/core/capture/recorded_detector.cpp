@@ -63,6 +63,12 @@ std::optional<ResponseSettings> recorded_response(const Capture& capture) {
     return response;
 }
 
+std::optional<double> recorded_spot_m(const Capture& capture) {
+    const Json* detector = detector_of(capture);
+    const double spot_m = detector != nullptr ? number_at(*detector, "spot_m") : 0.0;
+    return spot_m > 0.0 ? std::optional(spot_m) : std::nullopt;
+}
+
 ResponseSettings resolve_response(const ResponseSettings& asked,
                                   const Capture& capture,
                                   const std::string& where) {

@@ -19,6 +19,10 @@ std::string describe(const ResponseSettings& response);
 /// nothing when it says nothing of the kind.
 std::optional<ResponseSettings> recorded_response(const Capture& capture);
 
+/// Full width at half maximum of the spot on the wall that a capture's provenance says its set-up
+/// lit and saw [m], as layouts of files that hold it state it; nothing when it says none.
+std::optional<double> recorded_spot_m(const Capture& capture);
+
 /// The response asked for; that of the capture when the text `capture` was.
 ///
 /// throws   Error naming `where` when the capture's provenance states none

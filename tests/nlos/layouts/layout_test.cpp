@@ -5,6 +5,7 @@
 #include "nlos/formats/capture_file.h"
 #include "nlos/layouts/layout_guess.h"
 #include "nlos/layouts/layout_points.h"
+#include "renderer/core/capture/recorded_detector.h"
 #include "tests/nlos/formats/mat_writing.h"
 #include "tests/support/error_message.h"
 #include "tests/support/file_bytes.h"
@@ -238,6 +239,20 @@ TEST(Layouts, NumbersComeFromArraysStepsAndPeaks) {
     const core::Capture capture = example.read();
     EXPECT_NEAR(capture.time_axis.bin_width_m, 0.02, 1e-15);
     EXPECT_NEAR(capture.time_axis.bin_center_m(2), 0.0, 1e-15);
+}
+
+TEST(Layouts, ResponseAndSpotGoToTheProvenance) {
+    LaidOut example({"x", "y", "t"});
+    example.layout["response_fwhm_s"] = {{"array", "jitter"}, {"factor", 1e-12}};
+    example.layout["spot_fwhm_m"] = {{"array", "radius"}, {"factor", 2.0}};
+    EXPECT_FALSE(core::recorded_response(example.read()));
+    EXPECT_FALSE(core::recorded_spot_m(example.read()));
+    write_mat(example.file(),
+              {mat_variable("cube", {kCubeColumns, kCubeRows, kCubeBins}, example.cube),
+               mat_variable("jitter", {1, 1}, std::vector<double>{800.0}),
+               mat_variable("radius", {1, 1}, std::vector<double>{0.07})});
+    EXPECT_NEAR(core::recorded_response(example.read())->jitter_fwhm_ps, 800.0, 1e-9);
+    EXPECT_NEAR(core::recorded_spot_m(example.read()).value_or(0.0), 0.14, 1e-12);
 }
 
 TEST(Layouts, WhatTheFileLacksIsAskedFor) {

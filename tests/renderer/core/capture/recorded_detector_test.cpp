@@ -34,6 +34,13 @@ TEST(RecordedDetector, ResponseIsThatOfTheProvenance) {
     EXPECT_EQ(core::resolve_response(asked, capture, "response").jitter_fwhm_ps, 5.0);
 }
 
+TEST(RecordedDetector, SpotIsThatOfTheProvenance) {
+    EXPECT_EQ(core::recorded_spot_m(recorded_by({{"spot_m", 0.08}})), 0.08);
+    for (const core::Json& none : {core::Json(nullptr), core::Json("wide"), core::Json(-0.1)}) {
+        EXPECT_FALSE(core::recorded_spot_m(recorded_by({{"spot_m", none}}))) << none;
+    }
+}
+
 TEST(RecordedDetector, CapturesThatStateNoneHaveNone) {
     for (const core::Json& made : {core::Json(nullptr),
                                    core::Json::array({1, 2}),
