@@ -7,15 +7,25 @@ cd "$(dirname "$0")/.."
 
 preset=${1:-check}
 [ $# -gt 0 ] && shift
-# They write the layouts of other groups, read data sets, and use pages as a browser's user does.
-bash apps/setup.sh python3-h5py python3-numpy python3-scipy python3-torch \
-    chromium chromium-driver python3-selenium python3-pil
+bash apps/setup.sh
 module=()
 if [ "$preset" != sanitize ]; then
-    bash tests/python.sh
+    bash tests/python.sh build
     module=(-DNLOS_PYTHON=ON "-DPython_EXECUTABLE=$PWD/build/python/bin/python")
 fi
+
+# While it compiles: what tests alone need. They write the layouts of other groups, read data sets,
+# and use pages as a browser's user does.
+install_for_tests() {
+    bash apps/setup.sh python3-h5py python3-numpy python3-scipy python3-torch \
+        chromium chromium-driver python3-selenium python3-pil
+    [ "$preset" = sanitize ] || bash tests/python.sh
+}
+install_for_tests &
+for_tests=$!
+
 cmake --preset "$preset" "${module[@]}" >/dev/null
 cmake --build --preset "$preset"
+wait "$for_tests"
 [ "$preset" != check ] || bash tests/python.sh install
 ctest --preset "$preset" "$@"
