@@ -133,6 +133,11 @@ void describe_captures(Description& out,
     }
     out.print("format: {}\n", format.value_or("unknown"));
     for (const std::string& line : nlos::describe_capture(capture)) out.print("{}\n", line);
+    const auto response = core::recorded_response(capture);
+    if (response) out.print("detector: {}\n", core::describe(*response));
+    if (const auto spot_m = core::recorded_spot_m(capture)) {
+        out.print("detector: a spot of {:.3g} m on the wall (FWHM)\n", *spot_m);
+    }
     print_provenance(out, capture.scene_info);
     if (!missing.empty()) {
         out.print("warning: the file does not hold what stands as 1 m above: --set {}\n",
@@ -142,7 +147,8 @@ void describe_captures(Description& out,
     for (const std::string& warning : nlos::capture_warnings(capture)) {
         out.print("warning: {}\n", warning);
     }
-    for (const std::string& warning : core::detector_warnings(capture, {})) {
+    const auto used = response.value_or(core::ResponseSettings{});
+    for (const std::string& warning : core::detector_warnings(capture, used)) {
         out.print("warning: {}\n", warning);
     }
 }

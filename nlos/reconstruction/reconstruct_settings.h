@@ -211,7 +211,8 @@ void for_each_field(ReconstructSettings& s, Visitor&& visit) {
         core::at_least(
             0,
             "background light and dark counts in every bin, in the histograms' unit, to take off; "
-            "null: each pair's own, from the darkest quarter of the axis"));
+            "null: each pair's own, from the darkest quarter of the axis; with falloff=facing the "
+            "solver finds a factor of it"));
     visit("merge_bins",
           s.merge_bins,
           core::at_least(1,
