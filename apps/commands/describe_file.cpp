@@ -136,7 +136,7 @@ void describe_captures(Description& out,
     const auto response = core::recorded_response(capture);
     if (response) out.print("detector: {}\n", core::describe(*response));
     if (const auto spot_m = core::recorded_spot_m(capture)) {
-        out.print("detector: a spot of {:.3g} m on the wall (FWHM)\n", *spot_m);
+        out.print("detector: {}\n", core::describe_spot(*spot_m));
     }
     print_provenance(out, capture.scene_info);
     if (!missing.empty()) {

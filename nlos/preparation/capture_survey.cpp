@@ -72,7 +72,7 @@ std::vector<std::string> survey_capture(const PreparedCapture& prepared,
     }
     if (core::is_stated(settings.response)) lines.push_back(core::describe(settings.response));
     if (const double spot_m = settings.solver.spot_m.value_or(0.0); spot_m > 0.0) {
-        lines.push_back(fmt::format("a spot of {:.3g} m on the wall (FWHM)", spot_m));
+        lines.push_back(core::describe_spot(spot_m));
     }
     return lines;
 }

@@ -48,6 +48,10 @@ std::string describe(const ResponseSettings& response) {
     return text;
 }
 
+std::string describe_spot(double fwhm_m) {
+    return fmt::format("a spot of {:.3g} m on the wall (FWHM)", fwhm_m);
+}
+
 std::optional<ResponseSettings> recorded_response(const Capture& capture) {
     const Json* detector = detector_of(capture);
     if (detector == nullptr) return std::nullopt;

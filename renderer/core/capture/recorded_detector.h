@@ -15,6 +15,9 @@ namespace core {
 /// response   stated, see is_stated()
 std::string describe(const ResponseSettings& response);
 
+/// A spot in words: "a spot of 0.08 m on the wall (FWHM)".
+std::string describe_spot(double fwhm_m);
+
 /// The response that a capture's provenance says its detector had, as `simulate-noise` writes it;
 /// nothing when it says nothing of the kind.
 std::optional<ResponseSettings> recorded_response(const Capture& capture);
