@@ -7,7 +7,6 @@
 #include <tiny_gltf.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <limits>
 #include <type_traits>

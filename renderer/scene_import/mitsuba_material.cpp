@@ -2,7 +2,6 @@
 #include "renderer/scene_import/mitsuba_material.h"
 
 #include "renderer/core/error.h"
-#include "renderer/material/texture.h"
 #include "renderer/scene_import/key_reader.h"
 
 #include <fmt/core.h>
