@@ -11,7 +11,6 @@
 #include <cctype>
 #include <cmath>
 #include <map>
-#include <sstream>
 
 namespace renderer {
 namespace {

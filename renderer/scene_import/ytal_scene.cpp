@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/scene_import/ytal_scene.h"
-
 #include "renderer/core/error.h"
 #include "renderer/scene_import/foreign_file.h"
 #include "renderer/scene_import/imported_shapes.h"
