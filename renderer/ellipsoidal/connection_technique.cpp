@@ -20,12 +20,6 @@ std::vector<std::uint32_t> kept_facets(const ExcludedFacets& excluded) {
     return kept;
 }
 
-std::vector<int> visible_sides(const Scene& scene, const core::Scan& scan) {
-    std::vector<int> sides;
-    for (const Object& object : scene.objects()) sides.push_back(visible_side(object, scan));
-    return sides;
-}
-
 core::Vec3 lit_normal(const PathEndpoint& end) {
     return end.isotropic ? core::Vec3(core::Vec3::Zero()) : end.normal;
 }
@@ -50,7 +44,7 @@ ConnectionTechnique::ConnectionTechnique(const Scene& scene,
                                          const core::Scan& scan)
     : scene_(&scene),
       is_excluded_(excluded.facets),
-      hierarchy_(scene, kept_facets(excluded), visible_sides(scene, scan)) {}
+      hierarchy_(scene, kept_facets(excluded), visible_sides(scene.objects(), scan)) {}
 
 std::optional<LobeOnFacet> ConnectionTechnique::lobe_of(const PathVertex& vertex,
                                                         const core::Vec3& light,

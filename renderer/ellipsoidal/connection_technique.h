@@ -36,7 +36,7 @@ class ConnectionTechnique {
  public:
     /// scene      must outlive the technique
     /// excluded   facets that are never drawn
-    /// scan       where sensors and lights may be, see visible_side()
+    /// scan       where sensors and lights may be, see visible_sides()
     ConnectionTechnique(const Scene& scene, const ExcludedFacets& excluded, const core::Scan& scan);
 
     const TriangleHierarchy& hierarchy() const { return hierarchy_; }
