@@ -5,7 +5,7 @@
 #include "renderer/core/process.h"
 #include "renderer/core/stopwatch.h"
 #include "renderer/film/transient_accumulator.h"
-#include "renderer/path/short_paths.h"
+#include "renderer/path/tracer.h"
 
 #include <fmt/core.h>
 

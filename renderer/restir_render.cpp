@@ -6,7 +6,7 @@
 #include "renderer/core/stopwatch.h"
 #include "renderer/ellipsoidal_render.h"
 #include "renderer/pass_render.h"
-#include "renderer/path/short_paths.h"
+#include "renderer/path/tracer.h"
 #include "renderer/restir/restir_renderer.h"
 
 #include <fmt/core.h>

@@ -5,8 +5,6 @@
 #include "renderer/film/path_extent.h"
 #include "renderer/scene/scene.h"
 
-#include <cstdint>
-
 namespace renderer {
 
 /// An end of light paths: a point on the relay wall, a lit spot, or an isotropic point in space.

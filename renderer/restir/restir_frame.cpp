@@ -6,19 +6,14 @@ namespace {
 
 using core::Vec3;
 
-ShiftQuantity kept_quantity(const core::HistogramAxes& axes) {
-    return axes.velocity ? ShiftQuantity::PathVelocity : ShiftQuantity::PathLength;
-}
-
 std::optional<ShiftMapping> make_shift(const Scene& scene,
                                        const RestirSettings& settings,
-                                       ShiftQuantity quantity) {
+                                       const core::HistogramAxes& axes) {
     if (settings.reuse != Reuse::PathLength) return std::nullopt;
-    ShiftSettings shift;
-    shift.chart = settings.chart;
-    shift.gauge = settings.gauge;
-    shift.reverse_check = settings.reverse_check;
-    return ShiftMapping(scene, shift, quantity);
+    return ShiftMapping(
+        scene,
+        {.chart = settings.chart, .gauge = settings.gauge, .reverse_check = settings.reverse_check},
+        axes.velocity ? ShiftQuantity::PathVelocity : ShiftQuantity::PathLength);
 }
 
 // Displacement of a facet between two scenes.
@@ -157,7 +152,7 @@ RestirScene::RestirScene(std::shared_ptr<const Scene> scene_of_frames,
       sensor_pairs(*scene, scan),
       walk(*scene, settings.laser_spot_m2),
       candidates(*scene, scan, sensor_pairs, walk, axes.time, settings),
-      shift(make_shift(*scene, settings.restir, kept_quantity(axes))) {
+      shift(make_shift(*scene, settings.restir, axes)) {
     if (sensor_pairs.is_image()) pixel_places.emplace(sensor_pairs, *scan.camera);
 }
 
