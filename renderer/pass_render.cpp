@@ -5,7 +5,6 @@
 #include "renderer/core/process.h"
 #include "renderer/core/stopwatch.h"
 #include "renderer/film/transient_accumulator.h"
-#include "renderer/path/tracer.h"
 
 #include <fmt/core.h>
 
@@ -206,11 +205,22 @@ void require_memory(const std::string& where, const std::string& what, double by
         fmt::format("{} need {:.1f} GB, {:.1f} GB are free", what, bytes * 1e-9, available * 1e-9));
 }
 
-core::Capture empty_capture(const core::Scan& scan, const core::HistogramAxes& axes) {
+core::Capture empty_capture(const core::Scan& scan,
+                            const core::HistogramAxes& axes,
+                            const RenderSettings& settings) {
     core::Capture capture;
     capture.scan = scan;
     capture.time_axis = axes.time;
-    if (axes.velocity) capture.velocity = {*axes.velocity, {}, std::nullopt};
+    capture.transient = core::Transient(scan.num_pairs(), axes.time.num_bins);
+    if (axes.velocity) {
+        const int num_values = axes.velocity->num_values(axes.time.num_bins);
+        capture.velocity = {
+            *axes.velocity, core::Transient(scan.num_pairs(), num_values), std::nullopt};
+    }
+    for (int order = 1; settings.by_order && order <= settings.max_bounces; ++order) {
+        capture.orders.push_back(order);
+        capture.by_order.emplace_back(scan.num_pairs(), axes.time.num_bins);
+    }
     return capture;
 }
 
@@ -220,11 +230,7 @@ RenderResult render_passes(const RenderTask& task, const PassWork& work) {
     const std::size_t tile_pairs = pairs_per_tile(task, work.max_sums_bytes);
     require_memory_for(task, tile_pairs);
     RenderResult result;
-    result.capture = empty_capture(task.scan, task.axes);
-    for (int order = 1; task.settings.by_order && order <= task.settings.max_bounces; ++order) {
-        result.capture.orders.push_back(order);
-        result.capture.by_order.emplace_back(num_pairs, task.axes.time.num_bins);
-    }
+    result.capture = empty_capture(task.scan, task.axes, task.settings);
     PassLoop loop{task, work, SensorPairs(task.scene, task.scan)};
     for (std::size_t begin = 0; begin < num_pairs; begin += tile_pairs) {
         const Tile tile{begin, std::min(tile_pairs, num_pairs - begin)};

@@ -28,7 +28,9 @@ RenderResult render_passes(const RenderTask& task, const PassWork& work);
 /// Throws core::Failure unless the memory that `what` need is free.
 void require_memory(const std::string& where, const std::string& what, double bytes);
 
-/// A capture of a scan without values.
-core::Capture empty_capture(const core::Scan& scan, const core::HistogramAxes& axes);
+/// A dark capture of a scan, with the bounce orders that the settings ask for.
+core::Capture empty_capture(const core::Scan& scan,
+                            const core::HistogramAxes& axes,
+                            const RenderSettings& settings);
 
 }  // namespace renderer
