@@ -113,13 +113,94 @@ void RestirNeighbours::pick(std::size_t pair,
     picked.resize(wanted);
 }
 
-// The state of a thread that works on some pairs.
+// The state of a thread that works on some pairs of a frame.
 struct RestirRenderer::Worker {
+    const RestirSettings& settings;
+    const RestirFrame& frame;
+    std::vector<ReservoirBuilder<ReusablePath>> builders;  // per bin
     core::Rng rng{0, 0, 0};
     std::size_t pair = 0;
-    RestirCounts counts;
-    std::vector<ReservoirBuilder<ReusablePath>> builders;  // per bin
-    std::vector<std::size_t> neighbours;
+    RestirCounts counts{};
+    std::vector<std::size_t> neighbours{};
+
+    // Draws paths of the pair within a gate and offers them to the builder of their bin.
+    template <class BuilderOf>
+    void draw(const TimeGate& gate, double share, const BuilderOf& builder_of) {
+        const PathDomain& domain = frame.domains[pair];
+        const PathCandidates::Request request{
+            domain, gate.begin_m(), gate.end_m(), effort_of(settings, share)};
+        counts.num_rays += frame.scene->candidates.generate(
+            request, rng, [&](const ReusablePath& path, const PathValue& value, double density) {
+                ReservoirBuilder<ReusablePath>* const builder = builder_of(value.extent);
+                if (builder == nullptr) return;
+                const double target = value.radiance * gate.weight(value.extent.opl_m);
+                ReusablePath placed = path;
+                placed.pixel_u = domain.pixel_u;
+                builder->add(placed, target, target / density, rng.uniform());
+            });
+    }
+
+    // Merges the reservoir of another domain into that of `here`.
+    PathReservoir merge(const PathReservoir& canonical,
+                        const ReservoirDomain& here,
+                        const PathReservoir& other,
+                        const ReservoirDomain& there) {
+        const ShiftedSample in = shift_sample(other, there, here, *frame.scene, counts);
+        const ShiftedSample out = shift_sample(canonical, here, there, *frame.scene, counts);
+        ++counts.num_merges;
+        return resample_balance_heuristic(canonical, other, in, out, rng.uniform(), rng.uniform());
+    }
+
+    // Candidates against a wider gate, shifted into the narrow one (source [Kim2026]).
+    PathReservoir sample_wide_gate(const PathReservoir& narrow) {
+        const double share = settings.shrink_fraction;
+        const ReservoirDomain here(frame, pair, 0);
+        ReservoirDomain wide = here;
+        TimeGate& gate = wide.gate.time;
+        gate.width_m /= kShrink;
+        gate.start_m -= 0.5 * (gate.width_m - here.gate.time.width_m);
+        ReservoirBuilder<ReusablePath> builder;
+        draw(gate, share, [&](const PathExtent&) { return &builder; });
+        return merge(narrow, here, builder.finish(share * kConfidenceOfFrame), wide);
+    }
+
+    PathReservoir reuse_temporally(const RestirFrame& previous,
+                                   std::size_t bin,
+                                   const PathReservoir& fresh) {
+        const std::size_t index = pair * frame.bins.count() + bin;
+        return merge(fresh,
+                     {frame, pair, bin},
+                     limited(previous.reservoirs.load(index), settings.confidence_cap),
+                     {previous, pair, bin});
+    }
+
+    PathReservoir with_neighbours(std::size_t bin) {
+        const std::size_t num_bins = frame.bins.count();
+        const PathReservoir canonical = frame.reservoirs.load(pair * num_bins + bin);
+        if (frame.bins.is_left_out(bin)) return canonical;
+        std::optional<std::size_t> before;
+        std::optional<std::size_t> after;
+        if (settings.reuse_bins) {
+            before = frame.bins.beside(bin, -1);
+            after = frame.bins.beside(bin, 1);
+        }
+        const int num_neighbours =
+            static_cast<int>(neighbours.size()) + (before ? 1 : 0) + (after ? 1 : 0);
+        const ReservoirDomain here(frame, pair, bin);
+        PairwiseMisMerge<ReusablePath> merged(canonical, num_neighbours);
+        const auto add = [&](std::size_t other_pair, std::size_t other_bin) {
+            const ReservoirDomain there(frame, other_pair, other_bin);
+            const PathReservoir other = frame.reservoirs.load(other_pair * num_bins + other_bin);
+            const ShiftedSample in = shift_sample(other, there, here, *frame.scene, counts);
+            const ShiftedSample out = shift_sample(canonical, here, there, *frame.scene, counts);
+            merged.add_neighbour(other, in, out, rng.uniform());
+            ++counts.num_merges;
+        };
+        for (const std::size_t other : neighbours) add(other, bin);
+        if (before) add(pair, *before);
+        if (after) add(pair, *after);
+        return limited(merged.finish(rng.uniform()), settings.confidence_cap);
+    }
 };
 
 RestirRenderer::RestirRenderer(const core::Scan& scan, const RenderSettings& settings)
@@ -136,20 +217,21 @@ double RestirRenderer::bytes_needed(const core::HistogramAxes& axes) const {
 }
 
 void RestirRenderer::for_each_pair(const FrameInput& input,
+                                   const RestirFrame& frame,
                                    int stage,
-                                   const std::function<void(Worker&, std::size_t)>& body) {
+                                   const std::function<void(Worker&)>& body) {
     std::mutex mutex;
     core::parallel_blocks(
         scan_->num_pairs(), kPairsPerTask, [&](std::size_t begin, std::size_t end) {
-            Worker worker;
-            worker.builders.resize(ReservoirBins(input.axes, settings_.gate).count());
+            Worker worker{settings_.restir, frame, {}};
+            worker.builders.resize(frame.bins.count());
             for (std::size_t pair = begin; pair < end; ++pair) {
                 worker.pair = pair;
                 worker.rng =
                     core::Rng(settings_.seed,
                               pair,
                               input.number * kStreamsPerFrame + static_cast<std::uint64_t>(stage));
-                body(worker, pair);
+                body(worker);
             }
             const std::lock_guard lock(mutex);
             counts_ += worker.counts;
@@ -187,95 +269,30 @@ void RestirRenderer::find_domains(const FrameInput& input, RestirFrame& frame) c
 void RestirRenderer::generate_candidates(const FrameInput& input, RestirFrame& frame) {
     const std::size_t num_bins = frame.bins.count();
     const bool reuses = settings_.restir.reuse != Reuse::None && input.previous != nullptr;
-    for_each_pair(input, kCandidateStage, [&](Worker& worker, std::size_t pair) {
+    for_each_pair(input, frame, kCandidateStage, [&](Worker& worker) {
         auto& builders = worker.builders;
         std::fill(builders.begin(), builders.end(), ReservoirBuilder<ReusablePath>());
         const double share = 1.0 - settings_.restir.shrink_fraction;
-        draw(worker, frame, frame.bins.lengths(), share, [&](const PathExtent& extent) {
+        worker.draw(frame.bins.lengths(), share, [&](const PathExtent& extent) {
             const auto bin = frame.bins.bin_of(extent);
             return bin ? &builders[*bin] : nullptr;
         });
         for (std::size_t bin = 0; bin < num_bins; ++bin) {
             PathReservoir fresh = builders[bin].finish(share * kConfidenceOfFrame);
-            if (share < 1.0) fresh = sample_wide_gate(worker, frame, fresh);
-            const std::size_t index = pair * num_bins + bin;
+            if (share < 1.0) fresh = worker.sample_wide_gate(fresh);
             const bool is_reused = reuses && !frame.bins.is_left_out(bin);
             frame.reservoirs.store(
-                index,
-                is_reused ? reuse_temporally(worker, frame, *input.previous, index, fresh) : fresh);
+                worker.pair * num_bins + bin,
+                is_reused ? worker.reuse_temporally(*input.previous, bin, fresh) : fresh);
         }
     });
-}
-
-// Draws paths of a pair within a gate and offers them to the builder of their bin.
-template <class BuilderOf>
-void RestirRenderer::draw(Worker& worker,
-                          const RestirFrame& frame,
-                          const TimeGate& gate,
-                          double share,
-                          const BuilderOf& builder_of) const {
-    const PathDomain& domain = frame.domains[worker.pair];
-    const PathCandidates::Request request{
-        domain, gate.begin_m(), gate.end_m(), effort_of(settings_.restir, share)};
-    worker.counts.num_rays += frame.scene->candidates.generate(
-        request, worker.rng, [&](const ReusablePath& path, const PathValue& value, double density) {
-            ReservoirBuilder<ReusablePath>* const builder = builder_of(value.extent);
-            if (builder == nullptr) return;
-            const double target = value.radiance * gate.weight(value.extent.opl_m);
-            ReusablePath placed = path;
-            placed.pixel_u = domain.pixel_u;
-            builder->add(placed, target, target / density, worker.rng.uniform());
-        });
-}
-
-// Candidates against a wider gate, shifted into the narrow one (source [Kim2026]).
-PathReservoir RestirRenderer::sample_wide_gate(Worker& worker,
-                                               const RestirFrame& frame,
-                                               const PathReservoir& narrow) const {
-    const double share = settings_.restir.shrink_fraction;
-    const ReservoirDomain here(frame, worker.pair, 0);
-    ReservoirDomain wide = here;
-    TimeGate& gate = wide.gate.time;
-    gate.width_m /= kShrink;
-    gate.start_m -= 0.5 * (gate.width_m - here.gate.time.width_m);
-    ReservoirBuilder<ReusablePath> builder;
-    draw(worker, frame, gate, share, [&](const PathExtent&) { return &builder; });
-    return merge(
-        worker, *frame.scene, narrow, here, builder.finish(share * kConfidenceOfFrame), wide);
-}
-
-PathReservoir RestirRenderer::reuse_temporally(Worker& worker,
-                                               const RestirFrame& frame,
-                                               const RestirFrame& previous,
-                                               std::size_t index,
-                                               const PathReservoir& fresh) const {
-    const std::size_t bin = index % frame.bins.count();
-    return merge(worker,
-                 *frame.scene,
-                 fresh,
-                 {frame, worker.pair, bin},
-                 limited(previous.reservoirs.load(index), settings_.restir.confidence_cap),
-                 {previous, worker.pair, bin});
-}
-
-// Merges the reservoir of another domain into that of `here`.
-PathReservoir RestirRenderer::merge(Worker& worker,
-                                    const RestirScene& current,
-                                    const PathReservoir& canonical,
-                                    const ReservoirDomain& here,
-                                    const PathReservoir& other,
-                                    const ReservoirDomain& there) const {
-    const ShiftedSample in = shift_sample(other, there, here, current, worker.counts);
-    const ShiftedSample out = shift_sample(canonical, here, there, current, worker.counts);
-    ++worker.counts.num_merges;
-    return resample_balance_heuristic(
-        canonical, other, in, out, worker.rng.uniform(), worker.rng.uniform());
 }
 
 void RestirRenderer::reuse_spatially(const FrameInput& input, int round, RestirFrame& frame) {
     const std::size_t num_bins = frame.bins.count();
     PackedReservoirs merged(frame.reservoirs.size(), max_vertices_);
-    for_each_pair(input, kCandidateStage + 1 + round, [&](Worker& worker, std::size_t pair) {
+    for_each_pair(input, frame, kCandidateStage + 1 + round, [&](Worker& worker) {
+        const std::size_t pair = worker.pair;
         neighbours_.pick(pair, settings_.restir.neighbours, worker.rng, worker.neighbours);
         // Neighbours must be chosen without regard to anything random in their reservoirs, such as
         // where in the pixels their paths start.
@@ -286,42 +303,10 @@ void RestirRenderer::reuse_spatially(const FrameInput& input, int round, RestirF
             });
         }
         for (std::size_t bin = 0; bin < num_bins; ++bin) {
-            merged.store(pair * num_bins + bin,
-                         with_neighbours(worker, frame, pair * num_bins + bin));
+            merged.store(pair * num_bins + bin, worker.with_neighbours(bin));
         }
     });
     frame.reservoirs = std::move(merged);
-}
-
-PathReservoir RestirRenderer::with_neighbours(Worker& worker,
-                                              const RestirFrame& frame,
-                                              std::size_t index) const {
-    const std::size_t num_bins = frame.bins.count();
-    const std::size_t bin = index % num_bins;
-    const PathReservoir canonical = frame.reservoirs.load(index);
-    if (frame.bins.is_left_out(bin)) return canonical;
-    std::optional<std::size_t> before;
-    std::optional<std::size_t> after;
-    if (settings_.restir.reuse_bins) {
-        before = frame.bins.beside(bin, -1);
-        after = frame.bins.beside(bin, 1);
-    }
-    const int num_neighbours =
-        static_cast<int>(worker.neighbours.size()) + (before ? 1 : 0) + (after ? 1 : 0);
-    const ReservoirDomain here(frame, worker.pair, bin);
-    PairwiseMisMerge<ReusablePath> merge(canonical, num_neighbours);
-    const auto add = [&](std::size_t pair, std::size_t other_bin) {
-        const ReservoirDomain there(frame, pair, other_bin);
-        const PathReservoir other = frame.reservoirs.load(pair * num_bins + other_bin);
-        const ShiftedSample in = shift_sample(other, there, here, *frame.scene, worker.counts);
-        const ShiftedSample out = shift_sample(canonical, here, there, *frame.scene, worker.counts);
-        merge.add_neighbour(other, in, out, worker.rng.uniform());
-        ++worker.counts.num_merges;
-    };
-    for (const std::size_t pair : worker.neighbours) add(pair, bin);
-    if (before) add(worker.pair, *before);
-    if (after) add(worker.pair, *after);
-    return limited(merge.finish(worker.rng.uniform()), settings_.restir.confidence_cap);
 }
 
 }  // namespace renderer

@@ -55,33 +55,11 @@ class RestirRenderer {
 
     void find_domains(const FrameInput& input, RestirFrame& frame) const;
     void generate_candidates(const FrameInput& input, RestirFrame& frame);
-    template <class BuilderOf>
-    void draw(Worker& worker,
-              const RestirFrame& frame,
-              const TimeGate& gate,
-              double share,
-              const BuilderOf& builder_of) const;
-    PathReservoir merge(Worker& worker,
-                        const RestirScene& current,
-                        const PathReservoir& canonical,
-                        const ReservoirDomain& here,
-                        const PathReservoir& other,
-                        const ReservoirDomain& there) const;
-    PathReservoir sample_wide_gate(Worker& worker,
-                                   const RestirFrame& frame,
-                                   const PathReservoir& narrow) const;
-    PathReservoir reuse_temporally(Worker& worker,
-                                   const RestirFrame& frame,
-                                   const RestirFrame& previous,
-                                   std::size_t index,
-                                   const PathReservoir& fresh) const;
     void reuse_spatially(const FrameInput& input, int round, RestirFrame& frame);
-    PathReservoir with_neighbours(Worker& worker,
-                                  const RestirFrame& frame,
-                                  std::size_t index) const;
     void for_each_pair(const FrameInput& input,
+                       const RestirFrame& frame,
                        int stage,
-                       const std::function<void(Worker&, std::size_t pair)>& body);
+                       const std::function<void(Worker&)>& body);
 
     const core::Scan* scan_;
     RenderSettings settings_;
