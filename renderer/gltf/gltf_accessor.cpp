@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/gltf/gltf_accessor.h"
-
 #include "renderer/core/error.h"
+#include "renderer/gltf/gltf_document.h"
 
 #include <fmt/core.h>
 #include <tiny_gltf.h>

@@ -4,8 +4,6 @@
 #include "renderer/scene_import/foreign_file.h"
 #include "renderer/scene_import/imported_shapes.h"
 #include "renderer/scene_import/key_reader.h"
-#include "renderer/scene_import/mitsuba_material.h"
-#include "renderer/scene_import/mitsuba_transform.h"
 
 #include <algorithm>
 #include <array>

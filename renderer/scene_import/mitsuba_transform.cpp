@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/scene_import/mitsuba_transform.h"
-
 #include "renderer/core/error.h"
+#include "renderer/scene_import/foreign_file.h"
 
 #include <fmt/core.h>
 
