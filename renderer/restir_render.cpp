@@ -5,7 +5,6 @@
 #include "renderer/core/sampling.h"
 #include "renderer/core/stopwatch.h"
 #include "renderer/ellipsoidal_render.h"
-#include "renderer/pass_render.h"
 #include "renderer/restir/restir_renderer.h"
 
 #include <fmt/core.h>
