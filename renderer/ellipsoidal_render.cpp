@@ -3,7 +3,6 @@
 
 #include "renderer/core/parallel.h"
 #include "renderer/ellipsoidal/ellipsoidal_tracer.h"
-#include "renderer/pass_render.h"
 
 #include <fmt/core.h>
 #include <fmt/ranges.h>

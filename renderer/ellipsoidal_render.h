@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/render_result.h"
-#include "renderer/render_task.h"
+#include "renderer/pass_render.h"
 
 namespace renderer {
 

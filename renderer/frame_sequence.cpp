@@ -6,8 +6,6 @@
 #include "renderer/render.h"
 #include "renderer/restir_render.h"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 
 namespace renderer {

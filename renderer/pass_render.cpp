@@ -5,7 +5,7 @@
 #include "renderer/core/process.h"
 #include "renderer/core/stopwatch.h"
 #include "renderer/film/transient_accumulator.h"
-#include "renderer/path/short_paths.h"
+#include "renderer/path/path_tracer.h"
 
 #include <fmt/core.h>
 
@@ -196,6 +196,23 @@ void PassLoop::run(const Tile& tile, const core::Progress& progress, RenderResul
         static_cast<std::uint64_t>(plan.samples_per_pass) * static_cast<std::uint64_t>(pass);
 }
 
+constexpr std::size_t kMaxPairs = 128;
+constexpr std::size_t kRuns = 16;                      ///< independent, taken in couples
+constexpr int kSamples = 256;                          ///< per pair and run
+constexpr std::uint64_t kTruncationItem = 1ULL << 41;  ///< for random numbers of its own
+
+// What a pair receives in each order and all later ones: [order - 1][bin].
+std::vector<double> tails_of(PassHistogram& histogram, std::size_t num_orders, std::size_t bins) {
+    std::vector<double> tails(num_orders * bins);
+    histogram.drain(
+        [&](std::size_t begin, std::span<const double> values) {
+            std::copy(values.begin(), values.end(), tails.data() + begin);
+        },
+        [](std::size_t, std::span<const double>) {});
+    for (std::size_t i = (num_orders - 1) * bins; i-- > 0;) tails[i] += tails[i + bins];
+    return tails;
+}
+
 }  // namespace
 
 void require_memory(const std::string& where, const std::string& what, double bytes) {
@@ -206,11 +223,22 @@ void require_memory(const std::string& where, const std::string& what, double by
         fmt::format("{} need {:.1f} GB, {:.1f} GB are free", what, bytes * 1e-9, available * 1e-9));
 }
 
-core::Capture empty_capture(const core::Scan& scan, const core::HistogramAxes& axes) {
+core::Capture empty_capture(const core::Scan& scan,
+                            const core::HistogramAxes& axes,
+                            const RenderSettings& settings) {
     core::Capture capture;
     capture.scan = scan;
     capture.time_axis = axes.time;
-    if (axes.velocity) capture.velocity = {*axes.velocity, {}, std::nullopt};
+    capture.transient = core::Transient(scan.num_pairs(), axes.time.num_bins);
+    if (axes.velocity) {
+        const int num_values = axes.velocity->num_values(axes.time.num_bins);
+        capture.velocity = {
+            *axes.velocity, core::Transient(scan.num_pairs(), num_values), std::nullopt};
+    }
+    for (int order = 1; settings.by_order && order <= settings.max_bounces; ++order) {
+        capture.orders.push_back(order);
+        capture.by_order.emplace_back(scan.num_pairs(), axes.time.num_bins);
+    }
     return capture;
 }
 
@@ -220,11 +248,7 @@ RenderResult render_passes(const RenderTask& task, const PassWork& work) {
     const std::size_t tile_pairs = pairs_per_tile(task, work.max_sums_bytes);
     require_memory_for(task, tile_pairs);
     RenderResult result;
-    result.capture = empty_capture(task.scan, task.axes);
-    for (int order = 1; task.settings.by_order && order <= task.settings.max_bounces; ++order) {
-        result.capture.orders.push_back(order);
-        result.capture.by_order.emplace_back(num_pairs, task.axes.time.num_bins);
-    }
+    result.capture = empty_capture(task.scan, task.axes, task.settings);
     PassLoop loop{task, work, SensorPairs(task.scene, task.scan)};
     for (std::size_t begin = 0; begin < num_pairs; begin += tile_pairs) {
         const Tile tile{begin, std::min(tile_pairs, num_pairs - begin)};
@@ -240,6 +264,63 @@ RenderResult render_passes(const RenderTask& task, const PassWork& work) {
         }
     }
     result.seconds = watch.seconds();
+    return result;
+}
+
+BounceTruncation find_bounce_truncation(const RenderTask& task, double allowed) {
+    RenderSettings measuring = task.settings;
+    measuring.by_order = true;
+    const PathTracer tracer(task.scene, measuring);
+    const SensorPairs sensor_pairs(task.scene, task.scan);
+    constexpr std::size_t kCouples = kRuns / 2;
+    const auto num_orders = static_cast<std::size_t>(task.settings.max_bounces);
+    const auto bins = static_cast<std::size_t>(task.axes.time.num_bins);
+    const std::size_t num_pairs = std::min(kMaxPairs, task.scan.num_pairs());
+    // Squared norms of the tails over these pairs, [order - 1][couple of runs]. The product of two
+    // independent estimates has no bias from their noise.
+    using Norms = Eigen::ArrayXd;
+    const Norms zero = Norms::Zero(static_cast<Eigen::Index>(num_orders * kCouples));
+    const Norms norms = core::parallel_sum<Norms>(num_pairs, zero, [&](std::size_t i) {
+        const std::size_t pair = (2 * i + 1) * task.scan.num_pairs() / (2 * num_pairs);
+        Norms result = zero;
+        PassHistogram histogram(
+            {task.axes.time, {}}, task.settings.gate, task.settings.max_bounces);
+        std::vector<double> first;
+        for (std::size_t run = 0; run < kRuns; ++run) {
+            core::Rng rng(task.settings.seed, kTruncationItem + pair, run);
+            tracer.trace(sensor_pairs, pair, kSamples, rng, histogram);
+            std::vector<double> tails = tails_of(histogram, num_orders, bins);
+            if (run % 2 == 0) {
+                first = std::move(tails);
+                continue;
+            }
+            for (std::size_t j = 0; j < tails.size(); ++j) {
+                const std::size_t norm = j / bins * kCouples + run / 2;
+                result[static_cast<Eigen::Index>(norm)] += first[j] * tails[j];
+            }
+        }
+        return result;
+    });
+    const auto norm_from = [&](std::size_t order, double deviations) {
+        const double* const begin = norms.data() + (order - 1) * kCouples;
+        double sum = 0.0;
+        double squares = 0.0;
+        for (std::size_t c = 0; c < kCouples; ++c) {
+            sum += begin[c];
+            squares += begin[c] * begin[c];
+        }
+        const double mean = sum / kCouples;
+        const double variance = std::max(0.0, squares / kCouples - mean * mean) / (kCouples - 1);
+        return std::sqrt(std::max(0.0, mean + deviations * std::sqrt(variance)));
+    };
+    BounceTruncation result{task.settings.max_bounces, 0.0};
+    const double all = norm_from(1, 0.0);
+    if (!(all > 0.0)) return result;
+    for (; result.last > 3; --result.last) {
+        const double tail = norm_from(static_cast<std::size_t>(result.last), 2.0) / all;
+        if (tail > allowed) break;
+        result.left_out = tail;
+    }
     return result;
 }
 

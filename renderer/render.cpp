@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/render.h"
 
-#include "renderer/bounce_truncation.h"
 #include "renderer/ellipsoidal_render.h"
 #include "renderer/pass_render.h"
 #include "renderer/path/path_tracer.h"

@@ -5,15 +5,12 @@
 #include "renderer/core/sampling.h"
 #include "renderer/core/stopwatch.h"
 #include "renderer/ellipsoidal_render.h"
-#include "renderer/pass_render.h"
-#include "renderer/path/short_paths.h"
 #include "renderer/restir/restir_renderer.h"
 
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <limits>
 
 namespace renderer {
@@ -50,10 +47,6 @@ void require_gate_to_shrink_to(const core::HistogramAxes& axes, const RenderSett
                                   axes.velocity ? " and a velocity axis" : ""),
                       "must be 0 unless the time axis has one bin, a gate, and there is no "
                       "velocity axis");
-}
-
-void require_memory_for(const RestirRenderer& renderer, const core::HistogramAxes& axes) {
-    require_memory("restir", "reservoirs", renderer.bytes_needed(axes));
 }
 
 // Whether a bin may end within a pixel; bins of velocity may do so anywhere.
@@ -162,7 +155,7 @@ RenderResult result_of(const HistogramSums& sums,
                        const RenderSettings& settings,
                        const RestirCounts& counts) {
     RenderResult result;
-    result.capture = empty_capture(scan, axes);
+    result.capture = empty_capture(scan, axes, settings);
     sums.write_to(result.capture, 0, num_frames);
     result.excluded = scene.candidates.excluded().objects;
     result.sources.push_back({first_order(scan),
@@ -185,7 +178,7 @@ RenderResult render_restir(const RenderTask& task) {
     require_gate_to_shrink_to(axes, task.settings);
     const RenderSettings settings = with_fitting_frames(task.settings);
     RestirRenderer renderer(scan, settings);
-    require_memory_for(renderer, axes);
+    require_memory("restir", "reservoirs", renderer.bytes_needed(axes));
     const auto restir_scene = std::make_shared<RestirScene>(
         std::shared_ptr<const Scene>(std::shared_ptr<void>(), &task.scene), scan, axes, settings);
     const int per_frame = candidates_per_frame(settings.restir);
@@ -229,7 +222,9 @@ FrameRenderer make_restir_frame_renderer(const core::Scan& scan, const RenderSet
         auto& [settings_of_frames, renderer, last] = *state;
         const core::Stopwatch watch;
         require_gate_to_shrink_to(frame.axes, settings_of_frames);
-        if (frame.index == 0) require_memory_for(renderer, frame.axes);
+        if (frame.index == 0) {
+            require_memory("restir", "reservoirs", renderer.bytes_needed(frame.axes));
+        }
         const RestirFrame* const previous = last.scene != nullptr ? &last : nullptr;
         const auto scene = previous != nullptr && last.scene->scene == frame.scene
                                ? last.scene

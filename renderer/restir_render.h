@@ -2,7 +2,7 @@
 #pragma once
 
 #include "renderer/frame_sequence.h"
-#include "renderer/render_task.h"
+#include "renderer/pass_render.h"
 
 namespace renderer {
 

@@ -2,8 +2,7 @@
 #include "renderer/sensor_render.h"
 
 #include "renderer/core/random.h"
-
-#include <fmt/core.h>
+#include "renderer/pass_render.h"
 
 #include <algorithm>
 #include <cmath>
@@ -140,15 +139,7 @@ class ZoneRenderer {
                  const PointRenderer& render_points)
         : settings_(settings), render_points_(render_points) {
         settings_.direct_return = false;
-        const std::size_t num_zones = scan.num_pairs();
-        core::Capture& capture = result_.capture;
-        capture.scan = scan;
-        capture.time_axis = axis;
-        capture.transient = core::Transient(num_zones, axis.num_bins);
-        for (int order = 1; settings.by_order && order <= settings.max_bounces; ++order) {
-            capture.orders.push_back(order);
-            capture.by_order.emplace_back(num_zones, axis.num_bins);
-        }
+        result_.capture = empty_capture(scan, axis, settings);
     }
 
     void add_pairs(const Scene& scene, const PairSum& sum, const core::Progress& progress);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/formats/capture_adjustment.h"
 
-#include "renderer/core/capture/scan_extent.h"
 #include "renderer/core/error.h"
 
 #include <fmt/core.h>

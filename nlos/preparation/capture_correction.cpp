@@ -2,7 +2,6 @@
 #include "nlos/preparation/capture_correction.h"
 
 #include "nlos/preparation/wall_frame.h"
-#include "renderer/core/capture/scan_extent.h"
 
 #include <algorithm>
 #include <array>

@@ -3,7 +3,7 @@
 
 #include "nlos/preparation/histogram_sample.h"
 #include "nlos/preparation/scatter_fit.h"
-#include "renderer/core/capture/scan_extent.h"
+#include "renderer/core/capture/capture.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/preparation/capture_correction.h"
-#include "renderer/core/capture/scan_extent.h"
+#include "renderer/core/capture/capture.h"
 
 #include <fmt/format.h>
 

@@ -6,6 +6,7 @@
 #include "renderer/core/sampling.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace core {
 
@@ -31,8 +32,7 @@ PointCloud sample_surface(const TriangleMesh& mesh, std::size_t count, std::uint
             triangle_area_vector(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]));
         areas.push_back(area_vectors.back().norm());
     }
-    double total = 0.0;
-    for (const double area : areas) total += area;
+    const double total = std::accumulate(areas.begin(), areas.end(), 0.0);
     if (!(total > 0.0)) throw Error("mesh", "has no area", "must have a triangle of positive area");
 
     const DiscreteDistribution by_area(areas);

@@ -2,24 +2,161 @@
 #include "renderer/core/output_file.h"
 
 #include "renderer/core/error.h"
-#include "renderer/core/partial_file.h"
+#include "renderer/core/stopwatch.h"
 
 #include <fcntl.h>
+#include <fmt/core.h>
 #include <unistd.h>
 
+#include <array>
+#include <atomic>
 #include <cerrno>
+#include <charconv>
+#include <chrono>
+#include <climits>
+#include <csignal>
+#include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <mutex>
+#include <optional>
 
 namespace core {
 namespace fs = std::filesystem;
+namespace {
+
+/// A place for a path that a signal handler may read at any time: no memory is freed here.
+struct Slot {
+    std::atomic<bool> is_taken{false};
+    std::atomic<bool> is_ready{false};  ///< the path may be read
+    std::array<char, PATH_MAX> path{};
+};
+
+std::array<Slot, 16> g_slots;  // more files than that at once are left to the next run
+
+std::uint32_t hash_of(const std::string& text) {  // FNV-1a
+    std::uint32_t hash = 2166136261U;
+    for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 16777619U;
+    return hash;
+}
+
+/// Says where process numbers mean the same: the machine and, in it, the container.
+std::string machine_tag() {
+    std::array<char, 256> host{};
+    std::array<char, 256> numbering{};
+    ::gethostname(host.data(), host.size() - 1);
+    const bool is_known =
+        ::readlink("/proc/self/ns/pid", numbering.data(), numbering.size() - 1) > 0;
+    return fmt::format("{:08x}",
+                       hash_of(std::string(host.data()) + (is_known ? numbering.data() : "")));
+}
+
+struct PartialName {
+    std::string begin;  ///< before the number of the process
+    std::string end;    ///< after it
+};
+
+PartialName partial_name_of(const fs::path& target) {
+    return {"." + target.stem().string() + ".",
+            "-" + machine_tag() + ".partial" + target.extension().string()};
+}
+
+fs::path folder_of(const fs::path& target) {
+    return target.has_parent_path() ? target.parent_path() : fs::path(".");
+}
+
+/// The process that a file of this name is from; nothing for other names.
+std::optional<pid_t> process_of(const std::string& file, const PartialName& name) {
+    if (!file.starts_with(name.begin) || !file.ends_with(name.end)) return std::nullopt;
+    if (file.size() <= name.begin.size() + name.end.size()) return std::nullopt;
+    const char* const last = file.data() + file.size() - name.end.size();
+    pid_t process = 0;
+    const auto [end, error] = std::from_chars(file.data() + name.begin.size(), last, process);
+    if (error != std::errc() || end != last || process <= 0) return std::nullopt;
+    return process;
+}
+
+bool has_ended(pid_t process) {
+    return ::kill(process, 0) != 0 && errno == ESRCH;
+}
+
+/// Rests from listing a folder for many times as long as it took, when that was long: who writes
+/// thousands of files into it spends little time on its leftovers.
+class ListingPause {
+ public:
+    bool is_over(const fs::path& folder) {
+        const std::lock_guard lock(mutex_);
+        return folder != folder_ || Clock::now() >= end_;
+    }
+    void begin(const fs::path& folder, double listing_seconds) {
+        constexpr double kShort_s = 1e-3;
+        constexpr double kTimesAsLong = 50.0;
+        const std::lock_guard lock(mutex_);
+        folder_ = folder;
+        end_ = Clock::now();
+        if (listing_seconds < kShort_s) return;
+        end_ += std::chrono::duration_cast<Clock::duration>(
+            std::chrono::duration<double>(kTimesAsLong * listing_seconds));
+    }
+
+ private:
+    using Clock = std::chrono::steady_clock;
+    std::mutex mutex_;
+    fs::path folder_;
+    Clock::time_point end_;
+};
+
+/// Removes the partial files of `target` whose process has ended on this machine; not those of
+/// other machines or containers that share the folder, which may live. A folder that takes long to
+/// list is not looked at every time.
+void remove_stale_partial_files(const std::string& target) {
+    const PartialName name = partial_name_of(target);
+    const fs::path folder = folder_of(target);
+    static ListingPause pause;
+    if (!pause.is_over(folder)) return;
+    const Stopwatch clock;
+    std::error_code error;
+    std::error_code ignored;
+    for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+         entry.increment(error)) {
+        const auto process = process_of(entry->path().filename().string(), name);
+        if (process && has_ended(*process)) fs::remove(entry->path(), ignored);
+    }
+    pause.begin(folder, clock.seconds());
+}
+
+/// Until forgotten, remove_partial_files() removes the file.
+void announce_partial_file(const std::string& path) {
+    for (Slot& slot : g_slots) {
+        if (path.size() >= slot.path.size() || slot.is_taken.exchange(true)) continue;
+        std::strcpy(slot.path.data(), path.c_str());
+        slot.is_ready = true;
+        return;
+    }
+}
+
+void forget_partial_file(const std::string& path) {
+    for (Slot& slot : g_slots) {
+        if (!slot.is_ready || path != slot.path.data()) continue;
+        slot.is_ready = false;
+        slot.is_taken = false;
+        return;
+    }
+}
+
+}  // namespace
+
+std::string partial_file_of(const std::string& target) {
+    const PartialName name = partial_name_of(target);
+    return (folder_of(target) / (name.begin + std::to_string(::getpid()) + name.end)).string();
+}
 
 OutputFile::OutputFile(std::string target) : target_(std::move(target)) {
     constexpr std::size_t kLongestName = 200;  // file systems take 255, the temporary one is longer
     std::error_code ignored;
     const fs::path path(target_);
-    const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-    if (!fs::is_directory(folder, ignored)) {
+    if (!fs::is_directory(folder_of(path), ignored)) {
         throw Error(target_, "its folder does not exist", "must be in an existing folder");
     }
     if (fs::is_directory(path, ignored)) throw Error(target_, "is a folder", "must be a file name");
@@ -54,6 +191,12 @@ void OutputFile::commit() {
     fs::rename(temporary_, target_, error);
     if (error) throw Failure(target_, "cannot be written (" + error.message() + ")");
     committed_ = true;
+}
+
+void remove_partial_files() noexcept {
+    for (const Slot& slot : g_slots) {
+        if (slot.is_ready) ::unlink(slot.path.data());
+    }
 }
 
 void check_targets(const std::vector<std::string>& targets,

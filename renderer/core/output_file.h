@@ -30,6 +30,10 @@ class OutputFile {
     bool committed_ = false;
 };
 
+/// The file that OutputFile writes in this process on the way to `target`:
+/// `.NAME.PROCESS-MACHINE.partial.SUFFIX` beside NAME.SUFFIX.
+std::string partial_file_of(const std::string& target);
+
 /// Removes what is being written now; for signal handlers that end the program (it is safe there).
 void remove_partial_files() noexcept;
 

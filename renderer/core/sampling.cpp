@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/core/sampling.h"
 
-#include <algorithm>
 #include <cassert>
-#include <cmath>
 #include <limits>
 
 namespace core {
@@ -49,7 +47,7 @@ std::size_t DiscreteDistribution::sample(double u, double& remapped) const {
 }
 
 DiscreteDistribution::Share DiscreteDistribution::share_of(std::size_t index) const {
-    const double begin = begin_of(index);
+    const double begin = index == 0 ? 0.0 : cumulative_[index - 1];
     const double end = cumulative_[index];
     return {index, begin, end, 1.0 / std::max(end - begin, std::numeric_limits<double>::min())};
 }
@@ -68,10 +66,6 @@ DiscreteDistribution::Share DiscreteDistribution::share_from(std::size_t hint, d
         cumulative_.begin() + static_cast<std::ptrdiff_t>(std::min(low + step, cumulative_.size()));
     return share_of(
         static_cast<std::size_t>(std::upper_bound(first, last, u) - cumulative_.begin()));
-}
-
-double DiscreteDistribution::probability(std::size_t index) const {
-    return cumulative_[index] - begin_of(index);
 }
 
 }  // namespace core

@@ -71,10 +71,8 @@ class DiscreteDistribution {
     };
     /// The share that holds u, searched upwards from an index not beyond its own.
     Share share_from(std::size_t hint, double u) const;
-    double probability(std::size_t index) const;
 
  private:
-    double begin_of(std::size_t index) const { return index == 0 ? 0.0 : cumulative_[index - 1]; }
     Share share_of(std::size_t index) const;
 
     std::vector<double> cumulative_;  ///< upper end of each index's share, last is 1

@@ -15,7 +15,6 @@
 #include <algorithm>
 #include <array>
 #include <csignal>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -304,14 +303,11 @@ Json run_sandboxed(const std::string& path,
         std::string bytes;
         try {
             Json::to_cbor(work(), bytes);
-        } catch (const Error&) {
-            throw;
-        } catch (const Failure&) {
-            throw;
-        } catch (const std::bad_alloc&) {
-            throw;
         } catch (const std::exception& error) {
-            if (!failure) throw;
+            const bool is_ours = dynamic_cast<const Error*>(&error) != nullptr ||
+                                 dynamic_cast<const Failure*>(&error) != nullptr ||
+                                 dynamic_cast<const std::bad_alloc*>(&error) != nullptr;
+            if (is_ours || !failure) throw;
             throw failure(error.what());
         }
         return bytes;

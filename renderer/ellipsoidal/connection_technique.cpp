@@ -20,14 +20,37 @@ std::vector<std::uint32_t> kept_facets(const ExcludedFacets& excluded) {
     return kept;
 }
 
-std::vector<int> visible_sides(const Scene& scene, const core::Scan& scan) {
-    std::vector<int> sides;
-    for (const Object& object : scene.objects()) sides.push_back(visible_side(object, scan));
-    return sides;
-}
-
 core::Vec3 lit_normal(const PathEndpoint& end) {
     return end.isotropic ? core::Vec3(core::Vec3::Zero()) : end.normal;
+}
+
+// A vertex on a facet that has been chosen, if there is one.
+std::optional<ConnectionDraw> place_on(const Scene& scene,
+                                       const FocusPair& foci,
+                                       const std::optional<FacetChoice>& choice,
+                                       core::Rng& rng,
+                                       const ConnectionLobe* lobe = nullptr) {
+    if (!choice) return std::nullopt;
+    const double opl_m = choice->lengths.low_m + rng.uniform() * choice->lengths.width_m();
+    const auto connection =
+        sample_ellipsoid(foci, opl_m, scene.facet(choice->facet), rng.uniform(), lobe);
+    if (!connection) return std::nullopt;
+    return ConnectionDraw{
+        {connection->position, choice->facet},
+        choice->probability / choice->lengths.width_m() * connection->pdf_area_per_pdf_opl};
+}
+
+// Density of place_on() and of the choice together [1/m^2].
+double pdf_on(const Scene& scene,
+              const FocusPair& foci,
+              const FacetChoice& choice,
+              const SurfacePoint& point,
+              const ConnectionLobe* lobe = nullptr) {
+    if (!(choice.probability > 0.0) || choice.facet != point.facet) return 0.0;
+    const double opl_m = foci.opl_m(point.position);
+    if (opl_m < choice.lengths.low_m || opl_m > choice.lengths.high_m) return 0.0;
+    return choice.probability / choice.lengths.width_m() *
+           pdf_ellipsoid(foci, scene.facet(point.facet), point.position, lobe);
 }
 
 }  // namespace
@@ -50,7 +73,7 @@ ConnectionTechnique::ConnectionTechnique(const Scene& scene,
                                          const core::Scan& scan)
     : scene_(&scene),
       is_excluded_(excluded.facets),
-      hierarchy_(scene, kept_facets(excluded), visible_sides(scene, scan)) {}
+      hierarchy_(scene, kept_facets(excluded), visible_sides(scene.objects(), scan)) {}
 
 std::optional<LobeOnFacet> ConnectionTechnique::lobe_of(const PathVertex& vertex,
                                                         const core::Vec3& light,
@@ -80,31 +103,6 @@ FacetChoice ConnectionTechnique::choice_by_lobe(const ConnectionEnds& ends,
     return {lobe->facet, part.width_m() > 0.0 ? kLobeShare : 0.0, part};
 }
 
-std::optional<ConnectionDraw> ConnectionTechnique::place(const FocusPair& foci,
-                                                         const std::optional<FacetChoice>& choice,
-                                                         core::Rng& rng,
-                                                         const ConnectionLobe* lobe) const {
-    if (!choice) return std::nullopt;
-    const double opl_m = choice->lengths.low_m + rng.uniform() * choice->lengths.width_m();
-    const auto connection =
-        sample_ellipsoid(foci, opl_m, scene_->facet(choice->facet), rng.uniform(), lobe);
-    if (!connection) return std::nullopt;
-    return ConnectionDraw{
-        {connection->position, choice->facet},
-        choice->probability / choice->lengths.width_m() * connection->pdf_area_per_pdf_opl};
-}
-
-double ConnectionTechnique::pdf_of(const FocusPair& foci,
-                                   const FacetChoice& choice,
-                                   const SurfacePoint& point,
-                                   const ConnectionLobe* lobe) const {
-    if (!(choice.probability > 0.0) || choice.facet != point.facet) return 0.0;
-    const double opl_m = foci.opl_m(point.position);
-    if (opl_m < choice.lengths.low_m || opl_m > choice.lengths.high_m) return 0.0;
-    return choice.probability / choice.lengths.width_m() *
-           pdf_ellipsoid(foci, scene_->facet(point.facet), point.position, lobe);
-}
-
 std::optional<ConnectionDraw> ConnectionTechnique::sample(
     const ConnectionEnds& ends,
     const OplBand& lengths,
@@ -112,18 +110,18 @@ std::optional<ConnectionDraw> ConnectionTechnique::sample(
     const std::optional<LobeOnFacet>& lobe) const {
     const FacetChoice by_lobe = choice_by_lobe(ends, lengths, lobe);
     if (!(by_lobe.probability > 0.0)) {
-        return place(ends.foci, hierarchy_.sample(ends, lengths, rng.uniform()), rng);
+        return place_on(*scene_, ends.foci, hierarchy_.sample(ends, lengths, rng.uniform()), rng);
     }
     std::optional<ConnectionDraw> draw;
     if (rng.uniform() < by_lobe.probability) {
-        draw = place(ends.foci, by_lobe, rng, &lobe->lobe);
+        draw = place_on(*scene_, ends.foci, by_lobe, rng, &lobe->lobe);
         if (!draw) return std::nullopt;
         draw->pdf_area += (1.0 - by_lobe.probability) * pdf_area(ends, lengths, draw->point);
     } else {
-        draw = place(ends.foci, hierarchy_.sample(ends, lengths, rng.uniform()), rng);
+        draw = place_on(*scene_, ends.foci, hierarchy_.sample(ends, lengths, rng.uniform()), rng);
         if (!draw) return std::nullopt;
         draw->pdf_area = (1.0 - by_lobe.probability) * draw->pdf_area +
-                         pdf_of(ends.foci, by_lobe, draw->point, &lobe->lobe);
+                         pdf_on(*scene_, ends.foci, by_lobe, draw->point, &lobe->lobe);
     }
     return draw;
 }
@@ -133,22 +131,22 @@ double ConnectionTechnique::pdf_area(const ConnectionEnds& ends,
                                      const SurfacePoint& point,
                                      const std::optional<LobeOnFacet>& lobe) const {
     const double by_hierarchy =
-        pdf_of(ends.foci, hierarchy_.evaluate(ends, lengths, point.facet), point);
+        pdf_on(*scene_, ends.foci, hierarchy_.evaluate(ends, lengths, point.facet), point);
     if (!lobe) return by_hierarchy;
     const FacetChoice by_lobe = choice_by_lobe(ends, lengths, lobe);
     return (1.0 - by_lobe.probability) * by_hierarchy +
-           pdf_of(ends.foci, by_lobe, point, &lobe->lobe);
+           pdf_on(*scene_, ends.foci, by_lobe, point, &lobe->lobe);
 }
 
 std::optional<ConnectionDraw> ConnectionTechnique::sample(const HierarchyCut& cut,
                                                           double u,
                                                           std::size_t& hint,
                                                           core::Rng& rng) const {
-    return place(cut.foci(), cut.sample(u, hint), rng);
+    return place_on(*scene_, cut.foci(), cut.sample(u, hint), rng);
 }
 
 double ConnectionTechnique::pdf_area(const HierarchyCut& cut, const SurfacePoint& point) const {
-    return pdf_of(cut.foci(), cut.evaluate(point.facet), point);
+    return pdf_on(*scene_, cut.foci(), cut.evaluate(point.facet), point);
 }
 
 }  // namespace renderer

@@ -36,7 +36,7 @@ class ConnectionTechnique {
  public:
     /// scene      must outlive the technique
     /// excluded   facets that are never drawn
-    /// scan       where sensors and lights may be, see visible_side()
+    /// scan       where sensors and lights may be, see visible_sides()
     ConnectionTechnique(const Scene& scene, const ExcludedFacets& excluded, const core::Scan& scan);
 
     const TriangleHierarchy& hierarchy() const { return hierarchy_; }
@@ -73,14 +73,6 @@ class ConnectionTechnique {
     double pdf_area(const HierarchyCut& cut, const SurfacePoint& point) const;
 
  private:
-    std::optional<ConnectionDraw> place(const FocusPair& foci,
-                                        const std::optional<FacetChoice>& choice,
-                                        core::Rng& rng,
-                                        const ConnectionLobe* lobe = nullptr) const;
-    double pdf_of(const FocusPair& foci,
-                  const FacetChoice& choice,
-                  const SurfacePoint& point,
-                  const ConnectionLobe* lobe = nullptr) const;
     FacetChoice choice_by_lobe(const ConnectionEnds& ends,
                                const OplBand& lengths,
                                const std::optional<LobeOnFacet>& lobe) const;

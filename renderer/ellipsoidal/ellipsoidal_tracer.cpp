@@ -4,7 +4,6 @@
 #include "renderer/core/sampling.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace renderer {
 namespace {
@@ -168,8 +167,7 @@ void EllipsoidalTracer::Walk::trace_pixel_samples(const SensorPairs& sensor_pair
         const double value = walk.connection_value(*vertex, ends_);
         if (value > 0.0 && tracer_.scope_ != ConnectionScope::Excluded &&
             histogram_.lets_through(opl_to_light(*vertex))) {
-            ++num_rays_;
-            if (!walk.light_is_hidden(*vertex, ends_)) deposit(*vertex, value);
+            connect_to_light(*vertex, value);
         }
         extend(*vertex);
     }

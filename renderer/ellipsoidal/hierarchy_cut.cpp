@@ -127,21 +127,13 @@ double HierarchyCut::share(std::size_t entry) const {
 std::optional<FacetChoice> HierarchyCut::sample(double u, std::size_t& hint) const {
     while (hint + 1 < entries_.size() && u >= entries_[hint].end) ++hint;
     const Entry& entry = entries_[hint];
-    FacetChoice choice;
-    choice.probability = share(hint);
+    const double probability = share(hint);
     if (entry.child < 0) {
-        choice.facet = hierarchy_->order_[entry.first];
-        choice.lengths = entry.lengths;
-        return choice;
+        return FacetChoice{hierarchy_->order_[entry.first], probability, entry.lengths};
     }
-    const double begin = entry.end - choice.probability;
-    const double rest = std::clamp((u - begin) / choice.probability, 0.0, core::kBelowOne);
-    const auto position = hierarchy_->descend(entry.child, query_, rest, choice.probability);
-    if (!position) return std::nullopt;
-    choice.facet = hierarchy_->order_[*position];
-    choice.lengths = hierarchy_->part_of(lengths_, ends_.foci, choice.facet);
-    if (!(choice.lengths.width_m() > 0.0)) return std::nullopt;
-    return choice;
+    const double begin = entry.end - probability;
+    const double rest = std::clamp((u - begin) / probability, 0.0, core::kBelowOne);
+    return hierarchy_->draw_below(entry.child, query_, ends_.foci, lengths_, rest, probability);
 }
 
 FacetChoice HierarchyCut::evaluate(std::uint32_t facet) const {

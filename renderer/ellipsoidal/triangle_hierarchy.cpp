@@ -236,10 +236,12 @@ std::array<float, TriangleHierarchy::kWidth + 1> TriangleHierarchy::cumulate(con
             first6 + w[6] + w[7]};
 }
 
-std::optional<std::uint32_t> TriangleHierarchy::descend(std::int32_t node,
-                                                        const Query& query,
-                                                        double u,
-                                                        double& probability) const {
+std::optional<FacetChoice> TriangleHierarchy::draw_below(std::int32_t node,
+                                                         const Query& query,
+                                                         const FocusPair& foci,
+                                                         const OplBand& lengths,
+                                                         double u,
+                                                         double probability) const {
     while (node >= 0) {
         const Node& at = nodes_[static_cast<std::size_t>(node)];
         const std::array<float, kWidth + 1> ends = cumulate(importance(at, query));
@@ -255,7 +257,9 @@ std::optional<std::uint32_t> TriangleHierarchy::descend(std::int32_t node,
         probability *= share / double{sum};
         node = at.child[chosen];
     }
-    return static_cast<std::uint32_t>(~node);
+    const std::uint32_t facet = order_[static_cast<std::uint32_t>(~node)];
+    const FacetChoice choice{facet, probability, part_of(lengths, foci, facet)};
+    return choice.lengths.width_m() > 0.0 ? std::optional(choice) : std::nullopt;
 }
 
 double TriangleHierarchy::descent_probability(std::int32_t top,
@@ -288,14 +292,7 @@ std::optional<FacetChoice> TriangleHierarchy::sample(const ConnectionEnds& ends,
                                                      const OplBand& lengths,
                                                      double u) const {
     if (empty()) return std::nullopt;
-    FacetChoice choice;
-    choice.probability = 1.0;
-    const auto position = descend(0, make_query(ends, lengths), u, choice.probability);
-    if (!position) return std::nullopt;
-    choice.facet = order_[*position];
-    choice.lengths = part_of(lengths, ends.foci, choice.facet);
-    if (!(choice.lengths.width_m() > 0.0)) return std::nullopt;
-    return choice;
+    return draw_below(0, make_query(ends, lengths), ends.foci, lengths, u, 1.0);
 }
 
 FacetChoice TriangleHierarchy::evaluate(const ConnectionEnds& ends,

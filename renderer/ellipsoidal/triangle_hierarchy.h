@@ -33,7 +33,7 @@ class TriangleHierarchy {
  public:
     /// scene      must outlive the hierarchy
     /// facets     those to hold; others have probability 0
-    /// sides      per object, which side can be seen: see visible_side()
+    /// sides      per object, which side can be seen: see visible_sides()
     TriangleHierarchy(const Scene& scene,
                       std::span<const std::uint32_t> facets,
                       std::span<const int> sides);
@@ -99,11 +99,13 @@ class TriangleHierarchy {
     static NodeView view_of(const Node& node, const QueryEnd& end);
     Lanes importance(const Node& node, const Query& query) const;
     static std::array<float, kWidth + 1> cumulate(const Lanes& weights);
-    /// From `node` down to a leaf: multiplies the probability, returns the facet's position.
-    std::optional<std::uint32_t> descend(std::int32_t node,
-                                         const Query& query,
-                                         double u,
-                                         double& probability) const;
+    /// The choice that sample() makes from `node` on, which is come to with a probability.
+    std::optional<FacetChoice> draw_below(std::int32_t node,
+                                          const Query& query,
+                                          const FocusPair& foci,
+                                          const OplBand& lengths,
+                                          double u,
+                                          double probability) const;
     /// Probability that the descent from `top` ends at a facet; 0 when it lies elsewhere.
     double descent_probability(std::int32_t top, const Query& query, std::uint32_t facet) const;
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/film/pass_histogram.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>

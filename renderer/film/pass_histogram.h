@@ -2,7 +2,7 @@
 #pragma once
 
 #include "renderer/core/capture/velocity_axis.h"
-#include "renderer/film/path_extent.h"
+#include "renderer/film/time_gate.h"
 #include "renderer/settings/render_settings.h"
 
 #include <algorithm>

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "renderer/core/capture/velocity_axis.h"
-#include "renderer/film/path_extent.h"
 #include "renderer/settings/render_settings.h"
 
 #include <algorithm>
@@ -10,6 +9,26 @@
 #include <optional>
 
 namespace renderer {
+
+/// The length of a path, and its rate of change as the vertices move with their surfaces.
+///
+/// The rate is the sum over segments of u . (v_end - v_start), u along the segment, since
+/// d|r|/dt = r/|r| . dr/dt.
+struct PathExtent {
+    double opl_m = 0.0;
+    double velocity_m_per_s = 0.0;
+
+    /// Appends a segment.
+    ///
+    /// offset   from its start to its end [m], not 0
+    void add_segment(const core::Vec3& offset,
+                     const core::Vec3& start_velocity,
+                     const core::Vec3& end_velocity) {
+        const double length = offset.norm();
+        opl_m += length;
+        velocity_m_per_s += offset.dot(end_velocity - start_velocity) / length;
+    }
+};
 
 /// A bin or a shaped gate: a weight of the path length with peak 1.
 struct TimeGate {

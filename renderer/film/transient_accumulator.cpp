@@ -40,38 +40,34 @@ std::span<const double> TransientAccumulator::totals(std::size_t pair,
 }
 
 template <class WriteRow>
-void TransientAccumulator::write_rows(std::size_t num_scan_pairs,
-                                      std::size_t first_pair,
+void TransientAccumulator::write_rows(std::size_t first_pair,
                                       core::Transient& array,
                                       const WriteRow& write_row) const {
-    if (array.empty()) array = core::Transient(num_scan_pairs, static_cast<int>(num_bins_));
     core::parallel_for(
         num_pairs_, [&](std::size_t pair) { write_row(pair, array.histogram(first_pair + pair)); });
 }
 
 void TransientAccumulator::write_channel(int channel,
                                          int num_passes,
-                                         std::size_t num_scan_pairs,
                                          std::size_t first_pair,
                                          core::Transient& mean) const {
-    write_rows(num_scan_pairs, first_pair, mean, [&](std::size_t pair, std::span<float> to) {
+    write_rows(first_pair, mean, [&](std::size_t pair, std::span<float> to) {
         write_mean(row(pair, channel), num_passes, to);
     });
 }
 
 void TransientAccumulator::write(int num_passes,
-                                 std::size_t num_scan_pairs,
                                  std::size_t first_pair,
                                  core::Transient& mean,
                                  std::optional<core::Transient>& variance) const {
-    write_rows(num_scan_pairs, first_pair, mean, [&](std::size_t pair, std::span<float> to) {
+    write_rows(first_pair, mean, [&](std::size_t pair, std::span<float> to) {
         std::vector<double> buffer;
         write_mean(totals(pair, buffer), num_passes, to);
     });
     if (squares_.empty() || num_passes < 2) return;
-    if (!variance) variance.emplace();
+    if (!variance) variance.emplace(mean.num_pairs(), static_cast<int>(num_bins_));
     const double n = num_passes;
-    write_rows(num_scan_pairs, first_pair, *variance, [&](std::size_t pair, std::span<float> to) {
+    write_rows(first_pair, *variance, [&](std::size_t pair, std::span<float> to) {
         std::vector<double> buffer;
         const std::span<const double> sums = totals(pair, buffer);
         const double* const squares = squares_.data() + pair * num_bins_;
@@ -105,15 +101,12 @@ TransientAccumulator::SquaredNorms TransientAccumulator::squared_norms(
 }
 
 void HistogramSums::write_to(core::Capture& capture, std::size_t first_pair, int num_passes) const {
-    const std::size_t num_pairs = capture.scan.num_pairs();
-    time.write(num_passes, num_pairs, first_pair, capture.transient, capture.variance);
+    time.write(num_passes, first_pair, capture.transient, capture.variance);
     for (std::size_t i = 0; i < capture.orders.size(); ++i) {
-        time.write_channel(
-            capture.orders[i] - 1, num_passes, num_pairs, first_pair, capture.by_order[i]);
+        time.write_channel(capture.orders[i] - 1, num_passes, first_pair, capture.by_order[i]);
     }
     if (!velocity) return;
-    velocity->write(
-        num_passes, num_pairs, first_pair, capture.velocity->values, capture.velocity->variance);
+    velocity->write(num_passes, first_pair, capture.velocity->values, capture.velocity->variance);
 }
 
 }  // namespace renderer

@@ -11,7 +11,6 @@
 #include <numeric>
 #include <optional>
 #include <span>
-#include <type_traits>
 #include <vector>
 
 namespace renderer {
@@ -46,16 +45,13 @@ class TransientAccumulator {
 
     /// Writes the mean over passes of the sum of all channels, and its variance where there are
     /// squares of two passes, to the rows of a whole scan's arrays that begin with `first_pair`.
-    /// Arrays that are still empty get `num_scan_pairs` rows.
     void write(int num_passes,
-               std::size_t num_scan_pairs,
                std::size_t first_pair,
                core::Transient& mean,
                std::optional<core::Transient>& variance) const;
     /// Likewise the mean of one channel.
     void write_channel(int channel,
                        int num_passes,
-                       std::size_t num_scan_pairs,
                        std::size_t first_pair,
                        core::Transient& mean) const;
 
@@ -96,8 +92,7 @@ class TransientAccumulator {
     // Sums of all channels of a pair: of a single one its own row, else in `buffer`.
     std::span<const double> totals(std::size_t pair, std::vector<double>& buffer) const;
     template <class WriteRow>
-    void write_rows(std::size_t num_scan_pairs,
-                    std::size_t first_pair,
+    void write_rows(std::size_t first_pair,
                     core::Transient& array,
                     const WriteRow& write_row) const;
 
@@ -126,7 +121,7 @@ struct HistogramSums {
     }
 
     /// Writes means and variances to a capture, see TransientAccumulator::write(), and the means of
-    /// the bounce orders that it lists. With velocities their axis must be set.
+    /// the bounce orders that it lists. Its arrays must be there.
     void write_to(core::Capture& capture, std::size_t first_pair, int num_passes) const;
 
     TransientAccumulator time;

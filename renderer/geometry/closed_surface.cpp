@@ -48,8 +48,6 @@ double signed_volume(const TriangleMesh& mesh) {
     return volume / 6.0;
 }
 
-}  // namespace
-
 int visible_side(const Object& object, const core::Scan& scan) {
     Eigen::AlignedBox3d box;
     for (const Vec3& vertex : object.mesh.vertices) box.extend(vertex);
@@ -66,6 +64,14 @@ int visible_side(const Object& object, const core::Scan& scan) {
     const double volume = signed_volume(object.mesh);
     if (volume == 0.0) return 0;
     return volume > 0.0 ? 1 : -1;
+}
+
+}  // namespace
+
+std::vector<int> visible_sides(std::span<const Object> objects, const core::Scan& scan) {
+    std::vector<int> sides;
+    for (const Object& object : objects) sides.push_back(visible_side(object, scan));
+    return sides;
 }
 
 }  // namespace renderer

@@ -19,7 +19,6 @@ class PlanarPatches {
     /// scene   must outlive the patches
     explicit PlanarPatches(const Scene& scene);
 
-    std::size_t size() const { return patches_.size(); }
     std::uint32_t patch_of(std::uint32_t facet) const { return patch_of_facet_[facet]; }
     /// The patch's plane as a facet with orthonormal edges; the same from all its facets.
     const Facet& plane(std::uint32_t patch) const { return patches_[patch].plane; }

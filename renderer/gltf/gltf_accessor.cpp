@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/gltf/gltf_accessor.h"
-
 #include "renderer/core/error.h"
+#include "renderer/gltf/gltf_document.h"
 
 #include <fmt/core.h>
 #include <tiny_gltf.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <limits>
 #include <type_traits>

@@ -35,4 +35,28 @@ GltfDocument read_gltf_document(const std::string& path);
 /// path   the file that messages name
 void check_gltf_json(const core::Json& json, const std::string& path);
 
+/// How many elements an accessor has; none of them has been looked at.
+/// Throws core::Error when they are not in its buffer view, or, without one, beyond reason.
+std::size_t checked_count(const GltfDocument& document, int accessor);
+
+/// Vertex positions: floats, or bytes and shorts as KHR_mesh_quantization allows, sparse or not.
+///
+/// document   a file that read_gltf_document has checked
+/// accessor   an existing index
+/// returns    one point per element, node coordinates, finite
+/// throws     core::Error when the type is another, the data end early or a value is not finite
+/// source     [glTF2]
+std::vector<core::Vec3> read_positions(const GltfDocument& document, int accessor);
+
+/// Texture coordinates; as read_positions, with two components.
+std::vector<core::Vec2> read_texture_coordinates(const GltfDocument& document, int accessor);
+
+/// Vertex indices: unsigned bytes, shorts or ints, sparse or not.
+///
+/// num_vertices   what every index must be below
+/// throws         core::Error when the type is another, the data end early or an index is too large
+std::vector<std::uint32_t> read_indices(const GltfDocument& document,
+                                        int accessor,
+                                        std::size_t num_vertices);
+
 }  // namespace renderer

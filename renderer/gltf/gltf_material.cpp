@@ -7,27 +7,20 @@
 #include <tiny_gltf.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <cstring>
-#include <optional>
 #include <span>
 
 namespace renderer {
 namespace {
 
 TextureWrap wrap_from_gltf(int wrap, const std::string& where) {
-    switch (wrap) {
-        case TINYGLTF_TEXTURE_WRAP_REPEAT:
-            return TextureWrap::Repeat;
-        case TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE:
-            return TextureWrap::ClampToEdge;
-        case TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT:
-            return TextureWrap::MirroredRepeat;
-        default:
-            throw core::Error(
-                where, fmt::format("found wrap mode {}", wrap), "must be 10497, 33071 or 33648");
+    const auto* const found = std::find(kGltfWraps.begin(), kGltfWraps.end(), wrap);
+    if (found == kGltfWraps.end()) {
+        throw core::Error(
+            where, fmt::format("found wrap mode {}", wrap), "must be 10497, 33071 or 33648");
     }
+    return static_cast<TextureWrap>(found - kGltfWraps.begin());
 }
 
 /// Width and height that a PNG or JPEG file states; nothing where it states none.

@@ -4,12 +4,16 @@
 #include "renderer/gltf/gltf_document.h"
 #include "renderer/material/scene_geometry.h"
 
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace renderer {
+
+/// What glTF writes for each TextureWrap.
+inline constexpr std::array<int, 3> kGltfWraps{10497, 33071, 33648};
 
 /// Our own entries in the extras of a node or material; empty where nothing is said.
 struct NlosExtras {

@@ -2,7 +2,6 @@
 #include "renderer/gltf/gltf_primitive.h"
 
 #include "renderer/core/error.h"
-#include "renderer/gltf/gltf_accessor.h"
 
 #include <fmt/core.h>
 #include <tiny_gltf.h>

@@ -2,6 +2,7 @@
 #include "renderer/core/error.h"
 #include "renderer/core/output_file.h"
 #include "renderer/gltf/gltf.h"
+#include "renderer/gltf/gltf_material.h"
 
 #include <fmt/core.h>
 #include <tiny_gltf.h>
@@ -42,15 +43,11 @@ class ModelBuilder {
         node.mesh = add_mesh(object);
         node.extras = node_extras(object);
         const int parent = group_node(object.groups);
-        if (parent < 0) {
-            set_transform(object.world_from_node, node);
-            add_node(std::move(node));
-            return;
-        }
-        const core::Transform& world_from_group = object.groups.back().world_from_node;
-        set_transform(world_from_group.inverse() * object.world_from_node, node);
-        const int index = append(model_.nodes, std::move(node));
-        model_.nodes[static_cast<std::size_t>(parent)].children.push_back(index);
+        set_transform(parent < 0
+                          ? object.world_from_node
+                          : object.groups.back().world_from_node.inverse() * object.world_from_node,
+                      node);
+        add_node(std::move(node), parent);
     }
 
     void add(const Camera& camera) {
@@ -70,7 +67,7 @@ class ModelBuilder {
         node.name = camera.name;
         node.camera = append(model_.cameras, std::move(target));
         set_transform(world_from_camera, node);
-        add_node(std::move(node));
+        add_node(std::move(node), /*parent=*/-1);
     }
 
     const tinygltf::Model& finish() {
@@ -89,8 +86,13 @@ class ModelBuilder {
         throw core::Error(path_ + ": object " + object.name, found, allowed);
     }
 
-    void add_node(tinygltf::Node node) {
-        model_.scenes[0].nodes.push_back(append(model_.nodes, std::move(node)));
+    /// Adds a node below another, or to the scene's own where there is none; returns its index.
+    int add_node(tinygltf::Node node, int parent) {
+        const int index = append(model_.nodes, std::move(node));
+        auto& siblings = parent < 0 ? model_.scenes[0].nodes
+                                    : model_.nodes[static_cast<std::size_t>(parent)].children;
+        siblings.push_back(index);
+        return index;
     }
 
     /// The node that stands for the innermost of the groups; -1 when there are none.
@@ -109,11 +111,7 @@ class ModelBuilder {
                 tinygltf::Node node;
                 node.name = group.name;
                 set_transform(group_from_world * group.world_from_node, node);
-                const int index = append(model_.nodes, std::move(node));
-                auto& siblings = parent < 0
-                                     ? model_.scenes[0].nodes
-                                     : model_.nodes[static_cast<std::size_t>(parent)].children;
-                siblings.push_back(index);
+                const int index = add_node(std::move(node), parent);
                 group_nodes_.push_back({parent, index, group});
                 parent = index;
             }
@@ -202,24 +200,12 @@ class ModelBuilder {
             image.image.push_back(static_cast<unsigned char>(std::lround(255.0 * encoded)));
         }
         tinygltf::Sampler sampler;
-        sampler.wrapS = gltf_wrap(texture->wrap_u);
-        sampler.wrapT = gltf_wrap(texture->wrap_v);
+        sampler.wrapS = kGltfWraps[static_cast<std::size_t>(texture->wrap_u)];
+        sampler.wrapT = kGltfWraps[static_cast<std::size_t>(texture->wrap_v)];
         tinygltf::Texture target;
         target.source = append(model_.images, std::move(image));
         target.sampler = append(model_.samplers, std::move(sampler));
         return textures_.emplace(texture, append(model_.textures, std::move(target))).first->second;
-    }
-
-    static int gltf_wrap(TextureWrap wrap) {
-        switch (wrap) {
-            case TextureWrap::ClampToEdge:
-                return TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
-            case TextureWrap::MirroredRepeat:
-                return TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT;
-            case TextureWrap::Repeat:
-                break;
-        }
-        return TINYGLTF_TEXTURE_WRAP_REPEAT;
     }
 
     int add_positions(const Object& object) {

@@ -6,7 +6,6 @@
 #include "renderer/core/types.h"
 #include "renderer/material/material.h"
 
-#include <memory>
 #include <string>
 #include <vector>
 

@@ -23,28 +23,14 @@ std::string lower_suffix(const std::string& path) {
 
 /// The rows are where the world's x, y and z point in the file.
 core::Mat3 world_from_axes(FileAxis up) {
-    core::Mat3 rotation;
-    switch (up) {
-        case FileAxis::X:
-            rotation << 0, -1, 0, 1, 0, 0, 0, 0, 1;
-            break;
-        case FileAxis::MinusX:
-            rotation << 0, 1, 0, -1, 0, 0, 0, 0, 1;
-            break;
-        case FileAxis::Y:
-            rotation.setIdentity();
-            break;
-        case FileAxis::MinusY:
-            rotation << 1, 0, 0, 0, -1, 0, 0, 0, -1;
-            break;
-        case FileAxis::Z:
-            rotation << 1, 0, 0, 0, 0, 1, 0, -1, 0;
-            break;
-        case FileAxis::MinusZ:
-            rotation << 1, 0, 0, 0, 0, -1, 0, 1, 0;
-            break;
-    }
-    return rotation;
+    static constexpr double kRows[6][9]{{0, -1, 0, 1, 0, 0, 0, 0, 1},
+                                        {0, 1, 0, -1, 0, 0, 0, 0, 1},
+                                        {1, 0, 0, 0, 1, 0, 0, 0, 1},
+                                        {1, 0, 0, 0, -1, 0, 0, 0, -1},
+                                        {1, 0, 0, 0, 0, 1, 0, -1, 0},
+                                        {1, 0, 0, 0, 0, -1, 0, 1, 0}};  // as FileAxis lists them
+    using Rows = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+    return Eigen::Map<const Rows>(kRows[static_cast<std::size_t>(up)]);
 }
 
 Material material_of(const FileMaterial& source, const std::string& path) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 namespace renderer {
 namespace {
@@ -257,8 +258,7 @@ double FirstVertexBatch::leave_out_other_lengths(const PassHistogram::LengthRang
 }
 
 void FirstVertexBatch::thin(double step_in_means, core::Rng& rng) {
-    double sum = 0.0;
-    for (int i = 0; i < count_; ++i) sum += contribution_[i];
+    const double sum = std::accumulate(contribution_, contribution_ + count_, 0.0);
     SystematicSampler sampler(step_in_means * sum / count_, rng);
     keep_if([&](int i) {
         if (contribution_[i] <= 0.0) return false;
@@ -271,8 +271,7 @@ void FirstVertexBatch::thin(double step_in_means, core::Rng& rng) {
 
 std::vector<FirstVertexBatch::Drawn> FirstVertexBatch::draw_by_throughput(double step_in_means,
                                                                           core::Rng& rng) const {
-    double sum = 0.0;
-    for (int i = 0; i < count_; ++i) sum += throughput_[i];
+    const double sum = std::accumulate(throughput_, throughput_ + count_, 0.0);
     const double step = step_in_means > 1.0 ? step_in_means * sum / count_ : 0.0;
     SystematicSampler sampler(step, rng);
     std::vector<Drawn> all;
@@ -297,10 +296,7 @@ std::span<const double> FirstVertexBatch::find_velocities(const PathEndpoints& e
 }
 
 PathVertex FirstVertexBatch::vertex(int i, const PathEndpoint& sensor) const {
-    PathVertex vertex;
-    vertex.point = {{x_[i], y_[i], z_[i]}, facet_[i]};
-    vertex.normal = {normal_x_[i], normal_y_[i], normal_z_[i]};
-    vertex.bsdf = scene_.bsdf_at(vertex.point);
+    PathVertex vertex = vertex_at(scene_, point(i), Vec3::Zero());
     const Vec3 to_sensor = sensor.position - vertex.point.position;
     vertex.extent.add_segment(
         -to_sensor, Vec3::Zero(), scene_.velocity_m_per_s(vertex.point.facet));

@@ -39,6 +39,12 @@ double pdf_area_from_light(const Scene& scene,
     return pdf_direction * std::abs(scene.facet(point.facet).normal.dot(direction)) / distance2;
 }
 
+Vec3 sample_direction_from_light(const Scene& scene, const PathEndpoint& light, const Vec2& u) {
+    if (light.isotropic) return core::sample_sphere(u);
+    return core::frame_from_normal(light.normal, scene.tangent_hint(light.normal)) *
+           core::sample_cosine_hemisphere(u);
+}
+
 LightSubpaths::LightSubpaths(const Scene& scene,
                              const SurfaceWalk& walk,
                              const PathEndpoint& light,
@@ -63,11 +69,7 @@ LightSubpaths::Walked LightSubpaths::trace_walk(const Vec2& u,
                                                 core::Rng& rng) const {
     Walked walked;
     if (max_vertices < 1) return walked;
-    const Vec3 direction =
-        light_.isotropic
-            ? core::sample_sphere(u)
-            : Vec3(core::frame_from_normal(light_.normal, scene_->tangent_hint(light_.normal)) *
-                   core::sample_cosine_hemisphere(u));
+    const Vec3 direction = sample_direction_from_light(*scene_, light_, u);
     // An isotropic light lies on no surface that its rays could start off.
     const Vec3& normal = light_.isotropic ? direction : light_.normal;
     ++walked.num_rays;
@@ -83,7 +85,7 @@ LightSubpaths::Walked LightSubpaths::trace_walk(const Vec2& u,
     double ratio = 1.0 / pdf_first;
     walked.steps.push_back({vertex, ratio});
     while (static_cast<int>(walked.steps.size()) < max_vertices) {
-        const double survival = subpath_survival(vertex.bsdf);
+        const double survival = survival_of(vertex.bsdf);
         if (rng.uniform() >= survival) break;
         const PathVertex before = vertex;
         const auto pdf = walk_->draw_next(vertex, rng, walked.num_rays);

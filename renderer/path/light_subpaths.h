@@ -5,7 +5,6 @@
 #include "renderer/path/path_vertex.h"
 #include "renderer/path/surface_walk.h"
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -18,11 +17,10 @@ double pdf_area_from_light(const Scene& scene,
                            const PathEndpoint& light,
                            const SurfacePoint& point);
 
-/// Share of walks from the light that continue from a surface.
-inline double subpath_survival(const Bsdf& bsdf) {
-    constexpr double kLeast = 0.1;
-    return std::clamp(albedo_of(bsdf), kLeast, 1.0);
-}
+/// The direction in which such a walk leaves the light, from u uniform in [0, 1)^2.
+core::Vec3 sample_direction_from_light(const Scene& scene,
+                                       const PathEndpoint& light,
+                                       const core::Vec2& u);
 
 /// Walks from the light of an image, traced once for a pass and shared by its pixels.
 ///

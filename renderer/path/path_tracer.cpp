@@ -72,7 +72,7 @@ class PathTracer::Walk : public PairWalk {
             ++num_rays_;
             if (!vertex || vertex->order > tracer_.max_order_) continue;
             vertex->throughput *= 1.0 / count;
-            connect_to_light(tracer_.surface_walk_, *vertex, 1.0);
+            connect_to_light(*vertex, tracer_.surface_walk_.connection_value(*vertex, ends_));
             use(*vertex);
         }
     }
@@ -102,19 +102,12 @@ class PathTracer::Walk : public PairWalk {
         num_rays_ += connections.num_rays();
     }
 
-    void connect_to_light(const SurfaceWalk& walk, const PathVertex& vertex, double mis_weight) {
-        const double value = mis_weight * walk.connection_value(vertex, ends_);
-        if (!(value > 0.0)) return;
-        ++num_rays_;
-        if (!walk.light_is_hidden(vertex, ends_)) deposit(vertex, value);
-    }
-
     void extend(PathVertex vertex) override {
         const SurfaceWalk& walk = tracer_.surface_walk_;
         while (vertex.order < tracer_.max_order_) {
             if (!walk.survives(vertex, rng_)) return;
             if (!walk.draw_next(vertex, rng_, num_rays_)) return;
-            connect_to_light(walk, vertex, 1.0);
+            connect_to_light(vertex, walk.connection_value(vertex, ends_));
         }
     }
 
@@ -128,7 +121,8 @@ class PathTracer::Walk : public PairWalk {
             const auto pdf_area = walk.draw_next(vertex, rng_, num_rays_);
             if (!pdf_area) return;
             density.add_step(from, vertex, *pdf_area);
-            connect_to_light(walk, vertex, split.walk_weight(density.ratio()));
+            connect_to_light(
+                vertex, split.walk_weight(density.ratio()) * walk.connection_value(vertex, ends_));
         }
     }
 

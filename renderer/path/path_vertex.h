@@ -2,10 +2,8 @@
 #pragma once
 
 #include "renderer/core/types.h"
-#include "renderer/film/path_extent.h"
+#include "renderer/film/time_gate.h"
 #include "renderer/scene/scene.h"
-
-#include <cstdint>
 
 namespace renderer {
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 
 namespace renderer {
 namespace {
@@ -32,7 +33,7 @@ IndirectSplit IndirectSplit::at(const Bsdf& bsdf) {
 void SubpathDensity::add_step(const PathVertex& from, const PathVertex& to, double pdf_area) {
     // Now it is known where a light subpath would come from to the vertex before.
     if (num_steps_ >= 2) {
-        ratio_ *= subpath_survival(to_.bsdf) * walk_->pdf_area(to_, -to.to_previous, from_.point);
+        ratio_ *= survival_of(to_.bsdf) * walk_->pdf_area(to_, -to.to_previous, from_.point);
     }
     ratio_ /= pdf_area;
     from_ = from;
@@ -44,7 +45,7 @@ double SubpathDensity::ratio() const {
     const double first = ratio_ * pdf_area_from_light(*scene_, *light_, to_.point);
     if (num_steps_ == 1 || !(first > 0.0)) return first;
     const Vec3 to_light = (light_->position - to_.point.position).normalized();
-    return first * subpath_survival(to_.bsdf) * walk_->pdf_area(to_, to_light, from_.point);
+    return first * survival_of(to_.bsdf) * walk_->pdf_area(to_, to_light, from_.point);
 }
 
 SubpathConnections::SubpathConnections(const Scene& scene,
@@ -228,8 +229,8 @@ void SubpathConnections::finish() {
 // Candidates above the step between samples are all taken, the others with a probability of their
 // share of it.
 void SubpathConnections::draw_shadow_rays() {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < num_candidates_; ++i) sum += candidates_.value[i];
+    const double* const values = candidates_.value.data();
+    const double sum = std::accumulate(values, values + num_candidates_, 0.0);
     const double step = sum / (kRaysPerVertex * static_cast<double>(vertices_.size()));
     sort_by_length();
     SystematicSampler sampler(step, rng_);

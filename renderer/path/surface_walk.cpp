@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/path/surface_walk.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace renderer {
@@ -12,7 +11,6 @@ using core::Vec3;
 
 // Paths are always continued up to this order; above it Russian roulette may end them.
 constexpr int kFirstRouletteOrder = 5;
-constexpr double kMinSurvival = 0.1;
 
 // Directions with a smaller cosine lie in the plane of the surface, up to rounding. On which side
 // of it they lie would be decided by rounding, differently for a sample and for its density.
@@ -59,7 +57,7 @@ PathExtent SurfaceWalk::extent_to_light(const PathVertex& vertex, const PathEndp
 
 bool SurfaceWalk::survives(PathVertex& vertex, core::Rng& rng) const {
     if (vertex.order < kFirstRouletteOrder) return true;
-    const double survival = std::clamp(albedo_of(vertex.bsdf), kMinSurvival, 1.0);
+    const double survival = survival_of(vertex.bsdf);
     if (rng.uniform() >= survival) return false;
     vertex.throughput /= survival;
     return true;

@@ -5,6 +5,7 @@
 #include "renderer/path/path_vertex.h"
 #include "renderer/scene/area_sampler.h"
 
+#include <algorithm>
 #include <optional>
 
 namespace renderer {
@@ -15,6 +16,13 @@ inline constexpr double kAreaShareFromWall = 0.75;
 /// The same after a vertex on a hidden surface, where BSDF samples follow lobes and find what is
 /// near.
 inline constexpr double kAreaShareBetweenSurfaces = 0.25;
+
+/// Share of walks that Russian roulette lets continue from a surface; of those from the light, at
+/// every order.
+inline double survival_of(const Bsdf& bsdf) {
+    constexpr double kLeast = 0.1;
+    return std::clamp(albedo_of(bsdf), kLeast, 1.0);
+}
 
 /// How paths continue from surface vertices and connect to the light; shared by the estimators.
 ///

@@ -98,6 +98,8 @@ class PairWalk {
     /// Adds what the first vertices contribute where the light sees them, and removes them.
     void connect_first_vertices();
     void deposit(const PathVertex& vertex, double value);
+    /// Deposits `value` if it is positive and the light sees the vertex.
+    void connect_to_light(const PathVertex& vertex, double value);
 
     const Scene& scene_;
     const PathEndpoints& ends_;
@@ -114,5 +116,11 @@ class PairWalk {
     const Tracer& tracer_;
     std::vector<PathVertex> continued_;  ///< first vertices of longer paths
 };
+
+/// Adds orders 1 and 2 of a wall pair, which have no vertex to sample; its ends are at rest.
+void add_short_paths(const Scene& scene,
+                     const PathEndpoints& ends,
+                     const RenderSettings& settings,
+                     PassHistogram& histogram);
 
 }  // namespace renderer

@@ -3,15 +3,14 @@
 
 #include "renderer/core/parallel.h"
 #include "renderer/core/sampling.h"
+#include "renderer/path/light_subpaths.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace renderer {
 namespace {
 
-using core::kPi;
 using core::Vec3;
 
 constexpr std::size_t kWalksPerBlock = 64;
@@ -19,13 +18,6 @@ constexpr std::uint32_t kVerticesAtOnce = 64;
 
 // Bound of the rounding of lengths in single precision, relative to the size of the scene.
 constexpr float kRoundingShare = 16.0F * 0x1.0p-24F;
-
-// Multiples of the golden ratio, modulo 1, are evenly spread, and so is any run of them.
-double stratified(double shift, int index) {
-    constexpr double kGolden = 0.6180339887498949;
-    const double u = shift + index * kGolden;
-    return u - std::floor(u);
-}
 
 }  // namespace
 
@@ -50,12 +42,7 @@ PathVertex LightVertexCache::first_vertex(const SurfacePoint& point) const {
 
 double LightVertexCache::pdf_area_of_first(const SurfacePoint& point) const {
     if (by_area_) return scene_->is_hidden(point.facet) ? walk_->area_sampler().pdf_area() : 0.0;
-    const Vec3 offset = point.position - light_.position;
-    const double distance2 = offset.squaredNorm();
-    const Vec3 direction = offset / std::sqrt(distance2);
-    const double pdf_direction =
-        light_.isotropic ? core::pdf_sphere() : std::max(0.0, light_.normal.dot(direction)) / kPi;
-    return pdf_direction * std::abs(scene_->facet(point.facet).normal.dot(direction)) / distance2;
+    return pdf_area_from_light(*scene_, light_, point);
 }
 
 LightVertexCache::Walked LightVertexCache::trace_walk(int index,
@@ -63,17 +50,14 @@ LightVertexCache::Walked LightVertexCache::trace_walk(int index,
                                                       double shift,
                                                       core::Rng& rng) const {
     Walked walked;
-    const double u1 = stratified(shift, index);
+    // Any run of these is evenly spread.
+    const double u1 = core::lattice_point(index, 1, {0.0, shift}).y();
     const double u2 = rng.uniform();
     SurfacePoint point;
     if (by_area_) {
         point = walk_->area_sampler().sample(u1, u2);
     } else {
-        const Vec3 direction =
-            light_.isotropic
-                ? core::sample_sphere({u1, u2})
-                : Vec3(core::frame_from_normal(light_.normal, scene_->tangent_hint(light_.normal)) *
-                       core::sample_cosine_hemisphere({u1, u2}));
+        const Vec3 direction = sample_direction_from_light(*scene_, light_, {u1, u2});
         ++walked.num_rays;
         const auto hit = scene_->first_hit(light_.position, light_.normal, direction);
         if (!hit) return walked;

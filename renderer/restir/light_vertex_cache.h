@@ -6,7 +6,6 @@
 #include "renderer/restir/reusable_path.h"
 
 #include <array>
-#include <cstddef>
 #include <cstdint>
 #include <vector>
 

@@ -2,13 +2,12 @@
 #pragma once
 
 #include "renderer/ellipsoidal/pixel_position_sampler.h"
-#include "renderer/restir/packed_reservoirs.h"
 #include "renderer/restir/path_candidates.h"
 #include "renderer/restir/resampling.h"
-#include "renderer/restir/reservoir_bins.h"
 #include "renderer/restir/restir_counts.h"
 #include "renderer/shift/shift_mapping.h"
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -32,6 +31,110 @@ struct RestirScene {
     PathCandidates candidates;
     std::optional<ShiftMapping> shift;                 ///< nothing: paths are reused as they are
     std::optional<PixelPositionSampler> pixel_places;  ///< of an image
+};
+
+/// Many finished reservoirs of paths, stored compactly for paths of limited length.
+class PackedReservoirs {
+ public:
+    PackedReservoirs(std::size_t count, int max_vertices)
+        : max_vertices_(static_cast<std::size_t>(max_vertices)),
+          heads_(count),
+          vertices_(count * max_vertices_) {}
+
+    std::size_t size() const { return heads_.size(); }
+
+    /// Memory of one reservoir [bytes].
+    static double bytes_per_reservoir(int max_vertices) {
+        return static_cast<double>(sizeof(Head)) +
+               static_cast<double>(max_vertices) * static_cast<double>(sizeof(SurfacePoint));
+    }
+
+    Reservoir<ReusablePath> load(std::size_t index) const {
+        const Head& head = heads_[index];
+        Reservoir<ReusablePath> reservoir;
+        reservoir.target_value = head.target_value;
+        reservoir.contribution_weight = head.contribution_weight;
+        reservoir.confidence = double{head.confidence};
+        reservoir.sample.num_vertices = head.num_vertices;
+        reservoir.sample.pixel_u = head.pixel_u;
+        const SurfacePoint* const stored = vertices_.data() + index * max_vertices_;
+        std::copy(stored, stored + head.num_vertices, reservoir.sample.vertices.begin());
+        return reservoir;
+    }
+
+    void store(std::size_t index, const Reservoir<ReusablePath>& reservoir) {
+        Head& head = heads_[index];
+        head.target_value = reservoir.target_value;
+        head.contribution_weight = reservoir.contribution_weight;
+        head.confidence = static_cast<float>(reservoir.confidence);
+        head.num_vertices = reservoir.empty() ? 0 : reservoir.sample.num_vertices;
+        head.pixel_u = reservoir.sample.pixel_u;
+        std::copy_n(reservoir.sample.vertices.begin(),
+                    head.num_vertices,
+                    vertices_.data() + index * max_vertices_);
+    }
+
+ private:
+    struct Head {
+        double target_value = 0.0;
+        double contribution_weight = 0.0;
+        core::Vec2 pixel_u = core::Vec2::Zero();
+        float confidence = 0.0F;
+        std::int32_t num_vertices = 0;
+    };
+
+    std::size_t max_vertices_;
+    std::vector<Head> heads_;
+    std::vector<SurfacePoint> vertices_;
+};
+
+/// The reservoirs of one pair: one per bin of the time axis or, with a velocity axis, one per bin
+/// of that (of both, where velocities are resolved in time). The last one then holds the paths
+/// outside the velocity axis; it serves the time histogram alone and is not reused.
+class ReservoirBins {
+ public:
+    ReservoirBins() = default;
+    /// shape   of the gate of a time axis with one bin
+    ReservoirBins(const core::HistogramAxes& axes, GateShape shape) : axes_(axes), shape_(shape) {}
+
+    const core::HistogramAxes& axes() const { return axes_; }
+
+    std::size_t count() const {
+        return axes_.velocity ? num_velocity_values() + 1
+                              : static_cast<std::size_t>(axes_.time.num_bins);
+    }
+    bool is_left_out(std::size_t bin) const {
+        return axes_.velocity && bin == num_velocity_values();
+    }
+
+    /// The gate of all reservoirs together.
+    TimeGate lengths() const;
+    /// The bin of a path; nothing when its length lies outside.
+    std::optional<std::size_t> bin_of(const PathExtent& path) const;
+    /// The gate of a bin; not for the one outside the velocity axis.
+    PathGate gate(std::size_t bin) const;
+
+    /// The next bin along the quantity that shifts preserve, `step` is 1 or -1; nothing at the
+    /// ends.
+    std::optional<std::size_t> beside(std::size_t bin, int step) const;
+
+    /// The time and the velocity bin of a reservoir; nothing where it holds paths of several.
+    std::optional<int> time_bin(std::size_t bin) const;
+    std::optional<int> velocity_bin(std::size_t bin) const;
+
+ private:
+    std::size_t num_velocity_values() const {
+        return static_cast<std::size_t>(axes_.velocity->num_values(axes_.time.num_bins));
+    }
+    /// Reservoirs of one bin of velocity.
+    std::size_t stride() const {
+        return axes_.velocity && axes_.velocity->with_time
+                   ? static_cast<std::size_t>(axes_.time.num_bins)
+                   : 1;
+    }
+
+    core::HistogramAxes axes_;
+    GateShape shape_ = GateShape::Box;
 };
 
 /// The reservoirs of one frame, with their scene, bins and domains.

@@ -2,9 +2,30 @@
 #pragma once
 
 #include "renderer/restir/restir_frame.h"
-#include "renderer/restir/restir_neighbours.h"
+
+#include <vector>
 
 namespace renderer {
+
+/// Which pairs are near each other: pixels by position in the image, wall points by distance, so
+/// that scans need not be grids.
+class RestirNeighbours {
+ public:
+    /// scan   must outlive this
+    explicit RestirNeighbours(const core::Scan& scan);
+
+    /// Picks different pairs near a pair at random, fewer where there are not as many.
+    void pick(std::size_t pair, int count, core::Rng& rng, std::vector<std::size_t>& picked) const;
+
+ private:
+    void list_pixels(std::size_t pixel, std::vector<std::size_t>& near) const;
+
+    const core::Scan* scan_;
+    std::size_t near_sensing_count_ = 0;  ///< per point
+    std::size_t near_illumination_count_ = 0;
+    std::vector<std::size_t> near_sensing_;       ///< (points, count)
+    std::vector<std::size_t> near_illumination_;  ///< likewise; empty unless exhaustive
+};
 
 /// Spatio-temporal resampling of paths (source [Kim2026], [Lin2022]): every pair and bin keeps one
 /// path that represents all its candidates, and reuses the paths of the previous frame and of its
@@ -34,33 +55,11 @@ class RestirRenderer {
 
     void find_domains(const FrameInput& input, RestirFrame& frame) const;
     void generate_candidates(const FrameInput& input, RestirFrame& frame);
-    template <class BuilderOf>
-    void draw(Worker& worker,
-              const RestirFrame& frame,
-              const TimeGate& gate,
-              double share,
-              const BuilderOf& builder_of) const;
-    PathReservoir merge(Worker& worker,
-                        const RestirScene& current,
-                        const PathReservoir& canonical,
-                        const ReservoirDomain& here,
-                        const PathReservoir& other,
-                        const ReservoirDomain& there) const;
-    PathReservoir sample_wide_gate(Worker& worker,
-                                   const RestirFrame& frame,
-                                   const PathReservoir& narrow) const;
-    PathReservoir reuse_temporally(Worker& worker,
-                                   const RestirFrame& frame,
-                                   const RestirFrame& previous,
-                                   std::size_t index,
-                                   const PathReservoir& fresh) const;
     void reuse_spatially(const FrameInput& input, int round, RestirFrame& frame);
-    PathReservoir with_neighbours(Worker& worker,
-                                  const RestirFrame& frame,
-                                  std::size_t index) const;
     void for_each_pair(const FrameInput& input,
+                       const RestirFrame& frame,
                        int stage,
-                       const std::function<void(Worker&, std::size_t pair)>& body);
+                       const std::function<void(Worker&)>& body);
 
     const core::Scan* scan_;
     RenderSettings settings_;

@@ -7,12 +7,6 @@ namespace renderer {
 
 using core::Vec3;
 
-PathIntegrand::PathIntegrand(const Scene& scene,
-                             const SurfaceWalk& walk,
-                             double laser_spot_m2,
-                             std::vector<bool> dropped)
-    : scene_(&scene), walk_(&walk), laser_spot_m2_(laser_spot_m2), dropped_(std::move(dropped)) {}
-
 PathValue PathIntegrand::evaluate(const PathDomain& domain, const ReusablePath& path) const {
     PathValue value;
     value.extent = domain.extra();

@@ -7,7 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
-#include <span>
+#include <utility>
 
 namespace renderer {
 
@@ -67,7 +67,11 @@ class PathIntegrand {
     PathIntegrand(const Scene& scene,
                   const SurfaceWalk& walk,
                   double laser_spot_m2,
-                  std::vector<bool> dropped);
+                  std::vector<bool> dropped)
+        : scene_(&scene),
+          walk_(&walk),
+          laser_spot_m2_(laser_spot_m2),
+          dropped_(std::move(dropped)) {}
 
     /// A path of at least one vertex; radiance 0 when it has no contribution.
     PathValue evaluate(const PathDomain& domain, const ReusablePath& path) const;

@@ -15,7 +15,15 @@ namespace renderer {
 /// stratified samples coherent (a space-filling curve gained nothing), and rotates with the scene.
 class AreaSampler {
  public:
-    explicit AreaSampler(const Scene& scene);
+    explicit AreaSampler(const Scene& scene) : scene_(&scene) {
+        std::vector<double> areas;
+        for (std::uint32_t i = 0; i < scene.facets().size(); ++i) {
+            if (!scene.is_hidden(i)) continue;
+            facets_.push_back(i);
+            areas.push_back(scene.facet(i).area_m2);
+        }
+        by_area_ = core::DiscreteDistribution(areas);
+    }
 
     SurfacePoint sample(double u1, double u2) const {
         double remapped = 0.0;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/scene/coinciding_points.h"
 
-#include <algorithm>
 #include <array>
 #include <set>
 
@@ -36,10 +35,6 @@ CoincidingPoints::CoincidingPoints(const core::Scan& scan) {
     }
     illumination = found_in(scan.illumination, scan.sensing);
     sensing = found_in(scan.sensing, scan.illumination);
-}
-
-bool CoincidingPoints::any() const {
-    return std::ranges::find(sensing, true) != sensing.end();
 }
 
 }  // namespace renderer

@@ -3,6 +3,7 @@
 
 #include "renderer/core/capture/capture.h"
 
+#include <algorithm>
 #include <vector>
 
 namespace renderer {
@@ -16,7 +17,7 @@ struct CoincidingPoints {
     /// scan   of wall points
     explicit CoincidingPoints(const core::Scan& scan);
 
-    bool any() const;
+    bool any() const { return std::ranges::find(sensing, true) != sensing.end(); }
 };
 
 }  // namespace renderer

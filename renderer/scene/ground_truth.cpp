@@ -3,9 +3,6 @@
 
 #include "renderer/core/parallel.h"
 
-#include <algorithm>
-#include <cmath>
-
 namespace renderer {
 namespace {
 

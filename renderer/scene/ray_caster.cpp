@@ -4,7 +4,6 @@
 #include "renderer/core/error.h"
 #include "renderer/scene/embree.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 

@@ -4,7 +4,6 @@
 #include "renderer/scene/load_geometry.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace renderer {
 namespace {

@@ -10,7 +10,7 @@ namespace renderer {
 /// A shape of a foreign scene and where it stands.
 struct ForeignShape {
     std::string name;
-    std::string type;      ///< as foreign_shape() knows it; or obj, ply, stl
+    std::string type;      ///< rectangle, cube, disk, sphere, cylinder, obj, ply or stl
     std::string filename;  ///< of those, relative to the scene's file
     core::Transform to_world = core::Transform::Identity();
     Material material;

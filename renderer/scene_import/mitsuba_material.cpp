@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/scene_import/mitsuba_material.h"
-
 #include "renderer/core/error.h"
-#include "renderer/material/texture.h"
+#include "renderer/scene_import/foreign_file.h"
 #include "renderer/scene_import/key_reader.h"
 
 #include <fmt/core.h>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/scene_import/mitsuba_transform.h"
-
 #include "renderer/core/error.h"
+#include "renderer/scene_import/foreign_file.h"
 
 #include <fmt/core.h>
 
@@ -13,9 +12,7 @@ namespace renderer {
 using core::Vec3;
 
 Eigen::Matrix4d translation(const std::array<double, 3>& offset) {
-    core::Transform transform = core::Transform::Identity();
-    transform.translation() = Vec3(offset[0], offset[1], offset[2]);
-    return transform.matrix();
+    return core::Transform(Eigen::Translation3d(offset[0], offset[1], offset[2])).matrix();
 }
 
 Eigen::Matrix4d scaling(const std::array<double, 3>& factors) {
@@ -24,13 +21,9 @@ Eigen::Matrix4d scaling(const std::array<double, 3>& factors) {
 
 Eigen::Matrix4d rotation(const std::array<double, 3>& axis, double degrees) {
     const Vec3 direction(axis[0], axis[1], axis[2]);
-    core::Transform transform = core::Transform::Identity();
-    if (direction.norm() > 0.0) {
-        transform.linear() =
-            Eigen::AngleAxisd(degrees / core::kDegreesPerRadian, direction.normalized())
-                .toRotationMatrix();
-    }
-    return transform.matrix();
+    if (!(direction.norm() > 0.0)) return Eigen::Matrix4d::Identity();
+    const Eigen::AngleAxisd turn(degrees / core::kDegreesPerRadian, direction.normalized());
+    return core::Transform(turn).matrix();
 }
 
 Eigen::Matrix4d look_at(const Vec3& origin, const Vec3& target, const Vec3& up) {

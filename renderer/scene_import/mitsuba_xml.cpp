@@ -3,7 +3,6 @@
 #include "renderer/core/mapped_file.h"
 #include "renderer/core/sandboxed_process.h"
 #include "renderer/scene_import/foreign_file.h"
-#include "renderer/scene_import/mitsuba_transform.h"
 
 #include <fmt/core.h>
 #include <pugixml.hpp>
@@ -11,7 +10,6 @@
 #include <cctype>
 #include <cmath>
 #include <map>
-#include <sstream>
 
 namespace renderer {
 namespace {

@@ -4,11 +4,8 @@
 #include "renderer/core/error.h"
 #include "renderer/scene_import/foreign_file.h"
 #include "renderer/scene_import/key_reader.h"
-#include "renderer/scene_import/mitsuba_scene.h"
-#include "renderer/scene_import/ytal_scene.h"
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 
 namespace renderer {
@@ -63,11 +60,6 @@ core::Json stated(const core::Json& json) {
 }
 
 }  // namespace
-
-bool is_foreign_scene(const std::string& path) {
-    if (has_suffix(path, {".xml"}) || is_yaml(path)) return true;
-    return has_suffix(path, {".json"}) && type_of(core::read_json_file(path)) == "scene";
-}
 
 ImportedScene import_scene(const std::string& path) {
     std::error_code ignored;

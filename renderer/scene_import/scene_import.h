@@ -18,9 +18,6 @@ struct ImportedScene {
     std::vector<std::string> not_translated;
 };
 
-/// True for files that import_scene() takes: XML, YAML, and JSON with Mitsuba's "type": "scene".
-bool is_foreign_scene(const std::string& path);
-
 /// Translates a scene of Mitsuba 3 with mitransient (XML, or its Python dictionary as JSON) or of
 /// y-tal (YAML), with the meshes that it names.
 ///

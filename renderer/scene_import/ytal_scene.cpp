@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/scene_import/ytal_scene.h"
-
 #include "renderer/core/error.h"
 #include "renderer/scene_import/foreign_file.h"
 #include "renderer/scene_import/imported_shapes.h"
 #include "renderer/scene_import/key_reader.h"
-#include "renderer/scene_import/mitsuba_material.h"
-#include "renderer/scene_import/mitsuba_transform.h"
 
 #include <fmt/core.h>
 

@@ -3,7 +3,6 @@
 
 #include "renderer/shift/shift_side.h"
 
-#include <cmath>
 #include <optional>
 #include <variant>
 

@@ -66,15 +66,157 @@ PathVelocity velocity_of(const ShiftEnd& end, const Vec3& origin) {
 
 }  // namespace
 
-/// One call of shift_path.
+// One call of shift_path.
 struct ShiftMapping::Task {
+    using Result = std::optional<ShiftedPath>;
+
+    const ShiftMapping& mapping;
     const SurfacePoint& x;
     const ShiftEnd& source;
     const ShiftEnd& target;
-    const ConstraintChange& change;
+    ConstraintChange change;
+    ShiftTrace& trace;
+    bool by_ray = false;
 
     FocusPair foci_of(const ShiftEnd& end) const {
         return {end.a - x.position, end.y - x.position};
+    }
+
+    Result shift_by_route() {
+        switch (mapping.settings_.chart) {
+            case Chart::Plane:
+                return shift_by_plane();
+            case Chart::Barycentric:
+                return shift_in_facet();
+            case Chart::Hemisphere:
+                by_ray = true;
+                return shift_by_ray();
+            case Chart::Adaptive:
+            case Chart::Custom:
+                break;
+        }
+        return shift_adaptively();
+    }
+
+    // Let P be the points from which the plane route has a result. From P take the plane; its
+    // results are the points from which the plane route leads back. From elsewhere take the ray,
+    // and keep only results from which the plane route has no way back: two one-to-one maps with
+    // separate images.
+    Result shift_adaptively() {
+        if (const Result by_plane = shift_by_plane()) return by_plane;
+        const Result result = shift_by_ray();
+        if (!result) return std::nullopt;
+        ShiftTrace back_trace;
+        Task back{mapping, result->point, target, source, change.inverse(), back_trace};
+        if (back.shift_by_plane()) return trace.reject(ShiftRejection::OtherRoute);
+        trace.iterations += back_trace.iterations;
+        by_ray = true;
+        return result;
+    }
+
+    Result shift_in_closed_form() {
+        const std::uint32_t patch = mapping.patches_.patch_of(x.facet);
+        const auto shift = shift_on_plane(mapping.patches_.plane(patch),
+                                          foci_of(source),
+                                          foci_of(target),
+                                          change,
+                                          mapping.rounding_m_,
+                                          trace);
+        if (!shift) return std::nullopt;
+        const Vec3 position = x.position + shift->displacement;
+        const auto facet = mapping.patches_.locate(patch, position, x.facet);
+        if (!facet) return trace.reject(ShiftRejection::LeftSurface);
+        if (!is_bounded(shift->jacobian, change.ratio)) {
+            return trace.reject(ShiftRejection::JacobianBound);
+        }
+        return ShiftedPath{{position, *facet}, shift->jacobian};
+    }
+
+    Result shift_by_plane() {
+        if (mapping.settings_.closed_form_on_planes && mapping.settings_.gauge == Gauge::Average &&
+            mapping.quantity_ == ShiftQuantity::PathLength) {
+            return shift_in_closed_form();
+        }
+        const std::uint32_t patch = mapping.patches_.patch_of(x.facet);
+        const auto solution =
+            solve_on_plane(mapping.patches_.plane(patch), Vec3::Zero(), Vec2::Zero());
+        if (!solution) return std::nullopt;
+        const Vec3 position = x.position + solution->at_target.position;
+        const auto facet = mapping.patches_.locate(patch, position, x.facet);
+        if (!facet) return trace.reject(ShiftRejection::LeftSurface);
+        return ShiftedPath{{position, *facet}, solution->jacobian};
+    }
+
+    Result shift_in_facet() {
+        const Facet& facet = mapping.scene_->facet(x.facet);
+        const auto solution =
+            solve_on_plane(facet, facet.corner - x.position, barycentric_of(facet, x.position));
+        if (!solution) return std::nullopt;
+        if (!is_in_triangle(solution->xi)) return trace.reject(ShiftRejection::LeftSurface);
+        return ShiftedPath{{x.position + solution->at_target.position, x.facet},
+                           solution->jacobian};
+    }
+
+    std::optional<ShiftSolution> solve_on_plane(const Facet& plane,
+                                                const Vec3& origin,
+                                                const Vec2& xi) {
+        const AffineChart chart{origin,
+                                plane.edge1,
+                                plane.edge2,
+                                mapping.scene_->object_of(x.facet).velocity_m_per_s,
+                                mapping.rounding_m_};
+        return solve<AffineChart>({chart, chart}, xi, *chart.at(xi));
+    }
+
+    Result shift_by_ray() {
+        const Vec3& origin = x.position;
+        const auto chart_of = [&](const ShiftEnd& end) {
+            return HemisphereChart(
+                *mapping.scene_, end.y, end.normal_y, origin, mapping.rounding_m_);
+        };
+        const std::array charts{chart_of(source), chart_of(target)};
+        const auto xi = charts[0].coordinates_of(origin);
+        if (!xi) return trace.reject(ShiftRejection::LeftChart);
+        auto at_x = charts[0].on_facet(*xi, x.facet);
+        if (!at_x) return trace.reject(ShiftRejection::LeftChart);
+        at_x->position.setZero();  // exactly, whatever the coordinates' rounding
+        const auto solution = solve(charts, *xi, *at_x);
+        if (!solution) return std::nullopt;
+        // From the far end the source's chart must show the same side of y.
+        if (!charts[0].is_above(origin + solution->at_target.position)) {
+            return trace.reject(ShiftRejection::LeftChart);
+        }
+        return ShiftedPath{{origin + solution->at_target.position, solution->at_target.facet},
+                           solution->jacobian};
+    }
+
+    template <class Chart>
+    std::optional<ShiftSolution> solve(const std::array<Chart, 2>& charts,
+                                       const Vec2& xi,
+                                       const ChartPoint& at_x) {
+        const auto check = mapping.settings_.reverse_check ? ReverseCheck::On : ReverseCheck::Off;
+        const auto with = [&](const auto& functional_of) {
+            using Functional = std::remove_cvref_t<decltype(functional_of(source))>;
+            const ShiftSide<Chart, Functional> from{charts[0], functional_of(source), change.ratio};
+            const ShiftSide<Chart, Functional> to{charts[1], functional_of(target), 1.0};
+            const ShiftProblem<ShiftSide<Chart, Functional>, ShiftSide<Chart, Functional>> problem{
+                from, to, change.offset_m};
+            const ChartExpansion at_source = from.expand(at_x);
+            return std::visit(
+                [&](const auto& gauge) {
+                    return shift_on_charts(gauge, problem, xi, at_source, check, trace);
+                },
+                mapping.gauge_);
+        };
+        const Vec3& origin = x.position;
+        const auto solution =
+            mapping.quantity_ == ShiftQuantity::PathVelocity
+                ? with([&](const ShiftEnd& end) { return velocity_of(end, origin); })
+                : with([&](const ShiftEnd& end) { return length_of(end, origin); });
+        if (solution && !is_bounded(solution->jacobian, change.ratio)) {
+            return trace.reject(ShiftRejection::JacobianBound);
+        }
+        return solution;
     }
 };
 
@@ -101,159 +243,16 @@ std::optional<ShiftedPath> ShiftMapping::shift_path(const SurfacePoint& x,
                                                     const ConstraintChange& change,
                                                     ShiftCounts& counts) const {
     ShiftTrace trace;
-    bool by_ray = false;
-    const Result result = shift_by_route({x, source, target, change}, trace, by_ray);
+    Task task{*this, x, source, target, change, trace};
+    const auto result = task.shift_by_route();
     counts.iterations += static_cast<std::uint64_t>(trace.iterations);
     if (!result) {
         ++counts.rejected[static_cast<std::size_t>(trace.rejection)];
         return std::nullopt;
     }
     ++counts.accepted;
-    counts.by_ray += by_ray ? 1 : 0;
+    counts.by_ray += task.by_ray ? 1 : 0;
     return result;
-}
-
-ShiftMapping::Result ShiftMapping::shift_by_route(const Task& task,
-                                                  ShiftTrace& trace,
-                                                  bool& by_ray) const {
-    switch (settings_.chart) {
-        case Chart::Plane:
-            return shift_by_plane(task, trace);
-        case Chart::Barycentric:
-            return shift_in_facet(task, trace);
-        case Chart::Hemisphere:
-            by_ray = true;
-            return shift_by_ray(task, trace);
-        case Chart::Adaptive:
-        case Chart::Custom:
-            break;
-    }
-    return shift_adaptively(task, trace, by_ray);
-}
-
-// Let P be the points from which the plane route has a result. From P take the plane; its results
-// are the points from which the plane route leads back. From elsewhere take the ray, and keep only
-// results from which the plane route has no way back: two one-to-one maps with separate images.
-ShiftMapping::Result ShiftMapping::shift_adaptively(const Task& task,
-                                                    ShiftTrace& trace,
-                                                    bool& by_ray) const {
-    if (const Result by_plane = shift_by_plane(task, trace)) return by_plane;
-    const Result result = shift_by_ray(task, trace);
-    if (!result) return std::nullopt;
-    ShiftTrace back_trace;
-    const Task back{result->point, task.target, task.source, task.change.inverse()};
-    if (shift_by_plane(back, back_trace)) return trace.reject(ShiftRejection::OtherRoute);
-    trace.iterations += back_trace.iterations;
-    by_ray = true;
-    return result;
-}
-
-ShiftMapping::Result ShiftMapping::shift_in_closed_form(const Task& task, ShiftTrace& trace) const {
-    const std::uint32_t patch = patches_.patch_of(task.x.facet);
-    const auto shift = shift_on_plane(patches_.plane(patch),
-                                      task.foci_of(task.source),
-                                      task.foci_of(task.target),
-                                      task.change,
-                                      rounding_m_,
-                                      trace);
-    if (!shift) return std::nullopt;
-    const Vec3 position = task.x.position + shift->displacement;
-    const auto facet = patches_.locate(patch, position, task.x.facet);
-    if (!facet) return trace.reject(ShiftRejection::LeftSurface);
-    if (!is_bounded(shift->jacobian, task.change.ratio)) {
-        return trace.reject(ShiftRejection::JacobianBound);
-    }
-    return ShiftedPath{{position, *facet}, shift->jacobian};
-}
-
-ShiftMapping::Result ShiftMapping::shift_by_plane(const Task& task, ShiftTrace& trace) const {
-    if (settings_.closed_form_on_planes && settings_.gauge == Gauge::Average &&
-        quantity_ == ShiftQuantity::PathLength) {
-        return shift_in_closed_form(task, trace);
-    }
-    const std::uint32_t patch = patches_.patch_of(task.x.facet);
-    const auto solution =
-        solve_on_plane(task, patches_.plane(patch), Vec3::Zero(), Vec2::Zero(), trace);
-    if (!solution) return std::nullopt;
-    const Vec3 position = task.x.position + solution->at_target.position;
-    const auto facet = patches_.locate(patch, position, task.x.facet);
-    if (!facet) return trace.reject(ShiftRejection::LeftSurface);
-    return ShiftedPath{{position, *facet}, solution->jacobian};
-}
-
-ShiftMapping::Result ShiftMapping::shift_in_facet(const Task& task, ShiftTrace& trace) const {
-    const Facet& facet = scene_->facet(task.x.facet);
-    const auto solution = solve_on_plane(
-        task, facet, facet.corner - task.x.position, barycentric_of(facet, task.x.position), trace);
-    if (!solution) return std::nullopt;
-    if (!is_in_triangle(solution->xi)) return trace.reject(ShiftRejection::LeftSurface);
-    return ShiftedPath{{task.x.position + solution->at_target.position, task.x.facet},
-                       solution->jacobian};
-}
-
-std::optional<ShiftSolution> ShiftMapping::solve_on_plane(const Task& task,
-                                                          const Facet& plane,
-                                                          const Vec3& origin,
-                                                          const Vec2& xi,
-                                                          ShiftTrace& trace) const {
-    const AffineChart chart{origin,
-                            plane.edge1,
-                            plane.edge2,
-                            scene_->object_of(task.x.facet).velocity_m_per_s,
-                            rounding_m_};
-    return solve<AffineChart>(task, {chart, chart}, xi, *chart.at(xi), trace);
-}
-
-ShiftMapping::Result ShiftMapping::shift_by_ray(const Task& task, ShiftTrace& trace) const {
-    const Vec3& x = task.x.position;
-    const auto chart_of = [&](const ShiftEnd& end) {
-        return HemisphereChart(*scene_, end.y, end.normal_y, x, rounding_m_);
-    };
-    const std::array charts{chart_of(task.source), chart_of(task.target)};
-    const auto xi = charts[0].coordinates_of(x);
-    if (!xi) return trace.reject(ShiftRejection::LeftChart);
-    auto at_x = charts[0].on_facet(*xi, task.x.facet);
-    if (!at_x) return trace.reject(ShiftRejection::LeftChart);
-    at_x->position.setZero();  // exactly, whatever the coordinates' rounding
-    const auto solution = solve(task, charts, *xi, *at_x, trace);
-    if (!solution) return std::nullopt;
-    // From the far end the source's chart must show the same side of y.
-    if (!charts[0].is_above(x + solution->at_target.position)) {
-        return trace.reject(ShiftRejection::LeftChart);
-    }
-    return ShiftedPath{{x + solution->at_target.position, solution->at_target.facet},
-                       solution->jacobian};
-}
-
-template <class Chart>
-std::optional<ShiftSolution> ShiftMapping::solve(const Task& task,
-                                                 const std::array<Chart, 2>& charts,
-                                                 const Vec2& xi,
-                                                 const ChartPoint& at_x,
-                                                 ShiftTrace& trace) const {
-    const auto check = settings_.reverse_check ? ReverseCheck::On : ReverseCheck::Off;
-    const auto with = [&](const auto& functional_of) {
-        using Functional = std::remove_cvref_t<decltype(functional_of(task.source))>;
-        const ShiftSide<Chart, Functional> source{
-            charts[0], functional_of(task.source), task.change.ratio};
-        const ShiftSide<Chart, Functional> target{charts[1], functional_of(task.target), 1.0};
-        const ShiftProblem<ShiftSide<Chart, Functional>, ShiftSide<Chart, Functional>> problem{
-            source, target, task.change.offset_m};
-        const ChartExpansion at_source = source.expand(at_x);
-        return std::visit(
-            [&](const auto& gauge) {
-                return shift_on_charts(gauge, problem, xi, at_source, check, trace);
-            },
-            gauge_);
-    };
-    const Vec3& origin = task.x.position;
-    const auto solution = quantity_ == ShiftQuantity::PathVelocity
-                              ? with([&](const ShiftEnd& end) { return velocity_of(end, origin); })
-                              : with([&](const ShiftEnd& end) { return length_of(end, origin); });
-    if (solution && !is_bounded(solution->jacobian, task.change.ratio)) {
-        return trace.reject(ShiftRejection::JacobianBound);
-    }
-    return solution;
 }
 
 }  // namespace renderer

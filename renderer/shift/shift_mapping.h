@@ -8,13 +8,9 @@
 #include "renderer/shift/shift_counts.h"
 #include "renderer/shift/shift_gauges.h"
 
-#include <array>
 #include <optional>
 
 namespace renderer {
-
-struct ChartPoint;
-struct ShiftSolution;
 
 /// What a shift keeps, up to the given change.
 enum class ShiftQuantity { PathLength, PathVelocity };
@@ -81,26 +77,6 @@ class ShiftMapping {
 
  private:
     struct Task;
-    using Result = std::optional<ShiftedPath>;
-
-    Result shift_by_route(const Task& task, ShiftTrace& trace, bool& by_ray) const;
-    Result shift_adaptively(const Task& task, ShiftTrace& trace, bool& by_ray) const;
-    Result shift_by_plane(const Task& task, ShiftTrace& trace) const;
-    Result shift_in_closed_form(const Task& task, ShiftTrace& trace) const;
-    Result shift_in_facet(const Task& task, ShiftTrace& trace) const;
-    Result shift_by_ray(const Task& task, ShiftTrace& trace) const;
-    /// In the coordinates that `plane`'s edges span from `origin`; xi: those of the vertex.
-    std::optional<ShiftSolution> solve_on_plane(const Task& task,
-                                                const Facet& plane,
-                                                const core::Vec3& origin,
-                                                const core::Vec2& xi,
-                                                ShiftTrace& trace) const;
-    template <class Chart>
-    std::optional<ShiftSolution> solve(const Task& task,
-                                       const std::array<Chart, 2>& charts,
-                                       const core::Vec2& xi,
-                                       const ChartPoint& at_x,
-                                       ShiftTrace& trace) const;
 
     const Scene* scene_;
     ShiftSettings settings_;

@@ -63,4 +63,21 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> adjacent_elements(
 AdjacencyLists adjacency_lists(std::size_t num_items,
                                const std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs);
 
+/// What packing depends on.
+struct PackingRules {
+    double tolerance = 0.01;  ///< relative L2 error aimed at
+    double laser_spot_m2 = 1e-4;
+    std::vector<int> visible_side;  ///< per object, see closed_surface.h
+};
+
+/// Merges elements and arranges them into blocks of neighbours and groups within blocks.
+///
+/// elements   freed, like `clusters`, as soon as they are merged
+/// clusters   of elements that may be merged, see cluster_elements()
+ElementSet pack_elements(const Scene& scene,
+                         const core::Scan& scan,
+                         const PackingRules& rules,
+                         std::vector<SurfaceElement>&& elements,
+                         std::vector<std::uint32_t>&& clusters);
+
 }  // namespace renderer

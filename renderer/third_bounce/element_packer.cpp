@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/third_bounce/element_packer.h"
-
 #include "renderer/core/random.h"
 #include "renderer/geometry/median_split.h"
 #include "renderer/third_bounce/element_clusters.h"

@@ -4,7 +4,7 @@
 #include "renderer/core/error.h"
 #include "renderer/core/process.h"
 #include "renderer/core/stopwatch.h"
-#include "renderer/third_bounce/pilot_scan.h"
+#include "renderer/scene/coinciding_points.h"
 
 #include <algorithm>
 #include <cmath>
@@ -54,7 +54,89 @@ double relative_difference(const Transient& a, const Transient& b) {
     return norm > 0.0 ? std::sqrt(sum / norm) : std::numeric_limits<double>::infinity();
 }
 
+constexpr std::size_t kPilotPoints = 32;         // confocal and single
+constexpr std::size_t kPilotPointsPerSide = 12;  // exhaustive
+// With few bins there is less to compare per pair.
+constexpr int kPilotFewBins = 16;
+constexpr std::size_t kPilotPointsForFewBins = 128;
+constexpr std::size_t kPilotPointsPerSideForFewBins = 16;
+
+// `count` indices below `size`, spread evenly but not in step with the rows of a grid; all of them
+// where these are few, since a single point whose shadow goes unseen then weighs much in the error.
+std::vector<std::size_t> spread_indices(std::size_t size, std::size_t count) {
+    constexpr double kGolden = 0.6180339887498949;
+    if (size <= 2 * count) count = size;
+    std::vector<std::size_t> indices;
+    for (std::size_t i = 0; i < std::min(size, count); ++i) {
+        const double share = (static_cast<double>(i) + 0.5) * kGolden;
+        indices.push_back(count >= size ? i
+                                        : static_cast<std::size_t>(static_cast<double>(size) *
+                                                                   (share - std::floor(share))));
+    }
+    std::sort(indices.begin(), indices.end());
+    indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
+    return indices;
+}
+
+void append(const core::WallPoints& points, std::size_t index, core::WallPoints& chosen) {
+    chosen.positions.push_back(points.positions[index]);
+    chosen.normals.push_back(points.normals[index]);
+}
+
+core::WallPoints subset(const core::WallPoints& points, std::size_t count) {
+    core::WallPoints chosen;
+    for (const std::size_t i : spread_indices(points.size(), count)) append(points, i, chosen);
+    return chosen;
+}
+
+// Adds a pair whose ends coincide, if the scan has one and the pilot run has none.
+void add_confocal_pair(const core::Scan& scan, core::Scan& pilot) {
+    const CoincidingPoints coinciding(scan);
+    if (!coinciding.any() || CoincidingPoints(pilot).any()) return;
+    const auto found = std::ranges::find(coinciding.sensing, true);
+    const auto sensor = static_cast<std::size_t>(found - coinciding.sensing.begin());
+    append(scan.sensing, sensor, pilot.sensing);
+    if (scan.pattern == core::ScanPattern::Single) return;
+    for (std::size_t light = 0; light < scan.illumination.size(); ++light) {
+        if (scan.illumination.positions[light] != scan.sensing.positions[sensor] ||
+            scan.illumination.normals[light] != scan.sensing.normals[sensor]) {
+            continue;
+        }
+        append(scan.illumination, light, pilot.illumination);
+        return;
+    }
+}
+
 }  // namespace
+
+core::Scan pilot_scan_for(const Scene& scene, const core::Scan& scan, int num_bins) {
+    const bool few_bins = num_bins < kPilotFewBins;
+    if (scan.pattern == core::ScanPattern::Exhaustive) {
+        return pilot_scan(
+            scene, scan, few_bins ? kPilotPointsPerSideForFewBins : kPilotPointsPerSide);
+    }
+    return pilot_scan(scene, scan, few_bins ? kPilotPointsForFewBins : kPilotPoints);
+}
+
+core::Scan pilot_scan(const Scene& scene, const core::Scan& scan, std::size_t num_points) {
+    core::Scan pilot = scan;
+    pilot.sensing = subset(scan.sensing, num_points);
+    if (scan.pattern == core::ScanPattern::Exhaustive) {
+        pilot.illumination = subset(scan.illumination, num_points);
+    }
+    if (scan.pattern == core::ScanPattern::Confocal) pilot.illumination = pilot.sensing;
+    const bool has_retroreflectors = std::ranges::any_of(scene.objects(), [](const Object& object) {
+        return kind_of(object.material) == ElementKind::Retroreflective;
+    });
+    if (has_retroreflectors) add_confocal_pair(scan, pilot);
+    return pilot;
+}
+
+core::TimeAxis pilot_axis(const core::TimeAxis& axis) {
+    if (axis.num_bins < kPilotFewBins) return axis;
+    const double first_bin = std::floor(axis.opl_start_m / axis.bin_width_m);
+    return {first_bin * axis.bin_width_m, axis.bin_width_m, axis.num_bins + 1};
+}
 
 double squared_norm(const Transient& transient) {
     double sum = 0.0;
@@ -94,10 +176,6 @@ void PilotRuns::for_each_batch(int level,
     });
 }
 
-std::size_t PilotRuns::fewest_elements() const {
-    return subdivider_.min_elements(tolerance(kCoarsest));
-}
-
 ScanRules PilotRuns::rules(int level) const {
     ScanRules rules;
     rules.negligible_error = kNegligibleShare * tolerance(level) * norm_per_pair_;
@@ -117,9 +195,8 @@ void PilotRuns::estimate_norm(int level) {
     const core::Scan few = pilot_scan(scene_, pilot_scan_, kPoints);
     Transient transient(few.num_pairs(), pilot_axis_.num_bins);
     for_each_batch(level, [&](const ElementSet& batch) {
-        ThirdBounceScan integrator(scene_, few, pilot_axis_, batch, rules(level));
-        integrator.integrate(
-            0, [](double) { return true; }, transient);
+        ThirdBounceScan integrator(scene_, few, pilot_axis_, rules(level));
+        integrator.integrate(batch, transient);
         cost_ += integrator.cost();
         return true;
     });
@@ -133,27 +210,21 @@ const Pilot& PilotRuns::run(int level) {
     pilot.transient = Transient(pilot_scan_.num_pairs(), pilot_axis_.num_bins);
     ScanRules checked = rules(level);
     checked.check_rays = check_rays_per_pair();
-    std::optional<ThirdBounceScan> integrator;
+    ThirdBounceScan integrator(scene_, pilot_scan_, pilot_axis_, checked);
     const core::Stopwatch watch;
     for_each_batch(level, [&](const ElementSet& batch) {
-        if (integrator && should_stop_ && should_stop_()) throw Stopped{};
+        if (pilot.num_elements > 0 && should_stop_ && should_stop_()) throw Stopped{};
         const core::Stopwatch integrating;
-        if (integrator) {
-            integrator->go_on_with(batch);
-        } else {
-            integrator.emplace(scene_, pilot_scan_, pilot_axis_, batch, checked);
-        }
-        integrator->integrate(
-            0, [](double) { return true; }, pilot.transient);
+        integrator.integrate(batch, pilot.transient);
         pilot.num_elements += batch.num_elements;
         pilot.seconds += integrating.seconds();
         return true;
     });
     pilot.cut_seconds = watch.seconds() - pilot.seconds;
-    pilot.shadow_error = std::sqrt(integrator->squared_shadow_error());
-    const SquaredError missed = integrator->squared_visibility_error();
+    pilot.shadow_error = std::sqrt(integrator.squared_shadow_error());
+    const SquaredError missed = integrator.squared_visibility_error();
     pilot.missed_error = std::sqrt(std::max(0.0, missed.value - std::sqrt(missed.variance)));
-    cost_ += integrator->cost();
+    cost_ += integrator.cost();
     if (norm_per_pair_ == 0.0) {
         norm_per_pair_ =
             std::sqrt(squared_norm(pilot.transient) / static_cast<double>(pilot_scan_.num_pairs()));

@@ -14,6 +14,20 @@
 
 namespace renderer {
 
+/// The pairs on which the deterministic integrator finds the refinement level it needs: some points
+/// of each side, spread evenly but not in step with the rows of a grid, or all where these are at
+/// most twice as many; more of them for few bins, where there is less to compare per pair. Where
+/// there are retroreflectors and the scan has confocal pairs, one of these is among them, since its
+/// light outshines everything else.
+core::Scan pilot_scan_for(const Scene& scene, const core::Scan& scan, int num_bins);
+/// The same with a number of points on each side.
+core::Scan pilot_scan(const Scene& scene, const core::Scan& scan, std::size_t num_points);
+
+/// The axis of pilot runs: bins begin at multiples of their width, so that shifting the axis by
+/// part of a bin changes neither the level chosen nor the energy. Axes with few bins are kept as
+/// they are.
+core::TimeAxis pilot_axis(const core::TimeAxis& axis);
+
 /// A run on a few pairs at one refinement level.
 struct Pilot {
     core::Transient transient;
@@ -54,7 +68,7 @@ class PilotRuns {
     /// Calls work(batch) for all batches of a cut while it returns true.
     void for_each_batch(int level, const std::function<bool(const ElementSet& batch)>& work);
     /// cut() makes at least this many elements at any level.
-    std::size_t fewest_elements() const;
+    std::size_t fewest_elements() const { return subdivider_.min_elements(tolerance(kCoarsest)); }
     /// How all of the scan is integrated at a level.
     ScanRules rules(int level) const;
 

@@ -18,8 +18,6 @@ using core::Vec3;
 
 }  // namespace
 
-RelevantElements::RelevantElements(const ElementSet& elements) : set_(elements) {}
-
 void RelevantElements::look_from(const WallPointLanes& points, const VisibilityRules& rules) {
     points_ = points;
     rules_ = &rules;

@@ -46,7 +46,7 @@ class RelevantElements {
     using BlockPoints = std::array<PointMask, ElementBlock::kSize>;
 
     /// elements   must outlive this
-    explicit RelevantElements(const ElementSet& elements);
+    explicit RelevantElements(const ElementSet& elements) : set_(elements) {}
 
     /// rules   must outlive all queries about these points
     void look_from(const WallPointLanes& points, const VisibilityRules& rules);

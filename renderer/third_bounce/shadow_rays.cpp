@@ -13,9 +13,6 @@ using core::Simd;
 using core::store;
 using core::Vec3;
 
-ShadowRayTracer::ShadowRayTracer(const Scene& scene, const ElementSet& elements)
-    : scene_(scene), set_(elements) {}
-
 void ShadowRayTracer::look_from(const WallPointLanes& points) {
     from_all_.from.normal = points.normal;
     for (std::size_t p = 0; p < WallPointLanes::kSize; ++p) {

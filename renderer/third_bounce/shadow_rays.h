@@ -76,7 +76,8 @@ struct TracingCost {
 class ShadowRayTracer {
  public:
     /// scene, elements   must outlive the tracer
-    ShadowRayTracer(const Scene& scene, const ElementSet& elements);
+    ShadowRayTracer(const Scene& scene, const ElementSet& elements)
+        : scene_(scene), set_(elements) {}
 
     /// Sets the points at which rays begin.
     void look_from(const WallPointLanes& points);

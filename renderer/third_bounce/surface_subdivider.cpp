@@ -5,7 +5,6 @@
 #include "renderer/geometry/closed_surface.h"
 #include "renderer/scene/coinciding_points.h"
 #include "renderer/third_bounce/element_clusters.h"
-#include "renderer/third_bounce/element_packer.h"
 
 #include <fmt/core.h>
 
@@ -109,11 +108,8 @@ SurfaceSubdivider::SurfaceSubdivider(const Scene& scene,
       limits_(limits),
       origin_(scene.rays().origin()),
       returns_light_(CoincidingPoints(scan).any()),
-      boxes_(scan, origin_) {
-    for (const Object& object : scene.objects()) {
-        visible_sides_.push_back(visible_side(object, scan));
-    }
-}
+      boxes_(scan, origin_),
+      visible_sides_(visible_sides(scene.objects(), scan)) {}
 
 bool SurfaceSubdivider::is_small_enough(const LegBounds& legs,
                                         const Vec3& center,
@@ -293,16 +289,6 @@ void SurfaceSubdivider::cut(double tolerance,
         set.share = share;
         return work(std::move(set));
     });
-}
-
-ElementSet SurfaceSubdivider::cut(double tolerance) const {
-    ElementSet only;
-    cut(tolerance, [&](ElementSet&& batch) {
-        if (batch.share < 1.0) throw_too_many(limits_.in_a_batch);
-        only = std::move(batch);
-        return true;
-    });
-    return only;
 }
 
 std::size_t SurfaceSubdivider::min_elements(double tolerance) const {

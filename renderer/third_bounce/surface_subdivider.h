@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <functional>
 #include <span>
-#include <utility>
 #include <vector>
 
 namespace renderer {
@@ -45,8 +44,6 @@ class SurfaceSubdivider {
     /// throws      core::Failure, before any work, when there are more elements than the limits
     /// allow
     void cut(double tolerance, const std::function<bool(ElementSet&& batch)>& work) const;
-    /// The only batch of a small cut.
-    ElementSet cut(double tolerance) const;
 
     /// cut() makes at least this many elements.
     std::size_t min_elements(double tolerance) const;
@@ -92,7 +89,7 @@ class SurfaceSubdivider {
     core::Vec3 origin_;
     bool returns_light_;  ///< retroreflectors do, to some point
     WallBoxes boxes_;
-    std::vector<int> visible_sides_;  ///< per object, see closed_surface.h
+    std::vector<int> visible_sides_;  ///< per object
 };
 
 }  // namespace renderer

@@ -42,11 +42,9 @@ class Integrator {
         : scene_(scene),
           scan_(scan),
           axis_(axis),
+          settings_(settings),
           target_(settings.element_tolerance.value_or(
               settings.target_error.value_or(kDefaultTargetError))),
-          seconds_(settings.seconds),
-          has_fixed_tolerance_(settings.element_tolerance),
-          laser_spot_m2_(settings.laser_spot_m2),
           limits_(limits),
           pilots_(scene, scan, axis, target_, settings.laser_spot_m2, limits) {}
 
@@ -63,10 +61,8 @@ class Integrator {
     const Scene& scene_;
     const core::Scan& scan_;
     core::TimeAxis axis_;
+    const RenderSettings& settings_;
     double target_;
-    std::optional<double> seconds_;
-    bool has_fixed_tolerance_;
-    double laser_spot_m2_;
     CutLimits limits_;
     PilotRuns pilots_;
     bool stopped_ = false;  ///< before all pilot runs were made
@@ -89,11 +85,11 @@ int Integrator::finest_in_time(const core::Progress& progress) {
         const double growth =
             std::max(1.0, finest_seconds / pilots_.run(finest + kReferenceSteps).all_seconds());
         const double reference = std::pow(growth, 1.0 / kReferenceSteps) * finest_seconds;
-        if (watch.seconds() + reference > *seconds_) break;
+        if (watch.seconds() + reference > *settings_.seconds) break;
         pilots_.error_of(next);
         const Pilot& pilot = pilots_.run(next);
         const double all = pilot.seconds * pilots_to_all + pilot.cut_seconds;
-        if (watch.seconds() + all > *seconds_) break;
+        if (watch.seconds() + all > *settings_.seconds) break;
     }
     stopped_ = progress.should_stop();
     return level;
@@ -136,14 +132,14 @@ int Integrator::coarsest_that_meets_target(const core::Progress& progress) {
 
 // The coarsest level of all when the caller asks to stop.
 int Integrator::choose_level(const core::Progress& progress) {
-    if (has_fixed_tolerance_) {
+    if (settings_.element_tolerance) {
         pilots_.estimate_norm(0);
         return 0;
     }
     pilots_.stop_when([&] { return progress.should_stop(); });
     int level = kCoarsest;
     try {
-        level = seconds_ ? finest_in_time(progress) : coarsest_that_meets_target(progress);
+        level = settings_.seconds ? finest_in_time(progress) : coarsest_that_meets_target(progress);
     } catch (const PilotRuns::Stopped&) {
         stopped_ = true;
     }
@@ -165,18 +161,14 @@ int Integrator::integrate(int level,
     pilots_.for_each_batch(level, [&](const ElementSet& batch) {
         part = first_part;
         if (scan && progress.should_stop()) return false;
-        if (scan) {
-            scan->go_on_with(batch);
-        } else {
-            scan.emplace(scene_, scan_, axis_, batch, pilots_.rules(level));
-        }
+        if (!scan) scan.emplace(scene_, scan_, axis_, pilots_.rules(level));
         num_elements += batch.num_elements;
         const auto go_on = [&](double share) {
             progress.update(share_before + share * batch.share,
                             fmt::format("{} elements", num_elements));
             return !progress.should_stop();
         };
-        part = scan->integrate(first_part, go_on, result.transient);
+        part = scan->integrate(batch, result.transient, first_part, go_on);
         share_before += batch.share;
         is_whole_cut = batch.share >= 1.0;
         return part == ThirdBounceScan::kParts;
@@ -188,7 +180,7 @@ int Integrator::integrate(int level,
     result.num_elements = std::max(result.num_elements, num_elements);
     cost_ += scan->cost();
     result.element_tolerance = std::max(result.element_tolerance, pilots_.tolerance(level));
-    if (has_fixed_tolerance_) return part;
+    if (settings_.element_tolerance) return part;
     const auto pilot = pilots_.by_level().find(level);
     const bool is_known = pilot != pilots_.by_level().end() && pilot->second.error;
     result.estimated_error = std::max(result.estimated_error.value_or(0.0),
@@ -221,7 +213,7 @@ std::optional<double> Integrator::error_within_reach() {
     if (const auto known = pilots_.smallest_error()) return known;
     try {
         PilotRuns coarse(
-            scene_, scan_, axis_, std::max(target_, kSoonKnown), laser_spot_m2_, limits_);
+            scene_, scan_, axis_, std::max(target_, kSoonKnown), settings_.laser_spot_m2, limits_);
         return coarse.error_of(kCoarsest);
     } catch (const core::Failure&) {
         return std::nullopt;

@@ -4,9 +4,6 @@
 #include "renderer/material/ggx.h"
 #include "renderer/triangle/triangle_histogram.h"
 
-#include <algorithm>
-#include <cmath>
-
 namespace renderer {
 namespace {
 

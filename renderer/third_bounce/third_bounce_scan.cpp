@@ -3,12 +3,11 @@
 
 #include "renderer/core/parallel.h"
 #include "renderer/scene/coinciding_points.h"
-#include "renderer/third_bounce/tile_tables.h"
+#include "renderer/third_bounce/third_bounce_pairs.h"
 
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 namespace renderer {
@@ -46,12 +45,10 @@ bool misses_axis(const BlockSphere& sphere,
 ThirdBounceScan::ThirdBounceScan(const Scene& scene,
                                  const core::Scan& scan,
                                  const core::TimeAxis& axis,
-                                 const ElementSet& elements,
                                  const ScanRules& rules)
     : scene_(scene),
       scan_(scan),
       axis_(axis),
-      elements_(&elements),
       rules_(rules),
       lights_{scan.illumination,
               CoincidingPoints(scan).illumination,
@@ -59,16 +56,6 @@ ThirdBounceScan::ThirdBounceScan(const Scene& scene,
       sensors_{
           scan.sensing, CoincidingPoints(scan).sensing, std::vector<double>(scan.sensing.size())} {
     if (rules.check_rays > 0) differences_.resize(scan.num_pairs());
-}
-
-void ThirdBounceScan::go_on_with(const ElementSet& elements) {
-    squared_shadow_error_of_others_ = squared_shadow_error();
-    for (Side* const side : {&lights_, &sensors_}) {
-        std::ranges::fill(side->squared_errors, 0.0);
-        side->range = {};
-        side->seen.clear();
-    }
-    elements_ = &elements;
 }
 
 double ThirdBounceScan::squared_shadow_error() const {
@@ -85,9 +72,17 @@ SquaredError ThirdBounceScan::squared_visibility_error() const {
     return sum;
 }
 
-int ThirdBounceScan::integrate(int first_part,
-                               const std::function<bool(double share)>& go_on,
-                               core::Transient& result) {
+int ThirdBounceScan::integrate(const ElementSet& batch,
+                               core::Transient& result,
+                               int first_part,
+                               const std::function<bool(double share)>& go_on) {
+    squared_shadow_error_of_others_ = squared_shadow_error();
+    for (Side* const side : {&lights_, &sensors_}) {
+        std::ranges::fill(side->squared_errors, 0.0);
+        side->range = {};
+        side->seen.clear();
+    }
+    elements_ = &batch;
     result_ = &result;
     if (scan_.pattern != core::ScanPattern::Confocal) return integrate_pairs(first_part, go_on);
     for (int part = first_part; part < kParts; ++part) {
@@ -260,7 +255,6 @@ int ThirdBounceScan::integrate_pairs(int first_part,
         num_lights, scan_.sensing.size(), static_cast<std::size_t>(std::min(fitting, enough)));
     const VisibilityRules from_lights = rules_towards(sensors_, scan_.illumination.size());
     const VisibilityRules from_sensors = rules_towards(lights_, scan_.sensing.size());
-    lights_.range = sensors_.range = {};
     constexpr double kShareOfLooking = 0.25;
     for (int part = first_part; part < kParts; ++part) {
         for (const PairTiles::Batch& batch :

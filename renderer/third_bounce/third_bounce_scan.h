@@ -27,29 +27,27 @@ struct ScanRules {
 /// Integrates one cut of the surfaces, in one or several batches, for all pairs of a scan.
 class ThirdBounceScan {
  public:
-    /// All references must outlive this, `elements` until go_on_with().
-    ///
-    /// throws   core::Failure when masks of PairTiles::kMinPoints points take too much memory
+    /// All references must outlive this.
     ThirdBounceScan(const Scene& scene,
                     const core::Scan& scan,
                     const core::TimeAxis& axis,
-                    const ElementSet& elements,
                     const ScanRules& rules);
-
-    /// Goes on to another batch of the cut, which must outlive this or the next call.
-    void go_on_with(const ElementSet& elements);
 
     /// The pairs are integrated in this many parts, the last of which may be empty.
     static constexpr int kParts = 16;
 
-    /// Adds H by way of the elements, for wall albedos of pi, to the pairs of parts [first_part,
-    /// kParts) of `result`.
+    /// Adds H by way of the elements of the next batch, for wall albedos of pi, to the pairs of
+    /// parts [first_part, kParts) of `result`.
     ///
+    /// batch     must outlive this or the next call
     /// go_on     called from the calling thread with the share done after every part; false stops
     /// returns   the number of the first part not integrated; kParts: none is left
-    int integrate(int first_part,
-                  const std::function<bool(double share)>& go_on,
-                  core::Transient& result);
+    /// throws    core::Failure when masks of PairTiles::kMinPoints points take too much memory
+    int integrate(
+        const ElementSet& batch,
+        core::Transient& result,
+        int first_part = 0,
+        const std::function<bool(double share)>& go_on = [](double) { return true; });
 
     TracingCost cost() const { return {num_rays_, tracing_seconds_}; }
     /// Expected squared error of all of H from shadow edges that elements are too coarse for.
@@ -86,9 +84,9 @@ class ThirdBounceScan {
     const Scene& scene_;
     const core::Scan& scan_;
     const core::TimeAxis& axis_;
-    const ElementSet* elements_;
     ScanRules rules_;
-    core::Transient* result_ = nullptr;  ///< while integrate() runs
+    const ElementSet* elements_ = nullptr;  ///< the batch
+    core::Transient* result_ = nullptr;     ///< while integrate() runs
     Side lights_;
     Side sensors_;
     double squared_shadow_error_of_others_ = 0.0;       ///< of the batches before

@@ -45,9 +45,6 @@ SquaredError squared_error_of(const VisibilityDifferences& differences) {
     return sum;
 }
 
-VisibilityCheck::VisibilityCheck(const Scene& scene, const ElementSet& elements)
-    : scene_(scene), set_(elements) {}
-
 void VisibilityCheck::add_differences(const End& light,
                                       const End& sensor,
                                       const core::TimeAxis& axis,

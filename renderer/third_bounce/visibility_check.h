@@ -45,7 +45,8 @@ class VisibilityCheck {
     };
 
     /// scene, elements   must outlive the check
-    VisibilityCheck(const Scene& scene, const ElementSet& elements);
+    VisibilityCheck(const Scene& scene, const ElementSet& elements)
+        : scene_(scene), set_(elements) {}
 
     /// Adds what is found for a pair's histogram and wall albedos of pi; several sets of elements
     /// add up.

@@ -121,12 +121,8 @@ std::vector<std::pair<double, double>> gauss_legendre(int count) {
         double x = std::cos(kPi * (i + 0.75) / (count + 0.5));
         double gradient = 1.0;
         for (int iteration = 0; iteration < 100; ++iteration) {
-            double p = 1.0;
-            double previous = 0.0;
-            for (int n = 0; n < count; ++n) {
-                const double next = ((2.0 * n + 1.0) * x * p - n * previous) / (n + 1.0);
-                previous = std::exchange(p, next);
-            }
+            const double p = std::legendre(static_cast<unsigned>(count), x);
+            const double previous = std::legendre(static_cast<unsigned>(count) - 1U, x);
             gradient = count * (x * p - previous) / (x * x - 1.0);
             const double step = p / gradient;
             x -= step;

@@ -3,7 +3,7 @@
 // are none? Prints the table of slips and scenes.
 #include "apps/bench/scene.h"
 #include "nlos/preparation/capture_check.h"
-#include "renderer/core/capture/scan_extent.h"
+#include "renderer/core/capture/capture.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 // Path velocities against closed forms and against moved scenes.
 #include "renderer/core/parallel.h"
 #include "renderer/core/random.h"
-#include "renderer/film/path_extent.h"
+#include "renderer/film/time_gate.h"
 #include "tests/renderer/doppler_scenes.h"
 #include "tests/support/error_message.h"
 

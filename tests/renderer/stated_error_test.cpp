@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Errors that renders state of themselves, and that they are asked to reach.
-#include "renderer/bounce_truncation.h"
 #include "renderer/core/random.h"
 #include "renderer/film/stopping_rule.h"
 #include "renderer/frame_sequence.h"
+#include "renderer/pass_render.h"
 #include "tests/support/error_message.h"
 #include "tests/support/test_scenes.h"
 
@@ -72,9 +72,9 @@ TEST(StatedError, NoiseFromSumsIsThatFromEveryVariance) {
         }
     }
     double noise = 0.0;
-    core::Transient mean;
+    core::Transient mean(3, kBins);
     std::optional<core::Transient> variance;
-    sums.write(kPasses, 3, 0, mean, variance);
+    sums.write(kPasses, 0, mean, variance);
     for (const float value : variance->values()) noise += double{value};
     core::Transient known(3, kBins);
     for (float& value : known.values()) value = 2.0F;

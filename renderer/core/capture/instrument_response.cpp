@@ -6,7 +6,6 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <cassert>
 #include <functional>
 #include <numeric>

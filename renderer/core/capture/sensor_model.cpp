@@ -1,25 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/core/capture/sensor_model.h"
 
-#include "renderer/core/capture/shipped_sensors.h"
 #include "renderer/core/nearest_name.h"
 
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 
 namespace core {
-
-double SensorDetector::response_fwhm_ps() const {
-    return std::hypot(pulse_fwhm_ps, jitter_fwhm_ps);
-}
-
-TimeAxis SensorModel::time_axis() const {
-    return {opl_from_seconds(first_bin_s), opl_from_seconds(bin_width_s), num_bins};
-}
 
 Json write_value(const SensorModel& model) {
     Json json = write_value<SensorModel>(model);

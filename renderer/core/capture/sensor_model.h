@@ -3,10 +3,14 @@
 
 #include "renderer/core/capture/time_axis.h"
 #include "renderer/core/settings.h"
+#include "renderer/core/types.h"
 
 #include <array>
+#include <cmath>
 #include <map>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 namespace core {
@@ -37,7 +41,7 @@ struct SensorDetector {
     int cut_after_direct_bins = 0;
 
     /// Width of pulse and jitter together [ps], both taken for Gaussian.
-    double response_fwhm_ps() const;
+    double response_fwhm_ps() const { return std::hypot(pulse_fwhm_ps, jitter_fwhm_ps); }
 };
 
 /// A histogram camera as its data sheet describes it.
@@ -58,7 +62,9 @@ struct SensorModel {
     std::map<std::string, std::string> sources;  ///< where numbers come from, by their key
 
     int num_zones() const { return zones[0] * zones[1]; }
-    TimeAxis time_axis() const;
+    TimeAxis time_axis() const {
+        return {opl_from_seconds(first_bin_s), opl_from_seconds(bin_width_s), num_bins};
+    }
 };
 
 template <class Visitor>
@@ -122,6 +128,9 @@ Json write_value(const SensorModel& model);
 
 /// Throws Error naming the value that is out of range.
 void validate(const SensorModel& model, const std::string& where);
+
+/// Name and text of data/sensors/*.json, which are compiled into the program.
+const std::vector<std::pair<std::string_view, std::string_view>>& shipped_sensor_texts();
 
 /// Names of the sensors that come with the program.
 std::vector<std::string> shipped_sensors();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/formats/capture_adjustment.h"
 
-#include "renderer/core/capture/scan_extent.h"
+#include "renderer/core/capture/capture.h"
 #include "tests/support/error_message.h"
 #include "tests/support/example_capture.h"
 

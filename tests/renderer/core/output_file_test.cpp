@@ -2,7 +2,6 @@
 #include "renderer/core/output_file.h"
 
 #include "renderer/core/error.h"
-#include "renderer/core/partial_file.h"
 #include "tests/support/file_bytes.h"
 #include "tests/support/temporary_folder.h"
 

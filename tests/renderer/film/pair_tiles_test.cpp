@@ -6,6 +6,7 @@
 #include "renderer/core/error.h"
 #include "renderer/third_bounce/surface_subdivider.h"
 #include "renderer/third_bounce/third_bounce_scan.h"
+#include "tests/support/single_cut.h"
 #include "tests/support/test_scenes.h"
 
 #include <gtest/gtest.h>
@@ -120,7 +121,7 @@ struct TwoSheets {
         return renderer::Scene(std::move(geometry), scan, {});
     }();
     core::TimeAxis axis{1.2, 0.02, 40};
-    renderer::ElementSet elements = renderer::SurfaceSubdivider(scene, scan, axis, 0.0).cut(0.02);
+    renderer::ElementSet elements = test_support::single_cut({scene, scan, axis, 0.0}, 0.02);
 
     double bytes_per_point() const {
         return static_cast<double>(elements.blocks.size() * renderer::ElementBlock::kSize *
@@ -134,16 +135,13 @@ TEST(ThirdBounceMemory, ChangesNothingButTheNumberOfRays) {
     std::map<std::size_t, std::uint64_t> rays;
     std::map<std::size_t, double> errors;
     for (const std::size_t points : {std::size_t{1000}, std::size_t{48}, std::size_t{32}}) {
-        renderer::ThirdBounceScan integrator(setup.scene,
-                                             setup.scan,
-                                             setup.axis,
-                                             setup.elements,
-                                             {.memory_bytes = static_cast<double>(points) *
-                                                              setup.bytes_per_point()});
+        renderer::ThirdBounceScan integrator(
+            setup.scene,
+            setup.scan,
+            setup.axis,
+            {.memory_bytes = static_cast<double>(points) * setup.bytes_per_point()});
         core::Transient result(setup.scan.num_pairs(), setup.axis.num_bins);
-        EXPECT_EQ(integrator.integrate(
-                      0, [](double) { return true; }, result),
-                  renderer::ThirdBounceScan::kParts);
+        EXPECT_EQ(integrator.integrate(setup.elements, result), renderer::ThirdBounceScan::kParts);
         values[points].assign(result.values().begin(), result.values().end());
         rays[points] = integrator.cost().num_rays;
         errors[points] = integrator.squared_shadow_error();
@@ -160,15 +158,9 @@ TEST(ThirdBounceMemory, ChangesNothingButTheNumberOfRays) {
 TEST(ThirdBounceMemory, IsRefusedBelowTheFewestPoints) {
     const TwoSheets setup;
     renderer::ThirdBounceScan integrator(
-        setup.scene,
-        setup.scan,
-        setup.axis,
-        setup.elements,
-        {.memory_bytes = 31 * setup.bytes_per_point()});
+        setup.scene, setup.scan, setup.axis, {.memory_bytes = 31 * setup.bytes_per_point()});
     core::Transient result(setup.scan.num_pairs(), setup.axis.num_bins);
-    EXPECT_THROW(integrator.integrate(
-                     0, [](double) { return true; }, result),
-                 core::Failure);
+    EXPECT_THROW(integrator.integrate(setup.elements, result), core::Failure);
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 // Retroreflectors return light to where it came from: to confocal pairs of any scan, no others.
 #include "renderer/render.h"
 #include "renderer/scene/coinciding_points.h"
-#include "renderer/third_bounce/pilot_scan.h"
+#include "renderer/third_bounce/pilot_runs.h"
 #include "tests/support/statistics.h"
 #include "tests/support/test_scenes.h"
 

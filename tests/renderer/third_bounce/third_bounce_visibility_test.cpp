@@ -5,6 +5,7 @@
 
 #include "renderer/core/random.h"
 #include "renderer/third_bounce/third_bounce_scan.h"
+#include "tests/support/single_cut.h"
 #include "tests/support/statistics.h"
 #include "tests/support/test_scenes.h"
 
@@ -44,7 +45,7 @@ struct HalfHiddenSheet {
         return renderer::Scene(std::move(geometry), scan, {});
     }();
     core::TimeAxis axis{0.8, 0.02, 60};
-    renderer::ElementSet elements = renderer::SurfaceSubdivider(scene, scan, axis, 0.0).cut(0.01);
+    renderer::ElementSet elements = test_support::single_cut({scene, scan, axis, 0.0}, 0.01);
 
     std::vector<WallPoint> points(std::size_t begin, std::size_t count) const {
         std::vector<WallPoint> result;
@@ -215,11 +216,10 @@ TEST(ThirdBounceScan, OtherEndsInOtherPlanesTakeNothingAway) {
         const renderer::Scene scene(std::move(geometry), scan, {});
         const core::TimeAxis axis{0.8, 0.02, 60};
         const renderer::ElementSet elements =
-            renderer::SurfaceSubdivider(scene, scan, axis, 0.0).cut(0.01);
-        renderer::ThirdBounceScan integrator(scene, scan, axis, elements, {.memory_bytes = 1e9});
+            test_support::single_cut({scene, scan, axis, 0.0}, 0.01);
+        renderer::ThirdBounceScan integrator(scene, scan, axis, {.memory_bytes = 1e9});
         core::Transient result(scan.num_pairs(), axis.num_bins);
-        integrator.integrate(
-            0, [](double) { return true; }, result);
+        integrator.integrate(elements, result);
         const auto values = result.histogram(0);
         return std::vector<double>(values.begin(), values.end());
     };

@@ -2,6 +2,7 @@
 // Rays to random points against masks whose error is known.
 #include "renderer/third_bounce/visibility_check.h"
 
+#include "tests/support/single_cut.h"
 #include "tests/support/statistics.h"
 #include "tests/support/test_scenes.h"
 
@@ -38,7 +39,7 @@ struct CheckedPanel {
                  VisibilityMask mask)
         : scan(scan_of_pair),
           scene(geometry(panel, screen), scan, {}),
-          elements(renderer::SurfaceSubdivider(scene, scan, kCheckAxis, 0.0).cut(0.01)) {
+          elements(test_support::single_cut({scene, scan, kCheckAxis, 0.0}, 0.01)) {
         seen.simd_groups.assign(elements.blocks.size(), renderer::kAllSimdGroups);
         seen.masks.assign(elements.blocks.size() * renderer::ElementBlock::kSize, mask);
     }
