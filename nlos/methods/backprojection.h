@@ -9,27 +9,6 @@
 
 namespace nlos {
 
-/// Backprojection: v(p) = sum over pairs (l, s) of H(l, s; |l - p| + |p - s|), linear in time
-/// between bin centres. Adjoint of a forward model without cosines, and without falloff unless each
-/// term is multiplied by what the light lost on its way. Where some bins were not observed, sums
-/// are divided by the share of their terms that was, see divide_by_observed_share().
-///
-/// input       any scan; confocal grids whose y positions share a lattice with the voxels' take the
-///             fast way (shifted additions of whole rows), all others the general one
-/// settings    compensation, the factor of each term: none, r_l^2 r_s^2 (diffuse), r_l r_s (retro)
-/// num_slabs   the fast way copies this part of the wall's rows at a time
-/// returns     sums in the histograms' unit
-/// throws      core::Failure when asked to stop
-/// source      [Velten2012]
-Volume backproject(const MethodInput& input,
-                   const ReconstructSettings& settings,
-                   std::size_t num_slabs = 1);
-
-/// Memory that backproject() takes on top of its input, its volume included [bytes].
-double backproject_bytes(const MethodInput& input,
-                         const ReconstructSettings& settings,
-                         std::size_t num_slabs = 1);
-
 /// Confocal measurements on a wall grid.
 template <class Real>
 struct ConfocalGrid {
@@ -72,5 +51,20 @@ void backproject_pairs(const PairList<Real>& data,
                        const VolumeAxes& axes,
                        std::span<Real> volume,
                        const core::Progress& progress);
+
+/// Divides the backprojected sums of a capture whose bins were not all observed by the share of
+/// each voxel's look-ups that met an observed bin, of those within the axis. What is left are sums
+/// as of the whole capture, and no trace of which points were dead or where their gates began.
+///
+/// Few look-ups that all meet light are weak evidence: no voxel is raised to more than twice what
+/// the mean share, over all observed look-ups, would raise it to. A voxel that nobody looked at
+/// stays 0.
+///
+/// input    with `observed`
+/// throws   core::Failure when asked to stop
+void divide_by_observed_share(const MethodInput& input, std::size_t num_slabs, Volume& volume);
+
+/// Memory that this takes on top of its input [bytes]; 0 when all bins were observed.
+double observed_share_bytes(const MethodInput& input);
 
 }  // namespace nlos
