@@ -171,21 +171,6 @@ void for_each_field(LayoutBins& b, Visitor&& visit) {
 enum class GridDirection { Increasing, Decreasing };
 enum class GridSamples { EndsIncluded, CellCentres };
 
-}  // namespace nlos
-
-template <>
-struct core::EnumNames<nlos::GridDirection> {
-    static constexpr auto value =
-        core::names_from_zero<nlos::GridDirection>("increasing", "decreasing");
-};
-template <>
-struct core::EnumNames<nlos::GridSamples> {
-    static constexpr auto value =
-        core::names_from_zero<nlos::GridSamples>("ends_included", "cell_centres");
-};
-
-namespace nlos {
-
 /// A grid around the origin of the wall z = 0.
 struct LayoutGrid {
     std::vector<LayoutNumber> size_m;       ///< extent along x and y, or one for both; or:
@@ -242,16 +227,6 @@ void for_each_field(LayoutPoints& p, Visitor&& visit) {
 }
 
 enum class LayoutPattern { Single, Confocal, Exhaustive, ByPoints };
-
-}  // namespace nlos
-
-template <>
-struct core::EnumNames<nlos::LayoutPattern> {
-    static constexpr auto value =
-        core::names_from_zero<nlos::LayoutPattern>("single", "confocal", "exhaustive", "by_points");
-};
-
-namespace nlos {
 
 struct LayoutDevices {
     std::string laser;  ///< array of 3 values, world [m]
@@ -325,3 +300,20 @@ const std::vector<Layout>& shipped_layouts();
 Layout find_layout(const std::string& name_or_path);
 
 }  // namespace nlos
+
+template <>
+struct core::EnumNames<nlos::GridDirection> {
+    static constexpr auto value =
+        core::names_from_zero<nlos::GridDirection>("increasing", "decreasing");
+};
+template <>
+struct core::EnumNames<nlos::GridSamples> {
+    static constexpr auto value =
+        core::names_from_zero<nlos::GridSamples>("ends_included", "cell_centres");
+};
+
+template <>
+struct core::EnumNames<nlos::LayoutPattern> {
+    static constexpr auto value =
+        core::names_from_zero<nlos::LayoutPattern>("single", "confocal", "exhaustive", "by_points");
+};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/layouts/layout_pairs.h"
+#include "nlos/layouts/layout_histograms.h"
 
 #include "renderer/core/error.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/layouts/layout_source.h"
+#include "nlos/layouts/layout_capture.h"
 
 #include "nlos/layouts/layout_match.h"
 #include "renderer/core/error.h"
