@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Which parts of the elements the wall points see, and the derivatives of the data by the motion of
-// shadow edges; shadow_refinement.h says what they are for.
+// shadow edges; fit/solution.h says what they are for.
 //
 // Visibility is resolved to a quarter of an element's edge, so the data jump as a shadow moves.
 // Central differences over about that length, with everything but visibility held fixed, smooth the
