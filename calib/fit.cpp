@@ -4,7 +4,7 @@
 #include "calib/fit/fit_driver.h"
 #include "calib/fit/solution.h"
 #include "calib/fit/stage_solver.h"
-#include "calib/model/pose_ambiguity.h"
+#include "calib/model/scene_model.h"
 #include "calib/statistics/poisson_deviance.h"
 #include "renderer/core/stopwatch.h"
 

@@ -4,7 +4,6 @@
 #include "nlos/methods/methods.h"
 #include "nlos/methods/virtual_wave.h"
 #include "nlos/preparation/capture_check.h"
-#include "nlos/preparation/capture_survey.h"
 #include "nlos/preparation/direct_response.h"
 #include "nlos/preparation/histogram_preparation.h"
 #include "nlos/preparation/memory_limit.h"

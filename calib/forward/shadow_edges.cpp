@@ -6,7 +6,7 @@
 // Central differences over about that length, with everything but visibility held fixed, smooth the
 // jumps.
 #include "calib/forward/forward_model.h"
-#include "calib/forward/model_visibility.h"
+#include "calib/forward/model_elements.h"
 #include "calib/model/state_vector.h"
 #include "renderer/core/parallel.h"
 

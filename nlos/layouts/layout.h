@@ -6,6 +6,8 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 namespace nlos {
@@ -298,6 +300,9 @@ const std::vector<Layout>& shipped_layouts();
 /// The shipped layout of this name, or the one in the JSON file `name_or_path`.
 /// Throws core::Error that lists the names when there is neither.
 Layout find_layout(const std::string& name_or_path);
+
+/// Name and text of data/layouts/*.json, which are compiled into the program.
+const std::vector<std::pair<std::string_view, std::string_view>>& shipped_layout_texts();
 
 }  // namespace nlos
 

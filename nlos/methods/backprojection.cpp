@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/methods/backprojection.h"
 
-#include "nlos/methods/backprojection_rows.h"
 #include "nlos/methods/methods.h"
 #include "nlos/methods/slabs.h"
 
