@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "calib/fit.h"
 
-#include "calib/fit/fit_checks.h"
 #include "calib/fit/fit_driver.h"
-#include "calib/fit/fitted_values.h"
-#include "calib/fit/parametric_bootstrap.h"
-#include "calib/fit/shadow_refinement.h"
+#include "calib/fit/solution.h"
 #include "calib/fit/stage_solver.h"
-#include "calib/model/pose_ambiguity.h"
+#include "calib/model/scene_model.h"
 #include "calib/statistics/poisson_deviance.h"
 #include "renderer/core/stopwatch.h"
 

@@ -19,13 +19,9 @@ Vec3 vector_of(const Json& json) {
     return {value_of(json.at(0)), value_of(json.at(1)), value_of(json.at(2))};
 }
 
-// [x, y, z, albedo]
-Json point_json(const Vec3& position, double albedo) {
-    return {position.x(), position.y(), position.z(), albedo};
-}
-
-// What a result says of every quantity: its value, or its standard deviation.
-Json estimates_json(const FitResult& result, double Estimate::*part) {
+// What a result says of every quantity: its values, or their standard deviations.
+Json estimates_json(const FitResult& result, bool sigmas) {
+    const auto part = sigmas ? &Estimate::sigma : &Estimate::value;
     Json json;
     json["objects"] = Json::object();
     json["scale"] = result.scale.*part;
@@ -34,38 +30,23 @@ Json estimates_json(const FitResult& result, double Estimate::*part) {
     json["ambient"] = result.ambient.*part;
     json["response_fwhm_ps"] = result.response_fwhm_ps.*part;
     json["wall"] = {{"bow_m", result.wall_bow_m.*part}, {"scale", result.wall_scale.*part}};
-    return json;
-}
-
-Json values_json(const FitResult& result) {
-    Json json = estimates_json(result, &Estimate::value);
-    for (const FittedObject& object : result.objects) {
-        const auto& q = object.rotation;
-        Json& target = json["objects"][object.name];
-        target = {{"position_m", core::write_value(object.position_m)},
-                  {"rotation_wxyz", {q.w(), q.x(), q.y(), q.z()}},
-                  {"size", object.size},
-                  {"albedo", object.albedo}};
-        if (!object.heights_m.empty()) target["heights_m"] = object.heights_m;
+    for (const FittedObject& o : result.objects) {
+        const auto& q = o.rotation;
+        Json& target = json["objects"][o.name];
+        target["position_m"] = core::write_value(sigmas ? o.position_sigma_m : o.position_m);
+        if (sigmas) {
+            target["rotation_deg"] = core::write_value(o.rotation_sigma_deg);
+        } else {
+            target["rotation_wxyz"] = {q.w(), q.x(), q.y(), q.z()};
+        }
+        target["size"] = sigmas ? o.size_sigma : o.size;
+        target["albedo"] = sigmas ? o.albedo_sigma : o.albedo;
+        if (!o.heights_m.empty()) target["heights_m"] = sigmas ? o.heights_sigma_m : o.heights_m;
     }
     for (const FittedPoint& p : result.points) {
-        json["point_scatterers"].push_back(point_json(p.position_m, p.albedo));
-    }
-    return json;
-}
-
-Json sigmas_json(const FitResult& result) {
-    Json json = estimates_json(result, &Estimate::sigma);
-    for (const FittedObject& object : result.objects) {
-        Json& target = json["objects"][object.name];
-        target = {{"position_m", core::write_value(object.position_sigma_m)},
-                  {"rotation_deg", core::write_value(object.rotation_sigma_deg)},
-                  {"size", object.size_sigma},
-                  {"albedo", object.albedo_sigma}};
-        if (!object.heights_m.empty()) target["heights_m"] = object.heights_sigma_m;
-    }
-    for (const FittedPoint& p : result.points) {
-        json["point_scatterers"].push_back(point_json(p.position_sigma_m, p.albedo_sigma));
+        const Vec3& position = sigmas ? p.position_sigma_m : p.position_m;
+        json["point_scatterers"].push_back(
+            {position.x(), position.y(), position.z(), sigmas ? p.albedo_sigma : p.albedo});
     }
     return json;
 }
@@ -74,8 +55,8 @@ Json sigmas_json(const FitResult& result) {
 
 // An infinite standard deviation, of what the data do not determine, is written as null.
 Json fit_json(const FitResult& result) {
-    Json json = values_json(result);
-    json["sigma"] = sigmas_json(result);
+    Json json = estimates_json(result, false);
+    json["sigma"] = estimates_json(result, true);
     json["correlations"] = Json::array();
     for (const Correlation& c : result.correlations) {
         json["correlations"].push_back({{"a", c.a}, {"b", c.b}, {"value", c.value}});

@@ -1,15 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/reconstruct.h"
 
-#include "nlos/methods/backprojection.h"
-#include "nlos/methods/directional_light_cone_transform.h"
-#include "nlos/methods/filtered_backprojection.h"
-#include "nlos/methods/fk_migration.h"
-#include "nlos/methods/light_cone_transform.h"
-#include "nlos/methods/phasor_field.h"
+#include "nlos/methods/methods.h"
 #include "nlos/methods/virtual_wave.h"
 #include "nlos/preparation/capture_check.h"
-#include "nlos/preparation/capture_survey.h"
 #include "nlos/preparation/direct_response.h"
 #include "nlos/preparation/histogram_preparation.h"
 #include "nlos/preparation/memory_limit.h"
@@ -89,13 +83,10 @@ void take_surface(const Volume* again, Reconstruction& result) {
     result.points = surface_points(result.depth);
 }
 
-/// A reconstruction method: what it computes, and the memory that takes on top of its input
-/// [bytes], both with as many slabs of work one after another.
+/// What a method computes, and the memory that takes.
 struct MethodFunctions {
-    using Run = Volume(const MethodInput&, const ReconstructSettings&, std::size_t num_slabs);
-    using Bytes = double(const MethodInput&, const ReconstructSettings&, std::size_t num_slabs);
-    Run* run;
-    Bytes* bytes;
+    RunMethod* run;
+    MethodBytes* bytes;
 };
 
 MethodFunctions functions_of(const ReconstructSettings& settings) {

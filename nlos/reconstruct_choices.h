@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "nlos/methods/method_choice.h"
 #include "nlos/methods/method_input.h"
+#include "nlos/methods/methods.h"
 #include "nlos/preparation/histogram_preparation.h"
 #include "nlos/preparation/prepared_capture.h"
 #include "nlos/reconstruction/reconstruct_settings.h"

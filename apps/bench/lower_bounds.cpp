@@ -3,7 +3,7 @@
 
 #include "nlos/fourier/padded_plane.h"
 #include "nlos/methods/light_cone.h"
-#include "nlos/methods/phasor_field.h"
+#include "nlos/methods/methods.h"
 #include "renderer/core/process.h"
 #include "renderer/core/random.h"
 #include "renderer/scene/area_sampler.h"

@@ -7,7 +7,6 @@
 #include "apps/progress_bar.h"
 #include "apps/terminal.h"
 #include "apps/version.h"
-#include "calib/track/smooth.h"
 #include "calib/track/track_file.h"
 #include "calib/track/tracker.h"
 #include "nlos/pictures/picture.h"

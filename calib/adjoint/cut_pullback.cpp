@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "calib/adjoint/cut_pullback.h"
+#include "calib/adjoint/piece_cutter.h"
 
 namespace calib {
 namespace {

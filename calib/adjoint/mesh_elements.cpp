@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "calib/adjoint/mesh_elements.h"
-
+#include "calib/adjoint/adjoint_scene.h"
 #include "calib/forward/model_elements.h"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "calib/adjoint/adjoint_scene.h"
 #include "calib/adjoint/facet_tree.h"
-#include "calib/adjoint/mesh_elements.h"
 #include "calib/adjoint/piece_cutter.h"
 #include "renderer/core/mesh.h"
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "calib/adjoint/adjoint_scene.h"
-#include "calib/adjoint/cut_pullback.h"
 #include "calib/adjoint/occluder_views.h"
+#include "calib/adjoint/piece_cutter.h"
 #include "calib/adjoint/piece_kernel.h"
 
 #include <array>

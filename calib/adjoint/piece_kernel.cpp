@@ -14,17 +14,6 @@ double share_of_area(const PartShares& s) {
     return s[0].dot(s[1].cross(s[2]));
 }
 
-// Path lengths and weights at the nodes, the weights times `factor`.
-KnotFit fit_knots(const std::array<Path, 6>& paths, double opl_m, double factor) {
-    std::array<double, 6> opl{};
-    std::array<double, 6> weight{};
-    for (std::size_t i = 0; i < 6; ++i) {
-        opl[i] = paths[i].opl + opl_m;
-        weight[i] = factor * paths[i].factor;
-    }
-    return {opl, weight};
-}
-
 // The inner product of a triangle's bins with `by_value`, slot by slot.
 std::array<double, renderer::TriangleBins::kSlots> contract(const renderer::TriangleBins& bins,
                                                             std::span<const double> by_value) {

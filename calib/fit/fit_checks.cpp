@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "calib/fit/fit_checks.h"
-
+#include "calib/fit/solution.h"
 #include "calib/statistics/median.h"
 #include "calib/statistics/poisson_deviance.h"
 #include "renderer/core/capture/recorded_detector.h"

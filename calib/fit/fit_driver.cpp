@@ -2,7 +2,7 @@
 #include "calib/fit/fit_driver.h"
 
 #include "calib/fit/initial_guesses.h"
-#include "calib/model/pose_ambiguity.h"
+#include "calib/model/scene_model.h"
 #include "renderer/core/capture/recorded_detector.h"
 #include "renderer/core/error.h"
 #include "renderer/core/parallel.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "calib/fit/fitted_values.h"
+#include "calib/fit/solution.h"
 
 #include <cmath>
 

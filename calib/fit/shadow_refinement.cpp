@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "calib/fit/shadow_refinement.h"
-
+#include "calib/fit/solution.h"
 #include "calib/model/state_vector.h"
 
 #include <algorithm>

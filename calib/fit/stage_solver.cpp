@@ -76,20 +76,6 @@ class PairCost : public ceres::CostFunction {
     std::size_t pair_;
 };
 
-// (value - 0) / sigma.
-class TimeZeroPrior : public ceres::SizedCostFunction<1, 1> {
- public:
-    explicit TimeZeroPrior(double sigma_m) : sigma_m_(sigma_m) {}
-    bool Evaluate(double const* const* p, double* residuals, double** jacobians) const override {
-        residuals[0] = p[0][0] / sigma_m_;
-        if (jacobians != nullptr && jacobians[0] != nullptr) jacobians[0][0] = 1.0 / sigma_m_;
-        return true;
-    }
-
- private:
-    double sigma_m_;
-};
-
 // Height of every vertex against the mean of its neighbours.
 Eigen::MatrixXd laplacian(const ModelBody& body, double weight) {
     const auto size = static_cast<Eigen::Index>(body.vertices.size());
@@ -106,23 +92,43 @@ Eigen::MatrixXd laplacian(const ModelBody& body, double weight) {
     return rows;
 }
 
-class RoughnessPrior : public ceres::CostFunction {
- public:
-    explicit RoughnessPrior(Eigen::MatrixXd rows) : rows_(std::move(rows)) {
-        set_num_residuals(static_cast<int>(rows_.rows()));
-        mutable_parameter_block_sizes()->push_back(static_cast<int>(rows_.cols()));
+// Of a block's parameters p: rows p / sigma is normal.
+struct LinearPrior {
+    Eigen::MatrixXd rows;
+    double sigma = 1.0;
+};
+
+std::optional<LinearPrior> prior_of(const SceneModel& model,
+                                    const ParameterBlock& block,
+                                    const SolveSettings& settings) {
+    if (block.kind == ParameterKind::TimeZero && settings.time_zero_sigma_m) {
+        return LinearPrior{Eigen::MatrixXd::Identity(1, 1), *settings.time_zero_sigma_m};
     }
+    if (block.kind == ParameterKind::Heights && settings.laplacian_weight > 0.0) {
+        return LinearPrior{laplacian(model.bodies()[block.item], settings.laplacian_weight)};
+    }
+    return std::nullopt;
+}
+
+class PriorCost : public ceres::CostFunction {
+ public:
+    explicit PriorCost(LinearPrior prior) : prior_(std::move(prior)) {
+        set_num_residuals(static_cast<int>(prior_.rows.rows()));
+        mutable_parameter_block_sizes()->push_back(static_cast<int>(prior_.rows.cols()));
+    }
+
     bool Evaluate(double const* const* p, double* residuals, double** jacobians) const override {
-        const Eigen::Map<const Eigen::VectorXd> heights(p[0], rows_.cols());
-        Eigen::Map<Eigen::VectorXd>(residuals, rows_.rows()) = rows_ * heights;
+        const auto& [rows, sigma] = prior_;
+        const Eigen::Map<const Eigen::VectorXd> parameters(p[0], rows.cols());
+        Eigen::Map<Eigen::VectorXd>(residuals, rows.rows()) = rows * parameters / sigma;
         if (jacobians != nullptr && jacobians[0] != nullptr) {
-            Eigen::Map<RowMajor>(jacobians[0], rows_.rows(), rows_.cols()) = rows_;
+            Eigen::Map<RowMajor>(jacobians[0], rows.rows(), rows.cols()) = rows / sigma;
         }
         return true;
     }
 
  private:
-    Eigen::MatrixXd rows_;
+    LinearPrior prior_;
 };
 
 class StopCallback : public ceres::IterationCallback {
@@ -164,14 +170,8 @@ void add_priors(const SceneModel& model,
             problem.SetManifold(parameters, new ceres::QuaternionManifold);
         } else if (block.kind == ParameterKind::Ambient) {
             problem.SetParameterLowerBound(parameters, 0, settings.lowest_log_ambient);
-        } else if (block.kind == ParameterKind::TimeZero && settings.time_zero_sigma_m) {
-            problem.AddResidualBlock(
-                new TimeZeroPrior(*settings.time_zero_sigma_m), nullptr, parameters);
-        } else if (block.kind == ParameterKind::Heights && settings.laplacian_weight > 0.0) {
-            problem.AddResidualBlock(new RoughnessPrior(laplacian(model.bodies()[block.item],
-                                                                  settings.laplacian_weight)),
-                                     nullptr,
-                                     parameters);
+        } else if (auto prior = prior_of(model, block, settings)) {
+            problem.AddResidualBlock(new PriorCost(std::move(*prior)), nullptr, parameters);
         }
     }
 }
@@ -223,14 +223,10 @@ SolveSummary solve_stage(const SceneModel& model,
 Eigen::MatrixXd prior_information(const SceneModel& model, const SolveSettings& settings) {
     Eigen::MatrixXd information = Eigen::MatrixXd::Zero(model.num_columns(), model.num_columns());
     for (const ParameterBlock& block : model.blocks()) {
-        if (block.kind == ParameterKind::TimeZero && settings.time_zero_sigma_m) {
-            information(block.first_column, block.first_column) +=
-                1.0 / (*settings.time_zero_sigma_m * *settings.time_zero_sigma_m);
-        } else if (block.kind == ParameterKind::Heights && settings.laplacian_weight > 0.0) {
-            const auto rows = laplacian(model.bodies()[block.item], settings.laplacian_weight);
+        if (const auto prior = prior_of(model, block, settings)) {
             information.block(
                 block.first_column, block.first_column, block.columns, block.columns) +=
-                rows.transpose() * rows;
+                prior->rows.transpose() * prior->rows / (prior->sigma * prior->sigma);
         }
     }
     return information;

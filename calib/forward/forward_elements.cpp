@@ -104,14 +104,8 @@ void ForwardModel::add_element(const PosedElement& element,
                                                     : LegPair::Apart;
     std::array<Path, 6> paths;
     if (!find_paths(ends, element.nodes, element.normal, legs, gradients_, paths)) return;
-    const double extra = state_.time_zero_m + settings_.offset_m[pair];
-    std::array<double, 6> opl{};
-    std::array<double, 6> weight{};
-    for (std::size_t i = 0; i < 6; ++i) {
-        opl[i] = paths[i].opl + extra;
-        weight[i] = element.weight * paths[i].factor;
-    }
-    const KnotFit fit(opl, weight);
+    const KnotFit fit =
+        fit_knots(paths, state_.time_zero_m + settings_.offset_m[pair], element.weight);
     const VisibleWeights visible(fit.knots().weight, mask);
     thread_local renderer::TriangleBins bins;
     renderer::evaluate_triangle(
@@ -122,6 +116,8 @@ void ForwardModel::add_element(const PosedElement& element,
     thread_local std::vector<ColumnChange> changes;
     changes.clear();
     const auto add_change = [&](int column, const auto& opl_gradient, const auto& factor_gradient) {
+        std::array<double, 6> opl{};
+        std::array<double, 6> weight{};
         for (std::size_t i = 0; i < 6; ++i) {
             opl[i] = opl_gradient(i);
             weight[i] = element.weight * factor_gradient(i);

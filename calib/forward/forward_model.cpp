@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "calib/forward/forward_model.h"
 
-#include "calib/forward/model_visibility.h"
+#include "calib/forward/model_elements.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "calib/forward/path_legs.h"
 #include "renderer/geometry/visibility_mask.h"
 #include "renderer/triangle/triangle_histogram.h"
 
@@ -104,6 +105,17 @@ class KnotFit {
     std::size_t lowest_ = 0;
     bool is_clamped_ = false;
 };
+
+/// Of the paths over the nodes, all longer by `opl_m`, their factors times `factor`.
+inline KnotFit fit_knots(const std::array<Path, 6>& paths, double opl_m, double factor) {
+    std::array<double, 6> opl{};
+    std::array<double, 6> weight{};
+    for (std::size_t i = 0; i < 6; ++i) {
+        opl[i] = paths[i].opl + opl_m;
+        weight[i] = factor * paths[i].factor;
+    }
+    return {opl, weight};
+}
 
 /// The weights of an element's visible part: the product of two linear functions, made linear again
 /// with its integral kept, and how it changes with the weights.

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "calib/forward/model_visibility.h"
-
+#include "calib/forward/model_elements.h"
 #include "renderer/core/parallel.h"
 #include "renderer/scene/scene.h"
 

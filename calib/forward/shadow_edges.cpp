@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Which parts of the elements the wall points see, and the derivatives of the data by the motion of
-// shadow edges; shadow_refinement.h says what they are for.
+// shadow edges; fit/solution.h says what they are for.
 //
 // Visibility is resolved to a quarter of an element's edge, so the data jump as a shadow moves.
 // Central differences over about that length, with everything but visibility held fixed, smooth the
 // jumps.
 #include "calib/forward/forward_model.h"
-#include "calib/forward/model_visibility.h"
+#include "calib/forward/model_elements.h"
 #include "calib/model/state_vector.h"
 #include "renderer/core/parallel.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "calib/model/pose_ambiguity.h"
+#include "calib/model/scene_model.h"
 
 #include <Eigen/Dense>
 #include <fmt/core.h>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "calib/setup/boards.h"
 
-#include "calib/setup/photograph.h"
 #include "renderer/core/error.h"
 
 #include <Eigen/Dense>

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "calib/setup/photograph.h"
-
+#include "calib/setup/boards.h"
 #include "renderer/core/error.h"
 #include "renderer/core/mapped_file.h"
 #include "renderer/core/sandboxed_process.h"

@@ -6,6 +6,8 @@
 
 #include <Eigen/Dense>
 
+#include <vector>
+
 namespace calib {
 
 /// What a frame can tell of a target: its position [m] and the logarithm of its strength. These are
@@ -46,5 +48,23 @@ class Motion {
 /// A prior distribution after its seen part became normal with this mean and covariance: what was
 /// correlated with it follows.
 Gaussian condition(const Gaussian& prior, const SeenVector& mean, const SeenMatrix& covariance);
+
+/// Mean squared position errors that no tracker can go below on average: with the frames up to each
+/// one, and with all of them.
+struct TrackBound {
+    std::vector<double> filtered_m2;
+    std::vector<double> smoothed_m2;
+};
+
+/// The posterior Cramer-Rao bound along a way.
+///
+/// information   that each frame holds about position and strength, see fisher_information()
+/// first         what is known before the first frame
+/// dt_s          from frame to frame
+/// source        [Tichavsky1998]
+TrackBound track_bound(const std::vector<SeenMatrix>& information,
+                       const SeenMatrix& first,
+                       const Motion& motion,
+                       double dt_s);
 
 }  // namespace calib

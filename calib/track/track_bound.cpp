@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "calib/track/track_bound.h"
+#include "calib/track/target_state.h"
 
 #include <Eigen/Dense>
 

@@ -25,32 +25,6 @@ enum class BackgroundKind { Learn, Flat };
 /// What moves and is to be found: the hidden target, or the sensor before a target that stands.
 enum class TrackUnknown { Target, SensorPose };
 
-}  // namespace calib
-
-namespace core {
-
-template <>
-struct EnumNames<calib::TargetKind> {
-    static constexpr auto value = names_from_zero<calib::TargetKind>("retroreflective", "diffuse");
-};
-template <>
-struct EnumNames<calib::MotionKind> {
-    static constexpr auto value =
-        names_from_zero<calib::MotionKind>("random_walk", "constant_velocity");
-};
-template <>
-struct EnumNames<calib::BackgroundKind> {
-    static constexpr auto value = names_from_zero<calib::BackgroundKind>("learn", "flat");
-};
-template <>
-struct EnumNames<calib::TrackUnknown> {
-    static constexpr auto value = names_from_zero<calib::TrackUnknown>("target", "sensor_pose");
-};
-
-}  // namespace core
-
-namespace calib {
-
 struct TargetSettings {
     TargetKind kind = TargetKind::Retroreflective;
     double radius_m = 0.0;
@@ -237,3 +211,21 @@ TrackSettings read_track_settings(const std::string& path,
                                   const std::vector<std::string>& overrides);
 
 }  // namespace calib
+
+template <>
+struct core::EnumNames<calib::TargetKind> {
+    static constexpr auto value = names_from_zero<calib::TargetKind>("retroreflective", "diffuse");
+};
+template <>
+struct core::EnumNames<calib::MotionKind> {
+    static constexpr auto value =
+        names_from_zero<calib::MotionKind>("random_walk", "constant_velocity");
+};
+template <>
+struct core::EnumNames<calib::BackgroundKind> {
+    static constexpr auto value = names_from_zero<calib::BackgroundKind>("learn", "flat");
+};
+template <>
+struct core::EnumNames<calib::TrackUnknown> {
+    static constexpr auto value = names_from_zero<calib::TrackUnknown>("target", "sensor_pose");
+};

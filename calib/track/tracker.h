@@ -18,7 +18,7 @@
 // Tracking of hidden targets with histogram cameras. A grid of histograms finds targets that a
 // frame shows; a Gaussian around the most likely position and strength, moved on and updated by
 // Gauss-Newton steps on the Poisson likelihood, follows each; and a Bernoulli variable says with
-// what probability it is there [Ristic2013]. calib/track/smooth.h looks back at a whole track.
+// what probability it is there [Ristic2013]. smooth() looks back at a whole track.
 
 namespace calib {
 
@@ -105,5 +105,12 @@ class Tracker {
     int next_id_ = 1;
     std::set<std::string> said_;
 };
+
+/// Replaces what was believed of every target after each frame by what is believed of it after all
+/// of them: positions, covariances and the probability that it was there.
+///
+/// frames   as Tracker::step() returned them, in order
+/// source   Rauch, Tung and Striebel's smoother [Rauch1965]
+void smooth(std::vector<FrameEstimate>& frames, const TrackSettings& settings);
 
 }  // namespace calib

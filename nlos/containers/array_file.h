@@ -16,6 +16,13 @@ enum class ElementKind { Integer, Real, Text, Other };
 
 enum class Precision { Single, Double };
 
+/// Rows [first, first + count) along the slowest index of an array, as float or double.
+struct WantedRows {
+    std::size_t first = 0;
+    std::size_t count = 0;
+    Precision precision = Precision::Single;
+};
+
 /// What a name in a file stands for.
 struct ArrayDescription {
     std::optional<Shape> shape;  ///< nothing: a group, a struct, or nothing stored
@@ -55,12 +62,9 @@ class ArrayFile {
     /// Nothing when there is no object of this name. "/" is the file itself.
     virtual std::optional<ArrayDescription> describe(const std::string& name) const = 0;
 
-    /// The bytes of rows [first, first + count) of a numeric array as float or double; of one
-    /// without axes, those of its only value. The array is one that describe() calls numeric.
-    virtual std::string read(const std::string& name,
-                             std::size_t first,
-                             std::size_t count,
-                             Precision precision) const = 0;
+    /// The bytes of rows of a numeric array; of one without axes, those of its only value. The
+    /// array is one that describe() calls numeric.
+    virtual std::string read(const std::string& name, const WantedRows& rows) const = 0;
 };
 
 /// A kind of file. To add one: write a .cpp with a function that returns its row, and list that

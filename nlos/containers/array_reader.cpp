@@ -45,7 +45,7 @@ std::optional<ArrayDescription> description_from_json(const Json& json) {
 std::string answer(const ArrayFile& file, const Json& request) {
     const std::string what = request.at(0);
     if (what == "read") {
-        return file.read(request.at(1), request.at(2), request.at(3), request.at(4));
+        return file.read(request.at(1), {request.at(2), request.at(3), request.at(4)});
     }
     Json json;
     if (what == "describe") {

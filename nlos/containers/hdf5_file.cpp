@@ -310,17 +310,14 @@ void Hdf5File::check_size(const Hdf5Handle& dataset,
     require_memory(std::max(total_bytes(shape, 2 * sizeof(double)), chunk_bytes), where);
 }
 
-std::string Hdf5File::read(const std::string& name,
-                           std::size_t first,
-                           std::size_t count,
-                           Precision precision) const {
+std::string Hdf5File::read(const std::string& name, const WantedRows& rows) const {
     const Hdf5Handle dataset = open_object(name);
     const Hdf5Handle space(H5Dget_space(dataset.id()), H5Sclose);
     Shape shape = extents_of(space, where(name));
     check_size(dataset, shape, where(name));
-    const Hdf5Handle memory = select_rows(space, first, count);
-    if (!shape.empty()) shape[0] = count;
-    const bool is_double = precision == Precision::Double;
+    const Hdf5Handle memory = select_rows(space, rows.first, rows.count);
+    if (!shape.empty()) shape[0] = rows.count;
+    const bool is_double = rows.precision == Precision::Double;
     const std::size_t value_bytes = is_double ? sizeof(double) : sizeof(float);
     std::string values(total_bytes(shape, value_bytes), '\0');
     const hid_t type = is_double ? H5T_NATIVE_DOUBLE : H5T_NATIVE_FLOAT;

@@ -19,10 +19,7 @@ class Hdf5File : public ArrayFile {
     std::string container() const override { return "hdf5"; }
     ArrayNames names() const override;
     std::optional<ArrayDescription> describe(const std::string& name) const override;
-    std::string read(const std::string& name,
-                     std::size_t first,
-                     std::size_t count,
-                     Precision precision) const override;
+    std::string read(const std::string& name, const WantedRows& rows) const override;
 
     /// The file's root group.
     Hdf5Handle open_root() const;

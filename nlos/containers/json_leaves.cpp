@@ -97,8 +97,9 @@ void JsonLeaves::add_stack(const std::string& path, const Stack& stack) {
         if (!all([](const Json* value) { return value->is_null(); })) add_numbers(path, stack);
     } else if (all([](const Json* value) { return value->is_string(); })) {
         const std::string name = path.empty() ? kNameOfRoot : path;
-        if (stack.shape.empty()) return add_text(name, first.get<std::string>());
-        add_text_list(name, stack.shape);
+        const bool is_one = stack.shape.empty();
+        add_text(
+            name, stack.shape, is_one ? std::optional(first.get<std::string>()) : std::nullopt);
     } else if (all([](const Json* value) { return value->is_object(); })) {
         add_members(path, stack);
     } else if (all([&](const Json* value) {

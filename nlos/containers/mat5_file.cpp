@@ -163,152 +163,127 @@ void list(matvar_t* variable, const std::string& name, ArrayNames& found) {
 /// are read when they are first asked for, and kept.
 class Mat5File : public ArrayFile {
  public:
-    explicit Mat5File(const std::string& path);
+    explicit Mat5File(const std::string& path)
+        : path_(path), file_bytes_(std::filesystem::file_size(path)) {
+        check_elements(path_);
+        // The library clears whatever room a file claims for the names of fields.
+        constexpr std::uint64_t kRoomOfParts = std::uint64_t{1} << 30;
+        core::bound_memory(kRoomOfParts + file_bytes_ * kLargestDeflateRatio);
+        file_.reset(Mat_Open(path_.c_str(), MAT_ACC_RDONLY));
+        if (!file_) throw_damaged_mat(path_);
+        while (true) {
+            MatPointer variable(Mat_VarReadNextInfo(file_.get()), Mat_VarFree);
+            if (!variable) break;
+            if (variable->name != nullptr) variables_.push_back(std::move(variable));
+        }
+        core::bound_memory(core::available_memory_bytes());
+    }
 
     std::string container() const override { return "matlab-v5"; }
     bool first_index_fastest() const override { return true; }
-    ArrayNames names() const override;
-    std::optional<ArrayDescription> describe(const std::string& name) const override;
-    std::string read(const std::string& name,
-                     std::size_t first,
-                     std::size_t count,
-                     Precision precision) const override;
+
+    ArrayNames names() const override {
+        ArrayNames found;
+        for (const MatPointer& variable : variables_) list(variable.get(), variable->name, found);
+        return found;
+    }
+
+    std::optional<ArrayDescription> describe(const std::string& name) const override {
+        ArrayDescription description;
+        if (name == "/") return description;
+        matvar_t* variable = find(name);
+        if (variable == nullptr) return std::nullopt;
+        description.type = type_name(*variable);
+        const auto number = number_of(variable->class_type);
+        const bool is_text = variable->class_type == MAT_C_CHAR;
+        if (!number && !is_text) return description;
+        description.shape = checked_shape(*variable, name);
+        description.rows_per_read = rows_of_read(*description.shape);
+        if (is_text) {
+            description.kind = ElementKind::Text;
+            description.text = read_text(*variable, name);
+        } else if (variable->isComplex == 0) {
+            description.kind = variable->isLogical != 0 ? ElementKind::Integer : kind_of(*number);
+        }
+        return description;
+    }
+
+    std::string read(const std::string& name, const WantedRows& rows) const override {
+        matvar_t& variable = *find(name);
+        const auto number = *number_of(variable.class_type);
+        const std::size_t values = element_count(variable);
+        if (values == 0) return {};
+        read_values(variable, name);
+        const std::size_t row = values / variable.dims[variable.rank - 1];
+        const auto* begin =
+            static_cast<const char*>(variable.data) + rows.first * row * bytes_of(number);
+        return convert_numbers(
+            begin, rows.count * row, number, std::endian::native, rows.precision);
+    }
 
  private:
-    matvar_t* find(const std::string& name) const;
-    std::optional<std::string> read_text(matvar_t& variable, const std::string& name) const;
-    Shape checked_shape(const matvar_t& variable, const std::string& name) const;
-    void read_values(matvar_t& variable, const std::string& name) const;
+    matvar_t* find(const std::string& name) const {
+        const auto steps = parse_matlab_name(name);
+        if (!steps) return nullptr;
+        matvar_t* at = nullptr;
+        for (const MatPointer& variable : variables_) {
+            if (steps->front().field == variable->name) at = variable.get();
+        }
+        for (std::size_t i = 1; i < steps->size() && at != nullptr; ++i) {
+            const MatlabStep& step = (*steps)[i];
+            at = step.is_cell() ? cell_of(*at, step.cell) : field_of(*at, step.field, step.element);
+        }
+        return at;
+    }
+
+    /// The text of a row of characters, or of none.
+    std::optional<std::string> read_text(matvar_t& variable, const std::string& name) const {
+        const std::size_t count = element_count(variable);
+        if (count == 0) return "";
+        if (variable.rank != 2 || variable.dims[0] != 1) return std::nullopt;
+        read_values(variable, name);
+        const std::size_t unit_bytes = Mat_SizeOf(variable.data_type);
+        if (unit_bytes != 1 && unit_bytes != 2 && unit_bytes != 4) return std::nullopt;
+        return utf8_text(static_cast<const char*>(variable.data),
+                         variable.nbytes / unit_bytes,
+                         unit_bytes,
+                         std::endian::native);
+    }
+
+    /// Extents of an array, slowest first, after checking them against the file's size.
+    Shape checked_shape(const matvar_t& variable, const std::string& name) const {
+        constexpr int kHighestRank = 8;
+        if (variable.rank < 2 || variable.rank > kHighestRank || variable.dims == nullptr) {
+            throw_damaged_mat(path_);
+        }
+        Shape shape(variable.dims, variable.dims + variable.rank);
+        std::reverse(shape.begin(), shape.end());
+        if (total_bytes(shape, 1) > file_bytes_ * kLargestDeflateRatio) {
+            throw core::Error(path_ + ": " + name,
+                              "claims shape " + shape_text(shape) + ", more than the file holds",
+                              "must be complete");
+        }
+        return shape;
+    }
+
+    /// Reads the values of an array unless they are there.
+    void read_values(matvar_t& variable, const std::string& name) const {
+        if (variable.data != nullptr) return;
+        // As stored, and as the caller gets them.
+        require_memory(total_bytes(checked_shape(variable, name), 2 * sizeof(double)),
+                       path_ + ": " + name);
+        if (Mat_VarReadDataAll(file_.get(), &variable) != 0 || variable.data == nullptr ||
+            variable.nbytes <
+                element_count(variable) * static_cast<std::size_t>(variable.data_size)) {
+            throw_damaged_mat(path_);
+        }
+    }
 
     std::string path_;
     std::uint64_t file_bytes_ = 0;
     MatHandle file_{nullptr, Mat_Close};
     std::vector<MatPointer> variables_;
 };
-
-Mat5File::Mat5File(const std::string& path)
-    : path_(path), file_bytes_(std::filesystem::file_size(path)) {
-    check_elements(path_);
-    // The library clears whatever room a file claims for the names of fields.
-    constexpr std::uint64_t kRoomOfParts = std::uint64_t{1} << 30;
-    core::bound_memory(kRoomOfParts + file_bytes_ * kLargestDeflateRatio);
-    file_.reset(Mat_Open(path_.c_str(), MAT_ACC_RDONLY));
-    if (!file_) throw_damaged_mat(path_);
-    while (true) {
-        MatPointer variable(Mat_VarReadNextInfo(file_.get()), Mat_VarFree);
-        if (!variable) break;
-        if (variable->name != nullptr) variables_.push_back(std::move(variable));
-    }
-    core::bound_memory(core::available_memory_bytes());
-}
-
-ArrayNames Mat5File::names() const {
-    ArrayNames found;
-    for (const MatPointer& variable : variables_) list(variable.get(), variable->name, found);
-    return found;
-}
-
-matvar_t* Mat5File::find(const std::string& name) const {
-    const auto steps = parse_matlab_name(name);
-    if (!steps) return nullptr;
-    matvar_t* at = nullptr;
-    for (const MatPointer& variable : variables_) {
-        if (steps->front().field == variable->name) at = variable.get();
-    }
-    std::optional<std::size_t> element;
-    for (std::size_t i = 1; i < steps->size() && at != nullptr; ++i) {
-        const MatlabStep& step = (*steps)[i];
-        if (step.kind == MatlabStep::Kind::Element) {
-            if (element) return nullptr;
-            element = step.index;
-        } else if (step.kind == MatlabStep::Kind::Cell) {
-            at = cell_of(*at, step.index);
-        } else {
-            at = field_of(*at, step.field, element);
-            element.reset();
-        }
-    }
-    return element ? nullptr : at;
-}
-
-/// Extents of an array, slowest first, after checking them against the file's size.
-Shape Mat5File::checked_shape(const matvar_t& variable, const std::string& name) const {
-    constexpr int kHighestRank = 8;
-    if (variable.rank < 2 || variable.rank > kHighestRank || variable.dims == nullptr) {
-        throw_damaged_mat(path_);
-    }
-    Shape shape(variable.dims, variable.dims + variable.rank);
-    std::reverse(shape.begin(), shape.end());
-    if (total_bytes(shape, 1) > file_bytes_ * kLargestDeflateRatio) {
-        throw core::Error(path_ + ": " + name,
-                          "claims shape " + shape_text(shape) + ", more than the file holds",
-                          "must be complete");
-    }
-    return shape;
-}
-
-std::optional<ArrayDescription> Mat5File::describe(const std::string& name) const {
-    ArrayDescription description;
-    if (name == "/") return description;
-    matvar_t* variable = find(name);
-    if (variable == nullptr) return std::nullopt;
-    description.type = type_name(*variable);
-    const auto number = number_of(variable->class_type);
-    const bool is_text = variable->class_type == MAT_C_CHAR;
-    if (!number && !is_text) return description;
-    description.shape = checked_shape(*variable, name);
-    description.rows_per_read = rows_of_read(*description.shape);
-    if (is_text) {
-        description.kind = ElementKind::Text;
-        description.text = read_text(*variable, name);
-    } else if (variable->isComplex == 0) {
-        description.kind = variable->isLogical != 0 ? ElementKind::Integer : kind_of(*number);
-    }
-    return description;
-}
-
-/// The text of a row of characters, or of none.
-std::optional<std::string> Mat5File::read_text(matvar_t& variable, const std::string& name) const {
-    const std::size_t count = element_count(variable);
-    if (count == 0) return "";
-    if (variable.rank != 2 || variable.dims[0] != 1) return std::nullopt;
-    read_values(variable, name);
-    const std::size_t unit_bytes = Mat_SizeOf(variable.data_type);
-    if (unit_bytes != 1 && unit_bytes != 2 && unit_bytes != 4) return std::nullopt;
-    return utf8_text(static_cast<const char*>(variable.data),
-                     variable.nbytes / unit_bytes,
-                     unit_bytes,
-                     std::endian::native);
-}
-
-/// Reads the values of an array unless they are there.
-void Mat5File::read_values(matvar_t& variable, const std::string& name) const {
-    if (variable.data != nullptr) return;
-    // As stored, and as the caller gets them.
-    require_memory(total_bytes(checked_shape(variable, name), 2 * sizeof(double)),
-                   path_ + ": " + name);
-    if (Mat_VarReadDataAll(file_.get(), &variable) != 0 || variable.data == nullptr ||
-        variable.nbytes < element_count(variable) * static_cast<std::size_t>(variable.data_size)) {
-        throw_damaged_mat(path_);
-    }
-}
-
-std::string Mat5File::read(const std::string& name,
-                           std::size_t first,
-                           std::size_t count,
-                           Precision precision) const {
-    matvar_t& variable = *find(name);
-    const auto number = *number_of(variable.class_type);
-    const std::size_t values = element_count(variable);
-    if (values == 0) return {};
-    read_values(variable, name);
-    const std::size_t row = values / variable.dims[variable.rank - 1];
-    return convert_numbers(static_cast<const char*>(variable.data) + first * row * bytes_of(number),
-                           count * row,
-                           number,
-                           std::endian::native,
-                           precision);
-}
 
 }  // namespace
 

@@ -62,41 +62,30 @@ bool is_plain_class(const std::string& matlab_class) {
            matlab_class.starts_with("uint");
 }
 
-/// A MATLAB v7.3 file: HDF5 whose cell arrays and arrays of structs refer to objects in the group
-/// #refs#, and whose structs are groups.
-class Mat73File : public Hdf5File {
- public:
-    explicit Mat73File(const std::string& path) : Hdf5File(path) {}
-
-    std::string container() const override { return "matlab-v7.3"; }
-    bool first_index_fastest() const override { return true; }
-    ArrayNames names() const override;
-    std::optional<ArrayDescription> describe(const std::string& name) const override;
-    std::string read(const std::string& name,
-                     std::size_t first,
-                     std::size_t count,
-                     Precision precision) const override;
-
-    Hdf5Handle open_referred(const Hdf5Handle& dataset, std::uint64_t index) const;
-
- protected:
-    Hdf5Handle open_object(const std::string& name) const override;
-
- private:
-    Hdf5Handle open_step(const Hdf5Handle& at,
-                         const MatlabStep& step,
-                         std::optional<std::size_t>& element) const;
-    Shape empty_shape(const Hdf5Handle& dataset, const std::string& name) const;
-    std::optional<std::string> read_text(const Hdf5Handle& dataset,
-                                         const Shape& shape,
-                                         const std::string& name) const;
-};
+/// What element `index` of a dataset, in the order of storage, refers to; not valid when nothing.
+Hdf5Handle open_referred(const Hdf5Handle& dataset, std::uint64_t index) {
+    const Hdf5Handle space(H5Dget_space(dataset.id()), H5Sclose);
+    const Shape shape = extents_of(space, "");
+    if (index >= total_bytes(shape, 1)) return {};
+    std::vector<hsize_t> place(shape.size());
+    std::uint64_t rest = index;
+    for (std::size_t axis = shape.size(); axis-- > 0;) {
+        place[axis] = rest % shape[axis];
+        rest /= shape[axis];
+    }
+    if (!place.empty()) H5Sselect_elements(space.id(), H5S_SELECT_SET, 1, place.data());
+    const Hdf5Handle memory(H5Screate(H5S_SCALAR), H5Sclose);
+    hobj_ref_t reference = 0;
+    if (H5Dread(dataset.id(), H5T_STD_REF_OBJ, memory.id(), space.id(), H5P_DEFAULT, &reference) <
+        0) {
+        return {};
+    }
+    return {H5Rdereference2(dataset.id(), H5P_DEFAULT, H5R_OBJECT, &reference), H5Oclose};
+}
 
 /// A walk over a file's variables and their parts.
 class VariableWalk {
  public:
-    explicit VariableWalk(const Mat73File& file) : file_(file) {}
-
     ArrayNames run(const Hdf5Handle& root) {
         const ArrayNames links = links_of(root);
         for (const std::string& link : links.names) {
@@ -139,7 +128,7 @@ class VariableWalk {
     void list_referred(const Hdf5Handle& dataset, std::size_t depth, const NameOf& name_of) {
         const std::uint64_t count = element_count(dataset);
         for (std::uint64_t i = 0; i < count && found_.is_complete; ++i) {
-            list_object(file_.open_referred(dataset, i), name_of(i), depth + 1);
+            list_object(open_referred(dataset, i), name_of(i), depth + 1);
         }
     }
 
@@ -159,133 +148,110 @@ class VariableWalk {
         if (!fields.is_complete) found_.is_complete = false;
     }
 
-    const Mat73File& file_;
     ArrayNames found_;
     std::size_t num_objects_ = 0;
 };
 
-ArrayNames Mat73File::names() const {
-    return VariableWalk(*this).run(open_root());
-}
+/// A MATLAB v7.3 file: HDF5 whose cell arrays and arrays of structs refer to objects in the group
+/// #refs#, and whose structs are groups.
+class Mat73File : public Hdf5File {
+ public:
+    explicit Mat73File(const std::string& path) : Hdf5File(path) {}
 
-Hdf5Handle Mat73File::open_object(const std::string& name) const {
-    if (name == "/") return open_root();
-    const auto steps = parse_matlab_name(name);
-    if (!steps) return {};
-    Hdf5Handle at = open_root();
-    std::optional<std::size_t> element;
-    for (const MatlabStep& step : *steps) {
-        if (step.kind == MatlabStep::Kind::Element) {
-            if (element) return {};
-            element = step.index;
-            continue;
+    std::string container() const override { return "matlab-v7.3"; }
+    bool first_index_fastest() const override { return true; }
+
+    ArrayNames names() const override { return VariableWalk().run(open_root()); }
+
+    std::optional<ArrayDescription> describe(const std::string& name) const override {
+        const Hdf5Handle object = open_object(name);
+        if (!object.is_valid()) return std::nullopt;
+        ArrayDescription description = describe_object(object, name);
+        const auto found = description.attributes.find(kClass);
+        const bool has_class = found != description.attributes.end() && found->is_string();
+        const std::string matlab_class = has_class ? found->get<std::string>() : "";
+        if (!is_dataset(object)) {
+            description.type = has_attribute(object, "MATLAB_sparse") ? "sparse" : "struct";
         }
-        at = open_step(at, step, element);
-        element.reset();
-        if (!at.is_valid()) return {};
-    }
-    return element ? Hdf5Handle() : std::move(at);
-}
-
-/// The field or cell that a step leads to; not valid when there is none.
-Hdf5Handle Mat73File::open_step(const Hdf5Handle& at,
-                                const MatlabStep& step,
-                                std::optional<std::size_t>& element) const {
-    if (step.kind == MatlabStep::Kind::Cell) {
-        return is_cell(at) ? open_referred(at, step.index) : Hdf5Handle();
-    }
-    if (H5Iget_type(at.id()) != H5I_GROUP) return {};
-    Hdf5Handle member = open_member(at, step.field);
-    if (!member.is_valid() || is_element_list(member) != element.has_value()) return {};
-    return element ? open_referred(member, *element) : std::move(member);
-}
-
-/// What element `index` of a dataset, in the order of storage, refers to; not valid when nothing.
-Hdf5Handle Mat73File::open_referred(const Hdf5Handle& dataset, std::uint64_t index) const {
-    const Hdf5Handle space(H5Dget_space(dataset.id()), H5Sclose);
-    const Shape shape = extents_of(space, "");
-    if (index >= total_bytes(shape, 1)) return {};
-    std::vector<hsize_t> place(shape.size());
-    std::uint64_t rest = index;
-    for (std::size_t axis = shape.size(); axis-- > 0;) {
-        place[axis] = rest % shape[axis];
-        rest /= shape[axis];
-    }
-    if (!place.empty()) H5Sselect_elements(space.id(), H5S_SELECT_SET, 1, place.data());
-    const Hdf5Handle memory(H5Screate(H5S_SCALAR), H5Sclose);
-    hobj_ref_t reference = 0;
-    if (H5Dread(dataset.id(), H5T_STD_REF_OBJ, memory.id(), space.id(), H5P_DEFAULT, &reference) <
-        0) {
-        return {};
-    }
-    return {H5Rdereference2(dataset.id(), H5P_DEFAULT, H5R_OBJECT, &reference), H5Oclose};
-}
-
-std::optional<ArrayDescription> Mat73File::describe(const std::string& name) const {
-    const Hdf5Handle object = open_object(name);
-    if (!object.is_valid()) return std::nullopt;
-    ArrayDescription description = describe_object(object, name);
-    const auto found = description.attributes.find(kClass);
-    const bool has_class = found != description.attributes.end() && found->is_string();
-    const std::string matlab_class = has_class ? found->get<std::string>() : "";
-    if (!is_dataset(object)) {
-        description.type = has_attribute(object, "MATLAB_sparse") ? "sparse" : "struct";
-    }
-    if (!has_class || !description.shape) return description;
-    description.type = description.type == "compound" ? "complex " + type_of_class(matlab_class)
-                                                      : type_of_class(matlab_class);
-    if (!is_plain_class(matlab_class)) {
-        description.kind = ElementKind::Other;
-        if (matlab_class == "struct" || matlab_class == "cell") description.shape.reset();
+        if (!has_class || !description.shape) return description;
+        description.type = description.type == "compound" ? "complex " + type_of_class(matlab_class)
+                                                          : type_of_class(matlab_class);
+        if (!is_plain_class(matlab_class)) {
+            description.kind = ElementKind::Other;
+            if (matlab_class == "struct" || matlab_class == "cell") description.shape.reset();
+            return description;
+        }
+        if (has_attribute(object, kEmpty)) description.shape = empty_shape(object, name);
+        if (matlab_class == "char") {
+            description.kind = ElementKind::Text;
+            description.text = read_text(object, *description.shape, name);
+        }
         return description;
     }
-    if (has_attribute(object, kEmpty)) description.shape = empty_shape(object, name);
-    if (matlab_class == "char") {
-        description.kind = ElementKind::Text;
-        description.text = read_text(object, *description.shape, name);
-    }
-    return description;
-}
 
-/// The extents of an empty array, which stand in the file in place of its values.
-Shape Mat73File::empty_shape(const Hdf5Handle& dataset, const std::string& name) const {
-    constexpr std::size_t kHighestRank = 32;
-    std::array<std::uint64_t, kHighestRank> extents{};
-    const std::uint64_t rank = element_count(dataset);
-    if (rank <= kHighestRank &&
-        H5Dread(dataset.id(), H5T_NATIVE_UINT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, extents.data()) >=
+    std::string read(const std::string& name, const WantedRows& rows) const override {
+        if (has_attribute(open_object(name), kEmpty)) return {};
+        return Hdf5File::read(name, rows);
+    }
+
+ protected:
+    Hdf5Handle open_object(const std::string& name) const override {
+        if (name == "/") return open_root();
+        const auto steps = parse_matlab_name(name);
+        if (!steps) return {};
+        Hdf5Handle at = open_root();
+        for (const MatlabStep& step : *steps) {
+            at = open_step(at, step);
+            if (!at.is_valid()) break;
+        }
+        return at;
+    }
+
+ private:
+    /// The field or cell that a step leads to; not valid when there is none.
+    Hdf5Handle open_step(const Hdf5Handle& at, const MatlabStep& step) const {
+        if (step.is_cell()) return is_cell(at) ? open_referred(at, step.cell) : Hdf5Handle();
+        if (H5Iget_type(at.id()) != H5I_GROUP) return {};
+        Hdf5Handle member = open_member(at, step.field);
+        if (!member.is_valid() || is_element_list(member) != step.element.has_value()) return {};
+        return step.element ? open_referred(member, *step.element) : std::move(member);
+    }
+
+    /// The extents of an empty array, which stand in the file in place of its values.
+    Shape empty_shape(const Hdf5Handle& dataset, const std::string& name) const {
+        constexpr std::size_t kHighestRank = 32;
+        std::array<std::uint64_t, kHighestRank> extents{};
+        const std::uint64_t rank = element_count(dataset);
+        if (rank <= kHighestRank &&
+            H5Dread(
+                dataset.id(), H5T_NATIVE_UINT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, extents.data()) >=
+                0) {
+            const Shape shape(extents.rend() - static_cast<std::ptrdiff_t>(rank), extents.rend());
+            if (std::find(shape.begin(), shape.end(), 0U) != shape.end()) return shape;
+        }
+        throw core::Error(
+            where(name), "has extents that are not empty", "must be an undamaged file");
+    }
+
+    /// The text of a row of characters, or of none.
+    std::optional<std::string> read_text(const Hdf5Handle& dataset,
+                                         const Shape& shape,
+                                         const std::string& name) const {
+        const std::uint64_t count = total_bytes(shape, 1);
+        if (count == 0) return "";
+        if (shape.size() != 2 || shape[1] != 1) return std::nullopt;
+        check_size(dataset, shape, where(name));
+        std::vector<std::uint16_t> units(count);
+        if (H5Dread(dataset.id(), H5T_NATIVE_UINT16, H5S_ALL, H5S_ALL, H5P_DEFAULT, units.data()) <
             0) {
-        const Shape shape(extents.rend() - static_cast<std::ptrdiff_t>(rank), extents.rend());
-        if (std::find(shape.begin(), shape.end(), 0U) != shape.end()) return shape;
+            throw core::Error(where(name), "cannot be read", "must be an undamaged, complete file");
+        }
+        return utf8_text(reinterpret_cast<const char*>(units.data()),
+                         units.size(),
+                         sizeof(units[0]),
+                         std::endian::native);
     }
-    throw core::Error(where(name), "has extents that are not empty", "must be an undamaged file");
-}
-
-/// The text of a row of characters, or of none.
-std::optional<std::string> Mat73File::read_text(const Hdf5Handle& dataset,
-                                                const Shape& shape,
-                                                const std::string& name) const {
-    const std::uint64_t count = total_bytes(shape, 1);
-    if (count == 0) return "";
-    if (shape.size() != 2 || shape[1] != 1) return std::nullopt;
-    check_size(dataset, shape, where(name));
-    std::vector<std::uint16_t> units(count);
-    if (H5Dread(dataset.id(), H5T_NATIVE_UINT16, H5S_ALL, H5S_ALL, H5P_DEFAULT, units.data()) < 0) {
-        throw core::Error(where(name), "cannot be read", "must be an undamaged, complete file");
-    }
-    return utf8_text(reinterpret_cast<const char*>(units.data()),
-                     units.size(),
-                     sizeof(units[0]),
-                     std::endian::native);
-}
-
-std::string Mat73File::read(const std::string& name,
-                            std::size_t first,
-                            std::size_t count,
-                            Precision precision) const {
-    if (has_attribute(open_object(name), kEmpty)) return {};
-    return Hdf5File::read(name, first, count, precision);
-}
+};
 
 }  // namespace
 

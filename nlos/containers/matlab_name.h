@@ -10,14 +10,11 @@ namespace nlos {
 
 /// One step of a name such as `s(2).traces{0}`; numbers count from 0.
 struct MatlabStep {
-    enum class Kind {
-        Field,    ///< a variable, or a field of a struct
-        Element,  ///< (2): an element of an array of structs
-        Cell      ///< {0}: an element of a cell array
-    };
-    Kind kind = Kind::Field;
-    std::string field;
-    std::size_t index = 0;
+    std::string field;                   ///< a variable, or a field of a struct; empty: a cell
+    std::optional<std::size_t> element;  ///< (2): of an array of structs, whose field this is
+    std::size_t cell = 0;                ///< {0}: of a cell array
+
+    bool is_cell() const { return field.empty(); }
 };
 
 /// The steps of a name, of which the first is a variable; nothing when it is no such name.

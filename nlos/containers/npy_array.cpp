@@ -90,25 +90,27 @@ std::optional<StoredNumber> number_of(char kind, std::uint64_t bytes) {
 void take_type(std::string_view descr, HeaderText& text, NpyHeader& header) {
     if (descr.size() < 2) text.damaged();
     const char kind = descr[1];
-    header.array.order = descr[0] == '>' ? std::endian::big : std::endian::little;
-    header.array.type = descr;
-    if (kind == 'O') {
-        header.content = NpyHeader::Content::Pickle;
-        header.array.type = "pickled objects";
+    StoredArray& array = header.array;
+    array.order = descr[0] == '>' ? std::endian::big : std::endian::little;
+    array.type = descr;
+    header.is_pickle = kind == 'O';
+    if (header.is_pickle) {
+        array.type = "pickled objects";
         return;
     }
     const std::string_view digits = descr.substr(2);
     std::from_chars(digits.data(), digits.data() + digits.size(), header.value_bytes);
     if (const auto number = number_of(kind, header.value_bytes)) {
-        header.content = NpyHeader::Content::Numbers;
-        header.array.number = *number;
-        header.array.type = kind == 'b' ? "bool" : "";
+        array.kind.reset();
+        array.number = *number;
+        array.type = kind == 'b' ? "bool" : "";
     } else if (kind == 'S' || kind == 'U') {
-        header.content = kind == 'S' ? NpyHeader::Content::Bytes : NpyHeader::Content::Unicode;
-        header.array.type = "text";
-        header.value_bytes *= kind == 'U' ? 4 : 1;
+        array.kind = ElementKind::Text;
+        array.type = "text";
+        header.unit_bytes = kind == 'U' ? 4 : 1;
+        header.value_bytes *= header.unit_bytes;
     } else if (kind == 'c') {
-        header.array.type = fmt::format("complex float{}", 4 * header.value_bytes);
+        array.type = fmt::format("complex float{}", 4 * header.value_bytes);
     }
 }
 
@@ -148,18 +150,18 @@ NpyHeader parse_npy_header(std::string_view start,
     const std::size_t length_bytes = start.size() > kVersionAt && start[kVersionAt] == 1 ? 2 : 4;
     const std::size_t begin = kLengthAt + length_bytes;
     if (!is_npy(start) || start.size() < begin) HeaderText("", where).damaged();
-    std::size_t length = 0;
-    for (std::size_t i = length_bytes; i-- > 0;) {
-        length = length << 8 | static_cast<unsigned char>(start[kLengthAt + i]);
-    }
+    const auto length = static_cast<std::size_t>(
+        number_at(start.data() + kLengthAt,
+                  length_bytes == 2 ? StoredNumber::UInt16 : StoredNumber::UInt32,
+                  std::endian::little));
     if (length > start.size() - begin) HeaderText("", where).damaged();
     NpyHeader header;
+    header.array.kind = ElementKind::Other;  // until its type says more
     header.data_begin = begin + length;
     HeaderText text(start.substr(begin, length), where);
     take_dictionary(text, header);
     const std::uint64_t stored = num_bytes - header.data_begin;
-    const bool has_size =
-        header.content != NpyHeader::Content::Pickle && header.content != NpyHeader::Content::Other;
+    const bool has_size = header.array.kind != ElementKind::Other;
     if (has_size && total_bytes(header.array.shape, header.value_bytes) > stored) {
         throw core::Error(where,
                           fmt::format("claims shape {} but only {} bytes are stored",
@@ -172,14 +174,10 @@ NpyHeader parse_npy_header(std::string_view start,
 
 ArrayDescription describe_npy(const NpyHeader& header, std::string_view data) {
     ArrayDescription description = describe_stored(header.array);
-    if (header.content == NpyHeader::Content::Numbers) return description;
-    const bool is_text = header.content == NpyHeader::Content::Bytes ||
-                         header.content == NpyHeader::Content::Unicode;
-    description.kind = is_text ? ElementKind::Text : ElementKind::Other;
+    const bool is_text = header.array.kind == ElementKind::Text;
     if (!is_text || total_bytes(header.array.shape, 1) != 1) return description;
-    const std::size_t unit_bytes = header.content == NpyHeader::Content::Bytes ? 1 : 4;
-    std::string text =
-        utf8_text(data.data(), header.value_bytes / unit_bytes, unit_bytes, header.array.order);
+    std::string text = utf8_text(
+        data.data(), header.value_bytes / header.unit_bytes, header.unit_bytes, header.array.order);
     text.resize(std::min(text.find('\0'), text.size()));
     description.text = std::move(text);
     return description;

@@ -12,10 +12,10 @@ namespace nlos {
 
 /// What the head of a .npy file says of its array.
 struct NpyHeader {
-    enum class Content { Numbers, Bytes, Unicode, Pickle, Other };
-    Content content = Content::Other;
-    StoredArray array;  ///< without bytes; its type says what other content is
+    StoredArray array;  ///< without bytes; of a kind of its own where it holds no numbers
     std::uint64_t value_bytes = 0;
+    std::size_t unit_bytes = 1;  ///< of the characters of texts: 1 or 4
+    bool is_pickle = false;
     std::size_t data_begin = 0;  ///< where the values start in the file
 };
 

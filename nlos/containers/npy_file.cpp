@@ -10,34 +10,23 @@
 namespace nlos {
 namespace {
 
-constexpr const char* kName = "array";
-
 /// A .npy file of NumPy: one array.
-class NpyFile : public ArrayFile {
+class NpyFile : public StoredArrayFile {
  public:
-    explicit NpyFile(const std::string& path)
-        : file_(path),
-          header_(parse_npy_header(
-              file_.bytes().substr(0, kLongestNpyHeader), file_.bytes().size(), path)) {
-        if (header_.content == NpyHeader::Content::Pickle) refuse_pickle(path);
-        header_.array.bytes = file_.bytes().substr(header_.data_begin);
+    explicit NpyFile(const std::string& path) : file_(path) {
+        const std::string_view bytes = file_.bytes();
+        NpyHeader header = parse_npy_header(bytes.substr(0, kLongestNpyHeader), bytes.size(), path);
+        if (header.is_pickle) refuse_pickle(path);
+        header.array.bytes = bytes.substr(header.data_begin);
+        const ArrayDescription description = describe_npy(header, header.array.bytes);
+        if (description.kind == ElementKind::Text) {
+            add_text("array", *description.shape, description.text);
+        } else {
+            add_array("array", header.array);
+        }
     }
 
     std::string container() const override { return "npy"; }
-    ArrayNames names() const override { return {{kName}, true}; }
-
-    std::optional<ArrayDescription> describe(const std::string& name) const override {
-        if (name == "/") return ArrayDescription();
-        if (name != kName) return std::nullopt;
-        return describe_npy(header_, header_.array.bytes);
-    }
-
-    std::string read(const std::string&,
-                     std::size_t first,
-                     std::size_t count,
-                     Precision precision) const override {
-        return read_stored(header_.array, first, count, precision);
-    }
 
  private:
     [[noreturn]] static void refuse_pickle(const std::string& path) {
@@ -52,7 +41,6 @@ class NpyFile : public ArrayFile {
     }
 
     core::MappedFile file_;
-    NpyHeader header_;
 };
 
 bool is_npy_file(const std::string& path) {

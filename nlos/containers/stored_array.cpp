@@ -45,18 +45,16 @@ ArrayDescription describe_stored(const StoredArray& array) {
     return description;
 }
 
-std::string read_stored(const StoredArray& array,
-                        std::size_t first,
-                        std::size_t count,
-                        Precision precision) {
+std::string read_stored(const StoredArray& array, const WantedRows& rows) {
     if (total_bytes(array.shape, 1) == 0) return {};
     const std::size_t row = values_per_row(array.shape);
+    std::string gathered;
+    const char* begin = array.bytes.data() + rows.first * row * bytes_of(array.number);
     if (array.first_axis_fastest && array.shape.size() > 1) {
-        const std::string rows = gather_rows(array, first, count);
-        return convert_numbers(rows.data(), count * row, array.number, array.order, precision);
+        gathered = gather_rows(array, rows.first, rows.count);
+        begin = gathered.data();
     }
-    const char* begin = array.bytes.data() + first * row * bytes_of(array.number);
-    return convert_numbers(begin, count * row, array.number, array.order, precision);
+    return convert_numbers(begin, rows.count * row, array.number, array.order, rows.precision);
 }
 
 std::optional<ArrayDescription> StoredArrayFile::describe(const std::string& name) const {
@@ -68,11 +66,8 @@ std::optional<ArrayDescription> StoredArrayFile::describe(const std::string& nam
     return std::nullopt;
 }
 
-std::string StoredArrayFile::read(const std::string& name,
-                                  std::size_t first,
-                                  std::size_t count,
-                                  Precision precision) const {
-    return read_stored(arrays_.at(name), first, count, precision);
+std::string StoredArrayFile::read(const std::string& name, const WantedRows& rows) const {
+    return read_stored(arrays_.at(name), rows);
 }
 
 void StoredArrayFile::add_array(const std::string& name, StoredArray array) {
@@ -94,21 +89,15 @@ void StoredArrayFile::add_values(const std::string& name,
     arrays_.emplace(name, std::move(array));
 }
 
-void StoredArrayFile::add_text(const std::string& name, const std::string& text) {
-    if (!add_name(name)) return;
-    ArrayDescription& description = texts_[name];
-    description.shape = Shape();
-    description.kind = ElementKind::Text;
-    description.type = "text";
-    description.text = text;
-}
-
-void StoredArrayFile::add_text_list(const std::string& name, const Shape& shape) {
+void StoredArrayFile::add_text(const std::string& name,
+                               const Shape& shape,
+                               const std::optional<std::string>& text) {
     if (!add_name(name)) return;
     ArrayDescription& description = texts_[name];
     description.shape = shape;
     description.kind = ElementKind::Text;
     description.type = "text";
+    description.text = text;
 }
 
 bool StoredArrayFile::add_name(const std::string& name) {

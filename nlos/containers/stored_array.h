@@ -25,21 +25,15 @@ struct StoredArray {
 
 ArrayDescription describe_stored(const StoredArray& array);
 
-/// Rows [first, first + count) of the slowest axis of shape, as the bytes of float or double.
-std::string read_stored(const StoredArray& array,
-                        std::size_t first,
-                        std::size_t count,
-                        Precision precision);
+/// The bytes of rows along the slowest axis of shape.
+std::string read_stored(const StoredArray& array, const WantedRows& rows);
 
 /// A file all of whose arrays and texts are known once it is open.
 class StoredArrayFile : public ArrayFile {
  public:
     ArrayNames names() const override { return names_; }
     std::optional<ArrayDescription> describe(const std::string& name) const override;
-    std::string read(const std::string& name,
-                     std::size_t first,
-                     std::size_t count,
-                     Precision precision) const override;
+    std::string read(const std::string& name, const WantedRows& rows) const override;
 
  protected:
     // Of two of the same name the first counts; what goes beyond ArrayNames::kMost is left out.
@@ -49,9 +43,10 @@ class StoredArrayFile : public ArrayFile {
                     std::vector<double> values,
                     ElementKind kind,
                     const std::string& type);
-    void add_text(const std::string& name, const std::string& text);
-    /// Several texts, which no one reads; they show that they are there.
-    void add_text_list(const std::string& name, const Shape& shape);
+    /// Of several texts, which no one reads, `shape` alone: it shows that they are there.
+    void add_text(const std::string& name,
+                  const Shape& shape,
+                  const std::optional<std::string>& text);
 
     bool is_full() const { return !names_.is_complete; }
 

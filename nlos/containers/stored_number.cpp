@@ -9,7 +9,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <limits>
+#include <tuple>
 
 namespace nlos {
 namespace {
@@ -32,34 +32,26 @@ std::string convert(const char* stored, std::size_t count, std::endian order) {
     return bytes;
 }
 
+/// The types that store numbers, in the order of StoredNumber.
+using StoredTypes = std::tuple<std::int8_t,
+                               std::uint8_t,
+                               std::int16_t,
+                               std::uint16_t,
+                               std::int32_t,
+                               std::uint32_t,
+                               std::int64_t,
+                               std::uint64_t,
+                               Eigen::half,
+                               float,
+                               double>;
+
 /// Calls `use` with a value of the type that stores such numbers.
-template <class Use>
-auto with_type(StoredNumber number, Use&& use) {
-    switch (number) {
-        case StoredNumber::Int8:
-            return use(std::int8_t{});
-        case StoredNumber::UInt8:
-            return use(std::uint8_t{});
-        case StoredNumber::Int16:
-            return use(std::int16_t{});
-        case StoredNumber::UInt16:
-            return use(std::uint16_t{});
-        case StoredNumber::Int32:
-            return use(std::int32_t{});
-        case StoredNumber::UInt32:
-            return use(std::uint32_t{});
-        case StoredNumber::Int64:
-            return use(std::int64_t{});
-        case StoredNumber::UInt64:
-            return use(std::uint64_t{});
-        case StoredNumber::Float16:
-            return use(Eigen::half{});
-        case StoredNumber::Float32:
-            return use(float{});
-        case StoredNumber::Float64:
-            break;
+template <std::size_t I = 0, class Use>
+auto with_type(StoredNumber number, const Use& use) {
+    if constexpr (I + 1 < std::tuple_size_v<StoredTypes>) {
+        if (static_cast<std::size_t>(number) != I) return with_type<I + 1>(number, use);
     }
-    return use(double{});
+    return use(std::tuple_element_t<I, StoredTypes>{});
 }
 
 }  // namespace

@@ -114,7 +114,7 @@ class TiFile : public JsonLeaves {
         if (core::Json::accept(rest_)) {
             add_leaves("", core::parse_json(rest_, path_));
         } else if (!rest_.empty()) {
-            add_text("imageProperties", std::string(rest_));
+            add_text("imageProperties", {}, std::string(rest_));
         }
     }
 

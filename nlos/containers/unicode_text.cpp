@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/containers/unicode_text.h"
 
+#include "nlos/containers/stored_number.h"
+
 #include <cstdint>
 
 namespace nlos {
@@ -29,12 +31,8 @@ void append(std::uint32_t character, std::string& text) {
 }
 
 std::uint32_t unit_at(const char* unit, std::size_t unit_bytes, std::endian order) {
-    std::uint32_t value = 0;
-    for (std::size_t i = 0; i < unit_bytes; ++i) {
-        const std::size_t place = order == std::endian::big ? i : unit_bytes - 1 - i;
-        value = value << 8 | static_cast<unsigned char>(unit[place]);
-    }
-    return value;
+    const StoredNumber number = unit_bytes == 2 ? StoredNumber::UInt16 : StoredNumber::UInt32;
+    return static_cast<std::uint32_t>(number_at(unit, number, order));
 }
 
 bool is_between(std::uint32_t value, std::uint32_t low, std::uint32_t high) {

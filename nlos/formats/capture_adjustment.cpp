@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/formats/capture_adjustment.h"
-
+#include "nlos/formats/capture_file.h"
 #include "renderer/core/error.h"
 
 #include <fmt/core.h>

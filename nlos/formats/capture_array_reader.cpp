@@ -4,7 +4,6 @@
 #include "nlos/containers/file_memory.h"
 #include "nlos/formats/capture_arrays.h"
 #include "nlos/formats/ytal_layout.h"
-#include "nlos/formats/ytal_scan.h"
 #include "renderer/core/error.h"
 
 #include <fmt/core.h>

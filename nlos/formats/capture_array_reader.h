@@ -38,4 +38,11 @@ void require_variances(const ArrayReader& file,
                        const std::string& name,
                        const core::Transient& variance);
 
+/// Reads camera or wall points, how they pair up and where the devices stand from a capture in
+/// y-tal's layout; scene_info must be in the capture. What is missing and assumed is noted there.
+///
+/// Throws core::Error when something needed is missing, not finite, or H does not have one
+/// histogram per pair.
+void read_ytal_scan(const ArrayReader& file, core::Capture& capture);
+
 }  // namespace nlos

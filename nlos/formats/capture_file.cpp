@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/formats/capture_file.h"
 
-#include "nlos/formats/capture_adjustment.h"
 #include "nlos/formats/capture_format.h"
 #include "nlos/formats/volume_file.h"
 #include "nlos/layouts/layout_capture.h"

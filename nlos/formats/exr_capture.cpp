@@ -2,7 +2,6 @@
 #include "nlos/containers/exr_table.h"
 #include "nlos/formats/capture_format.h"
 #include "nlos/formats/exr_attributes.h"
-#include "nlos/formats/exr_image.h"
 #include "renderer/core/error.h"
 
 #include <fmt/core.h>
@@ -135,10 +134,6 @@ void read_scan(const ExrAttributes& attributes, core::Scan& scan) {
     scan.detector_position = attributes.vector("nlosDetectorM");
 }
 
-bool recognise_exr(const std::string& path) {
-    return is_exr_file(path);
-}
-
 Capture read_exr(const std::string& path, const CaptureReadSettings& settings) {
     const ExrTable table = read_exr_table(path);
     const auto format = table.texts.find(kExrFormatKey);
@@ -227,7 +222,7 @@ std::vector<std::string> write_exr(const std::string& path,
 }
 
 CaptureFormat exr_format() {
-    return {"OpenEXR", recognise_exr, read_exr};
+    return {"OpenEXR", is_exr_file, read_exr};
 }
 
 }  // namespace nlos

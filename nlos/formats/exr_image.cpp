@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/formats/exr_image.h"
-
 #include "nlos/formats/exr_attributes.h"
 #include "renderer/core/error.h"
 

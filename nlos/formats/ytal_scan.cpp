@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/formats/ytal_scan.h"
-
+#include "nlos/formats/capture_array_reader.h"
 #include "nlos/formats/capture_format.h"
 #include "nlos/formats/ytal_layout.h"
-#include "nlos/layouts/layout_pairs.h"
+#include "nlos/layouts/layout_histograms.h"
 #include "renderer/core/error.h"
 
 #include <fmt/core.h>

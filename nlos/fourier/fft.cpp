@@ -23,8 +23,8 @@ void* checked(fftwf_plan plan) {
     return plan;
 }
 
-int to_int(std::size_t n) {
-    return static_cast<int>(n);
+fftwf_iodim dimension(std::size_t length, std::size_t in_stride, std::size_t out_stride) {
+    return {static_cast<int>(length), static_cast<int>(in_stride), static_cast<int>(out_stride)};
 }
 
 }  // namespace
@@ -51,97 +51,47 @@ void FftBuffer::Free::operator()(float* memory) const {
 
 Fft Fft::real_to_complex(std::size_t length, std::size_t count) {
     FftBuffer buffer((length + 2) * count);
-    const int n = to_int(length);
+    float* data = buffer.data();
+    const fftwf_iodim row = dimension(length, 1, 1);
+    const fftwf_iodim rows = dimension(count, length + 2, length / 2 + 1);
     const std::lock_guard lock(planner_mutex);
-    return Fft(Kind::RealToComplex,
-               checked(fftwf_plan_many_dft_r2c(1,
-                                               &n,
-                                               to_int(count),
-                                               buffer.data(),
-                                               nullptr,
-                                               1,
-                                               n + 2,
-                                               as_fftw(buffer.data()),
-                                               nullptr,
-                                               1,
-                                               n / 2 + 1,
-                                               FFTW_ESTIMATE)));
+    return Fft(
+        Kind::RealToComplex,
+        checked(fftwf_plan_guru_dft_r2c(1, &row, 1, &rows, data, as_fftw(data), FFTW_ESTIMATE)));
 }
 
 Fft Fft::complex_to_real(std::size_t length, std::size_t count) {
     FftBuffer buffer((length + 2) * count);
-    const int n = to_int(length);
+    float* data = buffer.data();
+    const fftwf_iodim row = dimension(length, 1, 1);
+    const fftwf_iodim rows = dimension(count, length / 2 + 1, length + 2);
     const std::lock_guard lock(planner_mutex);
-    return Fft(Kind::ComplexToReal,
-               checked(fftwf_plan_many_dft_c2r(1,
-                                               &n,
-                                               to_int(count),
-                                               as_fftw(buffer.data()),
-                                               nullptr,
-                                               1,
-                                               n / 2 + 1,
-                                               buffer.data(),
-                                               nullptr,
-                                               1,
-                                               n + 2,
-                                               FFTW_ESTIMATE)));
+    return Fft(
+        Kind::ComplexToReal,
+        checked(fftwf_plan_guru_dft_c2r(1, &row, 1, &rows, as_fftw(data), data, FFTW_ESTIMATE)));
 }
 
 Fft Fft::complex_batch(const Layout& layout, Direction direction) {
     FftBuffer buffer(
         2 * ((layout.length - 1) * layout.stride + (layout.count - 1) * layout.distance + 1));
-    const int n = to_int(layout.length);
+    fftwf_complex* data = as_fftw(buffer.data());
+    const fftwf_iodim each = dimension(layout.length, layout.stride, layout.stride);
+    const fftwf_iodim all = dimension(layout.count, layout.distance, layout.distance);
+    const int sign = direction == Direction::Forward ? FFTW_FORWARD : FFTW_BACKWARD;
     const std::lock_guard lock(planner_mutex);
-    return Fft(
-        Kind::Complex,
-        checked(fftwf_plan_many_dft(1,
-                                    &n,
-                                    to_int(layout.count),
-                                    as_fftw(buffer.data()),
-                                    nullptr,
-                                    to_int(layout.stride),
-                                    to_int(layout.distance),
-                                    as_fftw(buffer.data()),
-                                    nullptr,
-                                    to_int(layout.stride),
-                                    to_int(layout.distance),
-                                    direction == Direction::Forward ? FFTW_FORWARD : FFTW_BACKWARD,
-                                    FFTW_ESTIMATE)));
-}
-
-Fft Fft::real_3d(const std::array<std::size_t, 3>& size, Direction direction) {
-    FftBuffer buffer(size[0] * size[1] * (size[2] + 2));
-    const int n[3] = {to_int(size[0]), to_int(size[1]), to_int(size[2])};
-    const std::lock_guard lock(planner_mutex);
-    if (direction == Direction::Forward) {
-        return Fft(Kind::RealToComplex,
-                   checked(fftwf_plan_dft_r2c(
-                       3, n, buffer.data(), as_fftw(buffer.data()), FFTW_ESTIMATE)));
-    }
-    return Fft(
-        Kind::ComplexToReal,
-        checked(fftwf_plan_dft_c2r(3, n, as_fftw(buffer.data()), buffer.data(), FFTW_ESTIMATE)));
+    return Fft(Kind::Complex,
+               checked(fftwf_plan_guru_dft(1, &each, 1, &all, data, data, sign, FFTW_ESTIMATE)));
 }
 
 Fft Fft::even_2d(std::size_t nx, std::size_t ny) {
     FftBuffer buffer(2 * nx * ny);
-    const int n[2] = {to_int(nx), to_int(ny)};
+    float* data = buffer.data();
+    const fftwf_iodim axes[2] = {dimension(nx, 2 * ny, 2 * ny), dimension(ny, 2, 2)};
+    const fftwf_iodim parts = dimension(2, 1, 1);
     const fftw_r2r_kind kinds[2] = {FFTW_REDFT00, FFTW_REDFT00};
     const std::lock_guard lock(planner_mutex);
     return Fft(Kind::Real,
-               checked(fftwf_plan_many_r2r(2,
-                                           n,
-                                           2,
-                                           buffer.data(),
-                                           nullptr,
-                                           2,
-                                           1,
-                                           buffer.data(),
-                                           nullptr,
-                                           2,
-                                           1,
-                                           kinds,
-                                           FFTW_ESTIMATE)));
+               checked(fftwf_plan_guru_r2r(2, axes, 1, &parts, data, data, kinds, FFTW_ESTIMATE)));
 }
 
 void Fft::run(FftBuffer& buffer) const {

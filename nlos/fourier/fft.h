@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
 #include <complex>
 #include <cstddef>
 #include <memory>
@@ -47,10 +46,6 @@ class Fft {
         std::size_t length, count, stride, distance;
     };
     static Fft complex_batch(const Layout& layout, Direction direction);
-
-    /// Transform of a real (nx, ny, nz) array, z fastest in rows of nz + 2 floats, nz even; forward
-    /// to rows of nz / 2 + 1 complex numbers, or back.
-    static Fft real_3d(const std::array<std::size_t, 3>& size, Direction direction);
 
     /// Transform of an (nx, ny) array of complex numbers that is even around both its first and its
     /// last element along either axis, so that it stands for a whole period of 2 (nx - 1) by

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/layouts/layout.h"
 
-#include "nlos/layouts/shipped_layouts.h"
 #include "renderer/core/error.h"
 #include "renderer/core/nearest_name.h"
 

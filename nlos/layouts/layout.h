@@ -6,6 +6,8 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 namespace nlos {
@@ -171,21 +173,6 @@ void for_each_field(LayoutBins& b, Visitor&& visit) {
 enum class GridDirection { Increasing, Decreasing };
 enum class GridSamples { EndsIncluded, CellCentres };
 
-}  // namespace nlos
-
-template <>
-struct core::EnumNames<nlos::GridDirection> {
-    static constexpr auto value =
-        core::names_from_zero<nlos::GridDirection>("increasing", "decreasing");
-};
-template <>
-struct core::EnumNames<nlos::GridSamples> {
-    static constexpr auto value =
-        core::names_from_zero<nlos::GridSamples>("ends_included", "cell_centres");
-};
-
-namespace nlos {
-
 /// A grid around the origin of the wall z = 0.
 struct LayoutGrid {
     std::vector<LayoutNumber> size_m;       ///< extent along x and y, or one for both; or:
@@ -242,16 +229,6 @@ void for_each_field(LayoutPoints& p, Visitor&& visit) {
 }
 
 enum class LayoutPattern { Single, Confocal, Exhaustive, ByPoints };
-
-}  // namespace nlos
-
-template <>
-struct core::EnumNames<nlos::LayoutPattern> {
-    static constexpr auto value =
-        core::names_from_zero<nlos::LayoutPattern>("single", "confocal", "exhaustive", "by_points");
-};
-
-namespace nlos {
 
 struct LayoutDevices {
     std::string laser;  ///< array of 3 values, world [m]
@@ -324,4 +301,24 @@ const std::vector<Layout>& shipped_layouts();
 /// Throws core::Error that lists the names when there is neither.
 Layout find_layout(const std::string& name_or_path);
 
+/// Name and text of data/layouts/*.json, which are compiled into the program.
+const std::vector<std::pair<std::string_view, std::string_view>>& shipped_layout_texts();
+
 }  // namespace nlos
+
+template <>
+struct core::EnumNames<nlos::GridDirection> {
+    static constexpr auto value =
+        core::names_from_zero<nlos::GridDirection>("increasing", "decreasing");
+};
+template <>
+struct core::EnumNames<nlos::GridSamples> {
+    static constexpr auto value =
+        core::names_from_zero<nlos::GridSamples>("ends_included", "cell_centres");
+};
+
+template <>
+struct core::EnumNames<nlos::LayoutPattern> {
+    static constexpr auto value =
+        core::names_from_zero<nlos::LayoutPattern>("single", "confocal", "exhaustive", "by_points");
+};

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/layouts/layout_capture.h"
 
-#include "nlos/layouts/layout_bins.h"
 #include "nlos/layouts/layout_histograms.h"
-#include "nlos/layouts/layout_pairs.h"
 #include "renderer/core/error.h"
 
 #include <fmt/ranges.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/layouts/layout_guess.h"
 
-#include "nlos/layouts/layout_match.h"
+#include "nlos/layouts/layout_histograms.h"
 #include "renderer/core/error.h"
 #include "renderer/core/nearest_name.h"
 

@@ -1,14 +1,32 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "nlos/layouts/layout_match.h"
+#include "nlos/layouts/capture_settings.h"
+#include "nlos/layouts/layout_files.h"
 #include "nlos/layouts/layout_points.h"
 #include "renderer/core/capture/capture.h"
 
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace nlos {
+
+/// The array of histograms of a file, with its axes as the layout names them.
+struct HistogramArray {
+    std::string name;
+    std::vector<std::string> axes;  ///< in the writer's order
+    Shape extents;
+    bool reversed = false;  ///< whether they stand in reverse of the layout's order
+
+    std::optional<std::size_t> extent(const std::string& axis) const;
+};
+
+/// Finds it. Nothing when the file holds none that fits the layout's axes.
+std::optional<HistogramArray> find_histograms(const LayoutFiles& files, const Layout& layout);
+
+/// What a file lacks to be of this layout, a few words each; nothing: it is of this layout.
+std::vector<std::string> mismatches(const LayoutFiles& files, const Layout& layout);
 
 /// Which entries along the point axes belong to which pair of a scan.
 struct PairNumbers {
@@ -47,5 +65,38 @@ Histograms read_histograms(const LayoutFiles& files,
 void subtract_background(const LayoutFiles& files,
                          const std::vector<std::string>& background,
                          core::Transient& transient);
+
+/// Whether two lists hold the same points up to the single precision of files.
+bool are_same_points(const core::WallPoints& a, const core::WallPoints& b);
+
+/// Where the points are and how they pair up.
+///
+/// scan      its origin of path lengths and its devices are known; gets points and pattern
+/// throws    core::Error when arrays are missing or do not fit the histograms, or when these do not
+///           hold every pair of the pattern once
+PairNumbers read_pairs(const LayoutFiles& files,
+                       const Layout& layout,
+                       const HistogramArray& array,
+                       const CaptureReadSettings& settings,
+                       core::Scan& scan);
+
+/// The axis of path lengths that a layout states for `count` bins.
+core::TimeAxis read_axis(const LayoutFiles& files,
+                         const LayoutBins& bins,
+                         std::size_t count,
+                         const CaptureReadSettings& settings);
+
+/// Whole bins by which each pair's histogram starts late.
+/// Throws core::Error unless the array holds one finite delay for each histogram.
+std::vector<int> read_delays(const LayoutFiles& files,
+                             const LayoutShift& shift,
+                             const HistogramArray& histograms,
+                             const PairNumbers& numbers);
+
+/// Moves every histogram by its delay towards bin 0. Bins that this leaves open were not observed.
+void take_off_delays(const std::vector<int>& delays, core::Capture& capture);
+
+/// The bins between the first and the last that is not 0 in all histograms.
+core::BinRange lit_bins(const core::Capture& capture);
 
 }  // namespace nlos

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/layouts/layout_match.h"
+#include "nlos/layouts/layout_histograms.h"
 
 #include <fmt/ranges.h>
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/layouts/layout_pairs.h"
-
+#include "nlos/layouts/layout_histograms.h"
 #include "renderer/core/error.h"
 
 #include <fmt/ranges.h>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/layouts/layout_source.h"
-
-#include "nlos/layouts/layout_match.h"
+#include "nlos/layouts/layout_capture.h"
+#include "nlos/layouts/layout_histograms.h"
 #include "renderer/core/error.h"
 
 #include <fmt/format.h>

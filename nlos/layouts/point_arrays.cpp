@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/layouts/point_arrays.h"
-
+#include "nlos/layouts/layout_points.h"
 #include "renderer/core/error.h"
 
 #include <fmt/core.h>

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/methods/backprojection.h"
 
-#include "nlos/methods/backprojection_rows.h"
-#include "nlos/methods/observed_share.h"
+#include "nlos/methods/methods.h"
 #include "nlos/methods/slabs.h"
 
 namespace nlos {
@@ -11,15 +10,6 @@ namespace {
 bool takes_fast_way(const MethodInput& input) {
     return input.scan.pattern == core::ScanPattern::Confocal && input.wall.grid &&
            common_lattice(*input.wall.grid, input.axes.y_m).has_value();
-}
-
-std::vector<core::Vec3> in_frame(const core::Transform& wall_from_world,
-                                 const core::WallPoints& points) {
-    std::vector<core::Vec3> result;
-    result.reserve(points.size());
-    for (const core::Vec3& position : points.positions)
-        result.push_back(wall_from_world * position);
-    return result;
 }
 
 std::vector<double> device_legs(const core::Scan& scan,
@@ -49,12 +39,11 @@ void run_fast(const MethodInput& input,
 
 void run_general(const MethodInput& input, Compensation compensation, std::span<float> values) {
     const core::Scan& scan = input.scan;
-    const core::Transform wall_from_world = input.axes.world_from_wall.inverse(Eigen::Isometry);
     const PairList<float> data{scan.pattern,
                                input.time_axis,
                                input.transient.values(),
-                               in_frame(wall_from_world, scan.illumination),
-                               in_frame(wall_from_world, scan.sensing),
+                               in_wall_frame(input, scan.illumination),
+                               in_wall_frame(input, scan.sensing),
                                device_legs(scan, scan.illumination, scan.laser_position),
                                device_legs(scan, scan.sensing, scan.detector_position),
                                compensation};

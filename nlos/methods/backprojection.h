@@ -2,33 +2,15 @@
 #pragma once
 
 #include "nlos/methods/method_input.h"
+#include "nlos/preparation/wall_frame.h"
 #include "nlos/reconstruction/reconstruct_settings.h"
 
+#include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
 namespace nlos {
-
-/// Backprojection: v(p) = sum over pairs (l, s) of H(l, s; |l - p| + |p - s|), linear in time
-/// between bin centres. Adjoint of a forward model without cosines, and without falloff unless each
-/// term is multiplied by what the light lost on its way. Where some bins were not observed, sums
-/// are divided by the share of their terms that was, see divide_by_observed_share().
-///
-/// input       any scan; confocal grids whose y positions share a lattice with the voxels' take the
-///             fast way (shifted additions of whole rows), all others the general one
-/// settings    compensation, the factor of each term: none, r_l^2 r_s^2 (diffuse), r_l r_s (retro)
-/// num_slabs   the fast way copies this part of the wall's rows at a time
-/// returns     sums in the histograms' unit
-/// throws      core::Failure when asked to stop
-/// source      [Velten2012]
-Volume backproject(const MethodInput& input,
-                   const ReconstructSettings& settings,
-                   std::size_t num_slabs = 1);
-
-/// Memory that backproject() takes on top of its input, its volume included [bytes].
-double backproject_bytes(const MethodInput& input,
-                         const ReconstructSettings& settings,
-                         std::size_t num_slabs = 1);
 
 /// Confocal measurements on a wall grid.
 template <class Real>
@@ -72,5 +54,44 @@ void backproject_pairs(const PairList<Real>& data,
                        const VolumeAxes& axes,
                        std::span<Real> volume,
                        const core::Progress& progress);
+
+/// Divides the backprojected sums of a capture whose bins were not all observed by the share of
+/// each voxel's look-ups that met an observed bin, of those within the axis. What is left are sums
+/// as of the whole capture, and no trace of which points were dead or where their gates began.
+///
+/// Few look-ups that all meet light are weak evidence: no voxel is raised to more than twice what
+/// the mean share, over all observed look-ups, would raise it to. A voxel that nobody looked at
+/// stays 0.
+///
+/// input    with `observed`
+/// throws   core::Failure when asked to stop
+void divide_by_observed_share(const MethodInput& input, std::size_t num_slabs, Volume& volume);
+
+/// Memory that this takes on top of its input [bytes]; 0 when all bins were observed.
+double observed_share_bytes(const MethodInput& input);
+
+/// Voxels and wall points along y seen as every n-th point of one lattice.
+struct CommonLattice {
+    std::size_t voxel_step = 1;
+    std::size_t wall_step = 1;
+};
+
+/// The coarsest lattice of steps up to 4 that holds the grid's y positions and `y_m`, if any.
+std::optional<CommonLattice> common_lattice(const WallGrid& grid, const std::vector<double>& y_m);
+
+/// Voxel rows that one wall row serves at one |dx|: usually the two at +dx and -dx.
+struct Offset {
+    std::size_t distance = 0;  ///< index into the list of distinct |dx|
+    std::vector<std::size_t> voxel_rows;
+};
+
+/// Pairs of wall rows and voxel rows, grouped by |dx|.
+struct RowPairs {
+    std::vector<double> distances_m;
+    std::vector<std::vector<Offset>> of_wall_row;
+};
+
+/// Groups the rows of a grid and rows of voxels at `x_m` by how far they lie apart along x.
+RowPairs pair_rows(const WallGrid& grid, const std::vector<double>& x_m);
 
 }  // namespace nlos

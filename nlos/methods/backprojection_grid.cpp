@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/methods/backprojection.h"
-#include "nlos/methods/backprojection_rows.h"
 #include "nlos/methods/slabs.h"
 
 #include <algorithm>

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/methods/directional_light_cone_transform.h"
-
 #include "nlos/fourier/padded_plane.h"
 #include "nlos/methods/light_cone.h"
+#include "nlos/methods/methods.h"
 
 #include <cmath>
 

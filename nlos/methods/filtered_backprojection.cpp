@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/methods/filtered_backprojection.h"
-
 #include "nlos/methods/backprojection.h"
-#include "nlos/methods/observed_share.h"
+#include "nlos/methods/methods.h"
 #include "nlos/methods/virtual_wave.h"
 
 #include <cmath>

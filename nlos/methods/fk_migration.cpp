@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/methods/fk_migration.h"
-
 #include "nlos/fourier/fft.h"
 #include "nlos/fourier/padded_plane.h"
 #include "nlos/fourier/unit_phasor.h"
+#include "nlos/methods/methods.h"
 #include "nlos/methods/slabs.h"
 #include "nlos/methods/stolt_map.h"
 

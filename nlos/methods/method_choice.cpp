@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/methods/method_choice.h"
-
+#include "nlos/methods/methods.h"
 #include "renderer/core/error.h"
 
 #include <fmt/format.h>

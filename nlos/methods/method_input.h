@@ -57,6 +57,18 @@ inline bool is_confocal_grid(const MethodInput& input) {
            input.time_axis.num_bins >= kMinBins;
 }
 
+/// Where wall points are in the frame of the voxels [m].
+inline std::vector<core::Vec3> in_wall_frame(const MethodInput& input,
+                                             const core::WallPoints& points) {
+    const core::Transform wall_from_world = input.axes.world_from_wall.inverse(Eigen::Isometry);
+    std::vector<core::Vec3> positions;
+    positions.reserve(points.size());
+    for (const core::Vec3& position : points.positions) {
+        positions.push_back(wall_from_world * position);
+    }
+    return positions;
+}
+
 /// The same measurement with other histograms, all of them observed.
 inline MethodInput with_histograms(const MethodInput& input,
                                    const core::TimeAxis& axis,

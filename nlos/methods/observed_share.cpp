@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/methods/observed_share.h"
-
 #include "nlos/methods/backprojection.h"
+#include "nlos/methods/methods.h"
 
 #include <algorithm>
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/methods/phasor_field.h"
-
 #include "nlos/fourier/padded_plane.h"
-#include "nlos/methods/filtered_backprojection.h"
+#include "nlos/methods/methods.h"
 #include "nlos/methods/plane_propagator.h"
 #include "nlos/methods/slabs.h"
 #include "nlos/methods/virtual_wave.h"

@@ -43,13 +43,8 @@ void add_product(const std::vector<ComplexF>& a,
 }  // namespace
 
 std::vector<core::Vec3> illumination_of(const MethodInput& input) {
-    std::vector<core::Vec3> points;
-    if (input.scan.pattern == core::ScanPattern::Confocal) return points;
-    const core::Transform wall_from_world = input.axes.world_from_wall.inverse(Eigen::Isometry);
-    for (const core::Vec3& point : input.scan.illumination.positions) {
-        points.push_back(wall_from_world * point);
-    }
-    return points;
+    if (input.scan.pattern == core::ScanPattern::Confocal) return {};
+    return in_wall_frame(input, input.scan.illumination);
 }
 
 std::size_t padded_size(const WallGrid& grid) {

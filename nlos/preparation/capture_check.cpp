@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/preparation/capture_check.h"
 
+#include "nlos/preparation/capture_correction.h"
 #include "nlos/preparation/first_light.h"
 #include "nlos/preparation/histogram_preparation.h"
-#include "nlos/preparation/slip_recognition.h"
 #include "renderer/core/capture/sensor_footprint.h"
 
 #include <fmt/format.h>

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/preparation/capture_survey.h"
-
+#include "nlos/preparation/capture_check.h"
 #include "renderer/core/capture/recorded_detector.h"
 
 #include <fmt/format.h>

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/preparation/midpoint_conversion.h"
-
+// Single and exhaustive scans as the confocal ones that they resemble; see prepared_capture.h.
 #include "nlos/preparation/conservative_resampling.h"
 #include "nlos/preparation/memory_limit.h"
-#include "nlos/preparation/wall_frame.h"
+#include "nlos/preparation/prepared_capture.h"
 #include "renderer/core/error.h"
 #include "renderer/core/parallel.h"
 
@@ -149,44 +148,63 @@ void add_shares(const std::vector<double>& edges,
     }
 }
 
-}  // namespace
-
-std::optional<ConfocalData> convert_to_confocal(const core::Scan& scan,
-                                                const core::TimeAxis& axis,
-                                                const core::Transient& transient,
-                                                const core::ObservedBins& observed) {
-    const WallFrame wall = derive_wall_frame(scan);
-    const std::optional<MidpointGrid> grid = find_midpoint_grid(scan, wall);
-    if (!grid) return std::nullopt;
-    ConfocalData confocal;
-    confocal.points = wall_points(*grid, wall);
-    confocal.time_axis = confocal_axis(scan, axis, grid->pairs.size());
-    confocal.transient = core::Transient(grid->pairs.size(), confocal.time_axis.num_bins);
-    if (observed) confocal.observed.emplace(grid->pairs.size());
-    const auto num_bins = static_cast<std::size_t>(confocal.time_axis.num_bins);
-    const std::vector<double> edges = even_edges(0.0, confocal.time_axis.opl_end_m(), num_bins);
-    core::parallel_for(grid->pairs.size(), [&](std::size_t point) {
-        const auto sum = confocal.transient.histogram(point);
-        const std::vector<std::size_t>& pairs = grid->pairs[point];
-        const double share = observed ? 1.0 : 1.0 / static_cast<double>(pairs.size());
-        const std::vector<double> shares(transient.num_bins(), share);
+/// Fills the mean histograms of the pairs at each midpoint, and what of them was observed where
+/// not all bins were.
+void fill_means(const PreparedCapture& from,
+                const MidpointGrid& grid,
+                const core::TimeAxis& axis,
+                core::Transient& means,
+                core::ObservedBins& seen_bins) {
+    const auto num_bins = static_cast<std::size_t>(axis.num_bins);
+    const std::vector<double> edges = even_edges(0.0, axis.opl_end_m(), num_bins);
+    core::parallel_for(grid.pairs.size(), [&](std::size_t point) {
+        const auto sum = means.histogram(point);
+        const std::vector<std::size_t>& pairs = grid.pairs[point];
+        const double share = from.observed ? 1.0 : 1.0 / static_cast<double>(pairs.size());
+        const std::vector<double> shares(from.transient().num_bins(), share);
         std::vector<float> moved(num_bins);
         std::vector<double> seen(num_bins);
         for (const std::size_t pair : pairs) {
-            const std::vector<double> from = moved_edges(scan, axis, pair);
-            ConservativeResampling(from, edges, shares)
-                .apply(transient.histogram(pair).data(), moved.data());
+            const std::vector<double> pair_edges = moved_edges(from.scan, from.time_axis, pair);
+            ConservativeResampling(pair_edges, edges, shares)
+                .apply(from.transient().histogram(pair).data(), moved.data());
             for (std::size_t bin = 0; bin < num_bins; ++bin) sum[bin] += moved[bin];
-            if (!observed) continue;
-            const core::BinRange& range = (*observed)[pair];
+            if (!from.observed) continue;
+            const core::BinRange& range = (*from.observed)[pair];
             add_shares(edges,
-                       from[static_cast<std::size_t>(range.begin)],
-                       from[static_cast<std::size_t>(range.end)],
+                       pair_edges[static_cast<std::size_t>(range.begin)],
+                       pair_edges[static_cast<std::size_t>(range.end)],
                        seen);
         }
-        if (observed) (*confocal.observed)[point] = take_means(seen, sum);
+        if (from.observed) (*seen_bins)[point] = take_means(seen, sum);
     });
-    return confocal;
+}
+
+}  // namespace
+
+bool convert_to_confocal(PreparedCapture& prepared) {
+    const std::optional<MidpointGrid> grid = find_midpoint_grid(prepared.scan, prepared.wall);
+    if (!grid) return false;
+    const std::size_t num_points = grid->pairs.size();
+    const core::TimeAxis axis = confocal_axis(prepared.scan, prepared.time_axis, num_points);
+    core::Transient means(num_points, axis.num_bins);
+    core::ObservedBins observed;
+    if (prepared.observed) observed.emplace(num_points);
+    fill_means(prepared, *grid, axis, means, observed);
+    prepared.conversion = fmt::format(
+        "{} scan converted to {} x {} confocal midpoints",
+        prepared.scan.pattern == core::ScanPattern::Single ? "single-laser" : "exhaustive",
+        grid->size[0],
+        grid->size[1]);
+    prepared.scan = core::Scan{};
+    prepared.scan.sensing = wall_points(*grid, prepared.wall);
+    prepared.scan.illumination = prepared.scan.sensing;
+    prepared.time_axis = axis;
+    prepared.own = std::move(means);
+    prepared.observed = std::move(observed);
+    if (prepared.observed) drop_unobserved_ends(prepared);
+    prepared.wall = derive_wall_frame(prepared.scan);
+    return true;
 }
 
 }  // namespace nlos

@@ -2,7 +2,6 @@
 #include "nlos/preparation/prepared_capture.h"
 
 #include "nlos/preparation/memory_limit.h"
-#include "nlos/preparation/midpoint_conversion.h"
 #include "renderer/core/error.h"
 
 #include <fmt/format.h>
@@ -141,21 +140,6 @@ void crop_measurement(const core::Capture& capture,
     prepared.wall = derive_wall_frame(prepared.scan);
 }
 
-/// Drops bins that no pair observed at either end of the axis.
-void drop_unobserved_ends(PreparedCapture& prepared) {
-    const core::BinRange bins = bins_seen(prepared.observed, prepared.time_axis.num_bins);
-    core::Transient shorter(prepared.own.num_pairs(), bins.size());
-    for (std::size_t pair = 0; pair < shorter.num_pairs(); ++pair) {
-        std::copy_n(prepared.own.histogram(pair).begin() + bins.begin,
-                    bins.size(),
-                    shorter.histogram(pair).begin());
-    }
-    prepared.own = std::move(shorter);
-    prepared.unobserved_before_m = bins.begin * prepared.time_axis.bin_width_m;
-    prepared.time_axis = axis_of(prepared.time_axis, bins);
-    move_observed(bins, prepared.observed);
-}
-
 }  // namespace
 
 PreparedCapture crop_capture(const core::Capture& capture, const CropSettings& crop) {
@@ -182,24 +166,18 @@ PreparedCapture crop_capture(const core::Capture& capture, const CropSettings& c
     return prepared;
 }
 
-bool convert_to_confocal(PreparedCapture& prepared) {
-    auto confocal = convert_to_confocal(
-        prepared.scan, prepared.time_axis, prepared.transient(), prepared.observed);
-    if (!confocal) return false;
-    prepared.conversion = fmt::format(
-        "{} scan converted to {} x {} confocal midpoints",
-        prepared.scan.pattern == core::ScanPattern::Single ? "single-laser" : "exhaustive",
-        (*confocal->points.grid)[0],
-        (*confocal->points.grid)[1]);
-    prepared.scan = core::Scan{};
-    prepared.scan.sensing = confocal->points;
-    prepared.scan.illumination = std::move(confocal->points);
-    prepared.time_axis = confocal->time_axis;
-    prepared.own = std::move(confocal->transient);
-    prepared.observed = std::move(confocal->observed);
-    if (prepared.observed) drop_unobserved_ends(prepared);
-    prepared.wall = derive_wall_frame(prepared.scan);
-    return true;
+void drop_unobserved_ends(PreparedCapture& prepared) {
+    const core::BinRange bins = bins_seen(prepared.observed, prepared.time_axis.num_bins);
+    core::Transient shorter(prepared.own.num_pairs(), bins.size());
+    for (std::size_t pair = 0; pair < shorter.num_pairs(); ++pair) {
+        std::copy_n(prepared.own.histogram(pair).begin() + bins.begin,
+                    bins.size(),
+                    shorter.histogram(pair).begin());
+    }
+    prepared.own = std::move(shorter);
+    prepared.unobserved_before_m = bins.begin * prepared.time_axis.bin_width_m;
+    prepared.time_axis = axis_of(prepared.time_axis, bins);
+    move_observed(bins, prepared.observed);
 }
 
 }  // namespace nlos

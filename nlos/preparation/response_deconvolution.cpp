@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/preparation/response_deconvolution.h"
+#include "nlos/preparation/histogram_preparation.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/preparation/slip_recognition.h"
-
+#include "nlos/preparation/capture_correction.h"
 #include "nlos/preparation/histogram_sample.h"
 #include "nlos/preparation/scatter_fit.h"
 #include "renderer/core/capture/capture.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/reconstruction/depth_sigma.h"
 
-#include "nlos/reconstruction/near_columns.h"
+#include "nlos/reconstruction/column_peak.h"
 #include "renderer/core/types.h"
 
 #include <Eigen/Cholesky>

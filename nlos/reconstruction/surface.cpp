@@ -3,7 +3,6 @@
 
 #include "nlos/reconstruction/column_peak.h"
 #include "nlos/reconstruction/depth_sigma.h"
-#include "nlos/reconstruction/near_columns.h"
 #include "nlos/reconstruction/surface_probability.h"
 
 #include <Eigen/Cholesky>

@@ -226,7 +226,7 @@ void Hdf5Writer::write_attribute(const std::string& object,
                                  const std::string& text) {
     const char* characters = text.c_str();
     const Hdf5Handle type = utf8_type();
-    write_attribute_values({object, name}, type.id(), {}, &characters);
+    write_attribute_values(object, name, type.id(), {}, &characters);
 }
 
 void Hdf5Writer::write_attribute(const std::string& object,
@@ -234,7 +234,7 @@ void Hdf5Writer::write_attribute(const std::string& object,
                                  const Shape& shape,
                                  std::span<const double> values) {
     assert(values.size() == total_bytes(shape, 1));
-    write_attribute_values({object, name}, H5T_NATIVE_DOUBLE, shape, values.data());
+    write_attribute_values(object, name, H5T_NATIVE_DOUBLE, shape, values.data());
 }
 
 void Hdf5Writer::write_ascii_attribute(const std::string& object,
@@ -242,17 +242,18 @@ void Hdf5Writer::write_ascii_attribute(const std::string& object,
                                        const std::string& text) {
     const Hdf5Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
     H5Tset_size(type.id(), text.size());
-    write_attribute_values({object, name}, type.id(), {}, text.data());
+    write_attribute_values(object, name, type.id(), {}, text.data());
 }
 
-void Hdf5Writer::write_attribute_values(const AttributeName& name,
+void Hdf5Writer::write_attribute_values(const std::string& object,
+                                        const std::string& name,
                                         std::int64_t type,
                                         const Shape& shape,
                                         const void* values) {
     const Hdf5Handle space = create_space(shape);
     const Hdf5Handle attribute(H5Acreate_by_name(file_.id(),
-                                                 name.object.c_str(),
-                                                 name.attribute.c_str(),
+                                                 object.c_str(),
+                                                 name.c_str(),
                                                  type,
                                                  space.id(),
                                                  H5P_DEFAULT,

@@ -94,10 +94,6 @@ class Hdf5Writer {
     void finish();
 
  private:
-    struct AttributeName {
-        const std::string& object;
-        const std::string& attribute;
-    };
     Hdf5Handle create_dataset(const std::string& name,
                               std::int64_t type,
                               const Hdf5Handle& space,
@@ -111,7 +107,8 @@ class Hdf5Writer {
                        std::int64_t type,
                        const Hdf5Handle& space,
                        const void* values);
-    void write_attribute_values(const AttributeName& name,
+    void write_attribute_values(const std::string& object,
+                                const std::string& name,
                                 std::int64_t type,
                                 const Shape& shape,
                                 const void* values);

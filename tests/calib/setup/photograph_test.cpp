@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Photographs against OpenCV's own decoders, and files that are none.
-#include "calib/setup/photograph.h"
-
+#include "calib/setup/boards.h"
 #include "renderer/core/error.h"
 #include "tests/support/error_message.h"
 #include "tests/support/file_bytes.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "calib/track/smooth.h"
+#include "calib/track/tracker.h"
 
 #include <Eigen/Dense>
 #include <gtest/gtest.h>

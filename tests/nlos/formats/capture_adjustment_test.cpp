@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/formats/capture_adjustment.h"
-
+#include "nlos/formats/capture_file.h"
 #include "renderer/core/capture/capture.h"
 #include "tests/support/error_message.h"
 #include "tests/support/example_capture.h"

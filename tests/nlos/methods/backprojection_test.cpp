@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/methods/backprojection.h"
 
-#include "nlos/methods/backprojection_rows.h"
+#include "nlos/methods/methods.h"
 #include "nlos/reconstruction/surface.h"
 #include "tests/nlos/methods/confocal_scene.h"
 
@@ -227,7 +227,8 @@ TEST(Backprojection, OfAGridTakesDeviceLegsOffByFractionsOfABin) {
     const core::Progress progress;
     const Volume volume = backproject(
         {capture.scan, capture.time_axis, capture.transient, wall, voxels, {0.4, 0.6}, progress},
-        {});
+        {},
+        1);
     // A bin covers 5 mm of depth: legs rounded to whole bins would smear and shift the peak.
     EXPECT_LT((nlos_test::brightest_point(volume) - scatterer).norm(), 5e-4);
 }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/methods/directional_light_cone_transform.h"
-
+#include "nlos/methods/methods.h"
 #include "nlos/reconstruct.h"
 #include "tests/nlos/methods/confocal_scene.h"
 

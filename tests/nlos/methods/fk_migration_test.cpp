@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/methods/fk_migration.h"
-
+#include "nlos/methods/methods.h"
 #include "nlos/reconstruction/surface.h"
 #include "tests/nlos/methods/confocal_scene.h"
 
@@ -29,7 +28,8 @@ Volume migrate(const core::Capture& capture,
     settings.falloff = falloff;
     return fk_migration(
         {capture.scan, capture.time_axis, capture.transient, wall, axes, z_range_m, progress},
-        settings);
+        settings,
+        1);
 }
 
 TEST(FkMigration, FindsAPointOnOblongGridsWithUnequalPitch) {

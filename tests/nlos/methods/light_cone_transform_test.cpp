@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/methods/light_cone_transform.h"
-
+#include "nlos/methods/methods.h"
 #include "nlos/reconstruction/surface.h"
 #include "tests/nlos/methods/confocal_scene.h"
 
@@ -32,7 +31,8 @@ Volume transform(const core::Capture& capture,
     settings.snr = 10.0;
     return light_cone_transform(
         {capture.scan, capture.time_axis, capture.transient, wall, axes, z_range_m, progress},
-        settings);
+        settings,
+        1);
 }
 
 Vec3 brightest_voxel(const Volume& volume) {
@@ -76,7 +76,8 @@ TEST(LightConeTransform, PlacesAPlaneWithinAQuarterOfABin) {
             nlos_test::add_scatterer(capture, Vec3(0.02 * ix, 0.02 * iy, 0.6), 4.0);
         }
     }
-    const core::DepthMap depth = find_surface(transform(capture, {0.3, 0.9}, 75), nullptr, {}, 0.2).depth;
+    const core::DepthMap depth =
+        find_surface(transform(capture, {0.3, 0.9}, 75), nullptr, {}, 0.2).depth;
     double sum = 0.0;
     for (std::size_t ix = 8; ix < 16; ++ix) {
         for (std::size_t iy = 8; iy < 16; ++iy) {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/methods/phasor_field.h"
-
 #include "nlos/fourier/unit_phasor.h"
-#include "nlos/methods/filtered_backprojection.h"
+#include "nlos/methods/methods.h"
 #include "nlos/methods/virtual_wave.h"
 #include "tests/nlos/methods/confocal_scene.h"
 #include "tests/support/statistics.h"
@@ -116,7 +114,7 @@ TEST(PhasorField, EqualsItsDefiningSumForEveryScan) {
     for (const ScanPattern pattern :
          {ScanPattern::Single, ScanPattern::Confocal, ScanPattern::Exhaustive}) {
         const double error = error_of(
-            pattern, [](const MethodInput& input) { return phasor_field(input, with_wave()); });
+            pattern, [](const MethodInput& input) { return phasor_field(input, with_wave(), 1); });
         EXPECT_LT(error, 0.01) << core::enum_name(pattern);
     }
 }
@@ -125,7 +123,7 @@ TEST(PhasorField, OfFilteredHistogramsIsTheSameWithinInterpolation) {
     for (const ScanPattern pattern :
          {ScanPattern::Single, ScanPattern::Confocal, ScanPattern::Exhaustive}) {
         const double error = error_of(pattern, [](const MethodInput& input) {
-            return phasor_backprojection(input, with_wave());
+            return phasor_backprojection(input, with_wave(), 1);
         });
         EXPECT_LT(error, 0.04) << core::enum_name(pattern);
     }
@@ -139,7 +137,8 @@ TEST(PhasorField, ServesListsOfPoints) {
     const core::Progress progress;
     const Volume volume = phasor_field(
         {capture.scan, capture.time_axis, capture.transient, wall, axes, {0.3, 0.6}, progress},
-        with_wave());
+        with_wave(),
+        1);
     EXPECT_LT(largest_error(capture, volume), 0.04);
 }
 

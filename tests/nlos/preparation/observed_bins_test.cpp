@@ -5,7 +5,6 @@
 #include "nlos/preparation/first_light.h"
 #include "nlos/preparation/gated_capture.h"
 #include "nlos/preparation/histogram_preparation.h"
-#include "nlos/preparation/midpoint_conversion.h"
 #include "nlos/preparation/prepared_capture.h"
 #include "nlos/preparation/wiener_snr.h"
 #include "tests/nlos/methods/confocal_scene.h"
@@ -123,24 +122,25 @@ TEST(ObservedStatistics, MidpointsAverageThePairsThatLooked) {
     capture.scan.pattern = core::ScanPattern::Exhaustive;
     capture.transient = core::Transient(256, 100);
     for (float& value : capture.transient.values()) value = 1.0F;
-    const auto whole = convert_to_confocal(capture.scan, capture.time_axis, capture.transient);
+    const core::Capture whole_capture = capture;
+    PreparedCapture whole = crop_capture(whole_capture, {});
     std::vector<BinRange> ranges(256, {0, 100});
     for (std::size_t pair = 0; pair < 256; pair += 3) ranges[pair] = {0, 0};
     for (std::size_t pair = 1; pair < 256; pair += 3) ranges[pair] = {40, 90};
     core::restrict_observed(capture, ranges);
-    const auto part =
-        convert_to_confocal(capture.scan, capture.time_axis, capture.transient, capture.observed);
-    ASSERT_TRUE(whole && part && part->observed);
+    PreparedCapture part = crop_capture(capture, {});
+    ASSERT_TRUE(convert_to_confocal(whole) && convert_to_confocal(part) && part.observed);
+    ASSERT_EQ(part.time_axis.opl_start_m, whole.time_axis.opl_start_m);
     std::size_t compared = 0;
-    for (std::size_t point = 0; point < part->points.size(); ++point) {
-        const BinRange range = (*part->observed)[point];
-        for (int bin = 0; bin < part->time_axis.num_bins; ++bin) {
-            const float value = part->transient.histogram(point)[static_cast<std::size_t>(bin)];
+    for (std::size_t point = 0; point < part.scan.sensing.size(); ++point) {
+        const BinRange range = (*part.observed)[point];
+        for (int bin = 0; bin < part.time_axis.num_bins; ++bin) {
+            const float value = part.transient().histogram(point)[static_cast<std::size_t>(bin)];
             if (!range.holds(bin)) {
                 EXPECT_EQ(value, 0.0F);
             } else if (bin >= 45 && bin < 85) {
                 const float wanted =
-                    whole->transient.histogram(point)[static_cast<std::size_t>(bin)];
+                    whole.transient().histogram(point)[static_cast<std::size_t>(bin)];
                 EXPECT_NEAR(value, wanted, 0.05F * wanted);
                 ++compared;
             }

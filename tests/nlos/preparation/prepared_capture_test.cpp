@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/preparation/prepared_capture.h"
 
-#include "nlos/preparation/midpoint_conversion.h"
 #include "tests/nlos/methods/confocal_scene.h"
 #include "tests/support/error_message.h"
 
@@ -105,19 +104,20 @@ TEST(MidpointConversion, IsExactForPointsEquallyFarFromBoth) {
                            capture.scan.device_legs_m(pair);
         capture.transient.histogram(pair)[*capture.time_axis.bin_of(opl)] = 1.0F;
     }
-    const auto confocal = convert_to_confocal(capture.scan, capture.time_axis, capture.transient);
-    ASSERT_TRUE(confocal);
-    ASSERT_EQ(confocal->points.grid, (std::array<std::size_t, 2>{9, 2}));
+    PreparedCapture confocal = crop_capture(capture, {});
+    ASSERT_TRUE(convert_to_confocal(confocal));
+    ASSERT_EQ(confocal.scan.sensing.grid, (std::array<std::size_t, 2>{9, 2}));
     for (std::size_t point = 0; point < 18; ++point) {
-        EXPECT_LT((confocal->points.positions[point] - 0.5 * capture.scan.sensing.positions[point])
-                      .norm(),
-                  1e-9);
-        const auto histogram = confocal->transient.histogram(point);
+        EXPECT_LT(
+            (confocal.scan.sensing.positions[point] - 0.5 * capture.scan.sensing.positions[point])
+                .norm(),
+            1e-9);
+        const auto histogram = confocal.transient().histogram(point);
         double sum = 0.0;
         double mean = 0.0;
         for (std::size_t bin = 0; bin < histogram.size(); ++bin) {
             sum += histogram[bin];
-            mean += histogram[bin] * confocal->time_axis.bin_center_m(static_cast<double>(bin));
+            mean += histogram[bin] * confocal.time_axis.bin_center_m(static_cast<double>(bin));
         }
         EXPECT_NEAR(sum, 1.0, 1e-5);
         EXPECT_NEAR(mean / sum, 1.0, 0.012);  // path length to and from a point 0.5 m away
@@ -131,7 +131,8 @@ TEST(MidpointConversion, MidpointsThatLeaveGapsAreRefused) {
     for (core::Vec3& position : capture.scan.illumination.positions) position.setZero();
     capture.scan.illumination.positions.back().x() = 0.8;
     capture.transient = core::Transient(capture.scan.num_pairs(), 20);
-    EXPECT_FALSE(convert_to_confocal(capture.scan, capture.time_axis, capture.transient));
+    PreparedCapture prepared = crop_capture(capture, {});
+    EXPECT_FALSE(convert_to_confocal(prepared));
 }
 
 TEST(MidpointConversion, GridsOfMorePointsThanPairsAreRefusedBeforeTheyAreMade) {
@@ -139,7 +140,8 @@ TEST(MidpointConversion, GridsOfMorePointsThanPairsAreRefusedBeforeTheyAreMade) 
     for (const double distance_m : {1.0, 1e6, 1e9}) {  // 1e9: 4e20 points
         capture.scan.illumination = nlos_test::wall_grid({2, 2}, {distance_m, distance_m});
         capture.transient = core::Transient(capture.scan.num_pairs(), 20);
-        EXPECT_FALSE(convert_to_confocal(capture.scan, capture.time_axis, capture.transient));
+        PreparedCapture prepared = crop_capture(capture, {});
+        EXPECT_FALSE(convert_to_confocal(prepared));
     }
 }
 
@@ -148,8 +150,8 @@ TEST(MidpointConversion, AnAxisThatStartsFarBehindTheWallIsRefusedBeforeItIsMade
     capture.scan.illumination = nlos_test::wall_grid({1, 1}, {0.1, 0.1});
     for (const double start_m : {1e9, 1e15}) {  // 1e11 and 1e17 bins from the wall on
         capture.time_axis.opl_start_m = start_m;
-        EXPECT_THROW(convert_to_confocal(capture.scan, capture.time_axis, capture.transient),
-                     core::Failure);
+        PreparedCapture prepared = crop_capture(capture, {});
+        EXPECT_THROW(convert_to_confocal(prepared), core::Failure);
     }
 }
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/preparation/response_deconvolution.h"
-
+#include "nlos/preparation/histogram_preparation.h"
 #include "renderer/core/capture/instrument_response.h"
 #include "renderer/core/random.h"
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Slips in describing captures of a few scatterers; those of rendered scenes are in
 // tests/apps/slips_test.cpp.
-#include "nlos/preparation/slip_recognition.h"
-
+#include "nlos/preparation/capture_correction.h"
 #include "nlos/preparation/histogram_sample.h"
 #include "nlos/preparation/scatter_fit.h"
 #include "renderer/core/parallel.h"
