@@ -5,10 +5,6 @@ const kTypes = { u8: Uint8Array, u16: Uint16Array, u32: Uint32Array };
 const kVersion = 1;
 const arrays = new Map();  // promises of unpacked bytes, by the array's number
 
-viewer.hasDecompression = function () {
-  return typeof DecompressionStream === 'function';
-};
-
 /** Throws an error that tells the reader in words what is wrong, unless all is well. */
 viewer.require = function (isWell, message) {
   if (!isWell) throw new Error(message);
@@ -41,7 +37,6 @@ function bytesOfBase64(text) {
 async function unpack(index) {
   const holder = document.getElementById('nlos-array-' + index);
   viewer.require(holder, `Array ${index} is missing from the page.`);
-  viewer.require(viewer.hasDecompression(), 'This browser cannot unpack the data (it lacks DecompressionStream).');
   try {
     const packed = new Blob([bytesOfBase64(holder.textContent)]);
     const stream = packed.stream().pipeThrough(new DecompressionStream('deflate'));

@@ -40,6 +40,10 @@ function labelled(text, kind, input) {
   return viewer.element('label', { class: 'control ' + kind }, viewer.element('span', {}, text), input);
 }
 
+/** Controls that belong together, in a frame with their title. */
+viewer.group = (title, ...controls) =>
+  viewer.element('fieldset', {}, viewer.element('legend', {}, title), ...controls);
+
 /** A drop-down list with its label; `options` are [value, text] pairs. */
 viewer.select = function (text, control, options, chosen, onChange) {
   const list = viewer.element('select', {
@@ -91,6 +95,14 @@ viewer.slider = function (text, control, limits, value, describe, onInput) {
   });
   return label;
 };
+
+const kSteps = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+
+/** The step to the right and upwards that an arrow key asks for. */
+viewer.stepOfKey = (key) => kSteps[key];
+
+/** The nearest of `count` indices. */
+viewer.clampIndex = (index, count) => Math.min(count - 1, Math.max(0, index));
 
 /** Calls back with the width of an element, now and whenever it changes. */
 viewer.watchWidth = function (element, callback) {

@@ -6,7 +6,7 @@ const kNarrow = 720;        // pixels: below, the histogram stands under the pic
 const kCurveHeight = 300;   // pixels, of the histogram there
 const kStripHeight = 130;   // pixels, of a picture that is one row of cells
 const kSumSpan = 1e-4;      // of the logarithmic scale of sums, at most
-const kSpeeds = [[5, '5 bins per second'], [15, '15 bins per second'], [30, '30 bins per second'], [60, '60 bins per second']];
+const kSpeeds = [5, 15, 30, 60];  // bins per second
 const kHints = 'Click the picture to pin a point. With the picture in focus: Left and Right step in time, ' +
   'Home and End go to the ends, Shift with arrows moves the point, Space plays.';
 
@@ -46,8 +46,7 @@ class Film {
       this.setPlaying(false);
       set('isAllTime')(on);
     });
-    const word = this.data.isFrames ? 'frames' : 'bins';
-    const speeds = kSpeeds.map(([value, text]) => [value, text.replace('bins', word)]);
+    const speeds = kSpeeds.map((value) => [value, `${value} ${this.data.word}s per second`]);
     this.controls = viewer.element(
       'div',
       { class: 'view-controls' },
@@ -75,18 +74,12 @@ class Film {
     this.picture.x = this.layout.x;
     this.picture.y = this.layout.y;
     this.bar = viewer.createColourBar('colour-bar');
-    this.curve = viewer.createHistogram(this.data, (bin) => {
-      this.setPlaying(false);
-      this.goTo(bin);
-    });
+    this.curve = viewer.createHistogram(this.data, (bin) => this.jumpTo(bin));
   }
 
   makeScrubber() {
     this.scrubber = viewer.slider(this.data.isFrames ? 'Frame' : 'Time', 'bin', { min: 0, max: 0 }, 0,
-      (bin) => this.binWords(bin), (bin) => {
-        this.setPlaying(false);
-        this.goTo(bin);
-      });
+      (bin) => this.binWords(bin), (bin) => this.jumpTo(bin));
     this.scrubber.classList.add('film-scrubber');
     const { first_lit: first, last_lit: last } = this.film;
     this.whole = first === 0 && last === this.data.bins - 1
@@ -152,6 +145,12 @@ class Film {
     this.recolour();
   }
 
+  /** Goes where a hand asks to, which ends the film. */
+  jumpTo(bin) {
+    this.setPlaying(false);
+    this.goTo(bin);
+  }
+
   setPlaying(isPlaying) {
     clearInterval(this.state.timer);
     this.state.timer = isPlaying ? setInterval(() => this.advance(), 1000 / this.state.speed) : null;
@@ -174,10 +173,8 @@ class Film {
   recolour() {
     const { isAllTime, isStretched, bin } = this.state;
     this.colours = isAllTime ? this.colourSums() : this.colourBin(bin, isStretched);
-    this.curve.show(this.shownCell(), isAllTime ? null : bin, this.state.kind);
     this.scrubber.show(bin);
-    this.picture.draw();
-    this.describe();
+    this.showCell();
   }
 
   colourBin(bin, isStretched) {
@@ -185,7 +182,7 @@ class Film {
     const high = (isStretched && this.data.largestAt(bin)) || quantity.high;
     const scale = this.scaleOf(quantity.low, high);
     const lookup = viewer.colourValues(quantity.values, scale, 'heat');
-    this.bar.set(scale, 'heat', viewer.titleWithUnit('Light in one ' + (this.data.isFrames ? 'frame' : 'bin'), this.film.unit));
+    this.bar.set(scale, 'heat', viewer.titleWithUnit('Light in one ' + this.data.word, this.film.unit));
     const colours = new Uint32Array(cells);
     for (let cell = 0; cell < cells; ++cell) colours[cell] = lookup[quantity.codes[cell * bins + bin]];
     return colours;
@@ -196,8 +193,7 @@ class Film {
     const high = sums[brightestCell];
     const least = sums.reduce((low, sum) => (sum > 0 && sum < low ? sum : low), high);
     const scale = this.scaleOf(Math.max(0.9 * least, kSumSpan * high), high);
-    const word = this.data.isFrames ? 'frames' : 'bins';
-    this.bar.set(scale, 'heat', viewer.titleWithUnit(`Light summed over all ${word}`, this.film.unit));
+    this.bar.set(scale, 'heat', viewer.titleWithUnit(`Light summed over all ${this.data.word}s`, this.film.unit));
     return viewer.colourValues(sums, scale, 'heat');
   }
 
@@ -255,8 +251,7 @@ class Film {
       this.state.pinned = this.layout.neighbour(this.state.pinned, step);
       this.showCell();
     } else if (event.key in ends || (step && step[0] !== 0)) {
-      this.setPlaying(false);
-      this.goTo(event.key in ends ? ends[event.key] : this.state.bin + step[0]);
+      this.jumpTo(event.key in ends ? ends[event.key] : this.state.bin + step[0]);
     } else if (event.key === ' ') {
       this.setPlaying(this.state.timer === null);
     } else {

@@ -32,6 +32,7 @@ class FilmData {
     this.brightestCell = indexOfMaximum(perCell);
     this.brightestBin = indexOfMaximum(perBin);
     this.isFrames = film.axis === 'frame';
+    this.word = this.isFrames ? 'frame' : 'bin';
   }
 
   value(cell, bin) {

@@ -58,16 +58,17 @@ viewer.createHistogram = function (data, onBin) {
       if (what === 'press' || what === 'drag') onBin(data.binAt(x));
     },
   });
+  const cell = data.film.kind === 'camera' ? 'pixel' : 'point';
   const legend = viewer.element(
     'p',
     { class: 'film-legend' },
-    viewer.element('span', { class: 'key-line' }, data.film.kind === 'camera' ? 'this pixel' : 'this point'),
-    viewer.element('span', { class: 'key-area' }, data.film.kind === 'camera' ? 'mean of all pixels' : 'mean of all points'),
+    viewer.element('span', { class: 'key-line' }, 'this ' + cell),
+    viewer.element('span', { class: 'key-area' }, `mean of all ${cell}s`),
   );
   const makeAxis = (scale) => {
     const { factor, text } = scale.kind === 'log' ? { factor: 1, text: '' } : viewer.axisFactor(scale.high);
     const unit = [text, data.film.unit].filter(Boolean).join(' ');
-    const title = viewer.titleWithUnit('light in a ' + (data.isFrames ? 'frame' : 'bin'), unit);
+    const title = viewer.titleWithUnit('light in a ' + data.word, unit);
     return { scale, title, format: (value) => viewer.formatNumber(value / factor, 3) };
   };
   const setRange = (first, last) => {

@@ -2,12 +2,7 @@
 // How the cells of a film lie in its picture: a grid over the wall, a camera's pixels, or a list.
 
 const kSample = 200;  // points whose distances from neighbours are looked at
-const kDirections = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
-
-/** The step on the picture, to the right and upwards, that an arrow key asks for. */
-viewer.stepOfKey = (key) => kDirections[key];
-
-const clampIndex = (index, count) => Math.min(count - 1, Math.max(0, index));
+const { clampIndex } = viewer;
 
 /**
  * A layout has `cells`, `x` and `y` (axes), paint(context, plot, colours) with one picture

@@ -57,7 +57,7 @@ async function start(view) {
   try {
     viewer.require(make, 'Its kind is unknown.');
     viewer.require(
-      viewer.hasDecompression(),
+      typeof DecompressionStream === 'function',
       'This browser cannot unpack the page\u2019s data, because it lacks DecompressionStream; a newer one can.',
     );
     await make(view);

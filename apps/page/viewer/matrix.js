@@ -44,8 +44,7 @@ function paintCell(context, plot, grid, cell) {
 
 /** Arrow keys move the marked position by one element of the row's first map. */
 function moveMark(grid, row, event) {
-  const steps = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
-  const step = steps[event.key];
+  const step = viewer.stepOfKey(event.key);
   if (!step) return;
   event.preventDefault();
   const { map } = row.cells.find((cell) => cell);
@@ -53,10 +52,10 @@ function moveMark(grid, row, event) {
     const pitch = (high - low) / count;
     const from = grid.position ? grid.position[axis] : (low + high) / 2 - by * pitch;
     const index = Math.round((from - low) / pitch - 0.5) + by;
-    return low + (Math.min(count - 1, Math.max(0, index)) + 0.5) * pitch;
+    return low + (viewer.clampIndex(index, count) + 0.5) * pitch;
   };
   grid.mark(row, {
-    x: moved('x', map.x_m, map.size[0], step[0]),
+    x: moved('x', map.x_m, map.size[0], -step[0]),
     y: moved('y', map.y_m, map.size[1], step[1]),
   });
 }

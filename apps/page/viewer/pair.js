@@ -79,12 +79,7 @@ class Pair {
     this.panel = viewer.element(
       'div',
       { class: 'view-panel' },
-      viewer.element(
-        'fieldset',
-        {},
-        viewer.element('legend', {}, 'Compare'),
-        ...[this.name, this.left, this.right, this.slider, swap],
-      ),
+      viewer.group('Compare', this.name, this.left, this.right, this.slider, swap),
       this.bar.element,
       this.readout,
     );

@@ -39,7 +39,7 @@ class Slices {
     this.bar = viewer.createColourBar('colour-bar');
     this.readout = viewer.element('p', { class: 'view-readout', 'aria-live': 'polite' });
     this.note = viewer.element('p', { class: 'view-hint' });
-    this.choice = viewer.element('fieldset', {}, viewer.element('legend', {}, 'Volume'), result, kind);
+    this.choice = viewer.group('Volume', result, kind);
     this.peak = peak;
   }
 
@@ -62,7 +62,7 @@ class Slices {
         (voxel) => this.placeWords(i, voxel),
         (voxel) => this.moveTo(this.state.voxel.map((old, k) => (k === i ? voxel : old)))),
     );
-    const place = viewer.element('fieldset', {}, viewer.element('legend', {}, 'Where it is cut'), ...this.sliders, this.peak);
+    const place = viewer.group('Where it is cut', ...this.sliders, this.peak);
     const panel = viewer.element('div', { class: 'view-panel' }, this.choice, place, this.bar.element, this.readout, this.note);
     viewer.splitBody(this.view, this.grid, panel, (width) => {
       this.width = width;
@@ -138,7 +138,7 @@ class Slices {
   /** Moves the cross to a voxel (the nearest inside) and shows the three slices through it. */
   moveTo(voxel) {
     const { size } = this.volume;
-    this.state.voxel = voxel.map((index, axis) => Math.min(size[axis] - 1, Math.max(0, index)));
+    this.state.voxel = voxel.map((index, axis) => viewer.clampIndex(index, size[axis]));
     this.sliders.forEach((slider, axis) => slider.show(this.state.voxel[axis]));
     const [ix, iy, iz] = this.state.voxel;
     Object.assign(this.view.root.dataset, { ix, iy, iz });
@@ -186,19 +186,19 @@ class Slices {
     }
     const voxel = this.state.voxel.slice();
     for (const [axis, position] of [[shown.across, a], [shown.up, b]]) {
-      voxel[axis] = Math.min(this.volume.size[axis] - 1, Math.max(0, this.voxelAt(axis, position)));
+      voxel[axis] = viewer.clampIndex(this.voxelAt(axis, position), this.volume.size[axis]);
     }
     if (what === 'move') this.describe(voxel);
     else this.moveTo(voxel);
   }
 
   key(shown, event) {
-    const steps = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+    const step = viewer.stepOfKey(event.key);
     const cuts = { PageUp: 1, PageDown: -1 };
     const voxel = this.state.voxel.slice();
-    if (steps[event.key]) {
-      voxel[shown.across] += steps[event.key][0] * (shown.reversed ? -1 : 1);
-      voxel[shown.up] += steps[event.key][1];
+    if (step) {
+      voxel[shown.across] += step[0] * (shown.reversed ? -1 : 1);
+      voxel[shown.up] += step[1];
     } else if (cuts[event.key]) {
       voxel[shown.cut] += cuts[event.key];
     } else {

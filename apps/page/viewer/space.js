@@ -70,10 +70,6 @@ class Space {
     this.volumeBar = viewer.createColourBar('volume-bar', 280);
   }
 
-  group(title, ...controls) {
-    return viewer.element('fieldset', {}, viewer.element('legend', {}, title), ...controls);
-  }
-
   pointControls(withPoints) {
     const boxes = withPoints.map((index) => {
       const isOn = this.state.results.has(index);
@@ -94,7 +90,7 @@ class Space {
         this.state.pointSize = value;
         this.update();
       });
-    return this.group('Points', viewer.element('div', { class: 'choices' }, ...boxes), colour, size);
+    return viewer.group('Points', viewer.element('div', { class: 'choices' }, ...boxes), colour, size);
   }
 
   volumeControls(withVolume) {
@@ -103,7 +99,7 @@ class Space {
       this.showVolume();
     };
     const names = withVolume.map((index) => [index, this.results[index].name]);
-    return this.group(
+    return viewer.group(
       'Volume',
       viewer.select('Show', 'volume-mode', kModes, this.state.mode, set('mode', String)),
       viewer.select('Of', 'volume-of', names, this.state.volumeOf, set('volumeOf', Number)),
@@ -133,7 +129,7 @@ class Space {
     });
     add('Hidden truth', 'truth', truth, (on) => { if (this.truth) this.truth.visible = on; });
     add('Axes', 'axes', true, (on) => { this.axes.group.visible = on; });
-    return this.group('Scene', viewer.element('div', { class: 'choices' }, ...parts));
+    return viewer.group('Scene', viewer.element('div', { class: 'choices' }, ...parts));
   }
 
   assemble() {

@@ -174,9 +174,8 @@ class Stage {
 
   /** Arrow keys turn, with Shift they shift; plus and minus come nearer and go away. */
   key(event) {
-    const turns = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
     const zooms = { '+': 0.9, '=': 0.9, '-': 1 / 0.9 };
-    const step = turns[event.key];
+    const step = viewer.stepOfKey(event.key);
     if (step && event.shiftKey) this.shift(...step);
     else if (step) this.turn(...step);
     else if (zooms[event.key]) this.zoom(zooms[event.key]);
