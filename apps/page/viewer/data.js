@@ -103,6 +103,10 @@ viewer.loadPoints = async function (description) {
   return positions;
 };
 
+/** The results for which `isWanted(result)` holds, with their indices. */
+viewer.resultsWith = (results, isWanted) =>
+  results.map((result, index) => ({ result, index })).filter(({ result }) => isWanted(result));
+
 viewer.isTriple = (numbers) => Array.isArray(numbers) && numbers.length === 3 && numbers.every(Number.isFinite);
 
 viewer.isRange = (numbers) => Array.isArray(numbers) && numbers.length === 2 && numbers.every(Number.isFinite);

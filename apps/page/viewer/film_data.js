@@ -61,14 +61,14 @@ class FilmData {
 
   /** A bin in words, such as `path length 1.234 m` (its middle). */
   describe(bin) {
-    const { labels, axis, axis_unit: unit, start, step } = this.film;
+    const { labels, axis, start, step } = this.film;
     if (this.isFrames) return (labels && labels[bin]) || `frame ${bin + 1}`;
     const decimals = Math.min(6, Math.max(3, 1 - Math.floor(Math.log10(step))));
-    return `${axis} ${viewer.withUnit(viewer.formatFixed(start + (bin + 0.5) * step, decimals), unit)}`;
+    return `${axis} ${viewer.withUnit(viewer.formatFixed(start + (bin + 0.5) * step, decimals), 'm')}`;
   }
 
   axisTitle() {
-    return this.isFrames ? 'frame' : viewer.titleWithUnit(this.film.axis, this.film.axis_unit);
+    return this.isFrames ? 'frame' : viewer.titleWithUnit(this.film.axis, 'm');
   }
 
   valueText(value) {

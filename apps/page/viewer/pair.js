@@ -4,9 +4,7 @@
 const kTallest = 560;  // pixels
 const kHandle = 11;    // pixels, radius of the divider's handle
 
-function columnsWith(results, name) {
-  return results.map((result, index) => ({ result, index })).filter(({ result }) => viewer.mapOf(result, name));
-}
+const columnsWith = (results, name) => viewer.resultsWith(results, (result) => viewer.mapOf(result, name));
 
 const optionsOf = (columns) => columns.map(({ result, index }) => [index, result.name]);
 

@@ -22,9 +22,12 @@ viewer.createPlot = function (options) {
     'data-control': options.control,
     tabindex: options.focusable ? 0 : null,
   });
+  const margins = options.margins === null ? kNoMargins : Object.assign({}, kMargins, options.margins);
   const plot = {
     canvas,
-    margins: options.margins === null ? kNoMargins : Object.assign({}, kMargins, options.margins),
+    margins,
+    sides: margins.left + margins.right,
+    ends: margins.top + margins.bottom,
     area: { left: 0, top: 0, width: 0, height: 0 },
     x: null,
     y: null,
@@ -55,19 +58,17 @@ function resize(plot, width, height) {
   plot.area = {
     left: margins.left,
     top: margins.top,
-    width: Math.max(1, width - margins.left - margins.right),
-    height: Math.max(1, height - margins.top - margins.bottom),
+    width: Math.max(1, width - plot.sides),
+    height: Math.max(1, height - plot.ends),
   };
   plot.draw();
 }
 
 /** Gives a plot the size at which a metre is as long on x as on y; returns pixels per metre. */
 viewer.fitToScale = function (plot, maxWidth, maxHeight) {
-  const { margins, x, y } = plot;
+  const { sides, ends, x, y } = plot;
   const spanX = x.scale.high - x.scale.low;
   const spanY = y.scale.high - y.scale.low;
-  const sides = margins.left + margins.right;
-  const ends = margins.top + margins.bottom;
   const perMetre = Math.min((maxWidth - sides) / spanX, (maxHeight - ends) / spanY);
   plot.resize(spanX * perMetre + sides, spanY * perMetre + ends);
   return perMetre;

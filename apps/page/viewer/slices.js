@@ -212,9 +212,7 @@ class Slices {
   layOut() {
     if (!this.width || !this.volume) return;
     const [x, y, z] = this.volume.edges.map(([low, high]) => high - low);
-    const { margins } = this.plots[0];
-    const sides = margins.left + margins.right;
-    const ends = margins.top + margins.bottom;
+    const { sides, ends } = this.plots[0];
     const isStacked = this.width < kStackBelow;
     const perMetre = isStacked
       ? (this.width - sides) / Math.max(x, z)
@@ -228,9 +226,7 @@ class Slices {
 }
 
 viewer.views.slices = async function (view) {
-  const choices = view.metadata.results
-    .map((result, index) => ({ result, index }))
-    .filter(({ result }) => result.volume);
+  const choices = viewer.resultsWith(view.metadata.results, (result) => result.volume);
   if (choices.length === 0) return view.hide();
   await new Slices(view, choices).load();
 };
