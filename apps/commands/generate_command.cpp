@@ -118,7 +118,7 @@ void make(const GenerateArguments& arguments, bool prints_script) {
         result.items_written,
         result.shards_there,
         result.seconds,
-        total_seconds(result.profile) / made,
+        result.profile.total() / made,
         shares_text(result.profile));
 }
 

@@ -8,7 +8,7 @@
 #include "apps/progress_bar.h"
 #include "apps/run_program.h"
 #include "apps/terminal.h"
-#include "nlos/canvas/animated_png.h"
+#include "nlos/canvas/png_file.h"
 #include "nlos/layouts/layout_guess.h"
 #include "nlos/pictures/film.h"
 #include "nlos/pictures/picture.h"

@@ -4,11 +4,10 @@
 #include "renderer/core/output_file.h"
 #include "renderer/core/parallel.h"
 
-#include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>
-#include <limits>
 #include <set>
 
 namespace apps {
@@ -54,17 +53,10 @@ void add_programs(DatasetIndex& index) {
     std::set<std::string> programs;
     for (const Manifest& shard : index.shards) programs.insert(shard.program);
     if (programs.size() < 2) return;
-    std::string text = "shards of several versions are mixed:";
-    for (const std::string& program : programs) text += " " + program + ";";
-    text.back() = ' ';
-    index.doubts.push_back(text + "their items may differ in the last bits");
-}
-
-core::Json describe_shard(const Manifest& shard) {
-    return {{"file", shard.file},
-            {"items", {shard.items.begin, shard.items.end}},
-            {"bytes", shard.bytes},
-            {"xxh128", shard.checksum}};
+    index.doubts.push_back(
+        fmt::format("shards of several versions are mixed: {} their items may differ in the last "
+                    "bits",
+                    fmt::join(programs, "; ")));
 }
 
 }  // namespace
@@ -109,41 +101,29 @@ DatasetTotals totals_of(const DatasetIndex& index) {
     for (const Manifest& shard : index.shards) {
         totals.items += shard.items.size();
         totals.bytes += shard.bytes;
-        for (std::size_t i = 0; i < kNumItemSteps; ++i) totals.profile[i] += shard.profile[i];
-        totals.broken_meshes.insert(shard.broken_meshes.begin(), shard.broken_meshes.end());
-        totals.dark_items += shard.dark_items;
-        totals.clipped_counts += shard.clipped_counts;
+        totals.add(shard);
     }
     return totals;
 }
 
 std::map<std::string, DrawnHistogram> drawn_histograms(const DatasetIndex& index) {
-    std::map<std::string, DrawnHistogram> histograms;
+    std::map<std::string, std::vector<double>> drawn;
     for (const Manifest& shard : index.shards) {
         for (const auto& [key, values] : shard.drawn) {
-            auto& histogram =
-                histograms
-                    .try_emplace(key,
-                                 DrawnHistogram{std::numeric_limits<double>::infinity(),
-                                                -std::numeric_limits<double>::infinity(),
-                                                std::vector<std::size_t>(kHistogramBins)})
-                    .first->second;
-            for (const double value : values) {
-                histogram.low = std::min(histogram.low, value);
-                histogram.high = std::max(histogram.high, value);
-            }
+            drawn[key].insert(drawn[key].end(), values.begin(), values.end());
         }
     }
-    for (const Manifest& shard : index.shards) {
-        for (const auto& [key, values] : shard.drawn) {
-            DrawnHistogram& histogram = histograms.at(key);
-            const double width = histogram.high - histogram.low;
-            for (const double value : values) {
-                const double place = width > 0.0 ? (value - histogram.low) / width : 0.0;
-                const auto bin = static_cast<std::size_t>(place * kHistogramBins);
-                ++histogram.counts[std::min(bin, kHistogramBins - 1)];
-            }
+    std::map<std::string, DrawnHistogram> histograms;
+    for (const auto& [key, values] : drawn) {
+        if (values.empty()) continue;
+        const auto [low, high] = std::ranges::minmax(values);
+        std::vector<std::size_t> counts(kHistogramBins);
+        for (const double value : values) {
+            const double place = high > low ? (value - low) / (high - low) : 0.0;
+            const auto bin = static_cast<std::size_t>(place * kHistogramBins);
+            ++counts[std::min(bin, kHistogramBins - 1)];
         }
+        histograms[key] = {low, high, std::move(counts)};
     }
     return histograms;
 }
@@ -163,14 +143,17 @@ std::string write_index(const DatasetIndex& index, const std::string& folder) {
                        {"program", index.shards.front().program},
                        {"items", index.items},
                        {"shards", core::Json::array()}};
-    for (const Manifest& shard : index.shards) json["shards"].push_back(describe_shard(shard));
+    for (const Manifest& shard : index.shards) {
+        json["shards"].push_back({{"file", shard.file},
+                                  {"items", write_value(shard.items)},
+                                  {"bytes", shard.bytes},
+                                  {"xxh128", shard.checksum}});
+    }
     const DatasetTotals totals = totals_of(index);
     json["broken_meshes"] = totals.broken_meshes;
     json["dark_items"] = totals.dark_items;
     json["clipped_counts"] = totals.clipped_counts;
-    for (const auto& [step, name] : core::EnumNames<ItemStep>::value) {
-        json["cpu_seconds"][std::string(name)] = totals.profile[static_cast<std::size_t>(step)];
-    }
+    json["cpu_seconds"] = core::write_value(totals.profile);
     for (const auto& [key, histogram] : drawn_histograms(index)) {
         json["drawn"][key] = {
             {"low", histogram.low}, {"high", histogram.high}, {"counts", histogram.counts}};

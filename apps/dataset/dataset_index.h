@@ -33,13 +33,9 @@ DatasetIndex read_dataset(const std::string& folder, ShardCheck check);
 std::string write_index(const DatasetIndex& index, const std::string& folder);
 
 /// What all shards together say.
-struct DatasetTotals {
+struct DatasetTotals : ItemTotals {
     std::uint64_t items = 0;
     std::uint64_t bytes = 0;
-    ItemProfile profile{};
-    std::map<std::string, std::string> broken_meshes;
-    std::size_t dark_items = 0;
-    std::size_t clipped_counts = 0;
 };
 DatasetTotals totals_of(const DatasetIndex& index);
 

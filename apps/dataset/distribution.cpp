@@ -16,15 +16,6 @@ constexpr const char* kForms =
     R"(a value, or {"uniform": [a, b]}, {"log_uniform": [a, b]}, {"normal": [mean, deviation]}, )"
     R"({"integers": [first, last]} or {"choices": [x, y, ...]})";
 
-struct NamedKind {
-    const char* name;
-    Kind kind;
-};
-constexpr std::array<NamedKind, 4> kOfTwoNumbers{{{"uniform", Kind::Uniform},
-                                                  {"log_uniform", Kind::LogUniform},
-                                                  {"normal", Kind::Normal},
-                                                  {"integers", Kind::Integers}}};
-
 void read_two_numbers(const core::Json& json,
                       const std::string& where,
                       Distribution& distribution) {
@@ -90,31 +81,24 @@ void read_value(const core::Json& json, const std::string& where, Distribution& 
     const core::Json& content = json.begin().value();
     const std::string key = core::join_key(where, name);
     distribution = {};
-    if (name == "choices") {
-        if (!content.is_array() || content.empty()) {
-            core::throw_wrong_type(key, content, "a list of at least one value");
-        }
-        distribution.kind = Kind::Choices;
-        distribution.values.assign(content.begin(), content.end());
-        return;
+    for (const auto& [kind, known] : core::EnumNames<Kind>::value) {
+        if (name == known) distribution.kind = kind;
     }
-    const auto* found = std::find_if(
-        kOfTwoNumbers.begin(), kOfTwoNumbers.end(), [&](auto& kind) { return name == kind.name; });
-    if (found == kOfTwoNumbers.end()) core::throw_wrong_type(where, json, kForms);
-    distribution.kind = found->kind;
-    read_two_numbers(content, key, distribution);
+    if (distribution.kind == Kind::Constant) core::throw_wrong_type(where, json, kForms);
+    if (distribution.kind != Kind::Choices) return read_two_numbers(content, key, distribution);
+    if (!content.is_array() || content.empty()) {
+        core::throw_wrong_type(key, content, "a list of at least one value");
+    }
+    distribution.values.assign(content.begin(), content.end());
 }
 
 core::Json write_value(const Distribution& distribution) {
     if (distribution.kind == Kind::Constant) return distribution.values.at(0);
-    if (distribution.kind == Kind::Choices) return {{"choices", distribution.values}};
-    for (const auto& [name, kind] : kOfTwoNumbers) {
-        if (kind != distribution.kind) continue;
-        return {{name,
-                 {number(distribution, distribution.first),
-                  number(distribution, distribution.second)}}};
-    }
-    return nullptr;
+    const std::string name(core::enum_name(distribution.kind));
+    if (distribution.kind == Kind::Choices) return {{name, distribution.values}};
+    return {
+        {name,
+         {number(distribution, distribution.first), number(distribution, distribution.second)}}};
 }
 
 core::Json draw(const Distribution& distribution, core::Rng& rng) {

@@ -52,3 +52,9 @@ void read_value(const core::Json& json, const std::string& where, DrawTable& tab
 core::Json write_value(const DrawTable& table);
 
 }  // namespace apps
+
+template <>
+struct core::EnumNames<apps::Distribution::Kind> {
+    static constexpr auto value = names_from_zero<apps::Distribution::Kind>(
+        "constant", "uniform", "log_uniform", "normal", "integers", "choices");
+};

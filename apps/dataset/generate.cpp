@@ -23,10 +23,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kRecipeFile = "recipe.json";
 
-std::string file_name(const Recipe& recipe, std::uint64_t shard) {
-    return shard_name(shard) + (recipe.format == DatasetFormat::Hdf5 ? ".h5" : ".tar");
-}
-
 /// Numbers among the drawn values and those of objects, by key.
 void note_drawn(const core::Json& parameters, std::map<std::string, std::vector<double>>& drawn) {
     const auto note = [&](const std::string& key, const core::Json& value) {
@@ -61,15 +57,13 @@ MadeItem make_packed(Dataset& dataset, std::uint64_t number, const core::Progres
             made.preview = preview_panels(dataset.recipe(), made.item);
         const core::ThreadStopwatch clock;
         made.packed = pack_item(dataset.recipe(), made.item);
-        made.item.profile[static_cast<std::size_t>(ItemStep::Packing)] += clock.seconds();
+        made.item.profile.packing += clock.seconds();
     });
     return made;
 }
 
 void note_item(Dataset& dataset, const Item& item, Manifest& manifest) {
-    for (std::size_t step = 0; step < kNumItemSteps; ++step) {
-        manifest.profile[step] += item.profile[step];
-    }
+    manifest.profile.add(item.profile);
     for (const std::size_t index : item.broken_meshes) {
         manifest.broken_meshes[dataset.meshes().name(index)] = dataset.meshes().why_broken(index);
     }
@@ -90,7 +84,8 @@ std::optional<Manifest> make_shard(Dataset& dataset,
     Manifest manifest;
     manifest.fingerprint = dataset.fingerprint();
     manifest.program = program;
-    manifest.file = file_name(dataset.recipe(), shard);
+    const bool is_hdf5 = dataset.recipe().format == DatasetFormat::Hdf5;
+    manifest.file = shard_name(shard) + (is_hdf5 ? ".h5" : ".tar");
     manifest.items = items;
     const std::string path = (fs::path(dataset.folder()) / manifest.file).string();
     std::vector<nlos::Panel> preview;
@@ -106,7 +101,7 @@ std::optional<Manifest> make_shard(Dataset& dataset,
             note_item(dataset, made.item, manifest);
             if (!made.preview.empty()) preview_columns = made.preview.size();
             std::move(made.preview.begin(), made.preview.end(), std::back_inserter(preview));
-            manifest.profile[static_cast<std::size_t>(ItemStep::Packing)] += writing.seconds();
+            manifest.profile.packing += writing.seconds();
             return next_item();
         });
     if (!is_whole) return std::nullopt;
@@ -152,15 +147,6 @@ std::vector<MissingShard> find_missing(const Dataset& dataset,
         missing.push_back({shard, items});
     }
     return missing;
-}
-
-void add_to_result(const Manifest& manifest, GenerateResult& result) {
-    ++result.shards_written;
-    result.items_written += manifest.items.size();
-    for (std::size_t i = 0; i < kNumItemSteps; ++i) result.profile[i] += manifest.profile[i];
-    result.broken_meshes.insert(manifest.broken_meshes.begin(), manifest.broken_meshes.end());
-    result.dark_items += manifest.dark_items;
-    result.clipped_counts += manifest.clipped_counts;
 }
 
 }  // namespace
@@ -270,7 +256,9 @@ GenerateResult generate(Dataset& dataset,
             break;
         }
         write_manifest(*manifest, manifest_path(dataset.folder(), shard.shard));
-        add_to_result(*manifest, result);
+        ++result.shards_written;
+        result.items_written += manifest->items.size();
+        result.add(*manifest);
     }
     result.seconds = clock.seconds();
     return result;

@@ -51,15 +51,11 @@ class Dataset {
 };
 
 /// What a run did.
-struct GenerateResult {
+struct GenerateResult : ItemTotals {
     std::uint64_t shards_written = 0;
     std::uint64_t shards_there = 0;  ///< which were whole before
     std::uint64_t items_written = 0;
     double seconds = 0.0;
-    ItemProfile profile{};
-    std::map<std::string, std::string> broken_meshes;
-    std::size_t dark_items = 0;
-    std::size_t clipped_counts = 0;
     bool interrupted = false;
 };
 

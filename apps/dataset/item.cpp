@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 namespace apps {
 namespace {
@@ -86,8 +85,7 @@ void add_histograms(const std::string& name,
 /// Adds the processor time of this thread, from its construction on, to a step.
 class StepClock {
  public:
-    StepClock(ItemProfile& profile, ItemStep step)
-        : seconds_(profile[static_cast<std::size_t>(step)]) {}
+    explicit StepClock(double& seconds) : seconds_(seconds) {}
     ~StepClock() { seconds_ += clock_.seconds(); }
     StepClock(const StepClock&) = delete;
     StepClock& operator=(const StepClock&) = delete;
@@ -104,7 +102,9 @@ ItemArray column_array(const DepthMap& map,
                        StoredNumber number,
                        const Value& value) {
     std::vector<T> values;
-    for (std::size_t i = 0; i < map.depth_m.size(); ++i) values.push_back(value(i));
+    for (std::size_t i = 0; i < map.depth_m.size(); ++i) {
+        values.push_back(static_cast<T>(value(i)));
+    }
     return make_item_array<T>(name, {map.x_m.size(), map.y_m.size()}, number, values);
 }
 
@@ -135,28 +135,28 @@ ItemArray truth_array(Truth truth,
                       const Recipe& recipe,
                       const ItemPlan& plan,
                       const DepthMap& map) {
+    const auto floats = [&](const char* name, const std::vector<double>& values) {
+        return column_array<float>(
+            map, name, StoredNumber::Float32, [&](std::size_t i) { return values[i]; });
+    };
     switch (truth) {
         case Truth::Normals:
             return normal_array(map);
         case Truth::Albedo:
-            return column_array<float>(map, "albedo", StoredNumber::Float32, [&](std::size_t i) {
-                return static_cast<float>(map.albedo[i]);
-            });
+            return floats("albedo", map.albedo);
         case Truth::Mask:
             return column_array<std::uint8_t>(map, "mask", StoredNumber::UInt8, [&](std::size_t i) {
-                return static_cast<std::uint8_t>(map.is_foreground(i));
+                return map.is_foreground(i);
             });
         case Truth::ObjectIds:
             return column_array<std::int16_t>(
                 map, "object_ids", StoredNumber::Int16, [&](std::size_t i) {
-                    return static_cast<std::int16_t>(map.is_foreground(i) ? map.object[i] : -1);
+                    return map.is_foreground(i) ? map.object[i] : -1;
                 });
         case Truth::Poses:
             return pose_array(recipe, plan);
         default:
-            return column_array<float>(map, "depth", StoredNumber::Float32, [&](std::size_t i) {
-                return static_cast<float>(map.depth_m[i]);
-            });
+            return floats("depth", map.depth_m);
     }
 }
 
@@ -199,17 +199,21 @@ core::Capture record(const core::Capture& capture,
 
 }  // namespace
 
-double total_seconds(const ItemProfile& profile) {
-    return std::accumulate(profile.begin(), profile.end(), 0.0);
+void ItemProfile::add(const ItemProfile& other) {
+    meshes += other.meshes;
+    render += other.render;
+    detector += other.detector;
+    truths += other.truths;
+    packing += other.packing;
 }
 
-std::string shares_text(const ItemProfile& profile) {
-    const double total = total_seconds(profile);
+std::string shares_text(ItemProfile profile) {
+    const double total = profile.total();
     std::string text;
-    for (const auto& [step, name] : core::EnumNames<ItemStep>::value) {
-        const double share = total > 0.0 ? profile[static_cast<std::size_t>(step)] / total : 0.0;
+    for_each_field(profile, [&](const char* name, double seconds, const char*) {
+        const double share = total > 0.0 ? seconds / total : 0.0;
         text += fmt::format("{}{} {:.1f} %", text.empty() ? "" : ", ", name, 100.0 * share);
-    }
+    });
     return text;
 }
 
@@ -218,9 +222,8 @@ Item make_item(const Recipe& recipe,
                std::uint64_t number,
                const core::Progress& progress) {
     Item item;
-    const auto clock = [&](ItemStep step) { return StepClock(item.profile, step); };
     const ItemPlan plan = [&] {
-        const StepClock timed = clock(ItemStep::Meshes);
+        const StepClock timed(item.profile.meshes);
         return plan_item(recipe, meshes, number);
     }();
     item.parameters = plan.parameters;
@@ -228,7 +231,7 @@ Item make_item(const Recipe& recipe,
     const renderer::SceneDescription& description = plan.settings.scene;
     const core::Scan scan = renderer::make_scan(description);
     const auto [scene, result] = [&] {
-        const StepClock timed = clock(ItemStep::Render);
+        const StepClock timed(item.profile.render);
         auto set_up = std::make_unique<renderer::Scene>(
             renderer::make_scene(geometry_of(plan), description, scan));
         auto rendered = renderer::render(
@@ -245,13 +248,13 @@ Item make_item(const Recipe& recipe,
         item.parameters["element_tolerance"] = *result.element_tolerance;
     }
     {
-        const StepClock timed = clock(ItemStep::Detector);
+        const StepClock timed(item.profile.detector);
         add_histograms("H",
                        record(result.capture, plan.settings.detector, item.is_dark),
                        recipe.storage.histograms,
                        item);
     }
-    const StepClock timed = clock(ItemStep::Truths);
+    const StepClock timed(item.profile.truths);
     add_truths(recipe, plan, *scene, result.capture, item);
     return item;
 }

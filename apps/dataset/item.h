@@ -6,7 +6,6 @@
 #include "nlos/containers/stored_number.h"
 #include "renderer/core/progress.h"
 
-#include <array>
 #include <span>
 #include <string>
 #include <vector>
@@ -32,17 +31,30 @@ ItemArray make_item_array(std::string name,
             {reinterpret_cast<const char*>(values.data()), values.size_bytes()}};
 }
 
-/// Where the time of an item goes.
-enum class ItemStep { Meshes, Render, Detector, Truths, Packing };
-inline constexpr std::size_t kNumItemSteps = 5;
+/// Where the time of items goes: processor seconds per step.
+struct ItemProfile {
+    double meshes = 0.0;
+    double render = 0.0;
+    double detector = 0.0;
+    double truths = 0.0;
+    double packing = 0.0;
 
-/// Processor seconds per step.
-using ItemProfile = std::array<double, kNumItemSteps>;
+    /// The sum of all steps [s].
+    double total() const { return meshes + render + detector + truths + packing; }
+    void add(const ItemProfile& other);
+};
 
-/// The sum of all steps [s].
-double total_seconds(const ItemProfile& profile);
+template <class Visitor>
+void for_each_field(ItemProfile& p, Visitor&& visit) {
+    visit("meshes", p.meshes, "reading and simplifying surfaces");
+    visit("render", p.render, "the light of the scene");
+    visit("detector", p.detector, "what is counted of it");
+    visit("truths", p.truths, "what is known of the scene");
+    visit("packing", p.packing, "compressing and writing");
+}
+
 /// The share of each step, for people.
-std::string shares_text(const ItemProfile& profile);
+std::string shares_text(ItemProfile profile);
 
 /// One capture of a data set, with what is known of its scene, as it is stored.
 struct Item {
@@ -72,9 +84,3 @@ Item make_item(const Recipe& recipe,
                const core::Progress& progress);
 
 }  // namespace apps
-
-template <>
-struct core::EnumNames<apps::ItemStep> {
-    static constexpr auto value =
-        names_from_zero<apps::ItemStep>("meshes", "render", "detector", "truths", "packing");
-};

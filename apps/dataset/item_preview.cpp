@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/dataset/item_preview.h"
 
+#include "nlos/pictures/image_layout.h"
 #include "nlos/pictures/light_scale.h"
 
 #include <fmt/core.h>
@@ -31,40 +32,33 @@ std::vector<float> values_of(const ItemArray& array) {
 }
 
 /// An image of columns (X, Y) over the wall, as an eye at the wall sees it.
-template <class Value>
-ImagePanel wall_panel(const Recipe& recipe,
-                      const ItemArray& array,
-                      const std::string& title,
-                      const Value& value) {
-    const auto& [width_m, height_m] = recipe.scene.relay_wall.size_m;
-    ImagePanel panel;
-    panel.title = title;
-    panel.width = array.shape[0];
-    panel.height = array.shape[1];
-    for (std::size_t iy = 0; iy < panel.height; ++iy) {
-        for (std::size_t ix = 0; ix < panel.width; ++ix) {
-            panel.values.push_back(value(ix * panel.height + iy));
-        }
+ImagePanel columns_panel(const Recipe& recipe,
+                         const ItemArray& array,
+                         const std::string& title,
+                         const std::vector<float>& values) {
+    const auto& size_m = recipe.scene.relay_wall.size_m;
+    nlos::WallGrid grid;
+    for (const std::size_t axis : {0, 1}) {
+        grid.size[axis] = array.shape[axis];
+        grid.pitch_m[axis] = size_m[axis] / static_cast<double>(array.shape[axis]);
+        grid.first_m[axis] = 0.5 * (grid.pitch_m[axis] - size_m[axis]);
     }
-    panel.x_range = {-0.5 * width_m, 0.5 * width_m};
-    panel.y_range = {-0.5 * height_m, 0.5 * height_m};
-    panel.x_label = "wall x [m]";
-    panel.y_label = "wall y [m]";
-    panel.x_direction = nlos::AxisDirection::Reversed;
+    ImagePanel panel = nlos::wall_panel(grid, values);
+    panel.title = title;
     return panel;
 }
 
 ImagePanel scene_panel(const Recipe& recipe, const Item& item, const ItemArray& normals) {
     const std::vector<float> values = values_of(normals);
     const core::Vec3 from_wall = recipe.scene.relay_wall.normal.normalized();
+    std::vector<float> cosines;
+    for (std::size_t i = 0; i < values.size(); i += 3) {
+        const core::Vec3 normal(values[i], values[i + 1], values[i + 2]);
+        cosines.push_back(static_cast<float>(std::abs(normal.dot(from_wall))));
+    }
+    const auto number = item.parameters.at("item").get<std::uint64_t>();
     ImagePanel panel =
-        wall_panel(recipe,
-                   normals,
-                   fmt::format("item {}: scene", item.parameters.at("item").get<std::uint64_t>()),
-                   [&](std::size_t i) {
-                       const core::Vec3 normal(values[3 * i], values[3 * i + 1], values[3 * i + 2]);
-                       return static_cast<float>(std::abs(normal.dot(from_wall)));
-                   });
+        columns_panel(recipe, normals, fmt::format("item {}: scene", number), cosines);
     panel.colour_map = nlos::ColourMap::Grey;
     panel.value_label = "cosine";
     panel.value_range = {0.0, 1.0};
@@ -79,15 +73,10 @@ ImagePanel streak_panel_of(const Recipe& recipe, const ItemArray& histograms) {
     const std::size_t pairs = values.size() / shape[0];
     const std::size_t ny = shape.size() > 2 ? shape.back() : 1;
     const std::size_t nx = shape.size() > 2 ? shape[shape.size() - 2] : shape.back();
-    ImagePanel panel;
+    ImagePanel panel = nlos::image_of(nx, shape[0], [&](std::size_t ix, std::size_t bin) {
+        return values[bin * pairs + ix * ny + ny / 2];
+    });
     panel.title = "capture, middle row";
-    panel.width = nx;
-    panel.height = shape[0];
-    for (std::size_t bin = 0; bin < shape[0]; ++bin) {
-        for (std::size_t ix = 0; ix < nx; ++ix) {
-            panel.values.push_back(values[bin * pairs + ix * ny + ny / 2]);
-        }
-    }
     panel.x_range = {0.0, static_cast<double>(nx)};
     panel.x_label = "sensing point";
     panel.y_range = {axis.opl_start_m, axis.opl_end_m()};
@@ -111,9 +100,7 @@ std::vector<nlos::Panel> preview_panels(const Recipe& recipe, const Item& item) 
     const auto add = [&](const char* name, const char* title, const char* label) {
         const ItemArray* array = find_array(item, name);
         if (array == nullptr) return;
-        const std::vector<float> values = values_of(*array);
-        ImagePanel panel =
-            wall_panel(recipe, *array, title, [&](std::size_t i) { return values[i]; });
+        ImagePanel panel = columns_panel(recipe, *array, title, values_of(*array));
         panel.value_label = label;
         panel.colour_map = nlos::ColourMap::Viridis;
         panels.push_back(std::move(panel));

@@ -15,41 +15,26 @@ namespace {
 
 namespace fs = std::filesystem;
 
-core::Json write_profile(const ItemProfile& profile) {
-    core::Json json;
-    for (const auto& [step, name] : core::EnumNames<ItemStep>::value) {
-        json[std::string(name)] = profile[static_cast<std::size_t>(step)];
-    }
-    return json;
-}
-
-ItemProfile read_profile(const core::Json& json) {
-    ItemProfile profile{};
-    for (const auto& [step, name] : core::EnumNames<ItemStep>::value) {
-        profile[static_cast<std::size_t>(step)] = json.at(std::string(name)).get<double>();
-    }
-    return profile;
-}
-
-Manifest parse_manifest(const core::Json& json) {
-    Manifest manifest;
-    json.at("fingerprint").get_to(manifest.fingerprint);
-    json.at("program").get_to(manifest.program);
-    json.at("file").get_to(manifest.file);
-    json.at("items").at(0).get_to(manifest.items.begin);
-    json.at("items").at(1).get_to(manifest.items.end);
-    json.at("bytes").get_to(manifest.bytes);
-    json.at("xxh128").get_to(manifest.checksum);
-    json.at("seconds").get_to(manifest.seconds);
-    manifest.profile = read_profile(json.at("cpu_seconds"));
-    json.at("broken_meshes").get_to(manifest.broken_meshes);
-    json.at("dark_items").get_to(manifest.dark_items);
-    json.at("clipped_counts").get_to(manifest.clipped_counts);
-    json.at("drawn").get_to(manifest.drawn);
-    return manifest;
+/// Reads every field, which throws where one lacks or is of another type.
+template <core::SettingsStruct Fields>
+void read_whole(const core::Json& json, Fields& fields) {
+    for_each_field(fields, [&]<class Field>(const char* name, Field& field, const char*) {
+        if constexpr (core::SettingsStruct<Field>) {
+            read_whole(json.at(name), field);
+        } else {
+            json.at(name).get_to(field);
+        }
+    });
 }
 
 }  // namespace
+
+void ItemTotals::add(const ItemTotals& other) {
+    profile.add(other.profile);
+    broken_meshes.insert(other.broken_meshes.begin(), other.broken_meshes.end());
+    dark_items += other.dark_items;
+    clipped_counts += other.clipped_counts;
+}
 
 std::string shard_name(std::uint64_t shard) {
     return fmt::format("shard-{:05}", shard);
@@ -64,19 +49,7 @@ std::string preview_path(const std::string& folder, const std::string& suffix) {
 }
 
 void write_manifest(const Manifest& manifest, const std::string& path) {
-    const core::Json json = {{"fingerprint", manifest.fingerprint},
-                             {"program", manifest.program},
-                             {"file", manifest.file},
-                             {"items", {manifest.items.begin, manifest.items.end}},
-                             {"bytes", manifest.bytes},
-                             {"xxh128", manifest.checksum},
-                             {"seconds", manifest.seconds},
-                             {"cpu_seconds", write_profile(manifest.profile)},
-                             {"broken_meshes", manifest.broken_meshes},
-                             {"dark_items", manifest.dark_items},
-                             {"clipped_counts", manifest.clipped_counts},
-                             {"drawn", manifest.drawn}};
-    core::write_text_file(path, json.dump(1) + "\n");
+    core::write_text_file(path, core::write_value(manifest).dump(1) + "\n");
 }
 
 std::optional<Manifest> read_manifest(const std::string& path) {
@@ -85,11 +58,13 @@ std::optional<Manifest> read_manifest(const std::string& path) {
     text << file.rdbuf();
     const auto json = file ? core::json_if_valid(text.str()) : std::nullopt;
     if (!json) return std::nullopt;
+    Manifest manifest;
     try {
-        return parse_manifest(*json);
+        read_whole(*json, manifest);
     } catch (const core::Json::exception&) {
         return std::nullopt;
     }
+    return manifest;
 }
 
 std::optional<std::string> find_wrong_size(const Manifest& manifest, const std::string& folder) {

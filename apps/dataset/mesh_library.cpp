@@ -5,6 +5,8 @@
 #include "renderer/mesh_file/mesh_file.h"
 #include "renderer/scene/load_geometry.h"
 
+#include <meshoptimizer.h>
+
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
@@ -113,6 +115,37 @@ core::TriangleMesh normalise_mesh(const core::TriangleMesh& mesh, const std::str
     return unit;
 }
 
+core::TriangleMesh simplify_mesh(const core::TriangleMesh& mesh, double tolerance) {
+    std::vector<float> positions;
+    positions.reserve(3 * mesh.vertices.size());
+    for (const core::Vec3& vertex : mesh.vertices) {
+        for (const double coordinate : vertex) positions.push_back(static_cast<float>(coordinate));
+    }
+    constexpr std::size_t kStride = 3 * sizeof(float);
+    const float scale = meshopt_simplifyScale(positions.data(), mesh.vertices.size(), kStride);
+    std::vector<unsigned> corners;
+    for (const auto& triangle : mesh.triangles) {
+        corners.insert(corners.end(), triangle.begin(), triangle.end());
+    }
+    std::vector<unsigned> kept(corners.size());
+    kept.resize(meshopt_simplify(kept.data(),
+                                 corners.data(),
+                                 corners.size(),
+                                 positions.data(),
+                                 mesh.vertices.size(),
+                                 kStride,
+                                 0,
+                                 static_cast<float>(tolerance) / scale,
+                                 0,
+                                 nullptr));
+    core::TriangleMesh simple;
+    simple.vertices = mesh.vertices;
+    for (std::size_t i = 0; i + 2 < kept.size(); i += 3) {
+        simple.triangles.push_back({kept[i], kept[i + 1], kept[i + 2]});
+    }
+    return simple.triangles.empty() ? mesh : normalise_mesh(simple, "simplified mesh");
+}
+
 MeshLibrary::MeshLibrary(const Recipe& recipe)
     : folder_(recipe.meshes.folder),
       shapes_(recipe.meshes.shapes),
@@ -162,7 +195,6 @@ UnitMesh MeshLibrary::load(std::size_t index) const {
     unit.mesh = normalise_mesh(is_file ? one_mesh(renderer::load_geometry(files_[index]))
                                        : make_shape(shapes_[index - files_.size()], kCellsOfShape),
                                unit.name);
-    unit.triangles_of_file = unit.mesh.triangles.size();
     if (tolerance_) unit.mesh = simplify_mesh(unit.mesh, *tolerance_);
     for (const Vec3& vertex : unit.mesh.vertices) {
         unit.radius = std::max(unit.radius, vertex.norm());

@@ -18,14 +18,7 @@ namespace apps {
 struct UnitMesh {
     std::string name;
     core::TriangleMesh mesh;
-    double radius = 0.0;                ///< of a sphere around the origin that holds it
-    std::size_t triangles_of_file = 0;  ///< before simplification
-};
-
-/// A mesh that cannot be used, and why.
-struct BrokenMesh {
-    std::string name;
-    std::string reason;
+    double radius = 0.0;  ///< of a sphere around the origin that holds it
 };
 
 /// The surfaces that a recipe draws from, read when they are asked for; the last ones read are kept

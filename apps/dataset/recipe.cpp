@@ -3,7 +3,6 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <set>
@@ -12,13 +11,6 @@ namespace apps {
 namespace {
 
 namespace fs = std::filesystem;
-
-void validate_meshes(const MeshSource& meshes, const std::string& where) {
-    core::check_ranges(meshes, where);
-    const bool is_empty = meshes.folder.empty() && meshes.files.empty() && meshes.shapes.empty();
-    if (!is_empty) return;
-    throw core::Error(where, "found no source", "must have a folder, files or shapes");
-}
 
 /// Setting keys whose value decides about the shape of an array.
 bool changes_shapes(const std::string& key) {
@@ -77,15 +69,11 @@ void validate_storage(const Recipe& recipe, const ItemSettings& item, const std:
 }
 
 void validate_truths(const Recipe& recipe, const std::string& where) {
-    for (std::size_t i = 0; i < recipe.truths.size(); ++i) {
-        const auto& truths = recipe.truths;
-        const auto begin = truths.begin();
-        if (std::find(begin, begin + static_cast<std::ptrdiff_t>(i), truths[i]) ==
-            begin + static_cast<std::ptrdiff_t>(i)) {
-            continue;
-        }
+    std::set<Truth> named;
+    for (const Truth truth : recipe.truths) {
+        if (named.insert(truth).second) continue;
         throw core::Error(where + "truths",
-                          fmt::format("found {} twice", core::enum_name(truths[i])),
+                          fmt::format("found {} twice", core::enum_name(truth)),
                           "must name each once");
     }
 }
@@ -157,7 +145,12 @@ void validate(const Recipe& recipe, const std::string& where) {
         check_range(*place, {}, where + "objects." + key);  // any number
     }
     validate_counts(recipe, where);
-    validate_meshes(recipe.meshes, where + "meshes");
+    const MeshSource& meshes = recipe.meshes;
+    core::check_ranges(meshes, where + "meshes");
+    if (meshes.folder.empty() && meshes.files.empty() && meshes.shapes.empty()) {
+        throw core::Error(
+            where + "meshes", "found no source", "must have a folder, files or shapes");
+    }
     validate_truths(recipe, where);
     validate_all(recipe, recipe, where);
     validate_draws(recipe, where);

@@ -14,12 +14,8 @@ namespace {
 /// Arrays from this size on are stored as one chunk per item, smaller ones in one piece.
 constexpr std::size_t kLeastChunkBytes = 1024;
 
-std::size_t bytes_of_item(const ItemArray& array) {
-    return nlos::total_bytes(array.shape, nlos::bytes_of(array.number));
-}
-
 bool is_chunked(const ItemArray& array) {
-    return bytes_of_item(array) >= kLeastChunkBytes;
+    return nlos::total_bytes(array.shape, nlos::bytes_of(array.number)) >= kLeastChunkBytes;
 }
 
 class Hdf5Shard : public ShardWriter {

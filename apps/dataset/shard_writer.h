@@ -32,6 +32,14 @@ struct ItemRange {
     bool operator==(const ItemRange&) const = default;
 };
 
+inline void from_json(const core::Json& json, ItemRange& items) {
+    json.at(0).get_to(items.begin);
+    json.at(1).get_to(items.end);
+}
+inline core::Json write_value(const ItemRange& items) {
+    return {items.begin, items.end};
+}
+
 /// A file of consecutive items being written; finish() puts it in place. The same items give the
 /// same bytes.
 class ShardWriter {

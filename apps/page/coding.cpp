@@ -38,16 +38,22 @@ std::string PageArrays::html() const {
     return html;
 }
 
-core::Json add_points(PageArrays& arrays, const std::vector<core::Vec3>& points) {
+core::Json add_points(PageArrays& arrays,
+                      const std::vector<core::Vec3>& points,
+                      const core::Transform& frame_from_world) {
     constexpr double kSteps = std::numeric_limits<std::uint16_t>::max();
+    std::vector<core::Vec3> placed;
     Eigen::AlignedBox3d box;
-    for (const core::Vec3& point : points) box.extend(point);
+    for (const core::Vec3& point : points) {
+        placed.push_back(frame_from_world * point);
+        box.extend(placed.back());
+    }
     if (points.empty()) box.extend(core::Vec3(0.0, 0.0, 0.0));
     const core::Vec3 low = box.min();
     const core::Vec3 high = box.max();
     std::vector<std::uint16_t> codes;
     codes.reserve(3 * points.size());
-    for (const core::Vec3& point : points) {
+    for (const core::Vec3& point : placed) {
         for (int axis = 0; axis < 3; ++axis) {
             const double size = high[axis] - low[axis];
             const double share = size > 0.0 ? (point[axis] - low[axis]) / size : 0.0;

@@ -100,6 +100,10 @@ LinearCoding coding_of(const Values& values) {
 }
 
 /// Points as steps of 1/65535 of the box around them: x, y, z by turns, with the box.
-core::Json add_points(PageArrays& arrays, const std::vector<core::Vec3>& points);
+///
+/// frame_from_world   of the page, in which they are stored
+core::Json add_points(PageArrays& arrays,
+                      const std::vector<core::Vec3>& points,
+                      const core::Transform& frame_from_world = core::Transform::Identity());
 
 }  // namespace apps

@@ -17,25 +17,20 @@ constexpr double kQuietShare = 0.001;  // of all light, before and after the bin
 /// Whose histogram each cell shows, cells in the film's order.
 std::vector<std::size_t> pairs_of_cells(const core::Scan& scan,
                                         const std::optional<nlos::WallGrid>& grid) {
-    std::vector<std::size_t> pairs;
     if (scan.camera) {
-        for (std::size_t row = 0; row < scan.camera->height(); ++row) {
-            for (std::size_t column = 0; column < scan.camera->width(); ++column) {
-                pairs.push_back(column * scan.camera->height() + row);
-            }
+        std::vector<std::size_t> pairs(scan.camera->num_pixels());
+        const std::size_t width = scan.camera->width();
+        const std::size_t height = scan.camera->height();
+        for (std::size_t cell = 0; cell < pairs.size(); ++cell) {
+            pairs[cell] = cell % width * height + cell / width;
         }
         return pairs;
     }
-    if (!grid) {
-        for (std::size_t i = 0; i < scan.sensing.size(); ++i) {
-            pairs.push_back(nlos::pair_of(scan, i));
-        }
-        return pairs;
-    }
-    for (std::size_t ix = 0; ix < grid->size[0]; ++ix) {
-        for (std::size_t iy = 0; iy < grid->size[1]; ++iy) {
-            pairs.push_back(nlos::pair_of(scan, grid->point(ix, iy)));
-        }
+    std::vector<std::size_t> pairs(grid ? grid->size[0] * grid->size[1] : scan.sensing.size());
+    for (std::size_t cell = 0; cell < pairs.size(); ++cell) {
+        const std::size_t point =
+            grid ? grid->point(cell / grid->size[1], cell % grid->size[1]) : cell;
+        pairs[cell] = nlos::pair_of(scan, point);
     }
     return pairs;
 }
@@ -150,11 +145,6 @@ void show_time(const core::Capture& capture,
     code_light(light, film);
 }
 
-const char* kind_name(FilmView::Kind kind) {
-    if (kind == FilmView::Kind::Wall) return "wall";
-    return kind == FilmView::Kind::Camera ? "camera" : "list";
-}
-
 }  // namespace
 
 FilmView film_view(const core::Capture& capture, const std::string& name) {
@@ -195,34 +185,25 @@ FilmView halved(const FilmView& film) {
 core::Json film_json(const FilmView& film,
                      const core::Transform& frame_from_world,
                      PageArrays& arrays) {
+    constexpr std::array kKinds{"wall", "camera", "list"};  // in the order of FilmView::Kind
     core::Json values = arrays.add(film.codes);
     values.update({{"coding", "log"}, {"low", film.coding.low}, {"high", film.coding.high}});
     core::Json json{{"name", film.name},
                     {"detail", film.detail},
                     {"unit", film.unit},
-                    {"kind", kind_name(film.kind)},
+                    {"kind", kKinds[static_cast<std::size_t>(film.kind)]},
                     {"size", film.size},
-                    {"x_m", nullptr},
-                    {"y_m", nullptr},
-                    {"positions", nullptr},
                     {"axis", film.labels.empty() ? "path length" : "frame"},
-                    {"labels", nullptr},
                     {"bins", film.num_bins},
                     {"start", film.start_m},
                     {"step", film.step_m},
-                    {"axis_unit", "m"},
                     {"values", std::move(values)},
                     {"whole", film.whole},
                     {"first_lit", film.lit_bins[0]},
-                    {"last_lit", film.lit_bins[1]},
-                    {"reduced", ""}};
+                    {"last_lit", film.lit_bins[1]}};
     if (film.kind == FilmView::Kind::Wall) json.update({{"x_m", film.x_m}, {"y_m", film.y_m}});
     if (film.kind == FilmView::Kind::List) {
-        std::vector<core::Vec3> positions;
-        for (const core::Vec3& point : film.positions) {
-            positions.push_back(frame_from_world * point);
-        }
-        json["positions"] = add_points(arrays, positions);
+        json["positions"] = add_points(arrays, film.positions, frame_from_world);
     }
     if (!film.labels.empty()) json["labels"] = film.labels;
     if (film.merged > 1) {

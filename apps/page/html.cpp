@@ -32,13 +32,9 @@ std::string escape_html(std::string_view text) {
     std::string escaped;
     escaped.reserve(text.size());
     for (const char c : text) {
-        const auto special = std::find_if(
-            kEntities.begin(), kEntities.end(), [&](const auto& e) { return e.first == c; });
-        if (special == kEntities.end()) {
-            escaped += c;
-        } else {
-            escaped += special->second;
-        }
+        const auto* special =
+            std::ranges::find(kEntities, c, &decltype(kEntities)::value_type::first);
+        escaped += special == kEntities.end() ? std::string_view(&c, 1) : special->second;
     }
     return escaped;
 }

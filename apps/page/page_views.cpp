@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "apps/page/page_views.h"
 
+#include "apps/dataset/mesh_library.h"
+#include "apps/scene_truth.h"
 #include "nlos/preparation/wall_frame.h"
+#include "renderer/scene/load_geometry.h"
+
+#include <filesystem>
 
 namespace apps {
 
@@ -11,6 +16,23 @@ extern const char* const kViewerScripts;
 namespace {
 
 constexpr int kMostHalvings = 12;
+constexpr std::size_t kMaxTriangles = 60'000;  // a page turns them at once, in about a megabyte
+constexpr double kSimplified = 0.002;          // of the mesh's size, by which surfaces may move
+
+/// `scenes/letter/scene.json` is called `letter`.
+std::string scene_name(const std::string& path) {
+    const std::filesystem::path file(path);
+    const std::string folder = file.parent_path().filename().string();
+    return file.stem() == "scene" && !folder.empty() ? folder : file.filename().string();
+}
+
+core::TriangleMesh hidden_surfaces(const renderer::SceneGeometry& geometry) {
+    core::TriangleMesh mesh;
+    for (const renderer::Object& object : geometry.objects) {
+        if (object.role == renderer::Role::Hidden) core::append_mesh(object.mesh, mesh);
+    }
+    return mesh.triangles.size() > kMaxTriangles ? simplify_mesh(mesh, kSimplified) : mesh;
+}
 
 /// The wall that everything on the page is placed by.
 struct PageWall {
@@ -49,27 +71,13 @@ PageWall page_wall(const PageViews& views) {
     return wall;
 }
 
-core::Json wall_points_json(const core::WallPoints& points,
-                            const PageWall& wall,
-                            PageArrays& arrays) {
-    std::vector<core::Vec3> placed;
-    for (const core::Vec3& point : points.positions) {
-        placed.push_back(wall.frame_from_world * point);
-    }
-    return add_points(arrays, placed);
-}
-
 core::Json mesh_json(const TruthView& truth, const PageWall& wall, PageArrays& arrays) {
-    std::vector<core::Vec3> vertices;
-    for (const core::Vec3& vertex : truth.mesh.vertices) {
-        vertices.push_back(wall.frame_from_world * vertex);
-    }
     std::vector<std::uint32_t> corners;
     for (const auto& triangle : truth.mesh.triangles) {
         corners.insert(corners.end(), triangle.begin(), triangle.end());
     }
     return {{"name", truth.name},
-            {"positions", add_points(arrays, vertices)},
+            {"positions", add_points(arrays, truth.mesh.vertices, wall.frame_from_world)},
             {"triangles", arrays.add(corners)}};
 }
 
@@ -77,16 +85,16 @@ core::Json views_json(const PageViews& views, int halvings, PageArrays& arrays) 
     const PageWall wall = page_wall(views);
     core::Json json{{"version", 1},
                     {"wall", wall.footprint},
-                    {"sensing", nullptr},
-                    {"illumination", nullptr},
-                    {"truth", nullptr},
                     {"results", core::Json::array()},
                     {"best", views.best + (views.truth ? 1 : 0)},
                     {"films", core::Json::array()}};
     if (views.scan && !views.scan->camera) {
-        json["sensing"] = wall_points_json(views.scan->sensing, wall, arrays);
+        const auto add = [&](const core::WallPoints& points) {
+            return add_points(arrays, points.positions, wall.frame_from_world);
+        };
+        json["sensing"] = add(views.scan->sensing);
         if (views.scan->pattern != core::ScanPattern::Confocal) {
-            json["illumination"] = wall_points_json(views.scan->illumination, wall, arrays);
+            json["illumination"] = add(views.scan->illumination);
         }
     }
     std::optional<core::DepthMap> true_depth;
@@ -122,6 +130,21 @@ std::string script_json(const core::Json& json) {
 }
 
 }  // namespace
+
+TruthView truth_view(const std::string& scene_path, std::vector<ResultView>& results) {
+    const renderer::SceneDescription description = renderer::read_scene_description(scene_path, {});
+    renderer::SceneGeometry geometry = renderer::load_geometry(description);
+    TruthView view{scene_name(scene_path), hidden_surfaces(geometry), {}};
+    const SceneTruth truth(description, std::move(geometry));
+    for (ResultView& result : results) {
+        const core::DepthMap& columns = result.depth;
+        if (columns.depth_m.empty()) continue;
+        result.truth = truth.depth_map(columns.world_from_wall, columns.x_m, columns.y_m);
+    }
+    const bool has_columns = !results.empty() && results.front().truth.has_value();
+    view.depth = has_columns ? *results.front().truth : truth.depth_map();
+    return view;
+}
 
 std::string views_html(const PageViews& views, double limit_bytes) {
     if (views.empty()) return "";

@@ -29,78 +29,91 @@ VolumeView volume_view(const nlos::Volume& volume) {
     return view;
 }
 
-/// How a map looks: what its values are and how they become colours.
-struct MapStyle {
-    const char* name;
-    const char* unit;
-    const char* colours;
-    Range range;
-};
-
-/// A map of columns of the wall, stored [x][y].
-core::Json map_json(const core::DepthMap& columns,
-                    const std::vector<double>& values,
-                    const MapStyle& style,
-                    PageArrays& arrays) {
-    return {{"name", style.name},
-            {"unit", style.unit},
-            {"colours", style.colours},
-            {"range", style.range},
-            {"size", {columns.x_m.size(), columns.y_m.size()}},
-            {"x_m", nlos::cell_edges(columns.x_m)},
-            {"y_m", nlos::cell_edges(columns.y_m)},
-            {"values", coding_of(values).add<std::uint16_t>(arrays, values)}};
-}
-
 std::vector<double> scaled(std::vector<double> values, double factor) {
     for (double& value : values) value *= factor;
     return values;
 }
 
 std::vector<double> errors_mm(const ResultView& result) {
-    std::vector<double> errors(result.depth.depth_m.size());
-    for (std::size_t i = 0; i < errors.size(); ++i) {
-        errors[i] = 1e3 * (result.depth.depth_m[i] - result.truth->depth_m[i]);
+    std::vector<double> errors;
+    for (std::size_t i = 0; result.truth && i < result.depth.depth_m.size(); ++i) {
+        errors.push_back(1e3 * (result.depth.depth_m[i] - result.truth->depth_m[i]));
     }
     return errors;
 }
 
+/// What is known of every column of the wall, and how that becomes colours.
+struct ColumnQuantity {
+    const char* name;
+    const char* unit;
+    const char* colours;
+    Range range;
+    std::vector<double> values;  ///< stored [x][y]; empty: not known
+    bool is_of_points = true;    ///< shown of the surface's points, too
+};
+
+std::vector<ColumnQuantity> quantities_of(const ResultView& result, const MapScales& scales) {
+    const Range error_range{-scales.error_mm, scales.error_mm};
+    const Range sigma_range{0.0, scales.sigma_mm};
+    const Range shares{0.0, 1.0};
+    const std::vector<double> sigma_mm = scaled(result.sigma_m, 1e3);
+    const std::vector<double> brightest(result.projection.begin(), result.projection.end());
+    return {{"Depth", "m", "depth", scales.depth_m, result.depth.depth_m},
+            {"Depth error", "mm", "diverging", error_range, errors_mm(result)},
+            {"Maximum projection", "", "heat", shares, brightest, false},
+            {"Standard deviation of depth", "mm", "depth", sigma_range, sigma_mm},
+            {"Probability of a surface", "", "share", shares, result.probability, false}};
+}
+
+/// values   of the quantity, at columns or at points
+core::Json quantity_json(const ColumnQuantity& quantity,
+                         const std::vector<double>& values,
+                         PageArrays& arrays) {
+    return {{"name", quantity.name},
+            {"unit", quantity.unit},
+            {"colours", quantity.colours},
+            {"range", quantity.range},
+            {"values", coding_of(values).add<std::uint16_t>(arrays, values)}};
+}
+
+core::Json maps_json(const core::DepthMap& columns,
+                     const std::vector<ColumnQuantity>& quantities,
+                     PageArrays& arrays) {
+    core::Json maps = core::Json::array();
+    for (const ColumnQuantity& quantity : quantities) {
+        if (quantity.values.empty()) continue;
+        maps.push_back(quantity_json(quantity, quantity.values, arrays));
+        maps.back().update({{"size", {columns.x_m.size(), columns.y_m.size()}},
+                            {"x_m", nlos::cell_edges(columns.x_m)},
+                            {"y_m", nlos::cell_edges(columns.y_m)}});
+    }
+    return maps;
+}
+
 /// The foreground of a depth map with what is known of each point.
-core::Json points_json(const ResultView& result,
-                       const MapScales& scales,
+core::Json points_json(const core::DepthMap& depth,
+                       const std::vector<ColumnQuantity>& quantities,
                        const core::Transform& frame_from_world,
                        PageArrays& arrays) {
-    const core::DepthMap& depth = result.depth;
     std::vector<core::Vec3> positions;
     std::vector<std::size_t> columns;
     for (std::size_t ix = 0; ix < depth.x_m.size(); ++ix) {
         for (std::size_t iy = 0; iy < depth.y_m.size(); ++iy) {
             if (!depth.is_foreground(depth.index(ix, iy))) continue;
             columns.push_back(depth.index(ix, iy));
-            positions.push_back(frame_from_world * depth.point_world(ix, iy));
+            positions.push_back(depth.point_world(ix, iy));
         }
     }
     if (positions.empty()) return nullptr;
     core::Json fields = core::Json::array();
-    const auto add = [&](const std::vector<double>& of_columns, const MapStyle& style) {
+    for (const ColumnQuantity& quantity : quantities) {
+        if (quantity.values.empty() || !quantity.is_of_points) continue;
         std::vector<double> values;
-        for (const std::size_t column : columns) values.push_back(of_columns[column]);
-        fields.push_back({{"name", style.name},
-                          {"unit", style.unit},
-                          {"colours", style.colours},
-                          {"range", style.range},
-                          {"values", coding_of(values).add<std::uint16_t>(arrays, values)}});
-    };
-    add(depth.depth_m, {"Depth", "m", "depth", scales.depth_m});
-    if (result.truth) {
-        const Range range{-scales.error_mm, scales.error_mm};
-        add(errors_mm(result), {"Depth error", "mm", "diverging", range});
+        for (const std::size_t column : columns) values.push_back(quantity.values[column]);
+        fields.push_back(quantity_json(quantity, values, arrays));
     }
-    if (!result.sigma_m.empty()) {
-        add(scaled(result.sigma_m, 1e3),
-            {"Standard deviation of depth", "mm", "depth", {0.0, scales.sigma_mm}});
-    }
-    return {{"positions", add_points(arrays, positions)}, {"fields", std::move(fields)}};
+    return {{"positions", add_points(arrays, positions, frame_from_world)},
+            {"fields", std::move(fields)}};
 }
 
 core::Json volume_json(VolumeView volume, int halvings, PageArrays& arrays) {
@@ -195,28 +208,15 @@ core::Json result_json(const ResultView& result,
                        const core::Transform& frame_from_world,
                        int halvings,
                        PageArrays& arrays) {
-    core::Json maps = core::Json::array();
-    const auto add = [&](const std::vector<double>& values, const MapStyle& style) {
-        if (!values.empty()) maps.push_back(map_json(result.depth, values, style, arrays));
-    };
-    add(result.depth.depth_m, {"Depth", "m", "depth", scales.depth_m});
-    if (result.truth) {
-        add(errors_mm(result),
-            {"Depth error", "mm", "diverging", {-scales.error_mm, scales.error_mm}});
-    }
-    add({result.projection.begin(), result.projection.end()},
-        {"Maximum projection", "", "heat", {0.0, 1.0}});
-    add(scaled(result.sigma_m, 1e3),
-        {"Standard deviation of depth", "mm", "depth", {0.0, scales.sigma_mm}});
-    add(result.probability, {"Probability of a surface", "", "share", {0.0, 1.0}});
+    const std::vector<ColumnQuantity> quantities = quantities_of(result, scales);
     const core::Transform moved = frame_from_world * result.depth.world_from_wall;
     const bool same_wall = moved.isApprox(core::Transform::Identity(), kSameFrame);
     const bool has_volume = same_wall && !result.volume.codes.empty();
     return {{"name", result.name},
             {"detail", result.detail + (same_wall ? "" : ", of another wall")},
             {"is_truth", false},
-            {"maps", std::move(maps)},
-            {"points", points_json(result, scales, frame_from_world, arrays)},
+            {"maps", maps_json(result.depth, quantities, arrays)},
+            {"points", points_json(result.depth, quantities, frame_from_world, arrays)},
             {"volume", has_volume ? volume_json(result.volume, halvings, arrays) : core::Json()}};
 }
 

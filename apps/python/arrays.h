@@ -33,13 +33,18 @@ Array<T> array_view(T* data,
         data, shape.size(), shape.data(), owner, strides.empty() ? nullptr : signed_strides.data()};
 }
 
-/// The same of points or directions, with the three coordinates last.
-inline Array<double> array_view(std::vector<core::Vec3>& vectors,
-                                Extents shape,
-                                nanobind::handle owner) {
-    static_assert(sizeof(core::Vec3) == 3 * sizeof(double));
+/// The same of points, directions or triangles, with their three numbers last.
+template <class Row>
+auto array_view(std::vector<Row>& rows, Extents shape, nanobind::handle owner) {
+    static_assert(sizeof(Row) == 3 * sizeof(*rows[0].data()));
     shape.push_back(3);
-    return array_view(vectors.empty() ? nullptr : vectors.front().data(), shape, owner);
+    return array_view(rows.empty() ? nullptr : rows[0].data(), shape, owner);
+}
+
+/// What deletes an object with the last array that shows its memory.
+template <class T>
+nanobind::capsule owner_of(T* owned) {
+    return {owned, [](void* p) noexcept { delete static_cast<T*>(p); }};
 }
 
 /// An array of its own. Properties return it by rv_policy::reference: by default they would tie it
@@ -47,9 +52,14 @@ inline Array<double> array_view(std::vector<core::Vec3>& vectors,
 template <class T>
 Array<T> array_of(std::vector<T> values, const Extents& shape) {
     auto* const owned = new std::vector<T>(std::move(values));
-    const nanobind::capsule owner(owned,
-                                  [](void* p) noexcept { delete static_cast<std::vector<T>*>(p); });
-    return array_view(owned->data(), shape, owner);
+    return array_view(owned->data(), shape, owner_of(owned));
+}
+
+/// The same of points, directions or triangles.
+template <class Row>
+auto array_of(std::vector<Row> rows) {
+    auto* const owned = new std::vector<Row>(std::move(rows));
+    return array_view(*owned, {owned->size()}, owner_of(owned));
 }
 
 using DoubleArray = nanobind::ndarray<const double, nanobind::device::cpu, nanobind::c_contig>;

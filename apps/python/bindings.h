@@ -5,6 +5,7 @@
 #include "apps/python/json_values.h"
 #include "apps/python/long_call.h"
 #include "calib/fit.h"
+#include "nlos/pictures/picture.h"
 #include "renderer/core/capture/capture.h"
 #include "renderer/material/scene_geometry.h"
 #include "renderer/scene/scene_file.h"
@@ -12,6 +13,7 @@
 #include <nanobind/nanobind.h>
 
 #include <string>
+#include <vector>
 
 namespace python {
 
@@ -34,13 +36,35 @@ struct FitObject {
     calib::FitResult result;
 };
 
+/// What __init__ does to make an object as a function does.
+template <class T, class... Arguments>
+auto constructor(T (*make)(Arguments...)) {
+    return [make](T* self, Arguments... arguments) { new (self) T(make(arguments...)); };
+}
+
+/// Adds picture(format), in PNG, SVG or PDF, and the picture that notebooks show.
+///
+/// panels_of   what is drawn, `columns` to a row
+template <class T>
+void bind_pictures(nanobind::class_<T>& binding,
+                   std::vector<nlos::Panel> (*panels_of)(const T&),
+                   int columns,
+                   const char* meaning) {
+    const auto picture = [=](const T& self, const std::string& format) {
+        const std::string bytes = nlos::encode_panels(
+            panels_of(self), columns, nlos::picture_format("picture." + format));
+        return nanobind::bytes(bytes.data(), bytes.size());
+    };
+    binding.def("picture", picture, nanobind::arg("format") = "png", meaning)
+        .def("_repr_png_", [picture](const T& self) { return picture(self, "png"); });
+}
+
 // What each file adds to the module.
 void bind_scene(nanobind::module_& module);
 void bind_capture(nanobind::module_& module);
 void bind_reconstruction(nanobind::module_& module);
 void bind_fit(nanobind::module_& module);
 void bind_work(nanobind::module_& module);
-void bind_dataset(nanobind::module_& module);
 void bind_operators(nanobind::module_& module);
 void bind_gradients(nanobind::module_& module);
 

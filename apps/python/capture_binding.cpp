@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "apps/python/bindings.h"
 #include "apps/python/capture_histograms.h"
-#include "apps/python/picture_bytes.h"
 #include "nlos/formats/capture_file.h"
 #include "nlos/pictures/pictures.h"
 
@@ -19,26 +18,24 @@ using core::Capture;
 
 /// What a capture that is made from arrays says of itself beside them.
 struct CaptureFields {
-    double bin_width_m = 0.0;
-    double opl_start_m = 0.0;
+    Capture& capture;
     std::optional<core::ScanPattern> pattern;
-    core::OplOrigin opl_origin = core::OplOrigin::RelayWall;
     std::optional<core::Vec3> laser_m;
     std::optional<core::Vec3> detector_m;
-    core::TransientUnit unit = core::TransientUnit::Radiance;
-    std::optional<double> counts_per_radiance;
 };
 
 template <class Visitor>
 void for_each_field(CaptureFields& s, Visitor&& visit) {
-    visit("bin_width_m", s.bin_width_m, core::above(0, "width of a bin in path length [m]"));
-    visit("opl_start_m", s.opl_start_m, core::Ranged{"path length at the start of bin 0 [m]", {}});
+    Capture& c = s.capture;
+    core::TimeAxis& t = c.time_axis;
+    visit("bin_width_m", t.bin_width_m, core::above(0, "width of a bin in path length [m]"));
+    visit("opl_start_m", t.opl_start_m, core::Ranged{"path length at the start of bin 0 [m]", {}});
     visit("pattern", s.pattern, "how illumination and sensing points pair up");
-    visit("opl_origin", s.opl_origin, "where path lengths start and end");
+    visit("opl_origin", c.scan.opl_origin, "where path lengths start and end");
     visit("laser_m", s.laser_m, "laser position, world [m]");
     visit("detector_m", s.detector_m, "detector position, world [m]");
-    visit("unit", s.unit, "what the numbers of H are");
-    visit("counts_per_radiance", s.counts_per_radiance, core::above(0, "of counts"));
+    visit("unit", c.unit, "what the numbers of H are");
+    visit("counts_per_radiance", c.counts_per_radiance, core::above(0, "of counts"));
 }
 
 core::WallPoints points_from(nb::handle positions, nb::handle normals, const std::string& name) {
@@ -67,10 +64,11 @@ Capture capture_from_arrays(nb::handle values,
                             nb::handle sensing_normals,
                             nb::handle illumination,
                             nb::handle illumination_normals,
-                            const nb::dict& keywords) {
-    const auto fields = settings_from_python<CaptureFields>(keywords);
-    core::check_ranges(fields, "");
+                            const nb::kwargs& keywords) {
     Capture capture;
+    capture.time_axis.bin_width_m = 0.0;  // to be stated
+    const auto fields = settings_from_python(keywords, CaptureFields{capture, {}, {}, {}});
+    core::check_ranges(fields, "");
     capture.scan.sensing = points_from(sensing, sensing_normals, "sensing");
     if (!illumination.is_none()) {
         capture.scan.illumination = points_from(illumination, illumination_normals, "illumination");
@@ -81,18 +79,15 @@ Capture capture_from_arrays(nb::handle values,
     if (capture.scan.pattern == core::ScanPattern::Confocal) {
         capture.scan.illumination = capture.scan.sensing;
     }
-    capture.time_axis = {
-        fields.opl_start_m, fields.bin_width_m, static_cast<int>(capture.transient.num_bins())};
-    capture.scan.opl_origin = fields.opl_origin;
-    if (fields.opl_origin == core::OplOrigin::Device && (!fields.laser_m || !fields.detector_m)) {
+    capture.time_axis.num_bins = static_cast<int>(capture.transient.num_bins());
+    if (capture.scan.opl_origin == core::OplOrigin::Device &&
+        (!fields.laser_m || !fields.detector_m)) {
         throw core::Error("opl_origin",
                           "found device without laser_m and detector_m",
                           "must be relay_wall, or both positions given");
     }
     capture.scan.laser_position = fields.laser_m.value_or(core::Vec3::Zero());
     capture.scan.detector_position = fields.detector_m.value_or(core::Vec3::Zero());
-    capture.unit = fields.unit;
-    capture.counts_per_radiance = fields.counts_per_radiance;
     const Extents expected = histogram_shape(capture.scan, capture.transient.num_bins());
     if (shape_of(histograms) != expected) {
         throw core::Error("H",
@@ -121,23 +116,11 @@ std::vector<std::string> write_capture(const Capture& capture,
     });
 }
 
-nb::bytes capture_picture(const Capture& capture, const std::string& format) {
-    return picture_bytes(nlos::capture_panels(capture), 3, format);
-}
-
 // Views of points in the shape of their list or grid.
-Array<double> points_view(nb::handle self,
-                          core::WallPoints core::Scan::*list,
-                          std::vector<core::Vec3> core::WallPoints::*vectors) {
-    core::WallPoints& points = nb::cast<Capture&>(self).scan.*list;
-    Extents shape{points.size()};
-    if (points.grid) shape = {(*points.grid)[0], (*points.grid)[1]};
-    return array_view(points.*vectors, shape, self);
-}
-
 template <auto List, auto Vectors>
 Array<double> points_property(nb::handle self) {
-    return points_view(self, List, Vectors);
+    core::WallPoints& points = nb::cast<Capture&>(self).scan.*List;
+    return array_view(points.*Vectors, points_shape(points), self);
 }
 
 std::optional<Array<std::int32_t>> observed_bins(const Capture& capture) {
@@ -263,28 +246,14 @@ void bind_facts(nb::class_<Capture>& binding) {
 void bind_capture(nb::module_& module) {
     nb::class_<Capture> binding(
         module, "Capture", nb::is_weak_referenceable(), "Transients and where they belong.");
-    binding.def(
-        "__init__",
-        [](Capture* self,
-           nb::handle histograms,
-           nb::handle sensing,
-           nb::handle sensing_normals,
-           nb::handle illumination,
-           nb::handle illumination_normals,
-           const nb::kwargs& fields) {
-            new (self) Capture(capture_from_arrays(histograms,
-                                                   sensing,
-                                                   sensing_normals,
-                                                   illumination,
-                                                   illumination_normals,
-                                                   nb::dict(fields)));
-        },
-        nb::arg("H").none(),
-        nb::arg("sensing_points_m").none(),
-        nb::arg("sensing_normals").none() = nb::none(),
-        nb::arg("illumination_points_m").none() = nb::none(),
-        nb::arg("illumination_normals").none() = nb::none(),
-        nb::arg("fields"));
+    binding.def("__init__",
+                constructor(&capture_from_arrays),
+                nb::arg("H").none(),
+                nb::arg("sensing_points_m").none(),
+                nb::arg("sensing_normals").none() = nb::none(),
+                nb::arg("illumination_points_m").none() = nb::none(),
+                nb::arg("illumination_normals").none() = nb::none(),
+                nb::arg("fields"));
     bind_arrays(binding);
     bind_facts(binding);
     binding
@@ -303,12 +272,11 @@ void bind_capture(nb::module_& module) {
                 return nb::module_::import_("nlos.neighbours").attr("to_xarray")(self);
             },
             "H as an xarray.DataArray with named axes and units, in the same memory.")
-        .def("picture",
-             &capture_picture,
-             nb::arg("format") = "png",
-             "PNG, SVG or PDF: streak image, light over the wall, mean transient.")
-        .def("_repr_png_", [](const Capture& capture) { return capture_picture(capture, "png"); })
         .def("__repr__", &capture_text);
+    bind_pictures(binding,
+                  &nlos::capture_panels,
+                  3,
+                  "PNG, SVG or PDF: streak image, light over the wall, mean transient.");
     module.def("read_capture", &read_capture, nb::arg("paths"), nb::arg("settings"));
 }
 

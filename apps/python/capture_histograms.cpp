@@ -10,14 +10,6 @@ namespace {
 
 namespace nb = nanobind;
 
-void append_shape(const core::WallPoints& points, Extents& shape) {
-    if (points.grid) {
-        shape.insert(shape.end(), points.grid->begin(), points.grid->end());
-    } else {
-        shape.push_back(points.size());
-    }
-}
-
 /// Whether histograms lie in memory as core::Transient keeps them: [pair][bin].
 bool has_bins_fastest(const HistogramArray& array) {
     std::int64_t stride = 1;
@@ -56,19 +48,19 @@ std::vector<std::int64_t> pair_offsets(const HistogramArray& array) {
 
 }  // namespace
 
-Extents pair_shape(const core::Scan& scan) {
-    if (scan.camera) {
-        return {scan.camera->width(), scan.camera->height()};
-    }
-    Extents shape;
-    if (scan.pattern == core::ScanPattern::Exhaustive) append_shape(scan.illumination, shape);
-    append_shape(scan.sensing, shape);
-    return shape;
+Extents points_shape(const core::WallPoints& points) {
+    if (!points.grid) return {points.size()};
+    return {points.grid->begin(), points.grid->end()};
 }
 
 Extents histogram_shape(const core::Scan& scan, std::size_t num_bins) {
-    Extents shape = pair_shape(scan);
-    shape.insert(shape.begin(), num_bins);
+    if (scan.camera) return {num_bins, scan.camera->width(), scan.camera->height()};
+    Extents shape{num_bins};
+    const auto append = [&](const core::WallPoints& points) {
+        for (const std::size_t extent : points_shape(points)) shape.push_back(extent);
+    };
+    if (scan.pattern == core::ScanPattern::Exhaustive) append(scan.illumination);
+    append(scan.sensing);
     return shape;
 }
 

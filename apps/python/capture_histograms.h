@@ -9,14 +9,14 @@ namespace python {
 /// Histograms with time as first axis; read and written in place.
 using HistogramArray = nanobind::ndarray<float, nanobind::device::cpu>;
 
-/// The axes of H that stand for a capture's pairs: (Sx, Sy), (S), (Lx, Ly, Sx, Sy), (L, S) or
-/// (width, height).
-Extents pair_shape(const core::Scan& scan);
+/// The grid of points, or the length of their list.
+Extents points_shape(const core::WallPoints& points);
 
-/// Time, then pair_shape().
+/// Time, then the axes of H that stand for a capture's pairs: (Sx, Sy), (S), (Lx, Ly, Sx, Sy),
+/// (L, S) or (width, height).
 Extents histogram_shape(const core::Scan& scan, std::size_t num_bins);
 
-/// Histograms as NumPy sees them: time first, then pair_shape(), in the memory they have.
+/// Histograms as NumPy sees them, see histogram_shape(), in the memory they have.
 template <class T>
 Array<T> histogram_view(T* values,
                         std::size_t num_bins,

@@ -2,7 +2,6 @@
 #include "apps/commands/fit_job.h"
 #include "apps/commands/fit_pictures.h"
 #include "apps/python/bindings.h"
-#include "apps/python/picture_bytes.h"
 #include "calib/fit_file.h"
 #include "renderer/scene/load_geometry.h"
 
@@ -67,9 +66,10 @@ FitObject fit(core::Capture& capture,
     return fitted;
 }
 
-Array<double> histograms(nb::handle self, std::vector<double> calib::FitAgreement::*values) {
+template <auto Values>
+Array<double> histograms(nb::handle self) {
     auto& result = nb::cast<FitObject&>(self).result;
-    auto& numbers = result.*values;
+    auto& numbers = result.*Values;
     const auto bins = static_cast<std::size_t>(result.axis.num_bins);
     return array_view(numbers.data(), {numbers.size() / bins, bins}, self);
 }
@@ -83,8 +83,8 @@ SceneObject scene_of(const FitObject& fitted) {
     return scene;
 }
 
-nb::bytes fitted_picture(const FitObject& fitted, const std::string& format) {
-    return picture_bytes(apps::fit_panels(fitted.result), 3, format);
+std::vector<nlos::Panel> panels_of(const FitObject& fitted) {
+    return apps::fit_panels(fitted.result);
 }
 
 std::string fitted_text(const FitObject& fitted) {
@@ -107,7 +107,8 @@ Array<double> covariance_of(const FitObject& fitted) {
 }  // namespace
 
 void bind_fit(nb::module_& module) {
-    nb::class_<FitObject>(module, "FitResult", "What fit() found, with its uncertainty.")
+    nb::class_<FitObject> binding(module, "FitResult", "What fit() found, with its uncertainty.");
+    binding
         .def_prop_ro(
             "values",
             [](const FitObject& f) { return python_from_json(calib::fit_json(f.result)); },
@@ -124,31 +125,22 @@ void bind_fit(nb::module_& module) {
         .def_prop_ro("unidentifiable", [](const FitObject& f) { return f.result.unidentifiable; })
         .def_prop_ro("warnings", [](const FitObject& f) { return f.result.warnings; })
         .def_prop_ro("seconds", [](const FitObject& f) { return f.result.seconds; })
-        .def_prop_ro(
-            "data",
-            [](nb::handle self) { return histograms(self, &calib::FitAgreement::data); },
-            "(pairs, bins) float64, as the fit used them")
-        .def_prop_ro(
-            "model",
-            [](nb::handle self) { return histograms(self, &calib::FitAgreement::model); },
-            "(pairs, bins) float64, what the fitted scene explains")
+        .def_prop_ro("data",
+                     &histograms<&calib::FitAgreement::data>,
+                     "(pairs, bins) float64, as the fit used them")
+        .def_prop_ro("model",
+                     &histograms<&calib::FitAgreement::model>,
+                     "(pairs, bins) float64, what the fitted scene explains")
         .def(
             "write",
             [](const FitObject& f, nb::handle target) {
                 const std::string path = path_from(target);
-                with_files([&] {
-                    apps::write_fit(f.input, f.result, path);
-                    return 0;
-                });
+                with_files([&] { apps::write_fit(f.input, f.result, path); });
             },
             nb::arg("path").none(),
             "Writes FIT.json and, beside it, the fitted scene and a picture.")
-        .def("picture",
-             &fitted_picture,
-             nb::arg("format") = "png",
-             "PNG, SVG or PDF: data, model and their difference.")
-        .def("_repr_png_", [](const FitObject& fitted) { return fitted_picture(fitted, "png"); })
         .def("__repr__", &fitted_text);
+    bind_pictures(binding, &panels_of, 3, "PNG, SVG or PDF: data, model and their difference.");
     module.def("fit",
                &fit,
                nb::arg("capture"),

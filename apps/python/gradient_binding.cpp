@@ -7,6 +7,7 @@
 #include <nanobind/stl/string.h>
 
 #include <memory>
+#include <numeric>
 
 namespace python {
 namespace {
@@ -46,10 +47,9 @@ class ThirdBouncePullback {
                         std::unique_ptr<const calib::ThirdBounceVjp> vjp)
         : joined_(std::move(joined)), scan_(scan), vjp_(std::move(vjp)) {}
 
-    Array<const double> histograms(nb::handle self) const {
-        const auto num_pairs = scan_.num_pairs();
-        const std::size_t num_bins = vjp_->histograms().size() / num_pairs;
-        return histogram_view(vjp_->histograms().data(), num_bins, scan_, self);
+    static Array<const double> histograms(nb::handle self) {
+        const auto& all = nb::cast<const ThirdBouncePullback&>(self);
+        return histogram_view(all.vjp_->histograms().data(), all.num_bins(), all.scan_, self);
     }
 
     nb::list pullback(nb::handle gradient) const {
@@ -66,16 +66,17 @@ class ThirdBouncePullback {
     }
 
  private:
+    std::size_t num_bins() const { return vjp_->histograms().size() / scan_.num_pairs(); }
+
     // dL/dH as [pair][bin].
     std::vector<double> values_from(nb::handle gradient) const {
         const auto array = doubles_from(gradient, "gradient");
         const std::size_t num_pairs = scan_.num_pairs();
-        const std::size_t num_bins = vjp_->histograms().size() / num_pairs;
-        require_shape(shape_of(array), histogram_shape(scan_, num_bins), "gradient");
+        require_shape(shape_of(array), histogram_shape(scan_, num_bins()), "gradient");
         std::vector<double> values(array.size());
-        for (std::size_t bin = 0; bin < num_bins; ++bin) {
+        for (std::size_t bin = 0; bin < num_bins(); ++bin) {
             for (std::size_t pair = 0; pair < num_pairs; ++pair) {
-                values[pair * num_bins + bin] = array.data()[bin * num_pairs + pair];
+                values[pair * num_bins() + bin] = array.data()[bin * num_pairs + pair];
             }
         }
         return values;
@@ -83,23 +84,15 @@ class ThirdBouncePullback {
 
     Array<double> vertex_gradients(const calib::MeshGradients& gradients,
                                    std::size_t object) const {
-        const std::size_t begin = joined_.first_vertex[object];
-        const std::size_t end = joined_.first_vertex[object + 1];
-        std::vector<double> values;
-        for (std::size_t v = begin; v < end; ++v) {
-            const core::Vec3& g = gradients.vertices[v];
-            values.insert(values.end(), {g.x(), g.y(), g.z()});
-        }
-        return array_of(std::move(values), {end - begin, 3});
+        const core::Vec3* const all = gradients.vertices.data();
+        return array_of(std::vector<core::Vec3>(all + joined_.first_vertex[object],
+                                                all + joined_.first_vertex[object + 1]));
     }
 
     double albedo_gradient(const calib::MeshGradients& gradients, std::size_t object) const {
-        double sum = 0.0;
-        for (std::size_t f = joined_.first_facet[object]; f < joined_.first_facet[object + 1];
-             ++f) {
-            sum += gradients.albedo[f];
-        }
-        return sum;
+        const double* const all = gradients.albedo.data();
+        return std::accumulate(
+            all + joined_.first_facet[object], all + joined_.first_facet[object + 1], 0.0);
     }
 
     JoinedObjects joined_;
@@ -134,12 +127,7 @@ ThirdBouncePullback make_pullback(const SceneObject& scene,
 void bind_gradients(nb::module_& module) {
     nb::class_<ThirdBouncePullback>(
         module, "ThirdBouncePullback", "From dL/dH to dL/d(vertices, albedo) of every object.")
-        .def_prop_ro(
-            "H",
-            [](nb::handle self) {
-                return nb::cast<const ThirdBouncePullback&>(self).histograms(self);
-            },
-            "float64, in the shape of Capture.H")
+        .def_prop_ro("H", &ThirdBouncePullback::histograms, "float64, in the shape of Capture.H")
         .def("__call__",
              &ThirdBouncePullback::pullback,
              nb::arg("gradient").none(),

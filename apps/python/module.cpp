@@ -57,7 +57,6 @@ NB_MODULE(_core, module) {
     python::bind_reconstruction(module);
     python::bind_fit(module);
     python::bind_work(module);
-    python::bind_dataset(module);
     python::bind_operators(module);
     python::bind_gradients(module);
 }

@@ -37,9 +37,7 @@ core::Transient light_from(nb::handle value, const Extents& shape) {
 /// Histograms of one's own as an array with time first.
 Array<float> as_array(core::Transient light, const core::Scan& scan) {
     auto* const owned = new core::Transient(std::move(light));
-    const nb::capsule owner(owned,
-                            [](void* p) noexcept { delete static_cast<core::Transient*>(p); });
-    return histogram_view(*owned, scan, owner);
+    return histogram_view(*owned, scan, owner_of(owned));
 }
 
 template <auto Axis, class Operator>
@@ -117,7 +115,7 @@ void bind_operators(nb::module_& module) {
             new (self) PairLight(
                 checked(capture),
                 {centres_from(x_m, "x_m"), centres_from(y_m, "y_m"), centres_from(z_m, "z_m")},
-                read_settings(nb::dict(settings)));
+                read_settings(settings));
         },
         nb::arg("capture"),
         nb::arg("x_m"),
@@ -133,7 +131,7 @@ void bind_operators(nb::module_& module) {
     cone.def(
         "__init__",
         [](LightCone* self, const core::Capture& capture, const nb::kwargs& settings) {
-            new (self) LightCone(checked(capture), read_settings(nb::dict(settings)));
+            new (self) LightCone(checked(capture), read_settings(settings));
         },
         nb::arg("capture"),
         nb::arg("settings"));

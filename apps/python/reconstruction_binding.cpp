@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include "apps/python/bindings.h"
-#include "apps/python/picture_bytes.h"
 #include "nlos/formats/ply_file.h"
 #include "nlos/formats/volume_file.h"
 #include "nlos/pictures/pictures.h"
@@ -35,9 +34,12 @@ Array<double> axis_view(nb::handle self) {
 }
 
 // Of what is stated per column, where it is.
-std::optional<Array<double>> column_view(nb::handle self, std::vector<double>& values) {
+template <auto ValuesOf>
+std::optional<Array<double>> column_view(nb::handle self) {
+    auto& result = nb::cast<Reconstruction&>(self);
+    std::vector<double>& values = ValuesOf(result);
     if (values.empty()) return std::nullopt;
-    return array_view(values.data(), columns_of(nb::cast<Reconstruction&>(self)), self);
+    return array_view(values.data(), columns_of(result), self);
 }
 
 Array<double> world_from_wall(Reconstruction& result) {
@@ -48,13 +50,7 @@ Array<double> world_from_wall(Reconstruction& result) {
 
 nb::tuple mesh_of(const Reconstruction& result) {
     core::TriangleMesh mesh = nlos::surface_mesh(result.depth);
-    std::vector<double> vertices;
-    for (const core::Vec3& v : mesh.vertices)
-        vertices.insert(vertices.end(), {v.x(), v.y(), v.z()});
-    std::vector<std::uint32_t> faces;
-    for (const auto& t : mesh.triangles) faces.insert(faces.end(), t.begin(), t.end());
-    return nb::make_tuple(array_of(std::move(vertices), {mesh.vertices.size(), 3}),
-                          array_of(std::move(faces), {mesh.triangles.size(), 3}));
+    return nb::make_tuple(array_of(std::move(mesh.vertices)), array_of(std::move(mesh.triangles)));
 }
 
 void write(const Reconstruction& result, nb::handle target) {
@@ -65,12 +61,7 @@ void write(const Reconstruction& result, nb::handle target) {
         } else {
             nlos::write_volume(path, result);
         }
-        return 0;
     });
-}
-
-nb::bytes reconstruction_picture(const Reconstruction& result, const std::string& format) {
-    return picture_bytes(nlos::volume_panels(result), 2, format);
 }
 
 std::string reconstruction_text(const Reconstruction& result) {
@@ -92,24 +83,15 @@ void bind_arrays(nb::class_<Reconstruction>& binding) {
         .def_prop_ro("z_m", &axis_view<&VolumeAxes::z_m>, "(Z,) along the wall's normal [m]")
         .def_prop_ro(
             "world_from_wall", &world_from_wall, nb::rv_policy::reference, "(4, 4) float64")
-        .def_prop_ro(
-            "depth_m",
-            [](nb::handle self) {
-                return column_view(self, nb::cast<Reconstruction&>(self).depth.depth_m);
-            },
-            "(X, Y) float64 depth of the surface [m]; NaN: background")
-        .def_prop_ro(
-            "depth_sigma_m",
-            [](nb::handle self) {
-                return column_view(self, nb::cast<Reconstruction&>(self).depth_sigma_m);
-            },
-            "(X, Y) standard deviation of depth_m [m]; None where the noise is not known")
-        .def_prop_ro(
-            "surface_probability",
-            [](nb::handle self) {
-                return column_view(self, nb::cast<Reconstruction&>(self).surface_probability);
-            },
-            "(X, Y) probability that a column holds a surface; None: not stated")
+        .def_prop_ro("depth_m",
+                     &column_view<[](auto& r) -> auto& { return r.depth.depth_m; }>,
+                     "(X, Y) float64 depth of the surface [m]; NaN: background")
+        .def_prop_ro("depth_sigma_m",
+                     &column_view<[](auto& r) -> auto& { return r.depth_sigma_m; }>,
+                     "(X, Y) standard deviation of depth_m [m]; None where the noise is not known")
+        .def_prop_ro("surface_probability",
+                     &column_view<[](auto& r) -> auto& { return r.surface_probability; }>,
+                     "(X, Y) probability that a column holds a surface; None: not stated")
         .def_prop_ro(
             "normals",
             [](nb::handle self) -> std::optional<Array<double>> {
@@ -151,13 +133,11 @@ void bind_reconstruction(nb::module_& module) {
              &write,
              nb::arg("path").none(),
              "Writes the volume (.h5) or its points (.ply).")
-        .def("picture",
-             &reconstruction_picture,
-             nb::arg("format") = "png",
-             "PNG, SVG or PDF: projections, depth, and what is stated about it.")
-        .def("_repr_png_",
-             [](const Reconstruction& result) { return reconstruction_picture(result, "png"); })
         .def("__repr__", &reconstruction_text);
+    bind_pictures(binding,
+                  &nlos::volume_panels,
+                  2,
+                  "PNG, SVG or PDF: projections, depth, and what is stated about it.");
     module.def(
         "read_volume",
         [](const std::string& path) { return with_files([&] { return nlos::read_volume(path); }); },

@@ -47,46 +47,41 @@ void drop_triangles_without_area(core::TriangleMesh& mesh) {
 
 /// How an object that is made from arrays reflects and moves.
 struct ObjectFields {
-    std::string name = "object";
-    double albedo = 1.0;
-    renderer::SurfaceModel surface = renderer::SurfaceModel::Lambertian;
-    double roughness = 1.0;
-    renderer::Role role = renderer::Role::Hidden;
-    core::Vec3 velocity_m_per_s = core::Vec3::Zero();
+    renderer::Object& object;
 };
 
 template <class Visitor>
 void for_each_field(ObjectFields& s, Visitor&& visit) {
-    visit("name", s.name, "of the object");
-    visit("albedo", s.albedo, core::between(0, 1, "share of light that is reflected"));
-    visit("surface", s.surface, "how it reflects");
-    visit("roughness", s.roughness, core::between(0, 1, "of GGX surfaces"));
-    visit("role", s.role, "what it is to the measurement");
-    visit("velocity_m_per_s", s.velocity_m_per_s, "world [m/s]");
+    renderer::Material& material = s.object.material;
+    visit("name", s.object.name, "of the object");
+    visit("albedo", material.albedo, core::between(0, 1, "share of light that is reflected"));
+    visit("surface", material.model, "how it reflects");
+    visit("roughness", material.roughness, core::between(0, 1, "of GGX surfaces"));
+    visit("role", s.object.role, "what it is to the measurement");
+    visit("velocity_m_per_s", s.object.velocity_m_per_s, "world [m/s]");
 }
 
-renderer::Object make_object(nb::handle vertices, nb::handle faces, const nb::dict& keywords) {
-    const auto fields = settings_from_python<ObjectFields>(keywords);
-    core::check_ranges(fields, "");
+renderer::Object make_object(nb::handle vertices, nb::handle faces, const nb::kwargs& keywords) {
     renderer::Object object;
+    object.name = "object";
+    core::check_ranges(settings_from_python(keywords, ObjectFields{object}), "");
     object.mesh.vertices = vectors_from(vertices, "vertices");
     object.mesh.triangles = faces_from(faces, object.mesh.vertices.size());
     drop_triangles_without_area(object.mesh);
-    object.name = fields.name;
-    object.material.model = fields.surface;
-    object.material.albedo = fields.albedo;
-    object.material.roughness = fields.roughness;
-    object.role = fields.role;
-    object.velocity_m_per_s = fields.velocity_m_per_s;
     return object;
 }
 
-SceneObject make_scene(const std::vector<renderer::Object>& objects, const nb::dict& settings) {
+SceneObject with_objects(SceneObject scene, const std::vector<renderer::Object>& objects) {
     if (objects.empty()) throw core::Error("objects", "found none", "must be one at least");
-    SceneObject scene;
+    scene.description.objects.clear();  // objects say themselves what they are
+    scene.geometry.objects = objects;
+    return scene;
+}
+
+SceneObject make_scene(const std::vector<renderer::Object>& objects, const nb::kwargs& settings) {
+    SceneObject scene = with_objects({}, objects);
     scene.name = "scene";
     scene.description.geometry = "objects";  // as messages call what is no file
-    scene.geometry.objects = objects;
     change_scene(scene, json_from_python(settings, ""));
     return scene;
 }
@@ -98,7 +93,6 @@ SceneObject load_scene(const std::string& path, const nb::dict& settings) {
     with_files([&] {
         scene.description = renderer::read_scene_description(path, {});
         scene.geometry = renderer::load_geometry(scene.description);
-        return 0;
     });
     change_scene(scene, changes);
     return scene;
@@ -132,27 +126,13 @@ void write_scene(const SceneObject& scene, nb::handle target) {
     core::write_text_file(path, core::json_text(json));
 }
 
-Array<std::uint32_t> faces_of(const renderer::Object& object) {
-    std::vector<std::uint32_t> faces;
-    for (const auto& triangle : object.mesh.triangles) {
-        faces.insert(faces.end(), triangle.begin(), triangle.end());
-    }
-    return array_of(std::move(faces), {object.mesh.triangles.size(), 3});
-}
-
 void bind_object(nb::module_& module) {
     nb::class_<renderer::Object>(module, "Object", "A triangle mesh of one material.")
-        .def(
-            "__init__",
-            [](renderer::Object* self,
-               nb::handle vertices,
-               nb::handle faces,
-               const nb::kwargs& fields) {
-                new (self) renderer::Object(make_object(vertices, faces, nb::dict(fields)));
-            },
-            nb::arg("vertices").none(),
-            nb::arg("faces").none(),
-            nb::arg("fields"))
+        .def("__init__",
+             constructor(&make_object),
+             nb::arg("vertices").none(),
+             nb::arg("faces").none(),
+             nb::arg("fields"))
         .def_ro("name", &renderer::Object::name)
         .def_prop_ro(
             "vertices",
@@ -162,7 +142,10 @@ void bind_object(nb::module_& module) {
             },
             "(N, 3) float64, world [m]")
         .def_prop_ro(
-            "faces", &faces_of, nb::rv_policy::reference, "(M, 3) uint32, indices of vertices")
+            "faces",
+            [](const renderer::Object& o) { return array_of(o.mesh.triangles); },
+            nb::rv_policy::reference,
+            "(M, 3) uint32, indices of vertices")
         .def_prop_ro("albedo", [](const renderer::Object& o) { return o.material.albedo; })
         .def_prop_ro("surface",
                      [](const renderer::Object& o) {
@@ -205,15 +188,7 @@ ScannedScene scan_scene(const SceneObject& scene,
 void bind_scene(nb::module_& module) {
     bind_object(module);
     nb::class_<SceneObject>(module, "Scene", "Objects, a relay wall or camera, and how to render.")
-        .def(
-            "__init__",
-            [](SceneObject* self,
-               const std::vector<renderer::Object>& objects,
-               const nb::kwargs& settings) {
-                new (self) SceneObject(make_scene(objects, nb::dict(settings)));
-            },
-            nb::arg("objects"),
-            nb::arg("settings"))
+        .def("__init__", constructor(&make_scene), nb::arg("objects"), nb::arg("settings"))
         .def_prop_ro(
             "objects",
             [](const SceneObject& scene) { return scene.geometry.objects; },
@@ -229,23 +204,12 @@ void bind_scene(nb::module_& module) {
             "changed",
             [](const SceneObject& scene, const nb::kwargs& settings) {
                 SceneObject changed = scene;
-                change_scene(changed, json_from_python(nb::dict(settings), ""));
+                change_scene(changed, json_from_python(settings, ""));
                 return changed;
             },
             nb::arg("settings"),
             "A copy with other settings.")
-        .def(
-            "with_objects",
-            [](const SceneObject& scene, const std::vector<renderer::Object>& objects) {
-                if (objects.empty())
-                    throw core::Error("objects", "found none", "must be one at least");
-                SceneObject changed = scene;
-                changed.description.objects.clear();  // objects say themselves what they are
-                changed.geometry.objects = objects;
-                return changed;
-            },
-            nb::arg("objects"),
-            "A copy with other objects.")
+        .def("with_objects", &with_objects, nb::arg("objects"), "A copy with other objects.")
         .def("depth_map",
              &depth_map,
              "What the relay wall sees: dict of x_m (X,), y_m (Y,), depth_m (X, Y) with NaN for "

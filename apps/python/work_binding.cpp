@@ -5,6 +5,7 @@
 #include "apps/commands/describe_file.h"
 #include "apps/commands/reconstruct_job.h"
 #include "apps/commands/render_job.h"
+#include "apps/dataset/generate.h"
 #include "apps/python/bindings.h"
 #include "apps/report/report.h"
 #include "apps/scene_truth.h"
@@ -17,6 +18,7 @@
 #include "renderer/core/settings_help.h"
 
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
@@ -130,6 +132,48 @@ nb::object calibrate(const std::string& path, const nb::dict& changes) {
     return python_from_json(calibration);
 }
 
+using Pair = std::pair<std::uint64_t, std::uint64_t>;
+
+std::vector<std::string> overrides_of(const nb::dict& keywords) {
+    std::vector<std::string> overrides;
+    const core::Json json = json_from_python(keywords, "");
+    for (const auto& [key, value] : json.items()) overrides.push_back(key + "=" + value.dump());
+    return overrides;
+}
+
+nb::object generate(const std::string& recipe,
+                    const std::string& folder,
+                    const std::optional<Pair>& shard,
+                    const std::optional<Pair>& items,
+                    const nb::dict& keywords,
+                    const nb::object& progress,
+                    int threads) {
+    apps::WorkShare share;
+    if (shard) {
+        share = apps::read_work_share(std::to_string(shard->first) + "/" +
+                                      std::to_string(shard->second));
+    }
+    std::optional<apps::ItemRange> range;
+    if (items) range = apps::ItemRange{items->first, items->second};
+    const std::vector<std::string> overrides = overrides_of(keywords);
+    const core::Json result = run_long(progress, threads, [&](const core::Progress& report) {
+        apps::Dataset dataset(apps::read_recipe(recipe, overrides), folder);
+        const apps::GenerateResult made =
+            apps::generate(dataset, share, range, apps::version_text(), report);
+        for (const auto& [name, reason] : made.broken_meshes) {
+            report.warn(name + " was skipped: " + reason);
+        }
+        return core::Json{{"shards_written", made.shards_written},
+                          {"shards_there", made.shards_there},
+                          {"items_written", made.items_written},
+                          {"dark_items", made.dark_items},
+                          {"clipped_counts", made.clipped_counts},
+                          {"seconds", made.seconds},
+                          {"interrupted", made.interrupted}};
+    });
+    return python_from_json(result);
+}
+
 nb::list help_of(const std::vector<core::SettingHelp>& lines) {
     nb::list list;
     for (const core::SettingHelp& line : lines) {
@@ -217,6 +261,15 @@ void bind_work(nb::module_& module) {
                nb::arg("sensor"),
                nb::arg("settings"),
                nb::arg("threads"));
+    module.def("generate",
+               &generate,
+               nb::arg("recipe"),
+               nb::arg("folder"),
+               nb::arg("shard").none(),
+               nb::arg("item_range").none(),
+               nb::arg("settings"),
+               nb::arg("progress").none(),
+               nb::arg("threads"));
     module.def("calibrate", &calibrate, nb::arg("setup"), nb::arg("changes"));
     module.def("settings", &settings_of, nb::arg("function"));
     module.def(
@@ -230,10 +283,7 @@ void bind_work(nb::module_& module) {
     module.def(
         "report",
         [](const std::string& folder, const std::string& path) {
-            with_files([&] {
-                apps::write_report(path, apps::read_results_folder(folder), {});
-                return 0;
-            });
+            with_files([&] { apps::write_report(path, apps::read_results_folder(folder), {}); });
         },
         nb::arg("folder"),
         nb::arg("path"));

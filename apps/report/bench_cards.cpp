@@ -69,10 +69,6 @@ std::string stem_of(const std::string& file) {
     return fs::path(file).stem().string();
 }
 
-std::string cell_html(const core::Json& row, const char* key) {
-    return "<td>" + escape_html(text_of(row, key)) + "</td>";
-}
-
 }  // namespace
 
 bool is_bench(const core::Json& json) {
@@ -142,7 +138,7 @@ std::string hard_cases_html(const core::Json& cases) {
                             escape_html(text_of(row, "group")),
                             escape_html(text_of(row, "name")));
         for (const char* key : {"why", "must_hold", "worst", "bound", "explanation"}) {
-            html += cell_html(row, key);
+            html += "<td>" + escape_html(text_of(row, key)) + "</td>";
         }
         html += "</tr>\n";
     }

@@ -37,7 +37,7 @@ std::vector<Fact> dataset_facts(const DatasetIndex& index, const DatasetTotals& 
         {"Items", fmt::format("{} of {}", totals.items, index.items)},
         {"Shards", fmt::format("{}", index.shards.size())},
         {"Size", short_number(static_cast<double>(totals.bytes) / 1e6) + " MB"},
-        {"Processor time of an item", short_number(total_seconds(totals.profile) / items) + " s"},
+        {"Processor time of an item", short_number(totals.profile.total() / items) + " s"},
         {"Of that", shares_text(totals.profile)}};
     if (totals.dark_items > 0) {
         facts.emplace_back("Items without light", fmt::format("{}", totals.dark_items));

@@ -3,6 +3,8 @@
 
 #include "apps/estimate_text.h"
 #include "calib/fit_file.h"
+#include "calib/statistics/median.h"
+#include "calib/track/track_file.h"
 #include "nlos/pictures/light_scale.h"
 #include "nlos/pictures/pictures.h"
 #include "nlos/preparation/wall_frame.h"
@@ -24,10 +26,6 @@ constexpr int kVolumeColumns = 2;
 
 std::string range_text(double low, double high, const std::string& unit) {
     return fmt::format("{} to {} {}", short_number(low), short_number(high), unit);
-}
-
-std::string megabytes(double bytes) {
-    return short_number(bytes / 1e6) + " MB";
 }
 
 std::string points_text(const core::WallPoints& points) {
@@ -119,7 +117,8 @@ std::vector<Fact> volume_facts(const nlos::Reconstruction& result) {
     facts.emplace_back("Surface points", fmt::format("{}", result.points.positions.size()));
     facts.emplace_back("Time", short_number(result.seconds) + " s");
     if (result.peak_bytes > 0) {
-        facts.emplace_back("Peak memory", megabytes(static_cast<double>(result.peak_bytes)));
+        facts.emplace_back("Peak memory",
+                           short_number(static_cast<double>(result.peak_bytes) / 1e6) + " MB");
     }
     return facts;
 }
@@ -224,6 +223,48 @@ ResultCard fit_card(const std::string& path, const core::Json& json) {
                                          pair.value("value", 0.0)));
     }
     card.settings = json;
+    return card;
+}
+
+ResultCard track_card(const std::string& path, const core::Json& json) {
+    const std::vector<calib::TrackedFrame> frames = calib::read_track(path);
+    ResultCard card;
+    card.file = fs::path(path).filename().string();
+    std::size_t named = 0;
+    std::size_t most = 0;
+    std::vector<double> sigmas_m;
+    Eigen::AlignedBox3d box;
+    for (const calib::TrackedFrame& frame : frames) {
+        named += frame.targets.empty() ? 0 : 1;
+        most = std::max(most, frame.targets.size());
+        for (const calib::TrackedPosition& target : frame.targets) {
+            box.extend(target.position_m);
+            if (target.covariance_m2) sigmas_m.push_back(std::sqrt(target.covariance_m2->trace()));
+        }
+    }
+    card.facts.emplace_back("frames", std::to_string(frames.size()));
+    card.facts.emplace_back(
+        "time", fmt::format("{:.2f} to {:.2f} s", frames.front().time_s, frames.back().time_s));
+    card.facts.emplace_back("frames with a target", std::to_string(named));
+    card.facts.emplace_back("targets at a time", fmt::format("at most {}", most));
+    if (named > 0) {
+        for (const int axis : {0, 1, 2}) {
+            card.facts.emplace_back(
+                std::string(1, "xyz"[axis]),
+                fmt::format("{:.2f} to {:.2f} m", box.min()[axis], box.max()[axis]));
+        }
+    }
+    if (!sigmas_m.empty()) {
+        card.facts.emplace_back("stated error, median",
+                                short_number(calib::median(sigmas_m)) + " m");
+    }
+    card.picture_png = picture_beside(path);
+    for (const core::Json& text : json.value("warnings", core::Json::array())) {
+        if (text.is_string()) card.notes.push_back("Warning: " + text.get<std::string>());
+    }
+    for (const char* key : {"settings", "version", "command"}) {
+        if (json.contains(key)) card.settings[key] = json[key];
+    }
     return card;
 }
 

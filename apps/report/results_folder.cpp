@@ -2,13 +2,13 @@
 #include "apps/report/results_folder.h"
 
 #include "apps/file_kind.h"
-#include "apps/report/result_labels.h"
 #include "calib/fit_file.h"
 #include "calib/track/track_file.h"
 #include "nlos/formats/volume_file.h"
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <set>
 
 namespace apps {
@@ -127,10 +127,10 @@ std::string without_folder(std::string message, const fs::path& folder) {
 void drop_accompanying_figures(ResultsFolder& results) {
     std::set<std::string> stems;
     const auto add = [&](const std::string& file) { stems.insert(fs::path(file).stem().string()); };
-    for (const ResultCard& card : results.captures) add(card.file);
-    for (const ResultCard& card : results.volumes) add(card.file);
-    for (const ResultCard& card : results.fits) add(card.file);
-    for (const ResultCard& card : results.tracks) add(card.file);
+    for (const auto* cards :
+         {&results.captures, &results.volumes, &results.fits, &results.tracks}) {
+        for (const ResultCard& card : *cards) add(card.file);
+    }
     for (const ScoredResult& scored : results.scores) add(scored.file);
     std::erase_if(results.figures, [&](const Figure& figure) {
         const fs::path file = figure.file;
@@ -181,6 +181,52 @@ std::size_t best_result(const ResultsFolder& results) {
     return best;
 }
 
+constexpr std::size_t kMostSettings = 2;  // in a label
+
+/// The settings of a result by their paths: `volume.voxels.0`.
+std::map<std::string, std::string> settings_of(const ResultCard& card) {
+    std::map<std::string, std::string> settings;
+    if (!card.settings.is_structured()) return settings;
+    const core::Json flat = card.settings.flatten();
+    for (const auto& [pointer, value] : flat.items()) {
+        std::string path = pointer.substr(1);
+        std::replace(path.begin(), path.end(), '/', '.');
+        settings[path] = value.is_string() ? value.get<std::string>() : value.dump();
+    }
+    return settings;
+}
+
+/// The settings that differ between some of the cards.
+std::vector<std::string> differing(const std::vector<ResultCard*>& cards) {
+    std::map<std::string, std::map<std::string, std::size_t>> values;
+    for (const ResultCard* card : cards) {
+        for (const auto& [path, value] : settings_of(*card)) ++values[path][value];
+    }
+    std::vector<std::string> paths;
+    for (const auto& [path, counts] : values) {
+        const bool same = counts.size() == 1 && counts.begin()->second == cards.size();
+        if (!same && paths.size() < kMostSettings) paths.push_back(path);
+    }
+    return paths;
+}
+
+void tell_apart(const std::vector<ResultCard*>& cards) {
+    const std::vector<std::string> paths = differing(cards);
+    std::map<std::string, std::size_t> count;
+    for (ResultCard* card : cards) {
+        const std::map<std::string, std::string> settings = settings_of(*card);
+        for (const std::string& path : paths) {
+            const auto found = settings.find(path);
+            if (found != settings.end()) card->label += ", " + path + " " + found->second;
+        }
+        ++count[card->label];
+    }
+    for (ResultCard* card : cards) {
+        if (count[card->label] == 1) continue;
+        card->label += ", " + fs::path(card->file).stem().string();
+    }
+}
+
 /// What only the whole says: labels, whose pictures are whose, the truth.
 void complete(const fs::path& folder, const std::string& scene, ResultsFolder& results) {
     label_by_method(results);
@@ -196,6 +242,25 @@ void complete(const fs::path& folder, const std::string& scene, ResultsFolder& r
 }
 
 }  // namespace
+
+void label_by_method(ResultsFolder& results) {
+    std::map<std::string, std::vector<ResultCard*>> of_method;
+    for (std::size_t i = 0; i < results.volumes.size(); ++i) {
+        ResultCard& card = results.volumes[i];
+        card.label = results.views.results[i].name;
+        if (!card.label.empty()) of_method[card.label].push_back(&card);
+    }
+    for (const auto& [method, cards] : of_method) {
+        if (cards.size() > 1) tell_apart(cards);
+    }
+    for (std::size_t i = 0; i < results.volumes.size(); ++i) {
+        const ResultCard& card = results.volumes[i];
+        results.views.results[i].name = card.label.empty() ? card.file : card.label;
+        for (ScoredResult& scored : results.scores) {
+            if (scored.result == card.file && !card.label.empty()) scored.name = card.label;
+        }
+    }
+}
 
 ResultsFolder read_results_folder(const std::string& folder, const std::string& scene) {
     std::error_code error;

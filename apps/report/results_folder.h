@@ -57,6 +57,10 @@ struct ResultsFolder {
     }
 };
 
+/// Names volumes, and what is scored of them, by their method; several of one method also by the
+/// settings in which they differ, or, where they differ in none, by their files.
+void label_by_method(ResultsFolder& results);
+
 /// Reads every capture, volume, fit, JSON file and picture of a folder (not of folders inside it).
 ///
 /// scene     scene.json with the truth; empty: the first that metrics or captures name and that is

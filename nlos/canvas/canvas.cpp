@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/canvas/canvas.h"
 
-#include "nlos/canvas/font.h"
 #include "nlos/canvas/png_file.h"
 #include "nlos/canvas/raster.h"
 #include "renderer/core/error.h"
@@ -11,8 +10,13 @@
 #include <cairo-svg.h>
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
+
+// DejaVu Sans (.ttf), which becomes part of the program: pictures need no font where it runs.
+extern "C" {
+extern const unsigned char nlos_font_begin[];
+extern const unsigned char nlos_font_end[];
+}
 
 namespace nlos {
 namespace {
@@ -42,13 +46,9 @@ void check(cairo_status_t status) {
 cairo_font_face_t* load_font() {
     FT_Library library = nullptr;
     FT_Face face = nullptr;
-    const auto font = font_bytes();
     if (FT_Init_FreeType(&library) != 0 ||
-        FT_New_Memory_Face(library,
-                           reinterpret_cast<const FT_Byte*>(font.data()),
-                           static_cast<FT_Long>(font.size()),
-                           0,
-                           &face) != 0) {
+        FT_New_Memory_Face(library, nlos_font_begin, nlos_font_end - nlos_font_begin, 0, &face) !=
+            0) {
         throw core::Failure("picture", "the font cannot be loaded");
     }
     return cairo_ft_font_face_create_for_ft_face(face, 0);

@@ -1,21 +1,26 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/canvas/colour_map.h"
 
-#include "nlos/canvas/colour_tables.h"
+#include <opencv2/imgproc.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace nlos {
 namespace {
 
 using Table = std::array<Colour, 256>;
 
-Table unpacked(const std::array<std::uint32_t, 256>& colours) {
+/// A map of OpenCV, which has those of Matplotlib.
+Table opencv_table(cv::ColormapTypes map) {
+    cv::Mat_<std::uint8_t> levels(1, 256);
+    std::iota(levels.begin(), levels.end(), std::uint8_t{0});
+    cv::Mat_<cv::Vec3b> colours;
+    cv::applyColorMap(levels, colours, map);
     Table table;
-    std::transform(colours.begin(), colours.end(), table.begin(), [](std::uint32_t rgb) {
-        const auto byte = [rgb](int shift) { return static_cast<std::uint8_t>(rgb >> shift); };
-        return Colour{byte(16), byte(8), byte(0)};
+    std::transform(colours.begin(), colours.end(), table.begin(), [](const cv::Vec3b& bgr) {
+        return Colour{bgr[2], bgr[1], bgr[0]};
     });
     return table;
 }
@@ -51,28 +56,15 @@ Table diverging_table() {
                               {178, 24, 43}}});
 }
 
-Table grey_table() {
-    return blended_table<2>({{{0, 0, 0}, {255, 255, 255}}});
-}
-
 }  // namespace
 
 const std::array<Colour, 256>& colours_of(ColourMap map) {
-    static const Table inferno = unpacked(kInferno);
-    static const Table viridis = unpacked(kViridis);
-    static const Table diverging = diverging_table();
-    static const Table grey = grey_table();
-    switch (map) {
-        case ColourMap::Inferno:
-            return inferno;
-        case ColourMap::Viridis:
-            return viridis;
-        case ColourMap::Diverging:
-            return diverging;
-        case ColourMap::Grey:
-            return grey;
-    }
-    return grey;
+    static const std::array<Table, 4> tables{// in the order of ColourMap
+                                             opencv_table(cv::COLORMAP_INFERNO),
+                                             opencv_table(cv::COLORMAP_VIRIDIS),
+                                             diverging_table(),
+                                             blended_table<2>({{{0, 0, 0}, {255, 255, 255}}})};
+    return tables[static_cast<std::size_t>(map)];
 }
 
 Colour colour_at(ColourMap map, double share) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace nlos {
 
@@ -14,5 +15,12 @@ namespace nlos {
 /// stride    bytes from one row to the next, at least 4 width
 /// throws    core::Failure when they cannot be packed
 std::string encode_png(const unsigned char* pixels, int width, int height, int stride);
+
+/// Joins pictures into an animation that repeats for ever; viewers that know of none show the
+/// first.
+///
+/// frames    at least one PNG file as Canvas makes them, all of one size
+/// returns   the bytes of an animated PNG file
+std::string join_animated_png(const std::vector<std::string>& frames, int frames_per_second);
 
 }  // namespace nlos

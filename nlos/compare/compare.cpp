@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace nlos {
 namespace {
@@ -50,12 +51,6 @@ void check_same_wall(const core::Transform& found, const core::Transform& wanted
         "compare: wall", "found two different poses", "both must lie in the same wall's frame");
 }
 
-void check_same_columns(const VolumeAxes& axes, const core::DepthMap& map) {
-    check_same_axis(axes.x_m, map.x_m, "x");
-    check_same_axis(axes.y_m, map.y_m, "y");
-    check_same_wall(axes.world_from_wall, map.world_from_wall);
-}
-
 /// Columns in which both maps have a depth.
 std::vector<std::size_t> common_columns(const core::DepthMap& depth, const core::DepthMap& truth) {
     std::vector<std::size_t> columns;
@@ -85,6 +80,29 @@ void score_masks(const std::vector<float>& projection,
         metrics.mask_iou_best = best->iou;
         metrics.mask_iou_best_threshold = best->share;
     }
+}
+
+double mean(const std::vector<double>& values) {
+    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+double share_within(const std::vector<double>& distances_m, double threshold_m) {
+    const auto within = std::count_if(distances_m.begin(), distances_m.end(), [&](double distance) {
+        return distance <= threshold_m;
+    });
+    return static_cast<double>(within) / static_cast<double>(distances_m.size());
+}
+
+/// Angle between two directions [deg].
+double angle_deg(const core::Vec3& a, const core::Vec3& b) {
+    return std::atan2(a.cross(b).norm(), a.dot(b)) * core::kDegreesPerRadian;
+}
+
+/// Mean and median of angles between normals; leaves `metrics` alone when there are none.
+void score_angles(const std::vector<double>& angles_deg, Metrics& metrics) {
+    if (angles_deg.empty()) return;
+    metrics.normal_mae_deg = mean(angles_deg);
+    metrics.normal_median_deg = median(angles_deg);
 }
 
 void score_depth(const core::DepthMap& depth,
@@ -166,11 +184,53 @@ std::vector<float> albedo_image(const core::DepthMap& map) {
 
 }  // namespace
 
+double median(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    const std::size_t half = values.size() / 2;
+    return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
+}
+
+Metrics compare_points(const core::PointCloud& result,
+                       const core::PointCloud& truth,
+                       double threshold_m) {
+    Metrics metrics;
+    if (result.positions.empty() || truth.positions.empty()) return metrics;
+
+    const core::NearestNeighbours to_truth =
+        core::nearest_neighbours(result.positions, truth.positions);
+    const core::NearestNeighbours to_result =
+        core::nearest_neighbours(truth.positions, result.positions);
+    metrics.chamfer_m = 0.5 * (mean(to_truth.distances_m) + mean(to_result.distances_m));
+
+    const double accuracy = share_within(to_truth.distances_m, threshold_m);
+    const double completeness = share_within(to_result.distances_m, threshold_m);
+    const double sum = accuracy + completeness;
+    metrics.fscore = sum > 0.0 ? 2.0 * accuracy * completeness / sum : 0.0;
+    metrics.completeness = completeness;
+    metrics.accuracy = accuracy;
+    metrics.fscore_threshold_m = threshold_m;
+
+    const bool both_have_normals = result.normals.size() == result.positions.size() &&
+                                   truth.normals.size() == truth.positions.size();
+    if (both_have_normals) {
+        std::vector<double> angles_deg;
+        for (std::size_t i = 0; i < result.normals.size(); ++i) {
+            // Surfaces reflect on both sides: which one a mesh calls its front says nothing.
+            const double angle = angle_deg(result.normals[i], truth.normals[to_truth.indices[i]]);
+            angles_deg.push_back(std::min(angle, 180.0 - angle));
+        }
+        score_angles(angles_deg, metrics);
+    }
+    return metrics;
+}
+
 Metrics compare_to_truth(const Reconstruction& result,
                          const core::DepthMap& truth,
                          std::optional<double> threshold_m) {
     const VolumeAxes& axes = result.volume.axes;
-    check_same_columns(axes, truth);
+    check_same_axis(axes.x_m, truth.x_m, "x");
+    check_same_axis(axes.y_m, truth.y_m, "y");
+    check_same_wall(axes.world_from_wall, truth.world_from_wall);
     const std::vector<float> projection = max_projection(result.volume);
     const std::vector<std::size_t> columns = common_columns(result.depth, truth);
     const core::PointCloud true_points = surface_points(truth);

@@ -2,7 +2,6 @@
 #include "nlos/canvas/canvas.h"
 #include "nlos/pictures/film.h"
 #include "nlos/pictures/image_layout.h"
-#include "nlos/pictures/light_images.h"
 #include "nlos/pictures/light_scale.h"
 #include "nlos/pictures/pictures.h"
 #include "nlos/preparation/wall_frame.h"
@@ -25,8 +24,6 @@ constexpr std::size_t kMaxGates = 4;      // of an image's histogram, drawn one 
 
 constexpr float kBackground = std::numeric_limits<float>::quiet_NaN();  // what nobody observed
 
-using Range = std::array<double, 2>;
-
 ImagePanel streak_panel(const core::Capture& capture,
                         const std::optional<WallGrid>& grid,
                         const std::array<std::size_t, 2>& bins) {
@@ -34,15 +31,11 @@ ImagePanel streak_panel(const core::Capture& capture,
     for (std::size_t i = 0; i < points.size(); ++i) {
         points[i] = grid ? grid->point(i, grid->size[1] / 2) : i;
     }
-    ImagePanel panel;
+    ImagePanel panel =
+        image_of(points.size(), bins[1] - bins[0], [&](std::size_t i, std::size_t bin) {
+            return capture.transient.histogram(pair_of(capture.scan, points[i]))[bins[0] + bin];
+        });
     panel.title = grid ? "Streak of the middle row" : "Streak of all points";
-    panel.width = points.size();
-    panel.height = bins[1] - bins[0];
-    for (std::size_t bin = bins[0]; bin < bins[1]; ++bin) {
-        for (const std::size_t point : points) {
-            panel.values.push_back(capture.transient.histogram(pair_of(capture.scan, point))[bin]);
-        }
-    }
     panel.x_label = grid ? "wall x [m]" : "number of the point";
     panel.x_range = grid ? cell_edges(grid->first_m[0], grid->pitch_m[0], points.size())
                          : cell_edges(0.0, 1.0, points.size());

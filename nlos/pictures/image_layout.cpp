@@ -16,14 +16,9 @@ std::array<double, 2> cell_edges(const std::vector<double>& centres) {
 }
 
 ImagePanel camera_panel(const core::PinholeCamera& camera, const std::vector<float>& of_pixels) {
-    ImagePanel panel;
-    panel.width = camera.width();
-    panel.height = camera.height();
-    for (std::size_t y = 0; y < panel.height; ++y) {
-        for (std::size_t x = 0; x < panel.width; ++x) {
-            panel.values.push_back(of_pixels[x * panel.height + y]);
-        }
-    }
+    ImagePanel panel = image_of(camera.width(), camera.height(), [&](std::size_t x, std::size_t y) {
+        return of_pixels[x * camera.height() + y];
+    });
     panel.x_range = {0.0, static_cast<double>(panel.width)};
     panel.y_range = {0.0, static_cast<double>(panel.height)};
     panel.x_label = "x [pixel]";
@@ -33,14 +28,9 @@ ImagePanel camera_panel(const core::PinholeCamera& camera, const std::vector<flo
 }
 
 ImagePanel wall_panel(const WallGrid& grid, const std::vector<float>& of_points) {
-    ImagePanel panel;
-    panel.width = grid.size[0];
-    panel.height = grid.size[1];
-    for (std::size_t iy = 0; iy < panel.height; ++iy) {
-        for (std::size_t ix = 0; ix < panel.width; ++ix) {
-            panel.values.push_back(of_points[grid.point(ix, iy)]);
-        }
-    }
+    ImagePanel panel = image_of(grid.size[0], grid.size[1], [&](std::size_t ix, std::size_t iy) {
+        return of_points[grid.point(ix, iy)];
+    });
     panel.x_range = cell_edges(grid.first_m[0], grid.pitch_m[0], panel.width);
     panel.y_range = cell_edges(grid.first_m[1], grid.pitch_m[1], panel.height);
     panel.x_label = "wall x [m]";

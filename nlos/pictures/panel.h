@@ -47,6 +47,21 @@ struct ImagePanel {
     std::vector<std::pair<std::string, Colour>> categories;
 };
 
+/// An image of `width` x `height` values value_of(ix, iy).
+template <class ValueOf>
+ImagePanel image_of(std::size_t width, std::size_t height, const ValueOf& value_of) {
+    ImagePanel panel;
+    panel.width = width;
+    panel.height = height;
+    panel.values.reserve(width * height);
+    for (std::size_t iy = 0; iy < height; ++iy) {
+        for (std::size_t ix = 0; ix < width; ++ix) {
+            panel.values.push_back(static_cast<float>(value_of(ix, iy)));
+        }
+    }
+    return panel;
+}
+
 /// A curve through (x, y), drawn as a line with axes; y starts at 0 or below.
 struct CurvePanel {
     std::string title;

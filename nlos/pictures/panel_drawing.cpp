@@ -2,7 +2,6 @@
 #include "nlos/pictures/panel_drawing.h"
 
 #include "nlos/pictures/axis_drawing.h"
-#include "nlos/pictures/axis_ticks.h"
 #include "renderer/core/error.h"
 
 #include <fmt/core.h>

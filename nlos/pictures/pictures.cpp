@@ -20,20 +20,14 @@ template <class ValueOf>
 ImagePanel front_view_of(const std::vector<double>& x_m,
                          const std::vector<double>& y_m,
                          ValueOf value_of) {
-    ImagePanel panel;
-    panel.width = x_m.size();
-    panel.height = y_m.size();
-    panel.values.resize(panel.width * panel.height);
+    ImagePanel panel = image_of(x_m.size(), y_m.size(), [&](std::size_t ix, std::size_t iy) {
+        return value_of(ix * y_m.size() + iy);
+    });
     panel.x_range = cell_edges(x_m);
     panel.y_range = cell_edges(y_m);
     panel.x_label = "x [m]";
     panel.y_label = "y [m]";
     panel.x_direction = AxisDirection::Reversed;
-    for (std::size_t ix = 0; ix < x_m.size(); ++ix) {
-        for (std::size_t iy = 0; iy < y_m.size(); ++iy) {
-            panel.values[iy * x_m.size() + ix] = static_cast<float>(value_of(ix * y_m.size() + iy));
-        }
-    }
     return panel;
 }
 
@@ -59,11 +53,9 @@ ImagePanel empty_projection(const char* title,
                             const char* x_label,
                             const std::vector<double>& up_m,
                             const char* y_label) {
-    ImagePanel panel;
+    ImagePanel panel =
+        image_of(across_m.size(), up_m.size(), [](std::size_t, std::size_t) { return 0.0F; });
     panel.title = title;
-    panel.width = across_m.size();
-    panel.height = up_m.size();
-    panel.values.assign(panel.width * panel.height, 0.0F);
     panel.x_range = cell_edges(across_m);
     panel.y_range = cell_edges(up_m);
     panel.x_label = x_label;

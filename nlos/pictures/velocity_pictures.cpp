@@ -120,16 +120,11 @@ CurvePanel spectrum_panel(const core::VelocityHistogram& velocity) {
 ImagePanel velocity_over_time(const core::TimeAxis& time, const core::VelocityHistogram& velocity) {
     const std::vector<double> sums = sum_over_pairs(velocity.values);
     const double total = total_of(sums);
-    ImagePanel panel;
+    const std::size_t stride = stride_of(velocity);
+    ImagePanel panel = image_of(sums.size() / stride, stride, [&](std::size_t v, std::size_t t) {
+        return decibels(total > 0.0 ? sums[v * stride + t] / total : 0.0);
+    });
     panel.title = "Path velocity and path length";
-    panel.width = static_cast<std::size_t>(velocity.axis.num_bins);
-    panel.height = static_cast<std::size_t>(time.num_bins);
-    for (std::size_t t = 0; t < panel.height; ++t) {
-        for (std::size_t v = 0; v < panel.width; ++v) {
-            const double share = total > 0.0 ? sums[v * panel.height + t] / total : 0.0;
-            panel.values.push_back(static_cast<float>(decibels(share)));
-        }
-    }
     panel.x_range = {velocity.axis.start_m_per_s, velocity.axis.end_m_per_s()};
     panel.y_range = {time.opl_start_m, time.opl_end_m()};
     panel.x_label = "path velocity [m/s]";

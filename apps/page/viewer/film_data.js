@@ -1,92 +1,90 @@
 // SPDX-License-Identifier: MIT
 // The numbers of a film: its values by cell and bin, sums, and what its bins mean.
-(function (viewer) {
-  'use strict';
 
-  /** One pass over all values: the sum of each cell, and the mean over all cells of each bin. */
-  function sumUp(codes, values, cells, bins) {
-    const perCell = new Float64Array(cells);
-    const perBin = new Float64Array(bins);
-    for (let cell = 0, i = 0; cell < cells; ++cell) {
-      let sum = 0;
-      for (let bin = 0; bin < bins; ++bin, ++i) {
-        const value = values[codes[i]];
-        sum += value;
-        perBin[bin] += value;
-      }
-      perCell[cell] = sum;
+/** One pass over all values: the sum of each cell, and the mean over all cells of each bin. */
+function sumUp(codes, values, cells, bins) {
+  const perCell = new Float64Array(cells);
+  const perBin = new Float64Array(bins);
+  for (let cell = 0, i = 0; cell < cells; ++cell) {
+    let sum = 0;
+    for (let bin = 0; bin < bins; ++bin, ++i) {
+      const value = values[codes[i]];
+      sum += value;
+      perBin[bin] += value;
     }
-    for (let bin = 0; bin < bins; ++bin) perBin[bin] /= cells;
-    return { perCell, perBin };
+    perCell[cell] = sum;
+  }
+  for (let bin = 0; bin < bins; ++bin) perBin[bin] /= cells;
+  return { perCell, perBin };
+}
+
+const indexOfMaximum = (numbers) => numbers.reduce((best, number, i) => (number > numbers[best] ? i : best), 0);
+
+class FilmData {
+  constructor(film, cells, quantity) {
+    this.film = film;
+    this.cells = cells;
+    this.bins = film.bins;
+    this.quantity = quantity;
+    const { perCell, perBin } = sumUp(quantity.codes, quantity.values, cells, film.bins);
+    this.sums = perCell;
+    this.means = perBin;
+    this.brightestCell = indexOfMaximum(perCell);
+    this.brightestBin = indexOfMaximum(perBin);
+    this.isFrames = film.axis === 'frame';
+    this.word = this.isFrames ? 'frame' : 'bin';
   }
 
-  const indexOfMaximum = (numbers) => numbers.reduce((best, number, i) => (number > numbers[best] ? i : best), 0);
-
-  class FilmData {
-    constructor(film, cells, quantity) {
-      this.film = film;
-      this.cells = cells;
-      this.bins = film.bins;
-      this.quantity = quantity;
-      const { perCell, perBin } = sumUp(quantity.codes, quantity.values, cells, film.bins);
-      this.sums = perCell;
-      this.means = perBin;
-      this.brightestCell = indexOfMaximum(perCell);
-      this.brightestBin = indexOfMaximum(perBin);
-      this.isFrames = film.axis === 'frame';
-    }
-
-    value(cell, bin) {
-      return this.quantity.values[this.quantity.codes[cell * this.bins + bin]];
-    }
-
-    histogram(cell) {
-      return Float64Array.from({ length: this.bins }, (unused, bin) => this.value(cell, bin));
-    }
-
-    largestAt(bin) {
-      let code = 0;
-      for (let cell = 0; cell < this.cells; ++cell) code = Math.max(code, this.quantity.codes[cell * this.bins + bin]);
-      return this.quantity.values[code];
-    }
-
-    /** Where a bin begins on the axis of time; frames are counted from one, each around its number. */
-    edge(bin) {
-      return this.isFrames ? bin + 0.5 : this.film.start + bin * this.film.step;
-    }
-
-    binAt(position) {
-      const bin = this.isFrames ? position - 0.5 : (position - this.film.start) / this.film.step;
-      return Math.min(this.bins - 1, Math.max(0, Math.floor(bin)));
-    }
-
-    /** A bin in words, such as `path length 1.234 m` (its middle). */
-    describe(bin) {
-      const { labels, axis, axis_unit: unit, start, step } = this.film;
-      if (this.isFrames) return (labels && labels[bin]) || `frame ${bin + 1}`;
-      const decimals = Math.min(6, Math.max(3, 1 - Math.floor(Math.log10(step))));
-      return `${axis} ${viewer.withUnit(viewer.formatFixed(start + (bin + 0.5) * step, decimals), unit)}`;
-    }
-
-    axisTitle() {
-      return this.isFrames ? 'frame' : viewer.titleWithUnit(this.film.axis, this.film.axis_unit);
-    }
-
-    valueText(value) {
-      return viewer.withUnit(viewer.formatNumber(value), this.film.unit);
-    }
+  value(cell, bin) {
+    return this.quantity.values[this.quantity.codes[cell * this.bins + bin]];
   }
 
-  viewer.loadFilm = async function (film, cells) {
-    const { bins, first_lit: first, last_lit: last } = film;
-    viewer.require(Number.isInteger(bins) && bins > 0, 'The capture has no bins.');
-    viewer.require(film.axis === 'frame' || film.step > 0, 'The capture\u2019s bins have no width.');
-    viewer.require(
-      Number.isInteger(first) && Number.isInteger(last) && first >= 0 && first <= last && last < bins,
-      'The capture does not say where its light lies.',
-    );
-    const quantity = await viewer.loadQuantity(film.values, cells * bins);
-    if (film.whole) quantity.values = quantity.values.map(Math.round);
-    return new FilmData(film, cells, quantity);
-  };
-})((window.nlosViewer = window.nlosViewer || {}));
+  histogram(cell) {
+    return Float64Array.from({ length: this.bins }, (unused, bin) => this.value(cell, bin));
+  }
+
+  largestAt(bin) {
+    let code = 0;
+    for (let cell = 0; cell < this.cells; ++cell) code = Math.max(code, this.quantity.codes[cell * this.bins + bin]);
+    return this.quantity.values[code];
+  }
+
+  /** Where a bin begins on the axis of time; frames are counted from one, each around its number. */
+  edge(bin) {
+    return this.isFrames ? bin + 0.5 : this.film.start + bin * this.film.step;
+  }
+
+  binAt(position) {
+    const bin = this.isFrames ? position - 0.5 : (position - this.film.start) / this.film.step;
+    return Math.min(this.bins - 1, Math.max(0, Math.floor(bin)));
+  }
+
+  /** A bin in words, such as `path length 1.234 m` (its middle). */
+  describe(bin) {
+    const { labels, axis, start, step } = this.film;
+    if (this.isFrames) return (labels && labels[bin]) || `frame ${bin + 1}`;
+    const decimals = Math.min(6, Math.max(3, 1 - Math.floor(Math.log10(step))));
+    return `${axis} ${viewer.withUnit(viewer.formatFixed(start + (bin + 0.5) * step, decimals), 'm')}`;
+  }
+
+  axisTitle() {
+    return this.isFrames ? 'frame' : viewer.titleWithUnit(this.film.axis, 'm');
+  }
+
+  valueText(value) {
+    return viewer.withUnit(viewer.formatNumber(value), this.film.unit);
+  }
+}
+
+viewer.loadFilm = async function (film, cells) {
+  const { bins, first_lit: first, last_lit: last } = film;
+  viewer.require(Number.isInteger(bins) && bins > 0, 'The capture has no bins.');
+  viewer.require(film.axis === 'frame' || film.step > 0, 'The capture\u2019s bins have no width.');
+  viewer.require(
+    Number.isInteger(first) && Number.isInteger(last) && first >= 0 && first <= last && last < bins,
+    'The capture does not say where its light lies.',
+  );
+  const quantity = await viewer.loadQuantity(film.values, cells * bins);
+  if (film.whole) quantity.values = quantity.values.map(Math.round);
+  return new FilmData(film, cells, quantity);
+};

@@ -21,87 +21,84 @@
 //   slices   data-result, data-ix, data-iy, data-iz, data-value-scale
 //   matrix   data-ready
 //   pair     data-left, data-right (indices of results), data-map, data-position (per cent)
-(function (viewer) {
-  'use strict';
 
-  const kNearby = '400px';  // how far outside the window a view starts to load
-  const kLoading = 'Loading \u2026';
+const kNearby = '400px';  // how far outside the window a view starts to load
+const kLoading = 'Loading \u2026';
 
-  /** What a view gets: its placeholder, a place for its contents, and a line for messages. */
-  function prepare(root, metadata) {
-    const fallback = viewer.element('div', { class: 'view-fallback' }, ...root.childNodes);
-    const body = viewer.element('div', { class: 'view-body', hidden: true });
-    const message = viewer.element('p', { class: 'view-message', role: 'status' });
-    root.append(body, message, fallback);
-    const say = (text) => {
-      message.textContent = text;
-      message.hidden = text === '';
-    };
-    say(kLoading);
-    const hide = () => { root.hidden = true; };
-    /** Shows the view instead of what the page holds without scripts, or the other way round. */
-    const show = (isView) => {
-      body.hidden = !isView;
-      fallback.hidden = isView;
-    };
-    const isLoading = () => message.textContent === kLoading;
-    return { root, metadata, body, say, hide, show, isLoading };
-  }
+/** What a view gets: its placeholder, a place for its contents, and a line for messages. */
+function prepare(root, metadata) {
+  const fallback = viewer.element('div', { class: 'view-fallback' }, ...root.childNodes);
+  const body = viewer.element('div', { class: 'view-body', hidden: true });
+  const message = viewer.element('p', { class: 'view-message', role: 'status' });
+  root.append(body, message, fallback);
+  const say = (text) => {
+    message.textContent = text;
+    message.hidden = text === '';
+  };
+  say(kLoading);
+  const hide = () => { root.hidden = true; };
+  /** Shows the view instead of what the page holds without scripts, or the other way round. */
+  const show = (isView) => {
+    body.hidden = !isView;
+    fallback.hidden = isView;
+  };
+  const isLoading = () => message.textContent === kLoading;
+  return { root, metadata, body, say, hide, show, isLoading };
+}
 
-  function fail(view, error) {
-    view.show(false);
-    view.root.dataset.failed = 'true';
-    view.say('This view cannot be shown. ' + error.message);
-  }
+function fail(view, error) {
+  view.show(false);
+  view.root.dataset.failed = 'true';
+  view.say('This view cannot be shown. ' + error.message);
+}
 
-  async function start(view) {
-    const make = viewer.views[view.root.dataset.view];
-    try {
-      viewer.require(make, 'Its kind is unknown.');
-      viewer.require(
-        viewer.hasDecompression(),
-        'This browser cannot unpack the page\u2019s data, because it lacks DecompressionStream; a newer one can.',
-      );
-      await make(view);
-      if (view.isLoading()) view.say('');
-      view.show(true);
-      view.root.dataset.started = 'true';
-    } catch (error) {
-      fail(view, error);
-    }
-  }
-
-  function startWhenNear(views) {
-    const byRoot = new Map(views.map((view) => [view.root, view]));
-    const observer = new IntersectionObserver(
-      (entries) => {
-        for (const entry of entries) {
-          if (!entry.isIntersecting) continue;
-          observer.unobserve(entry.target);
-          start(byRoot.get(entry.target));
-        }
-      },
-      { rootMargin: kNearby },
+async function start(view) {
+  const make = viewer.views[view.root.dataset.view];
+  try {
+    viewer.require(make, 'Its kind is unknown.');
+    viewer.require(
+      typeof DecompressionStream === 'function',
+      'This browser cannot unpack the page\u2019s data, because it lacks DecompressionStream; a newer one can.',
     );
-    for (const view of views) observer.observe(view.root);
+    await make(view);
+    if (view.isLoading()) view.say('');
+    view.show(true);
+    view.root.dataset.started = 'true';
+  } catch (error) {
+    fail(view, error);
   }
+}
 
-  function main() {
-    for (const table of document.querySelectorAll('table.sortable')) viewer.makeSortable(table);
-    const roots = [...document.querySelectorAll('.view[data-view]')];
-    if (roots.length === 0) return;
-    let metadata = null;
-    let problem = null;
-    try {
-      metadata = viewer.readMetadata();
-    } catch (error) {
-      problem = error;
-    }
-    const views = roots.map((root) => prepare(root, metadata));
-    if (problem) views.forEach((view) => fail(view, problem));
-    else startWhenNear(views);
+function startWhenNear(views) {
+  const byRoot = new Map(views.map((view) => [view.root, view]));
+  const observer = new IntersectionObserver(
+    (entries) => {
+      for (const entry of entries) {
+        if (!entry.isIntersecting) continue;
+        observer.unobserve(entry.target);
+        start(byRoot.get(entry.target));
+      }
+    },
+    { rootMargin: kNearby },
+  );
+  for (const view of views) observer.observe(view.root);
+}
+
+function main() {
+  for (const table of document.querySelectorAll('table.sortable')) viewer.makeSortable(table);
+  const roots = [...document.querySelectorAll('.view[data-view]')];
+  if (roots.length === 0) return;
+  let metadata = null;
+  let problem = null;
+  try {
+    metadata = viewer.readMetadata();
+  } catch (error) {
+    problem = error;
   }
+  const views = roots.map((root) => prepare(root, metadata));
+  if (problem) views.forEach((view) => fail(view, problem));
+  else startWhenNear(views);
+}
 
-  if (document.readyState === 'loading') addEventListener('DOMContentLoaded', main);
-  else main();
-})((window.nlosViewer = window.nlosViewer || {}));
+if (document.readyState === 'loading') addEventListener('DOMContentLoaded', main);
+else main();

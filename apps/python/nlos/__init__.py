@@ -34,7 +34,6 @@ import numpy as np
 from . import _core
 from ._core import (Capture, FitResult, LightConeOperator, Object, PairOperator, Reconstruction, Scene)
 from ._errors import Error, Failure
-from ._inputs import paths_of, show_progress, thread_count
 from .neighbours import from_mitransient, from_tal, from_trimesh, to_tal
 
 __version__ = _core.version.split()[1]
@@ -62,7 +61,7 @@ def load_scene(path: Path, **settings: Any) -> Scene:
     path      scene description
     settings  keys of scene.json in place of the file's, such as ``scan={"sensing_points": [32, 32]}``
     """
-    return _core.load_scene(_path(path, "path"), settings)
+    return _core.load_scene(_path(path), settings)
 
 
 def read(path: Path | Sequence[Path], layout: str | None = None, **settings: Any) -> Capture:
@@ -74,12 +73,12 @@ def read(path: Path | Sequence[Path], layout: str | None = None, **settings: Any
     """
     if layout is not None:
         settings["layout"] = layout
-    return _core.read_capture(paths_of(path), settings)
+    return _core.read_capture(_paths(path), settings)
 
 
 def read_volume(path: Path) -> Reconstruction:
     """Reads a volume that ``Reconstruction.write`` or the program wrote (.h5)."""
-    return _core.read_volume(_path(path, "path"))
+    return _core.read_volume(_path(path))
 
 
 def render(
@@ -103,7 +102,7 @@ def render(
     returns      Capture with H in W/(m^2 sr) for 1 W, per bin; how it was computed is in scene_info
     """
     return _core.render(_scene(scene), scan, axis, calibration, settings,
-                        show_progress(progress, "render"), thread_count(threads))
+                        _show_progress(progress, "render"), _thread_count(threads))
 
 
 def simulate_noise(capture: Capture | Path, *, sensor: bool = False, threads: int = 0, **settings: Any) -> Capture:
@@ -115,7 +114,7 @@ def simulate_noise(capture: Capture | Path, *, sensor: bool = False, threads: in
               dead_time_ns, expected, seed, ...
     returns   Capture with the unit counts
     """
-    return _core.simulate_noise(_capture(capture, "capture"), sensor, settings, thread_count(threads))
+    return _core.simulate_noise(_capture(capture), sensor, settings, _thread_count(threads))
 
 
 def reconstruct(
@@ -137,9 +136,9 @@ def reconstruct(
     raises       Error when the method cannot serve this capture (it names one that can); Failure
                  when memory does not suffice
     """
-    return _core.reconstruct(_capture(capture, "capture"), {"method": method, **settings},
-                             calibration, show_progress(progress, "reconstruct"),
-                             thread_count(threads))
+    return _core.reconstruct(_capture(capture), {"method": method, **settings},
+                             calibration, _show_progress(progress, "reconstruct"),
+                             _thread_count(threads))
 
 
 def fit(
@@ -162,8 +161,8 @@ def fit(
     points: Any = []
     if isinstance(start, Reconstruction):
         points, start = start.points_m, "volume"
-    return _core.fit(_capture(capture, "capture"), _scene(scene), {**settings, "start": start},
-                     calibration, points, show_progress(progress, "fit"), thread_count(threads))
+    return _core.fit(_capture(capture), _scene(scene), {**settings, "start": start},
+                     calibration, points, _show_progress(progress, "fit"), _thread_count(threads))
 
 
 def calibrate(setup: Path, **settings: Any) -> dict[str, Any]:
@@ -229,12 +228,12 @@ def third_bounce_vjp(
 
 def info(path: Path | Sequence[Path], **settings: Any) -> str:
     """Says what a file is and what it holds, in lines for people."""
-    return _core.info(paths_of(path), settings)
+    return _core.info(_paths(path), settings)
 
 
 def report(folder: Path, path: Path) -> None:
     """Makes one self-contained HTML page of a folder of results."""
-    _core.report(_path(folder, "folder"), _path(path, "path"))
+    _core.report(_path(folder, "folder"), _path(path))
 
 
 def settings(function: str) -> dict[str, tuple[str, str]]:
@@ -265,30 +264,76 @@ def generate(
     returns     dict with shards_written, shards_there, items_written, dark_items, seconds, interrupted
     """
     return _core.generate(_path(recipe, "recipe"), _path(folder, "folder"), shard, item_range, settings,
-                          show_progress(progress, "generate"), thread_count(threads))
+                          _show_progress(progress, "generate"), _thread_count(threads))
 
 
 def _is_path(value: Any) -> bool:
     return isinstance(value, (str, os.PathLike))
 
 
-def _path(value: Any, name: str) -> str:
+def _path(value: Any, name: str = "path") -> str:
     if not _is_path(value):
         raise Error(name, f"found {type(value).__name__}", "must be a path")
     return os.fspath(value)
 
 
-def _capture(value: Any, name: str) -> Capture:
-    if isinstance(value, Capture):
-        return value
-    if _is_path(value):
-        return read(value)
-    raise Error(name, f"found {type(value).__name__}", "must be a Capture or a path")
+def _paths(value: Any) -> list[str]:
+    """One path or several."""
+    values = [value] if _is_path(value) else value
+    if not isinstance(values, (list, tuple)) or not values:
+        raise Error("path", f"found {type(value).__name__}", "must be a path or a list of them")
+    for item in values:
+        if not _is_path(item):
+            raise Error("path", f"found {type(item).__name__} in the list", "must be paths")
+    return [os.fspath(item) for item in values]
+
+
+def _capture(value: Any) -> Capture:
+    return _given(value, Capture, read)
 
 
 def _scene(value: Any) -> Scene:
-    if isinstance(value, Scene):
+    return _given(value, Scene, load_scene)
+
+
+def _given(value: Any, kind: type, read_file: Callable[[Any], Any]) -> Any:
+    """An object as it is given, or read from the path that is given."""
+    if isinstance(value, kind):
         return value
     if _is_path(value):
-        return load_scene(value)
-    raise Error("scene", f"found {type(value).__name__}", "must be a Scene or a path")
+        return read_file(value)
+    name = kind.__name__
+    raise Error(name.lower(), f"found {type(value).__name__}", f"must be a {name} or a path")
+
+
+def _thread_count(value: Any) -> int:
+    if isinstance(value, bool) or not isinstance(value, int) or not 0 <= value <= 1024:
+        raise Error("threads", f"found {value!r}", "must be a whole number from 0 to 1024")
+    return value
+
+
+def _show_progress(value: Any, title: str) -> Callable[[float, str], Any] | None:
+    """What is called with the share done: nothing, the caller's own, or a bar."""
+    if value is None or value is False:
+        return None
+    if value is True:
+        return _bar(title)
+    if callable(value):
+        return value
+    raise Error("progress", f"found {type(value).__name__}", "must be True or a function of a share and a text")
+
+
+def _bar(title: str) -> Callable[[float, str], Any]:
+    try:
+        from tqdm.auto import tqdm
+    except ImportError:
+        return lambda share, text: print(f"{title} {100 * share:3.0f} %  {text}")
+    bar = tqdm(total=100, desc=title, unit="%", bar_format="{desc} {percentage:3.0f} %|{bar}| {postfix}")
+
+    def update(share: float, text: str) -> None:
+        bar.update(100 * share - bar.n)
+        bar.set_postfix_str(text, refresh=share >= 1.0)
+        if share >= 1.0:
+            bar.close()
+
+    return update

@@ -2,7 +2,6 @@
 #include "apps/report/report.h"
 
 #include "apps/estimate_text.h"
-#include "apps/report/result_labels.h"
 #include "calib/fit_file.h"
 #include "nlos/formats/capture_file.h"
 #include "nlos/formats/volume_file.h"

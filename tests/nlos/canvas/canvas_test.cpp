@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/canvas/canvas.h"
 
-#include "nlos/canvas/animated_png.h"
+#include "nlos/canvas/png_file.h"
 #include "nlos/canvas/raster.h"
 #include "renderer/core/error.h"
 

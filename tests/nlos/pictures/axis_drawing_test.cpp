@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/pictures/axis_ticks.h"
+#include "nlos/pictures/axis_drawing.h"
 
 #include <gtest/gtest.h>
 
