@@ -31,6 +31,11 @@ class SceneTruth {
                              const std::vector<double>& y_m) const {
         return renderer::trace_depth_map(scene_, world_from_wall, x_m, y_m);
     }
+    /// What is seen from the columns of a volume or of another depth map.
+    template <class Columns>
+    core::DepthMap depth_map(const Columns& columns) const {
+        return renderer::trace_depth_map(scene_, columns.world_from_wall, columns.x_m, columns.y_m);
+    }
 
  private:
     SceneTruth(renderer::SceneDescription description, const std::string& name)

@@ -61,21 +61,28 @@ WorkShare read_work_share(const std::string& text) {
 }
 
 std::string slurm_script(const ArrayJob& job) {
+    const auto absolute = [](const std::string& path) {
+        return std::filesystem::absolute(path).lexically_normal().string();
+    };
     std::string command = shell_word(std::filesystem::read_symlink("/proc/self/exe").string());
-    for (const std::string& word : job.words) command += " " + shell_word(word);
+    for (const std::string& word :
+         {job.command, absolute(job.file), std::string("-o"), absolute(job.folder)}) {
+        command += " " + shell_word(word);
+    }
+    for (const std::string& text : job.settings) command += " --set " + shell_word(text);
     return fmt::format(
         "#!/bin/bash\n"
-        "#SBATCH --job-name={0}\n"
+        "#SBATCH --job-name=nlos-{0}\n"
         "#SBATCH --array=0-{1}\n"
         "#SBATCH --ntasks=1 --cpus-per-task={2}\n"
         "#SBATCH --requeue --open-mode=append\n"
         "#SBATCH --signal=TERM@60\n"
-        "#SBATCH --output={0}-%A_%a.log\n"
+        "#SBATCH --output=nlos-{0}-%A_%a.log\n"
         "# Each task does its part of the work. What is finished is kept: submitting the script "
         "once\n"
         "# more, or single tasks of it by --array=3,7, does what is left.\n"
         "exec srun --cpus-per-task={2} {3} --threads {2} --shard \"$SLURM_ARRAY_TASK_ID/{4}\"\n",
-        job.name,
+        job.command,
         job.num_tasks - 1,
         job.cpus_per_task,
         command,
