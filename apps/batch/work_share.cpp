@@ -7,7 +7,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <cstdlib>
 #include <filesystem>
@@ -97,12 +96,9 @@ std::size_t read_task_count(const std::string& text, std::size_t otherwise) {
 }
 
 std::string shell_word(const std::string& text) {
-    const bool is_plain =
-        !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
-            return std::isalnum(c) != 0 ||
-                   std::string_view("/._-+=:,@%").find(static_cast<char>(c)) !=
-                       std::string_view::npos;
-        });
+    constexpr const char* kPlain =
+        "0123456789abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ/._-+=:,@%";
+    const bool is_plain = !text.empty() && text.find_first_not_of(kPlain) == std::string::npos;
     if (is_plain) return text;
     std::string word = "'";
     for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);

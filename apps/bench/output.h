@@ -13,7 +13,7 @@
 
 /// Lists the fields of a benchmark's row, once, under their own names: core::write_value() makes
 /// JSON of them, and tables.h makes tables of that. Stands after the struct, in its namespace.
-/// What each field means stands beside the field.
+/// What each field means stands beside the field. Rows that only tables read are JSON at once.
 #define NLOS_FIGURES(Row, ...)                                              \
     template <class Visitor>                                                \
     void for_each_field(Row& row, Visitor&& visit) {                        \
