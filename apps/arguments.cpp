@@ -60,7 +60,13 @@ CLI::Option* add_picture_option(CLI::App& command, std::string& path) {
 }
 
 void add_set_option(CLI::App& command, std::vector<std::string>& overrides) {
-    command.add_option("--set", overrides, "Change a setting; may be given several times")
+    command
+        .add_option_function<std::vector<std::string>>(
+            "--set",
+            [&overrides](const std::vector<std::string>& texts) {
+                overrides.insert(overrides.begin(), texts.begin(), texts.end());
+            },
+            "Change a setting; may be given several times")
         ->type_name("KEY.PATH=VALUE")
         ->allow_extra_args(false);
 }

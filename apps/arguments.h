@@ -42,7 +42,8 @@ CLI::Option* add_output_folder_option(CLI::App& command,
 /// Declares `--picture`, for a command that writes one as .png beside its result.
 CLI::Option* add_picture_option(CLI::App& command, std::string& path);
 
-/// Declares the repeatable `--set key.path=value`; its texts go to `overrides`.
+/// Declares the repeatable `--set key.path=value`; its texts go to `overrides`, before those of
+/// shorthands.
 void add_set_option(CLI::App& command, std::vector<std::string>& overrides);
 
 /// A flag that stands for one `--set`, with a value, or without one for settings that are true or

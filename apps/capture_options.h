@@ -42,7 +42,7 @@ inline constexpr std::array kCaptureShorthands{
 
 /// Declares `--layout` and `--set`; both go to `overrides`.
 inline void add_capture_options(Command& command, std::vector<std::string>& overrides) {
-    add_set_option(command, overrides);  // first: it replaces what the texts hold
+    add_set_option(command, overrides);
     add_shorthands(command, kCaptureShorthands, overrides);
 }
 

@@ -5,8 +5,10 @@
 
 #include <CLI/CLI.hpp>
 
+#include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace apps {
@@ -26,6 +28,18 @@ class Command : public CLI::App {
 
 /// Declares a command of the program or of another command, with the options that all have.
 Command& add_command(CLI::App& parent, const std::string& name, const std::string& description);
+
+/// The same of a command that runs on arguments of its own, which its options are to fill.
+template <class Arguments>
+std::pair<Command&, Arguments&> add_command(CLI::App& parent,
+                                            const std::string& name,
+                                            const std::string& description,
+                                            void (*run)(const Arguments&)) {
+    const auto arguments = std::make_shared<Arguments>();
+    Command& command = add_command(parent, name, description);
+    command.callback([arguments, run] { run(*arguments); });
+    return {command, *arguments};
+}
 
 /// The name of a command as it is typed, as in "nlos bench render".
 std::string typed_name(const CLI::App& command);

@@ -5,6 +5,8 @@
 #include "renderer/core/process.h"
 #include "renderer/core/stopwatch.h"
 
+#include <algorithm>
+
 namespace apps {
 namespace {
 
@@ -17,10 +19,27 @@ core::Json& outcome() {
     return fields;
 }
 
-void note_written(const std::vector<std::string>& paths) {
+std::string note_written(const std::vector<std::string>& paths) {
+    std::string names;
     for (const std::string& path : paths) {
-        if (!path.empty()) outcome()["written"].push_back(core::printable(path));
+        if (path.empty()) continue;
+        outcome()["written"].push_back(core::printable(path));
+        names += (names.empty() ? "" : ", ") + path;
     }
+    return names;
+}
+
+void print_written(const std::vector<std::string>& paths) {
+    note_written(paths);
+    for (const std::string& path : paths) {
+        if (!path.empty()) print("wrote {}\n", path);
+    }
+}
+
+void print_notes(std::string label, const std::vector<std::string>& notes) {
+    for (const std::string& note : notes) print("{}: {}\n", label, note);
+    std::ranges::replace(label, ' ', '_');
+    for (const std::string& note : notes) outcome()[label].push_back(core::printable(note));
 }
 
 void warn(const std::string& text) {

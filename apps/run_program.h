@@ -13,8 +13,7 @@ namespace apps {
 /// input       goes to its standard input
 /// output      the existing file that its standard output goes to; empty: nowhere
 /// returns     its exit status, -1 where a signal ended it; nothing when it cannot be started, as
-/// when it is not
-///             installed
+///             when it is not installed
 std::optional<int> run_program(std::vector<std::string> arguments,
                                const std::string& input = "",
                                const std::string& output = "");

@@ -25,11 +25,10 @@ class SceneTruth {
     /// What the whole wall sees, at the scene's own resolution.
     core::DepthMap depth_map() const { return renderer::trace_ground_truth(scene_, description_); }
 
-    /// What is seen from given columns of a frame, see renderer::trace_depth_map.
-    core::DepthMap depth_map(const core::Transform& world_from_wall,
-                             const std::vector<double>& x_m,
-                             const std::vector<double>& y_m) const {
-        return renderer::trace_depth_map(scene_, world_from_wall, x_m, y_m);
+    /// What is seen from the columns of a volume or of another depth map.
+    template <class Columns>
+    core::DepthMap depth_map(const Columns& columns) const {
+        return renderer::trace_depth_map(scene_, columns.world_from_wall, columns.x_m, columns.y_m);
     }
 
  private:

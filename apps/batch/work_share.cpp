@@ -7,7 +7,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <cstdlib>
 #include <filesystem>
@@ -61,21 +60,28 @@ WorkShare read_work_share(const std::string& text) {
 }
 
 std::string slurm_script(const ArrayJob& job) {
+    const auto absolute = [](const std::string& path) {
+        return std::filesystem::absolute(path).lexically_normal().string();
+    };
     std::string command = shell_word(std::filesystem::read_symlink("/proc/self/exe").string());
-    for (const std::string& word : job.words) command += " " + shell_word(word);
+    for (const std::string& word :
+         {job.command, absolute(job.file), std::string("-o"), absolute(job.folder)}) {
+        command += " " + shell_word(word);
+    }
+    for (const std::string& text : job.settings) command += " --set " + shell_word(text);
     return fmt::format(
         "#!/bin/bash\n"
-        "#SBATCH --job-name={0}\n"
+        "#SBATCH --job-name=nlos-{0}\n"
         "#SBATCH --array=0-{1}\n"
         "#SBATCH --ntasks=1 --cpus-per-task={2}\n"
         "#SBATCH --requeue --open-mode=append\n"
         "#SBATCH --signal=TERM@60\n"
-        "#SBATCH --output={0}-%A_%a.log\n"
+        "#SBATCH --output=nlos-{0}-%A_%a.log\n"
         "# Each task does its part of the work. What is finished is kept: submitting the script "
         "once\n"
         "# more, or single tasks of it by --array=3,7, does what is left.\n"
         "exec srun --cpus-per-task={2} {3} --threads {2} --shard \"$SLURM_ARRAY_TASK_ID/{4}\"\n",
-        job.name,
+        job.command,
         job.num_tasks - 1,
         job.cpus_per_task,
         command,
@@ -90,12 +96,9 @@ std::size_t read_task_count(const std::string& text, std::size_t otherwise) {
 }
 
 std::string shell_word(const std::string& text) {
-    const bool is_plain =
-        !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
-            return std::isalnum(c) != 0 ||
-                   std::string_view("/._-+=:,@%").find(static_cast<char>(c)) !=
-                       std::string_view::npos;
-        });
+    constexpr const char* kPlain =
+        "0123456789abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ/._-+=:,@%";
+    const bool is_plain = !text.empty() && text.find_first_not_of(kPlain) == std::string::npos;
     if (is_plain) return text;
     std::string word = "'";
     for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);

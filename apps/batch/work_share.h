@@ -14,7 +14,6 @@ struct WorkShare {
     std::size_t count = 1;
 
     bool takes(std::size_t piece) const { return piece % count == index; }
-    bool is_everything() const { return count == 1; }
 };
 
 /// Which part this process does.
@@ -26,8 +25,10 @@ WorkShare read_work_share(const std::string& text);
 
 /// How a batch script asks Slurm for a job array.
 struct ArrayJob {
-    std::string name;                ///< of the job
-    std::vector<std::string> words;  ///< of the command, after the name of this program
+    std::string command;  ///< of this program, which has a file, a folder and settings
+    std::string file;     ///< that says what is to be done
+    std::string folder;   ///< of the results
+    std::vector<std::string> settings;  ///< `key.path=value` texts
     std::size_t num_tasks = 1;
     int cpus_per_task = 1;
 };

@@ -86,8 +86,7 @@ PlotLine pareto_front(const std::vector<PlotLine>& lines) {
     PlotLine front{"Pareto front", {}, {}, LineStyle::Limit};
     for (const auto& [x, y] : points) {
         if (!front.y.empty() && y >= front.y.back()) continue;
-        front.x.push_back(x);
-        front.y.push_back(y);
+        front.add(x, y);
     }
     return front;
 }

@@ -20,6 +20,11 @@ struct PlotLine {
     std::vector<double> y;
     LineStyle style = LineStyle::Measured;
     int limit_of = -1;  ///< the line of the plot whose limit this is and whose colour it takes
+
+    void add(double at_x, double at_y) {
+        x.push_back(at_x);
+        y.push_back(at_y);
+    }
 };
 
 enum class AxisScale { Logarithmic, Linear };
@@ -40,8 +45,7 @@ template <class Rows, class X, class Y>
 PlotLine line_of(std::string title, const Rows& rows, const X& x, const Y& y) {
     PlotLine line{std::move(title), {}, {}};
     for (const auto& row : rows) {
-        line.x.push_back(std::invoke(x, row));
-        line.y.push_back(std::invoke(y, row));
+        line.add(std::invoke(x, row), std::invoke(y, row));
     }
     return line;
 }

@@ -67,6 +67,14 @@ std::string text_of_file(const std::string& path) {
     return std::string(core::MappedFile(path, "must be a Markdown file").bytes());
 }
 
+core::Progress stopping_progress(core::Progress progress, const std::string& name) {
+    progress.report = [report = progress.report, name](double share, const std::string& detail) {
+        if (interrupt_requested()) throw core::Failure("bench " + name, "interrupted");
+        report(share, detail);
+    };
+    return progress;
+}
+
 void write_results(const BenchOutput& output, const std::string& name, core::Json figures) {
     constexpr std::size_t kMaxRows = 80;
     for (const char* key : {"program", "machine", "libraries", "against"}) figures.erase(key);
@@ -119,10 +127,11 @@ core::Json run_benchmark(const BenchOutput& output,
     core::check_targets({stem + ".json", stem + ".txt", output.results}, {});
     const core::Json earlier = read_earlier_run(output.against, name);
     ProgressBar bar("bench " + name);
+    const core::Progress progress = stopping_progress(bar.progress(), name);
     BenchResult result = [&] {
         const StoppableWork stoppable(
             "stopping after this measurement, without a file; Ctrl-C again ends at once");
-        return benchmark(bar.progress());
+        return benchmark(progress);
     }();
     if (interrupt_requested()) throw core::Failure("bench " + name, "interrupted");
     std::string table = plain_text(tables_of(result.figures));

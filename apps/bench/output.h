@@ -1,15 +1,26 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "apps/bench/figures.h"
 #include "apps/bench/gnuplot.h"
 #include "nlos/pictures/panel.h"
 #include "renderer/core/progress.h"
+#include "renderer/core/settings.h"
 
 #include <functional>
 #include <map>
 #include <string>
 #include <vector>
+
+/// Lists the fields of a benchmark's row, once, under their own names: core::write_value() makes
+/// JSON of them, and tables.h makes tables of that. Stands after the struct, in its namespace.
+/// What each field means stands beside the field. Rows that only tables read are JSON at once.
+#define NLOS_FIGURES(Row, ...)                                              \
+    template <class Visitor>                                                \
+    void for_each_field(Row& row, Visitor&& visit) {                        \
+        NLOHMANN_JSON_EXPAND(NLOHMANN_JSON_PASTE(NLOS_FIGURE, __VA_ARGS__)) \
+    }                                                                       \
+    static_assert(true) /* takes the semicolon */
+#define NLOS_FIGURE(field) visit(#field, row.field, "");
 
 namespace apps {
 
@@ -42,7 +53,15 @@ struct BenchResult {
     std::map<std::string, BenchPicture> pictures{};  ///< likewise
 };
 
+/// Measures, and says so by update() before every measurement, which ends the benchmark by
+/// core::Failure once the user has asked to stop.
 using Benchmark = std::function<BenchResult(const core::Progress&)>;
+
+/// The share that a part is of the whole.
+template <class Part, class Whole>
+double share_of(Part part, Whole whole) {
+    return static_cast<double>(part) / static_cast<double>(whole);
+}
 
 /// The figures of an earlier run of a benchmark; null for an empty path.
 ///

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "apps/bench/figures.h"
+#include "apps/bench/output.h"
 
 #include <string>
 #include <vector>

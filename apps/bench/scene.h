@@ -31,6 +31,7 @@ class BenchScene {
           scan_(renderer::make_scan(description_)),
           scene_(renderer::load_scene(description_, scan_)) {}
 
+    const renderer::SceneDescription& description() const { return description_; }
     const renderer::RenderSettings& settings() const { return description_.render; }
     const core::TimeAxis& axis() const { return description_.time_axis; }
     const core::Scan& scan() const { return scan_; }
@@ -43,6 +44,7 @@ class BenchScene {
     core::Capture render(const renderer::RenderSettings& settings) const {
         return render(axis(), settings);
     }
+    core::Capture render() const { return render(settings()); }
 
  private:
     renderer::SceneDescription description_;

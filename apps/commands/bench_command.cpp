@@ -9,7 +9,6 @@
 #include "renderer/core/output_file.h"
 
 #include <filesystem>
-#include <memory>
 
 namespace apps {
 namespace {
@@ -48,8 +47,7 @@ void run_all(const AllArguments& arguments) {
     add("fit", [&](const core::Progress& progress) { return measure_fit(fit, progress); });
     const auto path = std::filesystem::path(arguments.output.folder) / "bench_all.json";
     core::write_text_file(path.string(), core::json_text(all));
-    note_written({path.string()});
-    print("wrote {}\n", path.string());
+    print_written({path.string()});
 }
 
 }  // namespace
@@ -61,12 +59,11 @@ void add_bench_command(CLI::App& app) {
     add_bench_render_command(command);
     add_bench_reconstruct_command(command);
     add_bench_fit_command(command);
-    const auto arguments = std::make_shared<AllArguments>();
-    Command& all = add_command(command, "all", "These three: render, reconstruct, fit");
-    add_output_options(all, arguments->output);
-    all.add_flag("--quick", arguments->quick, "Fewer and smaller runs: minutes instead of an hour");
+    const auto [all, arguments] =
+        add_command<AllArguments>(command, "all", "These three: render, reconstruct, fit", run_all);
+    add_output_options(all, arguments.output);
+    all.add_flag("--quick", arguments.quick, "Fewer and smaller runs: minutes instead of an hour");
     all.example = "nlos bench all -o out/bench --quick";
-    all.callback([arguments] { run_all(*arguments); });
     add_bench_noise_command(command);
     add_bench_coverage_command(command);
     add_bench_weights_command(command);

@@ -10,8 +10,6 @@
 #include "nlos/formats/capture_file.h"
 #include "renderer/core/output_file.h"
 
-#include <memory>
-
 namespace apps {
 namespace {
 
@@ -58,16 +56,14 @@ void run(const CalibrateArguments& arguments) {
 }  // namespace
 
 void add_calibrate_command(CLI::App& app) {
-    Command& command =
-        add_command(app, "calibrate", "Calibrate wall, spots, time zero and response of a set-up");
+    const auto [command, arguments] = add_command<CalibrateArguments>(
+        app, "calibrate", "Calibrate wall, spots, time zero and response of a set-up", run);
     command.settings = core::settings_help(calib::SetupSettings{});
-    const auto arguments = std::make_shared<CalibrateArguments>();
-    add_file_option(command, "SETUP", arguments->setup, "Description of the measurements (.json)")
+    add_file_option(command, "SETUP", arguments.setup, "Description of the measurements (.json)")
         ->required();
-    add_output_option(command, arguments->output, "Calibration to write (.json)")->required();
-    add_set_option(command, arguments->overrides);
+    add_output_option(command, arguments.output, "Calibration to write (.json)")->required();
+    add_set_option(command, arguments.overrides);
     command.example = "nlos calibrate data/setup.json -o calibration.json";
-    command.callback([arguments] { run(*arguments); });
 }
 
 }  // namespace apps

@@ -11,7 +11,6 @@
 #include <fmt/core.h>
 
 #include <cmath>
-#include <memory>
 #include <optional>
 
 namespace apps {
@@ -49,38 +48,33 @@ void run(const CompareArguments& arguments) {
                        print("{:<24} {:<12.6g} {}\n", name, static_cast<double>(*value), meaning);
                    });
     for (const std::string& text : comparison.warnings) warn(text);
-    for (const std::string& path : {arguments.output, arguments.picture}) {
-        note_written({path});
-        if (!path.empty()) print("wrote {}\n", path);
-    }
+    print_written({arguments.output, arguments.picture});
 }
 
 }  // namespace
 
 void add_compare_command(CLI::App& app) {
-    Command& command =
-        add_command(app, "compare", "Score a result against the truth or another result");
+    const auto [command, arguments] = add_command<CompareArguments>(
+        app, "compare", "Score a result against the truth or another result", run);
     command.settings = core::settings_help(CaptureOptions{});
-    const auto arguments = std::make_shared<CompareArguments>();
     add_file_option(command,
                     "A",
-                    arguments->a,
+                    arguments.a,
                     "Volume, capture (.h5), fit or track (.json), point cloud or mesh (.ply, .glb)")
         ->required();
-    add_file_option(command, "B", arguments->b, "scene.json as the truth, or another of A's kind")
+    add_file_option(command, "B", arguments.b, "scene.json as the truth, or another of A's kind")
         ->required();
-    add_output_option(command, arguments->output, "Metrics to write (.json)");
-    add_picture_option(command, arguments->picture);
+    add_output_option(command, arguments.output, "Metrics to write (.json)");
+    add_picture_option(command, arguments.picture);
     command
         .add_option("--fscore-threshold-m",
-                    arguments->fscore_threshold_m,
+                    arguments.fscore_threshold_m,
                     "Distance that counts as a match of points [m] (default 0.01, of volumes "
                     "their voxel diagonal)")
         ->type_name("D");
-    add_capture_options(command, arguments->overrides);
+    add_capture_options(command, arguments.overrides);
     command.example =
         "nlos compare scenes/letter/scene.glb scenes/letter/scene.json -o metrics.json";
-    command.callback([arguments] { run(*arguments); });
 }
 
 }  // namespace apps

@@ -38,8 +38,7 @@ Comparison compare_volume_to_scene(const std::string& a,
                                    const std::string& b,
                                    std::optional<double> threshold_m) {
     const nlos::Reconstruction result = nlos::read_volume(a);
-    const nlos::VolumeAxes& axes = result.volume.axes;
-    const core::DepthMap truth = SceneTruth(b).depth_map(axes.world_from_wall, axes.x_m, axes.y_m);
+    const core::DepthMap truth = SceneTruth(b).depth_map(result.volume.axes);
     return {nlos::compare_to_truth(result, truth, threshold_m),
             {},
             nlos::comparison_panels(result, truth)};

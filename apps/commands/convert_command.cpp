@@ -12,7 +12,6 @@
 #include "renderer/scene_import/scene_import.h"
 
 #include <filesystem>
-#include <memory>
 
 namespace apps {
 namespace {
@@ -35,10 +34,7 @@ void convert_scene(const std::string& input, const std::string& output) {
     const std::string name = std::filesystem::path(geometry).filename().string();
     renderer::write_gltf(geometry, scene.geometry);
     core::write_text_file(output, core::json_text(renderer::imported_scene_json(scene, name)));
-    for (const std::string& text : scene.not_translated) {
-        print("not the same: {}\n", text);
-        outcome()["not_the_same"].push_back(core::printable(text));
-    }
+    print_notes("not the same", scene.not_translated);
     note_written({output, geometry});
     outcome()["objects"] = scene.geometry.objects.size();
     print("wrote {} and {} ({} objects)\n", output, geometry, scene.geometry.objects.size());
@@ -67,10 +63,7 @@ void run(const ConvertArguments& arguments) {
     }
     progress.stage(2, 2, "writing", 1.0, 1.0);
     for (const std::string& note : capture.notes) print("read: {}\n", note);
-    for (const std::string& loss : nlos::write_capture(output, capture, arguments.write)) {
-        print("not kept: {}\n", loss);
-        outcome()["not_kept"].push_back(core::printable(loss));
-    }
+    print_notes("not kept", nlos::write_capture(output, capture, arguments.write));
     note_written({output});
     outcome()["pairs"] = capture.transient.num_pairs();
     outcome()["bins"] = capture.transient.num_bins();
@@ -85,15 +78,15 @@ void run(const ConvertArguments& arguments) {
 }  // namespace
 
 void add_convert_command(CLI::App& app) {
-    Command& command = add_command(
+    const auto [command, arguments] = add_command<ConvertArguments>(
         app,
         "convert",
-        "Write a capture in another format, or a scene of Mitsuba or y-tal as one of ours");
+        "Write a capture in another format, or a scene of Mitsuba or y-tal as one of ours",
+        run);
     command.settings = core::settings_help(CaptureOptions{});
-    const auto arguments = std::make_shared<ConvertArguments>();
     command
         .add_option("FILES",
-                    arguments->files,
+                    arguments.files,
                     "IN: capture in any readable format, several files: the frames of a sequence; "
                     "or a scene of Mitsuba 3 with mitransient (.xml, .json) or of y-tal (.yaml). "
                     "OUT, the last: .h5 or .hdf5 (y-tal), .npz (NumPy), .exr (a streak image), "
@@ -103,24 +96,23 @@ void add_convert_command(CLI::App& app) {
         ->expected(2, kMostFiles)
         ->required();
     command.add_option("--out-layout",
-                       arguments->write.layout,
+                       arguments.write.layout,
                        "Layout of OUT where its suffix has several: of .mat stanford-2018 "
                        "(MATLAB v5), stanford-fk-2019 (MATLAB v7.3) or conv-nlos (MATLAB v5)");
     CLI::Option* steady =
-        command.add_flag("--steady", arguments->steady, "Sum over all bins: a steady-state image");
+        command.add_flag("--steady", arguments.steady, "Sum over all bins: a steady-state image");
     command
         .add_option("--gate-m",
-                    arguments->gate_m,
+                    arguments.gate_m,
                     "Sum over a time gate: its start and width [m of path length]")
         ->type_name("START WIDTH")
         ->expected(2)
         ->excludes(steady);
     command.add_flag("--for-ytal",
-                     arguments->write.for_ytal,
+                     arguments.write.for_ytal,
                      "HDF5 without the group /nlos, with which y-tal refuses files");
-    add_capture_options(command, arguments->overrides);
+    add_capture_options(command, arguments.overrides);
     command.example = "nlos convert data/letter.h5 letter.exr";
-    command.callback([arguments] { run(*arguments); });
 }
 
 }  // namespace apps

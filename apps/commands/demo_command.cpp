@@ -2,20 +2,21 @@
 #include "apps/arguments.h"
 #include "apps/commands.h"
 #include "apps/commands/compare_job.h"
-#include "apps/commands/file_picture.h"
 #include "apps/commands/fit_job.h"
 #include "apps/commands/reconstruct_job.h"
 #include "apps/commands/render_job.h"
 #include "apps/outcome.h"
 #include "apps/report/report.h"
+#include "apps/scene_truth.h"
 #include "apps/terminal.h"
 #include "nlos/detector/detector.h"
 #include "nlos/formats/capture_file.h"
+#include "nlos/pictures/picture.h"
+#include "nlos/pictures/pictures.h"
 #include "renderer/core/data_folder.h"
 #include "renderer/core/error.h"
 
 #include <filesystem>
-#include <memory>
 
 namespace apps {
 namespace {
@@ -43,7 +44,8 @@ void run(const DemoArguments& arguments) {
 
     const std::string scene = core::shipped_file("scenes/letter/scene.json");
     print("scene        {}\n", scene);
-    write_picture({scene}, file("ground_truth.png"));
+    nlos::write_panels(
+        file("ground_truth.png"), nlos::truth_panels(SceneTruth(scene).depth_map()), 3);
     const renderer::RenderResult render = render_to_file(scene, {}, file("capture.h5"));
     print("capture      {} ({:.2f} s)\n", file("capture.h5"), render.seconds);
     for (const std::string method : {"lct", "bp"}) {
@@ -74,7 +76,7 @@ void run(const DemoArguments& arguments) {
           kDemoJitterFwhm_ps);
     const std::string model = (fs::path(scene).parent_path() / "model.json").string();
     const calib::FitResult fit =
-        fit_to_file(file("counts.h5"), model, {"response=capture"}, "", file("fit.json"));
+        fit_to_file({file("counts.h5"), model, {"response=capture"}, file("fit.json")});
     const nlos::Metrics errors =
         compare_files(file("fit.json"), scene, file("metrics_fit.json"), kDemoMatch_m).metrics;
     print("{:<12} {} ({:.2f} s, position error {:.2f} mm, rotation error {:.2f} deg)\n",
@@ -92,13 +94,11 @@ void run(const DemoArguments& arguments) {
 }  // namespace
 
 void add_demo_command(CLI::App& app) {
-    Command& command = add_command(
-        app, "demo", "Scene, capture, reconstruction, fit, comparison and report in one go");
-    const auto arguments = std::make_shared<DemoArguments>();
-    add_output_folder_option(command, arguments->folder, "Folder for the results")
+    const auto [command, arguments] = add_command<DemoArguments>(
+        app, "demo", "Scene, capture, reconstruction, fit, comparison and report in one go", run);
+    add_output_folder_option(command, arguments.folder, "Folder for the results")
         ->capture_default_str();
     command.example = "nlos demo -o out/demo";
-    command.callback([arguments] { run(*arguments); });
 }
 
 }  // namespace apps

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "apps/commands/describe_file.h"
 
-#include "apps/commands/describe_scene.h"
 #include "apps/file_kind.h"
 #include "calib/fit_file.h"
 #include "nlos/containers/array_reader.h"
@@ -17,35 +16,36 @@
 namespace apps {
 namespace {
 
-void print_range(Description& out, const char* axis, const std::vector<double>& centers_m) {
+void print_range(std::string& out, const char* axis, const std::vector<double>& centers_m) {
     if (centers_m.empty()) return;
-    out.print("{}: {} voxels, {:.4f} to {:.4f} m\n",
-              axis,
-              centers_m.size(),
-              centers_m.front(),
-              centers_m.back());
+    add_line(out,
+             "{}: {} voxels, {:.4f} to {:.4f} m",
+             axis,
+             centers_m.size(),
+             centers_m.front(),
+             centers_m.back());
 }
 
 // One line per key, texts and numbers as they are, lists by their length; and no more than a screen
 // or two, since files from elsewhere may hold anything.
 class KeyPrinter {
  public:
-    explicit KeyPrinter(Description& description) : out_(description) {}
+    explicit KeyPrinter(std::string& text) : out_(text) {}
 
     void print_keys(const core::Json& json, const std::string& indent) {
         for (const auto& [key, value] : json.items()) {
             if (lines_left_ == 0) {
-                out_.print("{}... and more\n", indent);
+                add_line(out_, "{}... and more", indent);
                 return;
             }
             --lines_left_;
             if (value.is_object() && !value.empty() && key != "settings") {
-                out_.print("{}{}:\n", indent, key);
+                add_line(out_, "{}{}:", indent, key);
                 print_keys(value, indent + "  ");
             } else if (value.is_array() && (value.size() > 4 || value.flatten().size() > 4)) {
-                out_.print("{}{}: {} items\n", indent, key, value.size());
+                add_line(out_, "{}{}: {} items", indent, key, value.size());
             } else if (!value.is_null()) {
-                out_.print("{}{}: {}\n", indent, key, text_of(value));
+                add_line(out_, "{}{}: {}", indent, key, text_of(value));
             }
         }
     }
@@ -60,59 +60,60 @@ class KeyPrinter {
         return text;
     }
 
-    Description& out_;
+    std::string& out_;
     int lines_left_ = 100;
 };
 
-void print_provenance(Description& out, const core::Json& made) {
+void print_provenance(std::string& out, const core::Json& made) {
     if (!made.is_object() || made.empty()) return;
-    out.print("provenance:\n");
+    add_line(out, "provenance:");
     KeyPrinter(out).print_keys(made, "  ");
 }
 
-void describe_json(Description& out, const std::string& path, const char* format) {
-    out.print("format: {}\n", format);
+void describe_json(std::string& out, const std::string& path, const char* format) {
+    add_line(out, "format: {}", format);
     KeyPrinter(out).print_keys(core::read_json_file(path), "");
 }
 
-void describe_volume(Description& out, const std::string& path) {
+void describe_volume(std::string& out, const std::string& path) {
     const nlos::Reconstruction volume = nlos::read_volume(path);
-    out.print("format: reconstructed volume (HDF5)\n");
-    out.print("method: {}\n", volume.method);
+    add_line(out, "format: reconstructed volume (HDF5)");
+    add_line(out, "method: {}", volume.method);
     print_range(out, "x", volume.volume.axes.x_m);
     print_range(out, "y", volume.volume.axes.y_m);
     print_range(out, "z", volume.volume.axes.z_m);
-    out.print("surface points: {}\n", volume.points.positions.size());
-    out.print("time: {:.2f} s, peak memory: {:.2f} GB\n",
-              volume.seconds,
-              static_cast<double>(volume.peak_bytes) * 1e-9);
-    out.print("settings: {}\n", core::write_value(volume.settings).dump());
+    add_line(out, "surface points: {}", volume.points.positions.size());
+    add_line(out,
+             "time: {:.2f} s, peak memory: {:.2f} GB",
+             volume.seconds,
+             static_cast<double>(volume.peak_bytes) * 1e-9);
+    add_line(out, "settings: {}", core::write_value(volume.settings).dump());
     print_provenance(out, volume.provenance);
 }
 
-void describe_ply(Description& out, const std::string& path) {
+void describe_ply(std::string& out, const std::string& path) {
     const core::TriangleMesh points = nlos::read_ply(path);
     if (!points.triangles.empty()) return describe_geometry(out, path);
-    out.print("format: PLY\npoints: {}\n", points.vertices.size());
+    add_line(out, "format: PLY\npoints: {}", points.vertices.size());
 }
 
 /// A file in no known format or layout: what it holds and what that could mean.
-void describe_unknown(Description& out, const std::string& path) {
+void describe_unknown(std::string& out, const std::string& path) {
     const nlos::LayoutGuess guess = nlos::guess_layout(path);
-    out.print("format: no known capture; arrays:\n");
-    for (const std::string& line : guess.arrays) out.print("  {}\n", line);
-    out.print("what could be what:\n");
-    for (const std::string& line : guess.findings) out.print("  {}\n", line);
-    out.print("nearest layouts, and what speaks against them:\n");
-    for (const std::string& line : guess.nearest) out.print("  {}\n", line);
+    add_line(out, "format: no known capture; arrays:");
+    for (const std::string& line : guess.arrays) add_line(out, "  {}", line);
+    add_line(out, "what could be what:");
+    for (const std::string& line : guess.findings) add_line(out, "  {}", line);
+    add_line(out, "nearest layouts, and what speaks against them:");
+    for (const std::string& line : guess.nearest) add_line(out, "  {}", line);
     if (guess.layout.is_null()) return;
-    out.print(
-        "`nlos info {} --write-layout my.json` writes a layout to complete, and --layout "
-        "my.json uses it\n",
-        path);
+    add_line(out,
+             "`nlos info {} --write-layout my.json` writes a layout to complete, and --layout "
+             "my.json uses it",
+             path);
 }
 
-void describe_captures(Description& out,
+void describe_captures(std::string& out,
                        const std::vector<std::string>& paths,
                        nlos::CaptureReadSettings settings) {
     const std::string& path = paths.front();
@@ -131,49 +132,52 @@ void describe_captures(Description& out,
     if (!missing.empty()) {
         std::erase_if(capture.notes, [](const auto& note) { return note.ends_with(", as told"); });
     }
-    out.print("format: {}\n", format.value_or("unknown"));
-    for (const std::string& line : nlos::describe_capture(capture)) out.print("{}\n", line);
+    add_line(out, "format: {}", format.value_or("unknown"));
+    for (const std::string& line : nlos::describe_capture(capture)) add_line(out, "{}", line);
     const auto response = core::recorded_response(capture);
-    if (response) out.print("detector: {}\n", core::describe(*response));
+    if (response) add_line(out, "detector: {}", core::describe(*response));
     if (const auto spot_m = core::recorded_spot_m(capture)) {
-        out.print("detector: {}\n", core::describe_spot(*spot_m));
+        add_line(out, "detector: {}", core::describe_spot(*spot_m));
     }
     print_provenance(out, capture.scene_info);
     if (!missing.empty()) {
-        out.print("warning: the file does not hold what stands as 1 m above: --set {}\n",
-                  fmt::format("{}", fmt::join(missing, " ")));
+        add_line(out,
+                 "warning: the file does not hold what stands as 1 m above: --set {}",
+                 fmt::format("{}", fmt::join(missing, " ")));
         return;
     }
     for (const std::string& warning : nlos::capture_warnings(capture)) {
-        out.print("warning: {}\n", warning);
+        add_line(out, "warning: {}", warning);
     }
     const auto used = response.value_or(core::ResponseSettings{});
     for (const std::string& warning : core::detector_warnings(capture, used)) {
-        out.print("warning: {}\n", warning);
+        add_line(out, "warning: {}", warning);
     }
 }
 
-void describe_fit(Description& out, const std::string& path) {
+void describe_fit(std::string& out, const std::string& path) {
     const calib::FitResult fit = calib::read_fit(path);
-    out.print("format: fit\n{}converged in {:.2f} s, deviance {:.4g} of {:.4g} expected\n",
-              fit.converged ? "" : "not ",
-              fit.seconds,
-              fit.deviance,
-              fit.expected_deviance);
+    add_line(out,
+             "format: fit\n{}converged in {:.2f} s, deviance {:.4g} of {:.4g} expected",
+             fit.converged ? "" : "not ",
+             fit.seconds,
+             fit.deviance,
+             fit.expected_deviance);
     for (const calib::FittedObject& object : fit.objects) {
         const auto& p = object.position_m;
-        out.print("{}: at ({:.4f}, {:.4f}, {:.4f}) m, size {:.4f}, albedo {:.4f}\n",
-                  object.name,
-                  p.x(),
-                  p.y(),
-                  p.z(),
-                  object.size,
-                  object.albedo);
+        add_line(out,
+                 "{}: at ({:.4f}, {:.4f}, {:.4f}) m, size {:.4f}, albedo {:.4f}",
+                 object.name,
+                 p.x(),
+                 p.y(),
+                 p.z(),
+                 object.size,
+                 object.albedo);
     }
-    out.print("{} point scatterers\n", fit.points.size());
+    add_line(out, "{} point scatterers", fit.points.size());
 }
 
-void describe_one(Description& out,
+void describe_one(std::string& out,
                   const std::string& path,
                   const nlos::CaptureReadSettings& settings) {
     switch (kind_of_file(path)) {
@@ -208,13 +212,13 @@ void describe_one(Description& out,
 
 std::string describe_files(const std::vector<std::string>& paths,
                            const nlos::CaptureReadSettings& settings) {
-    Description out;
+    std::string out;
     if (paths.size() > 1) {
         describe_captures(out, paths, settings);
     } else {
         describe_one(out, paths.front(), settings);
     }
-    return out.text();
+    return out;
 }
 
 }  // namespace apps

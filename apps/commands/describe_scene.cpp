@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "apps/commands/describe_scene.h"
-
+#include "apps/commands/describe_file.h"
 #include "renderer/core/capture/sensor_footprint.h"
 #include "renderer/light_range.h"
 #include "renderer/scene/load_geometry.h"
@@ -22,40 +21,41 @@ std::string describe_material(const renderer::Material& material) {
 }
 
 std::string vector_text(const core::Vec3& v) {
-    return fmt::format("({:.4g}, {:.4g}, {:.4g})", v.x() + 0.0, v.y() + 0.0, v.z() + 0.0);  // no -0
+    return core::vector_text(v + core::Vec3::Zero());  // no -0
 }
 
-void print_object(Description& out, const renderer::Object& object) {
+void print_object(std::string& out, const renderer::Object& object) {
     Eigen::AlignedBox3d box;
     for (const core::Vec3& vertex : object.mesh.vertices) box.extend(vertex);
-    out.print(
-        "object {}: {} triangles, role {}, {}, x {:.4g} to {:.4g}, y {:.4g} to {:.4g}, "
-        "z {:.4g} to {:.4g} m{}{}\n",
-        object.name.empty() ? "(unnamed)" : object.name,
-        object.mesh.triangles.size(),
-        core::enum_name(object.role),
-        describe_material(object.material),
-        box.min().x(),
-        box.max().x(),
-        box.min().y(),
-        box.max().y(),
-        box.min().z(),
-        box.max().z(),
-        object.ellipsoidal_exclude ? ", left out of ellipsoidal connections" : "",
-        object.velocity_m_per_s.norm() > 0.0
-            ? fmt::format(", moves by {} m/s", vector_text(object.velocity_m_per_s))
-            : "");
+    add_line(out,
+             "object {}: {} triangles, role {}, {}, x {:.4g} to {:.4g}, y {:.4g} to {:.4g}, "
+             "z {:.4g} to {:.4g} m{}{}",
+             object.name.empty() ? "(unnamed)" : object.name,
+             object.mesh.triangles.size(),
+             core::enum_name(object.role),
+             describe_material(object.material),
+             box.min().x(),
+             box.max().x(),
+             box.min().y(),
+             box.max().y(),
+             box.min().z(),
+             box.max().z(),
+             object.ellipsoidal_exclude ? ", left out of ellipsoidal connections" : "",
+             object.velocity_m_per_s.norm() > 0.0
+                 ? fmt::format(", moves by {} m/s", vector_text(object.velocity_m_per_s))
+                 : "");
 }
 
-void print_camera(Description& out, const renderer::Camera& camera) {
-    out.print("camera {}: at {} m, looks along {}, {:.3g} deg high\n",
-              camera.name.empty() ? "(unnamed)" : camera.name,
-              vector_text(camera.position),
-              vector_text(camera.forward),
-              core::kDegreesPerRadian * camera.fov_y_rad);
+void print_camera(std::string& out, const renderer::Camera& camera) {
+    add_line(out,
+             "camera {}: at {} m, looks along {}, {:.3g} deg high",
+             camera.name.empty() ? "(unnamed)" : camera.name,
+             vector_text(camera.position),
+             vector_text(camera.forward),
+             core::kDegreesPerRadian * camera.fov_y_rad);
 }
 
-void print_size(Description& out, const renderer::SceneGeometry& geometry) {
+void print_size(std::string& out, const renderer::SceneGeometry& geometry) {
     Eigen::AlignedBox3d box;
     std::size_t triangles = 0;
     for (const renderer::Object& object : geometry.objects) {
@@ -63,20 +63,21 @@ void print_size(Description& out, const renderer::SceneGeometry& geometry) {
         triangles += object.mesh.triangles.size();
     }
     const core::Vec3 size = box.sizes();
-    out.print("size: {} objects, {} triangles, {:.4g} x {:.4g} x {:.4g} m\n",
-              geometry.objects.size(),
-              triangles,
-              size.x(),
-              size.y(),
-              size.z());
+    add_line(out,
+             "size: {} objects, {} triangles, {:.4g} x {:.4g} x {:.4g} m",
+             geometry.objects.size(),
+             triangles,
+             size.x(),
+             size.y(),
+             size.z());
 }
 
-void print_warnings(Description& out, const std::vector<std::string>& warnings) {
-    for (const std::string& text : warnings) out.print("warning: {}\n", text);
+void print_warnings(std::string& out, const std::vector<std::string>& warnings) {
+    for (const std::string& warning : warnings) add_line(out, "warning: {}", warning);
 }
 
 // "key: value" lines, with the full key, of what differs from `usual`.
-void print_differences(Description& out,
+void print_differences(std::string& out,
                        const core::Json& json,
                        const core::Json& usual,
                        const std::string& prefix) {
@@ -86,38 +87,40 @@ void print_differences(Description& out,
         if (value.is_object()) {
             print_differences(out, value, other, prefix + key + ".");
         } else if (value.is_array() && value.flatten().size() > 4) {
-            out.print("  {}{}: {} items\n", prefix, key, value.size());
+            add_line(out, "  {}{}: {} items", prefix, key, value.size());
         } else {
-            out.print("  {}{}: {}\n",
-                      prefix,
-                      key,
-                      value.dump(-1, ' ', false, core::Json::error_handler_t::replace));
+            add_line(out,
+                     "  {}{}: {}",
+                     prefix,
+                     key,
+                     value.dump(-1, ' ', false, core::Json::error_handler_t::replace));
         }
     }
 }
 
-void print_measurement(Description& out,
+void print_measurement(std::string& out,
                        const renderer::SceneDescription& description,
                        const core::Scan& scan) {
     if (scan.camera) {
-        out.print("camera: {} x {} pixels\n", scan.camera->width(), scan.camera->height());
+        add_line(out, "camera: {} x {} pixels", scan.camera->width(), scan.camera->height());
         return;
     }
     if (scan.sensor) {
         for (const std::string& line : core::describe_sensor(*scan.sensor)) {
-            out.print("{}\n", line);
+            add_line(out, "{}", line);
         }
         return;
     }
-    out.print("scan: {}, {} sensing points, {} illumination points, wall {:.4g} x {:.4g} m\n",
-              core::enum_name(scan.pattern),
-              scan.sensing.size(),
-              scan.illumination.size(),
-              description.relay_wall.size_m[0],
-              description.relay_wall.size_m[1]);
+    add_line(out,
+             "scan: {}, {} sensing points, {} illumination points, wall {:.4g} x {:.4g} m",
+             core::enum_name(scan.pattern),
+             scan.sensing.size(),
+             scan.illumination.size(),
+             description.relay_wall.size_m[0],
+             description.relay_wall.size_m[1]);
 }
 
-void print_light(Description& out,
+void print_light(std::string& out,
                  const renderer::Scene& scene,
                  const core::Scan& scan,
                  const renderer::SceneDescription& description) {
@@ -125,46 +128,47 @@ void print_light(Description& out,
     core::TimeAxis axis = description.time_axis;
     if (range && !range->is_dark()) {
         const auto [first, last] = range->without_tails(0.001);
-        out.print("light: from {:.4g} to {:.4g} m of path length (99.8 % of it)\n", first, last);
+        add_line(out, "light: from {:.4g} to {:.4g} m of path length (99.8 % of it)", first, last);
         if (description.time_axis.automatic) {
             axis = renderer::choose_time_axis(range, scene, scan, description);
         }
     }
-    out.print("time axis: {:.4g} to {:.4g} m, {} bins of {:.4g} m{}\n",
-              axis.opl_start_m,
-              axis.opl_end_m(),
-              axis.num_bins,
-              axis.bin_width_m,
-              description.time_axis.automatic ? " (auto)" : "");
+    add_line(out,
+             "time axis: {:.4g} to {:.4g} m, {} bins of {:.4g} m{}",
+             axis.opl_start_m,
+             axis.opl_end_m(),
+             axis.num_bins,
+             axis.bin_width_m,
+             description.time_axis.automatic ? " (auto)" : "");
     if (!range) return;
     print_warnings(out, renderer::axis_warnings(*range, axis, description.frames));
 }
 
 }  // namespace
 
-void describe_geometry(Description& out, const std::string& path) {
+void describe_geometry(std::string& out, const std::string& path) {
     const renderer::SceneGeometry geometry = renderer::load_geometry(path);
-    out.print("format: {}\n", renderer::geometry_format(path));
+    add_line(out, "format: {}", renderer::geometry_format(path));
     renderer::SceneDescription alone;
     alone.geometry = path;
-    for (const std::string& line : renderer::describe_frame(alone)) out.print("{}\n", line);
+    for (const std::string& line : renderer::describe_frame(alone)) add_line(out, "{}", line);
     print_size(out, geometry);
     for (const renderer::Object& object : geometry.objects) print_object(out, object);
     for (const renderer::Camera& camera : geometry.cameras) print_camera(out, camera);
     print_warnings(out, geometry.warnings);
 }
 
-void describe_scene(Description& out, const std::string& path) {
+void describe_scene(std::string& out, const std::string& path) {
     const renderer::SceneDescription description = renderer::read_scene_description(path, {});
     const core::Scan scan = renderer::make_scan(description);
     const renderer::Scene scene = renderer::load_scene(description, scan);
-    out.print("format: scene description\ngeometry: {}\n", renderer::geometry_name(description));
-    for (const std::string& line : renderer::describe_frame(description)) out.print("{}\n", line);
+    add_line(out, "format: scene description\ngeometry: {}", renderer::geometry_name(description));
+    for (const std::string& line : renderer::describe_frame(description)) add_line(out, "{}", line);
     for (const renderer::Object& object : scene.objects()) print_object(out, object);
     print_warnings(out, scene.warnings());
     print_measurement(out, description, scan);
     print_light(out, scene, scan, description);
-    out.print("settings that differ from the defaults (nlos render --help lists all):\n");
+    add_line(out, "settings that differ from the defaults (nlos render --help lists all):");
     core::Json settings = core::write_value(description);
     settings.erase("geometry");
     print_differences(out, settings, core::write_value(renderer::SceneDescription{}), "");

@@ -11,18 +11,11 @@
 
 #include <fmt/core.h>
 
-#include <memory>
-
 namespace apps {
 namespace {
 
 struct FitArguments {
-    std::string capture;
-    std::string model;
-    std::string output;
-    std::string calibration;
-    std::string picture;
-    std::vector<std::string> overrides;
+    FitRequest request;
     int threads = 0;
 };
 
@@ -42,11 +35,7 @@ void print_object(const calib::FittedObject& object) {
           estimate_text(object.albedo, object.albedo_sigma));
 }
 
-void note(const calib::FitResult& result, const std::string& output) {
-    note_written({output,
-                  with_suffix(output, ".scene.json"),
-                  with_suffix(output, ".glb"),
-                  with_suffix(output, ".png")});
+void note(const calib::FitResult& result) {
     core::Json& fields = outcome();
     for (const calib::FittedObject& object : result.objects) {
         fields["objects"].push_back(
@@ -75,31 +64,25 @@ void note(const calib::FitResult& result, const std::string& output) {
 
 void run(const FitArguments& arguments) {
     const core::ThreadLimit threads(arguments.threads);
-    const calib::FitResult result = fit_to_file(arguments.capture,
-                                                arguments.model,
-                                                arguments.overrides,
-                                                arguments.calibration,
-                                                arguments.output,
-                                                arguments.picture);
-    note(result, arguments.output);
-    note_written({arguments.picture});
+    const FitRequest& request = arguments.request;
+    const calib::FitResult result = fit_to_file(request);
+    const std::string written = note_written({request.fit,
+                                              with_suffix(request.fit, ".scene.json"),
+                                              with_suffix(request.fit, ".glb"),
+                                              with_suffix(request.fit, ".png"),
+                                              request.picture});
+    note(result);
     for (const calib::FittedObject& object : result.objects) print_object(object);
     for (const calib::FittedPoint& point : result.points) {
         print("point          {}\n", place_text(point.position_m, point.position_sigma_m));
     }
-    print(
-        "wrote {}, {}, {}, {}{} ({}, deviance {:.4g} of {:.4g} expected, {} iterations, "
-        "{:.2f} s)\n",
-        arguments.output,
-        with_suffix(arguments.output, ".scene.json"),
-        with_suffix(arguments.output, ".glb"),
-        with_suffix(arguments.output, ".png"),
-        arguments.picture.empty() ? "" : ", " + arguments.picture,
-        result.residual,
-        result.deviance,
-        result.expected_deviance,
-        result.iterations,
-        result.seconds);
+    print("wrote {} ({}, deviance {:.4g} of {:.4g} expected, {} iterations, {:.2f} s)\n",
+          written,
+          result.residual,
+          result.deviance,
+          result.expected_deviance,
+          result.iterations,
+          result.seconds);
     if (!result.converged) {
         // One line, as for every failure; the warnings stand in the file.
         throw core::Failure("fit",
@@ -107,7 +90,7 @@ void run(const FitArguments& arguments) {
                                         "state reached",
                                         result.iterations,
                                         result.message,
-                                        arguments.output));
+                                        request.fit));
     }
     for (const std::string& text : result.unidentifiable) {
         print_error("unidentifiable: {}\n", text);
@@ -118,24 +101,26 @@ void run(const FitArguments& arguments) {
 }  // namespace
 
 void add_fit_command(CLI::App& app) {
-    Command& command = add_command(app, "fit", "Fit a hidden scene to a capture");
+    const auto [command, arguments] =
+        add_command<FitArguments>(app, "fit", "Fit a hidden scene to a capture", run);
     command.settings = core::settings_help(WithCapture<calib::FitSettings>{});
-    const auto arguments = std::make_shared<FitArguments>();
-    add_file_option(command, "CAPTURE", arguments->capture, "Capture in any readable format")
+    add_file_option(command, "CAPTURE", arguments.request.capture, "Capture in any readable format")
         ->required();
-    add_file_option(command, "MODEL", arguments->model, "What is fitted and from where (.json)")
+    add_file_option(
+        command, "MODEL", arguments.request.model, "What is fitted and from where (.json)")
         ->required();
     add_output_option(command,
-                      arguments->output,
+                      arguments.request.fit,
                       "Fit to write (.json); the fitted scene and a picture go beside it")
         ->required();
-    add_picture_option(command, arguments->picture);
-    add_file_option(
-        command, "--calibration", arguments->calibration, "Calibration of the set-up (.json)");
-    add_threads_option(command, arguments->threads);
-    add_capture_options(command, arguments->overrides);
+    add_picture_option(command, arguments.request.picture);
+    add_file_option(command,
+                    "--calibration",
+                    arguments.request.calibration,
+                    "Calibration of the set-up (.json)");
+    add_threads_option(command, arguments.threads);
+    add_capture_options(command, arguments.request.overrides);
     command.example = "nlos fit data/letter.h5 scenes/letter/model.json -o fit.json";
-    command.callback([arguments] { run(*arguments); });
 }
 
 }  // namespace apps

@@ -30,18 +30,17 @@ void refuse_camera(const calib::FitInput& input) {
                       "must be a scan of a relay wall");
 }
 
-calib::FitInput make_input(const std::string& capture_path,
-                           const std::string& model_path,
-                           std::vector<std::string> overrides) {
+calib::FitInput make_input(const FitRequest& request) {
     calib::FitInput input;
+    std::vector<std::string> overrides = request.overrides;
     const CaptureOptions options = capture_options(take_capture_overrides(overrides));
-    input.settings = calib::read_fit_settings(model_path, overrides);
-    input.capture = nlos::read_capture(capture_path, options.capture);
+    input.settings = calib::read_fit_settings(request.model, overrides);
+    input.capture = nlos::read_capture(request.capture, options.capture);
     input.scene = renderer::read_scene_description(input.settings.scene, {});
     input.geometry = renderer::load_geometry(input.scene);
     if (input.settings.start != "given" && input.settings.start != "search") {
         if (!fs::exists(input.settings.start)) {
-            throw core::Error(model_path + ": start",
+            throw core::Error(request.model + ": start",
                               "found '" + input.settings.start + "', which does not exist",
                               "must be given, search or a VOLUME.h5");
         }
@@ -84,25 +83,25 @@ void write_fit(const calib::FitInput& input,
     core::write_text_file(fit_path, core::json_text(json));
 }
 
-calib::FitResult fit_to_file(const std::string& capture_path,
-                             const std::string& model_path,
-                             const std::vector<std::string>& overrides,
-                             const std::string& calibration,
-                             const std::string& fit_path,
-                             const std::string& picture) {
-    require_suffix(fit_path, {".json"});
-    nlos::check_picture_suffix(picture);
-    calib::FitInput input = make_input(capture_path, model_path, overrides);
-    std::vector<std::string> sources{
-        capture_path, model_path, calibration, input.settings.scene, input.settings.start};
+calib::FitResult fit_to_file(const FitRequest& request) {
+    require_suffix(request.fit, {".json"});
+    nlos::check_picture_suffix(request.picture);
+    calib::FitInput input = make_input(request);
+    std::vector<std::string> sources{request.capture,
+                                     request.model,
+                                     request.calibration,
+                                     input.settings.scene,
+                                     input.settings.start};
     for (const auto& path : renderer::geometry_files(input.scene)) sources.push_back(path);
-    core::check_targets({fit_path,
-                         with_suffix(fit_path, ".scene.json"),
-                         with_suffix(fit_path, ".glb"),
-                         with_suffix(fit_path, ".png"),
-                         picture},
+    core::check_targets({request.fit,
+                         with_suffix(request.fit, ".scene.json"),
+                         with_suffix(request.fit, ".glb"),
+                         with_suffix(request.fit, ".png"),
+                         request.picture},
                         sources);
-    if (!calibration.empty()) use_calibration(calib::read_calibration(calibration), input);
+    if (!request.calibration.empty()) {
+        use_calibration(calib::read_calibration(request.calibration), input);
+    }
     ProgressBar bar("fit");
     const core::Progress progress = bar.progress();
     const calib::FitResult result = [&] {
@@ -111,8 +110,10 @@ calib::FitResult fit_to_file(const std::string& capture_path,
         return fit_input(input, progress);
     }();
     if (progress.should_stop()) throw core::Failure("fit", "interrupted");
-    write_fit(input, result, fit_path);
-    if (!picture.empty()) nlos::write_panels(picture, fit_panels(result), kFitColumns);
+    write_fit(input, result, request.fit);
+    if (!request.picture.empty()) {
+        nlos::write_panels(request.picture, fit_panels(result), kFitColumns);
+    }
     return result;
 }
 

@@ -21,19 +21,21 @@ void write_fit(const calib::FitInput& input,
                const calib::FitResult& result,
                const std::string& fit_path);
 
+/// What `nlos fit` is asked to do; empty paths: nothing.
+struct FitRequest {
+    std::string capture;
+    std::string model;                   ///< MODEL.json
+    std::vector<std::string> overrides;  ///< `key.path=value` texts for MODEL.json, and `capture.`
+                                         ///< for how the capture is read
+    std::string fit;                     ///< FIT.json; FIT.scene.json, .glb and .png go beside it
+    std::string calibration{};           ///< CALIBRATION.json to apply to the capture
+    std::string picture{};               ///< what FIT.png shows, in another format
+};
+
 /// Fits a model file to a capture file.
 ///
-/// overrides     `key.path=value` texts for MODEL.json, and `capture.` for how the capture is read
-/// calibration   CALIBRATION.json to apply to the capture; empty: none
-/// fit_path      FIT.json; FIT.scene.json, FIT.glb and FIT.png go beside it
-/// picture       where to write what FIT.png shows in another format; empty: nowhere
-/// throws        core::Error, core::Failure as fit_scene() does; a fit that did not converge is
-///               written and returned
-calib::FitResult fit_to_file(const std::string& capture_path,
-                             const std::string& model_path,
-                             const std::vector<std::string>& overrides,
-                             const std::string& calibration,
-                             const std::string& fit_path,
-                             const std::string& picture = "");
+/// throws   core::Error, core::Failure as fit_scene() does; a fit that did not converge is written
+///          and returned
+calib::FitResult fit_to_file(const FitRequest& request);
 
 }  // namespace apps

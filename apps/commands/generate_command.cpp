@@ -28,7 +28,6 @@ struct GenerateArguments {
     std::string verify;
     std::string merge;
     std::vector<std::string> overrides;
-    std::vector<std::string> shorthands;
     std::vector<std::string> slurm;  ///< none or one
     int threads = 0;
 };
@@ -64,25 +63,19 @@ void warn_of_oddities(const GenerateResult& result) {
 
 void print_script(const GenerateArguments& arguments, const Dataset& dataset) {
     constexpr std::uint64_t kMostTasks = 100;
-    const auto absolute = [](const std::string& path) {
-        return std::filesystem::absolute(path).lexically_normal().string();
-    };
-    ArrayJob job{"nlos-generate",
-                 {"generate", absolute(arguments.recipe), "-o", absolute(arguments.folder)},
-                 read_task_count(arguments.slurm.empty() ? "" : arguments.slurm.front(),
-                                 std::min(kMostTasks, dataset.num_shards())),
-                 std::max(1, arguments.threads)};
-    for (const auto* list : {&arguments.shorthands, &arguments.overrides}) {
-        for (const std::string& text : *list) job.words.insert(job.words.end(), {"--set", text});
-    }
+    const ArrayJob job{"generate",
+                       arguments.recipe,
+                       arguments.folder,
+                       arguments.overrides,
+                       read_task_count(arguments.slurm.empty() ? "" : arguments.slurm.front(),
+                                       std::min(kMostTasks, dataset.num_shards())),
+                       std::max(1, arguments.threads)};
     write_output(slurm_script(job));
 }
 
 void make(const GenerateArguments& arguments, bool prints_script) {
     const core::ThreadLimit threads(arguments.threads);
-    std::vector<std::string> overrides = arguments.overrides;
-    overrides.insert(overrides.end(), arguments.shorthands.begin(), arguments.shorthands.end());
-    Dataset dataset(read_recipe(arguments.recipe, overrides), arguments.folder);
+    Dataset dataset(read_recipe(arguments.recipe, arguments.overrides), arguments.folder);
     if (prints_script) {
         core::require(arguments.items.empty() && arguments.shard.empty(),
                       "--slurm",
@@ -173,7 +166,7 @@ void add_generate_command(CLI::App& app) {
         "--items",
         arguments->items,
         "A:B: make only the items from A to B - 1; not by two processes at once within a shard");
-    add_shorthands(command, kGenerateShorthands, arguments->shorthands);
+    add_shorthands(command, kGenerateShorthands, arguments->overrides);
     add_folder_option(command, "--verify", arguments->verify, "Check every shard of this folder");
     add_folder_option(command, "--merge", arguments->merge, "Write index.json of this folder");
     CLI::Option* slurm =

@@ -3,22 +3,26 @@
 #include "apps/capture_options.h"
 #include "apps/commands.h"
 #include "apps/commands/describe_file.h"
-#include "apps/commands/file_picture.h"
+#include "apps/file_kind.h"
 #include "apps/outcome.h"
 #include "apps/progress_bar.h"
 #include "apps/run_program.h"
+#include "apps/scene_truth.h"
 #include "apps/terminal.h"
 #include "nlos/canvas/png_file.h"
+#include "nlos/formats/capture_file.h"
+#include "nlos/formats/volume_file.h"
 #include "nlos/layouts/layout_guess.h"
 #include "nlos/pictures/film.h"
 #include "nlos/pictures/picture.h"
+#include "nlos/pictures/pictures.h"
 #include "renderer/core/capture/capture.h"
 #include "renderer/core/output_file.h"
 #include "renderer/core/parallel.h"
 #include "renderer/core/progress.h"
 
 #include <algorithm>
-#include <memory>
+#include <iterator>
 #include <numeric>
 #include <sstream>
 #include <string>
@@ -55,24 +59,15 @@ void write_video(const std::string& path,
                  const std::vector<std::string>& frames,
                  std::size_t frames_per_second) {
     core::OutputFile output(path);
-    const auto status = run_program({"ffmpeg",
-                                     "-y",
-                                     "-f",
-                                     "image2pipe",
-                                     "-c:v",
-                                     "png",
-                                     "-framerate",
-                                     std::to_string(frames_per_second),
-                                     "-i",
-                                     "pipe:0",
-                                     "-vf",
-                                     "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white",
-                                     "-pix_fmt",
-                                     "yuv420p",
-                                     "-movflags",
-                                     "+faststart",
-                                     "file:" + output.temporary()},
-                                    std::accumulate(frames.begin(), frames.end(), std::string()));
+    std::istringstream words(
+        fmt::format("ffmpeg -y -f image2pipe -c:v png -framerate {} -i pipe:0 "
+                    "-vf pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white "
+                    "-pix_fmt yuv420p -movflags +faststart",
+                    frames_per_second));
+    std::vector<std::string> command{std::istream_iterator<std::string>(words), {}};
+    command.push_back("file:" + output.temporary());
+    const auto status =
+        run_program(command, std::accumulate(frames.begin(), frames.end(), std::string()));
     if (status != 0) throw core::Failure(path, "ffmpeg could not encode it");
     output.commit();
 }
@@ -102,6 +97,32 @@ void write_film(const std::string& path,
     }
 }
 
+/// Draws a file: a scene.json as its wall sees it, a capture as streak image, integrated image and
+/// mean transient, a volume by its projections and depth map.
+///
+/// paths          one file, or the frames of a capture
+/// picture_path   .png, .svg or .pdf
+/// settings       of a capture
+/// throws         core::Error for other kinds of files
+void write_picture(const std::vector<std::string>& paths,
+                   const std::string& picture_path,
+                   const nlos::CaptureReadSettings& settings) {
+    const std::string& path = paths.front();
+    const FileKind kind = kind_of_file(path);
+    if (kind == FileKind::Scene) {
+        return nlos::write_panels(
+            picture_path, nlos::truth_panels(SceneTruth(path).depth_map()), 3);
+    }
+    if (kind == FileKind::Volume) {
+        return nlos::write_panels(picture_path, nlos::volume_panels(nlos::read_volume(path)), 2);
+    }
+    if (kind == FileKind::Capture) {
+        return nlos::write_panels(
+            picture_path, nlos::capture_panels(nlos::read_capture(paths, settings)), 3);
+    }
+    throw core::Error(path, "has no picture", "must be a scene.json, a capture or a volume");
+}
+
 struct InfoArguments {
     std::vector<std::string> files;
     std::string picture;
@@ -118,8 +139,7 @@ void write_layout(const std::string& path, const std::string& layout_path) {
     }
     core::write_text_file(layout_path, core::json_text(guess.layout));
     for (const std::string& line : guess.findings) print("{}\n", line);
-    note_written({layout_path});
-    print("wrote {}\n", layout_path);
+    print_written({layout_path});
 }
 
 void draw(const InfoArguments& arguments,
@@ -129,10 +149,7 @@ void draw(const InfoArguments& arguments,
     if (!arguments.film.empty()) {
         write_film(arguments.film, nlos::read_capture(arguments.files, settings), progress);
     }
-    for (const std::string& path : {arguments.picture, arguments.film}) {
-        note_written({path});
-        if (!path.empty()) print("wrote {}\n", path);
-    }
+    print_written({arguments.picture, arguments.film});
 }
 
 void run(const InfoArguments& arguments) {
@@ -159,34 +176,33 @@ void run(const InfoArguments& arguments) {
 }  // namespace
 
 void add_info_command(CLI::App& app) {
-    Command& command = add_command(app, "info", "Say what a file is and what it holds");
+    const auto [command, arguments] =
+        add_command<InfoArguments>(app, "info", "Say what a file is and what it holds", run);
     command.settings = core::settings_help(CaptureOptions{});
-    const auto arguments = std::make_shared<InfoArguments>();
     add_file_option(
         command,
         "FILE",
-        arguments->files,
+        arguments.files,
         "Capture, volume, scene.json, glTF, OBJ, PLY, STL, fit, metrics or calibration; "
         "several files: the frames of a sequence")
         ->required();
     add_file_option(
         command,
         "--picture",
-        arguments->picture,
+        arguments.picture,
         "Also draw it (.png, .svg, .pdf): a scene as the wall sees it, a capture, a volume");
     add_file_option(
         command,
         "--film",
-        arguments->film,
+        arguments.film,
         "Also film a capture, bin by bin or a sequence frame by frame (.png, which is animated, or "
         ".mp4 by ffmpeg)");
     add_file_option(command,
                     "--write-layout",
-                    arguments->write_layout,
+                    arguments.write_layout,
                     "Write a layout for a file of named arrays, to be completed (.json)");
-    add_capture_options(command, arguments->overrides);
+    add_capture_options(command, arguments.overrides);
     command.example = "nlos info scenes/letter/scene.json";
-    command.callback([arguments] { run(*arguments); });
 }
 
 }  // namespace apps

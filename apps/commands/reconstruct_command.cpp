@@ -8,14 +8,12 @@
 #include "renderer/core/parallel.h"
 
 #include <array>
-#include <memory>
 
 namespace apps {
 namespace {
 
 struct ReconstructArguments {
     ReconstructRequest request;
-    std::vector<std::string> shorthands;  ///< --method lct becomes method=lct
     int threads = 0;
 };
 
@@ -24,19 +22,15 @@ constexpr std::array kReconstructShorthands{
 
 void run(const ReconstructArguments& arguments) {
     const core::ThreadLimit threads(arguments.threads);
-    ReconstructRequest request = arguments.request;
-    request.overrides.insert(
-        request.overrides.end(), arguments.shorthands.begin(), arguments.shorthands.end());
+    const ReconstructRequest& request = arguments.request;
     const nlos::Reconstruction result = reconstruct_to_file(request);
     for (const std::string& warning : result.warnings) warn(warning);
     const nlos::VolumeAxes& axes = result.volume.axes;
-    std::string written = request.volume;
-    note_written({request.volume});
-    for (const std::string& file :
-         {with_suffix(request.volume, ".png"), request.ply, request.glb, request.picture}) {
-        note_written({file});
-        if (!file.empty()) written += ", " + file;
-    }
+    const std::string written = note_written({request.volume,
+                                              with_suffix(request.volume, ".png"),
+                                              request.ply,
+                                              request.glb,
+                                              request.picture});
     outcome()["method"] = result.method;
     outcome()["voxels"] = {axes.x_m.size(), axes.y_m.size(), axes.z_m.size()};
     outcome()["surface_points"] = result.points.positions.size();
@@ -54,32 +48,30 @@ void run(const ReconstructArguments& arguments) {
 }  // namespace
 
 void add_reconstruct_command(CLI::App& app) {
-    Command& command =
-        add_command(app, "reconstruct", "Reconstruct the hidden scene from a capture");
+    const auto [command, arguments] = add_command<ReconstructArguments>(
+        app, "reconstruct", "Reconstruct the hidden scene from a capture", run);
     command.settings = core::settings_help(ReconstructOptions{});
-    const auto arguments = std::make_shared<ReconstructArguments>();
     add_file_option(command,
                     "CAPTURE",
-                    arguments->request.captures,
+                    arguments.request.captures,
                     "Capture in any readable format; several files: the frames of a sequence")
         ->required();
     add_output_option(
-        command, arguments->request.volume, "Volume to write (.h5); a .png goes beside it")
+        command, arguments.request.volume, "Volume to write (.h5); a .png goes beside it")
         ->required();
-    add_shorthands(command, kReconstructShorthands, arguments->shorthands);
+    add_shorthands(command, kReconstructShorthands, arguments.request.overrides);
     add_file_option(
-        command, "--ply", arguments->request.ply, "Also write the surface points (.ply)");
+        command, "--ply", arguments.request.ply, "Also write the surface points (.ply)");
     add_file_option(
-        command, "--glb", arguments->request.glb, "Also write the surface as a mesh (.glb)");
-    add_picture_option(command, arguments->request.picture);
+        command, "--glb", arguments.request.glb, "Also write the surface as a mesh (.glb)");
+    add_picture_option(command, arguments.request.picture);
     add_file_option(command,
                     "--calibration",
-                    arguments->request.calibration,
+                    arguments.request.calibration,
                     "Calibration of the set-up (.json)");
-    add_threads_option(command, arguments->threads);
-    add_capture_options(command, arguments->request.overrides);
+    add_threads_option(command, arguments.threads);
+    add_capture_options(command, arguments.request.overrides);
     command.example = "nlos reconstruct data/letter.h5 -o volume.h5 --method lct";
-    command.callback([arguments] { run(*arguments); });
 }
 
 }  // namespace apps

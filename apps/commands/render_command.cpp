@@ -10,7 +10,6 @@
 #include <fmt/core.h>
 
 #include <array>
-#include <memory>
 
 namespace apps {
 namespace {
@@ -19,8 +18,7 @@ struct RenderArguments {
     std::string scene;
     std::string output;
     std::string calibration;
-    std::vector<std::string> overrides;
-    std::vector<std::string> shorthands;  ///< --samples 64 becomes render.samples=64
+    std::vector<std::string> overrides;  ///< --samples 64 becomes render.samples=64
     int threads = 0;
     bool verbose = false;
 };
@@ -58,10 +56,8 @@ void note(const renderer::RenderResult& result, const std::string& output) {
 
 void run(const RenderArguments& arguments) {
     const core::ThreadLimit threads(arguments.threads);
-    std::vector<std::string> overrides = arguments.overrides;
-    overrides.insert(overrides.end(), arguments.shorthands.begin(), arguments.shorthands.end());
-    const renderer::RenderResult result =
-        render_to_file(arguments.scene, overrides, arguments.output, arguments.calibration);
+    const renderer::RenderResult result = render_to_file(
+        arguments.scene, arguments.overrides, arguments.output, arguments.calibration);
     for (const std::string& warning : result.warnings) warn(warning);
     note(result, arguments.output);
     std::string effort;
@@ -106,25 +102,24 @@ void run(const RenderArguments& arguments) {
 }  // namespace
 
 void add_render_command(CLI::App& app) {
-    Command& command = add_command(app, "render", "Simulate the transients a scan records");
+    const auto [command, arguments] =
+        add_command<RenderArguments>(app, "render", "Simulate the transients a scan records", run);
     command.settings = core::settings_help(renderer::SceneDescription{});
-    const auto arguments = std::make_shared<RenderArguments>();
-    add_file_option(command, "SCENE", arguments->scene, "Scene description (.json)")->required();
-    add_output_option(command, arguments->output, "Capture to write (.h5, .npz, .exr, .mat)")
+    add_file_option(command, "SCENE", arguments.scene, "Scene description (.json)")->required();
+    add_output_option(command, arguments.output, "Capture to write (.h5, .npz, .exr, .mat)")
         ->required();
-    add_shorthands(command, kRenderShorthands, arguments->shorthands);
+    add_shorthands(command, kRenderShorthands, arguments.overrides);
     add_file_option(command,
                     "--calibration",
-                    arguments->calibration,
+                    arguments.calibration,
                     "Calibration of the set-up to record with (.json)");
-    add_threads_option(command, arguments->threads);
+    add_threads_option(command, arguments.threads);
     command.add_flag("--verbose",
-                     arguments->verbose,
+                     arguments.verbose,
                      "Also print what the run did: estimators, excluded objects, shifts and why "
                      "they were rejected");
-    add_set_option(command, arguments->overrides);
+    add_set_option(command, arguments.overrides);
     command.example = "nlos render scenes/letter/scene.json -o letter.h5";
-    command.callback([arguments] { run(*arguments); });
 }
 
 }  // namespace apps

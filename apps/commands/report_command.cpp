@@ -14,7 +14,6 @@
 #include <array>
 #include <cstdlib>
 #include <filesystem>
-#include <memory>
 
 namespace apps {
 namespace {
@@ -62,6 +61,14 @@ bool open_in_browser(const std::string& path) {
            0;
 }
 
+void run_report(const ReportArguments& arguments) {
+    require_suffix(arguments.output, {".html", ".htm"});
+    const ProgressBar bar("report");
+    const ReportOptions& options = arguments.options;
+    write_report(arguments.output, read_results_folder(arguments.folder, options.scene), options);
+    print_written({arguments.output});
+}
+
 void run_view(const ViewArguments& arguments) {
     const std::string page = arguments.output.empty() ? temporary_page() : arguments.output;
     require_suffix(page, {".html", ".htm"});
@@ -76,45 +83,33 @@ void run_view(const ViewArguments& arguments) {
 }  // namespace
 
 void add_report_command(CLI::App& app) {
-    Command& command =
-        add_command(app, "report", "Make one self-contained page of a folder of results");
-    const auto arguments = std::make_shared<ReportArguments>();
-    add_folder_option(command, "DIR", arguments->folder, "Folder of captures, volumes and metrics")
+    const auto [command, arguments] = add_command<ReportArguments>(
+        app, "report", "Make one self-contained page of a folder of results", run_report);
+    add_folder_option(command, "DIR", arguments.folder, "Folder of captures, volumes and metrics")
         ->required();
-    add_output_option(command, arguments->output, "Page to write (.html)")->required();
+    add_output_option(command, arguments.output, "Page to write (.html)")->required();
     add_file_option(command,
                     "--scene",
-                    arguments->options.scene,
+                    arguments.options.scene,
                     "Scene with the truth, if not the one that the results name (.json)");
-    add_size_option(command, arguments->options);
+    add_size_option(command, arguments.options);
     command.example = "nlos report data -o report.html";
-    command.callback([arguments] {
-        require_suffix(arguments->output, {".html", ".htm"});
-        const ProgressBar bar("report");
-        const ReportOptions& options = arguments->options;
-        write_report(
-            arguments->output, read_results_folder(arguments->folder, options.scene), options);
-        note_written({arguments->output});
-        print("wrote {}\n", arguments->output);
-    });
 }
 
 void add_view_command(CLI::App& app) {
-    Command& command =
-        add_command(app, "view", "Show captures, volumes and scenes as a page in the browser");
+    const auto [command, arguments] = add_command<ViewArguments>(
+        app, "view", "Show captures, volumes and scenes as a page in the browser", run_view);
     command.settings = core::settings_help(CaptureOptions{});
-    const auto arguments = std::make_shared<ViewArguments>();
     add_file_option(command,
                     "FILE",
-                    arguments->files,
+                    arguments.files,
                     "Captures, volumes, fits, metrics; of a scene.json: the truth beside them")
         ->required();
-    add_output_option(command, arguments->output, "Page to keep (.html); else a temporary one");
-    command.add_flag("--no-browser", arguments->keep_closed, "Only write the page");
-    add_size_option(command, arguments->options);
-    add_capture_options(command, arguments->overrides);
+    add_output_option(command, arguments.output, "Page to keep (.html); else a temporary one");
+    command.add_flag("--no-browser", arguments.keep_closed, "Only write the page");
+    add_size_option(command, arguments.options);
+    add_capture_options(command, arguments.overrides);
     command.example = "nlos view data/letter.h5 scenes/letter/scene.json --no-browser";
-    command.callback([arguments] { run_view(*arguments); });
 }
 
 }  // namespace apps

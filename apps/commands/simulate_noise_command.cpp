@@ -14,7 +14,6 @@
 #include "renderer/core/parallel.h"
 
 #include <algorithm>
-#include <memory>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -26,7 +25,6 @@ struct NoiseArguments {
     std::string capture;
     std::string output;
     std::vector<std::string> overrides;
-    std::vector<std::string> shorthands;
     bool of_sensor = false;
     int threads = 0;
 };
@@ -50,12 +48,6 @@ constexpr std::array kNoiseShorthands{
     Shorthand{"--expected", "expected", "", "Write expected counts instead of random ones"},
     Shorthand{"--seed", "seed", "N", "Seed of the random numbers"}};
 
-void apply(const NoiseArguments& arguments, NoiseOptions& options) {
-    for (const auto* texts : {&arguments.overrides, &arguments.shorthands}) {
-        for (const std::string& text : *texts) core::apply_override(options, text);
-    }
-}
-
 /// The sensor whose detector is asked for; one that is there and left aside is named.
 std::optional<core::SensorSetup> sensor_of(const NoiseArguments& arguments,
                                            const core::Capture& capture) {
@@ -77,7 +69,7 @@ void run(const NoiseArguments& arguments) {
     nlos::check_capture_suffix(arguments.output);
     core::check_targets({arguments.output}, {arguments.capture});
     NoiseOptions options;
-    apply(arguments, options);
+    for (const std::string& text : arguments.overrides) core::apply_override(options, text);
     ProgressBar bar("simulate-noise");
     const core::Progress progress = bar.progress();
     progress.stage(1, 3, "reading", 0.0, 0.0);
@@ -85,7 +77,7 @@ void run(const NoiseArguments& arguments) {
     const std::optional<core::SensorSetup> sensor = sensor_of(arguments, capture);
     if (sensor) {
         options.settings = nlos::detector_of(*sensor);
-        apply(arguments, options);
+        for (const std::string& text : arguments.overrides) core::apply_override(options, text);
     }
     if (const auto warning = nlos::coarse_bins_warning(capture, options.settings)) {
         warn(*warning);
@@ -97,10 +89,7 @@ void run(const NoiseArguments& arguments) {
     progress.stage(3, 3, "writing", 1.0, 1.0);
     noisy.scene_info["detector"]["program"] = version_text();
     noisy.scene_info["detector"]["command"] = command_line();
-    for (const std::string& loss : nlos::write_capture(arguments.output, noisy)) {
-        print("not kept: {}\n", loss);
-        outcome()["not_kept"].push_back(core::printable(loss));
-    }
+    print_notes("not kept", nlos::write_capture(arguments.output, noisy));
 
     const auto values = noisy.transient.values();
     const double sum = std::accumulate(values.begin(), values.end(), 0.0);
@@ -122,25 +111,23 @@ void run(const NoiseArguments& arguments) {
 }  // namespace
 
 void add_simulate_noise_command(CLI::App& app) {
-    Command& command =
-        add_command(app, "simulate-noise", "Turn a capture into what a detector counts");
+    const auto [command, arguments] = add_command<NoiseArguments>(
+        app, "simulate-noise", "Turn a capture into what a detector counts", run);
     command.settings = core::settings_help(NoiseOptions{});
-    const auto arguments = std::make_shared<NoiseArguments>();
-    add_file_option(command, "CAPTURE", arguments->capture, "Capture in any readable format")
+    add_file_option(command, "CAPTURE", arguments.capture, "Capture in any readable format")
         ->required();
-    add_output_option(command, arguments->output, "Capture to write (.h5, .npz, .exr, .mat)")
+    add_output_option(command, arguments.output, "Capture to write (.h5, .npz, .exr, .mat)")
         ->required();
-    add_shorthands(command, kNoiseShorthands, arguments->shorthands);
+    add_shorthands(command, kNoiseShorthands, arguments.overrides);
     command.add_flag("--sensor",
-                     arguments->of_sensor,
+                     arguments.of_sensor,
                      "Start from the detector of the capture's sensor, its crosstalk and what its "
                      "firmware cuts included");
-    add_threads_option(command, arguments->threads);
-    add_capture_options(command, arguments->overrides);
+    add_threads_option(command, arguments.threads);
+    add_capture_options(command, arguments.overrides);
     command.example =
         "nlos simulate-noise data/letter.h5 -o noisy.h5 "
         "--photons-per-point 1000 --jitter-fwhm-ps 60";
-    command.callback([arguments] { run(*arguments); });
 }
 
 }  // namespace apps

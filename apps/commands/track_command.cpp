@@ -8,12 +8,12 @@
 #include "renderer/core/error.h"
 
 #include <iostream>
-#include <memory>
 
 namespace apps {
 namespace {
 
-void run(TrackRequest request) {
+void run(const TrackRequest& given) {
+    TrackRequest request = given;
     // The last word that is no option is the model.
     if (request.frames.size() < 2) {
         throw core::Error("track", "found one file", "must be FRAMES and MODEL.json");
@@ -26,15 +26,11 @@ void run(TrackRequest request) {
     }
     const TrackSummary summary = live ? track_live(request, std::cin) : track_to_file(request);
     for (const std::string& text : summary.warnings) warn(text);
-    note_written({request.output, request.csv, request.picture});
+    const std::string written = note_written({request.output, request.csv, request.picture});
     outcome()["frames"] = summary.frames;
     outcome()["frames_with_a_target"] = summary.named;
     outcome()["seconds_track"] = summary.seconds;
     if (live) return;
-    std::string written = request.output;
-    for (const std::string& file : {request.csv, request.picture}) {
-        if (!file.empty()) written += ", " + file;
-    }
     print("wrote {} ({} frames, {} with a target, {:.0f} frames/s)\n",
           written,
           summary.frames,
@@ -45,28 +41,27 @@ void run(TrackRequest request) {
 }  // namespace
 
 void add_track_command(CLI::App& app) {
-    Command& command = add_command(app, "track", "Track hidden targets with a histogram camera");
+    const auto [command, request] = add_command<TrackRequest>(
+        app, "track", "Track hidden targets with a histogram camera", run);
     command.settings = core::settings_help(WithCapture<calib::TrackSettings>{});
-    const auto request = std::make_shared<TrackRequest>();
     add_file_option(command,
                     "FILES",
-                    request->frames,
+                    request.frames,
                     "Frames: a folder, a sequence capture, files that are frames, or - for a line "
                     "of JSON each on standard input; then what counted them and what is tracked "
                     "(.json)")
         ->required();
-    add_output_option(command, request->output, "Track to write (.json); may be left out with -");
+    add_output_option(command, request.output, "Track to write (.json); may be left out with -");
     add_file_option(
-        command, "--csv", request->csv, "Table to write (.csv): a line per frame and target");
+        command, "--csv", request.csv, "Table to write (.csv): a line per frame and target");
     add_file_option(command,
                     "--picture",
-                    request->picture,
+                    request.picture,
                     "Picture to write (.png, .svg, .pdf): plan, histograms and model");
-    command.add_flag("--smooth", request->smooth, "Use later frames too, once all are there");
-    add_capture_options(command, request->overrides);
+    command.add_flag("--smooth", request.smooth, "Use later frames too, once all are there");
+    add_capture_options(command, request.overrides);
     command.example =
         "nlos track data/walk/counts.h5 data/walk/track.json -o track.json --picture track.png";
-    command.callback([request] { run(*request); });
 }
 
 }  // namespace apps

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "apps/manual/command_entry.h"
+#include "apps/manual/manual.h"
 
 #include <algorithm>
 #include <regex>

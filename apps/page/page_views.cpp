@@ -139,7 +139,7 @@ TruthView truth_view(const std::string& scene_path, std::vector<ResultView>& res
     for (ResultView& result : results) {
         const core::DepthMap& columns = result.depth;
         if (columns.depth_m.empty()) continue;
-        result.truth = truth.depth_map(columns.world_from_wall, columns.x_m, columns.y_m);
+        result.truth = truth.depth_map(columns);
     }
     const bool has_columns = !results.empty() && results.front().truth.has_value();
     view.depth = has_columns ? *results.front().truth : truth.depth_map();

@@ -198,10 +198,8 @@ void bind_scores(nb::module_& module) {
     module.def("compare",
                [](const nlos::Reconstruction& a, const SceneObject& b, const Threshold& threshold) {
                    return scores(run_long(nb::none(), 0, [&](const core::Progress&) {
-                       const nlos::VolumeAxes& axes = a.volume.axes;
                        const apps::SceneTruth truth(b.description, b.geometry);
-                       return nlos::compare_to_truth(
-                           a, truth.depth_map(axes.world_from_wall, axes.x_m, axes.y_m), threshold);
+                       return nlos::compare_to_truth(a, truth.depth_map(a.volume.axes), threshold);
                    }));
                });
     module.def(

@@ -31,19 +31,14 @@ struct SweepArguments {
 constexpr std::size_t kMostTasks = 1000;  // of an array, as Slurm has it unless told otherwise
 constexpr std::size_t kMostPrinted = 60;
 
-std::string absolute(const std::string& path) {
-    return fs::absolute(path).lexically_normal().string();
-}
-
 void print_script(const SweepArguments& arguments, const SweepPlan& plan) {
-    ArrayJob job{"nlos-sweep",
-                 {"sweep", absolute(arguments.sweep), "-o", absolute(arguments.folder)},
-                 read_task_count(arguments.slurm.empty() ? "" : arguments.slurm.front(),
-                                 std::min(kMostTasks, plan.pieces(1).size())),
-                 std::max(1, arguments.threads)};
-    for (const std::string& text : arguments.overrides) {
-        job.words.insert(job.words.end(), {"--set", text});
-    }
+    const ArrayJob job{"sweep",
+                       arguments.sweep,
+                       arguments.folder,
+                       arguments.overrides,
+                       read_task_count(arguments.slurm.empty() ? "" : arguments.slurm.front(),
+                                       std::min(kMostTasks, plan.pieces(1).size())),
+                       std::max(1, arguments.threads)};
     write_output(slurm_script(job));
 }
 
@@ -53,15 +48,12 @@ void print_summary(const SweepPlan& plan, const core::Json& rows, const SweepArg
         write_message(plain_text({headline_table(plan.settings(), rows)}));
     }
     for (const std::string& text : summary.warnings) warn(text);
-    if (!summary.has_plots) {
-        warn("gnuplot is not there, so no plot was drawn");
-    }
-    note_written({(fs::path(arguments.folder) / "sweep.json").string(),
-                  (fs::path(arguments.folder) / "sweep.csv").string()});
+    const std::string path = (fs::path(arguments.folder) / "sweep.json").string();
+    note_written({path, with_suffix(path, ".csv")});
     outcome()["runs"] = rows.size();
     outcome()["runs_failed"] = summary.num_failed;
     print("wrote {} and sweep.csv ({} runs{})\n",
-          (fs::path(arguments.folder) / "sweep.json").string(),
+          path,
           rows.size(),
           summary.num_failed > 0 ? fmt::format(", {} of them failed", summary.num_failed) : "");
 }
@@ -90,10 +82,10 @@ void run(const SweepArguments& arguments, bool wants_script) {
                                         plan.num_runs()));
     }
     if (const auto rows = results.rows()) return print_summary(plan, *rows, arguments);
-    note_written({(fs::path(arguments.folder) / "runs").string()});
+    const std::string runs = note_written({(fs::path(arguments.folder) / "runs").string()});
     print("wrote {} runs to {}; {} of {} are done, other shards do the rest\n",
           done.num_new,
-          (fs::path(arguments.folder) / "runs").string(),
+          runs,
           results.num_done(),
           plan.num_runs());
 }

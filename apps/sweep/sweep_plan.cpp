@@ -2,7 +2,7 @@
 #include "apps/sweep/sweep_plan.h"
 
 #include "apps/batch/checksum.h"
-#include "apps/sweep/sweep_plots.h"
+#include "apps/sweep/sweep_summary.h"
 #include "renderer/core/capture/instrument_response.h"
 #include "renderer/core/mapped_file.h"
 #include "renderer/scene/load_geometry.h"
@@ -30,20 +30,6 @@ bool belongs_to(const std::string& key, const std::string& part) {
 
 std::string compact(const Json& json) {
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
-/// Calls `body`; what it refuses is said to stand at `place` of a sweep file.
-template <class Body>
-auto at_place(const std::string& path,
-              const std::string& part,
-              const std::string& place,
-              Body&& body) {
-    try {
-        return body();
-    } catch (const core::Error& error) {
-        throw core::Error(
-            path + ": " + part + "." + error.where(), error.found() + place, error.allowed());
-    }
 }
 
 void check_response(const core::ResponseSettings& response) {
@@ -129,19 +115,25 @@ Json SweepPlan::changes_of(const char* part, const Json& values) const {
     return all.value(part, Json::object());
 }
 
-/// Which point of the grid it is, as far as a part's settings depend on it.
-std::string SweepPlan::place_of(const char* part, const Json& values) const {
-    std::string text;
-    for (const auto& [key, value] : values.items()) {
-        if (!belongs_to(key, part)) continue;
-        text += fmt::format("{}{} = {}", text.empty() ? " where " : ", ", key, compact(value));
+template <class Body>
+auto SweepPlan::read_part(const char* part, const Json& values, const Body& body) const {
+    try {
+        return body(changes_of(part, values));
+    } catch (const core::Error& error) {
+        std::string place;  // in the grid, as far as the part's settings depend on it
+        for (const auto& [key, value] : values.items()) {
+            if (!belongs_to(key, part)) continue;
+            place +=
+                fmt::format("{}{} = {}", place.empty() ? " where " : ", ", key, compact(value));
+        }
+        throw core::Error(fmt::format("{}: {}.{}", path_, part, error.where()),
+                          error.found() + place,
+                          error.allowed());
     }
-    return text;
 }
 
 renderer::SceneDescription SweepPlan::scene_of(const Json& values) const {
-    Json changes = changes_of(kScene, values);
-    return at_place(path_, kScene, place_of(kScene, values), [&] {
+    return read_part(kScene, values, [&](Json changes) {
         renderer::SceneDescription scene = scene_;
         if (const auto it = changes.find("geometry"); it != changes.end() && it->is_string()) {
             const auto folder = std::filesystem::path(settings_.scene).parent_path();
@@ -154,9 +146,8 @@ renderer::SceneDescription SweepPlan::scene_of(const Json& values) const {
 }
 
 std::optional<nlos::DetectorSettings> SweepPlan::noise_of(const Json& values) const {
-    const Json changes = changes_of(kNoise, values);
-    return at_place(
-        path_, kNoise, place_of(kNoise, values), [&]() -> std::optional<nlos::DetectorSettings> {
+    return read_part(
+        kNoise, values, [](const Json& changes) -> std::optional<nlos::DetectorSettings> {
             nlos::DetectorSettings noise;
             core::read_value(changes, "", noise);
             check_response(noise.response);
@@ -170,8 +161,7 @@ std::optional<nlos::DetectorSettings> SweepPlan::noise_of(const Json& values) co
 }
 
 nlos::ReconstructSettings SweepPlan::reconstruct_of(const Json& values) const {
-    const Json changes = changes_of(kReconstruct, values);
-    return at_place(path_, kReconstruct, place_of(kReconstruct, values), [&] {
+    return read_part(kReconstruct, values, [](const Json& changes) {
         nlos::ReconstructSettings reconstruct;
         core::read_value(changes, "", reconstruct);
         check_response(reconstruct.response);

@@ -53,7 +53,9 @@ class SweepPlan {
 
  private:
     core::Json changes_of(const char* part, const core::Json& values) const;
-    std::string place_of(const char* part, const core::Json& values) const;
+    /// Calls `body` on the changes of a part; what it refuses is said to stand in the sweep file.
+    template <class Body>
+    auto read_part(const char* part, const core::Json& values, const Body& body) const;
     renderer::SceneDescription scene_of(const core::Json& values) const;
     std::optional<nlos::DetectorSettings> noise_of(const core::Json& values) const;
     nlos::ReconstructSettings reconstruct_of(const core::Json& values) const;

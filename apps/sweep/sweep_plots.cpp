@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "apps/sweep/sweep_plots.h"
-
-#include "apps/sweep/sweep_runner.h"
+#include "apps/sweep/sweep.h"
+#include "apps/sweep/sweep_summary.h"
 
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <optional>
+#include <set>
 
 namespace apps {
 namespace {
@@ -86,34 +86,20 @@ std::string values_text(const Json& row, const std::vector<const SweepAxis*>& ax
     return text;
 }
 
-/// Means along x of the rows of one curve; nothing as x: null.
-struct Curve {
-    struct Point {
-        std::optional<double> x;
-        double sum = 0.0;
-        int count = 0;
-    };
-    std::string title;
-    std::vector<Point> points{};
+struct MeanOfRuns {
+    double sum = 0.0;
+    int count = 0;
 
-    void add(const std::optional<double>& x, double y) {
-        auto point = std::ranges::find(points, x, &Point::x);
-        if (point == points.end()) point = points.insert(points.end(), {x});
-        point->sum += y;
-        ++point->count;
-    }
+    double value() const { return sum / count; }
 };
 
-/// One picture: the curves of the rows that agree in the values that `title` states.
-struct Picture {
-    std::string title;
-    std::vector<Curve> curves{};
+/// Means along x of the rows of one curve, by rising x after null.
+using Curve = std::map<std::optional<double>, MeanOfRuns>;
 
-    Curve& curve(const std::string& name) {
-        const auto it = std::ranges::find(curves, name, &Curve::title);
-        return it != curves.end() ? *it : curves.emplace_back(Curve{name});
-    }
-};
+/// The curves of the rows that agree in the values that the title of a picture states, by title;
+/// both in the order in which they come.
+using Curves = nlohmann::ordered_map<std::string, Curve>;
+using Pictures = nlohmann::ordered_map<std::string, Curves>;
 
 /// The axes beside that of x which vary, those of the curves apart from those of pictures.
 struct OtherAxes {
@@ -134,53 +120,45 @@ OtherAxes other_axes(const SweepSettings& sweep, const std::string& against) {
     return others;
 }
 
-std::vector<Picture> pictures_of(const SweepSettings& sweep,
-                                 const Json& rows,
-                                 const SweepPlot& plot) {
+Pictures pictures_of(const SweepSettings& sweep, const Json& rows, const SweepPlot& plot) {
     const OtherAxes others = other_axes(sweep, plot.against);
-    std::vector<Picture> pictures;
+    Pictures pictures;
     for (const Json& row : rows) {
         const Json y = row.value(plot.metric, Json());
         if (!y.is_number()) continue;
-        const std::string title = values_text(row, others.of_pictures);
-        auto picture = std::ranges::find(pictures, title, &Picture::title);
-        if (picture == pictures.end()) picture = pictures.insert(pictures.end(), {title});
-        picture->curve(values_text(row, others.of_curves))
-            .add(number_of(row[plot.against]), y.get<double>());
+        Curves& curves = pictures[values_text(row, others.of_pictures)];
+        MeanOfRuns& mean = curves[values_text(row, others.of_curves)][number_of(row[plot.against])];
+        mean.sum += y.get<double>();
+        ++mean.count;
     }
     return pictures;
 }
 
-/// The means by rising x, without that of null.
-PlotLine line_of(const Curve& curve) {
-    PlotLine line{curve.title, {}, {}};
-    auto points = curve.points;
-    std::ranges::sort(points, {}, &Curve::Point::x);
-    for (const Curve::Point& point : points) {
-        if (!point.x) continue;
-        line.x.push_back(*point.x);
-        line.y.push_back(point.sum / point.count);
-    }
-    return line;
-}
-
 /// The lines of all curves and, dashed across all of x, what null gives each.
-std::vector<PlotLine> lines_of(const std::vector<Curve>& curves, double least_x, double most_x) {
+std::vector<PlotLine> lines_of(const Curves& curves, double least_x, double most_x) {
     std::vector<PlotLine> lines;
-    for (const Curve& curve : curves) lines.push_back(line_of(curve));
-    for (std::size_t i = 0; i < curves.size(); ++i) {
-        const std::optional<double> none;
-        const auto point = std::ranges::find(curves[i].points, none, &Curve::Point::x);
-        if (point == curves[i].points.end()) continue;
-        const double mean = point->sum / point->count;
-        lines.push_back(
-            {"", {least_x, most_x}, {mean, mean}, LineStyle::Limit, static_cast<int>(i)});
+    std::vector<PlotLine> limits;
+    for (const auto& [title, curve] : curves) {
+        PlotLine line{title, {}, {}};
+        for (const auto& [x, mean] : curve) {
+            if (x) {
+                line.add(*x, mean.value());
+            } else {
+                limits.push_back({"",
+                                  {least_x, most_x},
+                                  {mean.value(), mean.value()},
+                                  LineStyle::Limit,
+                                  static_cast<int>(lines.size())});
+            }
+        }
+        lines.push_back(std::move(line));
     }
+    lines.insert(lines.end(), limits.begin(), limits.end());
     return lines;
 }
 
 /// Logarithmic for what is positive and spans a wide range.
-AxisScale scale_for(std::vector<double> values) {
+AxisScale scale_for(const std::vector<double>& values) {
     const auto [least, most] = std::ranges::minmax(values);
     return least > 0.0 && most > kWideRange * least ? AxisScale::Logarithmic : AxisScale::Linear;
 }
@@ -194,22 +172,23 @@ AxisScale y_scale_for(const std::string& metric, const std::vector<PlotLine>& li
 }
 
 /// Nothing where no two numbers along x have results.
-std::optional<Plot> plot_of(const Picture& picture, const SweepPlot& wanted) {
-    std::vector<double> x;
-    for (const Curve& curve : picture.curves) {
-        for (const Curve::Point& point : curve.points) {
-            if (point.x) x.push_back(*point.x);
+std::optional<Plot> plot_of(const std::string& title,
+                            const Curves& curves,
+                            const SweepPlot& wanted) {
+    std::set<double> numbers;
+    for (const auto& [name, curve] : curves) {
+        for (const auto& [number, mean] : curve) {
+            if (number) numbers.insert(*number);
         }
     }
-    std::ranges::sort(x);
-    x.erase(std::unique(x.begin(), x.end()), x.end());
-    if (x.size() < 2) return std::nullopt;
+    if (numbers.size() < 2) return std::nullopt;
+    const std::vector<double> x(numbers.begin(), numbers.end());
     Plot plot;
-    plot.title = picture.title;
+    plot.title = title;
     plot.x_label = last_part(wanted.against);
     plot.y_label = wanted.metric;
-    plot.lines = lines_of(picture.curves, x.front(), x.back());
-    if (plot.lines.size() > picture.curves.size()) plot.x_label += " (dashed: none)";
+    plot.lines = lines_of(curves, x.front(), x.back());
+    if (plot.lines.size() > curves.size()) plot.x_label += " (dashed: none)";
     plot.x_scale = scale_for(x);
     plot.y_scale = y_scale_for(wanted.metric, plot.lines);
     if (x.size() <= kMostTicks) plot.x_ticks = x;
@@ -243,11 +222,13 @@ std::map<std::string, Plot> plots_of(const SweepSettings& sweep, const Json& row
     for (const SweepPlot& wanted : wanted_plots(sweep)) {
         std::string name = fmt::format("sweep_{}_by_{}", wanted.metric, wanted.against);
         std::ranges::replace(name, '.', '_');
-        const std::vector<Picture> pictures = pictures_of(sweep, rows, wanted);
-        for (std::size_t i = 0; i < pictures.size(); ++i) {
-            const auto plot = plot_of(pictures[i], wanted);
+        const Pictures pictures = pictures_of(sweep, rows, wanted);
+        int number = 0;
+        for (const auto& [title, curves] : pictures) {
+            const auto plot = plot_of(title, curves, wanted);
+            ++number;
             if (!plot) continue;
-            plots[pictures.size() == 1 ? name : fmt::format("{}_{:02}", name, i + 1)] = *plot;
+            plots[pictures.size() == 1 ? name : fmt::format("{}_{:02}", name, number)] = *plot;
         }
     }
     return plots;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "apps/sweep/sweep_runner.h"
-
 #include "apps/commands/render_job.h"
+#include "apps/sweep/sweep.h"
 #include "nlos/compare/compare.h"
 #include "nlos/reconstruct.h"
 #include "renderer/core/error.h"
@@ -105,9 +104,7 @@ SweepResult SweepRunner::score(const SweepRun& run, const core::Progress& progre
     append(found.warnings, result.warnings);
     result.seconds_reconstruct = found.seconds;
     result.method = found.method;
-    const nlos::VolumeAxes& axes = found.volume.axes;
-    result.metrics =
-        nlos::compare_to_truth(found, truth_->depth_map(axes.world_from_wall, axes.x_m, axes.y_m));
+    result.metrics = nlos::compare_to_truth(found, truth_->depth_map(found.volume.axes));
     return result;
 }
 

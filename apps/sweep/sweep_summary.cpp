@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "apps/sweep/sweep_summary.h"
 
-#include "apps/sweep/sweep_plots.h"
 #include "apps/version.h"
 #include "renderer/core/output_file.h"
 
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <set>
 
@@ -118,9 +118,10 @@ SweepSummary write_summary(const SweepPlan& plan, const Json& rows, const std::s
     json["headline"] = headline.columns;
     json["runs"] = rows;
     core::write_text_file((path / "sweep.csv").string(), csv_text(rows));
-    for (const auto& [name, plot] : plots) {
-        summary.has_plots = summary.has_plots && draw_plot(plot, (path / name).string());
-    }
+    const bool are_drawn = std::ranges::all_of(plots, [&](const auto& named) {
+        return draw_plot(named.second, (path / named.first).string());
+    });
+    if (!are_drawn) summary.warnings.emplace_back("gnuplot is not there, so no plot was drawn");
     core::write_text_file((path / "sweep.json").string(), core::json_text(json));
     return summary;
 }

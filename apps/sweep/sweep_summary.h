@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "apps/bench/gnuplot.h"
 #include "apps/bench/tables.h"
 #include "apps/sweep/sweep_plan.h"
 
+#include <map>
 #include <string>
+#include <vector>
 
 namespace apps {
 
 /// What stands at the end of a sweep.
 struct SweepSummary {
     std::size_t num_failed = 0;
-    bool has_plots = true;  ///< false: gnuplot is missing
     std::vector<std::string> warnings;
 };
 
@@ -28,5 +30,18 @@ std::string csv_text(const core::Json& rows);
 
 /// The columns that people look at first: number, values, a few scores, time and failures.
 Table headline_table(const SweepSettings& sweep, const core::Json& rows);
+
+/// Throws core::Error for plots that cannot be drawn: of an unknown score, or against a key that is
+/// not in the grid or has no two different numbers.
+///
+/// where   names the sweep file in messages
+void check_plots(const SweepSettings& sweep, const std::string& where);
+
+/// The plots of a sweep's results, by the name of their file: one curve for every combination of
+/// the other keys' values, with means over repeats. What would be too many curves is spread over
+/// several plots. Values of `null` along x are dashed lines across.
+///
+/// rows   as SweepResults has them
+std::map<std::string, Plot> plots_of(const SweepSettings& sweep, const core::Json& rows);
 
 }  // namespace apps

@@ -1,25 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "apps/bench/field/bin_agreement.h"
 
+#include "apps/bench/statistics.h"
+
 #include <cmath>
 #include <numeric>
 
 namespace apps {
 namespace {
-
-/// Mean of independent values and its standard error.
-struct Estimate {
-    double mean = 0.0;
-    double standard_error = 0.0;
-};
-
-Estimate estimate_of(const std::vector<double>& values) {
-    const auto count = static_cast<double>(values.size());
-    const double mean = std::accumulate(values.begin(), values.end(), 0.0) / count;
-    double squares = 0.0;
-    for (const double value : values) squares += (value - mean) * (value - mean);
-    return {mean, std::sqrt(squares / (count - 1.0) / count)};
-}
 
 double normal_score(double difference, double standard_error, std::size_t num_values) {
     if (difference == 0.0) return 0.0;

@@ -88,10 +88,11 @@ std::vector<KnownCapture> read_known_captures(const std::string& folder) {
     return captures;
 }
 
-CapturesTable measure_captures(Contenders& contenders,
-                               const std::string& folder,
-                               const core::Progress& progress) {
-    CapturesTable table;
+std::vector<CaptureRow> measure_captures(Contenders& contenders,
+                                         const std::string& folder,
+                                         const core::Progress& progress,
+                                         std::map<std::string, BenchPicture>& pictures) {
+    std::vector<CaptureRow> rows;
     const std::vector<KnownCapture> known = read_known_captures(folder);
     for (std::size_t c = 0; c < known.size(); ++c) {
         const KnownCapture& one = known[c];
@@ -104,8 +105,7 @@ CapturesTable measure_captures(Contenders& contenders,
             contenders, name, name, capture, {kNearest_m, farthest_m, std::nullopt});
         std::vector<nlos::Panel> panels;
         for (const ReconstructionMethod& method : reconstruction_methods()) {
-            if (progress.should_stop()) throw core::Failure("bench field", "interrupted");
-            progress.update(static_cast<double>(c) / static_cast<double>(known.size()),
+            progress.update(share_of(c, known.size()),
                             fmt::format("{}, {} {}", one.name, method.program, method.method));
             CaptureRow row{one.name, pattern, method.program, method.method, one.depth_m};
             const MethodVolume result = shared.run(method);
@@ -114,11 +114,11 @@ CapturesTable measure_captures(Contenders& contenders,
                 if (row.found_depth_m) row.error_mm = 1e3 * (*row.found_depth_m - one.depth_m);
                 panels.push_back(projection_panel(method, result.volume));
             }
-            table.rows.push_back(std::move(row));
+            rows.push_back(std::move(row));
         }
-        if (!panels.empty()) table.pictures["_" + name] = {std::move(panels), 4};
+        if (!panels.empty()) pictures["_" + name] = {std::move(panels), 4};
     }
-    return table;
+    return rows;
 }
 
 }  // namespace apps

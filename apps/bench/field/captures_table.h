@@ -2,7 +2,6 @@
 #pragma once
 
 #include "apps/bench/field/contenders.h"
-#include "apps/bench/figures.h"
 #include "apps/bench/output.h"
 #include "nlos/layouts/capture_settings.h"
 #include "renderer/core/progress.h"
@@ -62,16 +61,13 @@ NLOS_FIGURES(CaptureRow,
              peak_mb,
              reason);
 
-/// The table, and maximum projections side by side by the end of their files' names.
-struct CapturesTable {
-    std::vector<CaptureRow> rows;
-    std::map<std::string, BenchPicture> pictures;
-};
-
 /// Reconstructs the captures of a folder by every method, from nearly at the wall to twice the
 /// known distance. Bins are added up to half the wall points' distance first.
-CapturesTable measure_captures(Contenders& contenders,
-                               const std::string& folder,
-                               const core::Progress& progress);
+///
+/// pictures   gets maximum projections side by side, by the end of their files' names
+std::vector<CaptureRow> measure_captures(Contenders& contenders,
+                                         const std::string& folder,
+                                         const core::Progress& progress,
+                                         std::map<std::string, BenchPicture>& pictures);
 
 }  // namespace apps

@@ -24,17 +24,12 @@
 namespace apps {
 namespace {
 
-/// Depth error against CPU time and against counts per point, for either pattern, by the end of
-/// the pictures' names.
-std::map<std::string, Plot> reconstruction_plots(
-    const std::vector<ReconstructionSummary>& summaries);
-
 void add(PlotLine& line, double x, std::optional<double> y) {
-    if (!y || !(*y > 0.0)) return;
-    line.x.push_back(x);
-    line.y.push_back(*y);
+    if (y && *y > 0.0) line.add(x, *y);
 }
 
+/// Depth error against CPU time and against counts per point, for either pattern, by the end of
+/// the pictures' names.
 std::map<std::string, Plot> reconstruction_plots(
     const std::vector<ReconstructionSummary>& summaries) {
     std::map<std::string, Plot> plots;
@@ -92,42 +87,38 @@ struct FieldSettings {
 };
 
 /// What renderers mean by the same words.
-struct Convention {
-    std::string what;
-    std::string ours;
-    std::string mitransient;
-};
-NLOS_FIGURES(Convention, what, ours, mitransient);
-
-std::vector<Convention> conventions() {
+core::Json conventions() {
+    const auto row = [](const char* what, const char* ours, const char* mitransient) {
+        return core::Json{{"what", what}, {"ours", ours}, {"mitransient", mitransient}};
+    };
     return {
-        {"unit",
-         "W/(m^2 sr) leaving a wall point, for 1 W on the spot",
-         "for the projector's irradiance on the spot, which the adapter divides by"},
-        {"bin",
-         "[start + i w, start + (i+1) w), each holding the light in it",
-         "the same with both filters `box`"},
-        {"path length",
-         "from the spot to the wall point",
-         "the same without `account_first_and_last_bounces`"},
-        {"bounces",
-         "spot and wall point included: 3 is one hidden surface",
-         "`max_depth`, the laser's own on top of what is traced"},
-        {"spot",
-         "a point",
-         "a point, by `nlos_laser_sampling`; the projector's width does not count"},
-        {"wall point", "a point, the middle of a cell", "the same"},
-        {"albedo", "diffuse, one number", "`reflectance`, the same"},
-        {"sides",
-         "every surface reflects on both",
-         "on that which its normal points to; sheets are turned to the wall"},
-        {"ray offset",
-         "none that shortens a path",
-         "rays start 9e-5 (1 + |p|) scene units off a surface; given in millimetres, paths are "
-         "0.02 mm short"},
-        {"hidden-geometry sampling",
-         "",
-         "counts a direction once for every surface it crosses: scored by the letter alone"},
+        row("unit",
+            "W/(m^2 sr) leaving a wall point, for 1 W on the spot",
+            "for the projector's irradiance on the spot, which the adapter divides by"),
+        row("bin",
+            "[start + i w, start + (i+1) w), each holding the light in it",
+            "the same with both filters `box`"),
+        row("path length",
+            "from the spot to the wall point",
+            "the same without `account_first_and_last_bounces`"),
+        row("bounces",
+            "spot and wall point included: 3 is one hidden surface",
+            "`max_depth`, the laser's own on top of what is traced"),
+        row("spot",
+            "a point",
+            "a point, by `nlos_laser_sampling`; the projector's width does not count"),
+        row("wall point", "a point, the middle of a cell", "the same"),
+        row("albedo", "diffuse, one number", "`reflectance`, the same"),
+        row("sides",
+            "every surface reflects on both",
+            "on that which its normal points to; sheets are turned to the wall"),
+        row("ray offset",
+            "none that shortens a path",
+            "rays start 9e-5 (1 + |p|) scene units off a surface; given in millimetres, paths are "
+            "0.02 mm short"),
+        row("hidden-geometry sampling",
+            "",
+            "counts a direction once for every surface it crosses: scored by the letter alone"),
     };
 }
 
@@ -151,13 +142,15 @@ BenchResult measure_field(const FieldSettings& settings,
     BenchResult result{core::Json::object()};
     std::vector<Loss> losses;
     if (wants("reconstruct")) {
-        ReconstructionTable table = measure_reconstructions(
-            contenders, settings.sensing_points, settings.quick, progress.part(0.0, 0.5));
-        const std::vector<ReconstructionSummary> summaries = summarise(table.rows);
+        const std::vector<ReconstructionRow> rows = measure_reconstructions(contenders,
+                                                                            settings.sensing_points,
+                                                                            settings.quick,
+                                                                            progress.part(0.0, 0.5),
+                                                                            result.pictures);
+        const std::vector<ReconstructionSummary> summaries = summarise(rows);
         result.figures["reconstruction"] = core::write_value(summaries);
         losses = find_losses(summaries);
-        result.figures["reconstruction_runs"] = core::write_value(table.rows);
-        result.pictures.merge(table.pictures);
+        result.figures["reconstruction_runs"] = core::write_value(rows);
         result.plots.merge(reconstruction_plots(summaries));
     }
     if (wants("render")) {
@@ -166,16 +159,14 @@ BenchResult measure_field(const FieldSettings& settings,
         result.figures["rendering"] = core::write_value(table.summaries);
         std::ranges::move(find_losses(table.summaries), std::back_inserter(losses));
         result.figures["rendering_runs"] = core::write_value(table.rows);
-        result.figures["bin_agreement"] = core::write_value(table.agreement);
-        result.figures["conventions"] = core::write_value(conventions());
+        result.figures["bin_agreement"] = table.agreement;
+        result.figures["conventions"] = conventions();
         result.plots.merge(rendering_plots(table.rows));
     }
     result.figures["losses"] = core::write_value(losses);
     if (wants("captures") && !settings.captures.empty()) {
-        CapturesTable table =
-            measure_captures(contenders, settings.captures, progress.part(0.9, 1.0));
-        result.figures["captures"] = core::write_value(table.rows);
-        result.pictures.merge(table.pictures);
+        result.figures["captures"] = core::write_value(measure_captures(
+            contenders, settings.captures, progress.part(0.9, 1.0), result.pictures));
     }
     if (!contenders.versions().empty()) {
         result.figures["peers"] = fmt::format("{}", fmt::join(contenders.versions(), ", "));
@@ -190,8 +181,7 @@ void run(const BenchOutput& output, const FieldSettings& settings) {
     });
     const std::string page = (folder / "report.html").string();
     write_report(page, read_results_folder(output.folder), {});
-    note_written({page});
-    print("wrote {}\n", page);
+    print_written({page});
 }
 
 }  // namespace

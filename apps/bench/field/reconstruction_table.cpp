@@ -241,11 +241,13 @@ MethodVolume SharedCapture::run_peer(const ReconstructionMethod& method) {
     return result;
 }
 
-ReconstructionTable measure_reconstructions(Contenders& contenders,
-                                            int points,
-                                            bool quick,
-                                            const core::Progress& progress) {
-    ReconstructionTable table;
+std::vector<ReconstructionRow> measure_reconstructions(
+    Contenders& contenders,
+    int points,
+    bool quick,
+    const core::Progress& progress,
+    std::map<std::string, BenchPicture>& pictures) {
+    std::vector<ReconstructionRow> rows;
     const std::vector<ReconstructedScene> tasks = tasks_of(points, quick);
     for (std::size_t t = 0; t < tasks.size(); ++t) {
         const ReconstructedScene& task = tasks[t];
@@ -268,8 +270,7 @@ ReconstructionTable measure_reconstructions(Contenders& contenders,
                                   DepthPlanes{});
             std::vector<Panel> panels;
             for (const ReconstructionMethod& method : reconstruction_methods()) {
-                if (progress.should_stop()) throw core::Failure("bench field", "interrupted");
-                progress.update(static_cast<double>(t) / static_cast<double>(tasks.size()),
+                progress.update(share_of(t, tasks.size()),
                                 fmt::format("{} {}, {}", task.name(), light, method.method));
                 ReconstructionRow row{
                     task.scene, task.pattern, task.points, light, method.program, method.method};
@@ -280,15 +281,15 @@ ReconstructionTable measure_reconstructions(Contenders& contenders,
                     panels.push_back(projection_panel(method, result.volume));
                     score(result, seen, row);
                 }
-                table.rows.push_back(std::move(row));
+                rows.push_back(std::move(row));
             }
             if ((light == kClean || light == "20") && !panels.empty()) {
                 constexpr int kColumns = 5;
-                table.pictures["_" + task.name() + "_" + light] = {std::move(panels), kColumns};
+                pictures["_" + task.name() + "_" + light] = {std::move(panels), kColumns};
             }
         }
     }
-    return table;
+    return rows;
 }
 
 std::vector<ReconstructionSummary> summarise(const std::vector<ReconstructionRow>& rows) {

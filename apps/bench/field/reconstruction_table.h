@@ -2,7 +2,6 @@
 #pragma once
 
 #include "apps/bench/field/contenders.h"
-#include "apps/bench/figures.h"
 #include "apps/bench/output.h"
 #include "nlos/pictures/panel.h"
 #include "nlos/reconstruction/volume.h"
@@ -146,21 +145,18 @@ class SharedCapture {
 /// What an eye at the wall sees of a volume.
 nlos::Panel projection_panel(const ReconstructionMethod& method, const nlos::Volume& volume);
 
-/// The table, and maximum projections side by side by the end of their files' names.
-struct ReconstructionTable {
-    std::vector<ReconstructionRow> rows;
-    std::map<std::string, BenchPicture> pictures;
-};
-
 /// Reconstructs every scene by every method: confocal and from a single laser, without noise and at
 /// 100, 20 and 3 counts per point; the letter without noise also with twice the points either way.
 ///
 /// points    along either side of the wall
 /// quick     the letter alone: confocal without noise and at 20 counts, single without noise
-ReconstructionTable measure_reconstructions(Contenders& contenders,
-                                            int points,
-                                            bool quick,
-                                            const core::Progress& progress);
+/// pictures  gets maximum projections side by side, by the end of their files' names
+std::vector<ReconstructionRow> measure_reconstructions(
+    Contenders& contenders,
+    int points,
+    bool quick,
+    const core::Progress& progress,
+    std::map<std::string, BenchPicture>& pictures);
 
 /// A row per method, pattern and size.
 std::vector<ReconstructionSummary> summarise(const std::vector<ReconstructionRow>& rows);

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "apps/bench/field/rendering_table.h"
 
-#include "apps/bench/error_metrics.h"
 #include "apps/bench/field/bin_agreement.h"
 #include "apps/bench/field/one_sided_mesh.h"
+#include "apps/bench/output.h"
 #include "apps/bench/scene.h"
+#include "apps/bench/statistics.h"
 #include "nlos/containers/array_reader.h"
 #include "nlos/formats/capture_file.h"
 #include "nlos/formats/ply_file.h"
@@ -116,22 +117,33 @@ class RenderingTask {
         return row;
     }
 
-    AgreementRow agree(const PeerSampling& sampling) {
-        AgreementRow row{task_.scene, task_.max_bounces, "mitransient", sampling.name};
+    core::Json agree(const PeerSampling& sampling) {
         std::vector<int> seeds;
         for (int seed = 1; seed <= kRuns; ++seed) seeds.push_back(seed);
         const auto [run, runs] = ask_peer(sampling, 2 * sampling.few_samples, seeds);
-        row.reason = run.failure;
-        if (!row.reason.empty()) return row;
+        core::Json row{{"scene", task_.scene},
+                       {"max_bounces", task_.max_bounces},
+                       {"program", "mitransient"},
+                       {"method", sampling.name},
+                       {"runs", 0},  // independent seeds
+                       {"energy_ratio", nullptr},
+                       {"energy_z", nullptr},
+                       {"cells", 0},
+                       {"rms_z", nullptr},
+                       {"worst_z", nullptr},
+                       {"worst_by_chance", nullptr},
+                       {"consistent", false},
+                       {"reason", run.failure}};
+        if (!run.failure.empty()) return row;
         const auto side = static_cast<std::size_t>(task_.points);
         const BinAgreement found = bin_agreement_of(
             mean_reference(), runs, {side, side}, kBlock, kLeastShare, kRayOffsetLoss);
-        row.runs = kRuns;
-        row.energy_ratio = found.energy_ratio;
-        row.energy_z = found.energy_z;
-        row.cells = found.num_cells;
-        row.rms_z = found.rms_z;
-        row.worst_z = found.worst_z;
+        row["runs"] = kRuns;
+        row["energy_ratio"] = found.energy_ratio;
+        row["energy_z"] = found.energy_z;
+        row["cells"] = found.num_cells;
+        row["rms_z"] = found.rms_z;
+        row["worst_z"] = found.worst_z;
         return row;
     }
 
@@ -202,13 +214,12 @@ class RenderingTask {
     }
 
     core::Json scene_request() const {
-        const renderer::SceneDescription description =
-            read_bench_scene(task_.path(), task_.overrides());
-        const core::RelayWall& wall = description.relay_wall;
+        const core::RelayWall& wall = scene_.description().relay_wall;
         const core::Transform pose = wall.world_from_wall();
         const auto list = [](const core::Vec3& v) { return core::Json{v.x(), v.y(), v.z()}; };
         core::Json meshes = core::Json::array();
-        for (const renderer::Object& object : renderer::load_geometry(description).objects) {
+        for (const renderer::Object& object :
+             renderer::load_geometry(scene_.description()).objects) {
             if (object.role == renderer::Role::RelayWall) continue;
             const std::string file = fmt::format("{}_{}.ply", stem_, meshes.size());
             nlos::write_ply(file, turned_to_wall(object.mesh, pose.linear().col(2)));
@@ -279,17 +290,20 @@ void compare_with_ours(std::vector<RenderingSummary>& of_task) {
 }
 
 // Scores are judged together: chance may call one table in a hundred inconsistent.
-void judge(std::vector<AgreementRow>& rows) {
+void judge(std::vector<core::Json>& rows) {
     int num_scores = 0;
-    for (const AgreementRow& row : rows) num_scores += row.worst_z ? row.cells + 1 : 0;
+    for (const core::Json& row : rows) {
+        if (!row["worst_z"].is_null()) num_scores += row["cells"].get<int>() + 1;
+    }
     if (num_scores == 0) return;
     const double most = largest_score_by_chance(num_scores, kAgreementLevel);
-    for (AgreementRow& row : rows) {
-        if (!row.worst_z) continue;
-        row.worst_by_chance = most;
-        const double widest = 1.0 + kWideScores + 4.0 / std::sqrt(2.0 * row.cells);
-        row.consistent = std::abs(*row.worst_z) <= most && std::abs(*row.energy_z) <= most &&
-                         *row.rms_z <= widest;
+    for (core::Json& row : rows) {
+        if (row["worst_z"].is_null()) continue;
+        const auto size = [&](const char* score) { return std::abs(row[score].get<double>()); };
+        const double widest = 1.0 + kWideScores + 4.0 / std::sqrt(2.0 * row["cells"].get<int>());
+        row["worst_by_chance"] = most;
+        row["consistent"] =
+            size("worst_z") <= most && size("energy_z") <= most && size("rms_z") <= widest;
     }
 }
 
@@ -302,19 +316,17 @@ RenderingTable measure_renderings(Contenders& contenders,
     RenderingTable table;
     const std::vector<RenderedScene> tasks = rendered_scenes(points, quick);
     for (std::size_t t = 0; t < tasks.size(); ++t) {
-        const double share = static_cast<double>(t) / static_cast<double>(tasks.size());
-        const auto check = [&](const std::string& what) {
-            if (progress.should_stop()) throw core::Failure("bench field", "interrupted");
-            progress.update(share, tasks[t].name() + ", " + what);
+        const auto begin = [&](const std::string& what) {
+            progress.update(share_of(t, tasks.size()), tasks[t].name() + ", " + what);
         };
-        check("reference");
+        begin("reference");
         RenderingTask task(contenders, tasks[t]);
         std::vector<RenderingSummary> summaries;
         const auto add = [&](const std::vector<RenderingRow>& runs) {
             table.rows.insert(table.rows.end(), runs.begin(), runs.end());
             summaries.push_back(summary_of(runs));
         };
-        check("nlos");
+        begin("nlos");
         if (tasks[t].max_bounces == 3) {
             add({task.run_own("third_bounce", {{}, 2 * kOnePercent}),
                  task.run_own("third_bounce", {{}, kOnePercent})});
@@ -322,7 +334,7 @@ RenderingTable measure_renderings(Contenders& contenders,
         add({task.run_own("auto", {{}, 2 * kOnePercent}), task.run_own("auto", {{}, kOnePercent})});
         add({task.run_own("path", {2000, {}}), task.run_own("path", {8000, {}})});
         for (const PeerSampling& sampling : samplings_of(tasks[t])) {
-            check("mitransient " + sampling.name);
+            begin("mitransient " + sampling.name);
             add({task.run_peer(sampling, sampling.few_samples),
                  task.run_peer(sampling, 4 * sampling.few_samples)});
             if (sampling.is_unbiased) {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "apps/bench/field/contenders.h"
-#include "apps/bench/figures.h"
+#include "apps/bench/output.h"
 #include "renderer/core/progress.h"
 
 #include <optional>
@@ -55,42 +55,11 @@ struct RenderingSummary {
 NLOS_FIGURES(
     RenderingSummary, scene, max_bounces, program, method, cpu_s_at_1_percent, times_ours, reason);
 
-/// How well a peer's histograms agree with ours, see bin_agreement.h.
-struct AgreementRow {
-    std::string scene{};
-    int max_bounces = 0;
-    std::string program{};
-    std::string method{};
-    int runs = 0;  ///< independent seeds
-    std::optional<double> energy_ratio{};
-    std::optional<double> energy_z{};
-    int cells = 0;
-    std::optional<double> rms_z{};
-    std::optional<double> worst_z{};
-    std::optional<double> worst_by_chance{};  ///< exceeded in one of a hundred tables like this one
-    bool consistent = false;                  ///< neither score is worse than that
-    std::string reason{};                     ///< why there is none
-};
-NLOS_FIGURES(AgreementRow,
-             scene,
-             max_bounces,
-             program,
-             method,
-             runs,
-             energy_ratio,
-             energy_z,
-             cells,
-             rms_z,
-             worst_z,
-             worst_by_chance,
-             consistent,
-             reason);
-
 /// All that renderers were asked for.
 struct RenderingTable {
     std::vector<RenderingRow> rows;
     std::vector<RenderingSummary> summaries;
-    std::vector<AgreementRow> agreement;
+    std::vector<core::Json> agreement;  ///< of a peer's histograms with ours, see bin_agreement.h
 };
 
 /// Renders letter, animal and bars to orders 3 and 5 from a single laser by all renderers.

@@ -2,7 +2,6 @@
 #include "apps/bench/fit/fit.h"
 
 #include "apps/bench/command.h"
-#include "apps/bench/fit/fit_parts.h"
 #include "apps/bench/fit/fit_trials.h"
 #include "apps/commands.h"
 #include "renderer/core/parallel.h"
@@ -48,9 +47,8 @@ struct PoseSummary {
 PoseSummary summarise(const TrialSetup& setup, int trials) {
     PoseSummary summary;
     double error2 = 0.0;
-    double bound2 = 0.0;
     const TrialPose truth = standard_pose();
-    const core::Capture light = expected_light(setup, truth);
+    const core::Capture light = expected_light(truth);
     for (int i = 0; i < trials; ++i) {
         const auto seed = static_cast<std::uint64_t>(i);
         const core::Capture counts = counted_capture(setup, light, 0.0, seed);
@@ -65,14 +63,13 @@ PoseSummary summarise(const TrialSetup& setup, int trials) {
         const Vec3 turn_sigma = fit.objects[0].rotation_sigma_deg;
         error2 += error.position_m.squaredNorm() / sigma.squaredNorm() +
                   error.turn_deg.squaredNorm() / turn_sigma.squaredNorm();
-        bound2 += 2.0;
         Eigen::Matrix<double, 6, 1> all;
         all << error.position_m, error.turn_deg / core::kDegreesPerRadian;
         const Eigen::MatrixXd covariance = fit.covariance.topLeftCorner<6, 6>();
         summary.normalised_square += all.dot(covariance.ldlt().solve(all)) / 6.0;
     }
     summary.take_roots();
-    summary.over_bound = std::sqrt(error2 / bound2);
+    summary.over_bound = std::sqrt(error2 / (2.0 * trials));
     summary.normalised_square /= trials;
     summary.cpu_seconds /= trials;
     summary.iterations /= trials;
@@ -119,31 +116,48 @@ void bench_pose(int trials, FitBench& bench) {
          consistent(many) && consistent(few)});
 }
 
-bool is_found(const TrialError& error) {
-    constexpr double kFound_m = 0.01;
-    constexpr double kFound_deg = 5.0;
-    return error.distance_m() < kFound_m && error.angle_deg() < kFound_deg;
-}
+// Random poses, and fits that start displaced from them.
+struct PoseSearch {
+    TrialSetup setup{};
+    std::uint64_t first_pose = 0;
+    double distance_m = 0.0;  // of the start
+    double angle_deg = 0.0;
+    double found_m = 0.01;  // what counts as found
+    double found_deg = 5.0;
+};
 
-double found_share(const TrialSetup& setup, double distance_m, double angle_deg, int trials) {
+struct PosesFound {
     int found = 0;
+    double seconds = 0.0;
+};
+
+PosesFound search_poses(const PoseSearch& search, int trials) {
+    PosesFound result;
     for (int i = 0; i < trials; ++i) {
         const auto seed = static_cast<std::uint64_t>(i);
-        const TrialPose truth = random_pose(seed);
+        const TrialPose truth = random_pose(search.first_pose + seed);
         const core::Capture counts =
-            counted_capture(setup, expected_light(setup, truth), 0.0, seed);
-        const TrialPose start = displaced(truth, distance_m, angle_deg, seed);
-        const calib::FitResult fit = calib::fit_scene(trial_input(setup, counts, start), {});
-        if (is_found(trial_error(fit, truth))) ++found;
+            counted_capture(search.setup, expected_light(truth), 0.0, seed);
+        const TrialPose start = displaced(truth, search.distance_m, search.angle_deg, seed);
+        const double begin = core::cpu_seconds();
+        const calib::FitResult fit = calib::fit_scene(trial_input(search.setup, counts, start), {});
+        result.seconds += core::cpu_seconds() - begin;
+        const TrialError error = trial_error(fit, truth);
+        if (error.distance_m() < search.found_m && error.angle_deg() < search.found_deg) {
+            ++result.found;
+        }
     }
-    return 100.0 * found / trials;
+    return result;
 }
 
 void bench_basin(int trials, FitBench& bench) {
-    const TrialSetup setup;
-    const double both = found_share(setup, 0.2, 45.0, trials);
-    const double turned = found_share(setup, 0.0, 90.0, trials);
-    const double far = found_share(setup, 0.3, 0.0, trials);
+    const auto share = [&](double distance_m, double angle_deg) {
+        const PoseSearch from{.distance_m = distance_m, .angle_deg = angle_deg};
+        return 100.0 * search_poses(from, trials).found / trials;
+    };
+    const double both = share(0.2, 45.0);
+    const double turned = share(0.0, 90.0);
+    const double far = share(0.3, 0.0);
     bench.rows.push_back({"basin with the schedule: 20 cm + 45 deg / 90 deg / 30 cm [%]",
                           "100 / >= 95 / >= 90",
                           fmt::format("{:.0f} / {:.0f} / {:.0f}", both, turned, far),
@@ -151,23 +165,10 @@ void bench_basin(int trials, FitBench& bench) {
 }
 
 void bench_search(int trials, FitBench& bench) {
-    TrialSetup setup;
-    setup.photons = 3000.0;
-    setup.start = "search";
-    int found = 0;
-    double seconds = 0.0;
-    for (int i = 0; i < trials; ++i) {
-        const auto seed = static_cast<std::uint64_t>(i);
-        const TrialPose truth = random_pose(1000 + seed);
-        const core::Capture counts =
-            counted_capture(setup, expected_light(setup, truth), 0.0, seed);
-        const TrialPose anywhere = displaced(truth, 0.5, 170.0, seed);
-        const double begin = core::cpu_seconds();
-        const calib::FitResult fit = calib::fit_scene(trial_input(setup, counts, anywhere), {});
-        seconds += core::cpu_seconds() - begin;
-        const TrialError error = trial_error(fit, truth);
-        if (error.distance_m() < 0.03 && error.angle_deg() < 15.0) ++found;
-    }
+    PoseSearch anywhere{{}, 1000, 0.5, 170.0, 0.03, 15.0};
+    anywhere.setup.photons = 3000.0;
+    anywhere.setup.start = "search";
+    const auto [found, seconds] = search_poses(anywhere, trials);
     bench.rows.push_back({"from scratch, 3,000 photons",
                           ">= 29 of 30, <= 1 s each",
                           fmt::format("{} of {}, {:.2f} s each", found, trials, seconds / trials),
@@ -186,7 +187,7 @@ void bench_monte_carlo(int trials, FitBench& bench) {
         vertex = Vec3(0.12, -0.1, 0.45) + 0.25 * (vertex - truth.position_m);
     }
     occluder.world_from_node.translation() = Vec3(0.12, -0.1, 0.45);
-    const core::Scan scan = trial_scan(setup.scan_points);
+    const core::Scan scan = trial_scan();
     const renderer::Scene scene(geometry, scan, {});
     renderer::RenderSettings render_settings;
     render_settings.method = renderer::Estimator::Path;
@@ -198,7 +199,7 @@ void bench_monte_carlo(int trials, FitBench& bench) {
     double excess = 0.0;
     for (int i = 0; i < trials; ++i) {
         const auto seed = static_cast<std::uint64_t>(i);
-        const core::Capture counts = counted_capture(setup, rendered, setup.fwhm_ps, seed);
+        const core::Capture counts = counted_capture(setup, rendered, kTrialFwhm_ps, seed);
         calib::FitInput input = trial_input(setup, counts, displaced(truth, 0.03, 8.0, seed));
         input.geometry.objects.push_back(occluder);
         const calib::FitResult fit = calib::fit_scene(input, {});
@@ -263,26 +264,20 @@ const std::vector<BenchPart>& bench_parts() {
 }
 
 void declare(CLI::App& command, FitBenchSettings& settings) {
+    std::vector<std::string> names;
+    for (const BenchPart& part : bench_parts()) names.push_back(part.name);
     add_setting(command, "--trials", settings.trials, "Fits per row of the table", {1, 10000});
-    command.add_option("--only", settings.parts, "Parts of the table")
-        ->check(one_of(fit_bench_parts()));
+    command.add_option("--only", settings.parts, "Parts of the table")->check(one_of(names));
 }
 
 }  // namespace
 
-std::vector<std::string> fit_bench_parts() {
-    std::vector<std::string> names;
-    for (const BenchPart& part : bench_parts()) names.push_back(part.name);
-    return names;
-}
-
 BenchResult measure_fit(const FitBenchSettings& settings, const core::Progress& progress) {
     const core::ThreadLimit one(1);
     FitBench bench;
-    double done = 0.0;
+    int done = 0;
     for (const BenchPart& part : bench_parts()) {
-        progress.update(done++ / static_cast<double>(bench_parts().size()), part.name);
-        if (progress.should_stop()) throw core::Failure("bench fit", "interrupted");
+        progress.update(share_of(done++, bench_parts().size()), part.name);
         const bool is_wanted =
             settings.parts.empty() || std::ranges::count(settings.parts, part.name) > 0;
         if (is_wanted) part.run(settings.trials, bench);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "apps/bench/fit/fit_parts.h"
+#include "apps/bench/fit/fit.h"
 #include "apps/bench/fit/fit_trials.h"
 #include "calib/fit/fit_objective.h"
 #include "calib/forward/autodiff_reference.h"
@@ -21,27 +21,23 @@ using core::Vec3;
 // The rectangle's forward model, without fitting anything.
 struct Bare {
     renderer::SceneGeometry geometry;
-    core::Scan scan = trial_scan(16);
+    core::Scan scan = trial_scan();
     std::unique_ptr<calib::SceneModel> model;
     std::unique_ptr<calib::ForwardModel> light;
 
-    Bare(const TrialPose& pose,
-         int cells_x,
-         int cells_y,
-         double tolerance,
-         bool is_filtered,
-         double offset_m = 0.0) {
-        geometry.objects = {trial_rectangle(pose, cells_x, cells_y)};
+    Bare(int cells_x, int cells_y, bool is_filtered = false, double offset_m = 0.0) {
+        constexpr double kNoFurtherCut = 1e9;
+        geometry.objects = {trial_rectangle(standard_pose(), cells_x, cells_y)};
         calib::FitSettings settings;
         settings.free.objects = {{"target", true, true, false, true, false}};
         model = std::make_unique<calib::SceneModel>(geometry, settings, true);
         calib::ForwardSettings forward;
         forward.axis = trial_axis();
         forward.axis.num_bins = 288;
-        forward.sigma_m = core::sigma_m_from_fwhm_ps(94.0);
+        forward.sigma_m = core::sigma_m_from_fwhm_ps(kTrialFwhm_ps);
         if (is_filtered) forward.measured = core::GaussianResponse{forward.sigma_m};
         forward.offset_m.assign(scan.num_pairs(), offset_m);
-        forward.tolerance = tolerance;
+        forward.tolerance = kNoFurtherCut;
         light =
             std::make_unique<calib::ForwardModel>(*model, scan, calib::WallMotion(scan), forward);
         light->refresh(start());
@@ -102,8 +98,7 @@ struct ForwardError {
 
 // Meshes of cells whose diagonals are `elements` long, against arcs, for a few wall points.
 ForwardError forward_error(int cells_x, int cells_y) {
-    constexpr double kNoFurtherCut = 1e9;
-    const Bare bare(standard_pose(), cells_x, cells_y, kNoFurtherCut, false);
+    const Bare bare(cells_x, cells_y);
     bare.light->update(bare.start(), renderer::Gradients::Without);
     const renderer::Object whole = trial_rectangle(standard_pose(), 1, 1);
     ForwardError worst;
@@ -130,7 +125,7 @@ double change_under_shifts() {
     std::vector<double> reference;
     for (int i = 0; i <= kShifts; ++i) {
         const double shift_m = trial_axis().bin_width_m * i / (kShifts + 1);
-        const Bare bare(standard_pose(), 11, 9, 1e9, false, shift_m);
+        const Bare bare(11, 9, false, shift_m);
         bare.light->update(bare.start(), renderer::Gradients::Without);
         calib::PairModel model;
         for (std::size_t pair = 0; pair < bare.scan.num_pairs(); ++pair) {
@@ -157,8 +152,8 @@ void bench_forward(FitBench& bench) {
                           "1e-5 / 1e-5",
                           fmt::format("{:.1e} / {:.1e}", fine.energy, change),
                           fine.energy < 1e-5 && change < 1e-5});
-    const Bare bare(standard_pose(), 4, 3, 1e9, false);
-    const Bare filtered(standard_pose(), 4, 3, 1e9, true);
+    const Bare bare(4, 3);
+    const Bare filtered(4, 3, true);
     const double plain = bare.milliseconds(renderer::Gradients::Without);
     const double gradients = bare.milliseconds(renderer::Gradients::With);
     const double fir = filtered.milliseconds(renderer::Gradients::Without);
@@ -172,7 +167,7 @@ void bench_forward(FitBench& bench) {
 void bench_gradients(FitBench& bench) {
     constexpr double kStep = 1e-6;
     constexpr std::size_t kPair = 77;
-    const Bare bare(standard_pose(), 4, 3, 1e9, false);
+    const Bare bare(4, 3);
     const auto columns = static_cast<std::size_t>(bare.model->num_columns());
     const calib::SceneState state = bare.start();
     bare.light->update(state, renderer::Gradients::With);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "apps/bench/fit/fit_parts.h"
+#include "apps/bench/fit/fit.h"
 #include "apps/bench/fit/fit_trials.h"
 #include "nlos/compare/compare_scores.h"
 
@@ -54,7 +54,7 @@ HeightErrors fit_heights(int vertices, int fits) {
     setup.photons = 1e6;
     const renderer::Object flat = trial_rectangle(standard_pose(), vertices - 1, vertices - 1);
     const std::vector<double> truth = true_heights(vertices);
-    const core::Capture light = expected_light(setup, raised(flat, truth));
+    const core::Capture light = expected_light(raised(flat, truth));
     HeightErrors result;
     const auto n = static_cast<std::size_t>(vertices);
     for (int fit = 0; fit < fits; ++fit) {

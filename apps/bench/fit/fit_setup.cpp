@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "apps/bench/fit/fit_parts.h"
+#include "apps/bench/fit/fit.h"
 #include "calib/calibrate.h"
 #include "nlos/detector/count_sampling.h"
 #include "renderer/core/parallel.h"

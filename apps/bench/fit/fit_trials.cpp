@@ -53,9 +53,10 @@ renderer::Object trial_rectangle(const TrialPose& pose, int cells_x, int cells_y
     return object;
 }
 
-core::Scan trial_scan(int points) {
+core::Scan trial_scan() {
+    constexpr int kPoints = 16;
     renderer::SceneDescription description;
-    description.scan.sensing_points = {points, points};
+    description.scan.sensing_points = {kPoints, kPoints};
     return renderer::make_scan(description);
 }
 
@@ -94,13 +95,13 @@ TrialPose displaced(const TrialPose& pose,
     return moved;
 }
 
-core::Capture expected_light(const TrialSetup& setup, const TrialPose& truth) {
-    return expected_light(setup, trial_rectangle(truth, setup.cells_x, setup.cells_y));
+core::Capture expected_light(const TrialPose& truth) {
+    return expected_light(trial_rectangle(truth, 12, 9));  // the model's has one cell
 }
 
-core::Capture expected_light(const TrialSetup& setup, const renderer::Object& truth) {
+core::Capture expected_light(const renderer::Object& truth) {
     core::Capture capture;
-    capture.scan = trial_scan(setup.scan_points);
+    capture.scan = trial_scan();
     capture.time_axis = trial_axis();
     capture.transient = core::Transient(capture.scan.num_pairs(), capture.time_axis.num_bins);
     renderer::SceneGeometry geometry;
@@ -110,7 +111,7 @@ core::Capture expected_light(const TrialSetup& setup, const renderer::Object& tr
     const calib::SceneModel model(geometry, settings, false);
     calib::ForwardSettings forward;
     forward.axis = capture.time_axis;
-    forward.sigma_m = core::sigma_m_from_fwhm_ps(setup.fwhm_ps);
+    forward.sigma_m = core::sigma_m_from_fwhm_ps(kTrialFwhm_ps);
     forward.offset_m.assign(capture.scan.num_pairs(), 0.0);
     forward.tolerance = 1e-3;
     forward.radiance_factor = std::pow(core::kPi, -3.0);
@@ -143,8 +144,7 @@ core::Capture counted_capture(const TrialSetup& setup,
     nlos::DetectorSettings detector;
     detector.photons = setup.photons;
     detector.response.jitter_fwhm_ps = jitter_fwhm_ps;
-    detector.ambient = setup.photons / setup.signal_to_background /
-                       static_cast<double>(light.transient.values().size());
+    detector.ambient = setup.photons / static_cast<double>(light.transient.values().size());
     detector.seed = seed;
     return nlos::detect(light, detector);
 }
@@ -158,8 +158,7 @@ calib::FitInput trial_input(const TrialSetup& setup,
     calib::FitSettings& settings = input.settings;
     settings.scene = "trial";
     settings.free.objects = {{"target", true, true, false, true, false}};
-    settings.free.time_zero = setup.time_zero_free;
-    settings.response.jitter_fwhm_ps = setup.fwhm_ps;
+    settings.response.jitter_fwhm_ps = kTrialFwhm_ps;
     settings.blur_schedule_m = setup.blur_schedule_m;
     settings.start = setup.start;
     settings.element_tolerance = setup.element_tolerance;

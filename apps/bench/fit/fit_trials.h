@@ -21,12 +21,6 @@ struct TrialPose {
 /// m, response 94 ps, 292 bins of 32 ps, as much ambient light as signal.
 struct TrialSetup {
     double photons = 1e5;
-    double signal_to_background = 1.0;
-    double fwhm_ps = 94.0;
-    int scan_points = 16;
-    int cells_x = 12;  ///< of the mesh that makes the data; the model's has one cell
-    int cells_y = 9;
-    bool time_zero_free = false;
     std::vector<double> blur_schedule_m{0.12, 0.04, 0.0};
     std::string start = "given";
     std::optional<double> element_tolerance;
@@ -36,8 +30,9 @@ struct TrialSetup {
 /// The rectangle as a mesh of cells in the plane z = 0 of its node, which is at `pose`.
 renderer::Object trial_rectangle(const TrialPose& pose, int cells_x, int cells_y);
 
-core::Scan trial_scan(int points);
+core::Scan trial_scan();
 core::TimeAxis trial_axis();
+inline constexpr double kTrialFwhm_ps = 94.0;  // of the response
 
 /// Tilted by 25 degrees at 0.8 m.
 TrialPose standard_pose();
@@ -47,8 +42,8 @@ TrialPose random_pose(std::uint64_t seed);
 TrialPose displaced(const TrialPose& pose, double distance_m, double angle_deg, std::uint64_t seed);
 
 /// The light of a trial after the response, and counts that a detector records of light.
-core::Capture expected_light(const TrialSetup& setup, const TrialPose& truth);
-core::Capture expected_light(const TrialSetup& setup, const renderer::Object& truth);
+core::Capture expected_light(const TrialPose& truth);
+core::Capture expected_light(const renderer::Object& truth);
 /// jitter_fwhm_ps   response that the light has not gone through yet; 0: none
 core::Capture counted_capture(const TrialSetup& setup,
                               const core::Capture& light,

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "apps/bench/reconstruct/coverage.h"
-
 #include "apps/bench/command.h"
 #include "apps/bench/gnuplot.h"
-#include "apps/bench/reconstruct/random_capture.h"
+#include "apps/bench/reconstruct/reconstruct.h"
+#include "apps/bench/reconstruct/reconstruct_trials.h"
 #include "apps/commands.h"
 #include "calib/statistics/median.h"
-#include "nlos/reconstruct.h"
 #include "renderer/scene/ground_truth.h"
 
 #include <fmt/format.h>
@@ -115,72 +113,63 @@ void tally(const nlos::Reconstruction& result,
     }
 }
 
-DepthCoverage row_of(const std::string& method,
-                     double peak_counts,
-                     int captures,
-                     const DepthTally& tally) {
-    DepthCoverage row;
-    row.method = method;
-    row.peak_counts = peak_counts;
-    row.captures = captures;
-    row.columns = tally.errors_m.size();
-    row.within_68 = tally.within_68.value();
-    row.within_95 = tally.within_95.value();
-    row.inside_68 = tally.inside_68.value();
-    row.inside_95 = tally.inside_95.value();
-    row.median_sigma_m = median(tally.sigmas_m);
-    row.median_error_m = median(tally.errors_m);
-    row.found = tally.found.value();
-    row.wrong = tally.wrong.value();
-    row.wrong_apart = tally.wrong_apart.value();
-    return row;
+/// Whether stated deviations of depth hold, at one signal level.
+core::Json row_of(const std::string& method,
+                  double peak_counts,
+                  int captures,
+                  const DepthTally& tally) {
+    return {{"method", method},
+            {"peak_counts", peak_counts},  // expected in the brightest bin
+            {"captures", captures},
+            {"columns", tally.errors_m.size()},      // of true surfaces that were given a depth
+            {"within_68", tally.within_68.value()},  // share of them within one deviation
+            {"within_95", tally.within_95.value()},  // within 1.96
+            {"inside_68", tally.inside_68.value()},  // of columns that only surface surrounds
+            {"inside_95", tally.inside_95.value()},
+            {"median_sigma_m", median(tally.sigmas_m)},
+            {"median_error_m", median(tally.errors_m)},
+            {"found", tally.found.value()},               // share of true columns given a depth
+            {"wrong", tally.wrong.value()},               // share of background columns given one
+            {"wrong_apart", tally.wrong_apart.value()}};  // of those that no true column touches
 }
 
-void add_rows(const std::string& method,
-              const ProbabilityTally& tally,
-              std::vector<ProbabilityReliability>& rows) {
+/// How many of the columns with a stated probability within a tenth are surface, over all signal
+/// levels.
+void add_rows(const std::string& method, const ProbabilityTally& tally, core::Json& rows) {
     for (std::size_t tenth = 0; tenth < kTenths; ++tenth) {
         const Share& surface = tally.surface[tenth];
         if (surface.count == 0) continue;
-        rows.push_back({method,
-                        static_cast<double>(tenth) / kTenths,
-                        surface.count,
-                        tally.sum[tenth] / static_cast<double>(surface.count),
-                        surface.value()});
+        rows.push_back({{"method", method},
+                        {"from", static_cast<double>(tenth) / kTenths},
+                        {"columns", surface.count},
+                        {"stated", share_of(tally.sum[tenth], surface.count)},  // on average
+                        {"surface", surface.value()}});
     }
 }
 
 /// What is stated against what is true, with the line where both are equal.
-Plot probability_plot(const std::vector<ProbabilityReliability>& rows) {
+Plot probability_plot(const core::Json& rows) {
     Plot plot{"Columns that are surface", "stated probability", "true share", {}};
     plot.x_scale = AxisScale::Linear;
     plot.y_scale = AxisScale::Linear;
-    for (const ProbabilityReliability& row : rows) {
-        PlotLine& line = line_named(row.method, plot);
-        line.x.push_back(row.stated);
-        line.y.push_back(row.surface);
+    for (const core::Json& row : rows) {
+        line_named(row["method"], plot).add(row["stated"], row["surface"]);
     }
     plot.lines.push_back({"as stated", {0.0, 1.0}, {0.0, 1.0}, LineStyle::Limit});
     return plot;
 }
 
 /// Share of the depths within an interval over the signal, with the share that it states.
-Plot interval_plot(const std::vector<DepthCoverage>& rows,
-                   double DepthCoverage::*within,
-                   double stated) {
+Plot interval_plot(const core::Json& rows, const char* within, double stated) {
     Plot plot{fmt::format("Depths within their intervals of {:g} %", 100.0 * stated),
               "counts in the brightest bin",
               "share of the depths",
               {}};
     plot.y_scale = AxisScale::Linear;
     PlotLine limit{"as stated", {}, {}, LineStyle::Limit};
-    for (const DepthCoverage& row : rows) {
-        PlotLine& line = line_named(row.method, plot);
-        line.x.push_back(row.peak_counts);
-        line.y.push_back(row.*within);
-        if (row.method != rows.front().method) continue;
-        limit.x.push_back(row.peak_counts);
-        limit.y.push_back(stated);
+    for (const core::Json& row : rows) {
+        line_named(row["method"], plot).add(row["peak_counts"], row[within]);
+        if (row["method"] == rows.front()["method"]) limit.add(row["peak_counts"], stated);
     }
     plot.lines.push_back(limit);
     return plot;
@@ -195,21 +184,20 @@ void declare_coverage(CLI::App& command, CoverageBenchSettings& settings) {
 
 }  // namespace
 
-CoverageBench cover(const CoverageBenchSettings& settings, const core::Progress& progress) {
+BenchResult measure_coverage(const CoverageBenchSettings& settings,
+                             const core::Progress& progress) {
     const std::size_t num_peaks = settings.peaks.size();
     std::vector<DepthTally> depths(settings.methods.size() * num_peaks);
     std::vector<ProbabilityTally> probabilities(settings.methods.size());
     for (int number = 0; number < settings.surfaces; ++number) {
-        if (progress.should_stop()) throw core::Failure("bench", "interrupted");
-        progress.update(static_cast<double>(number) / settings.surfaces, "surfaces");
+        progress.update(share_of(number, settings.surfaces), "surfaces");
         const RandomCapture random = make_random_capture(settings.first + number);
         for (std::size_t peak = 0; peak < num_peaks; ++peak) {
             const core::Capture counts =
                 random_counts(random.capture, settings.peaks[peak], number);
             for (std::size_t m = 0; m < settings.methods.size(); ++m) {
-                nlos::ReconstructSettings choice;
-                core::apply_override(choice, "method=" + settings.methods[m]);
-                const nlos::Reconstruction result = nlos::reconstruct(counts, choice, {});
+                const nlos::Reconstruction result =
+                    run_reconstruction(counts, {"method=" + settings.methods[m]}).result;
                 const nlos::VolumeAxes& axes = result.volume.axes;
                 const core::DepthMap truth = renderer::trace_depth_map(
                     random.scene, axes.world_from_wall, axes.x_m, axes.y_m);
@@ -217,17 +205,22 @@ CoverageBench cover(const CoverageBenchSettings& settings, const core::Progress&
             }
         }
     }
-    CoverageBench bench;
+    core::Json depth_rows = core::Json::array();
+    core::Json probability_rows = core::Json::array();
     for (std::size_t m = 0; m < settings.methods.size(); ++m) {
         for (std::size_t peak = 0; peak < num_peaks; ++peak) {
-            bench.depths.push_back(row_of(settings.methods[m],
-                                          settings.peaks[peak],
-                                          settings.surfaces,
-                                          depths[m * num_peaks + peak]));
+            depth_rows.push_back(row_of(settings.methods[m],
+                                        settings.peaks[peak],
+                                        settings.surfaces,
+                                        depths[m * num_peaks + peak]));
         }
-        add_rows(settings.methods[m], probabilities[m], bench.probabilities);
+        add_rows(settings.methods[m], probabilities[m], probability_rows);
     }
-    return bench;
+    return {{{"depths", depth_rows}, {"probabilities", probability_rows}},
+            {{"_probability", probability_plot(probability_rows)},
+             {"_68", interval_plot(depth_rows, "within_68", 0.68)},
+             {"_95", interval_plot(depth_rows, "within_95", 0.95)}},
+            {}};
 }
 
 void add_bench_coverage_command(CLI::App& bench) {
@@ -237,14 +230,7 @@ void add_bench_coverage_command(CLI::App& bench) {
          "Whether stated deviations of depth and probabilities of surfaces hold",
          "nlos bench coverage -o out/bench --surfaces 1 --methods lct --peaks 100"},
         declare_coverage,
-        [](const CoverageBenchSettings& settings, const core::Progress& progress) {
-            const CoverageBench coverage = cover(settings, progress);
-            BenchResult result{core::write_value(coverage)};
-            result.plots["_probability"] = probability_plot(coverage.probabilities);
-            result.plots["_68"] = interval_plot(coverage.depths, &DepthCoverage::within_68, 0.68);
-            result.plots["_95"] = interval_plot(coverage.depths, &DepthCoverage::within_95, 0.95);
-            return result;
-        });
+        measure_coverage);
 }
 
 }  // namespace apps

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "apps/bench/reconstruct/long_range.h"
-
 #include "apps/bench/command.h"
+#include "apps/bench/reconstruct/reconstruct.h"
+#include "apps/bench/reconstruct/reconstruct_trials.h"
 #include "apps/commands.h"
 #include "apps/scene_truth.h"
 #include "nlos/compare/compare.h"
 #include "nlos/detector/detector.h"
-#include "nlos/reconstruct.h"
+#include "renderer/core/parallel.h"
 #include "renderer/render.h"
 
 #include <fmt/format.h>
@@ -95,26 +95,27 @@ core::Capture detected(const core::Capture& clean, double photons) {
     return capture;
 }
 
-LongRangeScore score_of(const core::Capture& capture,
-                        double photons,
-                        double spot_m,
-                        const std::string& method) {
-    nlos::ReconstructSettings settings;
-    core::apply_override(settings, "method=" + method);
-    settings.response.jitter_fwhm_ps = kFwhm_ps;
-    settings.solver.spot_m = spot_m;
-    const nlos::Reconstruction result = nlos::reconstruct(capture, settings, {});
-    const nlos::VolumeAxes& axes = result.volume.axes;
+core::Json score_of(const core::Capture& capture,
+                    double photons,
+                    double spot_m,
+                    const std::string& method) {
+    const nlos::Reconstruction result =
+        run_reconstruction(capture,
+                           {"method=" + method,
+                            fmt::format("response.jitter_fwhm_ps={}", kFwhm_ps),
+                            fmt::format("solver.spot_m={}", spot_m)})
+            .result;
     const SceneTruth truth(wall_of(kWallSide), letter());
     const nlos::Metrics metrics =
-        nlos::compare_to_truth(result, truth.depth_map(axes.world_from_wall, axes.x_m, axes.y_m));
-    return {photons,
-            spot_m,
-            method,
-            metrics.mask_iou_stated.value_or(0.0),
-            metrics.mask_iou_best.value_or(0.0),
-            metrics.depth_mae_m,
-            result.seconds};
+        nlos::compare_to_truth(result, truth.depth_map(result.volume.axes));
+    return {{"photons_per_point", photons},
+            {"spot_m", spot_m},  // full width at half maximum on the wall
+            {"method", method},
+            // Overlap of the columns that were given a depth, and at the best threshold.
+            {"mask_iou_stated", metrics.mask_iou_stated.value_or(0.0)},
+            {"mask_iou_best", metrics.mask_iou_best.value_or(0.0)},
+            {"depth_mae_m", core::write_value(metrics.depth_mae_m)},
+            {"seconds", result.seconds}};
 }
 
 void declare(CLI::App& command, LongRangeBenchSettings& settings) {
@@ -125,24 +126,23 @@ void declare(CLI::App& command, LongRangeBenchSettings& settings) {
 
 }  // namespace
 
-LongRangeBench measure_long_range(const LongRangeBenchSettings& settings,
-                                  const core::Progress& progress) {
-    LongRangeBench bench;
+BenchResult measure_long_range(const LongRangeBenchSettings& settings,
+                               const core::Progress& progress) {
+    core::Json scores = core::Json::array();
     const core::Capture all = render_letter(kWallSide + 2 * kSpotMargin);
-    const auto count = static_cast<double>(settings.spots_m.size() * settings.photons.size() *
-                                           settings.methods.size());
+    const std::size_t count =
+        settings.spots_m.size() * settings.photons.size() * settings.methods.size();
     for (const double spot_m : settings.spots_m) {
         const core::Capture clean = with_spot(all, spot_m);
         for (const double photons : settings.photons) {
             const core::Capture capture = detected(clean, photons);
             for (const std::string& method : settings.methods) {
-                if (progress.should_stop()) throw core::Failure("bench", "interrupted");
-                progress.update(static_cast<double>(bench.scores.size()) / count, method);
-                bench.scores.push_back(score_of(capture, photons, spot_m, method));
+                progress.update(share_of(scores.size(), count), method);
+                scores.push_back(score_of(capture, photons, spot_m, method));
             }
         }
     }
-    return bench;
+    return {{{"scores", scores}}};
 }
 
 void add_bench_long_range_command(CLI::App& bench) {
@@ -152,9 +152,7 @@ void add_bench_long_range_command(CLI::App& bench) {
          "A letter under a spot and a response wider than its strokes, as from a kilometre away",
          "nlos bench long_range -o out/bench --photons 5000 --spots 0.08"},
         declare,
-        [](const LongRangeBenchSettings& settings, const core::Progress& progress) {
-            return BenchResult{core::write_value(measure_long_range(settings, progress))};
-        });
+        measure_long_range);
 }
 
 }  // namespace apps

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "apps/bench/command.h"
+#include "apps/bench/reconstruct/reconstruct_trials.h"
 #include "apps/bench/scene.h"
 #include "apps/commands.h"
 #include "apps/scene_truth.h"
 #include "nlos/compare/compare.h"
 #include "nlos/detector/detector.h"
-#include "nlos/reconstruct.h"
 
 #include <fmt/core.h>
 
@@ -34,35 +34,6 @@ struct NoiseCurve {
 };
 NLOS_FIGURES(NoiseCurve, method, scores);
 
-/// The Wiener filter's ratio chosen from the data against the best of a search.
-struct SnrSearch {
-    double peak_counts = 0.0;         ///< expected counts in the brightest bin
-    double snr = 0.0;                 ///< chosen from the data
-    double depth_mae_m = 0.0;         ///< depth error with it [m]
-    double mask_iou_best = 0.0;       ///< overlap with it
-    double best_mae_snr = 0.0;        ///< of those tried, the one of least depth error
-    double best_depth_mae_m = 0.0;    ///< depth error with that [m]
-    double best_iou_snr = 0.0;        ///< of those tried, the one of largest overlap
-    double best_mask_iou_best = 0.0;  ///< overlap with that
-};
-NLOS_FIGURES(SnrSearch,
-             peak_counts,
-             snr,
-             depth_mae_m,
-             mask_iou_best,
-             best_mae_snr,
-             best_depth_mae_m,
-             best_iou_snr,
-             best_mask_iou_best);
-
-struct NoiseBench {
-    std::string scene;                ///< scene file
-    int repeats = 1;                  ///< seeds per figure
-    std::vector<NoiseCurve> curves;   ///< every method
-    std::vector<SnrSearch> searches;  ///< regularisation of lct
-};
-NLOS_FIGURES(NoiseBench, scene, repeats, curves, searches);
-
 /// What `nlos bench noise` is to measure.
 struct NoiseBenchSettings {
     std::string scene = "scenes/bars/scene.json";  ///< a confocal scan of a planar grid
@@ -78,7 +49,7 @@ constexpr std::array kMethods{"lct", "solver", "dlct", "fk", "phasor", "fbp", "b
 class Range {
  public:
     explicit Range(const std::string& scene_path)
-        : truth_(scene_path), clean_(render(scene_path)) {}
+        : truth_(scene_path), clean_(BenchScene(scene_path).render()) {}
 
     core::Capture noisy(double peak_counts, int seed) const {
         nlos::DetectorSettings settings;
@@ -89,15 +60,12 @@ class Range {
 
     /// Adds 1/repeats of a reconstruction's scores; returns the ratio it chose, if it has one.
     double add_scores(const core::Capture& capture,
-                      const std::vector<std::string>& overrides,
+                      const Overrides& overrides,
                       int repeats,
                       NoiseScore& score) const {
-        nlos::ReconstructSettings settings;
-        for (const std::string& text : overrides) core::apply_override(settings, text);
-        const nlos::Reconstruction result = nlos::reconstruct(capture, settings, {});
-        const nlos::VolumeAxes& axes = result.volume.axes;
-        const nlos::Metrics metrics = nlos::compare_to_truth(
-            result, truth_.depth_map(axes.world_from_wall, axes.x_m, axes.y_m));
+        const nlos::Reconstruction result = run_reconstruction(capture, overrides).result;
+        const nlos::Metrics metrics =
+            nlos::compare_to_truth(result, truth_.depth_map(result.volume.axes));
         constexpr double kNothingFound_m = 1.0;
         score.depth_mae_m += metrics.depth_mae_m.value_or(kNothingFound_m) / repeats;
         score.mask_iou += metrics.mask_iou.value_or(0.0) / repeats;
@@ -106,11 +74,6 @@ class Range {
     }
 
  private:
-    static core::Capture render(const std::string& scene_path) {
-        const BenchScene scene(scene_path);
-        return scene.render(scene.settings());
-    }
-
     SceneTruth truth_;
     core::Capture clean_;
 };
@@ -118,7 +81,7 @@ class Range {
 /// Means over the seeds, and over the ratios that were chosen.
 std::pair<NoiseScore, double> score_at(const Range& range,
                                        double peak_counts,
-                                       const std::vector<std::string>& overrides,
+                                       const Overrides& overrides,
                                        int repeats) {
     NoiseScore score;
     score.peak_counts = peak_counts;
@@ -130,28 +93,41 @@ std::pair<NoiseScore, double> score_at(const Range& range,
     return {score, snr};
 }
 
-SnrSearch search_snr(const Range& range, double peak_counts, int repeats) {
+/// The Wiener filter's ratio chosen from the data against the best of a search: those of least
+/// depth error and of largest overlap.
+core::Json search_snr(const Range& range, double peak_counts, int repeats) {
     const auto [chosen, snr] = score_at(range, peak_counts, {"method=lct"}, repeats);
-    SnrSearch search{peak_counts, snr, chosen.depth_mae_m, chosen.mask_iou_best, 0, 0, 0, 0};
-    search.best_depth_mae_m = std::numeric_limits<double>::max();
+    NoiseScore best{peak_counts, std::numeric_limits<double>::max(), 0.0, 0.0};
+    double best_mae_snr = 0.0;
+    double best_iou_snr = 0.0;
     for (const double candidate : kSnrs) {
-        const std::vector<std::string> overrides{"method=lct", fmt::format("snr={}", candidate)};
+        const Overrides overrides{"method=lct", fmt::format("snr={}", candidate)};
         const NoiseScore score = score_at(range, peak_counts, overrides, repeats).first;
-        if (score.depth_mae_m < search.best_depth_mae_m) {
-            search.best_depth_mae_m = score.depth_mae_m;
-            search.best_mae_snr = candidate;
+        if (score.depth_mae_m < best.depth_mae_m) {
+            best.depth_mae_m = score.depth_mae_m;
+            best_mae_snr = candidate;
         }
-        if (score.mask_iou_best > search.best_mask_iou_best) {
-            search.best_mask_iou_best = score.mask_iou_best;
-            search.best_iou_snr = candidate;
+        if (score.mask_iou_best > best.mask_iou_best) {
+            best.mask_iou_best = score.mask_iou_best;
+            best_iou_snr = candidate;
         }
     }
-    return search;
+    return {{"peak_counts", peak_counts},
+            {"snr", snr},
+            {"depth_mae_m", chosen.depth_mae_m},
+            {"mask_iou_best", chosen.mask_iou_best},
+            {"best_mae_snr", best_mae_snr},
+            {"best_depth_mae_m", best.depth_mae_m},
+            {"best_iou_snr", best_iou_snr},
+            {"best_mask_iou_best", best.mask_iou_best}};
 }
 
-Plot plot_of(const NoiseBench& bench, const std::string& title, double NoiseScore::*value) {
-    Plot plot{title + ", " + bench.scene, "counts in the brightest bin", title, {}};
-    for (const NoiseCurve& curve : bench.curves) {
+Plot plot_of(const std::vector<NoiseCurve>& curves,
+             const std::string& scene,
+             const std::string& title,
+             double NoiseScore::*value) {
+    Plot plot{title + ", " + scene, "counts in the brightest bin", title, {}};
+    for (const NoiseCurve& curve : curves) {
         plot.lines.push_back(line_of(curve.method, curve.scores, &NoiseScore::peak_counts, value));
     }
     return plot;
@@ -162,24 +138,29 @@ Plot plot_of(const NoiseBench& bench, const std::string& title, double NoiseScor
 BenchResult measure_noise(const NoiseBenchSettings& settings, const core::Progress& progress) {
     const Range range(settings.scene);
     const int repeats = settings.repeats;
-    NoiseBench bench{settings.scene, repeats, {}, {}};
+    std::vector<NoiseCurve> curves;
     for (const std::string method : kMethods) {
-        NoiseCurve& curve = bench.curves.emplace_back(NoiseCurve{method, {}});
+        NoiseCurve& curve = curves.emplace_back(NoiseCurve{method, {}});
         for (const double peak : kPeaks) {
-            if (progress.should_stop()) throw core::Failure("bench", "interrupted");
+            progress.update(share_of(curves.size() - 1, kMethods.size() + 1), method);
             curve.scores.push_back(score_at(range, peak, {"method=" + method}, repeats).first);
         }
-        progress.update(static_cast<double>(bench.curves.size()) / (kMethods.size() + 1), method);
     }
+    core::Json searches = core::Json::array();
     for (const double peak : kPeaks) {
-        if (progress.should_stop()) throw core::Failure("bench", "interrupted");
-        bench.searches.push_back(search_snr(range, peak, repeats));
+        progress.update(share_of(kMethods.size(), kMethods.size() + 1), "snr of lct");
+        searches.push_back(search_snr(range, peak, repeats));
     }
-    return {
-        core::write_value(bench),
-        {{"_depth", plot_of(bench, "mean absolute depth error [m]", &NoiseScore::depth_mae_m)},
-         {"_mask", plot_of(bench, "mask IoU at the best threshold", &NoiseScore::mask_iou_best)}},
-        {}};
+    const auto plot = [&](const std::string& title, double NoiseScore::*value) {
+        return plot_of(curves, settings.scene, title, value);
+    };
+    return {{{"scene", settings.scene},
+             {"repeats", repeats},  // seeds per figure
+             {"curves", core::write_value(curves)},
+             {"searches", searches}},
+            {{"_depth", plot("mean absolute depth error [m]", &NoiseScore::depth_mae_m)},
+             {"_mask", plot("mask IoU at the best threshold", &NoiseScore::mask_iou_best)}},
+            {}};
 }
 
 void declare(CLI::App& command, NoiseBenchSettings& settings) {

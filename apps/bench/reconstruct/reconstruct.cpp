@@ -15,20 +15,20 @@ PlotLine scaling_line(const ReconstructScaling& curve, double ScalingPoint::*val
                    value);
 }
 
-Plot scaling_plot(const ReconstructBench& bench,
+Plot scaling_plot(const std::vector<ReconstructScaling>& curves,
                   const std::string& title,
                   double ScalingPoint::*value) {
     Plot plot{title + " against size", "values of the capture, or voxels", title, {}};
-    for (const ReconstructScaling& curve : bench.scaling) {
+    for (const ReconstructScaling& curve : curves) {
         plot.lines.push_back(scaling_line(curve, value));
     }
     return plot;
 }
 
-void add_limits(const ReconstructBench& bench, Plot& plot) {
-    for (std::size_t i = 0; i < bench.scaling.size(); ++i) {
+void add_limits(const std::vector<ReconstructScaling>& curves, Plot& plot) {
+    for (std::size_t i = 0; i < curves.size(); ++i) {
         PlotLine& line =
-            plot.lines.emplace_back(scaling_line(bench.scaling[i], &ScalingPoint::limit_seconds));
+            plot.lines.emplace_back(scaling_line(curves[i], &ScalingPoint::limit_seconds));
         line.title += ", FFTs or sums alone";
         line.style = LineStyle::Limit;
         line.limit_of = static_cast<int>(i);
@@ -53,21 +53,26 @@ void declare(CLI::App& command, ReconstructBenchSettings& settings) {
 BenchResult measure_reconstruct(const ReconstructBenchSettings& settings,
                                 const core::Progress& progress) {
     const core::ThreadLimit threads(settings.threads);
-    ReconstructBench bench;
-    bench.threads = core::thread_count();
-    bench.repeats = settings.repeats;
     const auto wants = [&](const char* part) {
         return settings.part == "all" || settings.part == part;
     };
-    if (wants("time")) bench.costs = measure_costs(settings, progress.part(0.0, 0.3));
-    if (wants("accuracy")) bench.accuracies = measure_accuracies(settings, progress.part(0.3, 0.6));
-    if (wants("scaling")) bench.scaling = measure_scaling(settings, progress.part(0.6, 1.0));
-    BenchResult result{core::write_value(bench)};
-    if (!bench.scaling.empty()) {
+    BenchResult result{{{"threads", core::thread_count()},
+                        {"repeats", settings.repeats},
+                        {"costs", core::Json::array()},
+                        {"accuracies", core::Json::array()},
+                        {"scaling", core::Json::array()}}};
+    core::Json& figures = result.figures;
+    if (wants("time")) figures["costs"] = measure_costs(settings, progress.part(0.0, 0.3));
+    if (wants("accuracy")) {
+        figures["accuracies"] = measure_accuracies(settings, progress.part(0.3, 0.6));
+    }
+    if (wants("scaling")) {
+        const auto scaling = measure_scaling(settings, progress.part(0.6, 1.0));
+        figures["scaling"] = core::write_value(scaling);
         Plot& time = result.plots["_time"];
-        time = scaling_plot(bench, "CPU time [s]", &ScalingPoint::cpu_seconds);
-        add_limits(bench, time);
-        result.plots["_memory"] = scaling_plot(bench, "memory [bytes]", &ScalingPoint::bytes);
+        time = scaling_plot(scaling, "CPU time [s]", &ScalingPoint::cpu_seconds);
+        add_limits(scaling, time);
+        result.plots["_memory"] = scaling_plot(scaling, "memory [bytes]", &ScalingPoint::bytes);
     }
     return result;
 }

@@ -1,65 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "apps/bench/figures.h"
 #include "apps/bench/output.h"
 
 #include <string>
 #include <vector>
 
 namespace apps {
-
-/// What one method costs on one capture: medians over the repeats.
-struct ReconstructCost {
-    std::string name;            ///< method and capture
-    double cpu_seconds = 0.0;    ///< CPU time [s]
-    double seconds = 0.0;        ///< wall-clock time [s]
-    double limit_seconds = 0.0;  ///< CPU time of its FFTs or multiply-adds alone; 0: not measured
-    double ratio = 0.0;          ///< of cpu_seconds to limit_seconds
-    double gpairs_per_s = 0.0;   ///< backprojection: pairs times voxels; 0: not counted
-    double peak_bytes = 0.0;     ///< resident, of the whole process
-    double stated_bytes = 0.0;   ///< what reconstruct() announced
-    std::string target;          ///< what was asked
-    std::string met;             ///< yes, no, or empty without a target
-};
-NLOS_FIGURES(ReconstructCost,
-             name,
-             cpu_seconds,
-             seconds,
-             limit_seconds,
-             ratio,
-             gpairs_per_s,
-             peak_bytes,
-             stated_bytes,
-             target,
-             met);
-
-/// How well one method does on one capture.
-struct ReconstructAccuracy {
-    std::string scene;               ///< scene and noise
-    std::string method;              ///< method and prior
-    double depth_mae_m = 0.0;        ///< mean absolute depth error [m]
-    double depth_median_m = 0.0;     ///< median absolute depth error [m]
-    double depth_rmse_m = 0.0;       ///< root mean square depth error [m]
-    double mask_iou = 0.0;           ///< overlap of the masks at 20 % of the maximum
-    double mask_iou_best = 0.0;      ///< the same at the best threshold
-    double normal_median_deg = 0.0;  ///< median angle between normals [deg]
-    double cpu_seconds = 0.0;        ///< CPU time [s]
-    std::string target;              ///< what was asked
-    std::string met;                 ///< whether it holds
-};
-NLOS_FIGURES(ReconstructAccuracy,
-             scene,
-             method,
-             depth_mae_m,
-             depth_median_m,
-             depth_rmse_m,
-             mask_iou,
-             mask_iou_best,
-             normal_median_deg,
-             cpu_seconds,
-             target,
-             met);
 
 /// One size of a scaling curve.
 struct ScalingPoint {
@@ -81,15 +28,6 @@ struct ReconstructScaling {
 };
 NLOS_FIGURES(ReconstructScaling, method, of, points, time_exponent, memory_exponent);
 
-struct ReconstructBench {
-    int threads = 1;                              ///< threads of everything that was timed
-    int repeats = 1;                              ///< runs per median
-    std::vector<ReconstructCost> costs;           ///< time against limits, memory
-    std::vector<ReconstructAccuracy> accuracies;  ///< against the truth
-    std::vector<ReconstructScaling> scaling;      ///< with size
-};
-NLOS_FIGURES(ReconstructBench, threads, repeats, costs, accuracies, scaling);
-
 /// What `nlos bench reconstruct` is to do.
 struct ReconstructBenchSettings {
     std::string scenes_folder = "scenes";
@@ -100,13 +38,13 @@ struct ReconstructBenchSettings {
     int largest = 256;  ///< wall points along a side in the scaling curves
 };
 
-/// Every method's time against the FFTs or multiply-adds it cannot do without, and its memory.
-std::vector<ReconstructCost> measure_costs(const ReconstructBenchSettings& settings,
-                                           const core::Progress& progress);
+/// Every method's time against the FFTs or multiply-adds it cannot do without, and its memory; a
+/// row for every method and capture.
+core::Json measure_costs(const ReconstructBenchSettings& settings, const core::Progress& progress);
 
-/// Every method on the letter T and the project's scenes.
-std::vector<ReconstructAccuracy> measure_accuracies(const ReconstructBenchSettings& settings,
-                                                    const core::Progress& progress);
+/// Every method on the letter T and the project's scenes; a row for either.
+core::Json measure_accuracies(const ReconstructBenchSettings& settings,
+                              const core::Progress& progress);
 
 /// Time and memory for rising sizes of a confocal capture, and of the volume made from one.
 std::vector<ReconstructScaling> measure_scaling(const ReconstructBenchSettings& settings,
@@ -117,5 +55,46 @@ std::vector<ReconstructScaling> measure_scaling(const ReconstructBenchSettings& 
 /// throws   core::Error when a scene or the capture cannot be read
 BenchResult measure_reconstruct(const ReconstructBenchSettings& settings,
                                 const core::Progress& progress);
+
+/// What `nlos bench coverage` is to measure.
+struct CoverageBenchSettings {
+    int surfaces = 60;  ///< each at every signal level
+    int first = 1000;   ///< number of the first
+    std::vector<std::string> methods{"lct", "dlct", "fk", "phasor", "fbp", "bp"};
+    std::vector<double> peaks{3.0, 10.0, 20.0, 100.0, 1000.0};
+};
+
+/// Reconstructs random surfaces from counts and holds stated deviations and probabilities against
+/// the truth: `depths` has a row per method and signal level, `probabilities` one per method and
+/// tenth.
+BenchResult measure_coverage(const CoverageBenchSettings& settings, const core::Progress& progress);
+
+/// What `nlos bench weights` is to measure.
+struct WeightsBenchSettings {
+    int surfaces = 20;  ///< each at every signal level
+    int first = 3000;   ///< number of the first
+    std::string pattern = "confocal";
+    std::vector<double> peaks{0.0, 1000.0, 100.0, 20.0, 3.0};
+    std::vector<double> observed{1.0, 0.0625};
+    std::vector<double> weights{0.0875, 0.175, 0.35, 0.7, 1.4, 2.8, 5.6};
+};
+
+/// Reconstructs random surfaces with the weight of total variation that the solver takes by itself
+/// and with others: `searches` has a row per signal level and share of wall points.
+BenchResult measure_weights(const WeightsBenchSettings& settings, const core::Progress& progress);
+
+/// What `nlos bench long_range` is to measure.
+struct LongRangeBenchSettings {
+    std::vector<double> photons{1000.0, 5000.0, 100000.0};
+    std::vector<double> spots_m{0.08, 0.14};
+    std::vector<std::string> methods{"lct", "fk", "phasor", "solver"};
+};
+
+/// Reconstructs the letter H with strokes of 4 cm, 0.6 m before a wall of 0.9 m, from what a set-up
+/// for ranges of kilometres gets of it: a response of 794 ps, a spot on the wall wider than the
+/// strokes, and a gate of 120 bins of 32 ps. Of the set-up of [Wu2021] in its numbers alone.
+/// `scores` has a row per spot, number of photons and method.
+BenchResult measure_long_range(const LongRangeBenchSettings& settings,
+                               const core::Progress& progress);
 
 }  // namespace apps

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "apps/bench/reconstruct/reconstruct.h"
-#include "apps/bench/reconstruct/reconstruct_run.h"
+#include "apps/bench/reconstruct/reconstruct_trials.h"
 #include "apps/bench/scene.h"
 #include "apps/scene_truth.h"
 #include "nlos/compare/compare.h"
@@ -77,15 +77,13 @@ core::Capture letter_t_capture(core::ScanPattern pattern) {
 }
 
 /// Its true depth: |x| < 66 mm with |y| < 306 mm, or |x| < 306 mm with 174 mm < y < 306 mm.
-core::DepthMap letter_t_depth(const core::Transform& world_from_wall,
-                              const std::vector<double>& x_m,
-                              const std::vector<double>& y_m) {
-    core::DepthMap depth(x_m, y_m);
-    depth.world_from_wall = world_from_wall;
+core::DepthMap letter_t_depth(const nlos::VolumeAxes& axes) {
+    core::DepthMap depth(axes.x_m, axes.y_m);
+    depth.world_from_wall = axes.world_from_wall;
     depth.normals.assign(depth.depth_m.size(), Vec3::Zero());
-    for (std::size_t ix = 0; ix < x_m.size(); ++ix) {
-        for (std::size_t iy = 0; iy < y_m.size(); ++iy) {
-            const Vec3 at = world_from_wall * Vec3(x_m[ix], y_m[iy], kDepth_m);
+    for (std::size_t ix = 0; ix < axes.x_m.size(); ++ix) {
+        for (std::size_t iy = 0; iy < axes.y_m.size(); ++iy) {
+            const Vec3 at = axes.world_from_wall * Vec3(axes.x_m[ix], axes.y_m[iy], kDepth_m);
             if (!is_on_letter(at.x(), at.y())) continue;
             depth.depth_m[depth.index(ix, iy)] = kDepth_m;
             depth.normals[depth.index(ix, iy)] = -Vec3::UnitZ();
@@ -100,21 +98,6 @@ struct AccuracyTarget {
     double max_normal_median_deg = 0.0;
 };
 
-void judge(const AccuracyTarget& target, ReconstructAccuracy& row) {
-    judge(row,
-          target.min_iou_best > 0.0,
-          fmt::format("IoU >= {:g}", target.min_iou_best),
-          row.mask_iou_best >= target.min_iou_best);
-    judge(row,
-          target.max_mae_m > 0.0,
-          fmt::format("MAE <= {:g} mm", 1e3 * target.max_mae_m),
-          row.depth_mae_m <= target.max_mae_m);
-    judge(row,
-          target.max_normal_median_deg > 0.0,
-          fmt::format("normals <= {:g} deg", target.max_normal_median_deg),
-          row.normal_median_deg <= target.max_normal_median_deg);
-}
-
 /// A capture and what its volumes are compared with.
 struct Exam {
     std::string name;
@@ -124,10 +107,9 @@ struct Exam {
 
 Exam exam_of_scene(const std::string& folder, const std::string& name) {
     const std::string path = folder + "/" + name + "/scene.json";
-    const BenchScene scene(path);
     const auto truth = std::make_shared<SceneTruth>(path);
-    return {name, scene.render(scene.settings()), [truth](const nlos::VolumeAxes& axes) {
-                return truth->depth_map(axes.world_from_wall, axes.x_m, axes.y_m);
+    return {name, BenchScene(path).render(), [truth](const nlos::VolumeAxes& axes) {
+                return truth->depth_map(axes);
             }};
 }
 
@@ -140,9 +122,7 @@ Exam with_counts(Exam exam, double peak_counts) {
 }
 
 Exam exam_of_letter_t(const std::string& name, core::Capture capture) {
-    return {name, std::move(capture), [](const nlos::VolumeAxes& axes) {
-                return letter_t_depth(axes.world_from_wall, axes.x_m, axes.y_m);
-            }};
+    return {name, std::move(capture), letter_t_depth};
 }
 
 /// A method that serves an exam, and what is asked of it.
@@ -151,22 +131,35 @@ struct Candidate {
     AccuracyTarget target{};
 };
 
-ReconstructAccuracy measure_accuracy(const Exam& exam, const Candidate& candidate) {
+core::Json measure_accuracy(const Exam& exam, const Candidate& candidate) {
     const ReconstructRun one = run_reconstruction(exam.capture, {"method=" + candidate.method});
     const nlos::Metrics metrics =
         nlos::compare_to_truth(one.result, exam.truth(one.result.volume.axes));
     constexpr double kNothingFound_m = 1.0;
-    ReconstructAccuracy row;
-    row.scene = exam.name;
-    row.method = candidate.method;
-    row.depth_mae_m = metrics.depth_mae_m.value_or(kNothingFound_m);
-    row.depth_median_m = metrics.depth_median_m.value_or(kNothingFound_m);
-    row.depth_rmse_m = metrics.depth_rmse_m.value_or(kNothingFound_m);
-    row.mask_iou = metrics.mask_iou.value_or(0.0);
-    row.mask_iou_best = metrics.mask_iou_best.value_or(0.0);
-    row.normal_median_deg = metrics.normal_median_deg.value_or(180.0);
-    row.cpu_seconds = one.cpu_seconds;
-    judge(candidate.target, row);
+    const double depth_mae_m = metrics.depth_mae_m.value_or(kNothingFound_m);
+    const double iou_best = metrics.mask_iou_best.value_or(0.0);
+    const double normal_median_deg = metrics.normal_median_deg.value_or(180.0);
+    core::Json row{{"scene", exam.name},  // with its noise
+                   {"method", candidate.method},
+                   {"depth_mae_m", depth_mae_m},
+                   {"depth_median_m", metrics.depth_median_m.value_or(kNothingFound_m)},
+                   {"depth_rmse_m", metrics.depth_rmse_m.value_or(kNothingFound_m)},
+                   {"mask_iou", metrics.mask_iou.value_or(0.0)},  // at 20 % of the maximum
+                   {"mask_iou_best", iou_best},                   // at the best threshold
+                   {"normal_median_deg", normal_median_deg},
+                   {"cpu_seconds", one.cpu_seconds},
+                   {"target", ""},
+                   {"met", ""}};
+    const auto& [max_mae_m, min_iou, max_normal_deg] = candidate.target;
+    judge(min_iou > 0.0, fmt::format("IoU >= {:g}", min_iou), iou_best >= min_iou, row);
+    judge(max_mae_m > 0.0,
+          fmt::format("MAE <= {:g} mm", 1e3 * max_mae_m),
+          depth_mae_m <= max_mae_m,
+          row);
+    judge(max_normal_deg > 0.0,
+          fmt::format("normals <= {:g} deg", max_normal_deg),
+          normal_median_deg <= max_normal_deg,
+          row);
     return row;
 }
 
@@ -221,15 +214,14 @@ std::vector<AccuracyCase> accuracy_cases(const ReconstructBenchSettings& setting
 
 }  // namespace
 
-std::vector<ReconstructAccuracy> measure_accuracies(const ReconstructBenchSettings& settings,
-                                                    const core::Progress& progress) {
+core::Json measure_accuracies(const ReconstructBenchSettings& settings,
+                              const core::Progress& progress) {
     const std::vector<AccuracyCase> cases = accuracy_cases(settings);
-    std::vector<ReconstructAccuracy> accuracies;
+    core::Json accuracies = core::Json::array();
     for (std::size_t i = 0; i < cases.size(); ++i) {
         const Exam exam = cases[i].exam();
-        progress.update(static_cast<double>(i) / static_cast<double>(cases.size()), exam.name);
         for (const Candidate& candidate : cases[i].candidates) {
-            if (progress.should_stop()) throw core::Failure("bench", "interrupted");
+            progress.update(share_of(i, cases.size()), exam.name);
             accuracies.push_back(measure_accuracy(exam, candidate));
         }
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/bench/lower_bounds.h"
 #include "apps/bench/reconstruct/reconstruct.h"
-#include "apps/bench/reconstruct/reconstruct_run.h"
+#include "apps/bench/reconstruct/reconstruct_trials.h"
 #include "apps/bench/scene.h"
 #include "nlos/compare/compare_scores.h"
 
@@ -19,21 +19,6 @@ struct CostTarget {
     double max_bytes = 0.0;
     double min_gpairs_per_s = 0.0;
 };
-
-void judge(const CostTarget& target, ReconstructCost& cost) {
-    judge(cost,
-          target.max_ratio > 0.0,
-          fmt::format("ratio <= {:g}", target.max_ratio),
-          cost.ratio <= target.max_ratio);
-    judge(cost,
-          target.max_bytes > 0.0,
-          fmt::format("< {:g} GB", 1e-9 * target.max_bytes),
-          cost.peak_bytes < target.max_bytes);
-    judge(cost,
-          target.min_gpairs_per_s > 0.0,
-          fmt::format(">= {:g} G/s", target.min_gpairs_per_s),
-          cost.gpairs_per_s >= target.min_gpairs_per_s);
-}
 
 struct CostCase {
     std::string name;
@@ -89,47 +74,58 @@ std::vector<CostCase> cost_cases(const std::string& folder) {
     };
 }
 
-ReconstructCost measure_cost(const CostCase& job, int repeats) {
-    const BenchScene scene(job.scene, job.scene_overrides);
-    const core::Capture capture = scene.render(scene.settings());
-    ReconstructCost cost;
-    cost.name = job.name;
-    std::vector<double> cpu_seconds;
-    std::vector<double> seconds;
+// Medians over the repeats of what one method costs on one capture.
+core::Json measure_cost(const CostCase& job, int repeats) {
+    const core::Capture capture = BenchScene(job.scene, job.scene_overrides).render();
+    std::vector<double> all_cpu_seconds;
+    std::vector<double> all_seconds;
     std::vector<double> limits;
     double spent = 0.0;
+    double peak_bytes = 0.0;
+    double stated_bytes = 0.0;
+    double gpairs = 0.0;
     for (int i = 0; i < repeats && spent < kLongEnough_s; ++i) {
         const ReconstructRun one = run_reconstruction(capture, job.overrides);
-        cpu_seconds.push_back(one.cpu_seconds);
-        seconds.push_back(one.result.seconds);
+        all_cpu_seconds.push_back(one.cpu_seconds);
+        all_seconds.push_back(one.result.seconds);
         spent += one.result.seconds;
-        cost.peak_bytes = std::max(cost.peak_bytes, one.peak_bytes);
-        cost.stated_bytes = one.result.stated_bytes;
+        peak_bytes = std::max(peak_bytes, one.peak_bytes);
+        stated_bytes = one.result.stated_bytes;
         limits.push_back(reconstruction_limit_seconds(capture, one.result));
         if (job.counts_pairs) {
-            cost.gpairs_per_s = 1e-9 * static_cast<double>(capture.scan.num_pairs()) *
-                                static_cast<double>(one.result.volume.axes.num_voxels());
+            gpairs = 1e-9 * static_cast<double>(capture.scan.num_pairs()) *
+                     static_cast<double>(one.result.volume.axes.num_voxels());
         }
     }
-    cost.cpu_seconds = nlos::median(cpu_seconds);
-    cost.seconds = nlos::median(seconds);
-    cost.limit_seconds = nlos::median(limits);
-    if (cost.limit_seconds > 0.0) cost.ratio = cost.cpu_seconds / cost.limit_seconds;
-    cost.gpairs_per_s /= cost.cpu_seconds;
-    judge(job.target, cost);
-    return cost;
+    const double cpu_seconds = nlos::median(all_cpu_seconds);
+    const double limit_seconds = nlos::median(limits);
+    const double ratio = limit_seconds > 0.0 ? cpu_seconds / limit_seconds : 0.0;
+    const double gpairs_per_s = gpairs / cpu_seconds;
+    core::Json row{{"name", job.name},
+                   {"cpu_seconds", cpu_seconds},
+                   {"seconds", nlos::median(all_seconds)},
+                   {"limit_seconds", limit_seconds},  // of FFTs or multiply-adds; 0: not measured
+                   {"ratio", ratio},
+                   {"gpairs_per_s", gpairs_per_s},  // pairs times voxels; 0: not counted
+                   {"peak_bytes", peak_bytes},      // resident, of the whole process
+                   {"stated_bytes", stated_bytes},  // what reconstruct() announced
+                   {"target", ""},
+                   {"met", ""}};
+    const auto& [max_ratio, max_bytes, min_gpairs] = job.target;
+    judge(max_ratio > 0.0, fmt::format("ratio <= {:g}", max_ratio), ratio <= max_ratio, row);
+    judge(max_bytes > 0.0, fmt::format("< {:g} GB", 1e-9 * max_bytes), peak_bytes < max_bytes, row);
+    judge(
+        min_gpairs > 0.0, fmt::format(">= {:g} G/s", min_gpairs), gpairs_per_s >= min_gpairs, row);
+    return row;
 }
 
 }  // namespace
 
-std::vector<ReconstructCost> measure_costs(const ReconstructBenchSettings& settings,
-                                           const core::Progress& progress) {
+core::Json measure_costs(const ReconstructBenchSettings& settings, const core::Progress& progress) {
     const std::vector<CostCase> cases = cost_cases(settings.scenes_folder);
-    std::vector<ReconstructCost> costs;
+    core::Json costs = core::Json::array();
     for (const CostCase& job : cases) {
-        if (progress.should_stop()) throw core::Failure("bench", "interrupted");
-        progress.update(static_cast<double>(costs.size()) / static_cast<double>(cases.size()),
-                        job.name);
+        progress.update(share_of(costs.size(), cases.size()), job.name);
         costs.push_back(measure_cost(job, settings.repeats));
     }
     return costs;

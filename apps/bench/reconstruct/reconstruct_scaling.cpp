@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "apps/bench/lower_bounds.h"
-#include "apps/bench/power_law.h"
 #include "apps/bench/reconstruct/reconstruct.h"
-#include "apps/bench/reconstruct/reconstruct_run.h"
+#include "apps/bench/reconstruct/reconstruct_trials.h"
 #include "apps/bench/scene.h"
+#include "apps/bench/statistics.h"
 
 #include <fmt/core.h>
 
@@ -45,7 +45,7 @@ core::Capture letter_capture(const std::string& scenes_folder, const ScalingSize
          fmt::format("time_axis={{\"opl_start_m\":0,\"bin_width_m\":{},\"num_bins\":{}}}",
                      kAxis_m / size.bins,
                      size.bins)});
-    return scene.render(scene.settings());
+    return scene.render();
 }
 
 ScalingPoint measure_point(const core::Capture& capture,
@@ -76,8 +76,7 @@ std::vector<ReconstructScaling> grow_captures(const ReconstructBenchSettings& se
         if (points > settings.largest) break;
         const core::Capture capture = letter_capture(settings.scenes_folder, kSizes[size]);
         for (std::size_t i = 0; i < curves.size(); ++i) {
-            if (progress.should_stop()) throw core::Failure("bench", "interrupted");
-            progress.update(static_cast<double>(size) / kSizes.size(), names[i]);
+            progress.update(share_of(size, kSizes.size()), names[i]);
             Overrides overrides{std::string("method=") + methods[i], "merge_bins=1"};
             if (i >= 3) {
                 overrides.push_back(kSlices);
@@ -106,8 +105,7 @@ std::vector<ReconstructScaling> grow_volumes(const ReconstructBenchSettings& set
         curve.method = method;
         curve.of = "voxels";
         for (const int slices : {16, 32, 64, 128, 256}) {
-            if (progress.should_stop()) throw core::Failure("bench", "interrupted");
-            progress.update(static_cast<double>(curves.size() - 1) / 2.0, method);
+            progress.update(share_of(curves.size() - 1, 2), method);
             curve.points.push_back(
                 measure_point(capture,
                               {"method=" + method,

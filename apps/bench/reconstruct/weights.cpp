@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "apps/bench/reconstruct/weights.h"
-
 #include "apps/bench/command.h"
-#include "apps/bench/reconstruct/random_capture.h"
+#include "apps/bench/reconstruct/reconstruct.h"
+#include "apps/bench/reconstruct/reconstruct_trials.h"
 #include "apps/commands.h"
-#include "nlos/reconstruct.h"
 #include "renderer/core/random.h"
 #include "renderer/scene/ground_truth.h"
 
@@ -31,10 +29,8 @@ core::Capture thinned(core::Capture capture, double observed, int seed) {
 std::vector<double> errors_of(const core::Capture& capture,
                               const renderer::Scene& scene,
                               const std::string& weight) {
-    nlos::ReconstructSettings settings;
-    core::apply_override(settings, "method=solver");
-    core::apply_override(settings, "solver.tv=" + weight);
-    const nlos::Reconstruction result = nlos::reconstruct(capture, settings, {});
+    const nlos::Reconstruction result =
+        run_reconstruction(capture, {"method=solver", "solver.tv=" + weight}).result;
     const nlos::VolumeAxes& axes = result.volume.axes;
     const core::DepthMap truth =
         renderer::trace_depth_map(scene, axes.world_from_wall, axes.x_m, axes.y_m);
@@ -95,25 +91,28 @@ void add_surface(const RandomCapture& random,
     }
 }
 
-WeightSearch row_of(const Search& search, const WeightsBenchSettings& settings) {
-    WeightSearch row;
-    row.peak_counts = search.peak_counts;
-    row.observed = search.observed;
-    row.captures = settings.surfaces;
-    row.found = search.own.found_share();
-    if (search.own.found > 0) {
-        row.depth_mae_m = search.own.error_m / static_cast<double>(search.own.found);
-    }
+/// The weight that the solver takes by itself against the best of a search.
+core::Json row_of(const Search& search, const WeightsBenchSettings& settings) {
+    double error_over_best = 0.0;
+    double best_weight = 0.0;
+    double best_found = 0.0;
     for (std::size_t w = 0; w < search.tallies.size(); ++w) {
         const WeightTally& tally = search.tallies[w];
-        if (tally.both == 0 || tally.default_error_m < row.error_over_best * tally.error_m) {
-            continue;
-        }
-        row.error_over_best = tally.default_error_m / tally.error_m;
-        row.best_weight = settings.weights[w];
-        row.best_found = tally.found_share();
+        if (tally.both == 0 || tally.default_error_m < error_over_best * tally.error_m) continue;
+        error_over_best = tally.default_error_m / tally.error_m;
+        best_weight = settings.weights[w];
+        best_found = tally.found_share();
     }
-    return row;
+    return {{"peak_counts", search.peak_counts},  // expected in the brightest bin; 0: radiance
+            {"observed", search.observed},        // share of the wall points
+            {"captures", settings.surfaces},
+            {"found", search.own.found_share()},  // share of true columns given a depth by default
+            {"depth_mae_m",
+             search.own.found > 0 ? share_of(search.own.error_m, search.own.found) : 0.0},
+            {"best_weight", best_weight},  // of those tried, the one of least error
+            {"best_found", best_found},    // as `found`, with it
+            // The default's mean error over the best weight's, over the columns that both found.
+            {"error_over_best", error_over_best}};
 }
 
 void declare_weights(CLI::App& command, WeightsBenchSettings& settings) {
@@ -128,7 +127,7 @@ void declare_weights(CLI::App& command, WeightsBenchSettings& settings) {
 
 }  // namespace
 
-WeightsBench search_weights(const WeightsBenchSettings& settings, const core::Progress& progress) {
+BenchResult measure_weights(const WeightsBenchSettings& settings, const core::Progress& progress) {
     core::ScanPattern pattern{};
     core::read_value(settings.pattern, "--pattern", pattern);
     std::vector<Search> searches;
@@ -139,16 +138,15 @@ WeightsBench search_weights(const WeightsBenchSettings& settings, const core::Pr
         }
     }
     for (int number = 0; number < settings.surfaces; ++number) {
-        progress.update(static_cast<double>(number) / settings.surfaces, "surfaces");
         const RandomCapture random = make_random_capture(settings.first + number, pattern);
         for (Search& search : searches) {
-            if (progress.should_stop()) throw core::Failure("bench", "interrupted");
+            progress.update(share_of(number, settings.surfaces), "surfaces");
             add_surface(random, number, settings.weights, search);
         }
     }
-    WeightsBench bench;
-    for (const Search& search : searches) bench.searches.push_back(row_of(search, settings));
-    return bench;
+    core::Json rows = core::Json::array();
+    for (const Search& search : searches) rows.push_back(row_of(search, settings));
+    return {{{"searches", rows}}};
 }
 
 void add_bench_weights_command(CLI::App& bench) {
@@ -158,9 +156,7 @@ void add_bench_weights_command(CLI::App& bench) {
          "The solver's own weight of total variation against the best of a search",
          "nlos bench weights -o out/bench --surfaces 1 --peaks 100 --observed 1"},
         declare_weights,
-        [](const WeightsBenchSettings& settings, const core::Progress& progress) {
-            return BenchResult{core::write_value(search_weights(settings, progress))};
-        });
+        measure_weights);
 }
 
 }  // namespace apps

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "apps/bench/render/comparisons.h"
 
-#include "apps/bench/error_metrics.h"
+#include "apps/bench/output.h"
+#include "apps/bench/statistics.h"
 #include "renderer/core/parallel.h"
 #include "renderer/core/process.h"
 #include "renderer/restir/restir_renderer.h"
@@ -22,8 +23,10 @@ constexpr std::uint64_t kPlaneFrames = 24;
 constexpr int kProbeFrames = 6;
 constexpr std::array<int, 2> kProbeEfforts{1, 8};
 
-// Frames before this share of a sequence are left out of the means: reuse has to settle.
-constexpr double kSettlingShare = 0.3;
+// Frames before this one are left out of the means: reuse has to settle.
+std::size_t first_settled_frame(const SequenceCase& sequence) {
+    return static_cast<std::size_t>(0.3 * sequence.num_frames);
+}
 
 // What a run of a sequence gave and took.
 struct Run {
@@ -99,18 +102,12 @@ std::vector<bool> planes_met(const SequenceSetup& setup, const SequenceCase& seq
     return planes;
 }
 
-// Sums of a pixel over settled frames, seeds and bins.
+// Sums of pixels over settled frames, seeds and bins.
 struct PixelErrors {
-    std::vector<double> squared;
+    std::vector<ErrorSums> sums;
     std::vector<double> absolute;
-    std::vector<double> reference;
-    std::vector<double> reference_sum;
 
-    explicit PixelErrors(std::size_t num_pixels)
-        : squared(num_pixels),
-          absolute(num_pixels),
-          reference(num_pixels),
-          reference_sum(num_pixels) {}
+    explicit PixelErrors(std::size_t num_pixels) : sums(num_pixels), absolute(num_pixels) {}
 
     void add(const core::Transient& x, const core::Transient& a, const core::Transient& b) {
         const std::size_t num_bins = x.num_bins();
@@ -118,27 +115,27 @@ struct PixelErrors {
             const double va = double{a.values()[i]};
             const double vb = double{b.values()[i]};
             const double vx = double{x.values()[i]};
-            squared[i / num_bins] += (vx - va) * (vx - vb);
+            ErrorSums& of_pixel = sums[i / num_bins];
+            of_pixel.squared += (vx - va) * (vx - vb);
+            of_pixel.reference += va * vb;
+            of_pixel.reference_sum += 0.5 * (va + vb);
             absolute[i / num_bins] += std::abs(vx - 0.5 * (va + vb));
-            reference[i / num_bins] += va * vb;
-            reference_sum[i / num_bins] += 0.5 * (va + vb);
         }
     }
 
     double rel_mse(const std::vector<bool>& chosen, bool which) const {
-        double error = 0.0;
-        double norm = 0.0;
-        for (std::size_t i = 0; i < squared.size(); ++i) {
-            if (chosen[i] != which) continue;
-            error += squared[i];
-            norm += reference[i];
+        ErrorSums all;
+        for (std::size_t i = 0; i < sums.size(); ++i) {
+            if (chosen[i] == which) all += sums[i];
         }
-        return norm > 0.0 ? error / norm : 0.0;
+        return all.reference > 0.0 ? all.rel_mse() : 0.0;
     }
 
     std::vector<float> map() const {
         double mean = 0.0;
-        for (const double sum : reference_sum) mean += sum / static_cast<double>(absolute.size());
+        for (const ErrorSums& of_pixel : sums) {
+            mean += of_pixel.reference_sum / static_cast<double>(sums.size());
+        }
         std::vector<float> errors;
         for (const double sum : absolute) errors.push_back(static_cast<float>(sum / mean));
         return errors;
@@ -147,21 +144,21 @@ struct PixelErrors {
 
 MethodComparison compare_method(const Comparison& comparison,
                                 const ComparedMethod& method,
+                                double seconds,
                                 int num_seeds,
                                 const std::vector<bool>& planes) {
     const SequenceCase& sequence = comparison.sequence;
     const auto& [a, b] = comparison.references;
+    const int effort = effort_for(sequence, method, seconds);
     MethodComparison result;
-    result.method = method.name;
-    result.effort = effort_for(sequence, method, comparison.seconds_per_frame);
+    double seconds_per_frame = 0.0;
     SequenceErrors errors(a.size());
-    const auto first_settled = static_cast<std::size_t>(comparison.first_settled_frame);
+    const std::size_t first_settled = first_settled_frame(sequence);
     PixelErrors pixels(planes.size());
     renderer::ShiftCounts shifts;
     for (int seed = 0; seed < num_seeds; ++seed) {
-        Run run =
-            run_sequence(sequence, method, result.effort, 1000 + static_cast<std::uint64_t>(seed));
-        result.seconds_per_frame += run.seconds_per_frame / num_seeds;
+        Run run = run_sequence(sequence, method, effort, 1000 + static_cast<std::uint64_t>(seed));
+        seconds_per_frame += run.seconds_per_frame / num_seeds;
         shifts += run.shifts;
         errors.add(run.frames, a, b);
         for (std::size_t f = first_settled; f < a.size(); ++f) {
@@ -170,13 +167,18 @@ MethodComparison compare_method(const Comparison& comparison,
         if (seed == 0) result.frames = std::move(run.frames);
     }
     const ErrorSums settled = errors.settled(first_settled);
-    result.rel_mse_of_frames = errors.rel_mse_of_frames();
-    result.rel_mse = settled.rel_mse();
-    result.trimmed_rel_mse = settled.trimmed_rel_mse();
-    result.planes_rel_mse = pixels.rel_mse(planes, true);
-    result.meshes_rel_mse = pixels.rel_mse(planes, false);
     result.error_map = pixels.map();
-    result.accepted_share = shifts.accepted_share();
+    result.figures = {
+        {"method", method.name},  // estimator and how it reuses paths
+        {"effort", effort},       // paths drawn per pair and frame, as its time allows
+        {"seconds_per_frame", seconds_per_frame},        // CPU time, the first aside
+        {"rel_mse", settled.rel_mse()},                  // mean over the settled frames
+        {"trimmed_rel_mse", settled.trimmed_rel_mse()},  // without the worst 0.2 % of values
+        // In pixels whose light bounces off large facets first, and off small ones.
+        {"planes_rel_mse", pixels.rel_mse(planes, true)},
+        {"meshes_rel_mse", pixels.rel_mse(planes, false)},
+        {"accepted_share", shifts.accepted_share()},  // of shifts; 0: none was tried
+        {"rel_mse_of_frames", errors.rel_mse_of_frames()}};
     return result;
 }
 
@@ -193,20 +195,20 @@ Comparison compare_methods(const SequenceCase& sequence,
         throw core::Error(sequence.scene, "has no camera", "must be a scene with a camera");
     }
     Comparison comparison;
-    comparison.name = sequence.name;
-    comparison.scene = sequence.scene;
-    comparison.seconds_per_frame = seconds_per_frame;
-    comparison.first_settled_frame = static_cast<int>(kSettlingShare * sequence.num_frames);
     comparison.sequence = sequence;
     comparison.camera = *setup.scan.camera;
     comparison.references = {reference_frames(sequence, 1), reference_frames(sequence, 2)};
+    comparison.figures = {{"name", sequence.name},
+                          {"scene", sequence.scene},
+                          {"seconds_per_frame", seconds_per_frame},  // CPU time of each method
+                          {"first_settled_frame", first_settled_frame(sequence)}};
     const std::vector<bool> planes = planes_met(setup, sequence);
     for (const ComparedMethod& method : methods) {
-        if (progress.should_stop()) throw core::Failure("bench", "interrupted");
-        comparison.methods.push_back(compare_method(comparison, method, num_seeds, planes));
-        progress.update(
-            static_cast<double>(comparison.methods.size()) / static_cast<double>(methods.size()),
-            sequence.name + ", " + method.name);
+        progress.update(share_of(comparison.methods.size(), methods.size()),
+                        sequence.name + ", " + method.name);
+        comparison.methods.push_back(
+            compare_method(comparison, method, seconds_per_frame, num_seeds, planes));
+        comparison.figures["methods"].push_back(comparison.methods.back().figures);
     }
     return comparison;
 }

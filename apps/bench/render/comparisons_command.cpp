@@ -21,6 +21,10 @@ using nlos::Panel;
 constexpr double kBrightShare = 0.01;  ///< of the values of maps, drawn in the last colour
 constexpr std::size_t kBlock = 4;      ///< pixels either way, over which differences are averaged
 
+std::string name_of(const MethodComparison& method) {
+    return method.figures["method"];
+}
+
 ImagePanel image_panel(const core::PinholeCamera& camera,
                        const std::string& title,
                        const std::vector<float>& values) {
@@ -85,10 +89,11 @@ std::vector<Panel> error_panels(const Comparison& comparison) {
     }
     const double top = bright_value(all);
     for (const MethodComparison& method : comparison.methods) {
-        ImagePanel panel =
-            image_panel(camera,
-                        fmt::format("{}: relMSE {:.3g}", method.method, method.trimmed_rel_mse),
-                        method.error_map);
+        ImagePanel panel = image_panel(camera,
+                                       fmt::format("{}: relMSE {:.3g}",
+                                                   name_of(method),
+                                                   method.figures["trimmed_rel_mse"].get<double>()),
+                                       method.error_map);
         panel.value_range = {0.0, top};
         panel.value_label = "mean |error| / mean radiance";
         panel.colour_map = nlos::ColourMap::Viridis;
@@ -100,10 +105,11 @@ std::vector<Panel> error_panels(const Comparison& comparison) {
     for (std::size_t i = 0; i < difference.size(); ++i) difference[i] -= second.error_map[i];
     ImagePanel panel = image_panel(
         camera,
-        fmt::format("Error of {} − {}, {} pixels", first.method, second.method, kBlock * kBlock),
+        fmt::format(
+            "Error of {} − {}, {} pixels", name_of(first), name_of(second), kBlock * kBlock),
         block_means(camera, difference));
     panel.value_range = {-0.5 * top, 0.5 * top};
-    panel.value_label = "red: " + second.method + " is better";
+    panel.value_label = "red: " + name_of(second) + " is better";
     panel.colour_map = nlos::ColourMap::Diverging;
     panels.emplace_back(panel);
     return panels;
@@ -129,9 +135,9 @@ std::vector<Panel> progress_panels(const Comparison& comparison) {
     for (const MethodComparison& method : comparison.methods) {
         for (std::size_t frame = 1; frame <= method.frames.size(); frame *= 2) {
             add(fmt::format("{}, frame {}: relMSE {:.2g}",
-                            method.method,
+                            name_of(method),
                             frame,
-                            method.rel_mse_of_frames[frame - 1]),
+                            method.figures["rel_mse_of_frames"][frame - 1].get<double>()),
                 bin_of(method.frames[frame - 1], bin));
         }
         add("reference", wanted);
@@ -141,9 +147,9 @@ std::vector<Panel> progress_panels(const Comparison& comparison) {
 
 /// Error against the number of frames.
 Plot progress_plot(const Comparison& comparison) {
-    Plot plot{"Equal time per frame, " + comparison.scene, "frame", "relative MSE", {}};
+    Plot plot{"Equal time per frame, " + comparison.sequence.scene, "frame", "relative MSE", {}};
     for (const MethodComparison& method : comparison.methods) {
-        plot.lines.push_back(line_of_frames(method.method, method.rel_mse_of_frames));
+        plot.lines.push_back(line_of_frames(name_of(method), method.figures["rel_mse_of_frames"]));
     }
     return plot;
 }
@@ -252,7 +258,7 @@ BenchResult measure(const ComparisonArguments& arguments, const core::Progress& 
         result.pictures["_" + name] = shows_progress ? BenchPicture{progress_panels(comparison), 5}
                                                      : BenchPicture{error_panels(comparison), 3};
         if (shows_progress) result.plots["_progress_error"] = progress_plot(comparison);
-        result.figures["comparisons"].push_back(core::write_value(comparison));
+        result.figures["comparisons"].push_back(comparison.figures);
     }
     return result;
 }

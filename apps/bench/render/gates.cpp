@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "apps/bench/render/gates.h"
 
-#include "apps/bench/error_metrics.h"
 #include "apps/bench/scene.h"
+#include "apps/bench/statistics.h"
 #include "renderer/core/parallel.h"
 #include "renderer/core/process.h"
 
@@ -49,26 +49,10 @@ int samples_for(const Case& c, double seconds) {
     return static_cast<int>(std::clamp(kPilotSamples * seconds / pilot, 16.0, 1e7));
 }
 
-// Mean and its standard deviation.
-struct Mean {
-    double value = 0.0;
-    double sigma = 0.0;
-};
-
-Mean mean_of(const std::vector<double>& values) {
-    const double n = static_cast<double>(values.size());
-    Mean mean;
-    for (const double v : values) mean.value += v / n;
-    double squares = 0.0;
-    for (const double v : values) squares += (v - mean.value) * (v - mean.value);
-    if (n > 1.0) mean.sigma = std::sqrt(squares / (n - 1.0) / n);
-    return mean;
-}
-
 // Relative MSE times CPU seconds, which is what is left after one second.
 struct Cost {
-    Mean all;
-    Mean trimmed;
+    Estimate all;
+    Estimate trimmed;
 };
 
 Cost cost(const Case& c, const core::Capture& a, const core::Capture& b, int repeats) {
@@ -81,7 +65,7 @@ Cost cost(const Case& c, const core::Capture& a, const core::Capture& b, int rep
         all.push_back(errors.rel_mse() * timed.cpu_seconds);
         trimmed.push_back(errors.trimmed_rel_mse() * timed.cpu_seconds);
     }
-    return {mean_of(all), mean_of(trimmed)};
+    return {estimate_of(all), estimate_of(trimmed)};
 }
 
 // How far renders of one case with different seeds lie apart.
@@ -163,14 +147,14 @@ std::vector<GateBench> bench_gate(Case c, double gate_mm, int repeats) {
         c.settings.method = method;
         const Cost found = cost(c, a, b, repeats);
         if (method == Estimator::Path) path = found;
-        const double gain = path.all.value / found.all.value;
-        rows.push_back(
-            {gate_mm,
-             std::string(core::enum_name(method)),
-             found.all.value,
-             gain,
-             gain * std::hypot(path.all.sigma / path.all.value, found.all.sigma / found.all.value),
-             path.trimmed.value / found.trimmed.value});
+        const double gain = path.all.mean / found.all.mean;
+        rows.push_back({gate_mm,
+                        std::string(core::enum_name(method)),
+                        found.all.mean,
+                        gain,
+                        gain * std::hypot(path.all.standard_error / path.all.mean,
+                                          found.all.standard_error / found.all.mean),
+                        path.trimmed.mean / found.trimmed.mean});
     }
     return rows;
 }
@@ -192,7 +176,6 @@ GateTable bench_gates(const std::string& scene_path,
                     0.0};
     double done = 0.0;
     for (const double gate_mm : kGates_mm) {
-        if (progress.should_stop()) throw core::Failure("bench", "interrupted");
         progress.update(done++ / std::size(kGates_mm), "gates");
         const Case c{scene, gate_axis(scene, table.center_m, gate_mm), settings};
         const auto rows = bench_gate(c, gate_mm, repeats);
@@ -202,14 +185,13 @@ GateTable bench_gates(const std::string& scene_path,
     return table;
 }
 
-std::vector<ExclusionBench> bench_exclusion(const std::string& scene_path, int repeats) {
+void bench_exclusion(const std::string& scene_path, int repeats, core::Json& rows) {
     using renderer::Exclusion;
     constexpr std::array kModes{Exclusion::None, Exclusion::Mis, Exclusion::Drop};
     const BenchScene scene(scene_path);
     const core::ThreadLimit one_thread(1);
     const double all_m = middle_of_signal_m(scene, Exclusion::None);
     const double kept_m = middle_of_signal_m(scene, Exclusion::Drop);
-    std::vector<ExclusionBench> result;
     for (const int max_bounces : {3, 5}) {
         for (const auto& [gate_mm, center_m] :
              {std::pair{0.0, all_m}, std::pair{10.0, all_m}, std::pair{10.0, kept_m}}) {
@@ -227,17 +209,17 @@ std::vector<ExclusionBench> bench_exclusion(const std::string& scene_path, int r
             }
             for (std::size_t mode = 0; mode < kModes.size(); ++mode) {
                 const double variance = spreads[mode].relative_variance();
-                result.push_back({scene_path,
-                                  std::string(core::enum_name(kModes[mode])),
-                                  max_bounces,
-                                  gate_mm,
-                                  center_m,
-                                  variance,
-                                  spreads[0].relative_variance() / variance});
+                rows.push_back(
+                    {{"scene", scene_path},
+                     {"mode", core::write_value(kModes[mode])},  // what becomes of them
+                     {"max_bounces", max_bounces},
+                     {"gate_mm", gate_mm},            // width in path length; 0: the histogram
+                     {"center_m", center_m},          // of the gate in path length
+                     {"variance_seconds", variance},  // relative to the squared signal
+                     {"gain", spreads[0].relative_variance() / variance}});  // over mode none
             }
         }
     }
-    return result;
 }
 
 }  // namespace apps

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "apps/bench/figures.h"
+#include "apps/bench/output.h"
 #include "renderer/core/progress.h"
 
 #include <string>
@@ -32,18 +32,6 @@ struct GateTable {
 };
 NLOS_FIGURES(GateTable, scene, max_bounces, center_m, gates, crossing_mm);
 
-/// What exclusion does to the noise of `ellipsoidal`.
-struct ExclusionBench {
-    std::string scene;              ///< scene file
-    std::string mode;               ///< what becomes of excluded surfaces
-    int max_bounces = 3;            ///< bounces
-    double gate_mm = 0.0;           ///< width of the gate in path length [mm]; 0: the histogram
-    double center_m = 0.0;          ///< centre of the gate in path length [m]
-    double variance_seconds = 0.0;  ///< relative to the squared signal
-    double gain = 0.0;              ///< that of mode none over it
-};
-NLOS_FIGURES(ExclusionBench, scene, mode, max_bounces, gate_mm, center_m, variance_seconds, gain);
-
 /// Relative MSE in equal time at gates around the middle of the signal, on one thread: `path`,
 /// `ellipsoidal`, and `restir` in frames that know nothing of each other. Errors are against two
 /// independent long runs of `ellipsoidal` (their product has no bias from the references' noise).
@@ -61,6 +49,7 @@ GateTable bench_gates(const std::string& scene_path,
 /// each mode about its own mean: that of `drop` lacks a part.
 ///
 /// repeats   runs per figure, 2 at least
-std::vector<ExclusionBench> bench_exclusion(const std::string& scene_path, int repeats);
+/// rows      gets a row per mode, number of bounces and gate
+void bench_exclusion(const std::string& scene_path, int repeats, core::Json& rows);
 
 }  // namespace apps

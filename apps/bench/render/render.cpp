@@ -2,8 +2,8 @@
 #include "apps/bench/render/render.h"
 
 #include "apps/bench/lower_bounds.h"
-#include "apps/bench/power_law.h"
 #include "apps/bench/scene.h"
+#include "apps/bench/statistics.h"
 #include "renderer/core/parallel.h"
 #include "renderer/core/process.h"
 
@@ -20,7 +20,6 @@ constexpr double kReferenceTarget = 0.002;
 constexpr int kCheckSamples = 32768;  ///< of each of two halves
 constexpr int kQuickCheckSamples = 4096;
 constexpr std::uint64_t kCheckSeed = 1'000'000;
-constexpr int kMinGateRuns = 3;     ///< for a standard deviation
 constexpr double kLongRun_s = 5.0;  ///< runs longer than this are not repeated
 
 // One setting of an estimator's effort.
@@ -32,7 +31,7 @@ struct Effort {
 // The integrator far below every error to be measured. Path tracing shares no code with it beyond
 // the rays; how far a long run of it lies from the reference bounds the reference's own error,
 // together with that run's own noise (half the distance of its two independent halves).
-core::Capture make_reference(const BenchScene& bench, bool quick, RenderBench& result) {
+core::Capture make_reference(const BenchScene& bench, bool quick, core::Json& figures) {
     renderer::RenderSettings settings = bench.settings();
     settings.method = renderer::Estimator::ThirdBounce;
     settings.target_error = kReferenceTarget;
@@ -45,15 +44,15 @@ core::Capture make_reference(const BenchScene& bench, bool quick, RenderBench& r
     core::Capture check = bench.render(settings);
     ++settings.seed;
     const core::Capture other = bench.render(settings);
-    result.check_noise = 0.5 * relative_l2(check, other);
+    figures["check_noise"] = 0.5 * relative_l2(check, other);  // of a long run of path
     const auto sums = check.transient.values();
     std::transform(sums.begin(),
                    sums.end(),
                    other.transient.values().begin(),
                    sums.begin(),
                    [](float a, float b) { return 0.5F * (a + b); });
-    result.check_distance = relative_l2(check, reference);
-    result.reference = fmt::format("third_bounce to {}", kReferenceTarget);
+    figures["check_distance"] = relative_l2(check, reference);  // of that run
+    figures["reference"] = fmt::format("third_bounce to {}", kReferenceTarget);
     return reference;
 }
 
@@ -104,8 +103,7 @@ BenchCurve measure_curve(const BenchScene& bench,
     BenchCurve curve;
     curve.method = method;
     for (std::size_t i = 0; i < efforts.size(); ++i) {
-        if (progress.should_stop()) throw core::Failure("bench", "interrupted");
-        progress.update(double(i) / double(efforts.size()), method);
+        progress.update(share_of(i, efforts.size()), method);
         curve.points.push_back(measure(bench, efforts[i].settings, reference, repeats));
         curve.points.back().effort = efforts[i].name;
         if (method != core::enum_name(renderer::Estimator::ThirdBounce)) {
@@ -158,24 +156,25 @@ double seconds_to(const BenchCurve& curve, double error) {
     return seconds;
 }
 
-std::vector<EqualError> equal_errors(const std::vector<BenchCurve>& curves,
-                                     const BenchCurve& path) {
-    std::vector<EqualError> result;
+// Every estimator against `path`, which is continued along its fitted line.
+core::Json equal_errors(const std::vector<BenchCurve>& curves, const BenchCurve& path) {
+    core::Json rows = core::Json::array();
     for (const BenchCurve& curve : curves) {
         if (curve.method == path.method) continue;
         for (const double error : {0.05, 0.02, 0.01}) {
             const double seconds = seconds_to(curve, error);
             if (seconds == 0.0) continue;
             const double path_seconds = seconds_to(path, error);
-            result.push_back({curve.method,
-                              error,
-                              seconds,
-                              path_seconds,
-                              path_seconds / seconds,
-                              path.coefficient * std::pow(seconds, path.slope) / error});
+            const double path_error = path.coefficient * std::pow(seconds, path.slope);
+            rows.push_back({{"method", curve.method},
+                            {"at_rel_l2", error},
+                            {"cpu_seconds", seconds},
+                            {"path_seconds", path_seconds},
+                            {"time_ratio", path_seconds / seconds},  // at this error
+                            {"error_ratio", path_error / error}});   // at the method's time
         }
     }
-    return result;
+    return rows;
 }
 
 void mark_front(std::vector<BenchCurve>& curves) {
@@ -190,12 +189,14 @@ void mark_front(std::vector<BenchCurve>& curves) {
     }
 }
 
-void measure_curves(const RenderBenchSettings& settings,
-                    const core::Progress& progress,
-                    RenderBench& result) {
+}  // namespace
+
+std::vector<BenchCurve> measure_curves(const RenderBenchSettings& settings,
+                                       const core::Progress& progress,
+                                       core::Json& figures) {
     using renderer::Estimator;
     const BenchScene bench(settings.scene);
-    const core::Capture reference = make_reference(bench, settings.quick, result);
+    const core::Capture reference = make_reference(bench, settings.quick, figures);
     const core::ThreadLimit one_thread(1);
     const renderer::RenderSettings& base = bench.settings();
     const auto sampled = [&](Estimator method, std::vector<int> samples) {
@@ -207,8 +208,9 @@ void measure_curves(const RenderBenchSettings& settings,
         sampled(Estimator::Ellipsoidal, {256, 2048, 16384}),
         sampled(Estimator::Restir, {32, 256, 2048}),
         third_bounce_efforts(base)};
+    std::vector<BenchCurve> curves;
     for (const std::vector<Effort>& efforts : methods) {
-        result.curves.push_back(
+        curves.push_back(
             measure_curve(bench,
                           std::string(core::enum_name(efforts.front().settings.method)),
                           efforts,
@@ -216,40 +218,12 @@ void measure_curves(const RenderBenchSettings& settings,
                           settings.repeats,
                           progress));
     }
-    mark_front(result.curves);
-    result.ray_limit_seconds = static_cast<double>(reference.transient.num_pairs()) *
-                               shadow_ray_seconds(bench.scene(), bench.scan());
-    result.equal_error = equal_errors(result.curves, result.curves.front());
-}
-
-}  // namespace
-
-RenderBench bench_render(const RenderBenchSettings& settings, const core::Progress& progress) {
-    RenderBench result;
-    result.scene = settings.scene;
-    result.repeats = settings.repeats;
-    const int gate_runs = std::max(kMinGateRuns, settings.repeats);
-    if (settings.has("curves")) measure_curves(settings, progress, result);
-    if (settings.has("third_bounce")) {
-        result.third_bounce = bench_third_bounce_costs(settings.scene, settings.repeats);
-    }
-    if (settings.has("accuracy")) {
-        result.agreement = bench_agreement(settings.agreement_scenes, progress);
-        result.target_errors = bench_target_errors(settings.quick ? 6 : 24, progress);
-    }
-    if (settings.has("gates")) {
-        result.gates.push_back(bench_gates(settings.scene, 3, gate_runs, progress));
-        result.gates.push_back(bench_gates(settings.scene, 5, gate_runs, progress));
-        result.gates.push_back(bench_gates(settings.camera_scene, 0, gate_runs, progress));
-    }
-    if (settings.has("exclusion")) {
-        for (const std::string& path : settings.exclusion_scenes) {
-            const auto part = bench_exclusion(path, gate_runs);
-            result.exclusion.insert(result.exclusion.end(), part.begin(), part.end());
-        }
-    }
-    if (settings.has("scaling")) result.scaling = bench_render_scaling(progress);
-    return result;
+    mark_front(curves);
+    figures["ray_limit_seconds"] = static_cast<double>(reference.transient.num_pairs()) *
+                                   shadow_ray_seconds(bench.scene(), bench.scan());
+    figures["curves"] = core::write_value(curves);
+    figures["equal_error"] = equal_errors(curves, curves.front());
+    return curves;
 }
 
 }  // namespace apps

@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "apps/bench/figures.h"
 #include "apps/bench/output.h"
-#include "apps/bench/render/gates.h"
-#include "apps/bench/render/scaling.h"
-#include "apps/bench/render/third_bounce.h"
 
 #include <string>
 #include <vector>
@@ -35,49 +31,25 @@ struct BenchCurve {
 };
 NLOS_FIGURES(BenchCurve, method, points, slope, coefficient);
 
-/// One estimator against `path`, which is continued along its fitted line.
-struct EqualError {
-    std::string method;         ///< estimator
-    double at_rel_l2 = 0.0;     ///< relative L2 error
-    double cpu_seconds = 0.0;   ///< see seconds_to() in render.cpp
-    double path_seconds = 0.0;  ///< CPU time of path, on its fitted line [s]
-    double time_ratio = 0.0;    ///< of path's time to the method's, at this error
-    double error_ratio = 0.0;   ///< of path's error to this one, at the method's time
+/// What one estimator costs at growing size of one kind, all else equal.
+struct RenderScaling {
+    std::string method;                 ///< estimator
+    std::string of;                     ///< what grows
+    std::vector<double> sizes;          ///< sizes
+    std::vector<double> cpu_seconds;    ///< CPU time at each, with threads elapsed time [s]
+    std::vector<double> limit_seconds;  ///< that of as many shadow rays alone; with threads the
+                                        ///< first time over their number [s]
+    std::vector<double> peak_bytes;     ///< largest memory of the process at each [B]
+    double exponent = 0.0;  ///< time grows with this power of the size, fitted to all points
+    double last = 0.0;      ///< the same between the two largest sizes
 };
-NLOS_FIGURES(EqualError, method, at_rel_l2, cpu_seconds, path_seconds, time_ratio, error_ratio);
+NLOS_FIGURES(
+    RenderScaling, method, of, sizes, cpu_seconds, limit_seconds, peak_bytes, exponent, last);
 
-/// What `nlos bench render` measured.
-struct RenderBench {
-    std::string scene;                    ///< scene file
-    std::string reference;                ///< how the reference was made
-    double check_distance = 0.0;          ///< relative L2 distance of a long run of path from it
-    double check_noise = 0.0;             ///< the noise of that run
-    int repeats = 0;                      ///< runs per point
-    double ray_limit_seconds = 0.0;       ///< CPU time of the shadow rays of `path`, per sample
-    std::vector<BenchCurve> curves;       ///< error against time
-    std::vector<EqualError> equal_error;  ///< every estimator against path
-    std::vector<ThirdBounceCost> third_bounce;  ///< histogram, gates and pairs to 1 %
-    std::vector<TargetError> target_errors;     ///< of third_bounce on random scenes
-    std::vector<Agreement> agreement;           ///< of third_bounce and path bin by bin
-    std::vector<GateTable> gates;               ///< every estimator in equal time
-    std::vector<ExclusionBench> exclusion;      ///< ellipsoidal with and without excluded surfaces
-    std::vector<RenderScaling> scaling;         ///< time against sizes
-};
-NLOS_FIGURES(RenderBench,
-             scene,
-             reference,
-             check_distance,
-             check_noise,
-             repeats,
-             ray_limit_seconds,
-             curves,
-             equal_error,
-             third_bounce,
-             target_errors,
-             agreement,
-             gates,
-             exclusion,
-             scaling);
+/// Scaling of `third_bounce` (to 2 %) and of `path` (256 samples per pair) with triangles (512 to
+/// 500,000), wall points, bins, bounces (`path` and `restir` on shared points) and threads (all
+/// three): a wavy sheet of 0.8 m, 1 m behind a wall of 1 m, confocal. One thread but for the last.
+std::vector<RenderScaling> bench_render_scaling(const core::Progress& progress);
 
 /// What `nlos bench render` is to measure.
 struct RenderBenchSettings {
@@ -101,10 +73,16 @@ struct RenderBenchSettings {
     bool has(const std::string& name) const { return part == "all" || part == name; }
 };
 
-/// Measures every estimator on a scene at several efforts, and the rest, on one thread.
-RenderBench bench_render(const RenderBenchSettings& settings, const core::Progress& progress);
+/// Error against time of every estimator on a scene, on one thread.
+///
+/// figures   gets `curves`, `equal_error`, and how the reference was made and checked
+/// returns   the curves
+std::vector<BenchCurve> measure_curves(const RenderBenchSettings& settings,
+                                       const core::Progress& progress,
+                                       core::Json& figures);
 
-/// The same as tables, with what was asked of the figures, and plots.
+/// Measures every estimator on a scene at several efforts, and the rest, on one thread: tables,
+/// with what was asked of the figures, and plots.
 BenchResult measure_render(const RenderBenchSettings& settings, const core::Progress& progress);
 
 }  // namespace apps

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "apps/bench/command.h"
+#include "apps/bench/render/gates.h"
 #include "apps/bench/render/render.h"
+#include "apps/bench/render/third_bounce.h"
 #include "apps/commands.h"
 
 #include <fmt/core.h>
@@ -11,59 +13,67 @@
 namespace apps {
 namespace {
 
-// What was asked of the renderers, and what this run says of it.
-std::vector<Target> targets_of(const RenderBench& bench) {
+// What was asked of the renderers, and what this run's figures say of it.
+std::vector<Target> render_targets(const core::Json& figures) {
     std::vector<Target> targets;
     const auto add =
         [&](const std::string& name, const std::string& asked, double ours, bool holds) {
             targets.push_back({name, asked, fmt::format("{:.3g}", ours), holds});
         };
-    for (const EqualError& equal : bench.equal_error) {
-        if (equal.method != "third_bounce" || equal.at_rel_l2 > 0.02) continue;
-        add(fmt::format("third_bounce over path at {:g}", equal.at_rel_l2),
+    for (const core::Json& equal : figures["equal_error"]) {
+        const double error = equal["at_rel_l2"];
+        const double ratio = equal["time_ratio"];
+        if (equal["method"] != "third_bounce" || error > 0.02) continue;
+        add(fmt::format("third_bounce over path at {:g}", error),
             ">= 100 times faster",
-            equal.time_ratio,
-            equal.time_ratio >= 100.0);
+            ratio,
+            ratio >= 100.0);
     }
-    for (const ThirdBounceCost& cost : bench.third_bounce) {
-        const bool is_histogram = cost.share == 1.0;
-        const bool is_gate = cost.measurement.starts_with("gate");
-        const double limit = is_histogram ? 4.0 : is_gate ? 0.1 : 20.0;
-        const double ours = is_gate ? cost.share : cost.cpu_seconds;
-        add("third_bounce to 1 %, " + cost.measurement,
+    for (const core::Json& cost : figures["third_bounce"]) {
+        const std::string measurement = cost["measurement"];
+        const bool is_gate = measurement.starts_with("gate");
+        const double limit = measurement == "histogram" ? 4.0 : is_gate ? 0.1 : 20.0;
+        const double ours = cost[is_gate ? "share" : "cpu_seconds"];
+        add("third_bounce to 1 %, " + measurement,
             fmt::format("<= {:g} {}", limit, is_gate ? "of the histogram" : "CPU s"),
             ours,
             ours <= limit);
     }
-    if (!bench.target_errors.empty()) {
-        const auto share = [&](bool TargetError::*member) {
-            return static_cast<double>(std::ranges::count(bench.target_errors, true, member)) /
-                   static_cast<double>(bench.target_errors.size());
+    if (const core::Json& errors = figures["target_errors"]; !errors.empty()) {
+        const auto share = [&](const char* key) {
+            return share_of(std::count_if(errors.begin(),
+                                          errors.end(),
+                                          [&](const core::Json& row) { return row[key] == true; }),
+                            errors.size());
         };
         add("random scenes below their target error",
             ">= 0.95 of them",
-            share(&TargetError::met),
-            share(&TargetError::met) >= 0.95);
+            share("met"),
+            share("met") >= 0.95);
         add("random scenes five times below, a coarser cut left",
             "<= 0.05 of them",
-            share(&TargetError::is_far_below),
-            share(&TargetError::is_far_below) <= 0.05);
+            share("is_far_below"),
+            share("is_far_below") <= 0.05);
     }
-    for (const Agreement& agreement : bench.agreement) {
-        add(fmt::format("third_bounce and path, {}, {}", agreement.scene, agreement.pattern),
+    for (const core::Json& agreement : figures["agreement"]) {
+        const double p_value = agreement["p_value"];
+        add(fmt::format("third_bounce and path, {}, {}",
+                        agreement["scene"].get<std::string>(),
+                        agreement["pattern"].get<std::string>()),
             "chance of the farthest bin >= 0.001",
-            agreement.p_value,
-            agreement.p_value >= 0.001);
+            p_value,
+            p_value >= 0.001);
     }
-    for (const GateTable& table : bench.gates) {
-        for (const GateBench& gate : table.gates) {
-            if (gate.method != "ellipsoidal" || gate.gate_mm != 1.0) continue;
+    for (const core::Json& table : figures["gates"]) {
+        for (const core::Json& gate : table["gates"]) {
+            if (gate["method"] != "ellipsoidal" || gate["gate_mm"] != 1.0) continue;
+            const double gain = gate["gain"];
             add(fmt::format("ellipsoidal over path, {}, {} bounces, gate of 1 mm",
-                            table.scene,
-                            table.max_bounces),
+                            table["scene"].get<std::string>(),
+                            table["max_bounces"].get<int>()),
                 ">= 10 times in equal time",
-                gate.gain,
-                gate.gain >= 10.0);
+                gain,
+                gain >= 10.0);
         }
     }
     return targets;
@@ -76,16 +86,14 @@ Plot gate_plot(const GateTable& table) {
               {}};
     for (const GateBench& gate : table.gates) {
         if (gate.gate_mm == 0.0) continue;
-        PlotLine& line = line_named(gate.method, plot);
-        line.x.push_back(gate.gate_mm);
-        line.y.push_back(gate.rel_mse);
+        line_named(gate.method, plot).add(gate.gate_mm, gate.rel_mse);
     }
     return plot;
 }
 
-Plot scaling_plot(const RenderBench& bench) {
+Plot scaling_plot(const std::vector<RenderScaling>& all) {
     Plot plot{"Scaling", "triangles, wall points, bins, bounces, threads", "time [s]", {}};
-    for (const RenderScaling& scaling : bench.scaling) {
+    for (const RenderScaling& scaling : all) {
         const std::string title = fmt::format("{}, {}", scaling.method, scaling.of);
         plot.lines.push_back({title, scaling.sizes, scaling.cpu_seconds});
         if (scaling.of != "wall points" && scaling.of != "threads") continue;
@@ -98,23 +106,39 @@ Plot scaling_plot(const RenderBench& bench) {
     return plot;
 }
 
-Plot curves_plot(const RenderBench& bench) {
-    Plot plot{"Error against time, " + bench.scene, "CPU time [s]", "relative L2 error", {}};
-    for (const BenchCurve& curve : bench.curves) {
+Plot curves_plot(const std::string& scene,
+                 const std::vector<BenchCurve>& curves,
+                 double ray_limit_seconds) {
+    Plot plot{"Error against time, " + scene, "CPU time [s]", "relative L2 error", {}};
+    for (const BenchCurve& curve : curves) {
         plot.lines.push_back(
             line_of(curve.method, curve.points, &BenchPoint::cpu_seconds, &BenchPoint::rel_l2));
     }
     const auto ray_seconds = [&](const BenchPoint& point) {
-        return bench.ray_limit_seconds * point.samples;
+        return ray_limit_seconds * point.samples;
     };
-    PlotLine limit = line_of(
-        "path, its rays alone", bench.curves.front().points, ray_seconds, &BenchPoint::rel_l2);
+    PlotLine limit =
+        line_of("path, its rays alone", curves.front().points, ray_seconds, &BenchPoint::rel_l2);
     limit.style = LineStyle::Limit;
     limit.limit_of = 0;
     const PlotLine front = pareto_front(plot.lines);
     plot.lines.push_back(limit);
     plot.lines.push_back(front);
     return plot;
+}
+
+void measure_gates(const RenderBenchSettings& settings,
+                   int runs,
+                   const core::Progress& progress,
+                   BenchResult& result) {
+    for (const auto& [path, max_bounces] :
+         {std::pair(settings.scene, 3), {settings.scene, 5}, {settings.camera_scene, 0}}) {
+        const GateTable table = bench_gates(path, max_bounces, runs, progress);
+        const auto scene = std::filesystem::path(path).parent_path().filename();
+        result.plots[fmt::format("_gates_{}_{}", scene.string(), table.max_bounces)] =
+            gate_plot(table);
+        result.figures["gates"].push_back(core::write_value(table));
+    }
 }
 
 void declare(CLI::App& command, RenderBenchSettings& settings) {
@@ -141,16 +165,49 @@ void declare(CLI::App& command, RenderBenchSettings& settings) {
 }  // namespace
 
 BenchResult measure_render(const RenderBenchSettings& settings, const core::Progress& progress) {
-    const RenderBench bench = bench_render(settings, progress);
-    BenchResult result{{{"targets", core::write_value(targets_of(bench))}}};
-    result.figures.update(core::write_value(bench));
-    if (!bench.curves.empty()) result.plots[""] = curves_plot(bench);
-    if (!bench.scaling.empty()) result.plots["_scaling"] = scaling_plot(bench);
-    for (const GateTable& table : bench.gates) {
-        const auto scene = std::filesystem::path(table.scene).parent_path().filename();
-        result.plots[fmt::format("_gates_{}_{}", scene.string(), table.max_bounces)] =
-            gate_plot(table);
+    BenchResult result{{{"targets", core::Json::array()},
+                        {"scene", settings.scene},
+                        {"reference", ""},
+                        {"check_distance", 0.0},
+                        {"check_noise", 0.0},
+                        {"repeats", settings.repeats},
+                        {"ray_limit_seconds", 0.0}}};  // of the shadow rays of `path`, per sample
+    core::Json& figures = result.figures;
+    for (const char* rows : {"curves",
+                             "equal_error",
+                             "third_bounce",
+                             "target_errors",
+                             "agreement",
+                             "gates",
+                             "exclusion",
+                             "scaling"}) {
+        figures[rows] = core::Json::array();
     }
+    constexpr int kMinGateRuns = 3;  // for a standard deviation
+    const int gate_runs = std::max(kMinGateRuns, settings.repeats);
+    if (settings.has("curves")) {
+        const std::vector<BenchCurve> curves = measure_curves(settings, progress, figures);
+        result.plots[""] = curves_plot(settings.scene, curves, figures["ray_limit_seconds"]);
+    }
+    if (settings.has("third_bounce")) {
+        figures["third_bounce"] = bench_third_bounce_costs(settings.scene, settings.repeats);
+    }
+    if (settings.has("accuracy")) {
+        figures["agreement"] = bench_agreement(settings.agreement_scenes, progress);
+        figures["target_errors"] = bench_target_errors(settings.quick ? 6 : 24, progress);
+    }
+    if (settings.has("gates")) measure_gates(settings, gate_runs, progress, result);
+    if (settings.has("exclusion")) {
+        for (const std::string& path : settings.exclusion_scenes) {
+            bench_exclusion(path, gate_runs, figures["exclusion"]);
+        }
+    }
+    if (settings.has("scaling")) {
+        const std::vector<RenderScaling> scaling = bench_render_scaling(progress);
+        figures["scaling"] = core::write_value(scaling);
+        result.plots["_scaling"] = scaling_plot(scaling);
+    }
+    figures["targets"] = core::write_value(render_targets(figures));
     return result;
 }
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "apps/bench/render/scaling.h"
-
 #include "apps/bench/lower_bounds.h"
-#include "apps/bench/power_law.h"
-#include "apps/shapes/grid_mesh.h"
+#include "apps/bench/render/render.h"
+#include "apps/bench/statistics.h"
+#include "apps/shapes/shapes.h"
 #include "renderer/core/parallel.h"
 #include "renderer/core/process.h"
 #include "renderer/render.h"
@@ -128,8 +127,7 @@ std::vector<RenderScaling> bench_render_scaling(const core::Progress& progress) 
     const std::vector<Series> all = all_series();
     for (const Series& series : all) {
         for (const Estimator method : series.methods) {
-            if (progress.should_stop()) throw core::Failure("bench", "interrupted");
-            progress.update(double(&series - all.data()) / double(all.size()),
+            progress.update(share_of(&series - all.data(), all.size()),
                             "scaling with " + series.of);
             result.push_back(measure_series(series, method));
         }

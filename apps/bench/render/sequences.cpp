@@ -2,8 +2,8 @@
 #include "apps/bench/render/sequences.h"
 
 #include "apps/bench/command.h"
-#include "apps/bench/error_metrics.h"
 #include "apps/bench/scene.h"
+#include "apps/bench/statistics.h"
 #include "apps/commands.h"
 #include "renderer/core/parallel.h"
 #include "renderer/core/process.h"
@@ -67,38 +67,47 @@ SequenceFrames gates_of_histogram(const SequenceSetup& setup, const SequenceCase
     return frames;
 }
 
-SequenceBench run_method(const SequenceCase& sequence,
-                         const SequenceMethod& method,
-                         int num_seeds,
-                         const std::array<SequenceFrames, 2>& references) {
+/// A method and the settings that make it.
+struct SequenceMethod {
+    std::string name;
+    std::vector<std::string> overrides;
+};
+
+// How one method does on a sequence, on one thread; gains are left open.
+core::Json run_method(const SequenceCase& sequence,
+                      const SequenceMethod& method,
+                      int num_seeds,
+                      const std::array<SequenceFrames, 2>& references) {
     SequenceSetup setup(sequence, method.overrides);
-    SequenceBench bench;
-    bench.sequence = sequence.name;
-    bench.method = method.name;
     // Integrated frames are the same for every seed.
     if (setup.description.render.method == renderer::Estimator::ThirdBounce) num_seeds = 1;
     SequenceErrors errors(static_cast<std::size_t>(sequence.num_frames));
     renderer::RestirCounts counts;
+    double seconds_per_frame = 0.0;
     for (int seed = 0; seed < num_seeds; ++seed) {
         setup.description.render.seed = 1000 + static_cast<std::uint64_t>(seed);
         const double start = core::cpu_seconds();
         const renderer::RenderResult result = render_all(setup);
-        bench.seconds_per_frame += (core::cpu_seconds() - start) / num_seeds / sequence.num_frames;
+        seconds_per_frame += (core::cpu_seconds() - start) / num_seeds / sequence.num_frames;
         counts += result.restir_counts;
         errors.add(result.capture.sequence->frames, references[0], references[1]);
     }
     const auto first_settled =
         static_cast<std::size_t>(std::ceil(kSequenceSettlingShare * sequence.num_frames));
     const ErrorSums settled = errors.settled(first_settled);
-    bench.rel_mse_of_frames = errors.rel_mse_of_frames();
-    bench.rel_mse = settled.rel_mse();
-    bench.trimmed_rel_mse = settled.trimmed_rel_mse();
-    bench.sum_ratio = settled.sum / settled.reference_sum;
     const double all_frames = static_cast<double>(num_seeds) * sequence.num_frames;
-    bench.accepted_share = counts.shifts.accepted_share();
-    bench.shifts_per_frame = static_cast<double>(counts.shifts.tried()) / all_frames;
-    bench.merges_per_frame = static_cast<double>(counts.num_merges) / all_frames;
-    return bench;
+    return {{"sequence", sequence.name},  // gate and measurement
+            {"method", method.name},      // estimator and candidates
+            {"seconds_per_frame", seconds_per_frame},
+            {"rel_mse", settled.rel_mse()},  // mean over the later frames and all seeds
+            {"trimmed_rel_mse", settled.trimmed_rel_mse()},  // without the worst 0.2 % of values
+            {"sum_ratio", settled.sum / settled.reference_sum},
+            {"gain", nullptr},
+            {"trimmed_gain", nullptr},
+            {"accepted_share", counts.shifts.accepted_share()},  // of shifts; 0: none was tried
+            {"shifts_per_frame", static_cast<double>(counts.shifts.tried()) / all_frames},
+            {"merges_per_frame", static_cast<double>(counts.num_merges) / all_frames},
+            {"rel_mse_of_frames", errors.rel_mse_of_frames()}};
 }
 
 }  // namespace
@@ -140,50 +149,70 @@ SequenceFrames reference_frames(const SequenceCase& sequence, std::uint64_t seed
 PlotLine line_of_frames(const std::string& title, const std::vector<double>& errors) {
     PlotLine line{title, {}, {}};
     for (const double error : errors) {
-        line.x.push_back(static_cast<double>(line.x.size() + 1));
-        line.y.push_back(std::max(1e-9, error));
+        line.add(static_cast<double>(line.x.size() + 1), std::max(1e-9, error));
     }
     return line;
 }
 
-std::vector<SequenceBench> bench_sequence(const SequenceCase& sequence,
-                                          const std::vector<SequenceMethod>& methods,
-                                          int num_seeds,
-                                          const core::Progress& progress) {
+namespace {
+
+/// Runs methods over a sequence and measures them against two independent references, whose
+/// product has no bias from their noise.
+///
+/// methods     the first is what gains are counted against
+/// num_seeds   runs per method
+/// rows        gets a row per method
+void bench_sequence(const SequenceCase& sequence,
+                    const std::vector<SequenceMethod>& methods,
+                    int num_seeds,
+                    const core::Progress& progress,
+                    std::vector<core::Json>& rows) {
     const core::ThreadLimit one_thread(1);
     std::array<SequenceFrames, 2> references{reference_frames(sequence, 1), {}};
     // Integrated ones would be the same twice.
     references[1] =
         is_integrable(SequenceSetup(sequence, {})) ? references[0] : reference_frames(sequence, 2);
-    std::vector<SequenceBench> benches;
+    const std::size_t first = rows.size();
+    // Relative MSE times seconds, which is what is left after one second.
+    const auto cost = [](const core::Json& row, const char* error) {
+        return row[error].get<double>() * row["seconds_per_frame"].get<double>();
+    };
     for (const SequenceMethod& method : methods) {
-        if (progress.should_stop()) throw core::Failure("bench", "interrupted");
-        SequenceBench& bench =
-            benches.emplace_back(run_method(sequence, method, num_seeds, references));
-        const SequenceBench& first = benches.front();
-        bench.gain =
-            first.rel_mse * first.seconds_per_frame / (bench.rel_mse * bench.seconds_per_frame);
-        bench.trimmed_gain = first.trimmed_rel_mse * first.seconds_per_frame /
-                             (bench.trimmed_rel_mse * bench.seconds_per_frame);
-        progress.update(static_cast<double>(benches.size()) / static_cast<double>(methods.size()),
+        progress.update(share_of(rows.size() - first, methods.size()),
                         sequence.name + ", " + method.name);
+        core::Json& row = rows.emplace_back(run_method(sequence, method, num_seeds, references));
+        row["gain"] = cost(rows[first], "rel_mse") / cost(row, "rel_mse");
+        row["trimmed_gain"] = cost(rows[first], "trimmed_rel_mse") / cost(row, "trimmed_rel_mse");
     }
-    return benches;
 }
 
-std::vector<SequenceCase> standard_sequences(const SequenceScenes& scenes, int num_frames) {
+/// What the standard table is made of.
+struct SequenceArguments {
+    std::string scan = "scenes/bars/scene.json";
+    std::string image = "scenes/room/scene.json";
+    std::array<int, 2> image_resolution{128, 96};
+    std::string moving_scan = "scenes/traffic/scan.json";
+    std::string moving_image = "scenes/traffic/scene.json";
+    std::string only;
+    int frames = 60;
+    int repeats = 4;
+};
+
+std::vector<SequenceCase> standard_sequences(const SequenceArguments& arguments) {
     const std::string resolution = fmt::format(
-        "camera.resolution=[{},{}]", scenes.image_resolution[0], scenes.image_resolution[1]);
-    const SequenceCase third{"scan, order 3", scenes.scan, {"render.max_bounces=3"}, 1.4};
-    SequenceCase fifth{"scan, order 5", scenes.scan, {"render.max_bounces=5"}, 1.4};
+        "camera.resolution=[{},{}]", arguments.image_resolution[0], arguments.image_resolution[1]);
+    const SequenceCase third{"scan, order 3", arguments.scan, {"render.max_bounces=3"}, 1.4};
+    SequenceCase fifth{"scan, order 5", arguments.scan, {"render.max_bounces=5"}, 1.4};
     fifth.reference_samples = 4'096;
     const SequenceCase image{
-        "camera, 5 vertices", scenes.image, {"render.max_bounces=5", resolution}, 2.6};
+        "camera, 5 vertices", arguments.image, {"render.max_bounces=5", resolution}, 2.6};
     SequenceCase moving_scan{
-        "scan, moving objects", scenes.moving_scan, {"render.max_bounces=3"}, 1.7};
+        "scan, moving objects", arguments.moving_scan, {"render.max_bounces=3"}, 1.7};
     moving_scan.frame_s = 1e-3;
-    SequenceCase moving_image{
-        "camera, moving objects", scenes.moving_image, {"render.max_bounces=4", resolution}, 6.0};
+    SequenceCase moving_image{"camera, moving objects",
+                              arguments.moving_image,
+                              {"render.max_bounces=4", resolution},
+                              6.0};
     moving_image.frame_s = 1e-3;
     moving_image.reference_samples = 6'000;
 
@@ -193,7 +222,7 @@ std::vector<SequenceCase> standard_sequences(const SequenceScenes& scenes, int n
         added.name += fmt::format(", {}/{} mm", width_mm, step_mm);
         added.gate_width_mm = width_mm;
         added.gate_step_mm = step_mm;
-        added.num_frames = num_frames;
+        added.num_frames = arguments.frames;
     };
     const std::vector<std::array<double, 2>> gates{
         {20, 20}, {20, 5}, {10, 10}, {10, 2.5}, {5, 2.5}, {2, 2}, {20, 0}};
@@ -257,50 +286,39 @@ std::vector<SequenceMethod> standard_methods(const SequenceCase& sequence) {
     return methods;
 }
 
-namespace {
-
-struct SequenceArguments {
-    SequenceScenes scenes;
-    std::string only;
-    int frames = 60;
-    int repeats = 4;
-};
-
 // Error over frames, a plot per sequence.
-void add_plot(const SequenceBench& bench, std::map<std::string, Plot>& plots) {
-    std::string suffix = "_" + bench.sequence;
+void add_plot(const core::Json& row, std::map<std::string, Plot>& plots) {
+    const std::string sequence = row["sequence"];
+    std::string suffix = "_" + sequence;
     std::replace_if(
         suffix.begin(), suffix.end(), [](char c) { return std::isalnum(c) == 0; }, '_');
     Plot& plot = plots[suffix];
-    plot.title = bench.sequence;
+    plot.title = sequence;
     plot.x_label = "frame";
     plot.y_label = "relative MSE";
-    plot.lines.push_back(line_of_frames(bench.method, bench.rel_mse_of_frames));
+    plot.lines.push_back(line_of_frames(row["method"], row["rel_mse_of_frames"]));
 }
 
 BenchResult measure(const SequenceArguments& arguments, const core::Progress& progress) {
-    std::vector<SequenceBench> benches;
-    for (const SequenceCase& sequence : standard_sequences(arguments.scenes, arguments.frames)) {
+    std::vector<core::Json> rows;
+    for (const SequenceCase& sequence : standard_sequences(arguments)) {
         if (sequence.name.find(arguments.only) == std::string::npos) continue;
-        const auto found =
-            bench_sequence(sequence, standard_methods(sequence), arguments.repeats, progress);
-        benches.insert(benches.end(), found.begin(), found.end());
+        bench_sequence(sequence, standard_methods(sequence), arguments.repeats, progress, rows);
     }
-    BenchResult result{{{"sequences", core::write_value(benches)}}};
-    for (const SequenceBench& bench : benches) add_plot(bench, result.plots);
+    BenchResult result{{{"sequences", rows}}};
+    for (const core::Json& row : rows) add_plot(row, result.plots);
     return result;
 }
 
 void declare(CLI::App& command, SequenceArguments& arguments) {
-    SequenceScenes& scenes = arguments.scenes;
-    add_setting(command, "--scene", scenes.scan, "Scan")->type_name("FILE");
-    add_setting(command, "--image-scene", scenes.image, "Camera")->type_name("FILE");
+    add_setting(command, "--scene", arguments.scan, "Scan")->type_name("FILE");
+    add_setting(command, "--image-scene", arguments.image, "Camera")->type_name("FILE");
     CLI::Option* resolution = add_setting(
-        command, "--image-resolution", scenes.image_resolution, "Pixels, width and height");
+        command, "--image-resolution", arguments.image_resolution, "Pixels, width and height");
     limit(*resolution, {1, true, 10'000, true});
-    add_setting(command, "--moving-scene", scenes.moving_scan, "Scan of objects that move")
+    add_setting(command, "--moving-scene", arguments.moving_scan, "Scan of objects that move")
         ->type_name("FILE");
-    add_setting(command, "--moving-image-scene", scenes.moving_image, "Camera on such objects")
+    add_setting(command, "--moving-image-scene", arguments.moving_image, "Camera on such objects")
         ->type_name("FILE");
     command.add_option("--only", arguments.only, "Sequences whose names contain this");
     add_setting(command, "--frames", arguments.frames, "Frames of a sequence", {2, 10'000});

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "apps/bench/render/shift.h"
-
+#include "apps/bench/command.h"
 #include "apps/bench/scene.h"
+#include "apps/commands.h"
 #include "renderer/core/parallel.h"
 #include "renderer/core/process.h"
 #include "renderer/core/random.h"
 #include "renderer/scene/area_sampler.h"
-#include "renderer/scene/scene_file.h"
 #include "renderer/shift/charts.h"
 #include "renderer/shift/path_functional.h"
 #include "renderer/shift/shift_mapping.h"
@@ -41,11 +40,8 @@ struct Shift {
 // A scene with shifts to try on it.
 class ShiftWorkbench {
  public:
-    ShiftWorkbench(const std::string& path, int num_shifts)
-        : description_(read_bench_scene(path, {})),
-          scan_(renderer::make_scan(description_)),
-          scene_(renderer::load_scene(description_, scan_)) {
-        const renderer::AreaSampler sampler(scene_);
+    ShiftWorkbench(const std::string& path, int num_shifts) : bench_(path) {
+        const renderer::AreaSampler sampler(scene());
         // Behind or beside everything the scan sees nothing; such a scene ends after many tries.
         const std::uint64_t most = 1000 * static_cast<std::uint64_t>(num_shifts);
         for (std::uint64_t i = 0; i < most && int(shifts_.size()) < num_shifts; ++i) {
@@ -57,28 +53,29 @@ class ShiftWorkbench {
         }
     }
 
-    const renderer::Scene& scene() const { return scene_; }
+    const renderer::Scene& scene() const { return bench_.scene(); }
     const std::vector<Shift>& shifts() const { return shifts_; }
 
  private:
     renderer::ShiftEnd end_of(std::size_t pair) const {
-        const std::size_t l = scan_.illumination_index(pair);
-        const core::WallPoints& lit = scan_.illumination;
-        return {
-            scan_.sensing.positions[scan_.sensing_index(pair)], lit.positions[l], lit.normals[l]};
+        const core::Scan& scan = bench_.scan();
+        const std::size_t l = scan.illumination_index(pair);
+        const core::WallPoints& lit = scan.illumination;
+        return {scan.sensing.positions[scan.sensing_index(pair)], lit.positions[l], lit.normals[l]};
     }
 
     // Cosine at x towards a point that sees it, 0 when it does not.
     double seen_cosine(const renderer::SurfacePoint& x, const Vec3& from, const Vec3& n) const {
-        const Vec3& normal = scene_.facet(x.facet).normal;
+        const Vec3& normal = scene().facet(x.facet).normal;
         const Vec3 to_x = (x.position - from).normalized();
         if (n.dot(to_x) <= 0.0) return 0.0;
-        if (scene_.rays().is_blocked(from, n, x.position, normal)) return 0.0;
+        if (scene().rays().is_blocked(from, n, x.position, normal)) return 0.0;
         return std::abs(normal.dot(to_x));
     }
 
     std::optional<Shift> draw(const renderer::AreaSampler& sampler, core::Rng& rng) const {
-        const std::size_t pairs = scan_.num_pairs();
+        const core::Scan& scan = bench_.scan();
+        const std::size_t pairs = scan.num_pairs();
         const auto pair = static_cast<std::size_t>(rng.uniform() * double(pairs));
         const std::size_t next = pair + 1 < pairs ? pair + 1 : pair - 1;
         Shift shift;
@@ -86,18 +83,15 @@ class ShiftWorkbench {
         shift.x = sampler.sample(u, rng.uniform());
         shift.source = end_of(pair);
         shift.target = end_of(next);
-        const Vec3& sensing_normal = scan_.sensing.normals[scan_.sensing_index(pair)];
+        const Vec3& sensing_normal = scan.sensing.normals[scan.sensing_index(pair)];
         const double accept = seen_cosine(shift.x, shift.source.a, sensing_normal) *
                               seen_cosine(shift.x, shift.source.y, shift.source.normal_y);
         if (rng.uniform() >= accept) return std::nullopt;
-        const double bin = description_.time_axis.bin_width_m;
-        shift.change.offset_m = bin * (2.0 * rng.uniform() - 1.0);
+        shift.change.offset_m = bench_.axis().bin_width_m * (2.0 * rng.uniform() - 1.0);
         return shift;
     }
 
-    renderer::SceneDescription description_;
-    core::Scan scan_;
-    renderer::Scene scene_;
+    BenchScene bench_;
     std::vector<Shift> shifts_;
 };
 
@@ -176,69 +170,74 @@ std::optional<double> determinant_error(const renderer::Scene& scene,
     return std::abs(landing->jacobian / std::abs(derivative.determinant()) - 1.0);
 }
 
-GaugeRow measure_gauge(const ShiftWorkbench& bench, ShiftSettings settings) {
+// One gauge in one chart, as a row of the table.
+core::Json measure_gauge(const ShiftWorkbench& bench, ShiftSettings settings) {
     settings.closed_form_on_planes = false;
     std::vector<Shift> shifts = bench.shifts();
     if (settings.gauge == Gauge::Flow) shifts.resize(std::min(shifts.size(), kMaxFlowShifts));
-    GaugeRow row;
-    row.chart = core::enum_name(settings.chart);
-    row.gauge = core::enum_name(settings.gauge);
+    std::string gauge(core::enum_name(settings.gauge));
     if (settings.gauge == Gauge::Average && settings.chart == Chart::Hemisphere) {
-        row.gauge += settings.metric_gauge ? ", metric" : ", plain";
+        gauge += settings.metric_gauge ? ", metric" : ", plain";
     }
     const ShiftMapping checked(bench.scene(), settings);
     settings.reverse_check = false;
     const ShiftMapping unchecked(bench.scene(), settings);
     const auto tried = double(shifts.size());
-    row.success = double(count_shifts(checked, shifts).accepted) / tried;
-    row.iterations = double(count_shifts(unchecked, shifts).iterations) / tried;
-    row.no_return = share_without_return(unchecked, shifts);
-    row.ns = time_shifts(unchecked, shifts);
-    row.ns_checked = time_shifts(checked, shifts);
+    core::Json row{{"chart", core::write_value(settings.chart)}, {"gauge", gauge}};
+    // Share accepted, reverse check on; share of shifts accepted without the check that do not come
+    // back; Newton or Runge-Kutta steps per shift tried, without the check.
+    row["success"] = double(count_shifts(checked, shifts).accepted) / tried;
+    row["no_return"] = share_without_return(unchecked, shifts);
+    row["iterations"] = double(count_shifts(unchecked, shifts).iterations) / tried;
+    // CPU time per shift tried, without the check and with it.
+    row["ns"] = time_shifts(unchecked, shifts);
+    row["ns_checked"] = time_shifts(checked, shifts);
+    // Of the determinant, relative, against central differences.
     std::vector<double> errors;
     for (std::size_t i = 0; i < shifts.size() && int(errors.size()) < kMaxDifferences; ++i) {
         const auto error = determinant_error(bench.scene(), unchecked, shifts[i]);
         if (error) errors.push_back(*error);
     }
-    if (!errors.empty()) {
-        std::sort(errors.begin(), errors.end());
-        row.error_median = errors[errors.size() / 2];
-        row.error_p95 = errors[errors.size() * 95 / 100];
-    }
+    std::sort(errors.begin(), errors.end());
+    row["error_median"] = errors.empty() ? 0.0 : errors[errors.size() / 2];
+    row["error_p95"] = errors.empty() ? 0.0 : errors[errors.size() * 95 / 100];
     return row;
 }
 
-ChartRow measure_chart(const ShiftWorkbench& bench, Chart chart) {
+// One chart on one scene: shares of the shifts tried, and CPU time per shift.
+core::Json measure_chart(const ShiftWorkbench& bench, const std::string& path, Chart chart) {
     ShiftSettings settings;
     settings.chart = chart;
     const ShiftMapping mapping(bench.scene(), settings);
     const renderer::ShiftCounts counts = count_shifts(mapping, bench.shifts());
     const auto tried = double(counts.tried());
-    ChartRow row;
-    row.chart = core::enum_name(chart);
-    row.accepted = double(counts.accepted) / tried;
-    row.by_ray = double(counts.by_ray) / tried;
-    row.ns = time_shifts(mapping, bench.shifts());
+    core::Json rejected = core::Json::array();
     for (std::size_t i = 0; i < counts.rejected.size(); ++i) {
         if (counts.rejected[i] == 0) continue;
-        row.rejected.push_back(
-            {std::string(renderer::kShiftRejectionNames[i]), double(counts.rejected[i]) / tried});
+        rejected.push_back({{"name", std::string(renderer::kShiftRejectionNames[i])},
+                            {"share", double(counts.rejected[i]) / tried}});
     }
-    std::stable_sort(row.rejected.begin(), row.rejected.end(), [](const auto& a, const auto& b) {
-        return a.share > b.share;
+    std::stable_sort(rejected.begin(), rejected.end(), [](const auto& a, const auto& b) {
+        return a["share"] > b["share"];
     });
-    return row;
+    return {{"scene", path},
+            {"chart", core::write_value(chart)},
+            {"accepted", double(counts.accepted) / tried},
+            {"by_ray", double(counts.by_ray) / tried},
+            {"ns", time_shifts(mapping, bench.shifts())},
+            {"rejected", rejected}};
 }
 
-std::vector<ShiftCost> measure_costs(const ShiftWorkbench& bench) {
+// Where the time of a shift goes.
+core::Json measure_costs(const ShiftWorkbench& bench) {
     const auto& shifts = bench.shifts();
     const renderer::Scene& scene = bench.scene();
     const renderer::PlanarPatches patches(scene);
     renderer::ShiftTrace trace;
     double sink = 0.0;  // keeps the timed work alive; what it adds up to is no matter
-    std::vector<ShiftCost> costs;
+    core::Json costs = core::Json::array();
     const auto add = [&](const std::string& operation, const auto& body) {
-        costs.push_back({operation, time_ns(shifts.size(), body)});
+        costs.push_back({{"operation", operation}, {"ns", time_ns(shifts.size(), body)}});
     };
     const auto plane_of = [&](const Shift& shift) -> const renderer::Facet& {
         return patches.plane(patches.patch_of(shift.x.facet));
@@ -287,40 +286,69 @@ std::vector<ShiftCost> measure_costs(const ShiftWorkbench& bench) {
     return costs;
 }
 
-}  // namespace
+core::Json measure_gauges(const ShiftWorkbench& bench, const core::Progress& progress) {
+    core::Json rows = core::Json::array();
+    for (const Chart chart : {Chart::Plane, Chart::Hemisphere}) {
+        for (const auto& [gauge, name] : core::EnumNames<Gauge>::value) {
+            progress.update(0.0, "gauges");
+            ShiftSettings settings;
+            settings.chart = chart;
+            settings.gauge = gauge;
+            rows.push_back(measure_gauge(bench, settings));
+            if (gauge != Gauge::Average || chart == Chart::Plane) continue;
+            settings.metric_gauge = false;
+            rows.push_back(measure_gauge(bench, settings));
+        }
+    }
+    return rows;
+}
 
-ShiftBench bench_shift(const std::vector<std::string>& scene_paths,
-                       int num_shifts,
-                       const core::Progress& progress) {
+struct ShiftBenchSettings {
+    std::vector<std::string> scenes{
+        "scenes/corner/scene.json", "scenes/letter/scene.json", "scenes/bars/scene.json"};
+    int shifts = 20'000;
+};
+
+/// Compares gauges and charts of the shift mapping, on one thread.
+///
+/// Shifts are those of spatial and temporal reuse: a vertex drawn by area and by the cosines at it,
+/// visible from its measurement pair, goes to a pair next to it and to a length up to a bin off.
+/// Charts are compared on all scenes, gauges and the parts of a shift on the first.
+BenchResult measure(const ShiftBenchSettings& settings, const core::Progress& progress) {
     const core::ThreadLimit one_thread(1);
-    ShiftBench result;
-    for (std::size_t s = 0; s < scene_paths.size(); ++s) {
-        const std::string& path = scene_paths[s];
-        progress.update(double(s) / double(scene_paths.size()), path);
-        const ShiftWorkbench bench(path, num_shifts);
+    core::Json figures{{"gauge_scene", settings.scenes.front()},
+                       {"gauges", core::Json::array()},
+                       {"charts", core::Json::array()},
+                       {"costs", core::Json::array()}};
+    for (std::size_t s = 0; s < settings.scenes.size(); ++s) {
+        const std::string& path = settings.scenes[s];
+        const ShiftWorkbench bench(path, settings.shifts);
         for (const Chart chart :
              {Chart::Plane, Chart::Barycentric, Chart::Hemisphere, Chart::Adaptive}) {
-            if (progress.should_stop()) throw core::Failure("bench shift", "interrupted");
-            result.charts.push_back(measure_chart(bench, chart));
-            result.charts.back().scene = path;
+            progress.update(share_of(s, settings.scenes.size()), path);
+            figures["charts"].push_back(measure_chart(bench, path, chart));
         }
         if (s > 0) continue;
-        result.gauge_scene = path;
-        for (const Chart chart : {Chart::Plane, Chart::Hemisphere}) {
-            for (const auto& [gauge, name] : core::EnumNames<Gauge>::value) {
-                if (progress.should_stop()) throw core::Failure("bench shift", "interrupted");
-                ShiftSettings settings;
-                settings.chart = chart;
-                settings.gauge = gauge;
-                result.gauges.push_back(measure_gauge(bench, settings));
-                if (gauge != Gauge::Average || chart == Chart::Plane) continue;
-                settings.metric_gauge = false;
-                result.gauges.push_back(measure_gauge(bench, settings));
-            }
-        }
-        result.costs = measure_costs(bench);
+        figures["gauges"] = measure_gauges(bench, progress);
+        figures["costs"] = measure_costs(bench);
     }
-    return result;
+    return {figures};
+}
+
+void declare(CLI::App& command, ShiftBenchSettings& settings) {
+    add_setting(command, "--scene", settings.scenes, "Scene descriptions; gauges on the first");
+    add_setting(command, "--shifts", settings.shifts, "Shifts per scene", {1, 100'000'000});
+}
+
+}  // namespace
+
+void add_bench_shift_command(CLI::App& bench) {
+    add_benchmark<ShiftBenchSettings>(bench,
+                                      {"shift",
+                                       "Gauges and charts of the path-length-aware shift",
+                                       "nlos bench shift -o out/bench"},
+                                      declare,
+                                      measure);
 }
 
 }  // namespace apps

@@ -2,8 +2,9 @@
 #include "apps/bench/render/third_bounce.h"
 
 #include "apps/bench/lower_bounds.h"
+#include "apps/bench/output.h"
 #include "apps/bench/scene.h"
-#include "apps/shapes/grid_mesh.h"
+#include "apps/shapes/shapes.h"
 #include "nlos/compare/compare_scores.h"
 #include "renderer/core/parallel.h"
 #include "renderer/core/process.h"
@@ -67,27 +68,20 @@ renderer::SceneGeometry random_geometry(core::Rng& rng) {
 
 core::Scan random_scan(core::Rng& rng, core::ScanPattern pattern) {
     const int side = pattern == core::ScanPattern::Exhaustive ? 4 : 8;
-    core::Scan scan;
-    scan.pattern = pattern;
-    const auto add = [](core::WallPoints& points, double x, double y) {
-        points.positions.emplace_back(x, y, 0.0);
-        points.normals.push_back(Vec3::UnitZ());
-    };
-    for (int i = 0; i < side; ++i) {
-        for (int j = 0; j < side; ++j) {
-            add(scan.sensing, (i + 0.5) / side - 0.5, (j + 0.5) / side - 0.5);
-        }
-    }
+    renderer::SceneDescription description;
+    description.scan.pattern = {pattern};
+    description.scan.sensing_points = {side, side};
+    description.scan.illumination_points = {side, side};
+    core::Scan scan = renderer::make_scan(description);
     if (pattern == core::ScanPattern::Single) {
         const double x = rng.uniform() - 0.5;
-        add(scan.illumination, x, rng.uniform() - 0.5);
-    } else {
-        scan.illumination = scan.sensing;
+        scan.illumination.positions = {Vec3(x, rng.uniform() - 0.5, 0.0)};
     }
     return scan;
 }
 
-std::vector<TargetError> try_targets(int number) {
+// What became of target errors on one random scene.
+void try_targets(int number, core::Json& rows) {
     constexpr double kReferenceTarget = 1e-3;
     constexpr double kNoTarget = 10.0;  // as coarse as can be
     constexpr double kFarBelow = 5.0;
@@ -105,31 +99,32 @@ std::vector<TargetError> try_targets(int number) {
     };
     const core::Capture reference = capture_of(scan, axis, integrate(kReferenceTarget).transient);
     const std::size_t min_elements = integrate(kNoTarget).num_elements;
-    std::vector<TargetError> errors;
     for (const double target : {0.05, 0.02, 0.01}) {
         const ThirdBounce result = integrate(target);
-        TargetError& error = errors.emplace_back();
-        error.scene = number;
-        error.pattern = core::enum_name(pattern);
-        error.target_error = target;
-        error.rel_l2 = relative_l2(capture_of(scan, axis, result.transient), reference);
-        error.stated = result.estimated_error.value();
-        error.elements = result.num_elements;
-        error.is_coarsest = result.num_elements == min_elements;
-        error.met = error.rel_l2 <= target;
-        error.is_far_below = error.rel_l2 < target / kFarBelow && !error.is_coarsest;
+        const double rel_l2 = relative_l2(capture_of(scan, axis, result.transient), reference);
+        const bool is_coarsest = result.num_elements == min_elements;
+        rows.push_back(
+            {{"scene", number},
+             {"pattern", core::write_value(pattern)},
+             {"target_error", target},
+             {"rel_l2", rel_l2},                          // against the same to 0.1 %
+             {"stated", result.estimated_error.value()},  // what the integrator says of itself
+             {"elements", result.num_elements},           // that the surfaces were cut into
+             {"is_coarsest", is_coarsest},                // no coarser cut exists
+             {"met", rel_l2 <= target},
+             {"is_far_below", rel_l2 < target / kFarBelow && !is_coarsest}});
     }
-    return errors;
 }
 
 // Bins that path knows to 10 %, and both bins beside them, stand for normal variables: next to
 // others there may be rare bright paths of which a bin, and its variance, has not seen any. The
 // integrator may err by `error` of the pair's largest bin.
-Agreement compare_bins(const core::Capture& integrated, const core::Capture& paths, double error) {
+core::Json compare_bins(const core::Capture& integrated, const core::Capture& paths, double error) {
     constexpr double kLargestRelativeSigma = 0.1;
     constexpr double kTwoSided95 = 1.959964;
-    Agreement agreement;
+    std::uint64_t num_bins = 0;
     std::uint64_t num_within = 0;
+    double largest_z = 0.0;
     double sum_integrated = 0.0;
     double sum_paths = 0.0;
     double sum_variance = 0.0;
@@ -151,18 +146,18 @@ Agreement compare_bins(const core::Capture& integrated, const core::Capture& pat
             const double sigma = std::sqrt(double{variance[bin]});
             const double difference = std::abs(double{a[bin]} - double{b[bin]});
             const double z = std::max(0.0, difference - allowed) / sigma;
-            ++agreement.num_bins;
+            ++num_bins;
             if (z <= kTwoSided95) ++num_within;
-            agreement.largest_z = std::max(agreement.largest_z, z);
+            largest_z = std::max(largest_z, z);
         }
     }
-    const auto num_bins = static_cast<double>(agreement.num_bins);
-    agreement.within_95 = num_bins > 0.0 ? static_cast<double>(num_within) / num_bins : 0.0;
-    const double tail = std::erfc(agreement.largest_z / std::sqrt(2.0));
-    agreement.p_value = -std::expm1(num_bins * std::log1p(-tail));
-    agreement.energy_ratio = sum_integrated / sum_paths;
-    agreement.energy_sigma = std::sqrt(sum_variance) / sum_paths;
-    return agreement;
+    const double tail = std::erfc(largest_z / std::sqrt(2.0));
+    return {{"num_bins", num_bins},  // that path knows to 10 %, and their neighbours, too
+            {"within_95", num_bins > 0 ? share_of(num_within, num_bins) : 0.0},
+            {"largest_z", largest_z},  // in standard deviations; its chance among so many bins:
+            {"p_value", -std::expm1(static_cast<double>(num_bins) * std::log1p(-tail))},
+            {"energy_ratio", sum_integrated / sum_paths},
+            {"energy_sigma", std::sqrt(sum_variance) / sum_paths}};
 }
 
 // Some points of a confocal scan, spread over all of them and out of step with its rows; the laser
@@ -189,7 +184,8 @@ core::Scan few_points(const core::Scan& all, core::ScanPattern pattern) {
     return scan;
 }
 
-Agreement compare_with_path(const std::string& path, core::ScanPattern pattern) {
+// How the integrator and path agree on a scene.
+core::Json compare_with_path(const std::string& path, core::ScanPattern pattern) {
     constexpr double kTarget = 5e-4;
     constexpr int kSamples = 100'000;
     const BenchScene bench(path);
@@ -210,20 +206,19 @@ Agreement compare_with_path(const std::string& path, core::ScanPattern pattern) 
     settings.target_error.reset();
     settings.samples = kSamples;
     settings.variance = true;
-    Agreement agreement = compare_bins(integrated, render(settings), kTarget);
-    agreement.scene = path;
-    agreement.pattern = core::enum_name(pattern);
-    return agreement;
+    core::Json row{{"scene", path}, {"pattern", core::write_value(pattern)}};
+    row.update(compare_bins(integrated, render(settings), kTarget));
+    return row;
 }
 
 constexpr double kCostTarget = 0.01;
 constexpr double kCostReferenceTarget = 0.002;
 constexpr double kGate_m = 0.01;
 
-ThirdBounceCost cost_of(const std::string& measurement,
-                        const BenchScene& bench,
-                        const core::TimeAxis& axis,
-                        int repeats) {
+core::Json cost_of(const std::string& measurement,
+                   const BenchScene& bench,
+                   const core::TimeAxis& axis,
+                   int repeats) {
     renderer::RenderSettings settings = bench.settings();
     const auto integrate = [&](double target) {
         settings.target_error = target;
@@ -231,8 +226,8 @@ ThirdBounceCost cost_of(const std::string& measurement,
     };
     const core::Capture reference =
         capture_of(bench.scan(), axis, integrate(kCostReferenceTarget).transient);
-    ThirdBounceCost cost;
-    cost.measurement = measurement;
+    double rel_l2 = 0.0;
+    double million_rays = 0.0;
     std::vector<double> seconds;
     std::vector<double> tracing_seconds;
     std::vector<double> ray_seconds;
@@ -242,51 +237,53 @@ ThirdBounceCost cost_of(const std::string& measurement,
         seconds.push_back(core::cpu_seconds() - start);
         tracing_seconds.push_back(result.tracing_seconds);
         ray_seconds.push_back(shadow_ray_seconds(bench.scene(), bench.scan()));
-        cost.million_rays = 1e-6 * static_cast<double>(result.num_rays);
-        cost.rel_l2 = relative_l2(capture_of(bench.scan(), axis, result.transient), reference);
+        million_rays = 1e-6 * static_cast<double>(result.num_rays);
+        rel_l2 = relative_l2(capture_of(bench.scan(), axis, result.transient), reference);
     }
-    cost.cpu_seconds = nlos::median(seconds);
-    cost.tracing_rate = cost.million_rays / nlos::median(tracing_seconds);
-    cost.whole_rate = cost.million_rays / cost.cpu_seconds;
-    cost.embree_rate = 1e-6 / nlos::median(ray_seconds);
-    return cost;
+    const double cpu_seconds = nlos::median(seconds);
+    return {{"measurement", measurement},
+            {"cpu_seconds", cpu_seconds},
+            {"share", nullptr},  // of the histogram's
+            {"rel_l2", rel_l2},  // against the same to 0.2 %
+            {"million_rays", million_rays},
+            // 1e6 rays per second: while rays are traced, and of the whole.
+            {"tracing_rate", million_rays / nlos::median(tracing_seconds)},
+            {"whole_rate", million_rays / cpu_seconds},
+            // Of Embree alone, with other rays: see shadow_ray_seconds().
+            {"embree_rate", 1e-6 / nlos::median(ray_seconds)}};
 }
 
 }  // namespace
 
-std::vector<TargetError> bench_target_errors(int num_scenes, const core::Progress& progress) {
-    std::vector<TargetError> errors;
+core::Json bench_target_errors(int num_scenes, const core::Progress& progress) {
+    core::Json rows = core::Json::array();
     for (int scene = 0; scene < num_scenes; ++scene) {
-        if (progress.should_stop()) throw core::Failure("bench", "interrupted");
-        progress.update(static_cast<double>(scene) / num_scenes, "target errors");
-        const std::vector<TargetError> of_scene = try_targets(scene);
-        errors.insert(errors.end(), of_scene.begin(), of_scene.end());
+        progress.update(share_of(scene, num_scenes), "target errors");
+        try_targets(scene, rows);
     }
-    return errors;
+    return rows;
 }
 
-std::vector<Agreement> bench_agreement(const std::vector<std::string>& scenes,
-                                       const core::Progress& progress) {
-    std::vector<Agreement> agreements;
+core::Json bench_agreement(const std::vector<std::string>& scenes, const core::Progress& progress) {
+    core::Json rows = core::Json::array();
     for (const std::string& scene : scenes) {
         for (const core::ScanPattern pattern : kPatterns) {
-            if (progress.should_stop()) throw core::Failure("bench", "interrupted");
-            const auto num_comparisons = static_cast<double>(kPatterns.size() * scenes.size());
-            progress.update(static_cast<double>(agreements.size()) / num_comparisons,
+            progress.update(share_of(rows.size(), kPatterns.size() * scenes.size()),
                             "agreement with path");
-            agreements.push_back(compare_with_path(scene, pattern));
+            rows.push_back(compare_with_path(scene, pattern));
         }
     }
-    return agreements;
+    return rows;
 }
 
-std::vector<ThirdBounceCost> bench_third_bounce_costs(const std::string& scene_path, int repeats) {
+core::Json bench_third_bounce_costs(const std::string& scene_path, int repeats) {
     const core::ThreadLimit one_thread(1);
     const BenchScene bench(scene_path);
     renderer::RenderSettings settings = bench.settings();
     settings.method = renderer::Estimator::ThirdBounce;
     const core::Capture capture = bench.render(settings);
-    std::vector<ThirdBounceCost> costs{cost_of("histogram", bench, bench.axis(), repeats)};
+    core::Json costs = core::Json::array();
+    costs.push_back(cost_of("histogram", bench, bench.axis(), repeats));
     for (const double share : {0.1, 0.5, 0.9}) {
         const double opl = bench.axis().bin_begin_m(bin_of_share(capture, share));
         costs.push_back(cost_of(fmt::format("gate of {:g} mm at {:.2f} m", 1e3 * kGate_m, opl),
@@ -299,7 +296,10 @@ std::vector<ThirdBounceCost> bench_third_bounce_costs(const std::string& scene_p
                                  "scan.sensing_points=[16,16]",
                                  "scan.illumination_points=[16,16]"});
     costs.push_back(cost_of("16 x 16 by 16 x 16 pairs", exhaustive, exhaustive.axis(), repeats));
-    for (ThirdBounceCost& cost : costs) cost.share = cost.cpu_seconds / costs.front().cpu_seconds;
+    for (core::Json& cost : costs) {
+        cost["share"] =
+            share_of(cost["cpu_seconds"].get<double>(), costs[0]["cpu_seconds"].get<double>());
+    }
     return costs;
 }
 

@@ -23,33 +23,6 @@ struct TrackBenchSettings {
     double systematic_m = 0.002;  ///< see calib::NoiseSettings
 };
 
-/// A row of the table.
-struct TrackRow {
-    std::string what;
-    int walks = 0;
-    double rmse_m = 0.0;
-    double coverage = 0.0;
-    double missed = 0.0;
-    double false_alarms = 0.0;
-    double latency_s = 0.0;
-    double bound_m = 0.0;     ///< root mean square of the Cramer-Rao bound
-    double over_bound = 0.0;  ///< error over it
-    double frames_per_s = 0.0;
-    double slowest_ms = 0.0;
-};
-NLOS_FIGURES(TrackRow,
-             what,
-             walks,
-             rmse_m,
-             coverage,
-             missed,
-             false_alarms,
-             latency_s,
-             bound_m,
-             over_bound,
-             frames_per_s,
-             slowest_ms);
-
 calib::TrackSettings settings_for(const SimulatedWalk& walk, double systematic_m) {
     calib::TrackSettings settings;
     settings.noise.systematic_m = systematic_m;
@@ -74,18 +47,15 @@ std::vector<calib::TrackedFrame> named(const std::vector<calib::FrameEstimate>& 
     return frames;
 }
 
-/// Sums of squares of the bound of positions, filtered and smoothed, over the frames of a walk.
+/// Sums of squares of the bound of positions, filtered and smoothed, over the frames of walks.
 struct Bound {
     double filtered_m2 = 0.0;
     double smoothed_m2 = 0.0;
-    int frames = 0;
+    std::size_t frames = 0;
 };
 
-/// Posterior Cramer-Rao bound along the true way: covariances as the filter would have them with
-/// the Fisher information there, and smoothed.
-Bound bound_of(const SimulatedWalk& walk, const calib::TrackSettings& settings) {
-    const calib::Motion motion(settings.motion);
-    const double dt_s = walk.sensor.frame_s;
+/// What a sensor counts on average without a target.
+std::vector<double> background_of(const SimulatedWalk& walk) {
     std::vector<double> background(walk.frames.front().counts.size(), 0.0);
     int empty = 0;
     for (std::size_t f = 0; f < walk.frames.size(); ++f) {
@@ -96,6 +66,16 @@ Bound bound_of(const SimulatedWalk& walk, const calib::TrackSettings& settings) 
         ++empty;
     }
     for (double& value : background) value = std::max(value / empty, 1e-3);
+    return background;
+}
+
+/// Posterior Cramer-Rao bound along the true way: covariances as the filter would have them with
+/// the Fisher information there, and smoothed.
+void add_bound(const SimulatedWalk& walk, const calib::TrackSettings& settings, Bound& sum) {
+    const std::vector<double> background = background_of(walk);
+    // What the direct return drowns says nothing.
+    std::vector<double> weights;
+    for (const double count : background) weights.push_back(count < 1e3 ? 1.0 : 0.0);
     std::vector<calib::SeenMatrix> information;
     for (std::size_t f = 0; f < walk.frames.size(); ++f) {
         if (walk.truth[f].targets.empty()) continue;
@@ -105,24 +85,16 @@ Bound bound_of(const SimulatedWalk& walk, const calib::TrackSettings& settings) 
             calib::response_at(walk.sensor, footprints, settings.target);
         calib::SeenVector seen;
         seen << walk.truth[f].targets.front().position_m, std::log(walk.retro_strength);
-        // What the direct return drowns says nothing.
-        std::vector<double> weights(background.size());
-        for (std::size_t i = 0; i < weights.size(); ++i) {
-            weights[i] = background[i] < 1e3 ? 1.0 : 0.0;
-        }
         information.push_back(calib::fisher_information(
             response, {walk.frames[f].counts, background, weights}, seen));
     }
     calib::SeenMatrix wide = calib::SeenMatrix::Identity();
     wide(3, 3) = 9.0;
-    const calib::TrackBound bound = calib::track_bound(information, wide, motion, dt_s);
-    Bound sum;
-    for (std::size_t i = 0; i < information.size(); ++i) {
-        sum.filtered_m2 += bound.filtered_m2[i];
-        sum.smoothed_m2 += bound.smoothed_m2[i];
-        ++sum.frames;
-    }
-    return sum;
+    const calib::TrackBound bound =
+        calib::track_bound(information, wide, calib::Motion(settings.motion), walk.sensor.frame_s);
+    for (const double square : bound.filtered_m2) sum.filtered_m2 += square;
+    for (const double square : bound.smoothed_m2) sum.smoothed_m2 += square;
+    sum.frames += information.size();
 }
 
 /// What a set of walks gave: as they came, and smoothed.
@@ -149,31 +121,27 @@ struct Tally {
         live.add(named(estimates, settings), walk.truth, "walk");
         calib::smooth(estimates, settings);
         smoothed.add(named(estimates, settings), walk.truth, "walk");
-        if (walk.truth[walk.truth.size() / 2].targets.empty()) return;
-        const Bound one = bound_of(walk, settings);
-        bound.filtered_m2 += one.filtered_m2;
-        bound.smoothed_m2 += one.smoothed_m2;
-        bound.frames += one.frames;
+        if (!walk.truth[walk.truth.size() / 2].targets.empty()) add_bound(walk, settings, bound);
     }
 
-    TrackRow row(const std::string& what, int walks, bool is_smoothed) const {
+    core::Json row(const std::string& what, int walks, bool is_smoothed) const {
         const calib::TrackScores scores = (is_smoothed ? smoothed : live).scores();
-        TrackRow row;
-        row.what = what;
-        row.walks = walks;
-        row.rmse_m = scores.rmse_m.value_or(0.0);
-        row.coverage = scores.coverage.value_or(0.0);
-        row.missed = scores.missed.value_or(0.0);
-        row.false_alarms = scores.false_alarms.value_or(0.0);
-        row.latency_s = scores.latency_s.value_or(0.0);
-        if (bound.frames > 0) {
-            const double square = is_smoothed ? bound.smoothed_m2 : bound.filtered_m2;
-            row.bound_m = std::sqrt(square / bound.frames);
-            row.over_bound = row.rmse_m / row.bound_m;
-        }
-        row.frames_per_s = seconds > 0.0 ? frames / seconds : 0.0;
-        row.slowest_ms = 1e3 * slowest_s;
-        return row;
+        const double rmse_m = scores.rmse_m.value_or(0.0);
+        // The root mean square of the bound, and the error over it; without a target there is none.
+        const double square_m2 = is_smoothed ? bound.smoothed_m2 : bound.filtered_m2;
+        const double bound_m =
+            bound.frames > 0 ? std::sqrt(square_m2 / static_cast<double>(bound.frames)) : 0.0;
+        return {{"what", what},
+                {"walks", walks},
+                {"rmse_m", rmse_m},
+                {"coverage", scores.coverage.value_or(0.0)},
+                {"missed", scores.missed.value_or(0.0)},
+                {"false_alarms", scores.false_alarms.value_or(0.0)},
+                {"latency_s", scores.latency_s.value_or(0.0)},
+                {"bound_m", bound_m},
+                {"over_bound", bound_m > 0.0 ? rmse_m / bound_m : 0.0},
+                {"frames_per_s", seconds > 0.0 ? frames / seconds : 0.0},
+                {"slowest_ms", 1e3 * slowest_s}};
     }
 };
 
@@ -188,41 +156,43 @@ Tally tally(int walks, WalkSettings settings, double systematic_m, const core::P
         },
         [&](std::size_t i, const SimulatedWalk& walk) {
             tally.add(walk, systematic_m);
-            progress.update(static_cast<double>(i + 1) / walks, "");
-            return !progress.should_stop();
+            progress.update(share_of(i + 1, walks), "");
+            return true;
         });
     return tally;
 }
 
-std::vector<Target> targets_of(const std::vector<TrackRow>& rows) {
+std::vector<Target> track_targets(const core::Json& rows) {
     const auto share = [](double value) { return fmt::format("{:.1f} %", 100.0 * value); };
     std::vector<Target> targets;
-    for (const TrackRow& row : rows) {
-        if (row.bound_m == 0.0) {
-            targets.push_back({"no target named: " + row.what,
+    for (const core::Json& row : rows) {
+        const std::string what = row["what"];
+        const auto figure = [&](const char* name) { return row[name].get<double>(); };
+        if (figure("bound_m") == 0.0) {
+            targets.push_back({"no target named: " + what,
                                "in 99 % of frames",
-                               share(1.0 - row.false_alarms),
-                               row.false_alarms <= 0.01});
+                               share(1.0 - figure("false_alarms")),
+                               figure("false_alarms") <= 0.01});
             continue;
         }
-        targets.push_back({"RMSE: " + row.what,
+        targets.push_back({"RMSE: " + what,
                            "6 cm",
-                           fmt::format("{:.1f} cm", 100.0 * row.rmse_m),
-                           row.rmse_m <= 0.06});
-        targets.push_back({"95 % ellipsoids cover: " + row.what,
+                           fmt::format("{:.1f} cm", 100.0 * figure("rmse_m")),
+                           figure("rmse_m") <= 0.06});
+        targets.push_back({"95 % ellipsoids cover: " + what,
                            "92 to 98 %",
-                           share(row.coverage),
-                           row.coverage >= 0.92 && row.coverage <= 0.98});
-        if (row.what.ends_with("smoothed")) {
-            targets.push_back({"error over the Cramer-Rao bound: " + row.what,
+                           share(figure("coverage")),
+                           figure("coverage") >= 0.92 && figure("coverage") <= 0.98});
+        if (what.ends_with("smoothed")) {
+            targets.push_back({"error over the Cramer-Rao bound: " + what,
                                "1.5",
-                               fmt::format("{:.2f}", row.over_bound),
-                               row.over_bound <= 1.5});
+                               fmt::format("{:.2f}", figure("over_bound")),
+                               figure("over_bound") <= 1.5});
         } else {
-            targets.push_back({"frames per second, one core: " + row.what,
+            targets.push_back({"frames per second, one core: " + what,
                                "100",
-                               fmt::format("{:.0f}", row.frames_per_s),
-                               row.frames_per_s >= 100.0});
+                               fmt::format("{:.0f}", figure("frames_per_s")),
+                               figure("frames_per_s") >= 100.0});
         }
     }
     return targets;
@@ -231,7 +201,7 @@ std::vector<Target> targets_of(const std::vector<TrackRow>& rows) {
 /// Tracks simulated walks and holds them against their truth, their stated covariance and the
 /// recursive Cramer-Rao bound [Tichavsky1998], and measures speed on one core.
 BenchResult measure_track(const TrackBenchSettings& settings, const core::Progress& progress) {
-    std::vector<TrackRow> rows;
+    core::Json rows = core::Json::array();
     WalkSettings walk;
     constexpr double kThird = 1.0 / 3.0;
     for (const bool moves : {true, false}) {
@@ -250,8 +220,8 @@ BenchResult measure_track(const TrackBenchSettings& settings, const core::Progre
     rows.push_back(tally(settings.empty_walks, walk, settings.systematic_m, part)
                        .row("empty scene", settings.empty_walks, false));
     BenchResult result;
-    result.figures["targets"] = core::write_value(targets_of(rows));
-    result.figures["walks"] = core::write_value(rows);
+    result.figures["targets"] = core::write_value(track_targets(rows));
+    result.figures["walks"] = rows;
     return result;
 }
 

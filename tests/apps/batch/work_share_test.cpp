@@ -56,8 +56,8 @@ TEST(WorkShare, EveryPieceIsInExactlyOneShare) {
 TEST(WorkShare, IsWhatTheTextSays) {
     const ArrayTask task({{"ID", "1"}, {"MIN", "0"}, {"MAX", "8"}});
     expect_share(read_work_share("2/5"), 2, 5);
-    EXPECT_FALSE(read_work_share("0/2").is_everything());
-    EXPECT_TRUE(read_work_share("0/1").is_everything());
+    expect_share(read_work_share("0/2"), 0, 2);
+    expect_share(read_work_share("0/1"), 0, 1);
 }
 
 TEST(WorkShare, OtherTextsAreNamed) {
@@ -69,7 +69,7 @@ TEST(WorkShare, OtherTextsAreNamed) {
 
 TEST(WorkShare, IsEverythingOutsideOfAnArray) {
     const ArrayTask task({});
-    EXPECT_TRUE(read_work_share("").is_everything());
+    expect_share(read_work_share(""), 0, 1);
 }
 
 TEST(WorkShare, TasksOfAnArrayCountFromTheFirstInItsSteps) {
@@ -95,16 +95,16 @@ TEST(WorkShare, AnArrayWithoutItsRangeIsRefused) {
 }
 
 TEST(SlurmScript, AsksForTheTasksAndGivesEachItsShare) {
-    const std::string script = slurm_script({"name", {"sweep", "s.json", "-o", "out"}, 12, 4});
+    const std::string script = slurm_script({"sweep", "/s.json", "/out", {}, 12, 4});
     EXPECT_TRUE(script.starts_with("#!/bin/bash\n"));
     for (const std::string line :
-         {"#SBATCH --job-name=name\n",
+         {"#SBATCH --job-name=nlos-sweep\n",
           "#SBATCH --array=0-11\n",
           "--cpus-per-task=4\n",
           "--requeue",
           "#SBATCH --signal=TERM@60\n",
-          "#SBATCH --output=name-%A_%a.log\n",
-          " sweep s.json -o out --threads 4 --shard \"$SLURM_ARRAY_TASK_ID/12\"\n"}) {
+          "#SBATCH --output=nlos-sweep-%A_%a.log\n",
+          " sweep /s.json -o /out --threads 4 --shard \"$SLURM_ARRAY_TASK_ID/12\"\n"}) {
         EXPECT_NE(script.find(line), std::string::npos) << line << script;
     }
 }
@@ -113,14 +113,17 @@ TEST(SlurmScript, AsksForTheTasksAndGivesEachItsShare) {
 TEST(SlurmScript, RunsTheCommandOfItsTask) {
     const test_support::TemporaryFolder folder;
     test_support::write_file_bytes(folder.file("srun"), "#!/bin/sh\nprintf '<%s>' \"$@\"\n");
+    const std::string file = folder.file("a b's.json");
+    const std::string results = folder.file("results");
     test_support::write_file_bytes(folder.file("script"),
-                                   slurm_script({"name", {"sweep", "a b's.json"}, 3, 1}));
+                                   slurm_script({"sweep", file, results, {"repeats=2"}, 3, 1}));
     const std::string command =
         "chmod +x " + folder.file("srun") + "; PATH=" + folder.path().string() +
         ":$PATH SLURM_ARRAY_TASK_ID=2 bash " + folder.file("script") + " > " + folder.file("out");
     ASSERT_EQ(std::system(command.c_str()), 0);
     EXPECT_TRUE(test_support::file_bytes(folder.file("out"))
-                    .ends_with("><sweep><a b's.json><--threads><1><--shard><2/3>"));
+                    .ends_with("><sweep><" + file + "><-o><" + results +
+                               "><--set><repeats=2><--threads><1><--shard><2/3>"));
 }
 
 TEST(ShellWord, SurvivesTheShell) {

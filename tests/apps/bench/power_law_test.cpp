@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "apps/bench/power_law.h"
+#include "apps/bench/statistics.h"
 
 #include <gtest/gtest.h>
 

@@ -35,7 +35,7 @@ void expect_errors_to_hold(const std::string& capture_path,
     constexpr double kMostSigmas = 4.0;  // of seven parameters in five fits: 0.2 % by chance
     const test_support::TemporaryFolder folder;
     const calib::FitResult fit =
-        fit_to_file(capture_path, kLetter + "/model.json", overrides, "", folder.file("fit.json"));
+        fit_to_file({capture_path, kLetter + "/model.json", overrides, folder.file("fit.json")});
     ASSERT_TRUE(fit.converged);
     ASSERT_EQ(fit.objects.size(), 1U);
     const calib::FittedObject& found = fit.objects[0];

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/dataset/mesh_library.h"
 
-#include "apps/shapes/grid_mesh.h"
+#include "apps/shapes/shapes.h"
 #include "tests/support/error_message.h"
 
 #include <gtest/gtest.h>

@@ -2,7 +2,6 @@
 // Runs of a sweep: the same whoever does them, kept, resumed, and gathered at the end.
 #include "apps/sweep/sweep.h"
 
-#include "apps/sweep/sweep_plots.h"
 #include "renderer/core/parallel.h"
 #include "tests/apps/sweep/sweep_folder.h"
 #include "tests/support/error_message.h"

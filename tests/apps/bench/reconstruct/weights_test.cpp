@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What `nlos bench weights` measures, on fewer surfaces and weights.
-#include "apps/bench/reconstruct/weights.h"
+#include "apps/bench/reconstruct/reconstruct.h"
 
 #include <gtest/gtest.h>
 
@@ -15,13 +15,14 @@ TEST(Weights, TakenByTheSolverAreNearTheBestOfASearch) {
     settings.peaks = {0.0, 20.0};
     settings.observed = {1.0};
     settings.weights = {0.25, 0.7, 1.5};
-    const WeightsBench bench = search_weights(settings, {});
-    ASSERT_EQ(bench.searches.size(), 2U);
-    for (const WeightSearch& search : bench.searches) {
-        EXPECT_GE(search.error_over_best, 0.8) << search.peak_counts;
-        EXPECT_LE(search.error_over_best, 1.2) << search.peak_counts;
-        EXPECT_GE(search.found, 0.9) << search.peak_counts;
-        EXPECT_GE(search.found, 0.85 * search.best_found);
+    const core::Json searches = measure_weights(settings, {}).figures["searches"];
+    ASSERT_EQ(searches.size(), 2U);
+    for (const core::Json& search : searches) {
+        const double found = search["found"];
+        EXPECT_GE(search["error_over_best"].get<double>(), 0.8) << search;
+        EXPECT_LE(search["error_over_best"].get<double>(), 1.2) << search;
+        EXPECT_GE(found, 0.9) << search;
+        EXPECT_GE(found, 0.85 * search["best_found"].get<double>());
     }
 }
 

@@ -30,6 +30,23 @@ struct ErrorSums {
     double trimmed_rel_mse() const { return trimmed / reference; }
 };
 
+/// y = coefficient * x^exponent.
+struct PowerLaw {
+    double coefficient = 0.0;
+    double exponent = 0.0;
+};
+
+/// The law whose line lies closest to the points by least squares, in logarithms of both. All
+/// values are above 0; with fewer than two different x the exponent is 0.
+PowerLaw fit_power_law(std::span<const double> x, std::span<const double> y);
+
+/// Mean of independent values and its standard error; 0 for a single value.
+struct Estimate {
+    double mean = 0.0;
+    double standard_error = 0.0;
+};
+Estimate estimate_of(const std::vector<double>& values);
+
 /// All of the same shape.
 ErrorSums errors_of(const core::Transient& x, const core::Transient& a, const core::Transient& b);
 

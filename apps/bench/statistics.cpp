@@ -1,9 +1,38 @@
 // SPDX-License-Identifier: MIT
-#include "apps/bench/error_metrics.h"
+#include "apps/bench/statistics.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 
 namespace apps {
+
+PowerLaw fit_power_law(std::span<const double> x, std::span<const double> y) {
+    const double n = static_cast<double>(x.size());
+    double mean_x = 0.0;
+    double mean_y = 0.0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        mean_x += std::log(x[i]) / n;
+        mean_y += std::log(y[i]) / n;
+    }
+    double xx = 0.0;
+    double xy = 0.0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        const double offset = std::log(x[i]) - mean_x;
+        xx += offset * offset;
+        xy += offset * (std::log(y[i]) - mean_y);
+    }
+    const double exponent = xx > 0.0 ? xy / xx : 0.0;
+    return {std::exp(mean_y - exponent * mean_x), exponent};
+}
+
+Estimate estimate_of(const std::vector<double>& values) {
+    const auto count = static_cast<double>(values.size());
+    const double mean = std::accumulate(values.begin(), values.end(), 0.0) / count;
+    double squares = 0.0;
+    for (const double value : values) squares += (value - mean) * (value - mean);
+    return {mean, count > 1.0 ? std::sqrt(squares / (count - 1.0) / count) : 0.0};
+}
 
 ErrorSums errors_of(const core::Transient& x, const core::Transient& a, const core::Transient& b) {
     constexpr double kTrimmedShare = 0.002;

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "apps/bench/reconstruct/random_capture.h"
+#include "apps/bench/reconstruct/reconstruct_trials.h"
 
 #include "apps/bench/scene.h"
-#include "apps/shapes/grid_mesh.h"
+#include "apps/shapes/shapes.h"
 #include "nlos/detector/detector.h"
+#include "renderer/core/process.h"
 #include "renderer/core/random.h"
-#include "renderer/render.h"
-#include "renderer/scene/scene_file.h"
 
 #include <cmath>
+#include <cstdint>
 
 namespace apps {
 namespace {
@@ -66,6 +66,26 @@ core::Capture random_counts(const core::Capture& clean, double peak_counts, int 
     settings.ambient = kBackgroundShare * peak_counts;
     settings.seed = static_cast<std::uint64_t>(seed);
     return nlos::detect(clean, settings);
+}
+
+void judge(bool is_asked, const std::string& text, bool is_met, core::Json& row) {
+    if (!is_asked) return;
+    const std::string before = row["target"];
+    row["target"] = before + (before.empty() ? "" : ", ") + text;
+    row["met"] = is_met && row["met"] != "no" ? "yes" : "no";
+}
+
+ReconstructRun run_reconstruction(const core::Capture& capture, const Overrides& overrides) {
+    nlos::ReconstructSettings settings;
+    for (const std::string& text : overrides) core::apply_override(settings, text);
+    core::reset_peak_rss();
+    const auto before = static_cast<double>(core::peak_rss_bytes());
+    const double start = core::cpu_seconds();
+    ReconstructRun run{nlos::reconstruct(capture, settings, {}), 0.0, 0.0, 0.0};
+    run.cpu_seconds = core::cpu_seconds() - start;
+    run.peak_bytes = static_cast<double>(core::peak_rss_bytes());
+    run.bytes = run.peak_bytes - before;
+    return run;
 }
 
 }  // namespace apps
