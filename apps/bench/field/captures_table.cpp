@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kNearest_m = 0.15;  // what is nearer is the wall's own light
-constexpr float kBrightShare = 0.5F;
+constexpr float kBrightColumn = 0.5F;
 
 // Bins added up while they stay below half the wall points' distance, as our methods do, and left
 // out before 0, which some methods refuse, and from `end_m` on.
@@ -59,7 +59,7 @@ std::optional<double> bright_depth_m(const core::DepthMap& depth, const nlos::Vo
     const float brightest = *std::max_element(brightness.begin(), brightness.end());
     std::vector<double> depths;
     for (std::size_t c = 0; c < brightness.size(); ++c) {
-        if (depth.is_foreground(c) && brightness[c] > kBrightShare * brightest) {
+        if (depth.is_foreground(c) && brightness[c] > kBrightColumn * brightest) {
             depths.push_back(depth.depth_m[c]);
         }
     }
