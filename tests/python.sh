@@ -10,7 +10,7 @@ cd "$(dirname "$0")/.."
 if [ "${1:-}" = install ]; then
     # Files are joined as in that build: with the package's own number all would be compiled again.
     build/python/bin/pip install --quiet --no-build-isolation --no-deps . \
-        --config-settings=build-dir=build/check --config-settings=cmake.build-type=RelWithDebInfo \
+        --config-settings=build-dir=build/check --config-settings=cmake.build-type=Check \
         --config-settings=cmake.define.BUILD_TESTING=ON \
         --config-settings=cmake.define.CMAKE_UNITY_BUILD_BATCH_SIZE=32
     exec build/python/bin/python tests/apps/python/installed_wheel.py

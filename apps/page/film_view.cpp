@@ -26,7 +26,7 @@ std::vector<std::size_t> pairs_of_cells(const core::Scan& scan,
         }
         return pairs;
     }
-    std::vector<std::size_t> pairs(grid ? grid->size[0] * grid->size[1] : scan.sensing.size());
+    std::vector<std::size_t> pairs(nlos::frame_points(scan).size());
     for (std::size_t cell = 0; cell < pairs.size(); ++cell) {
         const std::size_t point =
             grid ? grid->point(cell / grid->size[1], cell % grid->size[1]) : cell;
@@ -51,13 +51,15 @@ void describe_cells(const core::Scan& scan,
         film.detail = fmt::format("{} scan of {} × {} points", pattern, film.size[0], film.size[1]);
     } else {
         film.kind = FilmView::Kind::List;
-        film.size = {scan.sensing.size(), 1};
-        film.positions = scan.sensing.positions;
+        film.positions = nlos::frame_points(scan).positions;
+        film.size = {film.positions.size(), 1};
         film.detail = fmt::format("{} scan of {} points", pattern, film.size[0]);
     }
     if (scan.pattern == core::ScanPattern::Exhaustive) {
-        film.detail +=
-            fmt::format(", lit at the middle one of {} points", scan.illumination.size());
+        const bool of_lit = nlos::shows_lit_points(scan);
+        film.detail += fmt::format(", {} at the middle one of {} points",
+                                   of_lit ? "sensed" : "lit",
+                                   (of_lit ? scan.sensing : scan.illumination).size());
     }
 }
 

@@ -76,9 +76,18 @@ core::Json quantity_json(const ColumnQuantity& quantity,
             {"values", coding_of(values).add<std::uint16_t>(arrays, values)}};
 }
 
-core::Json maps_json(const core::DepthMap& columns,
+/// Whether the wall's frame is that of the page.
+bool is_of_page(const ResultView& result, const core::Transform& frame_from_world) {
+    const core::Transform moved = frame_from_world * result.depth.world_from_wall;
+    return moved.isApprox(core::Transform::Identity(), kSameFrame);
+}
+
+/// Name, detail and maps.
+core::Json maps_json(const ResultView& result,
                      const std::vector<ColumnQuantity>& quantities,
+                     const core::Transform& frame_from_world,
                      PageArrays& arrays) {
+    const core::DepthMap& columns = result.depth;
     core::Json maps = core::Json::array();
     for (const ColumnQuantity& quantity : quantities) {
         if (quantity.values.empty()) continue;
@@ -87,7 +96,8 @@ core::Json maps_json(const core::DepthMap& columns,
                             {"x_m", nlos::cell_edges(columns.x_m)},
                             {"y_m", nlos::cell_edges(columns.y_m)}});
     }
-    return maps;
+    const char* wall = is_of_page(result, frame_from_world) ? "" : ", of another wall";
+    return {{"name", result.name}, {"detail", result.detail + wall}, {"maps", std::move(maps)}};
 }
 
 /// The foreground of a depth map with what is known of each point.
@@ -209,15 +219,12 @@ core::Json result_json(const ResultView& result,
                        int halvings,
                        PageArrays& arrays) {
     const std::vector<ColumnQuantity> quantities = quantities_of(result, scales);
-    const core::Transform moved = frame_from_world * result.depth.world_from_wall;
-    const bool same_wall = moved.isApprox(core::Transform::Identity(), kSameFrame);
-    const bool has_volume = same_wall && !result.volume.codes.empty();
-    return {{"name", result.name},
-            {"detail", result.detail + (same_wall ? "" : ", of another wall")},
-            {"is_truth", false},
-            {"maps", maps_json(result.depth, quantities, arrays)},
-            {"points", points_json(result.depth, quantities, frame_from_world, arrays)},
-            {"volume", has_volume ? volume_json(result.volume, halvings, arrays) : core::Json()}};
+    core::Json json = maps_json(result, quantities, frame_from_world, arrays);
+    json["is_truth"] = false;
+    json["points"] = points_json(result.depth, quantities, frame_from_world, arrays);
+    const bool has_volume = is_of_page(result, frame_from_world) && !result.volume.codes.empty();
+    json["volume"] = has_volume ? volume_json(result.volume, halvings, arrays) : core::Json();
+    return json;
 }
 
 core::Json truth_json(const core::DepthMap& truth,
@@ -229,9 +236,8 @@ core::Json truth_json(const core::DepthMap& truth,
     view.name = "Truth";
     view.detail = scene;
     view.depth = truth;
-    core::Json json = result_json(view, scales, frame_from_world, 0, arrays);
-    json["is_truth"] = true;
-    json["points"] = nullptr;  // its mesh is shown
+    core::Json json = maps_json(view, quantities_of(view, scales), frame_from_world, arrays);
+    json.update({{"is_truth", true}, {"points", nullptr}, {"volume", nullptr}});  // a mesh is shown
     return json;
 }
 

@@ -43,7 +43,7 @@ ImagePanel wall_image(const core::Capture& capture,
                       const WallGrid& grid,
                       const std::array<std::size_t, 2>& bins) {
     std::vector<float> sums;
-    for (std::size_t point = 0; point < capture.scan.sensing.size(); ++point) {
+    for (std::size_t point = 0; point < grid.size[0] * grid.size[1]; ++point) {
         const std::size_t pair = pair_of(capture.scan, point);
         const core::BinRange observed = capture.observed_range(pair);
         float sum = 0.0F;
@@ -91,20 +91,21 @@ std::string axis_text(const core::TimeAxis& axis) {
 ImagePanel light_panel(const core::Capture& capture,
                        const core::Transient& transient,
                        const WallGrid& grid) {
-    std::vector<double> light(capture.scan.sensing.size(), 0.0);
+    std::vector<double> light(grid.size[0] * grid.size[1], 0.0);
     std::vector<int> seen(light.size(), 0);  // bins
     for (std::size_t pair = 0; pair < capture.scan.num_pairs(); ++pair) {
-        double& sum = light[capture.scan.sensing_index(pair)];
-        for (const float value : transient.histogram(pair)) sum += value;
-        seen[capture.scan.sensing_index(pair)] += capture.observed_range(pair).size();
+        const std::size_t point = point_of(capture.scan, pair);
+        for (const float value : transient.histogram(pair)) light[point] += value;
+        seen[point] += capture.observed_range(pair).size();
     }
     for (std::size_t i = 0; i < light.size(); ++i) {
         if (seen[i] == 0) light[i] = std::numeric_limits<float>::quiet_NaN();
     }
     ImagePanel panel = wall_panel(grid, {light.begin(), light.end()});
-    panel.title = capture.scan.pattern == core::ScanPattern::Exhaustive
-                      ? "Light over the wall, all bins and lit points"
-                      : "Light over the wall, all bins";
+    panel.title = "Light over the wall, all bins";
+    if (capture.scan.pattern == core::ScanPattern::Exhaustive) {
+        panel.title += shows_lit_points(capture.scan) ? " and sensing points" : " and lit points";
+    }
     panel.value_label = light_label(capture);
     return panel;
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/pictures/light_scale.h"
 
+#include "nlos/preparation/wall_frame.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -26,9 +28,19 @@ std::string light_per_bin_label(const core::Capture& capture) {
     return is_rendered(capture) ? kRenderedRadiancePerBin : "radiance per bin";
 }
 
-std::size_t pair_of(const core::Scan& scan, std::size_t sensing) {
-    if (scan.pattern != core::ScanPattern::Exhaustive) return sensing;
-    return scan.illumination.size() / 2 * scan.sensing.size() + sensing;
+bool shows_lit_points(const core::Scan& scan) {
+    return &frame_points(scan) == &scan.illumination;
+}
+
+std::size_t pair_of(const core::Scan& scan, std::size_t point) {
+    if (scan.pattern != core::ScanPattern::Exhaustive) return point;
+    const std::size_t num_sensing = scan.sensing.size();
+    return shows_lit_points(scan) ? point * num_sensing + num_sensing / 2
+                                  : scan.illumination.size() / 2 * num_sensing + point;
+}
+
+std::size_t point_of(const core::Scan& scan, std::size_t pair) {
+    return shows_lit_points(scan) ? scan.illumination_index(pair) : scan.sensing_index(pair);
 }
 
 std::vector<double> mean_transient(const core::Capture& capture) {

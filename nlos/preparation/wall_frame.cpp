@@ -129,9 +129,12 @@ void find_footprint(const core::Scan& scan, WallFrame& wall) {
 
 }  // namespace
 
+const core::WallPoints& frame_points(const core::Scan& scan) {
+    return scan.sensing.size() >= scan.illumination.size() ? scan.sensing : scan.illumination;
+}
+
 WallFrame derive_wall_frame(const core::Scan& scan) {
-    const bool use_sensing = scan.sensing.size() >= scan.illumination.size();
-    const core::WallPoints& points = use_sensing ? scan.sensing : scan.illumination;
+    const core::WallPoints& points = frame_points(scan);
     const Vec3 center = mean_of(points.positions);
     Vec3 mean_normal = mean_of(points.normals);
     if (!(mean_normal.norm() > 1e-9)) mean_normal = Vec3::UnitZ();

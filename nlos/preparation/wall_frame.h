@@ -34,15 +34,19 @@ struct WallFrame {
     core::Transform world_from_wall = core::Transform::Identity();
     std::array<double, 2> min_m{};  ///< smallest x and y of all wall points, half a cell beyond
     std::array<double, 2> max_m{};  ///< largest x and y of all wall points, half a cell beyond
-    std::optional<WallGrid> grid;   ///< of the points that decide, see below
+    std::optional<WallGrid> grid;   ///< of `frame_points`
     std::string why_no_grid;        ///< in words, when `grid` is empty
 };
 
-/// Derives the wall's frame from the points of a scan.
+/// The points that decide the wall's frame: the sensing points, or the illumination points where
+/// there are more of these.
+const core::WallPoints& frame_points(const core::Scan& scan);
+
+/// Derives the wall's frame from `frame_points` of a scan.
 ///
-/// The sensing points decide; with fewer sensing than illumination points, the latter. A grid whose
-/// axes and normal are left-handed keeps x along the first axis and turns y around, or the other
-/// way round when that makes y point up (world y); rows and columns are then `is_descending`.
+/// A grid whose axes and normal are left-handed keeps x along the first axis and turns y around, or
+/// the other way round when that makes y point up (world y); rows and columns are then
+/// `is_descending`.
 ///
 /// returns   frame, footprint, and the grid unless the points are bent, tilted or uneven by more
 ///           than 2 % of their pitch

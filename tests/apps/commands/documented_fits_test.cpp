@@ -61,7 +61,7 @@ TEST(DocumentedFits, OfNoiseFreeRadianceKnowTheirErrors) {
         const std::string capture = folder.file("capture.h5");
         render_to_file(
             kLetter + "/scene.json",
-            {"scan.sensing_points=[32,32]", std::string("render.target_error=") + target_error},
+            {"scan.sensing_points=[16,16]", std::string("render.target_error=") + target_error},
             capture);
         expect_errors_to_hold(capture, {});
     }
@@ -70,7 +70,7 @@ TEST(DocumentedFits, OfNoiseFreeRadianceKnowTheirErrors) {
 TEST(DocumentedFits, OfPathsWithTheirNoiseKnowTheirErrors) {
     const test_support::TemporaryFolder folder;
     render_to_file(kLetter + "/scene.json",
-                   {"scan.sensing_points=[32,32]", "render.method=path", "render.samples=1024"},
+                   {"scan.sensing_points=[16,16]", "render.method=path", "render.samples=1024"},
                    folder.file("capture.h5"));
     expect_errors_to_hold(folder.file("capture.h5"), {});
 }
@@ -81,7 +81,7 @@ TEST(DocumentedFits, OfCountsKnowTheirErrors) {
     detector.photons = 1e5;
     detector.response.jitter_fwhm_ps = 200.0;
     const auto render = render_to_file(
-        kLetter + "/scene.json", {"scan.sensing_points=[32,32]"}, folder.file("capture.h5"));
+        kLetter + "/scene.json", {"scan.sensing_points=[16,16]"}, folder.file("capture.h5"));
     nlos::write_capture(folder.file("counts.h5"), nlos::detect(render.capture, detector));
     expect_errors_to_hold(folder.file("counts.h5"), {"response=capture"});
 }

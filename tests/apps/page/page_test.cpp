@@ -179,6 +179,21 @@ TEST(Page, FilmsOfExhaustiveScansAreOfTheMiddleIlluminationPoint) {
     EXPECT_NE(film.detail.find("lit at the middle one"), std::string::npos);
 }
 
+TEST(Page, FilmsOfScansWithMoreLitThanSensingPointsAreOfTheLitOnes) {
+    core::Capture capture = lit_capture(core::ScanPattern::Exhaustive);
+    std::swap(capture.scan.sensing, capture.scan.illumination);
+    const nlos::WallGrid grid = *nlos::derive_wall_frame(capture.scan).grid;
+    const std::size_t num_sensing = capture.scan.sensing.size();
+    const std::size_t pair = grid.point(0, 0) * num_sensing + num_sensing / 2;
+    const auto light = double{capture.transient.histogram(pair)[1]};
+    FilmView film = film_view(capture, "a.h5");
+    EXPECT_NEAR(film.coding.decode(film.codes[0]) / light, 1.0, 0.01);
+    EXPECT_NE(film.detail.find("sensed at the middle one"), std::string::npos);
+    capture.scan.illumination.grid.reset();
+    film = film_view(capture, "a.h5");
+    EXPECT_EQ(film.positions.size(), capture.scan.illumination.size());
+}
+
 TEST(Page, HalvedFilmsHoldTheSameLight) {
     const FilmView film = film_view(lit_capture(core::ScanPattern::Confocal), "a.h5");
     const FilmView half = halved(film);

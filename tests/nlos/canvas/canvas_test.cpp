@@ -4,9 +4,9 @@
 #include "nlos/canvas/png_file.h"
 #include "nlos/canvas/raster.h"
 #include "renderer/core/error.h"
+#include "tests/support/decoded_png.h"
 
 #include <gtest/gtest.h>
-#include <opencv2/imgcodecs.hpp>
 #include <pugixml.hpp>
 #include <zlib.h>
 
@@ -15,12 +15,10 @@
 namespace nlos {
 namespace {
 
+using test_support::decoded_png;
+
 constexpr Colour kWhite{255, 255, 255};
 constexpr Colour kRed{200, 10, 20};
-
-cv::Mat decode(const std::string& png) {
-    return cv::imdecode(std::vector<unsigned char>(png.begin(), png.end()), cv::IMREAD_COLOR);
-}
 
 /// A text, a line, and an image of 2 x 1 cells.
 std::string small_drawing(PictureFormat format, const std::string& text) {
@@ -51,7 +49,7 @@ std::string unpacked_pdf(const std::string& pdf) {
 TEST(Canvas, LettersHaveTheHeightAskedFor) {
     Canvas canvas(200, 100, kWhite);
     canvas.text(100, 50, "H", {.cap_height_px = 40.0, .anchor = TextAnchor::Centre});
-    const cv::Mat picture = decode(canvas.finish());
+    const cv::Mat picture = decoded_png(canvas.finish());
     int top = picture.rows;
     int bottom = 0;
     int left = picture.cols;
@@ -81,7 +79,7 @@ TEST(Canvas, TextsGrowWithTheirLetters) {
 }
 
 TEST(Canvas, TextsThatAreNoUtf8CanBeDrawn) {
-    EXPECT_FALSE(decode(small_drawing(PictureFormat::Png, "\xff\xfe\n")).empty());
+    EXPECT_FALSE(decoded_png(small_drawing(PictureFormat::Png, "\xff\xfe\n")).empty());
 }
 
 TEST(Canvas, SvgHoldsLettersLinesAndImages) {
@@ -122,7 +120,7 @@ TEST(Canvas, SameDrawingsAreTheSameBytes) {
 }
 
 TEST(Canvas, CellsOfImagesKeepTheirColoursAndEdges) {
-    const cv::Mat picture = decode(small_drawing(PictureFormat::Png, ""));
+    const cv::Mat picture = decoded_png(small_drawing(PictureFormat::Png, ""));
     const cv::Vec3b red(kRed.blue, kRed.green, kRed.red);
     EXPECT_EQ(picture.at<cv::Vec3b>(140, 100), red);
     EXPECT_EQ(picture.at<cv::Vec3b>(159, 119), red);
@@ -181,7 +179,7 @@ TEST(AnimatedPng, HoldsEveryFrame) {
         frames.push_back(small_drawing(PictureFormat::Png, text));
     }
     const std::string film = join_animated_png(frames, 5);
-    EXPECT_EQ(cv::norm(decode(film), decode(frames[0])), 0.0) << "what other viewers show";
+    EXPECT_EQ(cv::norm(decoded_png(film), decoded_png(frames[0])), 0.0) << "what other viewers show";
 
     std::vector<std::string> pixels;  // of the frames, compressed
     std::uint32_t next = 0;

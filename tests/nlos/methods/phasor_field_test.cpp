@@ -79,13 +79,14 @@ VolumeAxes axes_of(const WallFrame& wall) {
     return axes;
 }
 
-/// Largest difference of a volume and the defining sum, relative to the volume's maximum.
+/// Largest difference of a volume and the defining sum, relative to the volume's maximum; over a
+/// quarter of the voxels, some in every column and every plane.
 double largest_error(const core::Capture& capture, const Volume& volume) {
     double error = 0.0;
     double largest = 0.0;
     for (std::size_t ix = 0; ix < volume.axes.x_m.size(); ++ix) {
         for (std::size_t iy = 0; iy < volume.axes.y_m.size(); ++iy) {
-            for (std::size_t iz = 0; iz < volume.axes.z_m.size(); ++iz) {
+            for (std::size_t iz = (ix + iy) % 4; iz < volume.axes.z_m.size(); iz += 4) {
                 const Vec3 p = volume.axes.world_from_wall *
                                Vec3(volume.axes.x_m[ix], volume.axes.y_m[iy], volume.axes.z_m[iz]);
                 const double expected = field_magnitude(capture, p);

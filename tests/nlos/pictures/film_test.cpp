@@ -6,7 +6,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace nlos {
 namespace {
@@ -60,6 +62,17 @@ TEST(Film, ExhaustiveScansShowTheMiddleLitPoint) {
     const core::Capture capture = test_support::example_capture(core::ScanPattern::Exhaustive);
     // Lit point 2 of 4, the first of 6 sensing points.
     EXPECT_FLOAT_EQ(film_panels(capture, 300)[0].values[0], capture.transient.histogram(2 * 6)[0]);
+}
+
+TEST(Film, ScansWithMoreLitThanSensingPointsShowTheLitOnes) {
+    core::Capture capture = test_support::example_capture(core::ScanPattern::Exhaustive);
+    std::swap(capture.scan.sensing, capture.scan.illumination);
+    const std::vector<ImagePanel> frames = film_panels(capture, 300);
+    ASSERT_EQ(frames[0].values.size(), 6U);
+    for (std::size_t lit = 0; lit < 6; ++lit) {  // sensing point 2 of 4
+        const float light = capture.transient.histogram(4 * lit + 2)[0];
+        EXPECT_EQ(std::ranges::count(frames[0].values, light), 1);
+    }
 }
 
 TEST(Film, SequencesAreShownFrameByFrame) {

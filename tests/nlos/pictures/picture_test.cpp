@@ -3,12 +3,12 @@
 #include "nlos/pictures/picture.h"
 
 #include "nlos/pictures/panel_drawing.h"
+#include "tests/support/decoded_png.h"
 #include "tests/support/error_message.h"
 #include "tests/support/file_bytes.h"
 #include "tests/support/temporary_folder.h"
 
 #include <gtest/gtest.h>
-#include <opencv2/imgcodecs.hpp>
 
 #include <array>
 #include <cmath>
@@ -16,6 +16,8 @@
 
 namespace nlos {
 namespace {
+
+using test_support::decoded_png;
 
 ImagePanel small_panel() {
     ImagePanel panel;
@@ -29,14 +31,10 @@ ImagePanel small_panel() {
     return panel;
 }
 
-cv::Mat decode(const std::string& png) {
-    return cv::imdecode(std::vector<unsigned char>(png.begin(), png.end()), cv::IMREAD_COLOR);
-}
-
 /// Where the panel's red pixels (its largest values) lie, as shares of its white picture; the
 /// colour bar, which holds the same red in a narrow strip at the right, is left out.
 std::array<double, 2> centre_of_red(const ImagePanel& panel) {
-    const cv::Mat picture = decode(encode_panels({panel}, 1));
+    const cv::Mat picture = decoded_png(encode_panels({panel}, 1));
     const Colour red = colour_at(ColourMap::Diverging, 1.0);
     const int plot_end = picture.cols * 4 / 5;
     double count = 0.0;
@@ -75,7 +73,7 @@ TEST(Picture, ValuesWithoutMeaningAreDrawnNeutral) {
     ImagePanel panel = small_panel();
     panel.values.assign(16, NAN);
     panel.value_range.reset();
-    const cv::Mat picture = decode(encode_panels({panel}, 1));
+    const cv::Mat picture = decoded_png(encode_panels({panel}, 1));
     const cv::Vec3b middle = picture.at<cv::Vec3b>(picture.rows / 2, picture.cols / 2);
     EXPECT_LT(std::abs(middle[0] - middle[2]), 12);  // grey
     EXPECT_NE(middle, cv::Vec3b(255, 255, 255));
@@ -87,7 +85,7 @@ TEST(Picture, CategoriesHaveColoursOfTheirOwn) {
     for (const auto& [value, blue, red] :
          {std::tuple{1.0F, 30, 200}, std::tuple{2.0F, 200, 30}, std::tuple{0.0F, 255, 255}}) {
         panel.values.assign(16, value);
-        const cv::Mat picture = decode(encode_panels({panel}, 1));
+        const cv::Mat picture = decoded_png(encode_panels({panel}, 1));
         const cv::Vec3b middle = picture.at<cv::Vec3b>(picture.rows / 2, picture.cols / 2);
         EXPECT_EQ(middle[0], blue) << value;
         EXPECT_EQ(middle[2], red) << value;
@@ -96,9 +94,9 @@ TEST(Picture, CategoriesHaveColoursOfTheirOwn) {
 
 TEST(Picture, PanelsFillRowsFirst) {
     const std::vector<Panel> panels{small_panel(), small_panel(), small_panel()};
-    const cv::Mat one = decode(encode_panels({small_panel()}, 1));
-    const cv::Mat row = decode(encode_panels(panels, 3));
-    const cv::Mat table = decode(encode_panels(panels, 2));
+    const cv::Mat one = decoded_png(encode_panels({small_panel()}, 1));
+    const cv::Mat row = decoded_png(encode_panels(panels, 3));
+    const cv::Mat table = decoded_png(encode_panels(panels, 2));
     EXPECT_EQ(row.rows, one.rows);
     EXPECT_GT(row.cols, 2.5 * one.cols);
     EXPECT_GT(table.rows, 1.5 * one.rows);
@@ -145,7 +143,7 @@ TEST(Picture, ThinPlotsStayTrueToTheMetre) {
     ImagePanel panel = small_panel();
     panel.values.assign(16, 1.0F);
     panel.y_range = {0.0, 0.1};
-    const cv::Mat picture = decode(encode_panels({panel}, 1));
+    const cv::Mat picture = decoded_png(encode_panels({panel}, 1));
     const Colour red = colour_at(ColourMap::Diverging, 1.0);
     int rows = 0;
     for (int y = 0; y < picture.rows; ++y) {
@@ -167,10 +165,10 @@ TEST(Picture, OddCurvesCanBeDrawn) {
     for (const auto& y :
          {std::vector<double>{0.0, 0.0}, {5.0, 5.0}, {-1.0, -2.0}, {1e-12, 2e-12}}) {
         const CurvePanel curve{"curve", {0.0, 1.0}, y, "x", "y"};
-        EXPECT_FALSE(decode(encode_panels({curve}, 1)).empty());
+        EXPECT_FALSE(decoded_png(encode_panels({curve}, 1)).empty());
     }
     const CurvePanel point{"point", {1.0}, {1.0}, "x", "y"};
-    EXPECT_FALSE(decode(encode_panels({point}, 1)).empty());
+    EXPECT_FALSE(decoded_png(encode_panels({point}, 1)).empty());
 }
 
 }  // namespace

@@ -3,15 +3,16 @@
 #include "nlos/pictures/pictures.h"
 
 #include "nlos/pictures/picture.h"
+#include "tests/support/decoded_png.h"
 #include "tests/support/error_message.h"
 #include "tests/support/example_capture.h"
 #include "tests/support/example_volume.h"
 
 #include <gtest/gtest.h>
-#include <opencv2/imgcodecs.hpp>
 
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace nlos {
 namespace {
@@ -162,8 +163,17 @@ TEST(Pictures, StreakHoldsTheMiddleRowOfTheWall) {
 
 TEST(Pictures, EveryKindOfCaptureCanBeDrawn) {
     for (const auto pattern : {core::ScanPattern::Single, core::ScanPattern::Exhaustive}) {
-        const core::Capture capture = test_support::example_capture(pattern);
+        core::Capture capture = test_support::example_capture(pattern);
         EXPECT_FALSE(encode_panels(capture_panels(capture), 3).empty());
+        if (pattern == core::ScanPattern::Single) continue;
+        std::swap(capture.scan.sensing, capture.scan.illumination);
+        const std::vector<Panel> panels = capture_panels(capture);
+        const std::vector<float>& over_lit_points = image(panels[1]).values;
+        ASSERT_EQ(over_lit_points.size(), 6U);
+        const auto all = capture.transient.values();
+        EXPECT_NEAR(std::accumulate(over_lit_points.begin(), over_lit_points.end(), 0.0),
+                    std::accumulate(all.begin(), all.end(), 0.0),
+                    1e-4);
     }
     core::Capture list = test_support::example_capture(core::ScanPattern::Confocal);
     list.scan.sensing.grid.reset();
@@ -232,13 +242,12 @@ TEST(Pictures, PreviewShowsTheImageUpright) {
     for (float& value : capture.transient.values()) value = 0.0F;
     capture.transient.histogram(1)[2] = 2.0F;  // x 0, y 1: bottom left
     const std::string png = encode_preview_png(capture);
-    const cv::Mat bytes(1, static_cast<int>(png.size()), CV_8U, const_cast<char*>(png.data()));
-    const cv::Mat picture = cv::imdecode(bytes, cv::IMREAD_GRAYSCALE);
+    const cv::Mat picture = test_support::decoded_png(png);
     ASSERT_EQ(picture.cols, 639);
     ASSERT_EQ(picture.rows, 426);
-    EXPECT_EQ(picture.at<std::uint8_t>(320, 100), 255);
-    EXPECT_EQ(picture.at<std::uint8_t>(100, 100), 0);
-    EXPECT_EQ(picture.at<std::uint8_t>(320, 320), 0);
+    EXPECT_EQ(picture.at<cv::Vec3b>(320, 100), cv::Vec3b(255, 255, 255));
+    EXPECT_EQ(picture.at<cv::Vec3b>(100, 100), cv::Vec3b(0, 0, 0));
+    EXPECT_EQ(picture.at<cv::Vec3b>(320, 320), cv::Vec3b(0, 0, 0));
 }
 
 TEST(Pictures, FilmStripShowsFramesOnOneScale) {

@@ -150,14 +150,14 @@ struct Setting {
     core::TimeAxis axis;
     int max_bounces;
     bool glossy;
-    int samples = 2080;  ///< path tracing takes eight times as many
+    int samples = 1040;  ///< path tracing takes eight times as many
 };
 
 std::vector<Setting> settings() {
     return {{"gate", wall_scan(core::ScanPattern::Confocal), kGate, 5, false},
-            {"histogram", wall_scan(core::ScanPattern::Single), kHistogram, 4, true, 1040},
-            {"exhaustive", wall_scan(core::ScanPattern::Exhaustive), kHistogram, 3, false, 1040},
-            {"image_gate", image(), kImageGate, 4, true},
+            {"histogram", wall_scan(core::ScanPattern::Single), kHistogram, 4, true, 520},
+            {"exhaustive", wall_scan(core::ScanPattern::Exhaustive), kHistogram, 3, false, 520},
+            {"image_gate", image(), kImageGate, 4, true, 2080},
             {"image_histogram", image(), kImageHistogram, 3, false}};
 }
 
@@ -220,10 +220,11 @@ TEST_P(RestirOfScenes, AgreesWithPathTracing) {
     const core::Scan scan = renderer::make_scan(description);
     const renderer::Scene scene = renderer::load_scene(description, scan);
     const int max_bounces = is_image ? 4 : 5;
+    const int samples = is_image ? 2048 : 1024;
     const Estimate paths = render_often(scene,
                                         scan,
                                         description.time_axis,
-                                        restir_settings(Estimator::Path, 8192, max_bounces),
+                                        restir_settings(Estimator::Path, 4 * samples, max_bounces),
                                         "Restir.Scenes.Paths." + GetParam());
     // By turns, one of these for each scene: all of them are tried on every kind of scan above.
     const std::vector<Case> others{
@@ -242,7 +243,7 @@ TEST_P(RestirOfScenes, AgreesWithPathTracing) {
                                    }}};
     for (const Case& kind : kinds) {
         SCOPED_TRACE(kind.name);
-        renderer::RenderSettings restir = restir_settings(Estimator::Restir, 2080, max_bounces);
+        renderer::RenderSettings restir = restir_settings(Estimator::Restir, samples, max_bounces);
         kind.change(restir);
         expect_same_means(render_often(scene,
                                        scan,

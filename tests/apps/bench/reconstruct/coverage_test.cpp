@@ -9,7 +9,7 @@ namespace {
 
 TEST(Coverage, OfStatedDepthsIsThatOfTheirDeviations) {
     CoverageBenchSettings settings;
-    settings.surfaces = 24;
+    settings.surfaces = 20;
     settings.first = 500;
     settings.methods = {"lct"};
     settings.peaks = {20.0, 100.0, 1000.0};

@@ -22,16 +22,5 @@ TEST(LongRange, TheSolverReadsALetterThatTheDirectInversionDoesNot) {
     EXPECT_LT(scores[1]["depth_mae_m"].get<double>(), 0.003);
 }
 
-TEST(LongRange, ManyPhotonsShowStrokesOfHalfTheSpot) {
-    LongRangeBenchSettings settings;
-    settings.photons = {100000.0};
-    settings.spots_m = {0.08};
-    settings.methods = {"solver"};
-    const core::Json scores = measure_long_range(settings, {}).figures["scores"];
-    ASSERT_EQ(scores.size(), 1U);
-    EXPECT_GT(scores[0]["mask_iou_stated"].get<double>(), 0.68);
-    EXPECT_GT(scores[0]["mask_iou_best"].get<double>(), 0.7);
-}
-
 }  // namespace
 }  // namespace apps
