@@ -57,9 +57,10 @@ void describe_cells(const core::Scan& scan,
     }
     if (scan.pattern == core::ScanPattern::Exhaustive) {
         const bool of_lit = nlos::shows_lit_points(scan);
-        film.detail += fmt::format(", {} at the middle one of {} points",
-                                   of_lit ? "sensed" : "lit",
-                                   (of_lit ? scan.sensing : scan.illumination).size());
+        const std::size_t others = (of_lit ? scan.sensing : scan.illumination).size();
+        film.detail += of_lit ? ", sensed at " : ", lit at ";
+        film.detail +=
+            others == 1 ? "one point" : fmt::format("the middle one of {} points", others);
     }
 }
 

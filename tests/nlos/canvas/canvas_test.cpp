@@ -179,7 +179,8 @@ TEST(AnimatedPng, HoldsEveryFrame) {
         frames.push_back(small_drawing(PictureFormat::Png, text));
     }
     const std::string film = join_animated_png(frames, 5);
-    EXPECT_EQ(cv::norm(decoded_png(film), decoded_png(frames[0])), 0.0) << "what other viewers show";
+    EXPECT_EQ(cv::norm(decoded_png(film), decoded_png(frames[0])), 0.0)
+        << "what other viewers show";
 
     std::vector<std::string> pixels;  // of the frames, compressed
     std::uint32_t next = 0;
