@@ -26,7 +26,7 @@ std::vector<std::size_t> pairs_of_cells(const core::Scan& scan,
         }
         return pairs;
     }
-    std::vector<std::size_t> pairs(nlos::frame_points(scan).size());
+    std::vector<std::size_t> pairs(scan.scanned_points().size());
     for (std::size_t cell = 0; cell < pairs.size(); ++cell) {
         const std::size_t point =
             grid ? grid->point(cell / grid->size[1], cell % grid->size[1]) : cell;
@@ -51,7 +51,7 @@ void describe_cells(const core::Scan& scan,
         film.detail = fmt::format("{} scan of {} × {} points", pattern, film.size[0], film.size[1]);
     } else {
         film.kind = FilmView::Kind::List;
-        film.positions = nlos::frame_points(scan).positions;
+        film.positions = scan.scanned_points().positions;
         film.size = {film.positions.size(), 1};
         film.detail = fmt::format("{} scan of {} points", pattern, film.size[0]);
     }

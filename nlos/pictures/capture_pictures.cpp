@@ -27,7 +27,7 @@ constexpr float kBackground = std::numeric_limits<float>::quiet_NaN();  // what 
 ImagePanel streak_panel(const core::Capture& capture,
                         const std::optional<WallGrid>& grid,
                         const std::array<std::size_t, 2>& bins) {
-    std::vector<std::size_t> points(grid ? grid->size[0] : frame_points(capture.scan).size());
+    std::vector<std::size_t> points(grid ? grid->size[0] : capture.scan.scanned_points().size());
     for (std::size_t i = 0; i < points.size(); ++i) {
         points[i] = grid ? grid->point(i, grid->size[1] / 2) : i;
     }

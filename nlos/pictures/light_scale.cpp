@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/pictures/light_scale.h"
 
-#include "nlos/preparation/wall_frame.h"
-
 #include <algorithm>
 #include <cmath>
 
@@ -29,7 +27,7 @@ std::string light_per_bin_label(const core::Capture& capture) {
 }
 
 bool shows_lit_points(const core::Scan& scan) {
-    return &frame_points(scan) == &scan.illumination;
+    return &scan.scanned_points() == &scan.illumination;
 }
 
 std::size_t pair_of(const core::Scan& scan, std::size_t point) {

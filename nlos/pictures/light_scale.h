@@ -26,7 +26,7 @@ std::string light_label(const core::Capture& capture);
 /// The label of single bins.
 std::string light_per_bin_label(const core::Capture& capture);
 
-/// Pictures of the wall show `frame_points`. Whether these are the illumination points:
+/// Pictures of the wall show `Scan::scanned_points`. Whether these are the illumination points:
 bool shows_lit_points(const core::Scan& scan);
 
 /// The pair that shows a point; of exhaustive scans the one with the middle of the other points.

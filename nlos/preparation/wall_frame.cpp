@@ -129,12 +129,8 @@ void find_footprint(const core::Scan& scan, WallFrame& wall) {
 
 }  // namespace
 
-const core::WallPoints& frame_points(const core::Scan& scan) {
-    return scan.sensing.size() >= scan.illumination.size() ? scan.sensing : scan.illumination;
-}
-
 WallFrame derive_wall_frame(const core::Scan& scan) {
-    const core::WallPoints& points = frame_points(scan);
+    const core::WallPoints& points = scan.scanned_points();
     const Vec3 center = mean_of(points.positions);
     Vec3 mean_normal = mean_of(points.normals);
     if (!(mean_normal.norm() > 1e-9)) mean_normal = Vec3::UnitZ();

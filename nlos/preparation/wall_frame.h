@@ -34,15 +34,11 @@ struct WallFrame {
     core::Transform world_from_wall = core::Transform::Identity();
     std::array<double, 2> min_m{};  ///< smallest x and y of all wall points, half a cell beyond
     std::array<double, 2> max_m{};  ///< largest x and y of all wall points, half a cell beyond
-    std::optional<WallGrid> grid;   ///< of `frame_points`
+    std::optional<WallGrid> grid;   ///< of `Scan::scanned_points`
     std::string why_no_grid;        ///< in words, when `grid` is empty
 };
 
-/// The points that decide the wall's frame: the sensing points, or the illumination points where
-/// there are more of these.
-const core::WallPoints& frame_points(const core::Scan& scan);
-
-/// Derives the wall's frame from `frame_points` of a scan.
+/// Derives the wall's frame from `Scan::scanned_points`.
 ///
 /// A grid whose axes and normal are left-handed keeps x along the first axis and turns y around, or
 /// the other way round when that makes y point up (world y); rows and columns are then

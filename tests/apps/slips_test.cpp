@@ -104,7 +104,6 @@ Capture render(const Place& place, const ScanCase& scan_case) {
     overrides.emplace_back("render.method=third_bounce");
     overrides.emplace_back("render.max_bounces=3");
     overrides.emplace_back("render.by_order=false");
-    overrides.emplace_back("render.target_error=0.02");  // far below what slips do
     const BenchScene bench(NLOS_SOURCE_DIR "/scenes/" + place.scene + "/scene.json", overrides);
     const core::Scan scan =
         place.has_bent_wall() && has_spot ? with_a_spot(bench.scan()) : bench.scan();

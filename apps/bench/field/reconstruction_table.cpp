@@ -82,12 +82,6 @@ core::Capture lit_capture(const core::Capture& clean, const std::string& light) 
     return nlos::detect(clean, detector);
 }
 
-// Those of laser and detector that are more.
-const std::vector<core::Vec3>& scanned_points(const core::Scan& scan) {
-    const bool by_laser = scan.illumination.size() > scan.sensing.size();
-    return by_laser ? scan.illumination.positions : scan.sensing.positions;
-}
-
 optional<double> times(optional<double> value, double factor) {
     return value ? optional<double>(factor * *value) : std::nullopt;
 }
@@ -143,7 +137,7 @@ const std::vector<ReconstructionMethod>& reconstruction_methods() {
 }
 
 double point_distance_m(const core::Scan& scan) {
-    const std::vector<core::Vec3>& points = scanned_points(scan);
+    const std::vector<core::Vec3>& points = scan.scanned_points().positions;
     double distance_m = std::numeric_limits<double>::infinity();
     for (std::size_t i = 1; i < points.size(); ++i) {
         distance_m = std::min(distance_m, (points[i] - points[0]).norm());
@@ -174,7 +168,7 @@ SharedCapture::SharedCapture(Contenders& contenders,
       wavelength_m_((capture.scan.pattern == core::ScanPattern::Confocal ? 6.0 : 4.0) *
                     point_distance_m(capture.scan)) {
     const auto side =
-        std::lround(std::sqrt(static_cast<double>(scanned_points(capture.scan).size())));
+        std::lround(std::sqrt(static_cast<double>(capture.scan.scanned_points().size())));
     columns_ = static_cast<int>(side);
     nlos::write_capture(stem_ + ".h5", capture);
     nlos::write_capture(stem_ + "_for_ytal.h5", capture, {.for_ytal = true, .layout = ""});

@@ -115,8 +115,7 @@ std::array<double, 2> device_leg_range_m(const Scan& scan) {
 }
 
 ScanExtent scan_extent(const Scan& scan) {
-    const WallPoints& points =
-        scan.sensing.size() >= scan.illumination.size() ? scan.sensing : scan.illumination;
+    const WallPoints& points = scan.scanned_points();
     const Vec3& first = points.positions.front();
     ScanExtent extent;
     if (points.grid) {

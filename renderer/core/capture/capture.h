@@ -83,6 +83,12 @@ struct Scan {
     }
     std::size_t sensing_index(std::size_t pair) const { return pair % sensing.size(); }
 
+    /// The points that cover the wall: the sensing points, or the illumination points where there
+    /// are more of these.
+    const WallPoints& scanned_points() const {
+        return sensing.size() >= illumination.size() ? sensing : illumination;
+    }
+
     /// Length of laser -> wall and wall -> detector that the axis includes for a pair [m]; 0 for
     /// images, where these are ordinary parts of a path.
     double device_legs_m(std::size_t pair) const {
@@ -150,7 +156,7 @@ void for_each_transient(AnyCapture& capture, Visit&& visit) {
 }
 
 /// How far a scan's points extend along two axes: those of their grid, or x and y of the world for
-/// a list. The longer list of points decides, sensing points when both are equal.
+/// a list. `Scan::scanned_points` decide.
 struct ScanExtent {
     std::array<Vec3, 2> axes{Vec3::UnitX(), Vec3::UnitY()};
     std::array<double, 2> middle_m{};  ///< along each axis
