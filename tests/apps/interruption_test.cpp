@@ -137,7 +137,7 @@ TEST_F(Interruption, KilledAtAnyTimeNothingIsLostOrLeft) {
     ASSERT_EQ(run("convert data/letter.h5 " + file("in.npz")).status, 0);
     const std::vector<std::string> convert{"convert", file("in.npz"), file("out.h5")};
     const std::vector<std::string> reconstruct{"reconstruct", file("in.npz"), "-o", file("out.h5")};
-    for (int i = 0; i < 24; ++i) {
+    for (int i = 0; i < 18; ++i) {
         write_file_bytes(file("out.h5"), "older result");
         const int signal = std::array{SIGKILL, SIGTERM, SIGINT}[static_cast<std::size_t>(i % 3)];
         const pid_t process = start(i % 2 == 0 ? convert : reconstruct);
@@ -187,7 +187,7 @@ TEST_F(Interruption, LongCommandsAnswerAndEndWithOneLineOnEitherSignal) {
     for (const std::vector<std::string>& command : commands) {
         for (const int signal : {SIGTERM, SIGINT}) {
             const pid_t process = start(command);
-            wait_for(1.5);
+            wait_for(0.7);
             ::kill(process, signal);
             const Outcome outcome = finish(process);
             EXPECT_EQ(outcome.status, 1) << command[0] << outcome.out;

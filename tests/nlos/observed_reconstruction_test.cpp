@@ -44,7 +44,7 @@ class ObservedReconstruction : public testing::TestWithParam<MaskCase> {
             capture.scan.illumination = nlos_test::wall_grid({1, 1}, {1.0, 1.0});
         }
         if (capture.scan.pattern == ScanPattern::Exhaustive) {
-            capture.scan.illumination = nlos_test::wall_grid({3, 1}, {0.3, 0.4});
+            capture.scan.illumination = nlos_test::wall_grid({2, 1}, {0.4, 0.4});
         }
         capture.transient = core::Transient(capture.scan.num_pairs(), 144);
         nlos_test::add_scatterer(capture, kPlace, 4.0);

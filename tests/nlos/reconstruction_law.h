@@ -15,7 +15,7 @@
 
 namespace nlos_test {
 
-inline constexpr std::size_t kColumns = 24;
+inline constexpr std::size_t kColumns = 16;
 inline constexpr double kPitch_m = 0.04;
 inline const core::TimeAxis kAxis{0.0, 0.016, 144};
 
@@ -39,25 +39,28 @@ struct LawCase {
 class ReconstructionLaw : public testing::TestWithParam<LawCase> {
  protected:
     static core::Capture dark_capture(const core::Transform& pose = core::Transform::Identity(),
-                                      const core::TimeAxis& axis = kAxis) {
+                                      const core::TimeAxis& axis = kAxis,
+                                      std::size_t columns = kColumns) {
         core::Capture capture =
-            confocal_capture(wall_grid({kColumns, kColumns}, {kPitch_m, kPitch_m}, pose), axis);
+            confocal_capture(wall_grid({columns, columns}, {kPitch_m, kPitch_m}, pose), axis);
         capture.scan.pattern = GetParam().pattern;
         if (GetParam().pattern == core::ScanPattern::Single) {
             capture.scan.illumination = wall_grid({1, 1}, {1.0, 1.0}, pose);
         }
         if (GetParam().pattern == core::ScanPattern::Exhaustive) {
-            capture.scan.illumination = wall_grid({3, 1}, {0.3, 0.4}, pose);
+            capture.scan.illumination = wall_grid({2, 1}, {0.4, 0.4}, pose);
         }
         capture.transient = core::Transient(capture.scan.num_pairs(), axis.num_bins);
         return capture;
     }
 
+    /// As many columns as wall points.
     static nlos::Reconstruction run(const core::Capture& capture,
-                                    const nlos::VolumeSettings& volume = {std::array{24, 24, 75},
-                                                                          std::array{0.3, 0.9}}) {
+                                    int num_z = 75,
+                                    const std::array<double, 2>& z_range_m = {0.3, 0.9}) {
+        const auto columns = static_cast<int>(std::sqrt(capture.scan.sensing.size()));
         nlos::ReconstructSettings settings;
-        settings.volume = volume;
+        settings.volume = {std::array{columns, columns, num_z}, z_range_m};
         for (const std::string& text : GetParam().overrides) {
             core::apply_override(settings, text);
         }
@@ -83,7 +86,9 @@ class ReconstructionLaw : public testing::TestWithParam<LawCase> {
     static core::Vec3 random_place(std::mt19937_64& generator) {
         std::uniform_int_distribution<int> column(5, kColumns - 6);
         std::uniform_real_distribution<double> depth(0.4, 0.75);
-        const auto coordinate = [&] { return (column(generator) - 11.5) * kPitch_m; };
+        const auto coordinate = [&] {
+            return (column(generator) - 0.5 * (kColumns - 1)) * kPitch_m;
+        };
         const double x = coordinate();
         const double y = coordinate();
         return {x, y, depth(generator)};

@@ -53,14 +53,14 @@ TEST_P(DopplerIn, EstimatorsAgreeBinByBin) {
             },
             std::string("Doppler.") + setting.name + name);
     };
-    const auto paths = estimate("paths", doppler_settings(Estimator::Path, 16384, 3));
+    const auto paths = estimate("paths", doppler_settings(Estimator::Path, 8192, 3));
     const auto expect_the_same = [&](const std::string& name,
                                      const renderer::RenderSettings& settings) {
         SCOPED_TRACE(name);
         test_support::expect_same_means(estimate(name, settings), paths, 0.04);
     };
-    expect_the_same("ellipsoidal", doppler_settings(Estimator::Ellipsoidal, 4096, 3));
-    renderer::RenderSettings restir = doppler_settings(Estimator::Restir, 2080, 3);
+    expect_the_same("ellipsoidal", doppler_settings(Estimator::Ellipsoidal, 2048, 3));
+    renderer::RenderSettings restir = doppler_settings(Estimator::Restir, 1040, 3);
     expect_the_same("restir", restir);
     restir.restir.rounds = 4;
     expect_the_same("rounds", restir);

@@ -305,26 +305,25 @@ def use_demo(browser: Browser, page: Path) -> None:
 
 
 def compare_screens(browser: Browser, page: Path, update: bool, keep) -> None:
-    for width in (1400, 420):
-        for scheme in ("light", "dark"):
-            browser.open(page, width, scheme)
-            browser.expect_no_sideways_scroll(page)
-            picture = browser.picture()
-            if keep:
-                picture.save(keep / f"{page.stem}_{width}_{scheme}.png")
-            shrunk = picture.resize((SHRUNK_WIDTH, SHRUNK_WIDTH * picture.height // picture.width),
-                                    Image.Resampling.BOX)
-            stored = SCREENS / f"demo_{width}_{scheme}.png"
-            if update:
-                shrunk.save(stored, optimize=True)
-                continue
-            expected = Image.open(stored).convert("RGB")
-            check(abs(shrunk.height - expected.height) <= 0.05 * expected.height,
-                  f"{stored.name}: {shrunk.height} rows high, was {expected.height}")
-            difference = ImageChops.difference(shrunk.resize(expected.size), expected)
-            mean = sum(ImageStat.Stat(difference).mean) / 3
-            print(f"{stored.name}: differs by {mean:.2f} of 255")
-            check(mean < MOST_DIFFERENT, f"{stored.name}: differs by {mean:.2f} of 255")
+    for width, scheme in ((1400, "light"), (420, "dark")):
+        browser.open(page, width, scheme)
+        browser.expect_no_sideways_scroll(page)
+        picture = browser.picture()
+        if keep:
+            picture.save(keep / f"{page.stem}_{width}_{scheme}.png")
+        shrunk = picture.resize((SHRUNK_WIDTH, SHRUNK_WIDTH * picture.height // picture.width),
+                                Image.Resampling.BOX)
+        stored = SCREENS / f"demo_{width}_{scheme}.png"
+        if update:
+            shrunk.save(stored, optimize=True)
+            continue
+        expected = Image.open(stored).convert("RGB")
+        check(abs(shrunk.height - expected.height) <= 0.05 * expected.height,
+              f"{stored.name}: {shrunk.height} rows high, was {expected.height}")
+        difference = ImageChops.difference(shrunk.resize(expected.size), expected)
+        mean = sum(ImageStat.Stat(difference).mean) / 3
+        print(f"{stored.name}: differs by {mean:.2f} of 255")
+        check(mean < MOST_DIFFERENT, f"{stored.name}: differs by {mean:.2f} of 255")
 
 
 def main() -> int:

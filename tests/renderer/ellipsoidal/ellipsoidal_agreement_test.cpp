@@ -231,10 +231,10 @@ void expect_images_to_agree(const std::vector<renderer::Object>& objects,
         settings.variance = true;
         for (const core::TimeAxis& axis : axes) {
             settings.method = Estimator::Path;
-            settings.samples = 300'000;
+            settings.samples = 150'000;
             const auto paths = renderer::render(scene, scan, axis, settings, {}).capture;
             settings.method = Estimator::Ellipsoidal;
-            settings.samples = 40'000;
+            settings.samples = 20'000;
             ++settings.seed;
             expect_agreement(renderer::render(scene, scan, axis, settings, {}).capture, paths);
         }

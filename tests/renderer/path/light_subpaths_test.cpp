@@ -254,12 +254,12 @@ class SubpathConnections : public testing::TestWithParam<bool> {};
 
 TEST_P(SubpathConnections, AgreeWithWalksAloneInEveryOrderPixelAndBin) {
     const Furnished room(cameras_with_both_lights()[GetParam() ? 1 : 0]);
-    const auto settings = room.settings(renderer::Estimator::Path, 2048);
+    const auto settings = room.settings(renderer::Estimator::Path, 1024);
     const auto connected = test_support::repeat(
         [&](std::uint64_t seed) { return rendered(room, settings, seed); }, "Connected");
     const auto alone = test_support::repeat(
         [&](std::uint64_t seed) {
-            return walked(room, room.settings(renderer::Estimator::Path, 20'000), seed);
+            return walked(room, room.settings(renderer::Estimator::Path, 10'000), seed);
         },
         "Walked");
     test_support::expect_same_means(connected, alone, 0.05);
@@ -275,8 +275,8 @@ TEST_P(SubpathConnections, AgreeWithTheEllipsoidalEstimator) {
             name);
     };
     test_support::expect_same_means(
-        estimate(renderer::Estimator::Path, 2048, "Connected again"),
-        estimate(renderer::Estimator::Ellipsoidal, 4096, "Ellipsoidal image"),
+        estimate(renderer::Estimator::Path, 1024, "Connected again"),
+        estimate(renderer::Estimator::Ellipsoidal, 2048, "Ellipsoidal image"),
         0.05);
 }
 

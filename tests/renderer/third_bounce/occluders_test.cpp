@@ -25,7 +25,7 @@ struct Promise {
 /// What is promised and kept at some targets.
 std::vector<Promise> promises_of(const OccluderScene& setup, const std::vector<double>& targets) {
     const renderer::Scene scene = setup.scene();
-    const auto truths = test_support::sampled_third_bounces(setup, scene, 50'000);
+    const auto truths = test_support::sampled_third_bounces(setup, scene, 20'000);
     std::vector<Promise> promises;
     for (const double target : targets) {
         renderer::RenderSettings settings;
