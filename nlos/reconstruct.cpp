@@ -24,6 +24,7 @@
 namespace nlos {
 namespace {
 
+constexpr double kSteepest = 2.0;      // slope of surfaces that the solver's masks hold
 constexpr std::size_t kMaxSlabs = 64;  // each repeats a part of the work
 
 /// A method that knows normals knows them better than a plane through neighbouring columns does.
@@ -55,7 +56,7 @@ VolumeErrors volume_errors(const ReconstructSettings& settings, bool has_noise) 
     if (uses_wave(settings)) return {VolumeScale::Magnitude, 0.115, 0.3, 7.0, 0.0, shares};
     switch (settings.method) {
         case Method::Solver:
-            return {VolumeScale::Amplitude, 0.067, 0.345, 23.0, 0.0, shares};
+            return {VolumeScale::Amplitude, 0.067, 0.345, 23.0, 0.0, shares, kSteepest};
         case Method::Fk:
             return {VolumeScale::Magnitude, 0.042, 0.35, 0.15, 0.35, shares};
         case Method::Bp:

@@ -89,17 +89,36 @@ std::vector<ColumnPeak> find_peaks(const Volume& volume, const std::optional<Vol
     return peaks;
 }
 
+/// Voxels on either side of its peak that a surface of such a slope crosses in a column.
+std::size_t reach_of(const VolumeAxes& axes, double slope) {
+    if (slope == 0.0 || axes.z_m.size() < 2 || axes.x_m.size() < 2) return 0;
+    const double pitch_m = std::abs(axes.x_m[1] - axes.x_m[0]);
+    const double step_m = std::abs(axes.z_m[1] - axes.z_m[0]);
+    return static_cast<std::size_t>(std::lround(0.5 * slope * pitch_m / step_m));
+}
+
+double brightness_around(std::span<const float> column, std::size_t voxel, std::size_t reach) {
+    double sum = 0.0;
+    const std::size_t end = std::min(column.size(), voxel + reach + 1);
+    for (std::size_t i = voxel - std::min(voxel, reach); i < end; ++i) {
+        sum += brightness_of(column[i]);
+    }
+    return sum;
+}
+
 /// The probability that every column's peak is no noise, and that it is a surface.
 std::vector<double> surface_probabilities(const Volume& volume,
                                           const std::vector<ColumnPeak>& peaks,
                                           const VolumeErrors& errors,
                                           const std::optional<VolumeNoise>& noise) {
     const std::size_t nz = volume.axes.z_m.size();
+    const std::size_t reach = reach_of(volume.axes, errors.steepest);
     std::vector<double> brightness;
     std::vector<double> chances;
     for (std::size_t i = 0; i < peaks.size(); ++i) {
-        const double value = brightness_of(volume.values[i * nz + peaks[i].voxel]);
-        brightness.push_back(value);
+        const std::span<const float> column(volume.values.data() + i * nz, nz);
+        const double value = brightness_of(column[peaks[i].voxel]);
+        brightness.push_back(brightness_around(column, peaks[i].voxel, reach));
         if (!noise) continue;
         chances.push_back(noise->chance_in_column(noise->significance(value, peaks[i].voxel)));
     }

@@ -25,6 +25,7 @@ struct VolumeErrors {
     double doubt = 0.0;        ///< how both grow with the odds against a surface
     double near_share = 0.0;   ///< of the neighbours' roughness
     PlateauShares shares = {};
+    double steepest = 0.0;  ///< slope of surfaces whose light is spread over voxels of a column
 };
 
 /// Finds each column's peak, how likely it is a surface, and how well its depth is known.

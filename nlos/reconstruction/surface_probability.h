@@ -32,7 +32,7 @@ struct PlateauShares {
 /// Means are weighted by brightness and the square of the probability itself. Shares and powers fit
 /// simulated scenes.
 ///
-/// peaks     brightest value of each column of a grid (x, y), not negative
+/// peaks     brightness of each column of a grid (x, y), not negative
 /// weights   in [0, 1]: the probability that it is more than noise
 /// num_y     number of columns along y
 /// returns   as many values in [0, 1]; 0 for a peak of 0

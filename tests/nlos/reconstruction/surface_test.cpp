@@ -98,6 +98,33 @@ TEST(Surface, StatedDeviationsOfDepthAreThoseOfTheErrors) {
     EXPECT_LT(squares, 1.4);
 }
 
+// The right half of the columns holds the left one's light, spread over five voxels.
+TEST(Surface, OfSteepPartsIsAsSureAsTheLightThatTheyGather) {
+    Volume volume;
+    volume.axes.x_m = cell_centers(-0.2, 0.2, 10);
+    volume.axes.y_m = volume.axes.x_m;
+    volume.axes.z_m = cell_centers(0.4, 0.6, 10);  // half the distance of columns
+    volume.values.resize(1000);
+    for (std::size_t column = 0; column < 100; ++column) {
+        for (std::size_t iz = 3; iz < 8; ++iz) {
+            float& value = volume.values[10 * column + iz];
+            if (column < 50) {
+                value = iz == 5 ? 1.0F : 0.0F;
+            } else {
+                value = iz == 5 ? 0.24F : 0.19F;
+            }
+        }
+    }
+    VolumeErrors errors;
+    errors.shares = {0.0, 0.4};
+    const auto num_surface = [&] {
+        return surface_points(find_surface(volume, nullptr, errors, 0.5).depth).positions.size();
+    };
+    EXPECT_EQ(num_surface(), 50U);
+    errors.steepest = 2.0;
+    EXPECT_EQ(num_surface(), 100U);
+}
+
 TEST(Surface, DeviationsOfDepthAreNotInvented) {
     const Surface surface = find_surface(sloped_plane(0.3), nullptr, {}, 0.5);
     EXPECT_TRUE(surface.depth_sigma_m.empty());
