@@ -101,9 +101,7 @@ std::vector<double> depth_sigmas(const Volume& volume,
                                  const VolumeErrors& errors) {
     const core::DepthMap& depth = surface.depth;
     const std::size_t nz = volume.axes.z_m.size();
-    const double step_m =
-        nz > 1 ? (volume.axes.z_m.back() - volume.axes.z_m.front()) / static_cast<double>(nz - 1)
-               : 0.0;
+    const double step_m = volume.axes.z_step_m();
     std::vector<double> moved(peaks.size(), kNone);  // [voxels]
     std::vector<double> off_m(peaks.size(), kNone);
     Mean all_moved;

@@ -19,10 +19,8 @@ namespace {
 using core::Vec3;
 
 /// Depth at a position between evenly spaced voxel centres.
-double depth_at(const std::vector<double>& z_m, double position) {
-    if (z_m.size() == 1) return z_m.front();
-    const double step = (z_m.back() - z_m.front()) / static_cast<double>(z_m.size() - 1);
-    return z_m.front() + position * step;
+double depth_at(const VolumeAxes& axes, double position) {
+    return axes.z_m.front() + position * axes.z_step_m();
 }
 
 /// Normal in the wall's frame, towards the wall, of the plane z = a x + b y + c through the
@@ -91,10 +89,9 @@ std::vector<ColumnPeak> find_peaks(const Volume& volume, const std::optional<Vol
 
 /// Voxels on either side of its peak that a surface of such a slope crosses in a column.
 std::size_t reach_of(const VolumeAxes& axes, double slope) {
-    if (slope == 0.0 || axes.z_m.size() < 2 || axes.x_m.size() < 2) return 0;
-    const double pitch_m = std::abs(axes.x_m[1] - axes.x_m[0]);
-    const double step_m = std::abs(axes.z_m[1] - axes.z_m[0]);
-    return static_cast<std::size_t>(std::lround(0.5 * slope * pitch_m / step_m));
+    if (axes.z_m.size() < 2 || axes.x_m.size() < 2) return 0;
+    const double pitch_m = axes.x_m[1] - axes.x_m[0];
+    return static_cast<std::size_t>(std::lround(0.5 * slope * pitch_m / axes.z_step_m()));
 }
 
 double brightness_around(std::span<const float> column, std::size_t voxel, std::size_t reach) {
@@ -165,7 +162,7 @@ Surface find_surface(const Volume& volume,
     surface.probability = surface_probabilities(volume, peaks, errors, noise);
     for (std::size_t i = 0; i < peaks.size(); ++i) {
         if (!(surface.probability[i] >= mask_threshold)) continue;
-        surface.depth.depth_m[i] = depth_at(axes.z_m, peaks[i].position);
+        surface.depth.depth_m[i] = depth_at(axes, peaks[i].position);
     }
     fit_normals(surface.depth);
     if (noise) {

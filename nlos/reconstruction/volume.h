@@ -16,6 +16,12 @@ struct VolumeAxes {
     core::Transform world_from_wall = core::Transform::Identity();
 
     std::size_t num_voxels() const { return x_m.size() * y_m.size() * z_m.size(); }
+
+    /// Distance of voxels along z; 0 for a single one.
+    double z_step_m() const {
+        return z_m.size() > 1 ? (z_m.back() - z_m.front()) / static_cast<double>(z_m.size() - 1)
+                              : 0.0;
+    }
 };
 
 /// A reconstructed scalar field, stored [x][y][z], z fastest.
