@@ -21,7 +21,7 @@ using core::Vec3;
 
 constexpr std::size_t kWallColumns = 24;
 constexpr double kWallPitch_m = 0.04;
-constexpr std::size_t kNumZ = 75;
+constexpr std::size_t kNumZ = 38;
 const Vec3 kPlace(0.06, -0.1, 0.55);
 const BinRange kGate{60, 132};  // half the bins, with all light of the object
 
@@ -69,7 +69,7 @@ class ObservedReconstruction : public testing::TestWithParam<MaskCase> {
 
     static Reconstruction run(const core::Capture& capture) {
         ReconstructSettings settings;
-        settings.volume = {std::array{24, 24, static_cast<int>(kNumZ)}, std::array{0.3, 0.9}};
+        settings.volume = {std::array{24, 24, static_cast<int>(kNumZ)}, std::array{0.4, 0.704}};
         for (const std::string& text : GetParam().overrides) core::apply_override(settings, text);
         return reconstruct(capture, settings, {});
     }
