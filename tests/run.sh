@@ -25,7 +25,7 @@ install_for_tests &
 for_tests=$!
 
 cmake --preset "$preset" "${module[@]}" >/dev/null
-cmake --build --preset "$preset"
+cmake --build --preset "$preset" --parallel "$(nproc)"
 wait "$for_tests"
 [ "$preset" != check ] || bash tests/python.sh install
 ctest --preset "$preset" "$@"

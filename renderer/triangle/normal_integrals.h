@@ -44,9 +44,9 @@ class NormalIntegralTable {
 
  private:
     static constexpr double kReach = 8.5;
-    static constexpr double kNodesPerUnit = 16.0;
-    static constexpr std::size_t kNumNodes = 274;
-    static constexpr std::size_t kTerms = 11;
+    static constexpr double kNodesPerUnit = 32.0;
+    static constexpr std::size_t kNumNodes = 546;
+    static constexpr std::size_t kTerms = 9;
     using Coefficients = std::array<double, kTerms>;
 
     NormalIntegralTable() {

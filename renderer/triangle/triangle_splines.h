@@ -160,44 +160,63 @@ class TriangleSplines {
 
     // [X] f = sum over k of f^(n+k)(m)/(n+k)! h_k(X - m), |X| = n + 1, h_k the complete homogeneous
     // symmetric polynomials.
+    using Polynomials = std::array<T, kTerms>;
+
+    static Polynomials joined(Polynomials h, const T& offset) {
+        for (std::size_t k = 1; k < kTerms; ++k) h[k] += offset * h[k - 1];
+        return h;
+    }
+
     template <std::size_t N>
-    static T expand(const Derivatives& d, const std::array<T, N>& offsets) {
-        std::array<T, kTerms> h;
-        h.fill(T(0.0));
-        h[0] = T(1.0);
-        for (const T& offset : offsets) {
-            for (std::size_t k = 1; k < kTerms; ++k) h[k] += offset * h[k - 1];
-        }
-        T sum = d[N - 1];
-        for (std::size_t k = 1; k < kTerms; ++k) sum += d[N - 1 + k] * h[k];
+    static T sum_of(const Derivatives& d, const Polynomials& h) {
+        T sum = d[N];
+        for (std::size_t k = 1; k < kTerms; ++k) sum += d[N + k] * h[k];
         return sum;
     }
 
     void expand_all(double edge, double sign, bool with_gradients, Differences& d) const {
         const T mean = (x_[0] + x_[1] + x_[2]) * (1.0 / 3.0);
         const Derivatives f = taylor(mean, edge, sign);
-        const std::array<T, 3> o{x_[0] - mean, x_[1] - mean, x_[2] - mean};
+        Polynomials h;
+        h.fill(T(0.0));
+        h[0] = T(1.0);
+        for (const T& x : x_) h = joined(h, x - mean);
         for (std::size_t j = 0; j < 3; ++j) {
-            d.third[j] = expand<4>(f, {o[0], o[1], o[2], o[j]});
+            const Polynomials with_j = joined(h, x_[j] - mean);
+            d.third[j] = sum_of<3>(f, with_j);
             if (!with_gradients) continue;
             for (std::size_t k = j; k < 3; ++k) {
-                d.fourth[pair_index(j, k)] = expand<5>(f, {o[0], o[1], o[2], o[j], o[k]});
+                d.fourth[pair_index(j, k)] = sum_of<4>(f, joined(with_j, x_[k] - mean));
             }
         }
     }
 
-    PairDifferences expand_pair(
-        const T& a, const T& b, double edge, double sign, bool with_gradients) const {
+    // About the middle, knots lie at -o and o: h_k is o^k times a whole number, which changes its
+    // sign with k where the knots change sides.
+    PairDifferences expand_pair(const T& a, const T& b, double edge, double sign) const {
         const T o = 0.5 * (b - a);
         const Derivatives f = taylor(0.5 * (a + b), edge, sign);
         PairDifferences d;
-        d.ab = expand<2>(f, {-o, o});
-        d.aab = expand<3>(f, {-o, -o, o});
-        d.abb = expand<3>(f, {-o, o, o});
-        if (!with_gradients) return d;
-        d.aaab = expand<4>(f, {-o, -o, -o, o});
-        d.aabb = expand<4>(f, {-o, -o, o, o});
-        d.abbb = expand<4>(f, {-o, o, o, o});
+        d.ab = d.aabb = T(0.0);
+        T even3 = T(0.0), odd3 = T(0.0), even4 = T(0.0), odd4 = T(0.0);
+        T power = T(1.0);
+        for (std::size_t k = 0; k < kTerms; ++k) {
+            const auto count = static_cast<double>(k / 2 + 1);
+            if (k % 2 == 0) {
+                d.ab += power * f[1 + k];
+                d.aabb += count * power * f[3 + k];
+                even3 += count * power * f[2 + k];
+                even4 += count * count * power * f[3 + k];
+            } else {
+                odd3 += count * power * f[2 + k];
+                odd4 += count * (count + 1.0) * power * f[3 + k];
+            }
+            power *= o;
+        }
+        d.aab = even3 - odd3;
+        d.abb = even3 + odd3;
+        d.aaab = even4 - odd4;
+        d.abbb = even4 + odd4;
         return d;
     }
 
@@ -222,7 +241,7 @@ class TriangleSplines {
             at_knot(x_[0], edge, sign), at_knot(x_[1], edge, sign), at_knot(x_[2], edge, sign)};
         const auto pair = [&](std::size_t i) {
             if (is_close(x_[i], x_[i + 1], edge))
-                return expand_pair(x_[i], x_[i + 1], edge, sign, with_gradients);
+                return expand_pair(x_[i], x_[i + 1], edge, sign);
             return divide_pair(knots[i], knots[i + 1], x_[i + 1] - x_[i], with_gradients);
         };
         const PairDifferences low = pair(0);   // of knots 0 and 1
