@@ -158,15 +158,16 @@ class TriangleSplines {
         return d;
     }
 
-    // [X] f = sum over k of f^(n+k)(m)/(n+k)! h_k(X - m), |X| = n + 1, h_k the complete homogeneous
-    // symmetric polynomials.
+    // Complete homogeneous symmetric polynomials h_k of offsets.
     using Polynomials = std::array<T, kTerms>;
 
+    // Those of one offset more.
     static Polynomials joined(Polynomials h, const T& offset) {
         for (std::size_t k = 1; k < kTerms; ++k) h[k] += offset * h[k - 1];
         return h;
     }
 
+    // [X] f = sum over k of f^(N+k)(m)/(N+k)! h_k(X - m), |X| = N + 1.
     template <std::size_t N>
     static T sum_of(const Derivatives& d, const Polynomials& h) {
         T sum = d[N];
