@@ -2,8 +2,7 @@
 #include "calib/compare_fit.h"
 
 #include "renderer/core/error.h"
-
-#include <Eigen/Dense>
+#include "renderer/core/principal_axes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -64,16 +63,6 @@ core::Mat3 rotation_of(const Shape& shape) {
     return shape.world_from_node.rotation();
 }
 
-// Principal axes of the surface in the frame of its node, about its centroid.
-core::Mat3 principal_axes(const Shape& shape) {
-    core::Mat3 moments = core::Mat3::Zero();
-    for (const Vec3& p : core::sample_surface(shape.mesh, kSamples, kSampleSeed).positions) {
-        const Vec3 d = rotation_of(shape).transpose() * (p - shape.centroid);
-        moments += d * d.transpose();
-    }
-    return Eigen::SelfAdjointEigenSolver<core::Mat3>(moments).eigenvectors();
-}
-
 // Whether a turn takes every vertex to a vertex, up to 2 % of the shape's extent.
 bool is_symmetry(const core::Mat3& turn, const std::vector<Vec3>& local) {
     double extent = 0.0;
@@ -96,7 +85,9 @@ std::vector<core::Mat3> symmetries(const Shape& shape) {
     std::vector<core::Mat3> group{core::Mat3::Identity()};
     constexpr std::size_t kMaxVertices = 2000;
     if (local.size() > kMaxVertices) return group;
-    const core::Mat3 principal = principal_axes(shape);
+    const core::PointCloud samples = core::sample_surface(shape.mesh, kSamples, kSampleSeed);
+    const core::Mat3 principal =
+        rotation_of(shape).transpose() * core::principal_axes(samples.positions).axes;
     std::vector<core::Mat3> generators;
     for (const core::Mat3& axes : {core::Mat3(core::Mat3::Identity()), principal}) {
         for (int a = 0; a < 3; ++a) {

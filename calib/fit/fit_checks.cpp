@@ -199,7 +199,7 @@ void warn_of_misfits(const FitDriver& driver, const SceneState& state, FitResult
         columns.push_back(block->first_column);
         const Eigen::MatrixXd part = information(columns, columns);
         const Eigen::VectorXd right = score(columns);
-        const Eigen::MatrixXd covariance = part.completeOrthogonalDecomposition().pseudoInverse();
+        const Eigen::MatrixXd covariance = generalized_inverse(part);
         const double step = (covariance * right).tail<1>()[0];
         const double sigma = std::sqrt(std::max(0.0, covariance.diagonal().tail<1>()[0]));
         if (!(std::abs(step) > kNotableStep * sigma)) continue;

@@ -2,6 +2,7 @@
 #include "calib/fit/fit_objective.h"
 
 #include "calib/statistics/poisson_deviance.h"
+#include "calib/statistics/uncertainty.h"
 #include "renderer/core/parallel.h"
 
 #include <algorithm>
@@ -111,14 +112,9 @@ void FitObjective::eliminate(std::vector<MatrixXd>& grams, bool with_gradients) 
         right(i) = total(basis[static_cast<std::size_t>(i)], y);
         if (!elimination_.scale) right(i) -= total(one, m);
     }
-    Eigen::CompleteOrthogonalDecomposition<MatrixXd> solver;
-    VectorXd linear;
+    if (size > 0) linear_inverse_ = generalized_inverse(normal);
+    const VectorXd linear = linear_inverse_ * right;
     linear_gradient_ = MatrixXd::Zero(size, columns);
-    if (size > 0) {
-        solver.compute(normal);
-        linear = solver.solve(right);
-        linear_inverse_ = solver.pseudoInverse();
-    }
     Eigen::Index next = 0;
     scale_ = elimination_.scale ? linear(next++) : 1.0;
     ambient_ = elimination_.ambient ? linear(next) : 0.0;
@@ -138,7 +134,7 @@ void FitObjective::eliminate(std::vector<MatrixXd>& grams, bool with_gradients) 
             side(next++) = -with_residual - scale_ * total(m, c);
         }
         if (elimination_.ambient) side(next) = -scale_ * total(one, c);
-        const VectorXd change = solver.solve(side);
+        const VectorXd change = linear_inverse_ * side;
         linear_gradient_.col(c) = change;
         next = 0;
         if (elimination_.scale) transform(m, c) = change(next++);

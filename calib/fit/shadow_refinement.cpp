@@ -50,12 +50,7 @@ Newton newton_at(const FitDriver& driver, FitDriver::Stage& stage, const SceneSt
     newton.information += prior;
     score -= prior * difference(model, model.start(), state);
 
-    const VectorXd diagonal = newton.information.diagonal();
-    const VectorXd scale =
-        (diagonal.array() > 0.0).select(diagonal.array().max(1e-300).rsqrt(), 1.0);
-    const MatrixXd scaled = scale.asDiagonal() * newton.information * scale.asDiagonal();
-    newton.step = scale.asDiagonal() * scaled.completeOrthogonalDecomposition().solve(
-                                           VectorXd(scale.asDiagonal() * score));
+    newton.step = generalized_inverse(newton.information) * score;
     return newton;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "calib/model/scene_model.h"
+#include "renderer/core/principal_axes.h"
 
-#include <Eigen/Dense>
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -44,13 +44,6 @@ double farthest_vertex(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
     return extent > 0.0 ? farthest / extent : 0.0;
 }
 
-core::Mat3 principal_axes(const std::vector<Vec3>& points) {
-    const Vec3 center = center_of(points);
-    core::Mat3 moments = core::Mat3::Zero();
-    for (const Vec3& p : points) moments += (p - center) * (p - center).transpose();
-    return Eigen::SelfAdjointEigenSolver<core::Mat3>(moments).eigenvectors();
-}
-
 }  // namespace
 
 bool are_different_poses(const SceneModel& model, const SceneState& a, const SceneState& b) {
@@ -78,13 +71,13 @@ std::vector<std::pair<std::string, SceneState>> symmetric_poses(const SceneModel
             continue;
         }
         const std::vector<Vec3> vertices = vertices_of(model, state, b);
-        const Vec3 center = center_of(vertices);
-        const core::Mat3 axes = principal_axes(vertices);
+        const core::PrincipalAxes principal = core::principal_axes(vertices);
+        const Vec3& center = principal.center_m;
         std::vector<std::vector<Vec3>> found;
         for (int axis = 0; axis < 3; ++axis) {
             for (const double degrees : {90.0, 180.0, 270.0}) {
                 const Eigen::Quaterniond turn(
-                    Eigen::AngleAxisd(degrees / 180.0 * core::kPi, axes.col(axis)));
+                    Eigen::AngleAxisd(degrees / 180.0 * core::kPi, principal.axes.col(axis)));
                 SceneState turned = state;
                 BodyState& pose = turned.bodies[b];
                 pose.rotation = (turn * pose.rotation).normalized();

@@ -77,4 +77,18 @@ Uncertainty assess(const Eigen::MatrixXd& information, const std::vector<std::st
     return result;
 }
 
+Eigen::MatrixXd generalized_inverse(const Eigen::MatrixXd& matrix) {
+    constexpr double kRounding = 1e-14;
+    const Eigen::VectorXd diagonal = matrix.diagonal();
+    const Eigen::VectorXd scale = (diagonal.array() > 0.0).select(diagonal.array().rsqrt(), 0.0);
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * matrix *
+                                                               scale.asDiagonal());
+    const Eigen::VectorXd& values = eigen.eigenvalues();  // ascending
+    const double zero = kRounding * values[values.size() - 1];
+    const Eigen::VectorXd inverse = (values.array() > zero).select(values.array().inverse(), 0.0);
+    return scale.asDiagonal() *
+           (eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose()) *
+           scale.asDiagonal();
+}
+
 }  // namespace calib

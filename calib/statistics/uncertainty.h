@@ -31,4 +31,9 @@ struct Uncertainty {
 /// along it at most a tenth as visible as each of its parameters alone.
 Uncertainty assess(const Eigen::MatrixXd& information, const std::vector<std::string>& names);
 
+/// Generalised inverse of a symmetric matrix without negative eigenvalues, such as an information
+/// or a Gram matrix: of its form with unit diagonal, without the directions whose eigenvalue is
+/// zero up to rounding.
+Eigen::MatrixXd generalized_inverse(const Eigen::MatrixXd& matrix);
+
 }  // namespace calib

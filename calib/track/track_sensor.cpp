@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "calib/track/track_sensor.h"
 
-#include <Eigen/Dense>
+#include "renderer/core/principal_axes.h"
+
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -37,12 +38,8 @@ std::optional<Vec3> to_neighbour(const std::vector<Vec3>& spots,
 }  // namespace
 
 core::RelayWall wall_through(const std::vector<Vec3>& points_m, const std::string& where) {
-    Vec3 center = Vec3::Zero();
-    for (const Vec3& p : points_m) center += p / static_cast<double>(points_m.size());
-    core::Mat3 moments = core::Mat3::Zero();
-    for (const Vec3& p : points_m) moments += (p - center) * (p - center).transpose();
-    const Eigen::SelfAdjointEigenSolver<core::Mat3> axes(moments);
-    const Vec3 spread = axes.eigenvalues().cwiseMax(0.0).cwiseSqrt();
+    const core::PrincipalAxes principal = core::principal_axes(points_m);
+    const Vec3& spread = principal.spread_m;
     if (points_m.size() < 3 || !(spread[1] > 1e-6 * spread[2])) {
         throw core::Error(where,
                           fmt::format("found {} wall points on a line", points_m.size()),
@@ -55,14 +52,14 @@ core::RelayWall wall_through(const std::vector<Vec3>& points_m, const std::strin
                           "must lie in one plane; state the wall by `wall`");
     }
     core::RelayWall wall;
-    wall.normal = axes.eigenvectors().col(0);
+    wall.normal = principal.axes.col(0);
     const double towards =
-        std::abs(wall.normal.z()) > 0.1 ? wall.normal.z() : -wall.normal.dot(center);
+        std::abs(wall.normal.z()) > 0.1 ? wall.normal.z() : -wall.normal.dot(principal.center_m);
     if (towards < 0.0) wall.normal = -wall.normal;
     if (std::abs(wall.normal.dot(wall.up)) > 0.9) wall.up = Vec3::UnitX();
     // The point nearest to the origin, so that x and y of a wall along z = c are those of the
     // world.
-    wall.center_m = wall.normal.dot(center) * wall.normal;
+    wall.center_m = wall.normal.dot(principal.center_m) * wall.normal;
     const core::Transform wall_from_world = wall.world_from_wall().inverse();
     Vec3 reach = Vec3::Zero();
     for (const Vec3& p : points_m) reach = reach.cwiseMax((wall_from_world * p).cwiseAbs());

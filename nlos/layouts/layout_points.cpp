@@ -3,8 +3,8 @@
 
 #include "renderer/core/error.h"
 #include "renderer/core/nearest_neighbours.h"
+#include "renderer/core/principal_axes.h"
 
-#include <Eigen/Eigenvalues>
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -137,20 +137,11 @@ PlacedPoints distinct_points(const std::vector<Vec3>& positions, const std::vect
     return placed;
 }
 
-Vec3 plane_normal(const std::vector<Vec3>& points, double* off_plane_m) {
-    Vec3 mean = Vec3::Zero();
-    for (const Vec3& p : points) mean += p / static_cast<double>(points.size());
-    Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
-    for (const Vec3& p : points) scatter += (p - mean) * (p - mean).transpose();
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(scatter);
-    const double rms =
-        std::sqrt(std::max(0.0, solver.eigenvalues()[0]) / static_cast<double>(points.size()));
-    if (off_plane_m != nullptr) *off_plane_m = rms;
-    // Points on a line, or one point, have no plane.
-    if (solver.eigenvalues()[1] <= 1e-12 * std::max(solver.eigenvalues()[2], 1e-12)) {
-        return Vec3::UnitZ();
-    }
-    return solver.eigenvectors().col(0);
+// Points on a line, or one point, have no plane.
+Vec3 plane_normal(const core::PrincipalAxes& points) {
+    const Vec3& spread_m = points.spread_m;
+    return spread_m[1] > 1e-6 * std::max(spread_m[2], 1e-6) ? Vec3(points.axes.col(0))
+                                                            : Vec3::UnitZ();
 }
 
 }  // namespace
@@ -159,16 +150,16 @@ std::vector<Vec3> fitted_normals(const std::vector<Vec3>& positions,
                                  const std::optional<Vec3>& towards) {
     constexpr double kFlat_m = 2e-3;  // a wall is painted as flat as that
     constexpr std::size_t kNeighbours = 9;
-    double off_plane_m = 0.0;
-    std::vector<Vec3> normals(positions.size(), plane_normal(positions, &off_plane_m));
-    if (off_plane_m > kFlat_m && positions.size() >= kNeighbours) {
+    const core::PrincipalAxes all = core::principal_axes(positions);
+    std::vector<Vec3> normals(positions.size(), plane_normal(all));
+    if (all.spread_m[0] > kFlat_m && positions.size() >= kNeighbours) {
         const auto nearest = core::nearest_neighbours(positions, positions, kNeighbours);
         for (std::size_t i = 0; i < positions.size(); ++i) {
             std::vector<Vec3> patch;
             for (std::size_t k = 0; k < kNeighbours; ++k) {
                 patch.push_back(positions[nearest.indices[i * kNeighbours + k]]);
             }
-            normals[i] = plane_normal(patch, nullptr);
+            normals[i] = plane_normal(core::principal_axes(patch));
         }
     }
     for (std::size_t i = 0; i < positions.size(); ++i) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/preparation/wall_frame.h"
 
-#include <Eigen/Eigenvalues>
+#include "renderer/core/principal_axes.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -44,19 +45,16 @@ std::array<Vec3, 2> grid_steps(const core::WallPoints& points, const Vec3& cente
 }
 
 /// The direction in which the points scatter least, or `fallback` when that is not one direction.
-Vec3 plane_normal(const std::vector<Vec3>& points, const Vec3& center, const Vec3& fallback) {
-    Mat3 scatter = Mat3::Zero();
-    for (const Vec3& point : points) scatter += (point - center) * (point - center).transpose();
-    const Eigen::SelfAdjointEigenSolver<Mat3> solver(scatter);
-    const Vec3 spread = solver.eigenvalues();
-    if (!(spread[1] > 1e-6 * spread[2])) return fallback;
-    const Vec3 normal = solver.eigenvectors().col(0);
+Vec3 plane_normal(const std::vector<Vec3>& points, const Vec3& fallback) {
+    const core::PrincipalAxes principal = core::principal_axes(points);
+    if (!(principal.spread_m[1] > 1e-3 * principal.spread_m[2])) return fallback;
+    const Vec3 normal = principal.axes.col(0);
     return normal.dot(fallback) < 0.0 ? Vec3(-normal) : normal;
 }
 
-Mat3 frame_of_list(const core::WallPoints& points, const Vec3& center, const Vec3& mean_normal) {
+Mat3 frame_of_list(const core::WallPoints& points, const Vec3& mean_normal) {
     Mat3 axes;
-    axes.col(2) = plane_normal(points.positions, center, mean_normal);
+    axes.col(2) = plane_normal(points.positions, mean_normal);
     const Vec3 up = std::abs(axes(1, 2)) < 0.99 ? Vec3::UnitY() : Vec3::UnitZ();
     axes.col(0) = up.cross(axes.col(2)).normalized();
     axes.col(1) = axes.col(2).cross(axes.col(0));
@@ -142,8 +140,8 @@ WallFrame derive_wall_frame(const core::Scan& scan) {
     if (points.grid) steps = grid_steps(points, center);
     const bool has_two_axes =
         steps[0].cross(steps[1]).norm() > 1e-6 * steps[0].norm() * steps[1].norm();
-    wall.world_from_wall.linear() = has_two_axes ? frame_of_grid(steps, mean_normal)
-                                                 : frame_of_list(points, center, mean_normal);
+    wall.world_from_wall.linear() =
+        has_two_axes ? frame_of_grid(steps, mean_normal) : frame_of_list(points, mean_normal);
     if (!points.grid) {
         wall.why_no_grid = "a list of wall points";
     } else if (!has_two_axes) {
