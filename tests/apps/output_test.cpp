@@ -103,7 +103,7 @@ TEST_F(Output, NoColorAndDumbTerminalsGetPlainLines) {
     if (std::system("command -v script >/dev/null") != 0) GTEST_SKIP() << "script is not there";
     const std::string scene = make_scene("scene.json", core::Json::object());
     const std::string render = "'" NLOS_PROGRAM "' render " + scene + " -o " + file("c.h5") +
-                               " --method path --seconds 1.5";
+                               " --method path --seconds 1.5 --threads 1";
     const auto progress = [&](const std::string& environment) {
         const std::string command = "env -u NO_COLOR TERM=xterm " + environment +
                                     " script -qec \"" + render + "\" /dev/null >'" + file("log") +

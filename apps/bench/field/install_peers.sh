@@ -18,13 +18,16 @@ if [ ! -e /usr/lib/x86_64-linux-gnu/libLLVM.so.19.1 ]; then
 fi
 
 [ -x "$folder/bin/python" ] || "$python" -m venv "$folder"
-# y-tal 0.20 wants NumPy 1, which Python 3.13 (Debian 13) has no wheels of: there it is left out.
-"$folder/bin/python" -m pip install --quiet --disable-pip-version-check \
-    mitsuba==3.9.1 drjit==1.5.0 mitransient==1.3.1 pyfftw==0.15.1 \
-    'y-tal==0.20.0; python_version < "3.13"' 'pillow==10.3.0; python_version < "3.13"' \
+# y-tal 0.20 wants NumPy 1, which Python 3.13 (Debian 13) has no wheels of: there it is left out. It
+# comes without PyVista, a third of all, which only its plot3d() takes.
+pip=("$folder/bin/python" -m pip install --quiet --disable-pip-version-check)
+"${pip[@]}" mitsuba==3.9.1 drjit==1.5.0 mitransient==1.3.1 pyfftw==0.15.1 \
     'numpy==1.26.4; python_version < "3.13"' 'numpy>=2.1,<2.4; python_version >= "3.13"' \
     scipy==1.17.1 h5py==3.16.0 matplotlib==3.11.2 numba==0.68.1 llvmlite==0.50.0 \
-    ipython==9.18.1 ray==2.60.0
+    ipython==9.18.1 ray==2.60.0 \
+    'pillow==10.3.0; python_version < "3.13"' imageio==2.25.1 dill==0.4.1 nptyping==2.5.0 \
+    psutil==7.2.2 pyyaml==6.0.4 setuptools==84.2.1 tqdm==4.70.1
+"${pip[@]}" --no-deps 'y-tal==0.20.0; python_version < "3.13"'
 "$folder/bin/python" - <<'PYTHON'
 from importlib import metadata, util
 import mitsuba
