@@ -216,6 +216,9 @@ class Job {
         if (auto warning = unobserved_warning(settings, observed_, axis_.num_bins)) {
             result_.warnings.push_back(std::move(*warning));
         }
+        if (auto warning = few_pairs_warning(prepared_.scan)) {
+            result_.warnings.push_back(std::move(*warning));
+        }
     }
 
     /// Fills the wavelength in; bins can tell no shorter ones from longer ones.

@@ -138,4 +138,15 @@ std::optional<std::string> unobserved_warning(const ReconstructSettings& setting
         core::enum_name(settings.method));
 }
 
+std::optional<std::string> few_pairs_warning(const core::Scan& scan) {
+    constexpr std::size_t kFewPairs = 24;
+    const std::size_t pairs = scan.num_pairs();
+    if (pairs > kFewPairs) return std::nullopt;
+    return fmt::format(
+        "{} of wall points {} distances rather than directions: expect shells around the points "
+        "instead of surfaces; nlos track follows a target, nlos fit places a known shape",
+        pairs == 1 ? "one pair" : fmt::format("{} pairs", pairs),
+        pairs == 1 ? "tells" : "tell");
+}
+
 }  // namespace nlos

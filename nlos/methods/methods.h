@@ -154,4 +154,8 @@ std::optional<std::string> unobserved_warning(const ReconstructSettings& setting
                                               const core::ObservedBins& observed,
                                               int num_bins);
 
+/// Says of a scan of few pairs of points that it tells distances rather than directions; nothing of
+/// others.
+std::optional<std::string> few_pairs_warning(const core::Scan& scan);
+
 }  // namespace nlos

@@ -343,6 +343,24 @@ TEST(Reconstruct, ServesASingleWallPoint) {
     for (const float value : result.volume.values) EXPECT_TRUE(std::isfinite(value));
 }
 
+TEST(Reconstruct, SaysThatFewPairsTellDistancesOnly) {
+    for (const auto& [side, starts] : {std::pair{std::size_t{1}, "one pair of wall points tells"},
+                                       std::pair{std::size_t{4}, "16 pairs of wall points tell "},
+                                       std::pair{std::size_t{5}, ""}}) {
+        core::Capture capture = nlos_test::confocal_capture(
+            nlos_test::wall_grid({side, side}, {0.2, 0.2}), {0.0, 0.02, 40});
+        nlos_test::add_scatterer(capture, Vec3(0.0, 0.0, 0.2), 4.0);
+        const auto warnings =
+            reconstruct(capture, with({"volume.voxels=[8,8,8]", "method=bp"}), {}).warnings;
+        if (starts[0] == '\0') {
+            EXPECT_TRUE(warnings.empty());
+        } else {
+            ASSERT_EQ(warnings.size(), 1U);
+            EXPECT_TRUE(warnings[0].starts_with(starts)) << warnings[0];
+        }
+    }
+}
+
 TEST(Reconstruct, ImagesOfACameraAreRefused) {
     EXPECT_ERROR_WITH(reconstruct(test_support::example_image(), {}, {}), "image of a camera");
 }
