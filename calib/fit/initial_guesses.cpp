@@ -154,6 +154,16 @@ std::vector<Vec3> cluster_centers(const std::vector<Vec3>& points, std::size_t c
     return centers;
 }
 
+/// Dims the bins that lie within `reach_m` of a point's path length.
+template <class PairOpl>
+void take_as_explained(const PairOpl& opl_of, double reach_m, FitData& data) {
+    const auto bins = static_cast<std::size_t>(data.axis.num_bins);
+    for (std::size_t i = 0; i < data.values.size(); ++i) {
+        const double center_m = data.axis.bin_center_m(static_cast<double>(i % bins));
+        if (std::abs(center_m - opl_of(i / bins)) < reach_m) data.values[i] *= 0.1;
+    }
+}
+
 std::vector<Vec3> brightest_points(const core::Scan& scan,
                                    const FitData& data,
                                    double ambient,
@@ -205,16 +215,8 @@ std::vector<Vec3> brightest_points(const core::Scan& scan,
         });
         const auto best = std::max_element(score.begin(), score.end()) - score.begin();
         found.push_back(position(static_cast<std::size_t>(best)));
-        const double reach = 2.5 * sigma_m + step;  // its light is taken as explained
-        for (std::size_t pair = 0; pair < scan.num_pairs(); ++pair) {
-            const double opl = opl_of(found.back(), pair);
-            const auto bins = static_cast<std::size_t>(rest.axis.num_bins);
-            for (std::size_t b = 0; b < bins; ++b) {
-                const double distance =
-                    std::abs(rest.axis.bin_center_m(static_cast<double>(b)) - opl);
-                if (distance < reach) rest.values[pair * bins + b] *= 0.1;
-            }
-        }
+        const auto pair_opl = [&](std::size_t pair) { return opl_of(found.back(), pair); };
+        take_as_explained(pair_opl, 2.5 * sigma_m + step, rest);
     }
     return found;
 }

@@ -89,6 +89,18 @@ core::Transform camera_from_wall(const cv::Mat& rotation_vector, const cv::Mat& 
     return result;
 }
 
+// Inner corners of the board in its own frame, row by row [m].
+std::vector<cv::Point3f> board_points(const cv::Size& inner, double square_m) {
+    std::vector<cv::Point3f> points;
+    for (int j = 0; j < inner.height; ++j) {
+        for (int i = 0; i < inner.width; ++i) {
+            points.emplace_back(
+                static_cast<float>(i * square_m), static_cast<float>(j * square_m), 0.0F);
+        }
+    }
+    return points;
+}
+
 }  // namespace
 
 Vec2 CameraCalibration::wall_point(const Vec2& pixel) const {
@@ -115,20 +127,13 @@ CameraCalibration calibrate_camera(const BoardSettings& settings) {
                           fmt::format("must be from 0 to {}", count - 1));
     }
     const cv::Size inner(settings.inner_corners[0], settings.inner_corners[1]);
-    std::vector<cv::Point3f> board;
-    for (int j = 0; j < inner.height; ++j) {
-        for (int i = 0; i < inner.width; ++i) {
-            board.emplace_back(static_cast<float>(i * settings.square_m),
-                               static_cast<float>(j * settings.square_m),
-                               0.0F);
-        }
-    }
     cv::Size size;
     std::vector<std::vector<cv::Point2f>> corners;
     for (const std::string& path : settings.images) {
         corners.push_back(find_corners(path, inner, size));
     }
-    const std::vector<std::vector<cv::Point3f>> boards(corners.size(), board);
+    const std::vector<std::vector<cv::Point3f>> boards(corners.size(),
+                                                       board_points(inner, settings.square_m));
     cv::Mat intrinsics;
     cv::Mat distortion;
     std::vector<cv::Mat> rotations;

@@ -9,6 +9,10 @@
 namespace apps {
 namespace {
 
+constexpr double kAgreementLevel = 0.01;  // that chance alone calls a table inconsistent
+// Scores of cells that are only nearly normal are a little wide.
+constexpr double kWideScores = 0.05;
+
 double normal_score(double difference, double standard_error, std::size_t num_values) {
     if (difference == 0.0) return 0.0;
     const double freedom = static_cast<double>(num_values) - 1.0;
@@ -115,6 +119,23 @@ double largest_score_by_chance(int num_scores, double level) {
         (std::erfc(middle / std::sqrt(2.0)) > tail ? low : high) = middle;
     }
     return low;
+}
+
+void judge_agreement(std::vector<core::Json>& rows) {
+    int num_scores = 0;
+    for (const core::Json& row : rows) {
+        if (!row["worst_z"].is_null()) num_scores += row["cells"].get<int>() + 1;
+    }
+    if (num_scores == 0) return;
+    const double most = largest_score_by_chance(num_scores, kAgreementLevel);
+    for (core::Json& row : rows) {
+        if (row["worst_z"].is_null()) continue;
+        const auto size = [&](const char* score) { return std::abs(row[score].get<double>()); };
+        const double widest = 1.0 + kWideScores + 4.0 / std::sqrt(2.0 * row["cells"].get<int>());
+        row["worst_by_chance"] = most;
+        row["consistent"] =
+            size("worst_z") <= most && size("energy_z") <= most && size("rms_z") <= widest;
+    }
 }
 
 }  // namespace apps

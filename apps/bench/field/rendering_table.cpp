@@ -27,15 +27,12 @@ using std::optional;
 constexpr double kOnePercent = 0.01;
 // Four times the paths halve an unbiased error; one that keeps more than this of it has a floor.
 constexpr double kLeastGain = 0.7;
-constexpr double kAgreementLevel = 0.01;  // that chance alone calls a table inconsistent
 constexpr std::size_t kBlock = 4;
 constexpr double kLeastShare = 0.02;  // of a block's light, for a cell of its own
 constexpr int kRuns = 32;
 // Rays that start 0.02 mm off the wall see what is 0.44 m away larger by twice their ratio: what
 // hidden-geometry sampling may lose of all light, known no better than that.
 constexpr double kRayOffsetLoss = 1e-4;
-// Scores of cells that are only nearly normal are a little wide.
-constexpr double kWideScores = 0.05;
 
 /// A scene to an order, and what is known of the truth.
 struct RenderedScene {
@@ -289,24 +286,6 @@ void compare_with_ours(std::vector<RenderingSummary>& of_task) {
     }
 }
 
-// Scores are judged together: chance may call one table in a hundred inconsistent.
-void judge(std::vector<core::Json>& rows) {
-    int num_scores = 0;
-    for (const core::Json& row : rows) {
-        if (!row["worst_z"].is_null()) num_scores += row["cells"].get<int>() + 1;
-    }
-    if (num_scores == 0) return;
-    const double most = largest_score_by_chance(num_scores, kAgreementLevel);
-    for (core::Json& row : rows) {
-        if (row["worst_z"].is_null()) continue;
-        const auto size = [&](const char* score) { return std::abs(row[score].get<double>()); };
-        const double widest = 1.0 + kWideScores + 4.0 / std::sqrt(2.0 * row["cells"].get<int>());
-        row["worst_by_chance"] = most;
-        row["consistent"] =
-            size("worst_z") <= most && size("energy_z") <= most && size("rms_z") <= widest;
-    }
-}
-
 }  // namespace
 
 RenderingTable measure_renderings(Contenders& contenders,
@@ -347,7 +326,7 @@ RenderingTable measure_renderings(Contenders& contenders,
         compare_with_ours(summaries);
         table.summaries.insert(table.summaries.end(), summaries.begin(), summaries.end());
     }
-    judge(table.agreement);
+    judge_agreement(table.agreement);
     return table;
 }
 

@@ -13,6 +13,11 @@
 namespace apps {
 namespace {
 
+double share_where(const core::Json& rows, const char* key) {
+    const auto holds = [&](const core::Json& row) { return row[key] == true; };
+    return share_of(std::count_if(rows.begin(), rows.end(), holds), rows.size());
+}
+
 // What was asked of the renderers, and what this run's figures say of it.
 std::vector<Target> render_targets(const core::Json& figures) {
     std::vector<Target> targets;
@@ -40,12 +45,7 @@ std::vector<Target> render_targets(const core::Json& figures) {
             ours <= limit);
     }
     if (const core::Json& errors = figures["target_errors"]; !errors.empty()) {
-        const auto share = [&](const char* key) {
-            return share_of(std::count_if(errors.begin(),
-                                          errors.end(),
-                                          [&](const core::Json& row) { return row[key] == true; }),
-                            errors.size());
-        };
+        const auto share = [&](const char* key) { return share_where(errors, key); };
         add("random scenes below their target error",
             ">= 0.95 of them",
             share("met"),

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "apps/bench/command.h"
-#include "apps/bench/scene.h"
+#include "apps/bench/render/shift_workbench.h"
 #include "apps/commands.h"
 #include "renderer/core/parallel.h"
 #include "renderer/core/process.h"
-#include "renderer/core/random.h"
-#include "renderer/scene/area_sampler.h"
 #include "renderer/shift/charts.h"
 #include "renderer/shift/path_functional.h"
 #include "renderer/shift/shift_mapping.h"
@@ -29,71 +27,6 @@ using renderer::ShiftSettings;
 constexpr int kRepeats = 3;  ///< timings: the quickest counts
 constexpr int kMaxDifferences = 500;
 constexpr std::size_t kMaxFlowShifts = 300;  ///< one takes thousands of evaluations
-
-struct Shift {
-    renderer::SurfacePoint x;
-    renderer::ShiftEnd source;
-    renderer::ShiftEnd target;
-    renderer::ConstraintChange change;
-};
-
-// A scene with shifts to try on it.
-class ShiftWorkbench {
- public:
-    ShiftWorkbench(const std::string& path, int num_shifts) : bench_(path) {
-        const renderer::AreaSampler sampler(scene());
-        // Behind or beside everything the scan sees nothing; such a scene ends after many tries.
-        const std::uint64_t most = 1000 * static_cast<std::uint64_t>(num_shifts);
-        for (std::uint64_t i = 0; i < most && int(shifts_.size()) < num_shifts; ++i) {
-            core::Rng rng(0, i, 0);
-            if (const auto shift = draw(sampler, rng)) shifts_.push_back(*shift);
-        }
-        if (shifts_.empty()) {
-            throw core::Error(path, "found no surface that the scan sees", "must have one");
-        }
-    }
-
-    const renderer::Scene& scene() const { return bench_.scene(); }
-    const std::vector<Shift>& shifts() const { return shifts_; }
-
- private:
-    renderer::ShiftEnd end_of(std::size_t pair) const {
-        const core::Scan& scan = bench_.scan();
-        const std::size_t l = scan.illumination_index(pair);
-        const core::WallPoints& lit = scan.illumination;
-        return {scan.sensing.positions[scan.sensing_index(pair)], lit.positions[l], lit.normals[l]};
-    }
-
-    // Cosine at x towards a point that sees it, 0 when it does not.
-    double seen_cosine(const renderer::SurfacePoint& x, const Vec3& from, const Vec3& n) const {
-        const Vec3& normal = scene().facet(x.facet).normal;
-        const Vec3 to_x = (x.position - from).normalized();
-        if (n.dot(to_x) <= 0.0) return 0.0;
-        if (scene().rays().is_blocked(from, n, x.position, normal)) return 0.0;
-        return std::abs(normal.dot(to_x));
-    }
-
-    std::optional<Shift> draw(const renderer::AreaSampler& sampler, core::Rng& rng) const {
-        const core::Scan& scan = bench_.scan();
-        const std::size_t pairs = scan.num_pairs();
-        const auto pair = static_cast<std::size_t>(rng.uniform() * double(pairs));
-        const std::size_t next = pair + 1 < pairs ? pair + 1 : pair - 1;
-        Shift shift;
-        const double u = rng.uniform();
-        shift.x = sampler.sample(u, rng.uniform());
-        shift.source = end_of(pair);
-        shift.target = end_of(next);
-        const Vec3& sensing_normal = scan.sensing.normals[scan.sensing_index(pair)];
-        const double accept = seen_cosine(shift.x, shift.source.a, sensing_normal) *
-                              seen_cosine(shift.x, shift.source.y, shift.source.normal_y);
-        if (rng.uniform() >= accept) return std::nullopt;
-        shift.change.offset_m = bench_.axis().bin_width_m * (2.0 * rng.uniform() - 1.0);
-        return shift;
-    }
-
-    BenchScene bench_;
-    std::vector<Shift> shifts_;
-};
 
 std::optional<renderer::ShiftedPath> apply(const ShiftMapping& mapping,
                                            const Shift& shift,
@@ -309,11 +242,8 @@ struct ShiftBenchSettings {
     int shifts = 20'000;
 };
 
-/// Compares gauges and charts of the shift mapping, on one thread.
-///
-/// Shifts are those of spatial and temporal reuse: a vertex drawn by area and by the cosines at it,
-/// visible from its measurement pair, goes to a pair next to it and to a length up to a bin off.
-/// Charts are compared on all scenes, gauges and the parts of a shift on the first.
+/// Compares charts of the shift mapping on all scenes, gauges and the parts of a shift on the first,
+/// on one thread.
 BenchResult measure(const ShiftBenchSettings& settings, const core::Progress& progress) {
     const core::ThreadLimit one_thread(1);
     core::Json figures{{"gauge_scene", settings.scenes.front()},
