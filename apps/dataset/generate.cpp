@@ -94,7 +94,7 @@ std::optional<Manifest> make_shard(Dataset& dataset,
     const bool is_whole = core::parallel_in_order<MadeItem>(
         items.size(),
         [&](std::size_t i) { return make_packed(dataset, items.begin + i, progress); },
-        [&](std::size_t, MadeItem made) {
+        [&](std::size_t i, MadeItem made) {
             if (made.item.interrupted) return false;
             const core::ThreadStopwatch writing;
             writer->add(std::move(made.packed));
@@ -102,7 +102,7 @@ std::optional<Manifest> make_shard(Dataset& dataset,
             if (!made.preview.empty()) preview_columns = made.preview.size();
             std::move(made.preview.begin(), made.preview.end(), std::back_inserter(preview));
             manifest.profile.packing += writing.seconds();
-            return next_item();
+            return next_item() || i + 1 == items.size();
         });
     if (!is_whole) return std::nullopt;
     writer->finish();

@@ -49,8 +49,11 @@ bool parallel_pointers_in_order(std::size_t count,
     const auto try_to_use = [&](const Made& made) {
         try {
             if (made.error) std::rethrow_exception(made.error);
-            is_ended = !use(made.index, made.result.get());
-            ++used;
+            if (use(made.index, made.result.get())) {
+                ++used;
+            } else {
+                is_ended = true;
+            }
         } catch (...) {
             error = std::current_exception();
             is_ended = true;

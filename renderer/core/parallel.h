@@ -40,8 +40,8 @@ T parallel_sum(std::size_t count, T zero, const std::function<T(std::size_t)>& t
 /// results one by one, in order, while later ones are still being made. No more than two results
 /// per thread exist at a time.
 ///
-/// use       returns false to end the work early
-/// returns   whether all results were used
+/// use       returns false to end the work, be it at the last result
+/// returns   whether all results were used and none ended the work
 bool parallel_pointers_in_order(std::size_t count,
                                 const std::function<std::shared_ptr<void>(std::size_t)>& make,
                                 const std::function<bool(std::size_t, void*)>& use);

@@ -17,6 +17,7 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <limits>
 
 namespace {
 
@@ -205,6 +206,33 @@ TEST(Dataset, StopsBetweenItemsAndGoesOn) {
     EXPECT_EQ(index.problems, std::vector<std::string>{});
     ASSERT_EQ(index.doubts.size(), 1u) << "two programs made it";
     EXPECT_NE(index.doubts[0].find("several versions"), std::string::npos);
+}
+
+// Whenever a run is stopped, a shard is whole or not there.
+TEST(Dataset, AShardThatIsStoppedInItsLastItemIsNotThere) {
+    const core::ThreadLimit limit(1);
+    const TemporaryFolder folder;
+    const core::Json recipe = tiny_recipe(
+        {{"scene",
+          {{"render", {{"target_error", nullptr}, {"method", "path"}, {"samples", 8000}}}}}});
+    bool is_interrupted = false;
+    const auto ask_times = [&](const std::string& name, int stop_at) {
+        int asked = 0;
+        core::Progress progress;
+        progress.stop_requested = [&] { return ++asked >= stop_at; };
+        Dataset dataset(read(folder, recipe), folder.file(name));
+        is_interrupted = apps::generate(dataset, {}, ItemRange{0, 4}, "test", progress).interrupted;
+        return asked;
+    };
+    const int times = ask_times("whole", std::numeric_limits<int>::max());
+    for (int at = times - 3; at <= times; ++at) {
+        const std::string name = "stopped_" + std::to_string(at);
+        ask_times(name, at);
+        EXPECT_TRUE(is_interrupted || at >= times - 1) << at << " of " << times;
+        const auto expected = is_interrupted ? std::vector<std::string>{} : shards(folder, "whole");
+        EXPECT_TRUE(shards(folder, name) == expected) << at << " of " << times;
+        EXPECT_EQ(fs::exists(apps::manifest_path(folder.file(name), 0)), !is_interrupted);
+    }
 }
 
 TEST(Dataset, DarkItemsHoldWhatIsNotSignal) {

@@ -83,6 +83,9 @@ TEST(Parallel, WorkInOrderEndsEarlyWhenTheUserOfResultsSaysSo) {
     EXPECT_FALSE(core::parallel_in_order<int>(
         1000, [](std::size_t) { return 1; }, [&](std::size_t, int) { return ++used < 10; }));
     EXPECT_EQ(used, 10);
+    EXPECT_FALSE(core::parallel_in_order<int>(
+        10, [](std::size_t) { return 1; }, [&](std::size_t i, int) { return i < 9; }))
+        << "at the last";
     EXPECT_THROW(core::parallel_in_order<int>(
                      100,
                      [](std::size_t i) -> int {
