@@ -102,7 +102,7 @@ std::optional<Manifest> make_shard(Dataset& dataset,
             if (!made.preview.empty()) preview_columns = made.preview.size();
             std::move(made.preview.begin(), made.preview.end(), std::back_inserter(preview));
             manifest.profile.packing += writing.seconds();
-            return next_item() || i + 1 == items.size();
+            return next_item() || i + 1 == items.size();  // a whole shard is kept
         });
     if (!is_whole) return std::nullopt;
     writer->finish();

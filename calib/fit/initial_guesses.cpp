@@ -154,13 +154,12 @@ std::vector<Vec3> cluster_centers(const std::vector<Vec3>& points, std::size_t c
     return centers;
 }
 
-/// Dims the bins that lie within `reach_m` of a point's path length.
-template <class PairOpl>
-void take_as_explained(const PairOpl& opl_of, double reach_m, FitData& data) {
+/// Takes a pair's light within `reach_m` of a path length as explained: dims its bins.
+void dim_near(double opl_m, double reach_m, std::size_t pair, FitData& data) {
     const auto bins = static_cast<std::size_t>(data.axis.num_bins);
-    for (std::size_t i = 0; i < data.values.size(); ++i) {
-        const double center_m = data.axis.bin_center_m(static_cast<double>(i % bins));
-        if (std::abs(center_m - opl_of(i / bins)) < reach_m) data.values[i] *= 0.1;
+    for (std::size_t b = 0; b < bins; ++b) {
+        const double center_m = data.axis.bin_center_m(static_cast<double>(b));
+        if (std::abs(center_m - opl_m) < reach_m) data.values[pair * bins + b] *= 0.1;
     }
 }
 
@@ -215,8 +214,9 @@ std::vector<Vec3> brightest_points(const core::Scan& scan,
         });
         const auto best = std::max_element(score.begin(), score.end()) - score.begin();
         found.push_back(position(static_cast<std::size_t>(best)));
-        const auto pair_opl = [&](std::size_t pair) { return opl_of(found.back(), pair); };
-        take_as_explained(pair_opl, 2.5 * sigma_m + step, rest);
+        for (std::size_t pair = 0; pair < scan.num_pairs(); ++pair) {
+            dim_near(opl_of(found.back(), pair), 2.5 * sigma_m + step, pair, rest);
+        }
     }
     return found;
 }

@@ -45,15 +45,10 @@ bool parallel_pointers_in_order(std::size_t count,
     std::atomic<bool> is_ended = false;
     std::exception_ptr error;
     std::size_t next = 0;
-    std::size_t used = 0;
     const auto try_to_use = [&](const Made& made) {
         try {
             if (made.error) std::rethrow_exception(made.error);
-            if (use(made.index, made.result.get())) {
-                ++used;
-            } else {
-                is_ended = true;
-            }
+            is_ended = !use(made.index, made.result.get());
         } catch (...) {
             error = std::current_exception();
             is_ended = true;
@@ -74,7 +69,7 @@ bool parallel_pointers_in_order(std::size_t count,
                 if (!is_ended) try_to_use(made);
             }));
     if (error) std::rethrow_exception(error);
-    return used == count;
+    return !is_ended;
 }
 
 void run_on_one_thread(const std::function<void()>& body) {
