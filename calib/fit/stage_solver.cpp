@@ -19,21 +19,31 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 
 constexpr double kRoughness_m = 1e-3;  // that costs laplacian_weight
 
-// Renders once for all residual blocks.
+// Renders once for all residual blocks, and once for each point: a step is first looked at with its
+// gradients by the line search, then again for its cost and for its Jacobian.
 class SharedRender : public ceres::EvaluationCallback {
  public:
-    SharedRender(FitObjective& objective, const StateVector& values)
-        : objective_(objective), values_(values) {}
+    SharedRender(FitObjective& objective, const SceneModel& model, const StateVector& values)
+        : objective_(objective), model_(model), values_(values) {}
 
-    void PrepareForEvaluation(bool with_jacobians, bool is_new_point) override {
-        if (!is_new_point && (is_with_gradients_ || !with_jacobians)) return;
+    void PrepareForEvaluation(bool with_jacobians, bool) override {
+        std::vector<double> numbers;
+        for (std::size_t b = 0; b < model_.blocks().size(); ++b) {
+            const double* first = values_.blocks()[b];
+            numbers.insert(
+                numbers.end(), first, first + StateVector::ambient_size(model_.blocks()[b]));
+        }
+        if (numbers == rendered_ && (is_with_gradients_ || !with_jacobians)) return;
         objective_.evaluate(values_.state(), with_jacobians ? Gradients::With : Gradients::Without);
+        rendered_ = std::move(numbers);
         is_with_gradients_ = with_jacobians;
     }
 
  private:
     FitObjective& objective_;
+    const SceneModel& model_;
     const StateVector& values_;
+    std::vector<double> rendered_;  ///< the values at the last render
     bool is_with_gradients_ = false;
 };
 
@@ -187,7 +197,7 @@ SolveSummary solve_stage(const SceneModel& model,
     const double start_cost = objective.sum_of_squares();
     const auto loss = make_loss(settings.loss, loss_width(objective, settings));
 
-    SharedRender render(objective, values);
+    SharedRender render(objective, model, values);
     ceres::Problem::Options ownership;
     ownership.evaluation_callback = &render;
     ownership.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;

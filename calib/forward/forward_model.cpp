@@ -64,7 +64,7 @@ void ForwardModel::refresh(const SceneState& state) {
     const auto old_masks = std::exchange(masks_, {});
     edge_gradients_.clear();
     elements_ = cut_elements(model_, state, scan_, smear, settings_.tolerance);
-    if (!is_planar(model_, state)) trace(state);
+    if (!is_planar(model_, state)) masks_ = trace(state);
     visibility_changed_ = old_masks != masks_;
 }
 
@@ -134,10 +134,12 @@ std::size_t ForwardModel::light_index(std::size_t pair) const {
     return first + scan_.illumination_index(pair);
 }
 
-renderer::VisibilityMask ForwardModel::visible_part(std::size_t element, std::size_t pair) const {
-    if (masks_.empty()) return renderer::kAllVisible;
-    return masks_[light_index(pair) * elements_.size() + element] &
-           masks_[sensor_index(pair) * elements_.size() + element];
+renderer::VisibilityMask ForwardModel::visible_part(const Masks& masks,
+                                                    std::size_t element,
+                                                    std::size_t pair) const {
+    if (masks.empty()) return renderer::kAllVisible;
+    return masks[light_index(pair) * elements_.size() + element] &
+           masks[sensor_index(pair) * elements_.size() + element];
 }
 
 void ForwardModel::evaluate(std::size_t pair, PairModel& result) const {
@@ -149,7 +151,7 @@ void ForwardModel::evaluate(std::size_t pair, PairModel& result) const {
     target.mean.assign(bins, 0.0);
     target.gradients.assign(gradients_ == Gradients::With ? bins * columns : 0, 0.0);
     for (std::size_t i = 0; i < posed_.size(); ++i) {
-        const renderer::VisibilityMask mask = visible_part(i, pair);
+        const renderer::VisibilityMask mask = visible_part(masks_, i, pair);
         if (mask != 0) add_element(posed_[i], mask, pair, target);
     }
     for (std::size_t i = 0; i < state_.points.size(); ++i) add_point(i, pair, target);

@@ -70,6 +70,9 @@ class ForwardModel {
     const std::vector<ModelElement>& elements() const { return elements_; }
 
  private:
+    /// What wall points see: [wall point][element]; empty: everything.
+    using Masks = std::vector<renderer::VisibilityMask>;
+
     /// An element where the state puts it.
     struct PosedElement {
         std::array<core::Vec3, 6> nodes;  ///< corners, then midpoints of edges 01, 12, 20
@@ -92,14 +95,17 @@ class ForwardModel {
     void add_response(const PairModel& fine, PairModel& result) const;
     void finish(PairModel& fine, PairModel& result) const;
     core::TimeAxis fine_axis() const;
-    void trace(const SceneState& state);
+    Masks trace(const SceneState& state) const;
     std::vector<double> vertex_speeds(const SceneState& state) const;
-    std::vector<double> evaluate_all() const;
+    /// How the data change, [pair][bin], as the wall points see other parts of the elements.
+    std::vector<double> change_of_light(const Masks& from, const Masks& to) const;
     void add_shadow_edges(std::size_t pair, PairModel& result) const;
     /// Where the wall points of a pair stand in wall_points_.
     std::size_t light_index(std::size_t pair) const;
     std::size_t sensor_index(std::size_t pair) const { return scan_.sensing_index(pair); }
-    renderer::VisibilityMask visible_part(std::size_t element, std::size_t pair) const;
+    renderer::VisibilityMask visible_part(const Masks& masks,
+                                          std::size_t element,
+                                          std::size_t pair) const;
 
     const SceneModel& model_;
     core::Scan scan_;
@@ -113,8 +119,8 @@ class ForwardModel {
     std::vector<PosedElement> posed_;
     /// Sensing points, then illumination points unless the scan is confocal.
     core::WallPoints wall_points_;
-    std::vector<MovedWallPoint> moved_points_;     ///< wall_points_ where the state puts them
-    std::vector<renderer::VisibilityMask> masks_;  ///< [wall point][element]; empty: all is visible
+    std::vector<MovedWallPoint> moved_points_;  ///< wall_points_ where the state puts them
+    Masks masks_;
     bool visibility_changed_ = false;
     std::vector<double> edge_gradients_;  ///< [pair][bin][column]; or {}
     /// Weights of the data's bins for each position of a fine bin within its bin.

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace calib {
 namespace {
@@ -23,8 +24,8 @@ constexpr double kStepPerEdge = 0.25;
 
 }  // namespace
 
-void ForwardModel::trace(const SceneState& state) {
-    masks_ = trace_masks(model_, state, elements_, scan_, wall_.moved_points(wall_points_, state));
+ForwardModel::Masks ForwardModel::trace(const SceneState& state) const {
+    return trace_masks(model_, state, elements_, scan_, wall_.moved_points(wall_points_, state));
 }
 
 bool ForwardModel::has_shadow_edges() const {
@@ -56,17 +57,35 @@ std::vector<double> ForwardModel::vertex_speeds(const SceneState& state) const {
     return speeds;
 }
 
-std::vector<double> ForwardModel::evaluate_all() const {
+std::vector<double> ForwardModel::change_of_light(const Masks& from, const Masks& to) const {
     const auto bins = static_cast<std::size_t>(settings_.axis.num_bins);
-    std::vector<double> all(scan_.num_pairs() * bins);
+    const auto fine_bins = static_cast<std::size_t>(fine_axis().num_bins);
+    std::vector<double> changes(scan_.num_pairs() * bins);
     core::parallel_for(scan_.num_pairs(), [&](std::size_t pair) {
-        thread_local PairModel one;
-        evaluate(pair, one);
-        std::copy(one.mean.begin(),
-                  one.mean.end(),
-                  all.begin() + static_cast<std::ptrdiff_t>(pair * bins));
+        thread_local PairModel before;
+        thread_local PairModel after;
+        thread_local PairModel filtered;
+        before.mean.assign(fine_bins, 0.0);
+        after.mean.assign(fine_bins, 0.0);
+        for (std::size_t i = 0; i < posed_.size(); ++i) {
+            const renderer::VisibilityMask was = visible_part(from, i, pair);
+            const renderer::VisibilityMask is = visible_part(to, i, pair);
+            if (was == is) continue;
+            if (was != 0) add_element(posed_[i], was, pair, before);
+            if (is != 0) add_element(posed_[i], is, pair, after);
+        }
+        std::transform(after.mean.begin(),
+                       after.mean.end(),
+                       before.mean.begin(),
+                       after.mean.begin(),
+                       std::minus<>());
+        if (settings_.measured) add_response(after, filtered);
+        const std::vector<double>& change = settings_.measured ? filtered.mean : after.mean;
+        std::copy(change.begin(),
+                  change.end(),
+                  changes.begin() + static_cast<std::ptrdiff_t>(pair * bins));
     });
-    return all;
+    return changes;
 }
 
 void ForwardModel::find_shadow_edges(const SceneState& state) {
@@ -81,7 +100,6 @@ void ForwardModel::find_shadow_edges(const SceneState& state) {
     }
     const double edge_m = std::sqrt(area / static_cast<double>(elements_.size()));
     const std::vector<double> speeds = vertex_speeds(state);
-    const auto masks = masks_;
     const auto columns = speeds.size();
     std::vector<double> gradients;
     for (std::size_t column = 0; column < columns; ++column) {
@@ -89,16 +107,13 @@ void ForwardModel::find_shadow_edges(const SceneState& state) {
         Eigen::VectorXd step = Eigen::VectorXd::Zero(model_.num_columns());
         double& size = step[static_cast<Eigen::Index>(column)];
         size = kStepPerEdge * edge_m / speeds[column];
-        trace(moved_by(model_, state, step));
-        const std::vector<double> ahead = evaluate_all();
-        trace(moved_by(model_, state, -step));
-        const std::vector<double> behind = evaluate_all();
-        gradients.resize(ahead.size() * columns, 0.0);
-        for (std::size_t i = 0; i < ahead.size(); ++i) {
-            gradients[i * columns + column] = (ahead[i] - behind[i]) / (2.0 * size);
+        const std::vector<double> changes = change_of_light(trace(moved_by(model_, state, -step)),
+                                                            trace(moved_by(model_, state, step)));
+        gradients.resize(changes.size() * columns, 0.0);
+        for (std::size_t i = 0; i < changes.size(); ++i) {
+            gradients[i * columns + column] = changes[i] / (2.0 * size);
         }
     }
-    masks_ = masks;
     edge_gradients_ = std::move(gradients);
 }
 
