@@ -126,6 +126,27 @@ CairoSurface surface_of(const Raster& raster) {
     return surface;
 }
 
+std::string png_of(cairo_surface_t* surface) {
+    cairo_surface_flush(surface);
+    return encode_png(cairo_image_surface_get_data(surface),
+                      cairo_image_surface_get_width(surface),
+                      cairo_image_surface_get_height(surface),
+                      cairo_image_surface_get_stride(surface));
+}
+
+/// Gives an image the bytes to store it with in an .svg; those that cairo packs take longer.
+void attach_png(cairo_surface_t* surface) {
+    auto bytes = std::make_unique<std::string>(png_of(surface));
+    check(cairo_surface_set_mime_data(
+        surface,
+        CAIRO_MIME_TYPE_PNG,
+        reinterpret_cast<const unsigned char*>(bytes->data()),
+        bytes->size(),
+        [](void* kept) { delete static_cast<std::string*>(kept); },
+        bytes.get()));
+    bytes.release();
+}
+
 }  // namespace
 
 struct Canvas::Drawing {
@@ -235,6 +256,7 @@ void Canvas::image(const PixelBox& box, int columns, int rows, const std::vector
         resized({columns, rows, colours}, detail * box.width, detail * box.height);
     cairo_t* const context = drawing_->context.get();
     const CairoSurface surface = surface_of(raster);
+    if (drawing_->format == PictureFormat::Svg) attach_png(surface.get());
     cairo_save(context);
     cairo_translate(context, box.x, box.y);
     cairo_scale(context, double(box.width) / raster.columns, double(box.height) / raster.rows);
@@ -248,12 +270,7 @@ void Canvas::image(const PixelBox& box, int columns, int rows, const std::vector
 std::string Canvas::finish() {
     check(cairo_status(drawing_->context.get()));
     if (drawing_->format == PictureFormat::Png) {
-        cairo_surface_t* const surface = drawing_->surface.get();
-        cairo_surface_flush(surface);
-        drawing_->bytes = encode_png(cairo_image_surface_get_data(surface),
-                                     cairo_image_surface_get_width(surface),
-                                     cairo_image_surface_get_height(surface),
-                                     cairo_image_surface_get_stride(surface));
+        drawing_->bytes = png_of(drawing_->surface.get());
     }
     cairo_surface_finish(drawing_->surface.get());
     check(cairo_surface_status(drawing_->surface.get()));

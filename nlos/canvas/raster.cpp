@@ -12,6 +12,8 @@ namespace {
 struct Shares {
     int first = 0;
     std::vector<double> weights;
+
+    bool operator==(const Shares&) const = default;
 };
 
 std::vector<Shares> axis_shares(int from, int to) {
@@ -62,12 +64,14 @@ Raster resized(const Raster& raster, int columns, int rows) {
            static_cast<std::size_t>(raster.columns) * static_cast<std::size_t>(raster.rows));
     const std::vector<Shares> across = axis_shares(raster.columns, columns);
     const std::vector<Shares> down = axis_shares(raster.rows, rows);
-    Raster result{columns, rows, {}};
-    result.colours.reserve(across.size() * down.size());
-    for (const Shares& row : down) {
-        for (const Shares& column : across) {
-            result.colours.push_back(mean_colour(raster, column, row));
+    Raster result{columns, rows, std::vector<Colour>(across.size() * down.size())};
+    auto next = result.colours.begin();
+    for (std::size_t y = 0; y < down.size(); ++y) {
+        if (y > 0 && down[y] == down[y - 1]) {  // most rows of an enlarged image
+            next = std::copy(next - columns, next, next);
+            continue;
         }
+        for (const Shares& column : across) *next++ = mean_colour(raster, column, down[y]);
     }
     return result;
 }
