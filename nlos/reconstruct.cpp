@@ -42,14 +42,14 @@ PlateauShares plateau_shares(const ReconstructSettings& settings, bool has_noise
     if (settings.method == Method::Bp) return {0.0, 0.75, 7.0};
     if (settings.method == Method::Solver) return {0.0, has_noise ? 0.4 : 0.3};
     if (settings.method == Method::Fk) {
-        return has_noise ? PlateauShares{0.0, 0.53, 8.0} : PlateauShares{0.7, 0.4, 8.0};
+        return has_noise ? PlateauShares{0.0, 0.5, 8.0} : PlateauShares{0.7, 0.3, 8.0};
     }
     if (!has_noise) return {};
     if (uses_wave(settings) || settings.method == Method::Fbp) return {0.0, 0.5};
     return {0.0, 0.52, 5.0};
 }
 
-/// Waves and f-k migration give magnitudes. The shares of the deviations of depth (model, noise,
+/// Waves give magnitudes. The shares of the deviations of depth (model, noise,
 /// doubt, neighbours) are those of random surfaces, see reconstruction/README.md.
 VolumeErrors volume_errors(const ReconstructSettings& settings, bool has_noise) {
     const PlateauShares shares = plateau_shares(settings, has_noise);
@@ -58,7 +58,7 @@ VolumeErrors volume_errors(const ReconstructSettings& settings, bool has_noise) 
         case Method::Solver:
             return {VolumeScale::Amplitude, 0.067, 0.345, 23.0, 0.0, shares, kSteepest};
         case Method::Fk:
-            return {VolumeScale::Magnitude, 0.042, 0.35, 0.15, 0.35, shares};
+            return {VolumeScale::Amplitude, 0.046, 0.345, 8.0, 0.28, shares};
         case Method::Bp:
             return {VolumeScale::Amplitude, 0.042, 0.45, 5.0, 0.0, shares};
         case Method::Fbp:

@@ -6,6 +6,7 @@
 #include "nlos/methods/slabs.h"
 #include "nlos/methods/stolt_map.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -25,8 +26,8 @@ double squared_sinc(double x) {
     return std::abs(angle) < 1e-9 ? 1.0 : std::pow(std::sin(angle) / angle, 2);
 }
 
-/// The derivative along range, up to a phase, of a frequency in shares of the bins' highest. Near
-/// that one bins alias and counts are noise: a window closes there.
+/// The derivative along range of a frequency in shares of the bins' highest, but for the factor i.
+/// Near that one bins alias and counts are noise: a window closes there.
 double windowed_derivative(double frequency) {
     constexpr double kWindowPower = 6.0;
     return frequency * std::pow(std::cos(0.5 * core::kPi * frequency), kWindowPower);
@@ -94,7 +95,7 @@ class RangeTransform {
                     unit_phasor(-frequency * (first_range_m[i] - grids_.center_m));
                 out[f * num_columns + begin + i] =
                     multiply(rows.complex()[i * (row_floats / 2) + f],
-                             {derivative_[f] * phase.re, derivative_[f] * phase.im});
+                             {-derivative_[f] * phase.im, derivative_[f] * phase.re});
             }
         }
     }
@@ -171,12 +172,12 @@ class LateralTransform {
         }
     }
 
-    /// Adds the slab's share of depth sample `z` to `amplitudes` (x, y).
+    /// Adds the slab's share of depth sample `z` to `amplitudes` (x, y), the field's real part.
     void add_amplitudes(const ComplexF* field,
                         const RowSlab& slab,
                         std::size_t z,
                         Workspace& work,
-                        ComplexF* amplitudes) const {
+                        float* amplitudes) const {
         if (slab.kx.size() < grids_.px) std::fill_n(work.data(), work.num_floats(), 0.0F);
         for (std::size_t row = 0; row < slab.kx.size(); ++row) {
             std::copy_n(field + slab.offset(z, row), grids_.py, plane_.row(work, slab.kx[row]));
@@ -184,8 +185,8 @@ class LateralTransform {
         plane_.inverse(work);
         for (std::size_t ix = 0; ix < grids_.nx; ++ix) {
             const ComplexF* in = plane_.row(work, ix);
-            ComplexF* out = amplitudes + ix * grids_.ny;
-            for (std::size_t iy = 0; iy < grids_.ny; ++iy) out[iy] += in[iy];
+            float* out = amplitudes + ix * grids_.ny;
+            for (std::size_t iy = 0; iy < grids_.ny; ++iy) out[iy] += in[iy].real();
         }
     }
 
@@ -194,7 +195,7 @@ class LateralTransform {
     PaddedPlane plane_;
 };
 
-/// Magnitudes of voxels [begin, end) along z, each an average over its depth samples.
+/// Voxels [begin, end) along z, each an average over its depth samples; 0 where that is negative.
 ///
 /// field    of the last slab
 /// others   amplitudes of the slabs before it [z][x][y]; empty: there are none
@@ -202,7 +203,7 @@ void fill_voxels(const FkGrids& grids,
                  const LateralTransform& lateral,
                  const RowSlab& slab,
                  const ComplexF* field,
-                 const std::vector<ComplexF>& others,
+                 const std::vector<float>& others,
                  std::size_t begin,
                  std::size_t end,
                  Volume& volume) {
@@ -211,23 +212,23 @@ void fill_voxels(const FkGrids& grids,
     const std::size_t num_columns = grids.num_columns();
     const float share = 1.0F / static_cast<float>(grids.samples);
     std::vector<float> sums(num_columns * count, 0.0F);
-    std::vector<ComplexF> amplitudes(num_columns);
+    std::vector<float> amplitudes(num_columns);
     for (std::size_t z = begin * grids.samples; z < end * grids.samples; ++z) {
         if (others.empty()) {
-            std::fill(amplitudes.begin(), amplitudes.end(), ComplexF{});
+            std::fill(amplitudes.begin(), amplitudes.end(), 0.0F);
         } else {
             std::copy_n(others.data() + z * num_columns, num_columns, amplitudes.data());
         }
         lateral.add_amplitudes(field, slab, z, work, amplitudes.data());
         float* sum = sums.data() + z / grids.samples - begin;
         for (std::size_t column = 0; column < num_columns; ++column) {
-            sum[column * count] += share * magnitude(amplitudes[column]);
+            sum[column * count] += share * amplitudes[column];
         }
     }
     for (std::size_t column = 0; column < num_columns; ++column) {
-        std::copy_n(sums.data() + column * count,
-                    count,
-                    volume.values.data() + column * grids.num_z + begin);
+        const float* sum = sums.data() + column * count;
+        float* out = volume.values.data() + column * grids.num_z + begin;
+        std::transform(sum, sum + count, out, [](float value) { return std::max(0.0F, value); });
     }
 }
 
@@ -280,7 +281,7 @@ Volume fk_migration(const MethodInput& input,
 
     const LateralTransform lateral(grids);
     const core::Progress migration = input.progress.part(0.1, 1.0);
-    std::vector<ComplexF> amplitudes;  // [z][x][y], of all slabs but the last
+    std::vector<float> amplitudes;  // [z][x][y], of all slabs but the last
     Volume volume{input.axes, {}, {}};
     for (const Slab& pairs : split_into_slabs(num_pairs(grids), num_slabs)) {
         const core::Progress progress = pairs.part_of(migration, num_pairs(grids));
@@ -323,7 +324,7 @@ double fk_migration_bytes(const MethodInput& input,
     const double field = 8.0 * rows * static_cast<double>(grids.py * grids.num_planes());
     const double spectrum = 8.0 * columns * static_cast<double>(grids.num_frequencies());
     const double amplitudes =
-        num_slabs > 1 ? 8.0 * columns * static_cast<double>(grids.num_depths()) : 0.0;
+        num_slabs > 1 ? 4.0 * columns * static_cast<double>(grids.num_depths()) : 0.0;
     const double volume = 4.0 * columns * static_cast<double>(grids.num_z);
     const double lines = 2.0 * static_cast<double>(grids.py * 2 * grids.num_planes());
     const double per_thread = 8.0 * (plane + lines + columns) + 4.0 * columns * kPlanesPerBlock;

@@ -69,7 +69,8 @@ MethodBytes directional_light_cone_transform_bytes;
 /// input      as light_cone_transform()
 /// settings   falloff
 /// slabs      of |kx|; each repeats the lateral transforms
-/// returns    magnitude of the field, up to a common factor
+/// returns    the field up to a common factor, 0 where it is negative. Its magnitude, often shown
+///            instead, is an envelope along z: wider, and its peaks lie farther from the surface
 /// source     [Lindell2019]
 RunMethod fk_migration;
 MethodBytes fk_migration_bytes;

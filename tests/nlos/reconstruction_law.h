@@ -32,7 +32,6 @@ struct LawCase {
     bool gathers_in_squared_range = false;
 
     bool is_wave() const { return name.starts_with("Phasor"); }
-    bool shows_magnitudes() const { return is_wave() || name.starts_with("Fk"); }
 };
 
 /// What laws ask of a method: a capture with points in it, a reconstruction, tolerances.

@@ -186,7 +186,7 @@ std::vector<LawCase> law_cases() {
          3,
          true},
         {"DlctConfocal", ScanPattern::Confocal, {"method=dlct", "snr=10"}, true, false},
-        {"FkConfocal", ScanPattern::Confocal, {"method=fk"}, true, false}};
+        {"FkConfocal", ScanPattern::Confocal, {"method=fk"}, true, true}};
     const std::vector<std::pair<std::string, ScanPattern>> patterns{
         {"Confocal", ScanPattern::Confocal},
         {"Single", ScanPattern::Single},

@@ -11,8 +11,8 @@
 #include <vector>
 
 // What must hold for every method whatever the light: none, twice as much, too much, negative, or
-// from elsewhere. bp, fbp and, above 0, lct are linear; fk and phasor show the magnitude of a field
-// that is; all others are of the first power: twice the light, twice the volume.
+// from elsewhere. bp, fbp and, above 0, lct and fk are linear; phasor shows the magnitude of a
+// field that is; all others are of the first power: twice the light, twice the volume.
 
 namespace nlos {
 namespace {
@@ -34,7 +34,7 @@ TEST_P(ReconstructionLaw, TwiceTheLightIsTwiceTheVolume) {
 }
 
 TEST_P(ReconstructionLaw, SumsOfScenesAreSums) {
-    if (!GetParam().is_linear && !GetParam().shows_magnitudes()) return;
+    if (!GetParam().is_linear && !GetParam().is_wave()) return;
     core::Capture capture = dark_capture();
     nlos_test::add_scatterer(capture, kFirstPoint, 4.0);
     const core::Transient first = capture.transient;
@@ -110,7 +110,7 @@ TEST_P(ReconstructionLaw, NegativeLightIsNoSurface) {
     const std::vector<float> negative = run(capture).volume.values;
     const auto brightest =
         static_cast<std::size_t>(std::ranges::max_element(positive) - positive.begin());
-    if (GetParam().shows_magnitudes()) {
+    if (GetParam().is_wave()) {
         EXPECT_LT(test_support::relative_l2(negative, positive), 1e-5);
     } else {
         EXPECT_LE(negative[brightest], 0.0F);
