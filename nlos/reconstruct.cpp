@@ -58,7 +58,7 @@ VolumeErrors volume_errors(const ReconstructSettings& settings, bool has_noise) 
         case Method::Solver:
             return {VolumeScale::Amplitude, 0.067, 0.345, 23.0, 0.0, shares, kSteepest};
         case Method::Fk:
-            return {VolumeScale::Amplitude, 0.046, 0.345, 8.0, 0.28, shares};
+            return {VolumeScale::Amplitude, 0.044, 0.345, 8.0, 0.27, shares};
         case Method::Bp:
             return {VolumeScale::Amplitude, 0.042, 0.45, 5.0, 0.0, shares};
         case Method::Fbp:
