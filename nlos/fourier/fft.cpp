@@ -6,6 +6,7 @@
 #include <fftw3.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <mutex>
 #include <new>
 
@@ -39,14 +40,18 @@ std::size_t good_fft_size(std::size_t n) {
     }
 }
 
-FftBuffer::FftBuffer(std::size_t num_floats)
-    : num_floats_(num_floats), memory_(fftwf_alloc_real(num_floats)) {
+FftBuffer::FftBuffer(std::size_t num_floats) : num_floats_(num_floats) {
+    constexpr std::size_t kAlignment = 64;
+    const std::size_t num_bytes = num_floats * sizeof(float);
+    std::size_t space = num_bytes + kAlignment;
+    memory_.reset(std::calloc(space, 1));
     if (!memory_) throw std::bad_alloc();
-    std::fill_n(memory_.get(), num_floats, 0.0F);
+    void* first = memory_.get();
+    data_ = static_cast<float*>(std::align(kAlignment, num_bytes, first, space));
 }
 
-void FftBuffer::Free::operator()(float* memory) const {
-    fftwf_free(memory);
+void FftBuffer::Free::operator()(void* memory) const {
+    std::free(memory);
 }
 
 Fft Fft::real_to_complex(std::size_t length, std::size_t count) {

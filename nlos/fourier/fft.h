@@ -12,21 +12,23 @@ using ComplexF = std::complex<float>;
 /// The smallest product of 2, 3, 5 and 7 that is at least `n`; transforms of such lengths are fast.
 std::size_t good_fft_size(std::size_t n);
 
-/// Memory aligned for transforms, zeroed at the start.
+/// Memory aligned for transforms, zeroed at the start: the system does it page by page, in the
+/// thread that comes to a page first.
 class FftBuffer {
  public:
     explicit FftBuffer(std::size_t num_floats);
 
-    float* data() { return memory_.get(); }
-    ComplexF* complex() { return reinterpret_cast<ComplexF*>(memory_.get()); }
+    float* data() { return data_; }
+    ComplexF* complex() { return reinterpret_cast<ComplexF*>(data_); }
     std::size_t num_floats() const { return num_floats_; }
 
  private:
     struct Free {
-        void operator()(float* memory) const;
+        void operator()(void* memory) const;
     };
     std::size_t num_floats_;
-    std::unique_ptr<float, Free> memory_;
+    std::unique_ptr<void, Free> memory_;
+    float* data_;  ///< the first aligned float of it
 };
 
 /// Single-precision transforms in place, planned once and safe to run from several threads on

@@ -80,14 +80,24 @@ class RangeTransform {
         const std::size_t row_floats = grids_.length + 2;
         const std::size_t num_columns = grids_.num_columns();
         FftBuffer rows(kColumnsPerBatch * row_floats);
+        std::vector<double> first_range_m;
+        std::vector<double> bin_weights;
         for (std::size_t column = begin; column < end; ++column) {
-            fill_amplitudes(column, rows.data() + (column - begin) * row_floats);
+            const std::size_t pair = pair_of(column);
+            first_range_m.push_back(first_range(pair));
+            if (column == begin || first_range_m.back() != first_range_m.end()[-2]) {
+                bin_weights = weights(first_range_m.back());
+            }
+            const auto histogram = input_.transient.histogram(pair);
+            std::transform(histogram.begin(),
+                           histogram.end(),
+                           bin_weights.begin(),
+                           rows.data() + (column - begin) * row_floats,
+                           [](float value, double weight) {
+                               return static_cast<float>(weight * static_cast<double>(value));
+                           });
         }
         forward_.run(rows);
-        std::vector<double> first_range_m;
-        for (std::size_t column = begin; column < end; ++column) {
-            first_range_m.push_back(range_m(pair_of(column), 0));
-        }
         for (std::size_t f = 0; f < grids_.num_frequencies(); ++f) {
             const double frequency = static_cast<double>(f) / grids_.period_m();
             for (std::size_t i = 0; i < end - begin; ++i) {
@@ -104,23 +114,21 @@ class RangeTransform {
     std::size_t pair_of(std::size_t column) const {
         return input_.wall.grid->point(column / grids_.ny, column % grids_.ny);
     }
-    double range_m(std::size_t pair, std::size_t bin) const {
-        return 0.5 * (input_.time_axis.bin_center_m(static_cast<double>(bin)) -
-                      input_.scan.device_legs_m(pair));
+    /// The range of a pair's first bin [m].
+    double first_range(std::size_t pair) const {
+        return 0.5 * (input_.time_axis.bin_center_m(0.0) - input_.scan.device_legs_m(pair));
     }
 
-    void fill_amplitudes(std::size_t column, float* amplitudes) const {
-        const std::size_t pair = pair_of(column);
-        const auto histogram = input_.transient.histogram(pair);
-        const double first = range_m(pair, 0);
-        for (std::size_t bin = 0; bin < histogram.size(); ++bin) {
-            const double range = first + static_cast<double>(bin) * grids_.bin_m;
+    /// What bins are multiplied by whose first one lies at this range.
+    std::vector<double> weights(double first_range_m) const {
+        std::vector<double> weights;
+        for (int bin = 0; bin < input_.time_axis.num_bins; ++bin) {
+            const double range = first_range_m + bin * grids_.bin_m;
             const double weight = falloff_ == Falloff::Diffuse ? range * range * range : range;
             const double damping = squared_sinc((range - grids_.center_m) / grids_.period_m());
-            const double amplitude =
-                range > 0.0 ? weight * static_cast<double>(histogram[bin]) / damping : 0.0;
-            amplitudes[bin] = static_cast<float>(amplitude);
+            weights.push_back(range > 0.0 ? weight / damping : 0.0);
         }
+        return weights;
     }
 
     const MethodInput& input_;
