@@ -23,16 +23,11 @@ constexpr double kRoughness_m = 1e-3;  // that costs laplacian_weight
 // gradients by the line search, then again for its cost and for its Jacobian.
 class SharedRender : public ceres::EvaluationCallback {
  public:
-    SharedRender(FitObjective& objective, const SceneModel& model, const StateVector& values)
-        : objective_(objective), model_(model), values_(values) {}
+    SharedRender(FitObjective& objective, const StateVector& values)
+        : objective_(objective), values_(values) {}
 
     void PrepareForEvaluation(bool with_jacobians, bool) override {
-        std::vector<double> numbers;
-        for (std::size_t b = 0; b < model_.blocks().size(); ++b) {
-            const double* first = values_.blocks()[b];
-            numbers.insert(
-                numbers.end(), first, first + StateVector::ambient_size(model_.blocks()[b]));
-        }
+        std::vector<double> numbers = values_.numbers();
         if (numbers == rendered_ && (is_with_gradients_ || !with_jacobians)) return;
         objective_.evaluate(values_.state(), with_jacobians ? Gradients::With : Gradients::Without);
         rendered_ = std::move(numbers);
@@ -41,9 +36,8 @@ class SharedRender : public ceres::EvaluationCallback {
 
  private:
     FitObjective& objective_;
-    const SceneModel& model_;
     const StateVector& values_;
-    std::vector<double> rendered_;  ///< the values at the last render
+    std::vector<double> rendered_;  ///< the numbers of the last render
     bool is_with_gradients_ = false;
 };
 
@@ -197,7 +191,7 @@ SolveSummary solve_stage(const SceneModel& model,
     const double start_cost = objective.sum_of_squares();
     const auto loss = make_loss(settings.loss, loss_width(objective, settings));
 
-    SharedRender render(objective, model, values);
+    SharedRender render(objective, values);
     ceres::Problem::Options ownership;
     ownership.evaluation_callback = &render;
     ownership.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;

@@ -71,6 +71,14 @@ SceneState StateVector::state() const {
     return state;
 }
 
+std::vector<double> StateVector::numbers() const {
+    std::vector<double> numbers;
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+        numbers.insert(numbers.end(), blocks_[b], blocks_[b] + ambient_size(model_.blocks()[b]));
+    }
+    return numbers;
+}
+
 int StateVector::ambient_size(const ParameterBlock& block) {
     return block.kind == ParameterKind::Rotation ? 4 : block.columns;
 }

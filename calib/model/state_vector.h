@@ -21,6 +21,8 @@ class StateVector {
     SceneState state() const;
     /// One pointer per block of the model, into this object.
     const std::vector<double*>& blocks() const { return blocks_; }
+    /// The present numbers of all blocks, one block after the other.
+    std::vector<double> numbers() const;
 
     static int ambient_size(const ParameterBlock& block);
     /// d turn / d quaternion (3, 4): the world-frame turn that a change of the quaternion makes.
