@@ -145,7 +145,7 @@ std::uint64_t PassLoop::run_passes(
                     num_rays += work.tracer->trace(
                         sensor_pairs, pair, samples, rng, histogram, of_pass.get());
                 }
-                if (!sensor_pairs.is_image()) {
+                if (!sensor_pairs.is_image() && work.adds_short_paths) {
                     add_short_paths(task.scene, sensor_pairs.ends(pair), task.settings, histogram);
                 }
                 sums.add_pass(i, histogram);

@@ -25,6 +25,8 @@ struct PassWork {
     /// Memory for running sums [bytes]. Passes go over all pairs at once when their sums fit;
     /// larger scans are traced tile by tile, with the same result.
     double max_sums_bytes = 1e9;
+
+    bool adds_short_paths = true;  ///< orders 1 and 2 of scans
 };
 
 /// Renders by Monte Carlo, in passes over all pairs of a tile, and adds orders 1 and 2 of scans,

@@ -6,13 +6,13 @@
 #include "renderer/path/path_tracer.h"
 #include "renderer/restir_render.h"
 #include "renderer/sensor_render.h"
+#include "renderer/smoothed_render.h"
 #include "renderer/third_bounce/third_bounce.h"
 
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <memory>
 #include <optional>
 
@@ -64,12 +64,13 @@ void require_possible(const RenderTask& task) {
     }
 }
 
-void add(const core::Transient& part, core::Transient& sum) {
-    std::transform(part.values().begin(),
-                   part.values().end(),
-                   sum.values().begin(),
-                   sum.values().begin(),
-                   std::plus());
+// Where paths give orders from 4 on alone, which vary slowly over wall points and bins, `auto`
+// averages them over neighbours if an error allows it.
+bool smooths(const RenderTask& task, std::optional<ThirdBounceScope> scope) {
+    const RenderSettings& settings = task.settings;
+    return settings.method == Estimator::Auto && settings.target_error && !settings.by_order &&
+           !settings.variance && scope == ThirdBounceScope::NotIntegrable &&
+           !surfaces_of(task.scene).narrow_lobes;
 }
 
 // scope   which third bounces paths compute, beside all higher orders; nothing: no paths
@@ -80,7 +81,8 @@ RenderResult trace_paths(const RenderTask& task,
     if (scope && (task.scan.camera || task.settings.max_bounces >= 3)) {
         work.tracer = std::make_shared<const PathTracer>(task.scene, task.settings, *scope);
     }
-    RenderResult result = render_passes(task, work);
+    RenderResult result =
+        smooths(task, scope) ? render_smoothed(task, work) : render_passes(task, work);
     const int first = scope == ThirdBounceScope::NotIntegrable ? 4 : first_order(task.scan);
     if (scope && (task.scan.camera || task.settings.max_bounces >= first)) {
         result.sources.push_back({first, task.settings.max_bounces, Estimator::Path, "all"});
@@ -105,9 +107,11 @@ std::optional<LeftOutOrders> leave_out_orders(RenderTask& task) {
 }
 
 // Third bounces by the integrator, what is left by paths. When both are needed, the integrator,
-// which converges faster, gets half of the error or a quarter of the time.
+// which converges faster, gets half of the error that may be left or a quarter of the time; more of
+// the error where averages over neighbours make paths cheap.
 RenderResult integrate_and_trace(const RenderTask& task, double left_out) {
     constexpr double kShareOfTarget = 0.5;
+    constexpr double kShareBesideAverages = 0.7;
     constexpr double kShareOfTime = 0.25;
     const Surfaces surfaces = surfaces_of(task.scene);
     std::optional<ThirdBounceScope> scope;
@@ -119,7 +123,8 @@ RenderResult integrate_and_trace(const RenderTask& task, double left_out) {
     RenderSettings integration = task.settings;
     if (const auto target = task.settings.target_error) {
         const double allowed = std::sqrt(std::max(0.0, std::pow(*target, 2) - left_out * left_out));
-        integration.target_error = is_all ? allowed : kShareOfTarget * *target;
+        const double share = smooths(task, scope) ? kShareBesideAverages : kShareOfTarget;
+        integration.target_error = is_all ? allowed : share * allowed;
     }
     const auto seconds = task.settings.seconds;
     if (seconds && !is_all) integration.seconds = kShareOfTime * *seconds;
@@ -134,8 +139,8 @@ RenderResult integrate_and_trace(const RenderTask& task, double left_out) {
     }
     const PrecomputedPart precomputed{&third.transient, third.squared_error, left_out};
     RenderResult result = trace_paths(tracing, scope, precomputed);
-    add(third.transient, result.capture.transient);
-    if (task.settings.by_order) add(third.transient, result.capture.by_order[2]);
+    result.capture.transient += third.transient;
+    if (task.settings.by_order) result.capture.by_order[2] += third.transient;
     result.element_tolerance = third.element_tolerance;
     if (!third.estimated_error) {
         result.estimated_error.reset();

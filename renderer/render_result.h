@@ -3,6 +3,7 @@
 
 #include "renderer/core/capture/capture.h"
 #include "renderer/ellipsoidal/excluded_facets.h"
+#include "renderer/film/scan_smoothing.h"
 #include "renderer/restir/restir_counts.h"
 #include "renderer/settings/render_settings.h"
 
@@ -36,6 +37,7 @@ struct RenderResult {
     std::optional<double> estimated_error;    ///< relative L2 over all of H; empty: not known
     std::optional<double> element_tolerance;  ///< of third bounces, see RenderSettings
     std::optional<LeftOutOrders> left_out;    ///< counts as part of the error
+    std::optional<SmoothingWidths> smoothing;  ///< of what paths gave; its bias likewise
     std::uint64_t samples_per_pair = 0;       ///< candidate paths used, whole passes
     std::uint64_t num_rays = 0;
     double seconds = 0.0;

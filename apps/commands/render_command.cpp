@@ -69,6 +69,12 @@ void run(const RenderArguments& arguments) {
                               orders->first,
                               orders->last);
     }
+    if (const auto& widths = result.smoothing) {
+        effort +=
+            fmt::format("orders from 4 on averaged over {} points and {} bins to either side, ",
+                        widths->points - 1,
+                        widths->bins - 1);
+    }
     if (result.samples_per_pair > 0)
         effort += fmt::format("{} samples per pair, ", result.samples_per_pair);
     if (result.interrupted) {

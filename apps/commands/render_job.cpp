@@ -60,6 +60,10 @@ core::Json provenance(const std::string& scene_name,
                                    {"last", result.left_out->last},
                                    {"error", result.left_out->error}};
     }
+    if (result.smoothing) {
+        info["smoothing"] = {{"points", result.smoothing->points},
+                             {"bins", result.smoothing->bins}};
+    }
     if (names == "ellipsoidal" || names == "restir") {
         info["excluded"] = {{"mode", std::string(core::enum_name(description.render.exclude))},
                             {"objects", result.excluded.names},

@@ -22,6 +22,12 @@ double relative_error(const TransientAccumulator::SquaredNorms& norms,
     return std::hypot(sampled, precomputed.left_out);
 }
 
+// Noise falls with the number of samples, the rest of the error stays.
+double allowed_noise(double signal, double target, const PrecomputedPart& precomputed) {
+    const double rest = relative_error({0.0, signal}, precomputed);
+    return signal * (rest < target ? target * target - rest * rest : target * target);
+}
+
 StoppingRule::StoppingRule(const RenderSettings& settings,
                            int passes_for_samples,
                            const PrecomputedPart& precomputed)
@@ -41,12 +47,7 @@ double StoppingRule::share_done(int passes, double elapsed_s, const TransientAcc
 double StoppingRule::share_of_target(int passes, const TransientAccumulator& sums) {
     if (passes >= next_look_) {
         const auto norms = sums.squared_norms(passes, precomputed_.transient);
-        // Noise falls with the number of passes, the rest of the error stays. Where the rest alone
-        // exceeds the target, the noise is only brought down to the target.
-        const double rest = relative_error({0.0, norms.signal}, precomputed_);
-        const double share =
-            rest < *target_ ? *target_ * *target_ - rest * rest : *target_ * *target_;
-        const double allowed = share * norms.signal;
+        const double allowed = allowed_noise(norms.signal, *target_, precomputed_);
         if (norms.noise <= allowed) return 1.0;
         const double needed =
             allowed > 0.0 ? passes * norms.noise / allowed : std::numeric_limits<double>::max();

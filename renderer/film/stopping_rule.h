@@ -21,6 +21,12 @@ struct PrecomputedPart {
 double relative_error(const TransientAccumulator::SquaredNorms& norms,
                       const PrecomputedPart& precomputed);
 
+/// The noise that is allowed if the rest of the error is to leave relative_error() below a target;
+/// where the rest alone exceeds the target, noise is brought down to the target [squared L2 norm].
+///
+/// signal   squared L2 norm over all of H
+double allowed_noise(double signal, double target, const PrecomputedPart& precomputed);
+
 /// When to stop rendering passes: after a number of them, after some time, or when the error
 /// estimated from their spread is below the target. A target needs at least a few passes for the
 /// spread to be reliable.

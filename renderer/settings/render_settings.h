@@ -56,7 +56,8 @@ void for_each_field(RenderSettings& s, Visitor&& visit) {
           s.target_error,
           core::above(0,
                       "relative L2 error over all of H to stay below, instead of a number of "
-                      "samples; null: 0.01 for third_bounce"));
+                      "samples; auto may then leave out orders, and average those from 4 on over "
+                      "neighbouring points and bins; null: 0.01 for third_bounce"));
     visit("element_tolerance",
           s.element_tolerance,
           core::above(0,

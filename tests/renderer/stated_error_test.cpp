@@ -129,6 +129,40 @@ TEST(StatedError, AutoReachesItWithHigherOrders) {
               std::hypot(1.25 * kTarget, 0.0125));
 }
 
+// Higher orders are averaged over the grid: half of the samples suffice, and the error stays what
+// it is said to be. The direct return keeps its bin.
+TEST(StatedError, AutoAveragesHigherOrdersOverNeighbours) {
+    constexpr double kTarget = 0.01;
+    core::Scan scan = scan_of(16);
+    scan.sensing.grid = {16, 16};
+    scan.illumination.grid = {16, 16};
+    const renderer::Scene scene = facing_scene(scan);
+    renderer::RenderSettings settings;
+    settings.max_bounces = 5;
+    settings.direct_return = true;
+    settings.laser_spot_m2 = 1e4;  // as little direct light as of higher orders
+    settings.target_error = 0.005;
+    settings.by_order = true;
+    const core::HistogramAxes axes{{0.0, 0.02, 148}, {}};
+    const auto reference = renderer::render(scene, scan, axes, settings, {});
+    EXPECT_FALSE(reference.smoothing);
+    settings.target_error = kTarget;
+    const auto unsmoothed = renderer::render(scene, scan, axes, settings, {});
+    settings.by_order = false;
+    settings.seed = 1;
+    const auto result = renderer::render(scene, scan, axes, settings, {});
+    ASSERT_TRUE(result.smoothing);
+    EXPECT_GT(result.smoothing->points, 1);
+    EXPECT_GT(unsmoothed.samples_per_pair, 2 * result.samples_per_pair);
+    EXPECT_LE(*result.estimated_error, kTarget);
+    const double error = relative_distance(result.capture.transient, reference.capture.transient);
+    EXPECT_LE(error, std::hypot(1.1 * *result.estimated_error, 0.005));
+    EXPECT_EQ(result.capture.transient.histogram(7)[0],
+              reference.capture.transient.histogram(7)[0]);
+    EXPECT_GT(result.capture.transient.histogram(7)[0], 0.0F);
+    EXPECT_EQ(result.capture.transient.histogram(7)[1], 0.0F);
+}
+
 TEST(StatedError, OrdersAreLeftOutWhenTheyAreBelowWhatIsAllowed) {
     const core::Scan scan = scan_of(8);
     const renderer::Scene scene = facing_scene(scan);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <span>
 #include <utility>
@@ -51,6 +52,14 @@ class Transient {
     std::span<const float> histogram(std::size_t pair) const {
         return values().subspan(pair * num_bins_, num_bins_);
     }
+    /// Adds the values of another one of the same shape.
+    Transient& operator+=(const Transient& other) {
+        const auto mine = values();
+        const auto others = other.values();
+        std::transform(mine.begin(), mine.end(), others.begin(), mine.begin(), std::plus());
+        return *this;
+    }
+
     /// Whether all values are 0.
     bool is_dark() const {
         const auto all = values();

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/pass_render.h"
+
+namespace renderer {
+
+/// Renders by Monte Carlo until an error is reached, as render_passes() does, and averages what was
+/// sampled over neighbouring wall points and bins, as far as that lowers the error. For light that
+/// varies slowly, such as bounces from order 4 on: a few samples per pair then suffice. Orders 1
+/// and 2 are not averaged.
+///
+/// task   of a scan, with a target_error; neither variances nor bounce orders are asked for
+RenderResult render_smoothed(const RenderTask& task, const PassWork& work);
+
+}  // namespace renderer
