@@ -25,6 +25,7 @@ namespace nlos {
 namespace {
 
 constexpr double kSteepest = 2.0;      // slope of surfaces that the solver's masks hold
+constexpr double kFront = 0.4;         // methods whose columns are dark between two surfaces
 constexpr std::size_t kMaxSlabs = 64;  // each repeats a part of the work
 
 /// A method that knows normals knows them better than a plane through neighbouring columns does.
@@ -56,9 +57,9 @@ VolumeErrors volume_errors(const ReconstructSettings& settings, bool has_noise) 
     if (uses_wave(settings)) return {VolumeScale::Magnitude, 0.115, 0.3, 7.0, 0.0, shares};
     switch (settings.method) {
         case Method::Solver:
-            return {VolumeScale::Amplitude, 0.067, 0.345, 23.0, 0.0, shares, kSteepest};
+            return {VolumeScale::Amplitude, 0.067, 0.345, 23.0, 0.0, shares, kSteepest, kFront};
         case Method::Fk:
-            return {VolumeScale::Amplitude, 0.044, 0.345, 8.0, 0.27, shares};
+            return {VolumeScale::Amplitude, 0.044, 0.345, 8.0, 0.27, shares, 0.0, kFront};
         case Method::Bp:
             return {VolumeScale::Amplitude, 0.042, 0.45, 5.0, 0.0, shares};
         case Method::Fbp:

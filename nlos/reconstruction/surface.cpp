@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <span>
 
@@ -73,18 +74,61 @@ std::size_t brightest_voxel(std::span<const float> column) {
     return static_cast<std::size_t>(std::ranges::max_element(column) - column.begin());
 }
 
+double significant(const VolumeNoise& noise) {
+    constexpr double kChance = 1e-3;
+    return noise.significance_of_chance(kChance);
+}
+
 /// The peak of every column.
 std::vector<ColumnPeak> find_peaks(const Volume& volume, const std::optional<VolumeNoise>& noise) {
-    constexpr double kChance = 1e-3;
     const std::size_t nz = volume.axes.z_m.size();
-    const double significant = noise ? noise->significance_of_chance(kChance) : 0.0;
+    const double least = noise ? significant(*noise) : 0.0;
     std::vector<ColumnPeak> peaks;
     for (std::size_t i = 0; i * nz < volume.values.size(); ++i) {
         const std::span<const float> column(volume.values.data() + i * nz, nz);
         peaks.push_back(find_peak(
-            column, noise ? surface_voxel(column, *noise, significant) : brightest_voxel(column)));
+            column, noise ? surface_voxel(column, *noise, least) : brightest_voxel(column)));
     }
     return peaks;
+}
+
+/// The first peak before a voxel that has a share of its brightness, and after which brightness
+/// falls to half, so that it is no part of the same peak; else the voxel.
+std::size_t front_voxel(std::span<const float> column, std::size_t voxel, double share) {
+    constexpr float kDip = 0.5F;
+    const auto least = static_cast<float>(share * column[voxel]);
+    std::size_t highest = 0;
+    while (highest < voxel && column[highest] < least) ++highest;
+    for (std::size_t i = highest; i < voxel; ++i) {
+        if (column[i] > column[highest]) highest = i;
+        if (column[i] < kDip * column[highest]) return highest;
+    }
+    return voxel;
+}
+
+/// Takes the peaks of what hides those of foreground columns, as far as it is as bright as the
+/// dimmest of these and noise does not explain it.
+void come_to_front(const Volume& volume,
+                   const std::optional<VolumeNoise>& noise,
+                   double share,
+                   const std::vector<std::size_t>& foreground,
+                   std::vector<ColumnPeak>& peaks) {
+    const std::size_t nz = volume.axes.z_m.size();
+    const auto column_of = [&](std::size_t i) {
+        return std::span<const float>(volume.values.data() + i * nz, nz);
+    };
+    const double significance = noise ? significant(*noise) : 0.0;
+    double dimmest = std::numeric_limits<double>::infinity();
+    for (const std::size_t i : foreground) {
+        dimmest = std::min(dimmest, brightness_of(column_of(i)[peaks[i].voxel]));
+    }
+    for (const std::size_t i : foreground) {
+        const std::size_t front = front_voxel(column_of(i), peaks[i].voxel, share);
+        const double brightness = brightness_of(column_of(i)[front]);
+        if (brightness < dimmest) continue;
+        if (noise && noise->significance(brightness, front) < significance) continue;
+        if (front != peaks[i].voxel) peaks[i] = find_peak(column_of(i), front);
+    }
 }
 
 /// Voxels on either side of its peak that a surface of such a slope crosses in a column.
@@ -158,10 +202,14 @@ Surface find_surface(const Volume& volume,
 
     std::optional<VolumeNoise> noise;
     if (again) noise.emplace(volume, *again, errors.scale);
-    const std::vector<ColumnPeak> peaks = find_peaks(volume, noise);
+    std::vector<ColumnPeak> peaks = find_peaks(volume, noise);
     surface.probability = surface_probabilities(volume, peaks, errors, noise);
+    std::vector<std::size_t> foreground;
     for (std::size_t i = 0; i < peaks.size(); ++i) {
-        if (!(surface.probability[i] >= mask_threshold)) continue;
+        if (surface.probability[i] >= mask_threshold) foreground.push_back(i);
+    }
+    if (errors.front > 0.0) come_to_front(volume, noise, errors.front, foreground, peaks);
+    for (const std::size_t i : foreground) {
         surface.depth.depth_m[i] = depth_at(axes, peaks[i].position);
     }
     fit_normals(surface.depth);

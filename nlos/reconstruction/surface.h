@@ -26,14 +26,17 @@ struct VolumeErrors {
     double near_share = 0.0;   ///< of the neighbours' roughness
     PlateauShares shares = {};
     double steepest = 0.0;  ///< slope of surfaces whose light is spread over voxels of a column
+    double front = 0.0;     ///< share of a peak from which on one before it hides it; 0: never
 };
 
 /// Finds each column's peak, how likely it is a surface, and how well its depth is known.
 ///
 /// Without knowledge of noise the peak is the brightest voxel, and the probability is that of
 /// plateau_probabilities(). With it, the peak is the brightest of what noise cannot explain, and
-/// the probability that it is no noise (one minus false_discovery_rates()) is a factor. Normals are
-/// those of planes fitted to neighbouring foreground columns.
+/// the probability that it is no noise (one minus false_discovery_rates()) is a factor. Of surfaces
+/// one behind another in a column, which other wall points see past each other, depth is that of
+/// the first, as far as VolumeErrors::front tells. Normals are those of planes fitted to
+/// neighbouring foreground columns.
 ///
 /// again            the volume of measure_again(), null: the noise is not known
 /// mask_threshold   the probability from which on a column has a depth, in (0, 1)

@@ -125,6 +125,47 @@ TEST(Surface, OfSteepPartsIsAsSureAsTheLightThatTheyGather) {
     EXPECT_EQ(num_surface(), 100U);
 }
 
+// A dim surface before a bright one, which other wall points see past it: the depth is that of the
+// dim one, unless it is too dim, one peak with the bright one, dimmer than any other, or noise.
+TEST(Surface, OfTwoInAColumnTheFirstHasTheDepth) {
+    Volume volume;
+    volume.axes.x_m = cell_centers(-0.2, 0.2, 4);
+    volume.axes.y_m = volume.axes.x_m;
+    volume.axes.z_m = cell_centers(0.0, 1.0, 20);
+    const std::vector<float> apart{0, 0, 0.25F, 0.5F, 0.25F, 0, 0, 0, 0, 0.5F, 1, 0.5F};
+    const std::vector<float> one{0, 0, 0.25F, 0.5F, 0.4F, 0.3F, 0.3F, 0.3F, 0.4F, 0.5F, 1, 0.5F};
+    // Half of the columns hold a surface of this brightness alone.
+    const auto fill = [&](std::vector<float> column, float others) {
+        column.resize(20);
+        volume.values.clear();
+        for (int i = 0; i < 8; ++i) {
+            volume.values.insert(volume.values.end(), column.begin(), column.end());
+        }
+        volume.values.resize(320);
+        for (std::size_t i = 8; i < 16; ++i) volume.values[20 * i + 10] = others;
+    };
+    const auto depth_with = [&](double front, const Volume* again) {
+        VolumeErrors errors;
+        errors.front = front;
+        return find_surface(volume, again, errors, 0.5).depth.depth_m[1];
+    };
+    fill(apart, 0.45F);
+    EXPECT_NEAR(depth_with(0.4, nullptr), 0.175, 1e-6);
+    EXPECT_NEAR(depth_with(0.6, nullptr), 0.525, 1e-6);
+    EXPECT_NEAR(depth_with(0.0, nullptr), 0.525, 1e-6);
+    Volume again = volume;
+    for (float& value : again.values) value += value > 0.0F ? 1e-4F : 0.0F;
+    EXPECT_NEAR(depth_with(0.4, &again), 0.175, 1e-6);
+    for (std::size_t i = 0; i < again.values.size(); ++i) {
+        if (i % 20 < 8) again.values[i] += 3.0F;  // measured again: there is noise in front
+    }
+    EXPECT_NEAR(depth_with(0.4, &again), 0.525, 1e-6);
+    fill(apart, 0.8F);
+    EXPECT_NEAR(depth_with(0.4, nullptr), 0.525, 1e-6);
+    fill(one, 0.45F);
+    EXPECT_NEAR(depth_with(0.4, nullptr), 0.525, 1e-6);
+}
+
 TEST(Surface, DeviationsOfDepthAreNotInvented) {
     const Surface surface = find_surface(sloped_plane(0.3), nullptr, {}, 0.5);
     EXPECT_TRUE(surface.depth_sigma_m.empty());
