@@ -54,34 +54,41 @@ double growth_needed(const SmoothedMean& smoothed,
     return bias < allowed ? smoothed.squared_noise / (allowed - bias) : kUnlimited;
 }
 
+// Orders 1 and 2, which take next to no time.
+RenderResult render_short_paths(const RenderTask& task) {
+    const core::Progress silent;
+    return render_passes({task.scene, task.scan, task.axes, task.settings, silent},
+                         {nullptr, {}, kUnlimited});
+}
+
 class SmoothedRender {
  public:
     SmoothedRender(const RenderTask& task, const PassWork& work)
         : task_(task),
           sampling_{work.tracer, {}, kUnlimited, false},
           precomputed_(work.precomputed),
-          result_(render_passes(task, {nullptr, {}, kUnlimited})) {
+          result_(render_short_paths(task)) {
         for (Half& half : halves_) {
             half.mean = core::Transient(task.scan.num_pairs(), task.axes.time.num_bins);
         }
     }
 
     RenderResult run() {
-        double share = 0.0;
-        double growth = kMaxGrowth;
         int samples = kFirstSamples;
+        double begin = 0.0;
+        double end = 0.1;  // of the work; how much there is shows later
         for (std::uint64_t round = 0;; ++round) {
-            const double next_share = std::min(0.99, std::max(share, 0.2) * growth);
-            trace(round, samples, task_.progress.part(share, next_share));
+            trace(round, samples, task_.progress.part(begin, end));
             SmoothedMean smoothed =
                 smooth_mean(halves_[0].mean, halves_[1].mean, task_.scan, precomputed_.transient);
             const double needed =
                 growth_needed(smoothed, *task_.settings.target_error, precomputed_);
             if (needed <= 1.0 || result_.interrupted) return finish(smoothed);
-            growth = std::clamp(needed, kMinGrowth, kMaxGrowth);
+            const double growth = std::clamp(needed, kMinGrowth, kMaxGrowth);
             samples = static_cast<int>(
                 std::ceil(static_cast<double>(halves_[0].samples) * (growth - 1.0)));
-            share = std::max(next_share, 1.0 / needed);
+            begin = 1.0 / needed;
+            end = std::min(0.99, growth / needed);
         }
     }
 

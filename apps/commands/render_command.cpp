@@ -54,6 +54,15 @@ void note(const renderer::RenderResult& result, const std::string& output) {
     outcome()["seconds_render"] = result.seconds;
 }
 
+std::string averages_of(const renderer::SmoothingWidths& widths) {
+    const std::string points = fmt::format("{} points", widths.points - 1);
+    const std::string bins = fmt::format("{} bins", widths.bins - 1);
+    return fmt::format("orders from 4 on averaged over {} to either side, ",
+                       widths.points == 1 ? bins
+                       : widths.bins == 1 ? points
+                                          : points + " and " + bins);
+}
+
 void run(const RenderArguments& arguments) {
     const core::ThreadLimit threads(arguments.threads);
     const renderer::RenderResult result = render_to_file(
@@ -69,12 +78,7 @@ void run(const RenderArguments& arguments) {
                               orders->first,
                               orders->last);
     }
-    if (const auto& widths = result.smoothing) {
-        effort +=
-            fmt::format("orders from 4 on averaged over {} points and {} bins to either side, ",
-                        widths->points - 1,
-                        widths->bins - 1);
-    }
+    if (result.smoothing) effort += averages_of(*result.smoothing);
     if (result.samples_per_pair > 0)
         effort += fmt::format("{} samples per pair, ", result.samples_per_pair);
     if (result.interrupted) {
