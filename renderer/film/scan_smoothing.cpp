@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -75,6 +76,11 @@ float weight(int offset, int width) {
     return static_cast<float>(width - std::abs(offset)) / static_cast<float>(width * width);
 }
 
+// As a plain loop, which has the same bits for values aligned in any way.
+void add_scaled(float scale, const float* from, std::span<float> to) {
+    for (std::size_t i = 0; i < to.size(); ++i) to[i] += scale * from[i];
+}
+
 core::Transient smooth_points(const core::Transient& from, const GridSide& side, int width) {
     core::Transient to(from.num_pairs(), static_cast<int>(from.num_bins()));
     core::parallel_blocks(
@@ -83,8 +89,10 @@ core::Transient smooth_points(const core::Transient& from, const GridSide& side,
                 const std::size_t i = pair / side.stride % side.count;
                 for (int offset = 1 - width; offset < width; ++offset) {
                     const std::size_t j = mirrored(i, offset, side.count);
-                    row(to, pair) +=
-                        weight(offset, width) * row(from, pair - i * side.stride + j * side.stride);
+                    const std::size_t neighbour = pair - i * side.stride + j * side.stride;
+                    add_scaled(weight(offset, width),
+                               from.histogram(neighbour).data(),
+                               to.histogram(pair));
                 }
             }
         });
@@ -97,16 +105,16 @@ core::Transient smooth_bins(const core::Transient& from, int width) {
     core::parallel_blocks(
         from.num_pairs(), kPairsPerBlock, [&](std::size_t begin, std::size_t end) {
             const int margin = width - 1;
-            Row padded(static_cast<Eigen::Index>(bins) + 2 * margin);
+            std::vector<float> padded(bins + static_cast<std::size_t>(2 * margin));
             for (std::size_t pair = begin; pair < end; ++pair) {
                 const std::span<const float> values = from.histogram(pair);
-                for (Eigen::Index i = 0; i < padded.size(); ++i) {
+                for (std::size_t i = 0; i < padded.size(); ++i) {
                     padded[i] = values[mirrored(0, static_cast<int>(i) - margin, bins)];
                 }
                 for (int offset = -margin; offset <= margin; ++offset) {
-                    row(to, pair) +=
-                        weight(offset, width) *
-                        padded.segment(offset + margin, static_cast<Eigen::Index>(bins));
+                    add_scaled(weight(offset, width),
+                               padded.data() + (offset + margin),
+                               to.histogram(pair));
                 }
             }
         });
