@@ -25,7 +25,7 @@ namespace nlos {
 namespace {
 
 constexpr double kSteepest = 2.0;      // slope of surfaces that the solver's masks hold
-constexpr double kFront = 0.4;         // methods whose columns are dark between two surfaces
+constexpr double kFront = 0.4;         // confocal grids: columns are dark between two surfaces
 constexpr std::size_t kMaxSlabs = 64;  // each repeats a part of the work
 
 /// A method that knows normals knows them better than a plane through neighbouring columns does.
@@ -73,11 +73,14 @@ VolumeErrors volume_errors(const ReconstructSettings& settings, bool has_noise) 
 
 /// Takes depths, what is known of them and points from the volume and, where the noise is known,
 /// that of the scene measured again.
-void take_surface(const Volume* again, Reconstruction& result) {
-    Surface surface = find_surface(result.volume,
-                                   again,
-                                   volume_errors(result.settings, again != nullptr),
-                                   result.settings.mask_threshold);
+///
+/// scan   of the capture
+void take_surface(const core::Scan& scan, const Volume* again, Reconstruction& result) {
+    VolumeErrors errors = volume_errors(result.settings, again != nullptr);
+    // Other scans leave shells before surfaces.
+    const bool is_confocal_grid = scan.pattern == core::ScanPattern::Confocal && scan.sensing.grid;
+    if (!is_confocal_grid) errors.front = 0.0;
+    Surface surface = find_surface(result.volume, again, errors, result.settings.mask_threshold);
     result.depth = std::move(surface.depth);
     result.surface_probability = std::move(surface.probability);
     result.depth_sigma_m = std::move(surface.depth_sigma_m);
@@ -176,7 +179,7 @@ class Job {
             again = functions_of(settings).run(
                 input_with(histograms, second_run_), settings, num_slabs);
         }
-        take_surface(again ? &*again : nullptr, result_);
+        take_surface(capture_.scan, again ? &*again : nullptr, result_);
         return std::move(result_);
     }
 

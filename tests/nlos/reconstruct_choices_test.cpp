@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What reconstruct() fills in: bins to merge, and how light falls off.
+// What reconstruct() fills in: bins to merge, how light falls off, which surface has the depth.
 #include "nlos/reconstruct.h"
 #include "tests/nlos/methods/confocal_scene.h"
 
@@ -54,6 +54,25 @@ TEST(ReconstructChoices, AutoTellsRetroreflectiveFromDiffuseCounts) {
         capture.unit = core::TransientUnit::Counts;
         EXPECT_EQ(reconstruct(capture, {}, {}).settings.falloff,
                   falloff == 2.0 ? Falloff::Retro : Falloff::Diffuse);
+    }
+}
+
+// A plate, and before it a strip of three columns, which hold both and the plate brighter.
+TEST(ReconstructChoices, TakesTheSurfaceInFrontOnConfocalGrids) {
+    core::Capture capture = nlos_test::confocal_capture(
+        nlos_test::wall_grid({24, 24}, {0.04, 0.04}), {0.0, 0.016, 128});
+    for (int i = -30; i <= 30; ++i) {
+        for (int j = -30; j <= 30; ++j) {
+            nlos_test::add_scatterer(capture, Vec3(0.01 * i, 0.01 * j, 0.6), 4.0);
+            if (std::abs(i) > 5) continue;
+            nlos_test::add_scatterer(capture, Vec3(0.01 * i, 0.01 * j, 0.45), 4.0);
+        }
+    }
+    for (const std::string method : {"fk", "solver"}) {
+        const auto result = reconstruct(capture, chosen_with({"method=" + method}), {});
+        const core::DepthMap& depth = result.depth;
+        EXPECT_NEAR(depth.depth_m[depth.index(12, 12)], 0.45, 0.01) << method;
+        EXPECT_NEAR(depth.depth_m[depth.index(17, 12)], 0.6, 0.01) << method;
     }
 }
 
