@@ -41,7 +41,7 @@ void take_normals(const Volume& volume, core::DepthMap& depth) {
 /// surfaces, see reconstruction/README.md.
 PlateauShares plateau_shares(const ReconstructSettings& settings, bool has_noise) {
     if (settings.method == Method::Bp) return {0.0, 0.75, 7.0};
-    if (settings.method == Method::Solver) return {0.0, has_noise ? 0.4 : 0.3};
+    if (settings.method == Method::Solver) return {0.0, has_noise ? 0.4 : 0.35};
     if (settings.method == Method::Fk) {
         return has_noise ? PlateauShares{0.0, 0.5, 8.0} : PlateauShares{0.7, 0.3, 8.0};
     }
