@@ -52,14 +52,20 @@ PlateauShares plateau_shares(const ReconstructSettings& settings, bool has_noise
 
 /// Waves give magnitudes. The shares of the deviations of depth (model, noise,
 /// doubt, neighbours) are those of random surfaces, see reconstruction/README.md.
-VolumeErrors volume_errors(const ReconstructSettings& settings, bool has_noise) {
+///
+/// scan   of the capture; all but confocal grids leave shells before surfaces
+VolumeErrors volume_errors(const ReconstructSettings& settings,
+                           const core::Scan& scan,
+                           bool has_noise) {
     const PlateauShares shares = plateau_shares(settings, has_noise);
+    const bool is_confocal_grid = scan.pattern == core::ScanPattern::Confocal && scan.sensing.grid;
+    const double front = is_confocal_grid ? kFront : 0.0;
     if (uses_wave(settings)) return {VolumeScale::Magnitude, 0.115, 0.3, 7.0, 0.0, shares};
     switch (settings.method) {
         case Method::Solver:
-            return {VolumeScale::Amplitude, 0.067, 0.345, 23.0, 0.0, shares, kSteepest, kFront};
+            return {VolumeScale::Amplitude, 0.067, 0.345, 23.0, 0.0, shares, kSteepest, front};
         case Method::Fk:
-            return {VolumeScale::Amplitude, 0.044, 0.345, 8.0, 0.27, shares, 0.0, kFront};
+            return {VolumeScale::Amplitude, 0.044, 0.345, 8.0, 0.27, shares, 0.0, front};
         case Method::Bp:
             return {VolumeScale::Amplitude, 0.042, 0.45, 5.0, 0.0, shares};
         case Method::Fbp:
@@ -76,11 +82,10 @@ VolumeErrors volume_errors(const ReconstructSettings& settings, bool has_noise) 
 ///
 /// scan   of the capture
 void take_surface(const core::Scan& scan, const Volume* again, Reconstruction& result) {
-    VolumeErrors errors = volume_errors(result.settings, again != nullptr);
-    // Other scans leave shells before surfaces.
-    const bool is_confocal_grid = scan.pattern == core::ScanPattern::Confocal && scan.sensing.grid;
-    if (!is_confocal_grid) errors.front = 0.0;
-    Surface surface = find_surface(result.volume, again, errors, result.settings.mask_threshold);
+    Surface surface = find_surface(result.volume,
+                                   again,
+                                   volume_errors(result.settings, scan, again != nullptr),
+                                   result.settings.mask_threshold);
     result.depth = std::move(surface.depth);
     result.surface_probability = std::move(surface.probability);
     result.depth_sigma_m = std::move(surface.depth_sigma_m);

@@ -2,7 +2,7 @@
 #include "renderer/film/scan_smoothing.h"
 
 #include "renderer/core/random.h"
-#include "tests/support/test_scenes.h"
+#include "tests/support/example_capture.h"
 
 #include <gtest/gtest.h>
 
@@ -11,21 +11,9 @@
 
 namespace {
 
-using renderer::SmoothingWidths;
-
-core::WallPoints grid_of(std::size_t x, std::size_t y) {
-    std::vector<core::Vec3> positions;
-    for (std::size_t i = 0; i < x * y; ++i) {
-        positions.emplace_back(static_cast<double>(i / y), static_cast<double>(i % y), 0.0);
-    }
-    core::WallPoints points = test_support::wall_points(positions);
-    points.grid = {x, y};
-    return points;
-}
-
 core::Scan confocal_grid(std::size_t x, std::size_t y) {
     core::Scan scan;
-    scan.illumination = grid_of(x, y);
+    scan.illumination = test_support::example_grid(x, y);
     scan.sensing = scan.illumination;
     return scan;
 }
@@ -88,8 +76,8 @@ TEST(ScanSmoothing, SpreadsAnImpulseAsTriangles) {
 TEST(ScanSmoothing, KeepsTheSumAtEveryBorder) {
     core::Scan exhaustive;
     exhaustive.pattern = core::ScanPattern::Exhaustive;
-    exhaustive.illumination = grid_of(3, 4);
-    exhaustive.sensing = grid_of(5, 2);
+    exhaustive.illumination = test_support::example_grid(3, 4);
+    exhaustive.sensing = test_support::example_grid(5, 2);
     for (const std::size_t pair : {std::size_t{0}, std::size_t{57}, std::size_t{119}}) {
         for (const std::size_t bin : {std::size_t{0}, std::size_t{5}}) {
             core::Transient impulse(120, 6);
@@ -102,7 +90,7 @@ TEST(ScanSmoothing, KeepsTheSumAtEveryBorder) {
 
 TEST(ScanSmoothing, PointsOfAListHaveNoNeighbours) {
     core::Scan scan = confocal_grid(4, 4);
-    scan.sensing.grid.reset();
+    scan.sensing = test_support::as_list(scan.sensing);
     const core::Transient values = with_noise(core::Transient(16, 32), 1.0, 1);
     EXPECT_EQ(squared_distance(renderer::smooth_scan(values, scan, {4, 1}), values), 0.0);
     EXPECT_GT(squared_distance(renderer::smooth_scan(values, scan, {1, 2}), values), 0.0);
