@@ -5,6 +5,7 @@
 #include "renderer/core/process.h"
 #include "renderer/core/stopwatch.h"
 #include "renderer/film/transient_accumulator.h"
+#include "renderer/pass_plan.h"
 #include "renderer/path/path_tracer.h"
 
 #include <fmt/core.h>
@@ -13,38 +14,16 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace renderer {
 namespace {
 
-// Passes are long enough to keep shadow rays coherent and short enough to give a variance.
-constexpr int kPasses = 8;
-constexpr int kMaxSamplesPerPass = 256;
-constexpr int kSamplesPerTimedPass = 32;  ///< also when an error is to be reached
 constexpr std::size_t kPairsPerBlock = 16;
 // Passes run in rounds: all passes of a round for one pair, then for the next, so that the sums of
 // a pair stay in the cache. Between rounds the caller may stop the render.
 constexpr double kMaxSecondsPerRound = 0.1;
 constexpr int kMaxPassesPerRound = 64;  // what passes share is kept for the round
-
-struct PassPlan {
-    int samples_per_pass = 1;
-    int num_passes = 1;
-};
-
-// Without a fixed number of samples; every pair must still get the same number.
-bool is_open_ended(const RenderSettings& settings) {
-    return settings.seconds || settings.target_error;
-}
-
-PassPlan plan_passes(const RenderSettings& settings, const PassWork& work) {
-    if (work.tracer == nullptr) return {0, 1};
-    if (is_open_ended(settings)) return {kSamplesPerTimedPass, std::numeric_limits<int>::max()};
-    int per_pass = std::clamp(settings.samples / kPasses, 1, kMaxSamplesPerPass);
-    // Multiples of 4 split into the path tracer's two kinds of samples without rounding noise.
-    if (per_pass > 4) per_pass -= per_pass % 4;
-    return {per_pass, (settings.samples + per_pass - 1) / per_pass};
-}
 
 // Number of passes of the next round when `done` of them took `elapsed_s`; results do not depend on
 // it.
@@ -167,23 +146,32 @@ std::uint64_t PassLoop::run_passes(
 void PassLoop::run(const Tile& tile, const core::Progress& progress, RenderResult& result) {
     const core::Stopwatch watch;
     const bool samples = work.tracer != nullptr;
-    const PassPlan plan = plan_passes(task.settings, work);
+    PassPlan plan = samples ? plan_passes(task.scan, task.settings) : PassPlan{0, 1};
     HistogramSums sums(tile.count, task.axes, channel_count(task.settings), task.settings.variance);
-    StoppingRule rule(task.settings, plan.num_passes, work.precomputed);
+    std::optional<StoppingRule> rule;
+    int first = 0;  // passes before it were a pilot
     int pass = 0;
-    const auto run_round = [&] {
+    double paths = 0.0;
+    const auto share_after_round = [&] {
+        if (pass == 0) rule.emplace(task.settings, plan.num_passes, work.precomputed);
         const int count = next_round(plan, task.settings, pass, watch.seconds());
-        result.num_rays += run_passes(tile, pass, count, plan.samples_per_pass, sums);
+        result.num_rays += run_passes(tile, first + pass, count, plan.samples_per_pass, sums);
         pass += count;
         const double elapsed = watch.seconds();
-        const double share = samples ? rule.share_done(pass, elapsed, sums.time) : 1.0;
-        const double paths = static_cast<double>(tile.count) * plan.samples_per_pass * pass;
+        const double share = samples ? rule->share_done(pass, elapsed, sums.time) : 1.0;
+        paths += static_cast<double>(tile.count) * plan.samples_per_pass * count;
         progress.update(share, fmt::format("{:.2f} M paths/s", paths / elapsed * 1e-6));
-        return share >= 1.0;
+        return share;
     };
-    while (!run_round()) {
+    for (double share = 0.0; (share = share_after_round()) < 1.0;) {
         result.interrupted = progress.should_stop();
         if (result.interrupted) break;
+        if (!is_open_ended(task.settings) || first + pass != kPilotPasses) continue;
+        const auto longer = plan_after_pilot(task.scan, task.settings, share);
+        if (!longer) continue;
+        plan = *longer;
+        first = std::exchange(pass, 0);
+        sums.reset();
     }
     if (samples && pass > 1) {
         const auto of_tile = sums.time.squared_norms(pass, work.precomputed.transient);

@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <span>
 
 namespace core {
 
@@ -27,15 +26,6 @@ class Rng {
 
     /// Uniform in [0, 1), all 53 bits random.
     double uniform() { return to_unit(next_bits()); }
-
-    /// The next `numbers.size()` results of uniform(), vectorized.
-    void fill_uniform(std::span<double> numbers) {
-        const std::uint64_t start = state_;
-        for (std::size_t i = 0; i < numbers.size(); ++i) {
-            numbers[i] = to_unit(mix(start + (i + 1) * kStep));
-        }
-        state_ = start + numbers.size() * kStep;
-    }
 
  private:
     static constexpr std::uint64_t kStep = 0x9e3779b97f4a7c15ULL;

@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <numeric>
@@ -41,6 +42,12 @@ class TransientAccumulator {
                 const auto all = array(totals.data(), totals.size());
                 array(squares_.data() + pair * num_bins_ + begin, totals.size()) += all.square();
             });
+    }
+
+    /// Drops all passes.
+    void reset() {
+        for (std::vector<double>* values : {&sums_, &squared_norms_, &squares_})
+            std::ranges::fill(*values, 0.0);
     }
 
     /// Writes the mean over passes of the sum of all channels, and its variance where there are
@@ -118,6 +125,11 @@ struct HistogramSums {
     void add_pass(std::size_t pair, PassHistogram& histogram) {
         time.add_pass(pair, histogram);
         if (velocity) velocity->add_pass(pair, histogram.velocity());
+    }
+
+    void reset() {
+        time.reset();
+        if (velocity) velocity->reset();
     }
 
     /// Writes means and variances to a capture, see TransientAccumulator::write(), and the means of

@@ -55,20 +55,18 @@ FacetTraits::FacetTraits(const Scene& scene, const std::vector<bool>& adds_third
     }
 }
 
-void FirstVertexBatch::draw_by_area(const AreaSampler& sampler, AreaDraws& draws, core::Rng& rng) {
+void FirstVertexBatch::draw_by_area(const AreaSampler& sampler, AreaDraws& draws) {
     // Lanes beyond the last number belong to no share.
     alignas(64) std::array<double, kPadded> u1;
     alignas(64) std::array<double, kPadded> u2;
     u1.fill(1.0);
     u2.fill(0.0);
     const int size = std::min(draws.count - draws.begin, kCapacity - count_);
-    const auto all = static_cast<std::size_t>(size);
-    rng.fill_uniform({u1.data(), all});
-    rng.fill_uniform({u2.data(), all});
-    const double width = 1.0 / draws.count;
     for (int i = 0; i < size; ++i) {
+        const core::Vec2 u = core::lattice_point(draws.begin + i, draws.count, draws.shift);
         // Rounding may lift the last number to 1.
-        u1[i] = std::min((draws.begin + i + u1[i]) * width, core::kBelowOne);
+        u1[i] = std::min(u.x(), core::kBelowOne);
+        u2[i] = u.y();
     }
     for (int begin = 0; begin < size;) {
         const auto share = sampler.share_from(draws.hint, u1[begin]);

@@ -58,15 +58,22 @@ class FirstVertexBatch {
         num_in_sight_ = 0;
     }
 
-    /// Stratified draws from the hidden area, `count` strata in all, made batch by batch.
+    /// `count` draws from the hidden area, made batch by batch: the points of a randomly shifted
+    /// lattice, core::lattice_point().
     struct AreaDraws {
+        AreaDraws(int count, core::Rng& rng) : count(count) {
+            shift.x() = rng.uniform();
+            shift.y() = rng.uniform();
+        }
+        bool done() const { return begin == count; }
+
         int count;
         int begin = 0;
         std::size_t hint = 0;
-        bool done() const { return begin == count; }
+        core::Vec2 shift;
     };
     /// Appends the next points, uniform by area, until the arrays are full or all are done.
-    void draw_by_area(const AreaSampler& sampler, AreaDraws& draws, core::Rng& rng);
+    void draw_by_area(const AreaSampler& sampler, AreaDraws& draws);
     /// Fills empty arrays with the points that the next directions hit, until the arrays are nearly
     /// full or all directions are done.
     ///
@@ -77,10 +84,9 @@ class FirstVertexBatch {
     /// returns   the number of rays
     std::uint64_t draw(EndpointDirectionSampler& directions,
                        const AreaSampler& sampler,
-                       AreaDraws& by_area,
-                       core::Rng& rng) {
+                       AreaDraws& by_area) {
         const std::uint64_t num_rays = draw_by_direction(directions);
-        draw_by_area(sampler, by_area, rng);
+        draw_by_area(sampler, by_area);
         return num_rays;
     }
 

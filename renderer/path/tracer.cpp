@@ -73,9 +73,9 @@ PairWalk::PairWalk(const Tracer& tracer,
 
 void PairWalk::trace_walks(int num_area, int num_directions, double weight) {
     EndpointDirectionSampler directions(scene_, ends_.sensor, num_directions, rng_);
-    FirstVertexBatch::AreaDraws by_area{num_area};
+    FirstVertexBatch::AreaDraws by_area(num_area, rng_);
     while (!by_area.done() || !directions.done()) {
-        num_rays_ += first_.draw(directions, tracer_.surface_walk_.area_sampler(), by_area, rng_);
+        num_rays_ += first_.draw(directions, tracer_.surface_walk_.area_sampler(), by_area);
         finish_first_vertices(weight);
     }
 }

@@ -111,6 +111,27 @@ INSTANTIATE_TEST_SUITE_P(StatedError,
                                          Estimator::Restir),
                          [](const auto& test) { return std::string(core::enum_name(test.param)); });
 
+// A pass spreads its samples evenly: four times as many leave far less than half of the error, which
+// is known all the same. Passes that tell a variance of each bin are short, and lose that.
+TEST(StatedError, LongPassesHaveLessNoise) {
+    const core::Scan scan = scan_of(16);
+    const renderer::Scene scene = facing_scene(scan);
+    const core::Transient reference = reference_of(scene, scan);
+    renderer::RenderSettings settings;
+    settings.method = Estimator::Path;
+    const auto error_of = [&](int samples, bool variance) {
+        settings.samples = samples;
+        settings.variance = variance;
+        const auto result = renderer::render(scene, scan, {kStatedAxis, {}}, settings, {});
+        const double error = relative_distance(result.capture.transient, reference);
+        EXPECT_NEAR(*result.estimated_error, error, 0.15 * error);
+        return error;
+    };
+    const double few = error_of(8192, false);
+    EXPECT_LT(error_of(32'768, false), 0.4 * few);
+    EXPECT_GT(error_of(32'768, true), 0.45 * few);
+}
+
 TEST(StatedError, AutoReachesItWithHigherOrders) {
     constexpr double kTarget = 0.05;
     const core::Scan scan = scan_of(8);

@@ -5,7 +5,6 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <set>
 #include <vector>
 
@@ -15,15 +14,6 @@ TEST(Rng, SameIndicesGiveTheSameStream) {
     core::Rng a(1, 2, 3);
     core::Rng b(1, 2, 3);
     for (int i = 0; i < 100; ++i) EXPECT_EQ(a.next_bits(), b.next_bits());
-}
-
-TEST(Rng, FilledNumbersAreThoseOfSingleCalls) {
-    core::Rng one_by_one(4, 5, 6);
-    core::Rng at_once(4, 5, 6);
-    std::array<double, 37> numbers{};
-    at_once.fill_uniform(numbers);
-    for (const double number : numbers) EXPECT_EQ(number, one_by_one.uniform());
-    EXPECT_EQ(at_once.next_bits(), one_by_one.next_bits());
 }
 
 TEST(Rng, NeighbouringIndicesGiveDifferentStreams) {

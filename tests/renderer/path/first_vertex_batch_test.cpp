@@ -33,20 +33,19 @@ class FirstVertexDraws : public testing::Test {
 TEST_F(FirstVertexDraws, ByAreaAreThoseOfTheSampler) {
     const renderer::AreaSampler sampler(scene_);
     for (const int count : {1, 7, 128, 129, 300, 5'000}) {
-        const core::Rng rng(test_support::seed_of("FirstVertexDraws"), 0, 0);
-        core::Rng batches = rng;
-        core::Rng singles = rng;
+        core::Rng rng(test_support::seed_of("FirstVertexDraws"), 0, 0);
         FirstVertexBatch vertices(scene_, traits_);
         int drawn = 0;
-        for (FirstVertexBatch::AreaDraws draws{count}; !draws.done(); vertices.clear()) {
-            vertices.draw_by_area(sampler, draws, batches);
-            std::vector<double> u1(static_cast<std::size_t>(vertices.size()));
-            std::vector<double> u2(u1.size());
-            singles.fill_uniform(u1);
-            singles.fill_uniform(u2);
+        core::Rng again = rng;
+        FirstVertexBatch::AreaDraws draws(count, rng);
+        Vec2 shift;
+        shift.x() = again.uniform();
+        shift.y() = again.uniform();
+        for (; !draws.done(); vertices.clear()) {
+            vertices.draw_by_area(sampler, draws);
             for (int i = 0; i < vertices.size(); ++i, ++drawn) {
-                const auto lane = static_cast<std::size_t>(i);
-                const auto expected = sampler.sample((drawn + u1[lane]) / count, u2[lane]);
+                const Vec2 u = core::lattice_point(drawn, count, shift);
+                const auto expected = sampler.sample(u.x(), u.y());
                 EXPECT_EQ(vertices.facet(i), expected.facet);
                 EXPECT_LT((vertices.point(i).position - expected.position).norm(), 1e-12);
             }
@@ -119,13 +118,13 @@ TEST_F(FirstVertexDraws, BothKindsTogetherAreSeenAsSingleRaysSee) {
     core::Rng rng(test_support::seed_of("FirstVertexDraws.both"), 0, 0);
     FirstVertexBatch vertices(scene_, traits_);
     renderer::EndpointDirectionSampler directions(scene_, ends.sensor, 300, rng);
-    FirstVertexBatch::AreaDraws by_area{500};
+    FirstVertexBatch::AreaDraws by_area(500, rng);
     int met = 0;
     int hidden = 0;
     int drawn_by_area = 0;
     for (; !by_area.done() || !directions.done(); vertices.clear()) {
         const int begin = by_area.begin;
-        vertices.draw(directions, sampler, by_area, rng);
+        vertices.draw(directions, sampler, by_area);
         drawn_by_area += by_area.begin - begin;
         met += vertices.size() - (by_area.begin - begin);
         vertices.evaluate(ends, {1.0, 0.5, sampler.pdf_area()});
@@ -158,13 +157,13 @@ FirstVertexBatch evaluated_batch(const renderer::Scene& scene,
                                  const renderer::FacetTraits& traits,
                                  core::Rng& rng) {
     renderer::PathEndpoints ends;
-    ends.sensor.position = Vec3(0.1, -0.2, 0.38);
+    ends.sensor.position = Vec3(0.1, -0.2, 0.3);
     ends.light = ends.sensor;
     ends.coincide = true;
     const renderer::AreaSampler sampler(scene);
     FirstVertexBatch vertices(scene, traits);
-    FirstVertexBatch::AreaDraws draws{100};
-    vertices.draw_by_area(sampler, draws, rng);
+    FirstVertexBatch::AreaDraws draws(100, rng);
+    vertices.draw_by_area(sampler, draws);
     vertices.evaluate(ends, {1.0, 1.0, sampler.pdf_area()});
     return vertices;
 }
