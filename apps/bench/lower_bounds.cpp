@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/bench/lower_bounds.h"
 
+#include "nlos/fourier/even_transform.h"
 #include "nlos/fourier/padded_plane.h"
 #include "nlos/methods/light_cone.h"
 #include "nlos/methods/methods.h"
@@ -48,9 +49,10 @@ double plane_seconds(const std::array<std::size_t, 2>& filled,
 
 double kernel_quadrant_seconds(const nlos::WallGrid& grid, std::size_t count) {
     const auto [px, py] = padded_size(grid);
-    const Fft fft = Fft::even_2d(px / 2 + 1, py / 2 + 1);
-    FftBuffer quadrant(2 * (px / 2 + 1) * (py / 2 + 1));
-    return time_of(count, [&] { fft.run(quadrant); });
+    const nlos::EvenTransform transform(px / 2 + 1, py / 2 + 1);
+    nlos::EvenTransform::Workspace work = transform.make_workspace();
+    std::vector<nlos::ComplexF> quadrant((px / 2 + 1) * (py / 2 + 1));
+    return time_of(count, [&] { transform.run(quadrant.data(), work); });
 }
 
 /// The light-cone transforms' FFTs: every wall point along squared range and its `components` back,

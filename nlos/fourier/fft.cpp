@@ -88,17 +88,6 @@ Fft Fft::complex_batch(const Layout& layout, Direction direction) {
                checked(fftwf_plan_guru_dft(1, &each, 1, &all, data, data, sign, FFTW_ESTIMATE)));
 }
 
-Fft Fft::even_2d(std::size_t nx, std::size_t ny) {
-    FftBuffer buffer(2 * nx * ny);
-    float* data = buffer.data();
-    const fftwf_iodim axes[2] = {dimension(nx, 2 * ny, 2 * ny), dimension(ny, 2, 2)};
-    const fftwf_iodim parts = dimension(2, 1, 1);
-    const fftw_r2r_kind kinds[2] = {FFTW_REDFT00, FFTW_REDFT00};
-    const std::lock_guard lock(planner_mutex);
-    return Fft(Kind::Real,
-               checked(fftwf_plan_guru_r2r(2, axes, 1, &parts, data, data, kinds, FFTW_ESTIMATE)));
-}
-
 void Fft::run(FftBuffer& buffer) const {
     const auto plan = static_cast<fftwf_plan>(plan_.get());
     float* data = buffer.data();
@@ -111,9 +100,6 @@ void Fft::run(FftBuffer& buffer) const {
             return;
         case Kind::Complex:
             fftwf_execute_dft(plan, as_fftw(data), as_fftw(data));
-            return;
-        case Kind::Real:
-            fftwf_execute_r2r(plan, data, data);
             return;
     }
 }

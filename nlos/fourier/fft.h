@@ -49,15 +49,10 @@ class Fft {
     };
     static Fft complex_batch(const Layout& layout, Direction direction);
 
-    /// Transform of an (nx, ny) array of complex numbers that is even around both its first and its
-    /// last element along either axis, so that it stands for a whole period of 2 (nx - 1) by
-    /// 2 (ny - 1) numbers: cosine transforms of real and imaginary part.
-    static Fft even_2d(std::size_t nx, std::size_t ny);
-
     void run(FftBuffer& buffer) const;
 
  private:
-    enum class Kind { RealToComplex, ComplexToReal, Complex, Real };
+    enum class Kind { RealToComplex, ComplexToReal, Complex };
     struct Destroy {
         void operator()(void* plan) const;
     };

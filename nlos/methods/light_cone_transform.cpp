@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "nlos/fourier/even_transform.h"
 #include "nlos/fourier/padded_plane.h"
 #include "nlos/methods/light_cone.h"
 #include "nlos/methods/methods.h"
@@ -14,24 +15,27 @@ class SlabFilter {
           kernel_(cone, grid),
           noise_over_signal_(1.0 / snr),
           plane_({cone.nx, cone.ny}, {cone.px, cone.py}),
-          kernel_transform_(Fft::even_2d(kernel_.qx(), kernel_.qy())) {}
+          kernel_transform_(kernel_.qx(), kernel_.qy()) {}
 
     struct Workspace {
         PaddedPlane::Workspace slab;
-        FftBuffer quadrant;
+        EvenTransform::Workspace period;
+        std::vector<ComplexF> quadrant;
     };
     Workspace make_workspace() const {
-        return {plane_.make_workspace(), FftBuffer(2 * kernel_.qx() * kernel_.qy())};
+        return {plane_.make_workspace(),
+                kernel_transform_.make_workspace(),
+                std::vector<ComplexF>(kernel_.qx() * kernel_.qy())};
     }
 
     /// Filters frequency k of `slab` (nx, ny) in place.
     void apply(std::size_t k, ComplexF* slab, Workspace& work) const {
-        kernel_.fill(k, work.quadrant.complex());
-        kernel_transform_.run(work.quadrant);
-        turn_into_wiener_filter(work.quadrant.complex());
+        kernel_.fill(k, work.quadrant.data());
+        kernel_transform_.run(work.quadrant.data(), work.period);
+        turn_into_wiener_filter(work.quadrant.data());
         plane_.load(slab, work.slab);
         plane_.forward(work.slab);
-        plane_.multiply_by_quadrant(work.quadrant.complex(), work.slab);
+        plane_.multiply_by_quadrant(work.quadrant.data(), work.slab);
         plane_.inverse(work.slab);
         plane_.store(work.slab, slab);
     }
@@ -57,7 +61,7 @@ class SlabFilter {
     ConeKernel kernel_;
     double noise_over_signal_;
     PaddedPlane plane_;
-    Fft kernel_transform_;
+    EvenTransform kernel_transform_;
 };
 
 }  // namespace
@@ -100,7 +104,7 @@ double light_cone_transform_bytes(const MethodInput& input,
     const auto frequencies = static_cast<double>(largest_slab(cone.num_frequencies(), num_slabs));
     const double spectrum = 8.0 * frequencies * columns;
     const double volume = 4.0 * columns * static_cast<double>(input.axes.z_m.size());
-    const double per_thread = 12.0 * padded + 64.0 * static_cast<double>(cone.length + 2);
+    const double per_thread = 20.0 * padded + 64.0 * static_cast<double>(cone.length + 2);
     return spectrum + volume + per_thread * core::thread_count() + 16.0 * padded;
 }
 

@@ -57,7 +57,7 @@ PlanePropagator::PlanePropagator(const MethodInput& input, const VirtualWave& wa
       wave_(wave),
       padded_{2 * good_fft_size(grid_.size[0]), 2 * good_fft_size(grid_.size[1])},
       plane_(grid_.size, padded_),
-      kernel_transform_(Fft::even_2d(padded_[0] / 2 + 1, padded_[1] / 2 + 1)),
+      kernel_transform_(padded_[0] / 2 + 1, padded_[1] / 2 + 1),
       illumination_(illumination_of(input)) {}
 
 std::vector<ComplexF> PlanePropagator::spectra(const std::vector<ComplexF>& coefficients,
@@ -93,16 +93,17 @@ void PlanePropagator::add_plane(double z,
     for (std::size_t l = illumination[0]; l < illumination[1] && !is_confocal(); ++l) {
         arriving.emplace_back(illumination_distances(l, z), wave_);
     }
-    FftBuffer quadrant(2 * kernel.values().size());
+    std::vector<ComplexF> quadrant;
+    EvenTransform::Workspace period = kernel_transform_.make_workspace();
     PaddedPlane::Workspace work = plane_.make_workspace();
     std::vector<ComplexF> sum(is_confocal() ? spectrum_size() : 0);
     std::vector<ComplexF> slab(num_columns());
     for (std::size_t f = 0; f < wave_.size(); ++f) {
-        std::copy(kernel.values().begin(), kernel.values().end(), quadrant.complex());
-        kernel_transform_.run(quadrant);
+        quadrant = kernel.values();
+        kernel_transform_.run(quadrant.data(), period);
         for (std::size_t l = 0; l < illumination[1] - illumination[0]; ++l) {
             plane_.load_spectrum(spectra.data() + (l * wave_.size() + f) * spectrum_size(), work);
-            plane_.multiply_by_quadrant(quadrant.complex(), work);
+            plane_.multiply_by_quadrant(quadrant.data(), work);
             if (is_confocal()) {
                 plane_.add_spectrum(work, sum.data());
                 continue;

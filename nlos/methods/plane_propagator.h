@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "nlos/fourier/even_transform.h"
 #include "nlos/fourier/padded_plane.h"
 #include "nlos/methods/method_input.h"
 #include "nlos/methods/virtual_wave.h"
@@ -53,7 +54,7 @@ class PlanePropagator {
     const VirtualWave& wave_;
     std::array<std::size_t, 2> padded_;
     PaddedPlane plane_;
-    Fft kernel_transform_;
+    EvenTransform kernel_transform_;
     std::vector<core::Vec3> illumination_;
 };
 

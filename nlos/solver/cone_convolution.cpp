@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/solver/cone_convolution.h"
 
+#include "nlos/fourier/even_transform.h"
 #include "renderer/core/parallel.h"
 
 #include <cmath>
@@ -43,7 +44,7 @@ ConeConvolution::ConeConvolution(
       gradient_power_{
           difference_power(cone.px), difference_power(cone.py), difference_power(cone.length)} {
     const ConeKernel kernel(cone, grid);
-    const Fft transform = Fft::even_2d(qx_, qy_);
+    const EvenTransform transform(qx_, qy_);
     const double scale = 1.0 / std::sqrt(kernel.squared_norm());
     kernel_.resize(cone.num_frequencies() * qx_ * qy_);
     std::vector<float> factor(qx_ * qy_);
@@ -56,14 +57,12 @@ ConeConvolution::ConeConvolution(
     }
     core::parallel_blocks(
         cone.num_frequencies(), kSlabsPerBlock, [&](std::size_t begin, std::size_t end) {
-            FftBuffer quadrant(2 * qx_ * qy_);
+            EvenTransform::Workspace work = transform.make_workspace();
             for (std::size_t k = begin; k < end; ++k) {
-                kernel.fill(k, quadrant.complex());
-                transform.run(quadrant);
                 ComplexF* own = kernel_.data() + k * qx_ * qy_;
-                for (std::size_t i = 0; i < qx_ * qy_; ++i) {
-                    own[i] = factor[i] * quadrant.complex()[i];
-                }
+                kernel.fill(k, own);
+                transform.run(own, work);
+                for (std::size_t i = 0; i < qx_ * qy_; ++i) own[i] *= factor[i];
             }
         });
     first_.resize(cone.num_frequencies() * cone.num_columns());

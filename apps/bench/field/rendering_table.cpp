@@ -311,7 +311,7 @@ RenderingTable measure_renderings(Contenders& contenders,
                  task.run_own("third_bounce", {{}, kOnePercent})});
         }
         add({task.run_own("auto", {{}, 2 * kOnePercent}), task.run_own("auto", {{}, kOnePercent})});
-        add({task.run_own("path", {2000, {}}), task.run_own("path", {8000, {}})});
+        add({task.run_own("path", {{}, 2 * kOnePercent}), task.run_own("path", {{}, kOnePercent})});
         for (const PeerSampling& sampling : samplings_of(tasks[t])) {
             begin("mitransient " + sampling.name);
             add({task.run_peer(sampling, sampling.few_samples),

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/fourier/fft.h"
-
+#include "nlos/fourier/even_transform.h"
 #include "renderer/core/types.h"
 
 #include <gtest/gtest.h>
@@ -40,32 +39,35 @@ TEST(Fft, RealTransformAndItsInverseMultiplyByTheLength) {
     }
 }
 
-TEST(Fft, EvenTransformEqualsTheTransformOfTheWholePeriod) {
-    constexpr std::size_t kX = 4;
-    constexpr std::size_t kY = 3;
-    constexpr std::size_t kPeriodX = 2 * (kX - 1);
-    constexpr std::size_t kPeriodY = 2 * (kY - 1);
-    FftBuffer buffer(2 * kX * kY);
-    std::vector<std::complex<double>> quadrant;
-    for (std::size_t i = 0; i < kX * kY; ++i) {
-        buffer.complex()[i] = {static_cast<float>(i % 5), static_cast<float>(i % 3) - 1.0F};
-        quadrant.emplace_back(buffer.complex()[i]);
-    }
-    Fft::even_2d(kX, kY).run(buffer);
-    for (std::size_t kx = 0; kx < kX; ++kx) {
-        for (std::size_t ky = 0; ky < kY; ++ky) {
-            std::complex<double> expected = 0.0;
-            for (std::size_t x = 0; x < kPeriodX; ++x) {
-                for (std::size_t y = 0; y < kPeriodY; ++y) {
-                    const auto at =
-                        quadrant[std::min(x, kPeriodX - x) * kY + std::min(y, kPeriodY - y)];
-                    const double turns = static_cast<double>(kx * x) / kPeriodX +
-                                         static_cast<double>(ky * y) / kPeriodY;
-                    expected += at * std::polar(1.0, -2.0 * core::kPi * turns);
+TEST(EvenTransform, EqualsTheTransformOfTheWholePeriod) {
+    for (const auto& [nx, ny] :
+         {std::array{2UL, 2UL}, std::array{4UL, 3UL}, std::array{9UL, 33UL}}) {
+        const std::size_t period_x = 2 * (nx - 1);
+        const std::size_t period_y = 2 * (ny - 1);
+        std::vector<ComplexF> values;
+        for (std::size_t i = 0; i < nx * ny; ++i) {
+            values.emplace_back(static_cast<float>(i % 5), static_cast<float>(i % 3) - 1.0F);
+        }
+        const std::vector<std::complex<double>> quadrant(values.begin(), values.end());
+        const EvenTransform transform(nx, ny);
+        EvenTransform::Workspace work = transform.make_workspace();
+        transform.run(values.data(), work);
+        for (std::size_t kx = 0; kx < nx; ++kx) {
+            for (std::size_t ky = 0; ky < ny; ++ky) {
+                std::complex<double> expected = 0.0;
+                for (std::size_t x = 0; x < period_x; ++x) {
+                    for (std::size_t y = 0; y < period_y; ++y) {
+                        const auto at =
+                            quadrant[std::min(x, period_x - x) * ny + std::min(y, period_y - y)];
+                        const double turns =
+                            static_cast<double>(kx * x) / static_cast<double>(period_x) +
+                            static_cast<double>(ky * y) / static_cast<double>(period_y);
+                        expected += at * std::polar(1.0, -2.0 * core::kPi * turns);
+                    }
                 }
+                const std::complex<double> found(values[kx * ny + ky]);
+                EXPECT_LT(std::abs(found - expected), 2e-6 * static_cast<double>(nx * ny) + 1e-4);
             }
-            const std::complex<double> found(buffer.complex()[kx * kY + ky]);
-            EXPECT_LT(std::abs(found - expected), 1e-4);
         }
     }
 }
