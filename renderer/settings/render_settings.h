@@ -75,8 +75,11 @@ void for_each_field(RenderSettings& s, Visitor&& visit) {
         core::at_least(0, "exclude triangles above this area from ellipsoidal connections [m^2]"));
     visit("variance",
           s.variance,
-          "also store the variance of every value, in group /nlos, which y-tal refuses");
-    visit("by_order", s.by_order, "also store the transient of every bounce order, likewise");
+          "also store the variance of every value, in group /nlos, which y-tal refuses; paths "
+          "then take many short passes, which are noisier than few long ones");
+    visit("by_order",
+          s.by_order,
+          "also store the transient of every bounce order, in group /nlos too");
     visit("direct_return", s.direct_return, "render the direct return of confocal pairs, order 1");
     visit("laser_spot_m2",
           s.laser_spot_m2,
