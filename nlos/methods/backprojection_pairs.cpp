@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/methods/backprojection.h"
 
+#include <experimental/simd>
+
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <type_traits>
 
 // Any scan. Voxels are taken in blocks: the distance of every voxel of a block to a wall point is
 // computed once per point, so an exhaustive scan costs one addition and one look-up per pair.
 
 namespace nlos {
 namespace {
+
+namespace stdx = std::experimental;
 
 constexpr std::size_t kVoxelsPerBlock = 512;
 
@@ -71,52 +76,95 @@ void fill_leg(const VoxelBlock<Real>& block,
     }
 }
 
+/// How far behind a histogram add_rows_of_lookups() may read.
+constexpr std::size_t kReadBehind = 2 * stdx::native_simd<float>::size();
+
+/// The histogram at a place between two bins.
+///
+/// padded   as of add_lookups()
+template <class Real>
+Real value_at(const Real* padded, Real position) {
+    const auto bin = static_cast<int>(position);
+    const Real late = position - static_cast<Real>(bin);
+    return padded[bin] + late * (padded[bin + 1] - padded[bin]);
+}
+
+/// padded[places] and padded[places + 1]. Voxels in a row find their values close together and in
+/// order, mostly within two vectors, which one instruction searches; gathers take several times as
+/// long.
+std::array<stdx::native_simd<float>, 2> read_neighbours(const float* padded,
+                                                        stdx::native_simd<int> places) {
+    using Lanes = stdx::native_simd<float>;
+    using Indices [[gnu::vector_size(sizeof(Lanes))]] = int;
+    using Values [[gnu::vector_size(sizeof(Lanes))]] = float;
+    constexpr unsigned kSize = Lanes::size();
+    const int first = places[0];
+    const stdx::native_simd<int> behind = places - first;
+    if (stdx::any_of(stdx::static_simd_cast<stdx::native_simd<unsigned>>(behind) > 2 * kSize - 2)) {
+        return {Lanes([&](auto lane) { return padded[places[lane]]; }),
+                Lanes([&](auto lane) { return padded[places[lane] + 1]; })};
+    }
+    Indices indices;
+    Values low, high;
+    std::memcpy(&indices, &behind, sizeof indices);
+    std::memcpy(&low, padded + first, sizeof low);
+    std::memcpy(&high, padded + first + kSize, sizeof high);
+    const auto lanes_of = [](const Values& values) {
+        std::array<float, kSize> array;
+        std::memcpy(array.data(), &values, sizeof values);
+        return Lanes(array.data(), stdx::element_aligned);
+    };
+    return {lanes_of(__builtin_shuffle(low, high, indices)),
+            lanes_of(__builtin_shuffle(low, high, indices + 1))};
+}
+
+/// The leading part of add_lookups() that fills vectors.
+///
+/// returns   the number of voxels done
+std::size_t add_rows_of_lookups(const float* padded,
+                                float last,
+                                const Leg<float>& out,
+                                const Leg<float>& back,
+                                VoxelBlock<float>& block) {
+    using Lanes = stdx::native_simd<float>;
+    constexpr auto kAnywhere = stdx::element_aligned;
+    const bool has_factors = !out.factors.empty();
+    std::size_t i = 0;
+    for (; i + Lanes::size() <= block.size(); i += Lanes::size()) {
+        Lanes position = Lanes(out.distances.data() + i, kAnywhere) +
+                         Lanes(back.distances.data() + i, kAnywhere);
+        position = stdx::clamp(position, Lanes(0.0F), Lanes(last));
+        const auto places = stdx::static_simd_cast<stdx::native_simd<int>>(position);
+        const Lanes late = position - stdx::static_simd_cast<Lanes>(places);
+        const auto [here, next] = read_neighbours(padded, places);
+        Lanes term = here + late * (next - here);
+        if (has_factors) {
+            term *= Lanes(out.factors.data() + i, kAnywhere) *
+                    Lanes(back.factors.data() + i, kAnywhere);
+        }
+        (Lanes(block.sums.data() + i, kAnywhere) + term).copy_to(block.sums.data() + i, kAnywhere);
+    }
+    return i;
+}
+
 /// Adds interpolated histogram values at the sums of two legs (in bins, 1 = centre of bin 0).
 ///
-/// Both values around a place are read as one, and apart from the arithmetic, which then takes
-/// vector instructions: reading is what takes the time.
-///
-/// padded   histogram with one zero before and two behind it
+/// padded   histogram with one zero before it, two behind it, and kReadBehind more
 template <class Real>
 void add_lookups(const Real* padded,
                  std::size_t num_bins,
                  const Leg<Real>& out,
                  const Leg<Real>& back,
                  VoxelBlock<Real>& block) {
-    struct Neighbours {
-        Real here, next;
-    };
-    std::array<int, kVoxelsPerBlock> bins;
-    std::array<Real, kVoxelsPerBlock> late;
-    std::array<Real, kVoxelsPerBlock> here;
-    std::array<Real, kVoxelsPerBlock> next;
-    Real* __restrict sums = block.sums.data();
-    const Real* __restrict a = out.distances.data();
-    const Real* __restrict b = back.distances.data();
     const auto last = static_cast<Real>(num_bins + 1);
-    const std::size_t count = block.size();
-    for (std::size_t i = 0; i < count; ++i) {
-        // Plain comparisons: std::min and std::max take references, which bars vector code here.
-        Real position = a[i] + b[i];
-        position = position > Real{0} ? position : Real{0};
-        position = position < last ? position : last;
-        bins[i] = static_cast<int>(position);
-        late[i] = position - static_cast<Real>(bins[i]);
+    std::size_t i = 0;
+    if constexpr (std::is_same_v<Real, float> && stdx::native_simd<float>::size() >= 8) {
+        i = add_rows_of_lookups(padded, last, out, back, block);
     }
-    for (std::size_t i = 0; i < count; ++i) {
-        Neighbours values;
-        std::memcpy(&values, padded + bins[i], sizeof values);
-        here[i] = values.here;
-        next[i] = values.next;
-    }
-    if (out.factors.empty()) {
-        for (std::size_t i = 0; i < count; ++i) sums[i] += here[i] + late[i] * (next[i] - here[i]);
-        return;
-    }
-    const Real* __restrict fa = out.factors.data();
-    const Real* __restrict fb = back.factors.data();
-    for (std::size_t i = 0; i < count; ++i) {
-        sums[i] += fa[i] * fb[i] * (here[i] + late[i] * (next[i] - here[i]));
+    for (; i < block.size(); ++i) {
+        const Real position = std::clamp(out.distances[i] + back.distances[i], Real{0}, last);
+        const Real factor = out.factors.empty() ? Real{1} : out.factors[i] * back.factors[i];
+        block.sums[i] += factor * value_at(padded, position);
     }
 }
 
@@ -128,7 +176,7 @@ class PairBackprojector {
 
     void fill(std::size_t begin, std::size_t end, std::span<Real> volume) const {
         VoxelBlock<Real> block(axes_, begin, end);
-        std::vector<Real> padded(num_bins_ + 3, Real{0});
+        std::vector<Real> padded(num_bins_ + 3 + kReadBehind, Real{0});
         const bool is_confocal = data_.pattern == core::ScanPattern::Confocal;
         std::vector<Leg<Real>> out(is_confocal ? 1 : data_.illumination.size());
         for (std::size_t l = 0; l < out.size() && !is_confocal; ++l) {
