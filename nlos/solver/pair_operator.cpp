@@ -25,9 +25,12 @@ std::vector<Eigen::Vector3f> to_wall_frame(const core::Transform& world_from_wal
 
 /// Where a chunk of voxels adds to one histogram, and how much.
 struct PairOperator::Legs {
+    std::vector<float> positions = std::vector<float>(kVoxelsPerChunk);  ///< 1: centre of bin 0
+    std::vector<float> slopes = std::vector<float>(kVoxelsPerChunk);     ///< for spots
+    std::vector<float> factors = std::vector<float>(kVoxelsPerChunk);
+    // Of one point of the spot:
     std::vector<int> bins = std::vector<int>(kVoxelsPerChunk);  ///< 0: before bin 0
     std::vector<float> late = std::vector<float>(kVoxelsPerChunk);
-    std::vector<float> factors = std::vector<float>(kVoxelsPerChunk);
 };
 
 PairOperator::PairOperator(const MethodInput& input, Falloff falloff, double spot_m)
@@ -64,44 +67,69 @@ void PairOperator::set_voxels(std::vector<Eigen::Vector3f> positions) {
     }
 }
 
+// Divisions and square roots take most of the time of forward() and adjoint(): as few as possible.
 void PairOperator::fill_legs(std::size_t pair,
-                             const SpotPoint& point,
                              std::size_t begin,
                              std::size_t end,
                              Legs& legs) const {
     const Eigen::Vector3f l = illumination_[scan_.illumination_index(pair)];
     const Eigen::Vector3f s = sensing_[scan_.sensing_index(pair)];
     const auto per_bin = static_cast<float>(1.0 / axis_.bin_width_m);
-    // Bin 0's centre stands at 1, half a bin behind the axis's start.
+    // Half a bin behind the axis's start.
     const float offset =
         device_legs_bins_[pair] + 0.5F - static_cast<float>(axis_.opl_start_m / axis_.bin_width_m);
-    const auto last = static_cast<float>(num_bins_ + 1);
-    const float weight = gains_[pair] * point.weight;
-    const float joint = scan_.pattern == core::ScanPattern::Confocal ? 2.0F : 0.0F;
+    const float gain = gains_[pair];
     const float* __restrict x = x_.data() + begin;
     const float* __restrict y = y_.data() + begin;
     const float* __restrict z = z_.data() + begin;
-    int* __restrict bins = legs.bins.data();
-    float* __restrict late = legs.late.data();
+    float* __restrict positions = legs.positions.data();
     float* __restrict factors = legs.factors.data();
-    const bool is_retro = falloff_ == Falloff::Retro;
-    const bool is_facing = falloff_ == Falloff::Facing;
+    // product: of both legs; inverse: of its square; heights: product of the heights
+    const auto fill = [&](const auto& factor_of) {
+        for (std::size_t i = 0; i < end - begin; ++i) {
+            const float lx = x[i] - l.x(), ly = y[i] - l.y(), lz = z[i] - l.z();
+            const float sx = x[i] - s.x(), sy = y[i] - s.y(), sz = z[i] - s.z();
+            const float out2 = lx * lx + ly * ly + lz * lz;
+            const float back2 = sx * sx + sy * sy + sz * sz;
+            const float out = std::sqrt(out2), back = std::sqrt(back2);
+            positions[i] = (out + back) * per_bin + offset;
+            factors[i] = gain * factor_of(out * back, 1.0F / (out2 * back2), lz * sz);
+        }
+    };
+    if (falloff_ == Falloff::Retro) {
+        fill([](float product, float inverse, float) { return product * inverse; });
+    } else if (falloff_ == Falloff::Facing) {
+        fill([](float, float inverse, float heights) {
+            return heights * inverse * (heights * inverse);
+        });
+    } else {
+        fill([](float, float inverse, float) { return inverse; });
+    }
+    if (spot_.size() == 1) return;
+    const float joint = scan_.pattern == core::ScanPattern::Confocal ? 2.0F : 0.0F;
+    float* __restrict slopes = legs.slopes.data();
     for (std::size_t i = 0; i < end - begin; ++i) {
         const float lx = x[i] - l.x(), ly = y[i] - l.y(), lz = z[i] - l.z();
         const float sx = x[i] - s.x(), sy = y[i] - s.y(), sz = z[i] - s.z();
-        const float out = std::sqrt(lx * lx + ly * ly + lz * lz);
-        const float back = std::sqrt(sx * sx + sy * sy + sz * sz);
-        const float product = out * back;
-        const float slope =
-            std::sqrt((lx * lx + ly * ly) / (out * out) + (sx * sx + sy * sy) / (back * back) +
-                      joint * (lx * sx + ly * sy) / product);
-        float position = (out + back) * per_bin + offset + point.shift_bins * slope;
+        const float out2 = lx * lx + ly * ly + lz * lz;
+        const float back2 = sx * sx + sy * sy + sz * sz;
+        slopes[i] = std::sqrt((lx * lx + ly * ly) / out2 + (sx * sx + sy * sy) / back2 +
+                              joint * (lx * sx + ly * sy) / std::sqrt(out2 * back2));
+    }
+}
+
+void PairOperator::place(const SpotPoint& point, std::size_t count, Legs& legs) const {
+    const auto last = static_cast<float>(num_bins_ + 1);
+    const float* __restrict positions = legs.positions.data();
+    const float* __restrict slopes = legs.slopes.data();
+    int* __restrict bins = legs.bins.data();
+    float* __restrict late = legs.late.data();
+    for (std::size_t i = 0; i < count; ++i) {
+        float position = positions[i] + point.shift_bins * slopes[i];
         position = position > 0.0F ? position : 0.0F;
         position = position < last ? position : last;
         bins[i] = static_cast<int>(position);
         late[i] = position - static_cast<float>(bins[i]);
-        const float cosines = is_facing ? lz * sz / product : 1.0F;
-        factors[i] = weight * cosines * cosines / (is_retro ? product : product * product);
     }
 }
 
@@ -141,10 +169,11 @@ void PairOperator::forward(std::span<const float> albedo,
             std::ranges::fill(padded, 0.0F);
             for (std::size_t first = 0; first < num_voxels(); first += kVoxelsPerChunk) {
                 const std::size_t count = std::min(kVoxelsPerChunk, num_voxels() - first);
+                fill_legs(pairs[i], first, first + count, legs);
                 for (const SpotPoint& point : spot_) {
-                    fill_legs(pairs[i], point, first, first + count, legs);
+                    place(point, count, legs);
                     for (std::size_t v = 0; v < count; ++v) {
-                        const float value = albedo[first + v] * legs.factors[v];
+                        const float value = point.weight * albedo[first + v] * legs.factors[v];
                         const auto bin = static_cast<std::size_t>(legs.bins[v]);
                         padded[bin] += (1.0F - legs.late[v]) * value;
                         padded[bin + 1] += legs.late[v] * value;
@@ -179,12 +208,13 @@ void PairOperator::adjoint(std::span<const float> histograms,
         std::fill_n(sums, end - begin, 0.0F);
         for (std::size_t i = 0; i < pairs.size(); ++i) {
             const float* __restrict row = padded.data() + i * stride;
+            fill_legs(pairs[i], begin, end, legs);
             for (const SpotPoint& point : spot_) {
-                fill_legs(pairs[i], point, begin, end, legs);
+                place(point, end - begin, legs);
                 for (std::size_t v = 0; v < end - begin; ++v) {
                     const int bin = legs.bins[v];
                     const float value = row[bin] + legs.late[v] * (row[bin + 1] - row[bin]);
-                    sums[v] += legs.factors[v] * value;
+                    sums[v] += point.weight * legs.factors[v] * value;
                 }
             }
         }

@@ -54,11 +54,10 @@ class PairOperator {
         float weight;
     };
     void blur(std::span<const float> input, std::span<float> output, bool is_adjoint) const;
-    void fill_legs(std::size_t pair,
-                   const SpotPoint& point,
-                   std::size_t begin,
-                   std::size_t end,
-                   Legs& legs) const;
+    /// What does not depend on the spot's point, for voxels [begin, end).
+    void fill_legs(std::size_t pair, std::size_t begin, std::size_t end, Legs& legs) const;
+    /// What does.
+    void place(const SpotPoint& point, std::size_t count, Legs& legs) const;
 
     const core::Scan& scan_;
     core::TimeAxis axis_;
