@@ -76,9 +76,6 @@ void fill_leg(const VoxelBlock<Real>& block,
     }
 }
 
-/// How far behind a histogram add_rows_of_lookups() may read.
-constexpr std::size_t kReadBehind = 2 * stdx::native_simd<float>::size();
-
 /// The histogram at a place between two bins.
 ///
 /// padded   as of add_lookups()
@@ -89,33 +86,46 @@ Real value_at(const Real* padded, Real position) {
     return padded[bin] + late * (padded[bin + 1] - padded[bin]);
 }
 
+using FloatLanes = stdx::native_simd<float>;
+using IntLanes = stdx::native_simd<int>;
+using FloatVector [[gnu::vector_size(sizeof(FloatLanes))]] = float;
+using IntVector [[gnu::vector_size(sizeof(FloatLanes))]] = int;
+constexpr int kFloatLanes = FloatLanes::size();
+
+/// How far behind a histogram read_neighbours() may read.
+constexpr std::size_t kReadBehind = 2 * kFloatLanes;
+
+/// FloatVector of two vectors, one behind the other.
+FloatLanes pick(const FloatVector& low, const FloatVector& high, const IntVector& indices) {
+#ifdef __clang__  // has this only for constant indices
+    return FloatLanes([&](std::size_t lane) {
+        const int i = indices[lane];
+        return i < kFloatLanes ? low[i] : high[i - kFloatLanes];
+    });
+#else
+    const FloatVector picked = __builtin_shuffle(low, high, indices);
+    std::array<float, kFloatLanes> array;
+    std::memcpy(array.data(), &picked, sizeof picked);
+    return FloatLanes(array.data(), stdx::element_aligned);
+#endif
+}
+
 /// padded[places] and padded[places + 1]. Voxels in a row find their values close together and in
 /// order, mostly within two vectors, which one instruction searches; gathers take several times as
 /// long.
-std::array<stdx::native_simd<float>, 2> read_neighbours(const float* padded,
-                                                        stdx::native_simd<int> places) {
-    using Lanes = stdx::native_simd<float>;
-    using Indices [[gnu::vector_size(sizeof(Lanes))]] = int;
-    using Values [[gnu::vector_size(sizeof(Lanes))]] = float;
-    constexpr unsigned kSize = Lanes::size();
+std::array<FloatLanes, 2> read_neighbours(const float* padded, IntLanes places) {
     const int first = places[0];
-    const stdx::native_simd<int> behind = places - first;
-    if (stdx::any_of(stdx::static_simd_cast<stdx::native_simd<unsigned>>(behind) > 2 * kSize - 2)) {
-        return {Lanes([&](auto lane) { return padded[places[lane]]; }),
-                Lanes([&](auto lane) { return padded[places[lane] + 1]; })};
+    const IntLanes behind = places - first;
+    if (stdx::any_of(behind < 0 || behind > 2 * kFloatLanes - 2)) {
+        return {FloatLanes([&](auto lane) { return padded[places[lane]]; }),
+                FloatLanes([&](auto lane) { return padded[places[lane] + 1]; })};
     }
-    Indices indices;
-    Values low, high;
+    IntVector indices;
+    FloatVector low, high;
     std::memcpy(&indices, &behind, sizeof indices);
     std::memcpy(&low, padded + first, sizeof low);
-    std::memcpy(&high, padded + first + kSize, sizeof high);
-    const auto lanes_of = [](const Values& values) {
-        std::array<float, kSize> array;
-        std::memcpy(array.data(), &values, sizeof values);
-        return Lanes(array.data(), stdx::element_aligned);
-    };
-    return {lanes_of(__builtin_shuffle(low, high, indices)),
-            lanes_of(__builtin_shuffle(low, high, indices + 1))};
+    std::memcpy(&high, padded + first + kFloatLanes, sizeof high);
+    return {pick(low, high, indices), pick(low, high, indices + 1)};
 }
 
 /// The leading part of add_lookups() that fills vectors.
@@ -126,23 +136,23 @@ std::size_t add_rows_of_lookups(const float* padded,
                                 const Leg<float>& out,
                                 const Leg<float>& back,
                                 VoxelBlock<float>& block) {
-    using Lanes = stdx::native_simd<float>;
     constexpr auto kAnywhere = stdx::element_aligned;
     const bool has_factors = !out.factors.empty();
     std::size_t i = 0;
-    for (; i + Lanes::size() <= block.size(); i += Lanes::size()) {
-        Lanes position = Lanes(out.distances.data() + i, kAnywhere) +
-                         Lanes(back.distances.data() + i, kAnywhere);
-        position = stdx::clamp(position, Lanes(0.0F), Lanes(last));
-        const auto places = stdx::static_simd_cast<stdx::native_simd<int>>(position);
-        const Lanes late = position - stdx::static_simd_cast<Lanes>(places);
+    for (; i + kFloatLanes <= block.size(); i += kFloatLanes) {
+        FloatLanes position = FloatLanes(out.distances.data() + i, kAnywhere) +
+                              FloatLanes(back.distances.data() + i, kAnywhere);
+        position = stdx::clamp(position, FloatLanes(0.0F), FloatLanes(last));
+        const auto places = stdx::static_simd_cast<IntLanes>(position);
+        const FloatLanes late = position - stdx::static_simd_cast<FloatLanes>(places);
         const auto [here, next] = read_neighbours(padded, places);
-        Lanes term = here + late * (next - here);
+        FloatLanes term = here + late * (next - here);
         if (has_factors) {
-            term *= Lanes(out.factors.data() + i, kAnywhere) *
-                    Lanes(back.factors.data() + i, kAnywhere);
+            term *= FloatLanes(out.factors.data() + i, kAnywhere) *
+                    FloatLanes(back.factors.data() + i, kAnywhere);
         }
-        (Lanes(block.sums.data() + i, kAnywhere) + term).copy_to(block.sums.data() + i, kAnywhere);
+        (FloatLanes(block.sums.data() + i, kAnywhere) + term)
+            .copy_to(block.sums.data() + i, kAnywhere);
     }
     return i;
 }
@@ -158,8 +168,9 @@ void add_lookups(const Real* padded,
                  VoxelBlock<Real>& block) {
     const auto last = static_cast<Real>(num_bins + 1);
     std::size_t i = 0;
-    if constexpr (std::is_same_v<Real, float> && stdx::native_simd<float>::size() >= 8) {
-        i = add_rows_of_lookups(padded, last, out, back, block);
+    if constexpr (std::is_same_v<Real, float>) {
+        constexpr bool kCanSearch = kFloatLanes >= 8;  // as of AVX2
+        if (kCanSearch) i = add_rows_of_lookups(padded, last, out, back, block);
     }
     for (; i < block.size(); ++i) {
         const Real position = std::clamp(out.distances[i] + back.distances[i], Real{0}, last);
