@@ -163,7 +163,9 @@ void PassLoop::run(const Tile& tile, const core::Progress& progress, RenderResul
         progress.update(share, fmt::format("{:.2f} M paths/s", paths / elapsed * 1e-6));
         return share;
     };
-    for (double share = 0.0; (share = share_after_round()) < 1.0;) {
+    while (true) {
+        const double share = share_after_round();
+        if (share >= 1.0) break;
         result.interrupted = progress.should_stop();
         if (result.interrupted) break;
         if (!is_open_ended(task.settings) || first + pass != kPilotPasses) continue;
