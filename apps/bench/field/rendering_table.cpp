@@ -90,16 +90,21 @@ class RenderingTask {
         }
     }
 
-    RenderingRow run_own(const std::string& method, const Effort& effort) {
+    RenderingRow run_own(const std::string& method, double target_error) {
         const std::string output = fmt::format("{}_{}.h5", stem_, method);
-        std::vector<std::string> arguments{
-            "render", core::shipped_file(task_.path()), "-o", output, "--method", method, "--set"};
-        arguments.push_back(effort.samples
-                                ? fmt::format("render.samples={}", *effort.samples)
-                                : fmt::format("render.target_error={}", *effort.target_error));
+        std::vector<std::string> arguments{"render",
+                                           core::shipped_file(task_.path()),
+                                           "-o",
+                                           output,
+                                           "--method",
+                                           method,
+                                           "--set",
+                                           fmt::format("render.target_error={}", target_error)};
         for (const std::string& setting : task_.overrides()) arguments.push_back(setting);
-        RenderingRow row = row_of(
-            "nlos", method, effort, contenders_.run_own(task_.name() + " " + method, arguments));
+        RenderingRow row = row_of("nlos",
+                                  method,
+                                  {{}, target_error},
+                                  contenders_.run_own(task_.name() + " " + method, arguments));
         if (row.reason.empty()) score(nlos::read_capture(output).transient, row);
         return row;
     }
@@ -306,12 +311,10 @@ RenderingTable measure_renderings(Contenders& contenders,
             summaries.push_back(summary_of(runs));
         };
         begin("nlos");
-        if (tasks[t].max_bounces == 3) {
-            add({task.run_own("third_bounce", {{}, 2 * kOnePercent}),
-                 task.run_own("third_bounce", {{}, kOnePercent})});
+        for (const std::string method : {"third_bounce", "auto", "path"}) {
+            if (method == "third_bounce" && tasks[t].max_bounces > 3) continue;
+            add({task.run_own(method, 2 * kOnePercent), task.run_own(method, kOnePercent)});
         }
-        add({task.run_own("auto", {{}, 2 * kOnePercent}), task.run_own("auto", {{}, kOnePercent})});
-        add({task.run_own("path", {{}, 2 * kOnePercent}), task.run_own("path", {{}, kOnePercent})});
         for (const PeerSampling& sampling : samplings_of(tasks[t])) {
             begin("mitransient " + sampling.name);
             add({task.run_peer(sampling, sampling.few_samples),
