@@ -29,7 +29,7 @@ double time_of(std::size_t count, Work&& work) {
 }
 
 double row_seconds(const Fft& fft, std::size_t length, std::size_t rows) {
-    FftBuffer buffer(kRows * (length + 2));
+    FftBuffer buffer(kRows * Fft::row_floats(length));
     return time_of((rows + kRows - 1) / kRows, [&] { fft.run(buffer); });
 }
 
@@ -82,7 +82,7 @@ double fk_fft_seconds(const nlos::MethodInput& input) {
     const std::size_t length = 2 * nlos::good_fft_size(bins);
     const auto [px, py] = padded_size(grid);
     FftBuffer column(2 * length);
-    const Fft depth = Fft::complex_batch({length, 1, 1, length}, Fft::Direction::Inverse);
+    const Fft depth = Fft::complex_batch(length, 1, {1, length}, Fft::Direction::Inverse);
     return row_seconds(Fft::real_to_complex(length, kRows), length, grid.size[0] * grid.size[1]) +
            plane_seconds(grid.size, grid, length / 2 + 1, input.axes.z_m.size()) +
            time_of(px * py, [&] { depth.run(column); });

@@ -8,22 +8,33 @@ namespace nlos {
 EvenTransform::EvenTransform(std::size_t nx, std::size_t ny)
     : nx_(nx),
       ny_(ny),
-      rows_(Fft::complex_batch({period_y(), nx, 1, stride()}, Fft::Direction::Forward)),
-      columns_(Fft::complex_batch({period_x(), ny, stride(), 1}, Fft::Direction::Forward)) {}
+      rows_(Fft::complex_batch(
+          period_y(), nx, {1, stride(period_y())}, Fft::Direction::Forward)),
+      columns_(Fft::complex_batch(period_x(),
+                                  ny,
+                                  {stride(period_y()), 1},
+                                  {1, stride(period_x())},
+                                  Fft::Direction::Forward)) {}
+
+EvenTransform::Workspace EvenTransform::make_workspace() const {
+    return {FftBuffer(2 * period_x() * stride(period_y())), FftBuffer(2 * ny_ * stride(period_x()))};
+}
 
 void EvenTransform::run(ComplexF* values, Workspace& work) const {
-    const auto row = [&](std::size_t ix) { return work.complex() + ix * stride(); };
+    const auto row = [&](std::size_t ix) { return work.rows.complex() + ix * stride(period_y()); };
     for (std::size_t ix = 0; ix < nx_; ++ix) {
         const ComplexF* half = values + ix * ny_;
         std::copy_n(half, ny_, row(ix));
         std::reverse_copy(half + 1, half + ny_ - 1, row(ix) + ny_);
     }
-    rows_.run(work);
+    rows_.run(work.rows);
     for (std::size_t ix = 1; ix + 1 < nx_; ++ix) {
         std::copy_n(row(ix), ny_, row(period_x() - ix));
     }
-    columns_.run(work);
-    for (std::size_t ix = 0; ix < nx_; ++ix) std::copy_n(row(ix), ny_, values + ix * ny_);
+    columns_.run(work.rows, work.columns);
+    for (std::size_t iy = 0; iy < ny_; ++iy) {
+        std::copy_n(work.columns.complex() + iy * stride(period_x()), nx_, values + iy * nx_);
+    }
 }
 
 }  // namespace nlos

@@ -7,7 +7,8 @@ namespace nlos {
 
 /// Transform of an (nx, ny) array of complex numbers that is even around both its first and its
 /// last element along either axis, so that it stands for a whole period of 2 (nx - 1) by
-/// 2 (ny - 1) numbers, nx and ny at least 2. So is the result. Nothing is normalised.
+/// 2 (ny - 1) numbers, nx and ny at least 2. So is the result, which stands as [ky][kx], as spectra
+/// of PaddedPlane do. Nothing is normalised.
 ///
 /// Each of the two passes transforms whole periods, but only those that differ: FFTW's cosine
 /// transforms, which need half the arithmetic, take several times as long.
@@ -15,17 +16,19 @@ class EvenTransform {
  public:
     EvenTransform(std::size_t nx, std::size_t ny);
 
-    using Workspace = FftBuffer;
-    Workspace make_workspace() const { return FftBuffer(2 * period_x() * stride()); }
+    struct Workspace {
+        FftBuffer rows, columns;
+    };
+    Workspace make_workspace() const;
 
-    /// Transforms values (nx, ny) in place.
+    /// values   in: (nx, ny); out: the transform, (ny, nx)
     void run(ComplexF* values, Workspace& work) const;
 
  private:
     std::size_t period_x() const { return 2 * (nx_ - 1); }
     std::size_t period_y() const { return 2 * (ny_ - 1); }
     /// Distance of rows: not a power of two, which would crowd a column into few cache sets.
-    std::size_t stride() const { return period_y() + 8; }
+    static std::size_t stride(std::size_t length) { return length + 8; }
 
     std::size_t nx_, ny_;
     Fft rows_, columns_;

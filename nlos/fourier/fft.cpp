@@ -4,6 +4,7 @@
 #include "renderer/core/error.h"
 
 #include <fftw3.h>
+#include <sys/mman.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -28,6 +29,34 @@ fftwf_iodim dimension(std::size_t length, std::size_t in_stride, std::size_t out
     return {static_cast<int>(length), static_cast<int>(in_stride), static_cast<int>(out_stride)};
 }
 
+/// Asks for huge pages where there is room for several: walks across a large buffer would otherwise
+/// wait for the table of pages.
+void use_huge_pages(void* memory, std::size_t num_bytes) {
+    constexpr std::size_t kPage = std::size_t{1} << 21;
+    std::size_t space = num_bytes;
+    if (num_bytes < 4 * kPage || std::align(kPage, kPage, memory, space) == nullptr) return;
+    ::madvise(memory, space / kPage * kPage, MADV_HUGEPAGE);
+}
+
+FftBuffer room_for(std::size_t length, std::size_t count, const Fft::Layout& layout) {
+    return FftBuffer(2 * ((length - 1) * layout.stride + (count - 1) * layout.distance + 1));
+}
+
+void* plan_complex(std::size_t length,
+                   std::size_t count,
+                   const Fft::Layout& from,
+                   const Fft::Layout& to,
+                   Fft::Direction direction,
+                   FftBuffer& in,
+                   FftBuffer& out) {
+    const fftwf_iodim each = dimension(length, from.stride, to.stride);
+    const fftwf_iodim all = dimension(count, from.distance, to.distance);
+    const int sign = direction == Fft::Direction::Forward ? FFTW_FORWARD : FFTW_BACKWARD;
+    const std::lock_guard lock(planner_mutex);
+    return checked(fftwf_plan_guru_dft(
+        1, &each, 1, &all, as_fftw(in.data()), as_fftw(out.data()), sign, FFTW_ESTIMATE));
+}
+
 }  // namespace
 
 std::size_t good_fft_size(std::size_t n) {
@@ -48,6 +77,7 @@ FftBuffer::FftBuffer(std::size_t num_floats) : num_floats_(num_floats) {
     if (!memory_) throw std::bad_alloc();
     void* first = memory_.get();
     data_ = static_cast<float*>(std::align(kAlignment, num_bytes, first, space));
+    use_huge_pages(data_, num_bytes);
 }
 
 void FftBuffer::Free::operator()(void* memory) const {
@@ -55,10 +85,10 @@ void FftBuffer::Free::operator()(void* memory) const {
 }
 
 Fft Fft::real_to_complex(std::size_t length, std::size_t count) {
-    FftBuffer buffer((length + 2) * count);
+    FftBuffer buffer(row_floats(length) * count);
     float* data = buffer.data();
     const fftwf_iodim row = dimension(length, 1, 1);
-    const fftwf_iodim rows = dimension(count, length + 2, length / 2 + 1);
+    const fftwf_iodim rows = dimension(count, row_floats(length), row_floats(length) / 2);
     const std::lock_guard lock(planner_mutex);
     return Fft(
         Kind::RealToComplex,
@@ -66,40 +96,52 @@ Fft Fft::real_to_complex(std::size_t length, std::size_t count) {
 }
 
 Fft Fft::complex_to_real(std::size_t length, std::size_t count) {
-    FftBuffer buffer((length + 2) * count);
+    FftBuffer buffer(row_floats(length) * count);
     float* data = buffer.data();
     const fftwf_iodim row = dimension(length, 1, 1);
-    const fftwf_iodim rows = dimension(count, length / 2 + 1, length + 2);
+    const fftwf_iodim rows = dimension(count, row_floats(length) / 2, row_floats(length));
     const std::lock_guard lock(planner_mutex);
     return Fft(
         Kind::ComplexToReal,
         checked(fftwf_plan_guru_dft_c2r(1, &row, 1, &rows, as_fftw(data), data, FFTW_ESTIMATE)));
 }
 
-Fft Fft::complex_batch(const Layout& layout, Direction direction) {
-    FftBuffer buffer(
-        2 * ((layout.length - 1) * layout.stride + (layout.count - 1) * layout.distance + 1));
-    fftwf_complex* data = as_fftw(buffer.data());
-    const fftwf_iodim each = dimension(layout.length, layout.stride, layout.stride);
-    const fftwf_iodim all = dimension(layout.count, layout.distance, layout.distance);
-    const int sign = direction == Direction::Forward ? FFTW_FORWARD : FFTW_BACKWARD;
-    const std::lock_guard lock(planner_mutex);
-    return Fft(Kind::Complex,
-               checked(fftwf_plan_guru_dft(1, &each, 1, &all, data, data, sign, FFTW_ESTIMATE)));
+std::size_t Fft::row_floats(std::size_t length) {
+    constexpr std::size_t kLine = 16;  // floats
+    const std::size_t lines = (length + 2 + kLine - 1) / kLine;
+    return kLine * (lines | 1U);
 }
 
-void Fft::run(FftBuffer& buffer) const {
+Fft Fft::complex_batch(std::size_t length,
+                       std::size_t count,
+                       const Layout& layout,
+                       Direction direction) {
+    FftBuffer buffer = room_for(length, count, layout);
+    return Fft(Kind::Complex,
+               plan_complex(length, count, layout, layout, direction, buffer, buffer));
+}
+
+Fft Fft::complex_batch(std::size_t length,
+                       std::size_t count,
+                       const Layout& from,
+                       const Layout& to,
+                       Direction direction) {
+    FftBuffer in = room_for(length, count, from);
+    FftBuffer out = room_for(length, count, to);
+    return Fft(Kind::Complex, plan_complex(length, count, from, to, direction, in, out));
+}
+
+void Fft::run(FftBuffer& from, FftBuffer& to) const {
     const auto plan = static_cast<fftwf_plan>(plan_.get());
-    float* data = buffer.data();
     switch (kind_) {
         case Kind::RealToComplex:
-            fftwf_execute_dft_r2c(plan, data, as_fftw(data));
+            fftwf_execute_dft_r2c(plan, from.data(), as_fftw(to.data()));
             return;
         case Kind::ComplexToReal:
-            fftwf_execute_dft_c2r(plan, as_fftw(data), data);
+            fftwf_execute_dft_c2r(plan, as_fftw(from.data()), to.data());
             return;
         case Kind::Complex:
-            fftwf_execute_dft(plan, as_fftw(data), as_fftw(data));
+            fftwf_execute_dft(plan, as_fftw(from.data()), as_fftw(to.data()));
             return;
     }
 }

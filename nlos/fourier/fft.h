@@ -31,25 +31,39 @@ class FftBuffer {
     float* data_;  ///< the first aligned float of it
 };
 
-/// Single-precision transforms in place, planned once and safe to run from several threads on
-/// buffers of their own. Plans are estimated, never measured: the same bits in every run.
+/// Single-precision transforms, planned once and safe to run from several threads on buffers of
+/// their own. Plans are estimated, never measured: the same bits in every run.
 /// Nothing is normalised.
 class Fft {
  public:
     enum class Direction { Forward, Inverse };
 
-    /// `count` rows of `length` real numbers, each in `length + 2` floats, become rows of
-    /// `length / 2 + 1` complex numbers; length even.
+    /// `count` rows of `length` real numbers become rows of `length / 2 + 1` complex numbers, in
+    /// place; length even.
     static Fft real_to_complex(std::size_t length, std::size_t count);
     static Fft complex_to_real(std::size_t length, std::size_t count);
 
-    /// `count` complex transforms: element i of transform j stands at i * stride + j * distance.
-    struct Layout {
-        std::size_t length, count, stride, distance;
-    };
-    static Fft complex_batch(const Layout& layout, Direction direction);
+    /// Floats from one such row to the next. Neighbours lie in different cache sets, so that a walk
+    /// down the rows does not throw out what it read.
+    static std::size_t row_floats(std::size_t length);
 
-    void run(FftBuffer& buffer) const;
+    /// Element i of transform j stands at i * stride + j * distance.
+    struct Layout {
+        std::size_t stride, distance;
+    };
+    /// `count` complex transforms of `length` numbers, in place or from one buffer to another.
+    static Fft complex_batch(std::size_t length,
+                             std::size_t count,
+                             const Layout& layout,
+                             Direction direction);
+    static Fft complex_batch(std::size_t length,
+                             std::size_t count,
+                             const Layout& from,
+                             const Layout& to,
+                             Direction direction);
+
+    void run(FftBuffer& buffer) const { run(buffer, buffer); }
+    void run(FftBuffer& from, FftBuffer& to) const;
 
  private:
     enum class Kind { RealToComplex, ComplexToReal, Complex };

@@ -10,16 +10,30 @@ using Direction = Fft::Direction;
 PaddedPlane::PaddedPlane(std::array<std::size_t, 2> size, std::array<std::size_t, 2> padded)
     : size_(size),
       padded_(padded),
-      rows_forward_(Fft::complex_batch({padded[1], size[0], 1, stride()}, Direction::Forward)),
-      rows_inverse_(Fft::complex_batch({padded[1], size[0], 1, stride()}, Direction::Inverse)),
-      columns_forward_(Fft::complex_batch({padded[0], padded[1], stride(), 1}, Direction::Forward)),
-      columns_inverse_(
-          Fft::complex_batch({padded[0], padded[1], stride(), 1}, Direction::Inverse)) {}
+      rows_forward_(Fft::complex_batch(
+          padded[1], size[0], {1, stride(padded[1])}, Direction::Forward)),
+      columns_forward_(Fft::complex_batch(padded[0],
+                                          padded[1],
+                                          {stride(padded[1]), 1},
+                                          {1, stride(padded[0])},
+                                          Direction::Forward)),
+      columns_inverse_(Fft::complex_batch(
+          padded[0], padded[1], {1, stride(padded[0])}, Direction::Inverse)),
+      rows_inverse_(Fft::complex_batch(padded[1],
+                                       size[0],
+                                       {stride(padded[0]), 1},
+                                       {1, stride(padded[1])},
+                                       Direction::Inverse)) {}
+
+PaddedPlane::Workspace PaddedPlane::make_workspace() const {
+    return {FftBuffer(2 * padded_[0] * stride(padded_[1])),
+            FftBuffer(2 * padded_[1] * stride(padded_[0]))};
+}
 
 void PaddedPlane::load(const ComplexF* values, Workspace& work) const {
-    std::fill_n(work.complex(), padded_[0] * stride(), ComplexF{});
     for (std::size_t ix = 0; ix < size_[0]; ++ix) {
-        std::copy_n(values + ix * size_[1], size_[1], row(work, ix));
+        ComplexF* const padded = std::copy_n(values + ix * size_[1], size_[1], row(work, ix));
+        std::fill_n(padded, padded_[1] - size_[1], ComplexF{});
     }
 }
 
@@ -30,43 +44,43 @@ void PaddedPlane::store(Workspace& work, ComplexF* values) const {
 }
 
 void PaddedPlane::load_spectrum(const ComplexF* spectrum, Workspace& work) const {
-    for (std::size_t ix = 0; ix < padded_[0]; ++ix) {
-        std::copy_n(spectrum + ix * padded_[1], padded_[1], row(work, ix));
+    for (std::size_t iy = 0; iy < padded_[1]; ++iy) {
+        std::copy_n(spectrum + iy * padded_[0], padded_[0], spectrum_row(work, iy));
     }
 }
 
 void PaddedPlane::store_spectrum(Workspace& work, ComplexF* spectrum) const {
-    for (std::size_t ix = 0; ix < padded_[0]; ++ix) {
-        std::copy_n(row(work, ix), padded_[1], spectrum + ix * padded_[1]);
+    for (std::size_t iy = 0; iy < padded_[1]; ++iy) {
+        std::copy_n(spectrum_row(work, iy), padded_[0], spectrum + iy * padded_[0]);
     }
 }
 
 void PaddedPlane::add_spectrum(Workspace& work, ComplexF* spectrum) const {
-    for (std::size_t ix = 0; ix < padded_[0]; ++ix) {
-        const ComplexF* values = row(work, ix);
-        ComplexF* sum = spectrum + ix * padded_[1];
-        for (std::size_t iy = 0; iy < padded_[1]; ++iy) sum[iy] += values[iy];
+    for (std::size_t iy = 0; iy < padded_[1]; ++iy) {
+        const ComplexF* values = spectrum_row(work, iy);
+        ComplexF* sum = spectrum + iy * padded_[0];
+        for (std::size_t ix = 0; ix < padded_[0]; ++ix) sum[ix] += values[ix];
     }
 }
 
 void PaddedPlane::forward(Workspace& work) const {
-    rows_forward_.run(work);
-    columns_forward_.run(work);
+    rows_forward_.run(work.values);
+    columns_forward_.run(work.values, work.spectrum);
 }
 
 void PaddedPlane::inverse(Workspace& work) const {
-    columns_inverse_.run(work);
-    rows_inverse_.run(work);
+    columns_inverse_.run(work.spectrum);
+    rows_inverse_.run(work.spectrum, work.values);
 }
 
 void PaddedPlane::multiply_by_quadrant(const ComplexF* quadrant, Workspace& work) const {
-    const std::size_t qy = padded_[1] / 2 + 1;
-    for (std::size_t ix = 0; ix < padded_[0]; ++ix) {
-        const ComplexF* filter = quadrant + std::min(ix, padded_[0] - ix) * qy;
-        ComplexF* values = row(work, ix);
-        for (std::size_t iy = 0; iy < qy; ++iy) values[iy] = multiply(values[iy], filter[iy]);
-        for (std::size_t iy = qy; iy < padded_[1]; ++iy) {
-            values[iy] = multiply(values[iy], filter[padded_[1] - iy]);
+    const std::size_t qx = padded_[0] / 2 + 1;
+    for (std::size_t iy = 0; iy < padded_[1]; ++iy) {
+        const ComplexF* filter = quadrant + std::min(iy, padded_[1] - iy) * qx;
+        ComplexF* values = spectrum_row(work, iy);
+        for (std::size_t ix = 0; ix < qx; ++ix) values[ix] = multiply(values[ix], filter[ix]);
+        for (std::size_t ix = qx; ix < padded_[0]; ++ix) {
+            values[ix] = multiply(values[ix], filter[padded_[0] - ix]);
         }
     }
 }

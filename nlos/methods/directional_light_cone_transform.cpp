@@ -106,17 +106,17 @@ class VectorFilter {
         const auto size = static_cast<double>(cone_.px * cone_.py * cone_.length);
         const auto scale = static_cast<float>(1.0 / size);
         const auto floor = static_cast<float>(kernel_.squared_norm() / snr_);
-        for (std::size_t ix = 0; ix < cone_.px; ++ix) {
-            const ComplexF* g = data_plane_.row(work.data, ix);
-            ComplexF* x = kernel_plane_.row(work.x, ix);
-            ComplexF* y = kernel_plane_.row(work.y, ix);
-            ComplexF* z = kernel_plane_.row(work.z, ix);
-            for (std::size_t iy = 0; iy < cone_.py; ++iy) {
-                const float power = std::norm(x[iy]) + std::norm(y[iy]) + std::norm(z[iy]);
-                const ComplexF factor = scale / (power + floor) * g[iy];
-                x[iy] = multiply(std::conj(x[iy]), factor);
-                y[iy] = multiply(std::conj(y[iy]), factor);
-                z[iy] = multiply(std::conj(z[iy]), factor);
+        for (std::size_t iy = 0; iy < cone_.py; ++iy) {
+            const ComplexF* g = data_plane_.spectrum_row(work.data, iy);
+            ComplexF* x = kernel_plane_.spectrum_row(work.x, iy);
+            ComplexF* y = kernel_plane_.spectrum_row(work.y, iy);
+            ComplexF* z = kernel_plane_.spectrum_row(work.z, iy);
+            for (std::size_t ix = 0; ix < cone_.px; ++ix) {
+                const float power = std::norm(x[ix]) + std::norm(y[ix]) + std::norm(z[ix]);
+                const ComplexF factor = scale / (power + floor) * g[ix];
+                x[ix] = multiply(std::conj(x[ix]), factor);
+                y[ix] = multiply(std::conj(y[ix]), factor);
+                z[ix] = multiply(std::conj(z[ix]), factor);
             }
         }
     }
@@ -228,7 +228,7 @@ double directional_light_cone_transform_bytes(const MethodInput& input,
         24.0 * static_cast<double>(largest_slab(cone.num_frequencies(), num_slabs)) * columns;
     const double volumes = 16.0 * columns * static_cast<double>(input.axes.z_m.size());
     return spectra + volumes +
-           (36.0 * padded + 64.0 * static_cast<double>(cone.length)) * core::thread_count();
+           (66.0 * padded + 64.0 * static_cast<double>(cone.length)) * core::thread_count();
 }
 
 }  // namespace nlos

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/fourier/fft.h"
 #include "nlos/fourier/padded_plane.h"
+#include "nlos/fourier/plane_rows.h"
 #include "nlos/fourier/unit_phasor.h"
 #include "nlos/methods/methods.h"
 #include "nlos/methods/slabs.h"
@@ -77,8 +78,7 @@ class RangeTransform {
     }
 
     void fill(std::size_t begin, std::size_t end, ComplexF* out) const {
-        const std::size_t row_floats = grids_.length + 2;
-        const std::size_t num_columns = grids_.num_columns();
+        const std::size_t row_floats = Fft::row_floats(grids_.length);
         FftBuffer rows(kColumnsPerBatch * row_floats);
         std::vector<double> first_range_m;
         std::vector<double> bin_weights;
@@ -98,16 +98,22 @@ class RangeTransform {
                            });
         }
         forward_.run(rows);
-        for (std::size_t f = 0; f < grids_.num_frequencies(); ++f) {
-            const double frequency = static_cast<double>(f) / grids_.period_m();
-            for (std::size_t i = 0; i < end - begin; ++i) {
-                const UnitPhasor phase =
-                    unit_phasor(-frequency * (first_range_m[i] - grids_.center_m));
-                out[f * num_columns + begin + i] =
-                    multiply(rows.complex()[i * (row_floats / 2) + f],
-                             {-derivative_[f] * phase.im, derivative_[f] * phase.re});
+        for (std::size_t i = 0; i < end - begin; ++i) {
+            ComplexF* const row = rows.complex() + i * (row_floats / 2);
+            const double turns = (first_range_m[i] - grids_.center_m) / grids_.period_m();
+            for (std::size_t f = 0; f < grids_.num_frequencies(); ++f) {
+                const UnitPhasor phase = unit_phasor(-static_cast<double>(f) * turns);
+                row[f] =
+                    multiply(row[f], {-derivative_[f] * phase.im, derivative_[f] * phase.re});
             }
         }
+        const PlaneRows copies{rows.complex(),
+                               row_floats / 2,
+                               end - begin,
+                               out + begin,
+                               grids_.num_columns(),
+                               grids_.num_frequencies()};
+        copies.copy_to_planes();
     }
 
  private:
@@ -138,22 +144,22 @@ class RangeTransform {
     std::vector<float> derivative_;  ///< of every frequency
 };
 
-/// How many |kx| a grid has.
+/// How many |ky| a grid has.
 std::size_t num_pairs(const FkGrids& grids) {
-    return grids.px / 2 + 1;
+    return grids.py / 2 + 1;
 }
 
-/// Rows of some of the |kx|.
+/// Rows of some of the |ky|.
 RowSlab rows_of(const FkGrids& grids, const Slab& pairs) {
     RowSlab slab;
-    slab.py = grids.py;
-    for (std::size_t ix = pairs.begin; ix < pairs.end; ++ix) {
-        slab.begin.push_back(slab.kx.size());
-        slab.kx.push_back(ix);
-        const std::size_t mirror = (grids.px - ix) % grids.px;
-        if (mirror != ix) slab.kx.push_back(mirror);
+    slab.px = grids.px;
+    for (std::size_t iy = pairs.begin; iy < pairs.end; ++iy) {
+        slab.begin.push_back(slab.ky.size());
+        slab.ky.push_back(iy);
+        const std::size_t mirror = (grids.py - iy) % grids.py;
+        if (mirror != iy) slab.ky.push_back(mirror);
     }
-    slab.begin.push_back(slab.kx.size());
+    slab.begin.push_back(slab.ky.size());
     return slab;
 }
 
@@ -175,8 +181,9 @@ class LateralTransform {
                  ComplexF* field) const {
         plane_.load(columns, work);
         plane_.forward(work);
-        for (std::size_t row = 0; row < slab.kx.size(); ++row) {
-            std::copy_n(plane_.row(work, slab.kx[row]), grids_.py, field + slab.offset(f, row));
+        for (std::size_t row = 0; row < slab.ky.size(); ++row) {
+            std::copy_n(
+                plane_.spectrum_row(work, slab.ky[row]), grids_.px, field + slab.offset(f, row));
         }
     }
 
@@ -186,9 +193,12 @@ class LateralTransform {
                         std::size_t z,
                         Workspace& work,
                         float* amplitudes) const {
-        if (slab.kx.size() < grids_.px) std::fill_n(work.data(), work.num_floats(), 0.0F);
-        for (std::size_t row = 0; row < slab.kx.size(); ++row) {
-            std::copy_n(field + slab.offset(z, row), grids_.py, plane_.row(work, slab.kx[row]));
+        if (slab.ky.size() < grids_.py) {
+            std::fill_n(work.spectrum.data(), work.spectrum.num_floats(), 0.0F);
+        }
+        for (std::size_t row = 0; row < slab.ky.size(); ++row) {
+            std::copy_n(
+                field + slab.offset(z, row), grids_.px, plane_.spectrum_row(work, slab.ky[row]));
         }
         plane_.inverse(work);
         for (std::size_t ix = 0; ix < grids_.nx; ++ix) {
@@ -240,7 +250,7 @@ void fill_voxels(const FkGrids& grids,
     }
 }
 
-/// Field [z][row][ky] of one slab of rows.
+/// Field [z][row][kx] of one slab of rows.
 ///
 /// spectrum   [f][x][y]
 FftBuffer migrate(const MethodInput& input,
@@ -328,14 +338,14 @@ double fk_migration_bytes(const MethodInput& input,
     const auto columns = static_cast<double>(grids.num_columns());
     const auto plane = static_cast<double>(grids.px * (grids.py + 8));
     const std::size_t pairs = largest_slab(num_pairs(grids), num_slabs);
-    const auto rows = static_cast<double>(std::min(grids.px, 2 * pairs));
-    const double field = 8.0 * rows * static_cast<double>(grids.py * grids.num_planes());
+    const auto rows = static_cast<double>(std::min(grids.py, 2 * pairs));
+    const double field = 8.0 * rows * static_cast<double>(grids.px * grids.num_planes());
     const double spectrum = 8.0 * columns * static_cast<double>(grids.num_frequencies());
     const double amplitudes =
         num_slabs > 1 ? 4.0 * columns * static_cast<double>(grids.num_depths()) : 0.0;
     const double volume = 4.0 * columns * static_cast<double>(grids.num_z);
-    const double lines = 2.0 * static_cast<double>(grids.py * 2 * grids.num_planes());
-    const double per_thread = 8.0 * (plane + lines + columns) + 4.0 * columns * kPlanesPerBlock;
+    const double lines = 2.0 * static_cast<double>(grids.px * 2 * grids.num_planes());
+    const double per_thread = 8.0 * (2.0 * plane + lines + columns) + 4.0 * columns * kPlanesPerBlock;
     return field + amplitudes + std::max(spectrum, volume) + per_thread * core::thread_count();
 }
 

@@ -2,6 +2,7 @@
 #include "nlos/methods/light_cone.h"
 
 #include "nlos/fourier/padded_plane.h"
+#include "nlos/fourier/plane_rows.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,6 +30,21 @@ ConservativeResampling path_length_to_squared_range(const core::TimeAxis& axis,
         previous = range;
     }
     return {edges, cone.v_edges, scale};
+}
+
+/// Rows along v of columns [begin, end), and where they stand in a slab's spectrum.
+PlaneRows spectrum_rows(FftBuffer& rows,
+                        const Cone& cone,
+                        std::size_t begin,
+                        std::size_t end,
+                        FftBuffer& spectrum,
+                        const Slab& slab) {
+    return {rows.complex() + slab.begin,
+            Fft::row_floats(cone.length) / 2,
+            end - begin,
+            spectrum.complex() + begin,
+            cone.num_columns(),
+            slab.size()};
 }
 
 }  // namespace
@@ -157,7 +173,7 @@ void fill_cone_spectrum(const MethodInput& input,
                         FftBuffer& spectrum,
                         const ProgressSpan& span) {
     const std::size_t num_columns = cone.num_columns();
-    const std::size_t row_floats = cone.length + 2;
+    const std::size_t row_floats = Fft::row_floats(cone.length);
     const Fft forward = Fft::real_to_complex(cone.length, kColumnsPerBlock);
     const ConeData data(input, cone, power);
     parallel_blocks_with_progress(
@@ -167,12 +183,7 @@ void fill_cone_spectrum(const MethodInput& input,
                 data.fill(column, rows.data() + (column - begin) * row_floats);
             }
             forward.run(rows);
-            for (std::size_t k = slab.begin; k < slab.end; ++k) {
-                for (std::size_t column = begin; column < end; ++column) {
-                    spectrum.complex()[(k - slab.begin) * num_columns + column] =
-                        rows.complex()[(column - begin) * (row_floats / 2) + k];
-                }
-            }
+            spectrum_rows(rows, cone, begin, end, spectrum, slab).copy_to_planes();
         });
 }
 
@@ -183,19 +194,14 @@ void add_spectrum_to_depth(const MethodInput& input,
                            std::vector<float>& values,
                            const ProgressSpan& span) {
     const std::size_t num_columns = cone.num_columns();
-    const std::size_t row_floats = cone.length + 2;
+    const std::size_t row_floats = Fft::row_floats(cone.length);
     const std::size_t nz = input.axes.z_m.size();
     const Fft inverse = Fft::complex_to_real(cone.length, kColumnsPerBlock);
     const ConservativeResampling to_depth = squared_range_to_depth(input, cone, BinSpread::Even);
     parallel_blocks_with_progress(
         num_columns, kColumnsPerBlock, span, [&](std::size_t begin, std::size_t end) {
             FftBuffer rows(kColumnsPerBlock * row_floats);
-            for (std::size_t k = slab.begin; k < slab.end; ++k) {
-                for (std::size_t column = begin; column < end; ++column) {
-                    rows.complex()[(column - begin) * (row_floats / 2) + k] =
-                        spectrum.complex()[(k - slab.begin) * num_columns + column];
-                }
-            }
+            spectrum_rows(rows, cone, begin, end, spectrum, slab).copy_to_rows();
             inverse.run(rows);
             std::vector<float> share(nz);
             for (std::size_t column = begin; column < end; ++column) {

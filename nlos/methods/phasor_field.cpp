@@ -205,7 +205,7 @@ double phasor_field_bytes(const MethodInput& input,
     const double spectra =
         8.0 * chunk * static_cast<double>(size) * static_cast<double>(padded + nx * ny);
     const double per_thread =
-        8.0 * static_cast<double>(padded) * 5.0 + 16.0 * chunk * static_cast<double>(nx * ny);
+        8.0 * static_cast<double>(padded) * 6.5 + 16.0 * chunk * static_cast<double>(nx * ny);
     return spectra + per_thread * core::thread_count() +
            8.0 * static_cast<double>(nx * ny * kPlanesPerGroup) +
            4.0 * static_cast<double>(input.axes.num_voxels());

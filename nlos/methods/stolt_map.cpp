@@ -11,8 +11,8 @@ namespace nlos {
 StoltMap::StoltMap(const WallGrid& wall, const FkGrids& grids)
     : wall_(wall),
       grids_(grids),
-      inverse_(Fft::complex_batch({grids.depth_length, 1, 1, grids.depth_length},
-                                  Fft::Direction::Inverse)),
+      inverse_(Fft::complex_batch(
+          grids.depth_length, 1, {1, grids.depth_length}, Fft::Direction::Inverse)),
       num_kz_((grids.depth_length - 1) / 2) {}
 
 void StoltMap::apply(const RowSlab& slab, std::size_t pair, ComplexF* field) const {
@@ -20,26 +20,26 @@ void StoltMap::apply(const RowSlab& slab, std::size_t pair, ComplexF* field) con
     const std::size_t num_rows = slab.begin[pair + 1] - first;
     const std::size_t num_f = grids_.num_frequencies();
     const std::size_t num_depths = grids_.num_depths();
-    std::vector<ComplexF> spectra(num_rows * grids_.py * (num_f + 1));
+    std::vector<ComplexF> spectra(num_rows * grids_.px * (num_f + 1));
     for (std::size_t r = 0; r < num_rows; ++r) {
-        gather(field, slab, first + r, spectra.data() + r * grids_.py * (num_f + 1));
+        gather(field, slab, first + r, spectra.data() + r * grids_.px * (num_f + 1));
     }
-    std::vector<ComplexF> depths(num_rows * grids_.py * num_depths);
+    std::vector<ComplexF> depths(num_rows * grids_.px * num_depths);
     FftBuffer column(2 * grids_.depth_length);
     Readings readings(num_kz_);
-    for (std::size_t iy = 0; iy <= grids_.py / 2; ++iy) {
-        fill_readings(slab.kx[first], iy, readings);
+    for (std::size_t ix = 0; ix <= grids_.px / 2; ++ix) {
+        fill_readings(ix, slab.ky[first], readings);
         for (std::size_t r = 0; r < num_rows; ++r) {
-            for (const std::size_t y : {iy, (grids_.py - iy) % grids_.py}) {
-                const std::size_t i = r * grids_.py + y;
+            for (const std::size_t x : {ix, (grids_.px - ix) % grids_.px}) {
+                const std::size_t i = r * grids_.px + x;
                 read_column(readings, spectra.data() + i * (num_f + 1), column);
                 std::copy_n(column.complex(), num_depths, depths.data() + i * num_depths);
-                if (2 * iy % grids_.py == 0) break;  // its own mirror image
+                if (2 * ix % grids_.px == 0) break;  // its own mirror image
             }
         }
     }
     for (std::size_t r = 0; r < num_rows; ++r) {
-        scatter(depths.data() + r * grids_.py * num_depths, slab, first + r, field);
+        scatter(depths.data() + r * grids_.px * num_depths, slab, first + r, field);
     }
 }
 
@@ -78,7 +78,7 @@ void StoltMap::read_column(const Readings& r, const ComplexF* spectrum, FftBuffe
     inverse_.run(column);
 }
 
-/// [f][ky] of one row -> [ky][f], with one element to spare behind each column.
+/// [f][kx] of one row -> [kx][f], with one element to spare behind each column.
 void StoltMap::gather(const ComplexF* field,
                       const RowSlab& slab,
                       std::size_t row,
@@ -86,11 +86,11 @@ void StoltMap::gather(const ComplexF* field,
     const std::size_t num_f = grids_.num_frequencies();
     for (std::size_t f = 0; f < num_f; ++f) {
         const ComplexF* in = field + slab.offset(f, row);
-        for (std::size_t y = 0; y < grids_.py; ++y) columns[y * (num_f + 1) + f] = in[y];
+        for (std::size_t x = 0; x < grids_.px; ++x) columns[x * (num_f + 1) + f] = in[x];
     }
 }
 
-/// [ky][z] -> [z][ky] of one row.
+/// [kx][z] -> [z][kx] of one row.
 void StoltMap::scatter(const ComplexF* columns,
                        const RowSlab& slab,
                        std::size_t row,
@@ -98,7 +98,7 @@ void StoltMap::scatter(const ComplexF* columns,
     const std::size_t num_depths = grids_.num_depths();
     for (std::size_t z = 0; z < num_depths; ++z) {
         ComplexF* out = field + slab.offset(z, row);
-        for (std::size_t y = 0; y < grids_.py; ++y) out[y] = columns[y * num_depths + z];
+        for (std::size_t x = 0; x < grids_.px; ++x) out[x] = columns[x * num_depths + z];
     }
 }
 

@@ -30,27 +30,27 @@ struct FkGrids {
     double period_m() const { return static_cast<double>(length) * bin_m; }
 };
 
-/// Rows of the lateral spectrum that are held at a time: those of some |kx|, each kx followed by
+/// Rows of the lateral spectrum that are held at a time: those of some |ky|, each ky followed by
 /// its mirror image.
 struct RowSlab {
-    std::vector<std::size_t> kx;     ///< index of each row held
-    std::vector<std::size_t> begin;  ///< first row of each |kx|, and one past the last row
-    std::size_t py = 0;
+    std::vector<std::size_t> ky;     ///< index of each row held
+    std::vector<std::size_t> begin;  ///< first row of each |ky|, and one past the last row
+    std::size_t px = 0;
 
     std::size_t num_pairs() const { return begin.size() - 1; }
     /// Where row `row` of a plane begins.
     std::size_t offset(std::size_t plane, std::size_t row) const {
-        return (plane * kx.size() + row) * py;
+        return (plane * ky.size() + row) * px;
     }
 };
 
-/// Reads the spectrum at the f that belongs to each kz and transforms along kz: one row of (kx, ky)
+/// Reads the spectrum at the f that belongs to each kz and transforms along kz: one row of (ky, kx)
 /// and its mirror image at a time, as they share all weights. Source: [Lindell2019].
 class StoltMap {
  public:
     StoltMap(const WallGrid& wall, const FkGrids& grids);
 
-    /// Maps the rows of the slab's pair `pair` of `field` [f][row][ky] into [z][row][ky].
+    /// Maps the rows of the slab's pair `pair` of `field` [f][row][kx] into [z][row][kx].
     void apply(const RowSlab& slab, std::size_t pair, ComplexF* field) const;
 
  private:

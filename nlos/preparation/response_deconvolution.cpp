@@ -25,7 +25,7 @@ ResponseDeconvolution::ResponseDeconvolution(const core::ResponseFilter& filter,
       forward_(Fft::real_to_complex(length_, 1)),
       inverse_(Fft::complex_to_real(length_, 1)) {
     const auto length = static_cast<std::ptrdiff_t>(length_);
-    FftBuffer response(length_ + 2);
+    FftBuffer response(Fft::row_floats(length_));
     for (std::size_t k = 0; k < filter.weights.size(); ++k) {
         const std::ptrdiff_t delay = filter.first_delay + static_cast<std::ptrdiff_t>(k);
         const std::ptrdiff_t bin = ((delay % length) + length) % length;
@@ -41,7 +41,7 @@ ResponseDeconvolution::ResponseDeconvolution(const core::ResponseFilter& filter,
 }
 
 void ResponseDeconvolution::apply(std::span<double> histogram) const {
-    FftBuffer buffer(length_ + 2);
+    FftBuffer buffer(Fft::row_floats(length_));
     std::copy(histogram.begin(), histogram.end(), buffer.data());
     forward_.run(buffer);
     for (std::size_t i = 0; i < factors_.size(); ++i) buffer.complex()[i] *= factors_[i];

@@ -48,9 +48,9 @@ ConeConvolution::ConeConvolution(
     const double scale = 1.0 / std::sqrt(kernel.squared_norm());
     kernel_.resize(cone.num_frequencies() * qx_ * qy_);
     std::vector<float> factor(qx_ * qy_);
-    for (std::size_t ix = 0; ix < qx_; ++ix) {
-        for (std::size_t iy = 0; iy < qy_; ++iy) {
-            factor[ix * qy_ + iy] =
+    for (std::size_t iy = 0; iy < qy_; ++iy) {
+        for (std::size_t ix = 0; ix < qx_; ++ix) {
+            factor[iy * qx_ + ix] =
                 static_cast<float>(scale * spot_factor(ix, cone.px, spot_m, grid.pitch_m[0]) *
                                    spot_factor(iy, cone.py, spot_m, grid.pitch_m[1]));
         }
@@ -68,8 +68,20 @@ ConeConvolution::ConeConvolution(
     first_.resize(cone.num_frequencies() * cone.num_columns());
 }
 
+PlaneRows ConeConvolution::rows_of(FftBuffer& rows,
+                                   std::size_t count,
+                                   Planes& planes,
+                                   std::size_t first_column) const {
+    return {rows.complex(),
+            Fft::row_floats(cone_.length) / 2,
+            count,
+            planes.data() + first_column,
+            cone_.num_columns(),
+            cone_.num_frequencies()};
+}
+
 void ConeConvolution::to_frequencies(const ConeField& field, Planes& planes) const {
-    const std::size_t row_floats = cone_.length + 2;
+    const std::size_t row_floats = Fft::row_floats(cone_.length);
     const std::size_t num_v = cone_.num_v();
     core::parallel_for(cone_.nx, [&](std::size_t ix) {
         FftBuffer rows(kRowsPerBatch * row_floats);
@@ -83,18 +95,13 @@ void ConeConvolution::to_frequencies(const ConeField& field, Planes& planes) con
                 }
             }
             forward_.run(rows);
-            for (std::size_t k = 0; k < cone_.num_frequencies(); ++k) {
-                ComplexF* to = planes.data() + k * cone_.num_columns() + ix * cone_.ny + first;
-                for (std::size_t lane = 0; lane < lanes; ++lane) {
-                    to[lane] = rows.complex()[lane * (row_floats / 2) + k];
-                }
-            }
+            rows_of(rows, lanes, planes, ix * cone_.ny + first).copy_to_planes();
         }
     });
 }
 
 void ConeConvolution::from_frequencies(Planes& planes, ConeField& field) const {
-    const std::size_t row_floats = cone_.length + 2;
+    const std::size_t row_floats = Fft::row_floats(cone_.length);
     const std::size_t num_v = cone_.num_v();
     const float scale = 1.0F / static_cast<float>(cone_.px * cone_.py * cone_.length);
     core::parallel_for(cone_.nx, [&](std::size_t ix) {
@@ -102,13 +109,7 @@ void ConeConvolution::from_frequencies(Planes& planes, ConeField& field) const {
         float* plane = field.data() + ix * num_v * cone_.ny;
         for (std::size_t first = 0; first < cone_.ny; first += kRowsPerBatch) {
             const std::size_t lanes = std::min(kRowsPerBatch, cone_.ny - first);
-            for (std::size_t k = 0; k < cone_.num_frequencies(); ++k) {
-                const ComplexF* from =
-                    planes.data() + k * cone_.num_columns() + ix * cone_.ny + first;
-                for (std::size_t lane = 0; lane < lanes; ++lane) {
-                    rows.complex()[lane * (row_floats / 2) + k] = from[lane];
-                }
-            }
+            rows_of(rows, lanes, planes, ix * cone_.ny + first).copy_to_rows();
             inverse_.run(rows);
             for (std::size_t v = 0; v < num_v; ++v) {
                 for (std::size_t lane = 0; lane < lanes; ++lane) {
@@ -155,22 +156,22 @@ void ConeConvolution::solve_plane(std::size_t k,
     const ComplexF* kernel = kernel_.data() + k * qx_ * qy_;
     ComplexF* solution = solution_.data() + k * cone_.px * cone_.py;
     const ComplexF* outside = is_confined_ ? outside_.data() + k * cone_.px * cone_.py : nullptr;
-    for (std::size_t ix = 0; ix < cone_.px; ++ix) {
-        const ComplexF* quadrant = kernel + std::min(ix, cone_.px - ix) * qy_;
-        const float base = nu_ + mu_ * (gradient_power_[0][ix] + gradient_power_[2][k]);
-        ComplexF* d = plane_.row(difference, ix);
-        ComplexF* b = plane_.row(right, ix);
-        ComplexF* f = solution + ix * cone_.py;
-        for (std::size_t iy = 0; is_confined_ && iy < cone_.py; ++iy) {
-            b[iy] -= nu_ * outside[ix * cone_.py + iy];
+    for (std::size_t iy = 0; iy < cone_.py; ++iy) {
+        const ComplexF* quadrant = kernel + std::min(iy, cone_.py - iy) * qx_;
+        const float base = nu_ + mu_ * (gradient_power_[1][iy] + gradient_power_[2][k]);
+        ComplexF* d = plane_.spectrum_row(difference, iy);
+        ComplexF* b = plane_.spectrum_row(right, iy);
+        ComplexF* f = solution + iy * cone_.px;
+        for (std::size_t ix = 0; is_confined_ && ix < cone_.px; ++ix) {
+            b[ix] -= nu_ * outside[iy * cone_.px + ix];
         }
-        for (std::size_t iy = 0; iy < cone_.py; ++iy) {
-            const ComplexF h = quadrant[std::min(iy, cone_.py - iy)];
+        for (std::size_t ix = 0; ix < cone_.px; ++ix) {
+            const ComplexF h = quadrant[std::min(ix, cone_.px - ix)];
             const float power = h.real() * h.real() + h.imag() * h.imag();
-            const float weight = 1.0F / (power + base + mu_ * gradient_power_[1][iy]);
-            f[iy] = weight * (power * f[iy] + multiply(std::conj(h), d[iy]) + b[iy]);
-            d[iy] = multiply(h, f[iy]);
-            b[iy] = f[iy];
+            const float weight = 1.0F / (power + base + mu_ * gradient_power_[0][ix]);
+            f[ix] = weight * (power * f[ix] + multiply(std::conj(h), d[ix]) + b[ix]);
+            d[ix] = multiply(h, f[ix]);
+            b[ix] = f[ix];
         }
     }
 }
@@ -181,11 +182,11 @@ void ConeConvolution::sum_outside(std::size_t k,
     plane_.load(inside, work);
     plane_.forward(work);
     const float scale = 1.0F / static_cast<float>(cone_.px * cone_.py);
-    for (std::size_t ix = 0; ix < cone_.px; ++ix) {
-        const std::size_t first = (k * cone_.px + ix) * cone_.py;
-        const ComplexF* row = plane_.row(work, ix);
-        for (std::size_t iy = 0; iy < cone_.py; ++iy) {
-            outside_[first + iy] += solution_[first + iy] - scale * row[iy];
+    for (std::size_t iy = 0; iy < cone_.py; ++iy) {
+        const std::size_t first = (k * cone_.py + iy) * cone_.px;
+        const ComplexF* row = plane_.spectrum_row(work, iy);
+        for (std::size_t ix = 0; ix < cone_.px; ++ix) {
+            outside_[first + ix] += solution_[first + ix] - scale * row[ix];
         }
     }
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "nlos/fourier/padded_plane.h"
+#include "nlos/fourier/plane_rows.h"
 #include "nlos/methods/light_cone.h"
 
 #include <array>
@@ -52,6 +53,11 @@ class ConeConvolution {
  private:
     using Planes = std::vector<ComplexF>;  ///< [frequency along v][x][y]
 
+    /// Rows along v of some columns, and where they stand in planes.
+    PlaneRows rows_of(FftBuffer& rows,
+                      std::size_t count,
+                      Planes& planes,
+                      std::size_t first_column) const;
     void to_frequencies(const ConeField& field, Planes& planes) const;
     void from_frequencies(Planes& planes, ConeField& field) const;
     void convolve(const ConeField& field, ConeField& result, bool is_adjoint);
@@ -65,10 +71,10 @@ class ConeConvolution {
     PaddedPlane plane_;
     Fft forward_, inverse_;
     std::size_t qx_, qy_;
-    std::vector<ComplexF> kernel_;  ///< quadrants, [frequency along v][x][y]
+    std::vector<ComplexF> kernel_;  ///< quadrants, [frequency along v][ky][kx]
     std::array<std::vector<float>, 3> gradient_power_;
     Planes first_, second_;
-    Planes solution_;  ///< the last one's spectrum, [frequency along v][padded x][padded y]
+    Planes solution_;  ///< the last one's spectrum, [frequency along v][ky][kx], padded
     Planes outside_;   ///< likewise, of the sum of all solutions beside the footprint
 };
 

@@ -21,20 +21,21 @@ TEST(Fft, GoodSizesHaveSmallPrimeFactors) {
 TEST(Fft, RealTransformAndItsInverseMultiplyByTheLength) {
     constexpr std::size_t kLength = 30;
     constexpr std::size_t kCount = 3;
-    FftBuffer buffer((kLength + 2) * kCount);
+    const std::size_t row_floats = Fft::row_floats(kLength);
+    FftBuffer buffer(row_floats * kCount);
     const auto value = [](std::size_t row, std::size_t i) {
         return static_cast<float>(std::sin(1.0 + static_cast<double>(i * i + 7 * row)));
     };
     for (std::size_t row = 0; row < kCount; ++row) {
         for (std::size_t i = 0; i < kLength; ++i) {
-            buffer.data()[row * (kLength + 2) + i] = value(row, i);
+            buffer.data()[row * row_floats + i] = value(row, i);
         }
     }
     Fft::real_to_complex(kLength, kCount).run(buffer);
     Fft::complex_to_real(kLength, kCount).run(buffer);
     for (std::size_t row = 0; row < kCount; ++row) {
         for (std::size_t i = 0; i < kLength; ++i) {
-            EXPECT_NEAR(buffer.data()[row * (kLength + 2) + i], kLength * value(row, i), 1e-4);
+            EXPECT_NEAR(buffer.data()[row * row_floats + i], kLength * value(row, i), 1e-4);
         }
     }
 }
@@ -65,7 +66,7 @@ TEST(EvenTransform, EqualsTheTransformOfTheWholePeriod) {
                         expected += at * std::polar(1.0, -2.0 * core::kPi * turns);
                     }
                 }
-                const std::complex<double> found(values[kx * ny + ky]);
+                const std::complex<double> found(values[ky * nx + kx]);
                 EXPECT_LT(std::abs(found - expected), 2e-6 * static_cast<double>(nx * ny) + 1e-4);
             }
         }
