@@ -61,6 +61,10 @@ LightSubpaths::LightSubpaths(const Scene& scene,
             walks[i] = trace_walk(sequence_point(i, shift), max_vertices, of_walk);
         }
     });
+    std::size_t num_vertices = 0;
+    for (const Walked& walked : walks) num_vertices += walked.steps.size();
+    vertices_.reserve(num_vertices);
+    for (std::vector<double>& column : columns_) column.reserve(num_vertices);
     for (const Walked& walked : walks) store(walked);
 }
 
@@ -69,6 +73,7 @@ LightSubpaths::Walked LightSubpaths::trace_walk(const Vec2& u,
                                                 core::Rng& rng) const {
     Walked walked;
     if (max_vertices < 1) return walked;
+    walked.steps.reserve(static_cast<std::size_t>(max_vertices));
     const Vec3 direction = sample_direction_from_light(*scene_, light_, u);
     // An isotropic light lies on no surface that its rays could start off.
     const Vec3& normal = light_.isotropic ? direction : light_.normal;

@@ -5,6 +5,8 @@
 #include "renderer/path/subpath_connections.h"
 
 #include <algorithm>
+#include <array>
+#include <vector>
 
 namespace renderer {
 namespace {
@@ -12,10 +14,15 @@ namespace {
 // Vertices that the hidden area draws for pixels are those that light subpaths draw better.
 constexpr double kAreaShareOfPixels = 0.0;
 
-// Enough that the pixels of an image use different ones, and few enough to cost little beside them.
+// Enough that what pixels share does not show in their noise, and few enough to cost little beside
+// them and to stay in the cache.
 int num_subpaths(std::size_t num_pixels, int num_samples) {
+    constexpr double kMin = 4096.0;
     constexpr double kMax = 16384.0;
-    return static_cast<int>(std::min(kMax, static_cast<double>(num_pixels) * num_samples));
+    constexpr double kSamplesPerSubpath = 128.0;
+    const double samples = static_cast<double>(num_pixels) * num_samples;
+    return static_cast<int>(
+        std::min(samples, std::clamp(samples / kSamplesPerSubpath, kMin, kMax)));
 }
 
 // Connections seldom hit narrow lobes and leave them to few walks: images would become noisier than
@@ -67,13 +74,23 @@ class PathTracer::Walk : public PairWalk {
                             int count,
                             const Use& use) {
         const core::Vec2 shift(rng_.uniform(), rng_.uniform());
-        for (int i = 0; i < count; ++i) {
-            auto vertex = sensor_pairs.first_vertex(pixel, core::lattice_point(i, count, shift));
-            ++num_rays_;
-            if (!vertex || vertex->order > tracer_.max_order_) continue;
-            vertex->throughput *= 1.0 / count;
-            connect_to_light(*vertex, tracer_.surface_walk_.connection_value(*vertex, ends_));
-            use(*vertex);
+        if (sensor_pairs.first_order() > tracer_.max_order_) return;
+        std::array<core::Vec2, SensorPairs::kAtOnce> places;
+        for (int begin = 0; begin < count; begin += SensorPairs::kAtOnce) {
+            const int size = std::min(SensorPairs::kAtOnce, count - begin);
+            for (int i = 0; i < size; ++i) {
+                places[static_cast<std::size_t>(i)] =
+                    core::lattice_point(begin + i, count, shift);
+            }
+            first_vertices_.clear();
+            sensor_pairs.find_first_vertices(
+                pixel, {places.data(), static_cast<std::size_t>(size)}, first_vertices_);
+            num_rays_ += static_cast<std::uint64_t>(size);
+            for (PathVertex& vertex : first_vertices_) {
+                vertex.throughput *= 1.0 / count;
+                connect_to_light(vertex, tracer_.surface_walk_.connection_value(vertex, ends_));
+                use(vertex);
+            }
         }
     }
 
@@ -86,20 +103,19 @@ class PathTracer::Walk : public PairWalk {
                                        subpaths,
                                        {tracer_.max_order_, tracer_.by_order_},
                                        rng_,
-                                       histogram_);
+                                       histogram_,
+                                       waiting_);
         // Systematic sampling: each vertex gets a walk with the probability of its split.
         double turn = rng_.uniform();
-        for_first_vertices(sensor_pairs, pixel, count, [&](PathVertex vertex) {
+        for_first_vertices(sensor_pairs, pixel, count, [&](const PathVertex& vertex) {
             const IndirectSplit split = IndirectSplit::at(vertex.bsdf);
             connections.connect(vertex, split);
             turn += split.walks;
             if (turn < 1.0) return;
             turn -= 1.0;
-            vertex.throughput /= split.walks;
             extend_beside_connections(vertex, split);
         });
         connections.finish();
-        num_rays_ += connections.num_rays();
     }
 
     void extend(PathVertex vertex) override {
@@ -115,6 +131,7 @@ class PathTracer::Walk : public PairWalk {
     void extend_beside_connections(PathVertex vertex, const IndirectSplit& split) {
         const SurfaceWalk& walk = tracer_.pixel_walk_;
         SubpathDensity density(scene_, walk, ends_.light);
+        vertex.throughput /= split.walks;
         while (vertex.order < tracer_.max_order_) {
             if (!walk.survives(vertex, rng_)) return;
             const PathVertex from = vertex;
@@ -127,6 +144,7 @@ class PathTracer::Walk : public PairWalk {
     }
 
     const PathTracer& tracer_;
+    std::vector<PathVertex> first_vertices_;
 };
 
 PathTracer::PathTracer(const Scene& scene, const RenderSettings& settings, ThirdBounceScope scope)

@@ -98,16 +98,47 @@ PathEndpoints SensorPairs::ends(std::size_t pair) const {
 }
 
 std::optional<PathVertex> SensorPairs::first_vertex(std::size_t pixel, const core::Vec2& u) const {
+    const Vec3 direction = direction_through(pixel, u);
+    const auto hit = scene_->first_hit(scan_->camera->position_m, direction, direction);
+    if (!hit) return std::nullopt;
+    return seen_vertex(*hit, direction);
+}
+
+void SensorPairs::find_first_vertices(std::size_t pixel,
+                                      std::span<const core::Vec2> u,
+                                      std::vector<PathVertex>& vertices) const {
+    DirectionPacket packet;
+    packet.count = static_cast<int>(u.size());
+    for (std::size_t i = 0; i < u.size(); ++i) {
+        const Vec3 direction = direction_through(pixel, u[i]);
+        packet.x[i] = direction.x();
+        packet.y[i] = direction.y();
+        packet.z[i] = direction.z();
+    }
+    const Vec3& position = scan_->camera->position_m;
+    const Vec3 view = direction_through(pixel, {0.5, 0.5});
+    scene_->rays().first_hits(position, view, packet);
+    for (std::size_t i = 0; i < u.size(); ++i) {
+        if (packet.triangle[i] == DirectionPacket::kNone) continue;
+        const Vec3 direction(packet.x[i], packet.y[i], packet.z[i]);
+        vertices.push_back(seen_vertex(
+            {position + packet.distance_m[i] * direction, packet.triangle[i]}, direction));
+    }
+}
+
+Vec3 SensorPairs::direction_through(std::size_t pixel, const core::Vec2& u) const {
     const core::PinholeCamera& camera = *scan_->camera;
     const double x = static_cast<double>(pixel / camera.height()) + u.x();
     const double y = static_cast<double>(pixel % camera.height()) + u.y();
-    const Vec3 direction = (world_from_image_ * Vec3(x, y, 1.0)).normalized();
-    const auto hit = scene_->first_hit(camera.position_m, direction, direction);
-    if (!hit) return std::nullopt;
-    PathVertex vertex = vertex_at(*scene_, *hit, -direction);
+    return (world_from_image_ * Vec3(x, y, 1.0)).normalized();
+}
+
+PathVertex SensorPairs::seen_vertex(const SurfacePoint& point, const Vec3& direction) const {
+    PathVertex vertex = vertex_at(*scene_, point, -direction);
     vertex.throughput = 1.0;
-    vertex.extent.add_segment(
-        hit->position - camera.position_m, Vec3::Zero(), scene_->velocity_m_per_s(hit->facet));
+    vertex.extent.add_segment(point.position - scan_->camera->position_m,
+                              Vec3::Zero(),
+                              scene_->velocity_m_per_s(point.facet));
     vertex.order = first_order();
     return vertex;
 }

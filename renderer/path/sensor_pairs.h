@@ -7,6 +7,8 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
+#include <vector>
 
 namespace renderer {
 
@@ -39,7 +41,15 @@ class SensorPairs {
     ///           radiance that leaves it towards the camera; nothing when the ray leaves the scene
     std::optional<PathVertex> first_vertex(std::size_t pixel, const core::Vec2& u) const;
 
+    /// The same for at most kAtOnce points of a pixel: appends the vertices that there are.
+    void find_first_vertices(std::size_t pixel,
+                             std::span<const core::Vec2> u,
+                             std::vector<PathVertex>& vertices) const;
+    static constexpr int kAtOnce = DirectionPacket::kSize;
+
  private:
+    core::Vec3 direction_through(std::size_t pixel, const core::Vec2& u) const;
+    PathVertex seen_vertex(const SurfacePoint& point, const core::Vec3& direction) const;
     PathEndpoint spot_light(const core::Vec3& spot) const;
 
     const Scene* scene_;

@@ -3,6 +3,7 @@
 
 #include "renderer/film/pass_histogram.h"
 #include "renderer/path/light_subpaths.h"
+#include "renderer/path/waiting_connections.h"
 
 namespace renderer {
 
@@ -63,13 +64,13 @@ class SubpathConnections {
                        const LightSubpaths& subpaths,
                        const Orders& orders,
                        core::Rng& rng,
-                       PassHistogram& histogram);
+                       const PassHistogram& histogram,
+                       WaitingConnections& waiting);
 
     /// Adds the indirect light of a vertex by connections to the next light subpaths.
     void connect(const PathVertex& vertex, const IndirectSplit& split);
-    /// Traces the shadow rays of the candidates so far; to be called after the last connect().
+    /// Draws from the candidates so far; to be called after the last connect().
     void finish();
-    std::uint64_t num_rays() const { return num_rays_; }
 
  private:
     static constexpr std::size_t kMaxAtOnce = 64;
@@ -110,30 +111,21 @@ class SubpathConnections {
     void draw_shadow_rays();
     void sort_by_length();
     void append(std::size_t candidate, double value);
-    void trace_packet();
 
     const Scene& scene_;
     const SurfaceWalk& walk_;
     const LightSubpaths& subpaths_;
     Orders orders_;
     core::Rng& rng_;
-    PassHistogram& histogram_;
+    bool resolves_velocity_;
     PassHistogram::LengthRange counted_;
+    WaitingConnections& waiting_;
     int next_walk_;
-    std::uint64_t num_rays_ = 0;
 
     std::vector<PathVertex> vertices_;  ///< of the candidates
     std::size_t num_candidates_ = 0;
     Candidates candidates_;
     std::array<std::uint16_t, kMaxCandidates> order_;  ///< of candidates by length
-
-    // Connections that wait for their shadow rays.
-    int count_ = 0;
-    SegmentEnds from_;
-    SegmentEnds to_;
-    std::array<double, SegmentPacket::kSize> values_;
-    std::array<PathExtent, SegmentPacket::kSize> extents_;
-    std::array<int, SegmentPacket::kSize> channels_;
 };
 
 }  // namespace renderer

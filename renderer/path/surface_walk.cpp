@@ -63,6 +63,15 @@ bool SurfaceWalk::survives(PathVertex& vertex, core::Rng& rng) const {
     return true;
 }
 
+double SurfaceWalk::pdf_direction(const PathVertex& vertex,
+                                  const Vec3& direction,
+                                  double cosine) const {
+    if (std::holds_alternative<Lambertian>(vertex.bsdf)) return cosine / kPi;
+    const core::Mat3 facet_from_world =
+        scene_->facet(vertex.point.facet).world_from_facet().transpose();
+    return pdf_bsdf(vertex.bsdf, facet_from_world * vertex.to_previous, facet_from_world * direction);
+}
+
 std::optional<SurfaceWalk::Step> SurfaceWalk::step_to(const PathVertex& vertex,
                                                       const SurfacePoint& next) const {
     const Vec3 offset = next.position - vertex.point.position;
@@ -78,10 +87,7 @@ std::optional<SurfaceWalk::Step> SurfaceWalk::step_to(const PathVertex& vertex,
     step.transport = evaluate(vertex, step.direction) * cosine * per_area;
     if (!(step.transport > 0.0)) return std::nullopt;
 
-    const core::Mat3 facet_from_world =
-        scene_->facet(vertex.point.facet).world_from_facet().transpose();
-    const double pdf_direction = pdf_bsdf(
-        vertex.bsdf, facet_from_world * vertex.to_previous, facet_from_world * step.direction);
+    const double pdf_direction = this->pdf_direction(vertex, step.direction, cosine);
     const double area_share = this->area_share(vertex);
     const double area_pdf = scene_->is_hidden(next.facet) ? area_sampler_.pdf_area() : 0.0;
     step.pdf_area = area_share * area_pdf + (1.0 - area_share) * pdf_direction * per_area;

@@ -93,6 +93,14 @@ class SurfaceWalk {
                        double pdf_area) const;
 
  private:
+    /// Density [1/sr] with which the BSDF draws a direction on the side that the vertex is come to
+    /// from.
+    ///
+    /// cosine   of the direction with the normal, positive
+    double pdf_direction(const PathVertex& vertex,
+                         const core::Vec3& direction,
+                         double cosine) const;
+
     const Scene* scene_;
     AreaSampler area_sampler_;
     double laser_spot_m2_;

@@ -38,6 +38,7 @@ std::uint64_t Tracer::trace(const PathEndpoints& ends,
                             PassHistogram& histogram) const {
     const auto walk = start(ends, rng, histogram);
     walk->trace_samples(num_samples);
+    walk->finish();
     return walk->num_rays();
 }
 
@@ -51,6 +52,7 @@ std::uint64_t Tracer::trace(const SensorPairs& sensor_pairs,
     if (!sensor_pairs.is_image()) return trace(ends, num_samples, rng, histogram);
     const auto walk = start(ends, rng, histogram);
     walk->trace_pixel_samples(sensor_pairs, pair, num_samples, subpaths);
+    walk->finish();
     return walk->num_rays();
 }
 
@@ -69,6 +71,7 @@ PairWalk::PairWalk(const Tracer& tracer,
       rng_(rng),
       histogram_(histogram),
       first_(*tracer.scene_, tracer.facet_traits_),
+      waiting_(*tracer.scene_, histogram),
       tracer_(tracer) {}
 
 void PairWalk::trace_walks(int num_area, int num_directions, double weight) {
@@ -132,14 +135,20 @@ void PairWalk::connect_first_vertices() {
 
 void PairWalk::connect_to_light(const PathVertex& vertex, double value) {
     if (!(value > 0.0)) return;
-    ++num_rays_;
-    if (!tracer_.surface_walk_.light_is_hidden(vertex, ends_)) deposit(vertex, value);
+    waiting_.add({vertex.point.position, vertex.normal},
+                 {ends_.light.position, ends_.light.normal},
+                 channel_of(vertex),
+                 tracer_.surface_walk_.extent_to_light(vertex, ends_),
+                 value);
 }
 
 void PairWalk::deposit(const PathVertex& vertex, double value) {
-    histogram_.add(tracer_.by_order_ ? vertex.order - 1 : 0,
-                   tracer_.surface_walk_.extent_to_light(vertex, ends_),
-                   value);
+    histogram_.add(
+        channel_of(vertex), tracer_.surface_walk_.extent_to_light(vertex, ends_), value);
+}
+
+int PairWalk::channel_of(const PathVertex& vertex) const {
+    return tracer_.by_order_ ? vertex.order - 1 : 0;
 }
 
 void add_short_paths(const Scene& scene,

@@ -8,6 +8,7 @@
 #include "renderer/path/path_vertex.h"
 #include "renderer/path/sensor_pairs.h"
 #include "renderer/path/surface_walk.h"
+#include "renderer/path/waiting_connections.h"
 
 #include <memory>
 
@@ -81,7 +82,9 @@ class PairWalk {
                                      std::size_t pixel,
                                      int count,
                                      const LightSubpaths* subpaths) = 0;
-    std::uint64_t num_rays() const { return num_rays_; }
+    /// Traces what waits; to be called after all samples.
+    void finish() { waiting_.finish(); }
+    std::uint64_t num_rays() const { return num_rays_ + waiting_.num_rays(); }
 
  protected:
     /// Traces paths whose first vertices are drawn from the hidden area and by direction.
@@ -98,7 +101,7 @@ class PairWalk {
     /// Adds what the first vertices contribute where the light sees them, and removes them.
     void connect_first_vertices();
     void deposit(const PathVertex& vertex, double value);
-    /// Deposits `value` if it is positive and the light sees the vertex.
+    /// Deposits `value`, sooner or later, if it is positive and the light sees the vertex.
     void connect_to_light(const PathVertex& vertex, double value);
 
     const Scene& scene_;
@@ -106,12 +109,15 @@ class PairWalk {
     core::Rng& rng_;
     PassHistogram& histogram_;
     FirstVertexBatch first_;
+    WaitingConnections waiting_;
     std::uint64_t num_rays_ = 0;
 
  private:
     void finish_first_vertices(double weight);
     /// Draws the first vertices of longer paths, as FirstVertexBatch::draw_by_throughput().
     void draw_continued(double step_in_means);
+    /// Where paths count that go from a vertex straight to the light.
+    int channel_of(const PathVertex& vertex) const;
 
     const Tracer& tracer_;
     std::vector<PathVertex> continued_;  ///< first vertices of longer paths
