@@ -76,25 +76,27 @@ std::vector<ImagePanel> project(const Volume& volume) {
     float maximum = 0.0F;
     for (const float value : volume.values) maximum = std::max(maximum, value);
     const float scale = maximum > 0.0F ? 1.0F / maximum : 0.0F;
+    const auto raise = [](float& pixel, float value) { pixel = std::max(pixel, value); };
     for (std::size_t ix = 0; ix < x_m.size(); ++ix) {
+        std::vector<float> along_y(z_m.size(), 0.0F);
         for (std::size_t iy = 0; iy < y_m.size(); ++iy) {
+            const float* const column = volume.values.data() + volume.index(ix, iy, 0);
+            float* const along_x = views[1].values.data() + iy * z_m.size();
+            float along_z = 0.0F;
             for (std::size_t iz = 0; iz < z_m.size(); ++iz) {
-                const float value = scale * volume.values[volume.index(ix, iy, iz)];
-                const auto raise = [&](float& pixel) { pixel = std::max(pixel, value); };
-                raise(views[0].values[iy * x_m.size() + ix]);
-                raise(views[1].values[iy * z_m.size() + iz]);
-                raise(views[2].values[iz * x_m.size() + ix]);
+                const float value = scale * column[iz];
+                raise(along_z, value);
+                raise(along_x[iz], value);
+                raise(along_y[iz], value);
             }
+            views[0].values[iy * x_m.size() + ix] = along_z;
+        }
+        for (std::size_t iz = 0; iz < z_m.size(); ++iz) {
+            views[2].values[iz * x_m.size() + ix] = along_y[iz];
         }
     }
     views[0].x_direction = AxisDirection::Reversed;
     views[2].x_direction = AxisDirection::Reversed;
-    // One scale for all three, on which the wall has the usual size.
-    constexpr double kDeepest = 3.0;  // against the wall
-    const auto length = [](const Range& range) { return range[1] - range[0]; };
-    const double wall = std::max(length(views[0].x_range), length(views[0].y_range));
-    const double full_length = std::max(wall, length(views[1].x_range) / kDeepest);
-    for (ImagePanel& view : views) view.full_length = full_length;
     return views;
 }
 
@@ -106,27 +108,40 @@ ImagePanel depth_panel(const core::DepthMap& map,
     });
 }
 
+/// A metre is as long in all panels; the first, the front view, has the usual size unless the
+/// volume is deep.
+std::vector<Panel> on_one_scale(std::vector<ImagePanel> panels) {
+    constexpr double kLongest = 1.5;  // of an axis, in usual sizes
+    const auto longer_side = [](const ImagePanel& panel) {
+        return std::max(panel.x_range[1] - panel.x_range[0], panel.y_range[1] - panel.y_range[0]);
+    };
+    double longest = 0.0;
+    for (const ImagePanel& panel : panels) longest = std::max(longest, longer_side(panel));
+    const double full_length = std::max(longer_side(panels.front()), longest / kLongest);
+    for (ImagePanel& panel : panels) panel.full_length = full_length;
+    return {panels.begin(), panels.end()};
+}
+
 }  // namespace
 
 std::vector<Panel> volume_panels(const Reconstruction& reconstruction) {
-    std::vector<Panel> panels;
-    for (ImagePanel& view : project(reconstruction.volume)) panels.emplace_back(std::move(view));
+    std::vector<ImagePanel> panels = project(reconstruction.volume);
     const core::DepthMap& depth = reconstruction.depth;
-    if (depth.depth_m.empty()) return panels;
-    panels.emplace_back(depth_panel(depth, "Depth map", depth_range_m(depth.depth_m)));
+    if (depth.depth_m.empty()) return on_one_scale(std::move(panels));
+    panels.push_back(depth_panel(depth, "Depth map", depth_range_m(depth.depth_m)));
     const std::vector<double>& probability = reconstruction.surface_probability;
     if (probability.size() == depth.depth_m.size()) {
-        panels.emplace_back(map_panel(depth,
-                                      "Probability of a surface",
-                                      "probability",
-                                      ColourMap::Grey,
-                                      Range{0.0, 1.0},
-                                      [&](std::size_t i) { return probability[i]; }));
+        panels.push_back(map_panel(depth,
+                                   "Probability of a surface",
+                                   "probability",
+                                   ColourMap::Grey,
+                                   Range{0.0, 1.0},
+                                   [&](std::size_t i) { return probability[i]; }));
     }
     const std::vector<double>& sigma_m = reconstruction.depth_sigma_m;
     if (sigma_m.size() == depth.depth_m.size()) {
         const auto limit_m = sigma_limit_m(sigma_m);
-        panels.emplace_back(
+        panels.push_back(
             map_panel(depth,
                       "Standard deviation of depth",
                       "standard deviation σ [mm]",
@@ -134,7 +149,7 @@ std::vector<Panel> volume_panels(const Reconstruction& reconstruction) {
                       limit_m ? std::optional(Range{0.0, 1000.0 * *limit_m}) : std::nullopt,
                       [&](std::size_t i) { return 1000.0 * sigma_m[i]; }));
     }
-    return panels;
+    return on_one_scale(std::move(panels));
 }
 
 std::vector<Panel> comparison_panels(const Reconstruction& reconstruction,

@@ -35,19 +35,24 @@ double farthest_m(const ScatterCells& cells) {
 
 /// Ways between a point of the wall and all cells, in the unit of `positions`.
 struct Legs {
-    Eigen::ArrayXf length;
-    Eigen::ArrayXf cosine;  ///< with the wall's normal
+    std::vector<float> length;
+    std::vector<float> weight;  ///< cosine with the wall's normal over the squared length
 
     Legs(const Eigen::ArrayX3f& positions, const Vec3& point, const Vec3& normal)
-        : length(Eigen::ArrayXf::Zero(positions.rows())), cosine(length) {
-        const Eigen::Array3f from = point.array().cast<float>();
-        const Eigen::Array3f up = normal.array().cast<float>();
-        for (int i = 0; i < 3; ++i) {
-            length += (positions.col(i) - from[i]).square();
-            cosine += up[i] * (positions.col(i) - from[i]);
+        : length(static_cast<std::size_t>(positions.rows())), weight(length.size()) {
+        const Eigen::Vector3f from = point.cast<float>();
+        const Eigen::Vector3f up = normal.cast<float>();
+        const float* const x = positions.col(0).data();
+        const float* const y = positions.col(1).data();
+        const float* const z = positions.col(2).data();
+        for (std::size_t i = 0; i < length.size(); ++i) {
+            const float dx = x[i] - from.x();
+            const float dy = y[i] - from.y();
+            const float dz = z[i] - from.z();
+            const float squared = dx * dx + dy * dy + dz * dz;
+            length[i] = std::sqrt(squared);
+            weight[i] = std::abs(up.x() * dx + up.y() * dy + up.z() * dz) / (squared * length[i]);
         }
-        length = length.sqrt();
-        cosine /= length;
     }
 };
 
@@ -143,22 +148,22 @@ void ScatterTransport::fill(std::size_t pair,
     const auto before =
         static_cast<float>((geometry.legs_m[pair] - geometry.opl_start_m) / unit_m_);
     const auto per_bin = static_cast<float>(unit_m_ / geometry.bin_width_m);
-    const Eigen::ArrayXf bin = (out.length + back.length + before) * per_bin - 0.5F;
-    const Eigen::ArrayXf weight =
-        out.cosine.abs() * back.cosine.abs() / (out.length * back.length).square();
-    std::vector<Arrival>& arrivals = arrivals_[pair];
-    arrivals.reserve(num_cells_);
+    const auto last = static_cast<float>(num_bins_ - 1);
+    std::vector<Arrival> arrivals(num_cells_);
+    std::size_t count = 0;
     for (std::size_t cell = 0; cell < num_cells_; ++cell) {
-        if (cell % kBlock == 0) block_starts_[pair].push_back(arrivals.size());
-        const auto i = static_cast<Eigen::Index>(cell);
-        if (!(bin[i] >= 0.0F && bin[i] < static_cast<float>(num_bins_ - 1))) continue;
-        const auto whole = static_cast<std::int32_t>(bin[i]);
-        arrivals.push_back({static_cast<std::uint32_t>(cell),
-                            whole,
-                            bin[i] - static_cast<float>(whole),
-                            weight[i]});
+        if (cell % kBlock == 0) block_starts_[pair].push_back(count);
+        const float bin = (out.length[cell] + back.length[cell] + before) * per_bin - 0.5F;
+        const bool is_inside = bin >= 0.0F && bin < last;
+        const float whole = is_inside ? std::floor(bin) : 0.0F;
+        arrivals[count] = {static_cast<std::uint32_t>(cell),
+                           static_cast<std::int32_t>(whole),
+                           bin - whole,
+                           out.weight[cell] * back.weight[cell]};
+        count += is_inside ? 1 : 0;  // the next one takes its place unless it counts
     }
-    block_starts_[pair].push_back(arrivals.size());
+    block_starts_[pair].push_back(count);
+    arrivals_[pair].assign(arrivals.begin(), arrivals.begin() + static_cast<std::ptrdiff_t>(count));
 }
 
 std::vector<float> ScatterTransport::forward(const std::vector<double>& light,

@@ -8,8 +8,6 @@
 namespace nlos {
 namespace {
 
-constexpr double kPowerAround = 12.0;  // of odds
-
 /// A stretch of p-values of one density.
 struct Stretch {
     double width = 0.0;
@@ -51,9 +49,18 @@ struct SurfaceMean {
     double value() const { return weight_sum > 0.0 ? sum / weight_sum : 0.0; }
 };
 
-/// 1 / (1 + (share mean / peak)^power).
-double plateau_probability(double peak, double share_of_mean, double power) {
-    return peak > 0.0 ? 1.0 / (1.0 + std::pow(share_of_mean / peak, power)) : 0.0;
+/// 1 / (1 + (share mean / peak)^power), for peaks that are positive.
+///
+/// power_of   raises to the power
+template <class PowerOf>
+double plateau_probability(double peak, double share_of_mean, const PowerOf& power_of) {
+    return peak > 0.0 ? 1.0 / (1.0 + power_of(share_of_mean / peak)) : 0.0;
+}
+
+/// Odds among neighbours, to the power of 12.
+double power_around(double odds) {
+    const double cubed = odds * odds * odds;
+    return (cubed * cubed) * (cubed * cubed);
 }
 
 constexpr int kMaxIterations = 100;
@@ -73,7 +80,9 @@ std::vector<double> probabilities_among_all(const std::vector<double>& peaks,
         if (std::abs(mean.value() - last) <= kTolerance * last) break;
         last = mean.value();
         std::ranges::transform(peaks, probabilities.begin(), [&](double peak) {
-            return plateau_probability(peak, shares.dimmest * last, shares.power);
+            return plateau_probability(peak, shares.dimmest * last, [&](double odds) {
+                return std::pow(odds, shares.power);
+            });
         });
     }
     return probabilities;
@@ -133,7 +142,7 @@ std::vector<double> plateau_probabilities(const std::vector<double>& peaks,
         for (std::size_t column = 0; column < peaks.size(); ++column) {
             const double mean = mean_around(column, num_y, peaks, weights, probabilities);
             next[column] = among_all[column] *
-                           plateau_probability(peaks[column], shares.edge * mean, kPowerAround);
+                           plateau_probability(peaks[column], shares.edge * mean, power_around);
             change = std::max(change, std::abs(next[column] - probabilities[column]));
         }
         probabilities = std::move(next);

@@ -17,11 +17,12 @@ struct RenderingRow {
     int max_bounces = 0;
     std::string program{};
     std::string method{};
-    std::optional<int> samples{};           ///< paths per wall point
+    std::optional<int> samples{};           ///< paths per wall point or pixel
     std::optional<double> target_error{};   ///< relative L2 that was asked for instead
     std::optional<double> rel_l2{};         ///< error over all of H
     std::optional<double> energy_ratio{};   ///< all light over that of the reference
     std::optional<double> cpu_s{};          ///< of the rendering, without compilation
+    std::optional<double> mpaths_per_s{};   ///< millions of paths per second of it
     std::optional<double> compile_cpu_s{};  ///< of just-in-time compilation
     std::optional<double> process_cpu_s{};  ///< of the whole process
     std::optional<double> peak_mb{};        ///< memory of the whole process
@@ -37,6 +38,7 @@ NLOS_FIGURES(RenderingRow,
              rel_l2,
              energy_ratio,
              cpu_s,
+             mpaths_per_s,
              compile_cpu_s,
              process_cpu_s,
              peak_mb,
@@ -62,7 +64,8 @@ struct RenderingTable {
     std::vector<core::Json> agreement;  ///< of a peer's histograms with ours, see bin_agreement.h
 };
 
-/// Renders letter, animal and bars to orders 3 and 5 from a single laser by all renderers.
+/// Renders letter, animal and bars to orders 3 and 5 from a single laser by all renderers, and the
+/// room, lit by a point light, as an image.
 ///
 /// points    along either side of the wall, a multiple of 4
 /// quick     the letter to order 3 alone

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: MIT
+"""Renders an image of a scene lit by a point light by mitransient, once for every seed.
+
+Conventions, and how they are met. Unit: a light of intensity 1 / (4 pi) sheds 1 W, as ours.
+Orders: `max_depth` counts the leg from the light, too. Lengths: a path counts from the camera's near
+plane on, which is therefore moved to the camera. Sides: `twosided`, as ours.
+"""
+from importlib import metadata
+
+import drjit as dr
+import h5py
+import mitsuba as mi
+import numpy as np
+
+from adapter import Timer, serve
+
+mi.set_variant("llvm_ad_mono" if "llvm_ad_mono" in mi.variants() else "llvm_ad_rgb")
+import mitransient  # needs a variant
+
+VERSION = "mitransient " + metadata.version("mitransient")
+
+
+def scene_of(request):
+    camera = request["camera"]
+    film = {"type": "transient_hdr_film", "rfilter": {"type": "box"}, "temporal_bins": request["num_bins"],
+            "start_opl": request["opl_start_m"], "bin_width_opl": request["bin_width_m"],
+            **dict(zip(("width", "height"), camera["resolution"]))}
+    pose = mi.ScalarTransform4f().look_at(
+        origin=camera["position_m"], target=camera["look_at_m"], up=camera["up"])
+    scene = {
+        "type": "scene",
+        "integrator": {"type": "transient_path", "max_depth": request["max_bounces"] + 1, "rr_depth": 1000,
+                       "temporal_filter": "box"},
+        "sensor": {"type": "perspective", "fov": camera["fov_y_deg"], "fov_axis": "y", "near_clip": 1e-4,
+                   "to_world": pose, "film": film},
+        "light": {"type": "point", "position": request["light_m"], "intensity": 1 / (4 * np.pi)}}
+    for number, mesh in enumerate(request["meshes"]):
+        bsdf = {"type": "twosided", "side": {"type": "diffuse", "reflectance": mesh["albedo"]}}
+        scene[f"mesh{number}"] = {"type": "ply", "filename": mesh["file"], "face_normals": True, "bsdf": bsdf}
+    return mi.load_dict(scene)
+
+
+def work(request):
+    dr.set_thread_count(1)
+    scene = scene_of(request)
+    first, timer = Timer(), Timer()
+    with first:
+        np.array(mi.render(scene, spp=request["samples"], seed=10**6)[1])
+    for seed, output in zip(request["seeds"], request["outputs"]):
+        with timer:
+            image = np.array(mi.render(scene, spp=request["samples"], seed=seed)[1])[..., 0]
+        with h5py.File(output, "w") as file:
+            file["H"] = np.moveaxis(image, -1, 0).swapaxes(1, 2).astype(np.float32)
+    each = timer.seconds / len(request["seeds"])
+    return {"version": VERSION, "work_cpu_s": each, "compile_cpu_s": max(0.0, first.seconds - each)}
+
+
+serve(work)
