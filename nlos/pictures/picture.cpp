@@ -15,29 +15,35 @@ namespace {
 constexpr int kOuterMargin = 28;  // [px]
 constexpr Colour kPaper{255, 255, 255};
 
-/// A table of panels: every column as wide as its widest panel, every row as high as its highest.
-struct PanelTable {
-    std::vector<int> widths;
-    std::vector<int> heights;
+/// Where panels stand: each in the column that is the shortest so far, every column as wide as its
+/// widest panel. Panels of one height make rows.
+struct PanelLayout {
+    std::vector<std::size_t> column;  ///< of each panel
+    std::vector<int> top;             ///< of each panel
+    std::vector<int> widths;          ///< of the columns
+    std::vector<int> heights;         ///< of the columns
 
+    PanelLayout(const std::vector<Panel>& panels, std::size_t columns)
+        : widths(columns, 0), heights(columns, kOuterMargin) {
+        for (const Panel& panel : panels) {
+            const PixelSize size = panel_size(panel);
+            const auto shortest = std::ranges::min_element(heights);
+            column.push_back(static_cast<std::size_t>(shortest - heights.begin()));
+            top.push_back(*shortest);
+            *shortest += size.height;
+            widths[column.back()] = std::max(widths[column.back()], size.width);
+        }
+    }
+
+    int left(std::size_t of_column) const {
+        return std::accumulate(
+            widths.begin(), widths.begin() + static_cast<std::ptrdiff_t>(of_column), kOuterMargin);
+    }
     PixelSize size() const {
-        return {std::accumulate(widths.begin(), widths.end(), 2 * kOuterMargin),
-                std::accumulate(heights.begin(), heights.end(), 2 * kOuterMargin)};
+        return {left(widths.size()) + kOuterMargin,
+                *std::ranges::max_element(heights) + kOuterMargin};
     }
 };
-
-PanelTable table_of(const std::vector<Panel>& panels, std::size_t columns) {
-    PanelTable table{std::vector<int>(columns, 0),
-                     std::vector<int>((panels.size() + columns - 1) / columns, 0)};
-    for (std::size_t i = 0; i < panels.size(); ++i) {
-        const PixelSize size = panel_size(panels[i]);
-        int& width = table.widths[i % columns];
-        int& height = table.heights[i / columns];
-        width = std::max(width, size.width);
-        height = std::max(height, size.height);
-    }
-    return table;
-}
 
 }  // namespace
 
@@ -54,18 +60,11 @@ std::string encode_panels(const std::vector<Panel>& panels, int columns, Picture
     if (panels.empty()) throw core::Error("picture", "found no panel", "must have at least one");
     for (const Panel& panel : panels) check_panel(panel);
 
-    const std::size_t per_row =
-        std::min(static_cast<std::size_t>(std::max(1, columns)), panels.size());
-    const PanelTable table = table_of(panels, per_row);
-    Canvas canvas(table.size().width, table.size().height, kPaper, format);
-    int y = kOuterMargin;
-    for (std::size_t row = 0; row < table.heights.size(); ++row) {
-        int x = kOuterMargin;
-        for (std::size_t i = row * per_row; i < std::min((row + 1) * per_row, panels.size()); ++i) {
-            draw_panel(canvas, x, y, panels[i]);
-            x += table.widths[i % per_row];
-        }
-        y += table.heights[row];
+    const PanelLayout layout(
+        panels, std::min(static_cast<std::size_t>(std::max(1, columns)), panels.size()));
+    Canvas canvas(layout.size().width, layout.size().height, kPaper, format);
+    for (std::size_t i = 0; i < panels.size(); ++i) {
+        draw_panel(canvas, layout.left(layout.column[i]), layout.top[i], panels[i]);
     }
     return canvas.finish();
 }

@@ -9,7 +9,8 @@
 
 namespace nlos {
 
-/// Draws panels in reading order, `columns` to a row, on white.
+/// Draws panels in reading order in so many columns, on white: the next one stands where there is
+/// room farthest up.
 ///
 /// format    PNG at twice the usual density of pixels, or SVG or PDF, whose lines and letters stay
 ///           sharp at any size

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Renders an image of a scene lit by a point light by mitransient, once for every seed.
 
-Conventions, and how they are met. Unit: a light of intensity 1 / (4 pi) sheds 1 W, as ours.
-Orders: `max_depth` counts the leg from the light, too. Lengths: a path counts from the camera's near
-plane on, which is therefore moved to the camera. Sides: `twosided`, as ours.
+Conventions, and how they are met. Unit: a light of intensity 1 / (4 pi) sheds 1 W, as ours. Orders:
+`max_depth` counts the leg from the light, too. Lengths: a path counts from the camera's near plane
+on, which is therefore moved to the camera, and rays start off surfaces, so that the scene is given
+in millimetres (see mitransient_render.py). Sides: `twosided`, as ours.
 """
 from importlib import metadata
 
@@ -18,25 +19,27 @@ mi.set_variant("llvm_ad_mono" if "llvm_ad_mono" in mi.variants() else "llvm_ad_r
 import mitransient  # needs a variant
 
 VERSION = "mitransient " + metadata.version("mitransient")
+MM = 1000.0  # in a metre
 
 
 def scene_of(request):
     camera = request["camera"]
     film = {"type": "transient_hdr_film", "rfilter": {"type": "box"}, "temporal_bins": request["num_bins"],
-            "start_opl": request["opl_start_m"], "bin_width_opl": request["bin_width_m"],
+            "start_opl": MM * request["opl_start_m"], "bin_width_opl": MM * request["bin_width_m"],
             **dict(zip(("width", "height"), camera["resolution"]))}
     pose = mi.ScalarTransform4f().look_at(
-        origin=camera["position_m"], target=camera["look_at_m"], up=camera["up"])
+        origin=[MM * v for v in camera["position_m"]], target=[MM * v for v in camera["look_at_m"]], up=camera["up"])
     scene = {
         "type": "scene",
         "integrator": {"type": "transient_path", "max_depth": request["max_bounces"] + 1, "rr_depth": 1000,
                        "temporal_filter": "box"},
-        "sensor": {"type": "perspective", "fov": camera["fov_y_deg"], "fov_axis": "y", "near_clip": 1e-4,
-                   "to_world": pose, "film": film},
-        "light": {"type": "point", "position": request["light_m"], "intensity": 1 / (4 * np.pi)}}
+        "sensor": {"type": "perspective", "fov": camera["fov_y_deg"], "fov_axis": "y", "near_clip": 0.01,
+                   "far_clip": 1e6, "to_world": pose, "film": film},
+        "light": {"type": "point", "position": [MM * v for v in request["light_m"]], "intensity": MM**2 / (4 * np.pi)}}
     for number, mesh in enumerate(request["meshes"]):
         bsdf = {"type": "twosided", "side": {"type": "diffuse", "reflectance": mesh["albedo"]}}
-        scene[f"mesh{number}"] = {"type": "ply", "filename": mesh["file"], "face_normals": True, "bsdf": bsdf}
+        scene[f"mesh{number}"] = {"type": "ply", "filename": mesh["file"], "face_normals": True, "bsdf": bsdf,
+                                  "to_world": mi.ScalarTransform4f().scale(MM)}
     return mi.load_dict(scene)
 
 
