@@ -13,10 +13,11 @@ namespace nlos {
 namespace {
 
 constexpr int kOuterMargin = 28;  // [px]
+constexpr int kSlack = 44;        // [px]: panels that nearly stand in a row keep their order
 constexpr Colour kPaper{255, 255, 255};
 
-/// Where panels stand: each in the column that is the shortest so far, every column as wide as its
-/// widest panel. Panels of one height make rows.
+/// Where panels stand: each in the first column that is about the shortest so far, every column as
+/// wide as its widest panel. Panels of one height make rows.
 struct PanelLayout {
     std::vector<std::size_t> column;  ///< of each panel
     std::vector<int> top;             ///< of each panel
@@ -27,10 +28,11 @@ struct PanelLayout {
         : widths(columns, 0), heights(columns, kOuterMargin) {
         for (const Panel& panel : panels) {
             const PixelSize size = panel_size(panel);
-            const auto shortest = std::ranges::min_element(heights);
-            column.push_back(static_cast<std::size_t>(shortest - heights.begin()));
-            top.push_back(*shortest);
-            *shortest += size.height;
+            const int least = *std::ranges::min_element(heights) + kSlack;
+            const auto next = std::ranges::find_if(heights, [&](int y) { return y <= least; });
+            column.push_back(static_cast<std::size_t>(next - heights.begin()));
+            top.push_back(*next);
+            *next += size.height;
             widths[column.back()] = std::max(widths[column.back()], size.width);
         }
     }
