@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/fourier/even_transform.h"
+#include "nlos/fourier/padded_plane.h"
+#include "nlos/fourier/plane_rows.h"
 #include "renderer/core/types.h"
 
 #include <gtest/gtest.h>
@@ -37,6 +39,106 @@ TEST(Fft, RealTransformAndItsInverseMultiplyByTheLength) {
         for (std::size_t i = 0; i < kLength; ++i) {
             EXPECT_NEAR(buffer.data()[row * row_floats + i], kLength * value(row, i), 1e-4);
         }
+    }
+}
+
+using Complex = std::complex<double>;
+
+/// sum_xy f(x, y) exp(-2 pi i (kx x / px + ky y / py)) of values (nx, ny).
+Complex spectrum_at(const std::vector<ComplexF>& values,
+                    std::array<std::size_t, 2> size,
+                    std::array<std::size_t, 2> padded,
+                    std::size_t kx,
+                    std::size_t ky) {
+    Complex sum = 0.0;
+    for (std::size_t x = 0; x < size[0]; ++x) {
+        for (std::size_t y = 0; y < size[1]; ++y) {
+            const double turns = static_cast<double>(kx * x) / static_cast<double>(padded[0]) +
+                                 static_cast<double>(ky * y) / static_cast<double>(padded[1]);
+            sum += Complex(values[x * size[1] + y]) * std::polar(1.0, -2.0 * core::kPi * turns);
+        }
+    }
+    return sum;
+}
+
+struct SmallPlane {
+    std::array<std::size_t, 2> size{3, 5};
+    std::array<std::size_t, 2> padded{8, 12};
+    PaddedPlane plane{size, padded};
+    PaddedPlane::Workspace work = plane.make_workspace();
+    std::vector<ComplexF> values;
+
+    SmallPlane() {
+        for (std::size_t i = 0; i < size[0] * size[1]; ++i) {
+            values.emplace_back(static_cast<float>(i % 4), static_cast<float>(i % 7) - 3.0F);
+        }
+    }
+};
+
+TEST(PaddedPlane, SpectraStandWithKxAlongRowsAndComeBack) {
+    SmallPlane small;
+    for (int repeat = 0; repeat < 2; ++repeat) {  // the workspace keeps nothing of the first
+        small.plane.load(small.values.data(), small.work);
+        small.plane.forward(small.work);
+        for (std::size_t ky = 0; ky < small.padded[1]; ++ky) {
+            for (std::size_t kx = 0; kx < small.padded[0]; ++kx) {
+                const Complex found(small.plane.spectrum_row(small.work, ky)[kx]);
+                const Complex expected =
+                    spectrum_at(small.values, small.size, small.padded, kx, ky);
+                EXPECT_LT(std::abs(found - expected), 1e-4) << kx << ", " << ky;
+            }
+        }
+        small.plane.inverse(small.work);
+        std::vector<ComplexF> back(small.values.size());
+        small.plane.store(small.work, back.data());
+        const float scale = 1.0F / static_cast<float>(small.padded[0] * small.padded[1]);
+        for (std::size_t i = 0; i < back.size(); ++i) {
+            EXPECT_LT(std::abs(scale * back[i] - small.values[i]), 1e-6F) << i;
+        }
+    }
+}
+
+TEST(PaddedPlane, MultipliesByAnEvenFiltersQuadrant) {
+    SmallPlane small;
+    const std::size_t qx = small.padded[0] / 2 + 1;
+    const std::size_t qy = small.padded[1] / 2 + 1;
+    std::vector<ComplexF> quadrant;
+    for (std::size_t i = 0; i < qx * qy; ++i) {
+        quadrant.emplace_back(static_cast<float>(i), 1.0F - static_cast<float>(i % 3));
+    }
+    small.plane.load(small.values.data(), small.work);
+    small.plane.forward(small.work);
+    small.plane.multiply_by_quadrant(quadrant.data(), small.work);
+    for (std::size_t ky = 0; ky < small.padded[1]; ++ky) {
+        for (std::size_t kx = 0; kx < small.padded[0]; ++kx) {
+            const std::size_t i =
+                std::min(ky, small.padded[1] - ky) * qx + std::min(kx, small.padded[0] - kx);
+            const Complex expected =
+                Complex(quadrant[i]) * spectrum_at(small.values, small.size, small.padded, kx, ky);
+            const Complex found(small.plane.spectrum_row(small.work, ky)[kx]);
+            EXPECT_LT(std::abs(found - expected), 1e-5 * (1.0 + std::abs(expected))) << kx << ky;
+        }
+    }
+}
+
+TEST(PlaneRows, AreTheColumnsOfPlanes) {
+    constexpr std::size_t kRows = 11, kPlanes = 21, kColumns = 30, kFirst = 4, kStride = 25;
+    std::vector<ComplexF> planes;
+    for (std::size_t i = 0; i < kPlanes * kColumns; ++i) planes.emplace_back(static_cast<float>(i));
+    const std::vector<ComplexF> before = planes;
+    std::vector<ComplexF> rows(kRows * kStride);
+    const PlaneRows copies{rows.data(), kStride, kRows, planes.data() + kFirst, kColumns, kPlanes};
+    copies.copy_to_rows();
+    for (std::size_t row = 0; row < kRows; ++row) {
+        for (std::size_t k = 0; k < kPlanes; ++k) {
+            EXPECT_EQ(rows[row * kStride + k], before[k * kColumns + kFirst + row]);
+        }
+    }
+    for (ComplexF& value : rows) value += 1.0F;
+    copies.copy_to_planes();
+    for (std::size_t i = 0; i < planes.size(); ++i) {
+        const bool is_copied = i % kColumns >= kFirst && i % kColumns < kFirst + kRows;
+        EXPECT_EQ(planes[i], before[i] + (is_copied ? 1.0F : 0.0F)) << i;
     }
 }
 

@@ -103,6 +103,20 @@ TEST(Picture, PanelsFillRowsFirst) {
     EXPECT_LT(table.cols, row.cols);
 }
 
+TEST(Picture, PanelsFillTheRoomBesideTallOnes) {
+    ImagePanel tall = small_panel();
+    tall.x_range = {0.0, 1.0};
+    tall.y_range = {0.0, 3.0};
+    tall.full_length = 1.0;
+    ImagePanel flat = tall;
+    flat.y_range = {0.0, 1.0};
+    const auto rows = [](const std::vector<Panel>& panels, int columns) {
+        return decoded_png(encode_panels(panels, columns)).rows;
+    };
+    EXPECT_EQ(rows({tall, flat, flat}, 2), rows({tall}, 1)) << "two beside a tall one";
+    EXPECT_EQ(rows({flat, tall, flat, flat}, 2), rows({flat, flat, flat}, 1));
+}
+
 TEST(Picture, SuffixChoosesTheFormat) {
     const test_support::TemporaryFolder folder;
     const auto written = [&](const std::string& name) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Light subpaths of images: their densities by laws, and what pixels make of them against walks
-// alone and the ellipsoidal estimator.
+// alone and the ellipsoidal estimator; first vertices of pixels.
 #include "renderer/path/light_subpaths.h"
 
 #include "renderer/path/path_tracer.h"
@@ -81,6 +81,26 @@ std::vector<core::PinholeCamera> cameras_with_both_lights() {
     spot.light_m.reset();
     spot.light_spot_m = Vec3(-0.5, 0.1, 0.2);
     return {room_camera(), spot};
+}
+
+TEST(SensorPairs, ManyFirstVerticesAreThoseOfSinglePlaces) {
+    const RoomWalks room(room_camera());
+    const std::vector<core::Vec2> places{{0.1, 0.9}, {0.5, 0.5}, {0.7, 0.2}};
+    for (std::size_t pixel = 0; pixel < room.pairs.num_pairs(); ++pixel) {
+        std::vector<renderer::PathVertex> found;
+        room.pairs.find_first_vertices(pixel, places, found);
+        ASSERT_EQ(found.size(), places.size());
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            const auto expected = room.pairs.first_vertex(pixel, places[i]);
+            ASSERT_TRUE(expected);
+            EXPECT_EQ(found[i].point.facet, expected->point.facet);
+            EXPECT_LT((found[i].point.position - expected->point.position).norm(), 1e-12);
+            EXPECT_LT((found[i].to_previous - expected->to_previous).norm(), 1e-15);
+            EXPECT_DOUBLE_EQ(found[i].extent.opl_m, expected->extent.opl_m);
+            EXPECT_EQ(found[i].throughput, expected->throughput);
+            EXPECT_EQ(found[i].order, expected->order);
+        }
+    }
 }
 
 // In a closed convex room the integral of the density that a path from the camera has over all
