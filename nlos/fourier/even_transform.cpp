@@ -8,8 +8,7 @@ namespace nlos {
 EvenTransform::EvenTransform(std::size_t nx, std::size_t ny)
     : nx_(nx),
       ny_(ny),
-      rows_(Fft::complex_batch(
-          period_y(), nx, {1, stride(period_y())}, Fft::Direction::Forward)),
+      rows_(Fft::complex_batch(period_y(), nx, {1, stride(period_y())}, Fft::Direction::Forward)),
       columns_(Fft::complex_batch(period_x(),
                                   ny,
                                   {stride(period_y()), 1},
@@ -17,7 +16,8 @@ EvenTransform::EvenTransform(std::size_t nx, std::size_t ny)
                                   Fft::Direction::Forward)) {}
 
 EvenTransform::Workspace EvenTransform::make_workspace() const {
-    return {FftBuffer(2 * period_x() * stride(period_y())), FftBuffer(2 * ny_ * stride(period_x()))};
+    return {FftBuffer(2 * period_x() * stride(period_y())),
+            FftBuffer(2 * ny_ * stride(period_x()))};
 }
 
 void EvenTransform::run(ComplexF* values, Workspace& work) const {

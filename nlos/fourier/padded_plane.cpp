@@ -10,20 +10,18 @@ using Direction = Fft::Direction;
 PaddedPlane::PaddedPlane(std::array<std::size_t, 2> size, std::array<std::size_t, 2> padded)
     : size_(size),
       padded_(padded),
-      rows_forward_(Fft::complex_batch(
-          padded[1], size[0], {1, stride(padded[1])}, Direction::Forward)),
+      rows_forward_(
+          Fft::complex_batch(padded[1], size[0], {1, stride(padded[1])}, Direction::Forward)),
       columns_forward_(Fft::complex_batch(padded[0],
                                           padded[1],
                                           {stride(padded[1]), 1},
                                           {1, stride(padded[0])},
                                           Direction::Forward)),
-      columns_inverse_(Fft::complex_batch(
-          padded[0], padded[1], {1, stride(padded[0])}, Direction::Inverse)),
-      rows_inverse_(Fft::complex_batch(padded[1],
-                                       size[0],
-                                       {stride(padded[0]), 1},
-                                       {1, stride(padded[1])},
-                                       Direction::Inverse)) {}
+      columns_inverse_(
+          Fft::complex_batch(padded[0], padded[1], {1, stride(padded[0])}, Direction::Inverse)),
+      rows_inverse_(Fft::complex_batch(
+          padded[1], size[0], {stride(padded[0]), 1}, {1, stride(padded[1])}, Direction::Inverse)) {
+}
 
 PaddedPlane::Workspace PaddedPlane::make_workspace() const {
     return {FftBuffer(2 * padded_[0] * stride(padded_[1])),

@@ -103,8 +103,7 @@ class RangeTransform {
             const double turns = (first_range_m[i] - grids_.center_m) / grids_.period_m();
             for (std::size_t f = 0; f < grids_.num_frequencies(); ++f) {
                 const UnitPhasor phase = unit_phasor(-static_cast<double>(f) * turns);
-                row[f] =
-                    multiply(row[f], {-derivative_[f] * phase.im, derivative_[f] * phase.re});
+                row[f] = multiply(row[f], {-derivative_[f] * phase.im, derivative_[f] * phase.re});
             }
         }
         const PlaneRows copies{rows.complex(),
@@ -345,7 +344,8 @@ double fk_migration_bytes(const MethodInput& input,
         num_slabs > 1 ? 4.0 * columns * static_cast<double>(grids.num_depths()) : 0.0;
     const double volume = 4.0 * columns * static_cast<double>(grids.num_z);
     const double lines = 2.0 * static_cast<double>(grids.px * 2 * grids.num_planes());
-    const double per_thread = 8.0 * (2.0 * plane + lines + columns) + 4.0 * columns * kPlanesPerBlock;
+    const double per_thread =
+        8.0 * (2.0 * plane + lines + columns) + 4.0 * columns * kPlanesPerBlock;
     return field + amplitudes + std::max(spectrum, volume) + per_thread * core::thread_count();
 }
 

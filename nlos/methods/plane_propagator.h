@@ -28,7 +28,7 @@ class PlanePropagator {
     std::size_t num_columns() const { return grid_.size[0] * grid_.size[1]; }
 
     /// Transforms coefficients [frequency][pair of the capture] of one or more illumination points
-    /// laterally, into [illumination][frequency][kx][ky].
+    /// laterally, into [illumination][frequency][ky][kx].
     std::vector<ComplexF> spectra(const std::vector<ComplexF>& coefficients,
                                   std::size_t num_illumination) const;
 

@@ -79,8 +79,7 @@ class PathTracer::Walk : public PairWalk {
         for (int begin = 0; begin < count; begin += SensorPairs::kAtOnce) {
             const int size = std::min(SensorPairs::kAtOnce, count - begin);
             for (int i = 0; i < size; ++i) {
-                places[static_cast<std::size_t>(i)] =
-                    core::lattice_point(begin + i, count, shift);
+                places[static_cast<std::size_t>(i)] = core::lattice_point(begin + i, count, shift);
             }
             first_vertices_.clear();
             sensor_pairs.find_first_vertices(

@@ -249,9 +249,8 @@ void SubpathConnections::append(std::size_t candidate, double value) {
     const std::size_t index = candidates_.subpath_vertex[candidate];
     const auto at = [&](LightSubpaths::Column column) { return subpaths_.column(column)[index]; };
     const Vec3 position(at(LightSubpaths::kX), at(LightSubpaths::kY), at(LightSubpaths::kZ));
-    const Vec3 normal(at(LightSubpaths::kNormalX),
-                      at(LightSubpaths::kNormalY),
-                      at(LightSubpaths::kNormalZ));
+    const Vec3 normal(
+        at(LightSubpaths::kNormalX), at(LightSubpaths::kNormalY), at(LightSubpaths::kNormalZ));
     PathExtent extent{candidates_.opl_m[candidate], 0.0};
     if (resolves_velocity_) {
         PathExtent to_there = vertex.extent;
@@ -261,7 +260,8 @@ void SubpathConnections::append(std::size_t candidate, double value) {
         extent.velocity_m_per_s = to_there.velocity_m_per_s + at(LightSubpaths::kVelocity);
     }
     const int channel = orders_.are_separate ? vertex.order + subpaths_.depth(index) - 1 : 0;
-    waiting_.add({vertex.point.position, vertex.normal}, {position, normal}, channel, extent, value);
+    waiting_.add(
+        {vertex.point.position, vertex.normal}, {position, normal}, channel, extent, value);
 }
 
 }  // namespace renderer

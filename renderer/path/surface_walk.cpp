@@ -69,7 +69,8 @@ double SurfaceWalk::pdf_direction(const PathVertex& vertex,
     if (std::holds_alternative<Lambertian>(vertex.bsdf)) return cosine / kPi;
     const core::Mat3 facet_from_world =
         scene_->facet(vertex.point.facet).world_from_facet().transpose();
-    return pdf_bsdf(vertex.bsdf, facet_from_world * vertex.to_previous, facet_from_world * direction);
+    return pdf_bsdf(
+        vertex.bsdf, facet_from_world * vertex.to_previous, facet_from_world * direction);
 }
 
 std::optional<SurfaceWalk::Step> SurfaceWalk::step_to(const PathVertex& vertex,

@@ -143,8 +143,7 @@ void PairWalk::connect_to_light(const PathVertex& vertex, double value) {
 }
 
 void PairWalk::deposit(const PathVertex& vertex, double value) {
-    histogram_.add(
-        channel_of(vertex), tracer_.surface_walk_.extent_to_light(vertex, ends_), value);
+    histogram_.add(channel_of(vertex), tracer_.surface_walk_.extent_to_light(vertex, ends_), value);
 }
 
 int PairWalk::channel_of(const PathVertex& vertex) const {
