@@ -61,15 +61,16 @@ std::optional<std::string> early_light(const core::Capture& capture,
             capture.scan.device_legs_m(pair);
         const auto histogram = capture.transient.histogram(pair);
         const core::BinRange observed = capture.observed_range(pair);
+        const Eigen::Map<const Eigen::ArrayXf> seen(histogram.data() + observed.begin,
+                                                    observed.size());
+        total += seen.cast<double>().sum() - ambient[pair] * observed.size();
         for (int bin = observed.begin; bin < observed.end; ++bin) {
-            const double light =
-                static_cast<double>(histogram[static_cast<std::size_t>(bin)]) - ambient[pair];
-            total += light;
             const double before = shortest - axis.bin_begin_m(bin + 1.0);
-            if (before < axis.bin_width_m) continue;
-            early += light;
-            early_counts += static_cast<double>(histogram[static_cast<std::size_t>(bin)]);
-            if (light > 0.0) earliest_m = std::max(earliest_m, before);
+            if (before < axis.bin_width_m) break;
+            const auto value = static_cast<double>(histogram[static_cast<std::size_t>(bin)]);
+            early += value - ambient[pair];
+            early_counts += value;
+            if (value > ambient[pair]) earliest_m = std::max(earliest_m, before);
         }
     }
     if (!(total > 0.0) || early < kEarlyShare * total) return std::nullopt;

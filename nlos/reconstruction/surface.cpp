@@ -4,6 +4,7 @@
 #include "nlos/reconstruction/column_peak.h"
 #include "nlos/reconstruction/depth_sigma.h"
 #include "nlos/reconstruction/surface_probability.h"
+#include "renderer/core/parallel.h"
 
 #include <Eigen/Cholesky>
 
@@ -83,12 +84,12 @@ double significant(const VolumeNoise& noise) {
 std::vector<ColumnPeak> find_peaks(const Volume& volume, const std::optional<VolumeNoise>& noise) {
     const std::size_t nz = volume.axes.z_m.size();
     const double least = noise ? significant(*noise) : 0.0;
-    std::vector<ColumnPeak> peaks;
-    for (std::size_t i = 0; i * nz < volume.values.size(); ++i) {
+    std::vector<ColumnPeak> peaks(volume.values.size() / nz);
+    core::parallel_for(peaks.size(), [&](std::size_t i) {
         const std::span<const float> column(volume.values.data() + i * nz, nz);
-        peaks.push_back(find_peak(
-            column, noise ? surface_voxel(column, *noise, least) : brightest_voxel(column)));
-    }
+        peaks[i] = find_peak(
+            column, noise ? surface_voxel(column, *noise, least) : brightest_voxel(column));
+    });
     return peaks;
 }
 

@@ -41,8 +41,11 @@ struct SurfaceMean {
     double sum = 0.0;
     double weight_sum = 0.0;
 
+    static double weight_of(double peak, double weight, double probability) {
+        return weight * probability * probability * peak;
+    }
     void add(double peak, double weight, double probability) {
-        const double own = weight * probability * probability * peak;
+        const double own = weight_of(peak, weight, probability);
         sum += own * peak;
         weight_sum += own;
     }
@@ -88,24 +91,19 @@ std::vector<double> probabilities_among_all(const std::vector<double>& peaks,
     return probabilities;
 }
 
-/// Mean peak of the surfaces among a column and its neighbours.
-double mean_around(std::size_t column,
-                   std::size_t num_y,
-                   const std::vector<double>& peaks,
-                   const std::vector<double>& weights,
-                   const std::vector<double>& probabilities) {
-    const std::size_t ix = column / num_y;
-    const std::size_t iy = column % num_y;
-    const std::size_t num_x = peaks.size() / num_y;
-    SurfaceMean mean;
-    for (std::size_t jx = ix - std::min<std::size_t>(ix, 1); jx < std::min(num_x, ix + 2); ++jx) {
-        for (std::size_t jy = iy - std::min<std::size_t>(iy, 1); jy < std::min(num_y, iy + 2);
-             ++jy) {
-            const std::size_t j = jx * num_y + jy;
-            mean.add(peaks[j], weights[j], probabilities[j]);
-        }
+/// Sums over every column and its neighbours; columns stored [x][y].
+std::vector<double> sums_around(const std::vector<double>& values, std::size_t num_y) {
+    std::vector<double> along_y(values);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        if (i % num_y > 0) along_y[i] += values[i - 1];
+        if (i % num_y + 1 < num_y) along_y[i] += values[i + 1];
     }
-    return mean.value();
+    std::vector<double> sums(along_y);
+    for (std::size_t i = 0; i + num_y < values.size(); ++i) {
+        sums[i] += along_y[i + num_y];
+        sums[i + num_y] += along_y[i];
+    }
+    return sums;
 }
 
 }  // namespace
@@ -136,16 +134,23 @@ std::vector<double> plateau_probabilities(const std::vector<double>& peaks,
                                           const PlateauShares& shares) {
     const std::vector<double> among_all = probabilities_among_all(peaks, weights, shares);
     std::vector<double> probabilities = among_all;
+    std::vector<double> own(peaks.size());
+    std::vector<double> moment(peaks.size());
     for (int i = 0; i < kMaxIterations; ++i) {
-        std::vector<double> next(peaks.size());
-        double change = 0.0;
-        for (std::size_t column = 0; column < peaks.size(); ++column) {
-            const double mean = mean_around(column, num_y, peaks, weights, probabilities);
-            next[column] = among_all[column] *
-                           plateau_probability(peaks[column], shares.edge * mean, power_around);
-            change = std::max(change, std::abs(next[column] - probabilities[column]));
+        for (std::size_t k = 0; k < peaks.size(); ++k) {
+            own[k] = SurfaceMean::weight_of(peaks[k], weights[k], probabilities[k]);
+            moment[k] = own[k] * peaks[k];
         }
-        probabilities = std::move(next);
+        const std::vector<double> weight_sums = sums_around(own, num_y);
+        const std::vector<double> sums = sums_around(moment, num_y);
+        double change = 0.0;
+        for (std::size_t k = 0; k < peaks.size(); ++k) {
+            const double mean = SurfaceMean{sums[k], weight_sums[k]}.value();
+            const double next =
+                among_all[k] * plateau_probability(peaks[k], shares.edge * mean, power_around);
+            change = std::max(change, std::abs(next - probabilities[k]));
+            probabilities[k] = next;
+        }
         if (change <= kTolerance) break;
     }
     return probabilities;
