@@ -9,11 +9,10 @@ in millimetres (see mitransient_render.py). Sides: `twosided`, as ours.
 from importlib import metadata
 
 import drjit as dr
-import h5py
 import mitsuba as mi
 import numpy as np
 
-from adapter import Timer, serve
+from adapter import render_seeds, serve
 
 mi.set_variant("llvm_ad_mono" if "llvm_ad_mono" in mi.variants() else "llvm_ad_rgb")
 import mitransient  # needs a variant
@@ -46,16 +45,8 @@ def scene_of(request):
 def work(request):
     dr.set_thread_count(1)
     scene = scene_of(request)
-    first, timer = Timer(), Timer()
-    with first:
-        np.array(mi.render(scene, spp=request["samples"], seed=10**6)[1])
-    for seed, output in zip(request["seeds"], request["outputs"]):
-        with timer:
-            image = np.array(mi.render(scene, spp=request["samples"], seed=seed)[1])[..., 0]
-        with h5py.File(output, "w") as file:
-            file["H"] = np.moveaxis(image, -1, 0).swapaxes(1, 2).astype(np.float32)
-    each = timer.seconds / len(request["seeds"])
-    return {"version": VERSION, "work_cpu_s": each, "compile_cpu_s": max(0.0, first.seconds - each)}
+    said = render_seeds(request, lambda seed: np.array(mi.render(scene, spp=request["samples"], seed=seed)[1])[..., 0])
+    return {"version": VERSION, **said}
 
 
 serve(work)

@@ -14,11 +14,10 @@ scenes whose surfaces hide one another come out too bright, which is left as it 
 from importlib import metadata
 
 import drjit as dr
-import h5py
 import mitsuba as mi
 import numpy as np
 
-from adapter import Timer, serve
+from adapter import render_seeds, serve
 
 mi.set_variant("llvm_ad_mono" if "llvm_ad_mono" in mi.variants() else "llvm_ad_rgb")
 import mitransient  # needs a variant
@@ -62,16 +61,9 @@ def work(request):
     scene = scene_of(request, device)
     to_laser = device - request["illumination_m"]
     watts = np.pi * (to_laser @ normal) / np.linalg.norm(to_laser)**3 / MM**2  # on the spot of 1 mm^2
-    first, timer = Timer(), Timer()
-    with first:
-        np.array(mi.render(scene, spp=request["samples"], seed=10**6)[1])
-    for seed, output in zip(request["seeds"], request["outputs"]):
-        with timer:
-            image = np.array(mi.render(scene, spp=request["samples"], seed=seed)[1])[..., 0]
-        with h5py.File(output, "w") as file:
-            file["H"] = (MM**2 / watts * np.moveaxis(image, -1, 0).swapaxes(1, 2)).astype(np.float32)
-    each = timer.seconds / len(request["seeds"])
-    return {"version": VERSION, "work_cpu_s": each, "compile_cpu_s": max(0.0, first.seconds - each)}
+    said = render_seeds(request, lambda seed: np.array(mi.render(scene, spp=request["samples"], seed=seed)[1])[..., 0],
+                        MM**2 / watts)
+    return {"version": VERSION, **said}
 
 
 serve(work)
