@@ -4,7 +4,6 @@
 #include "renderer/core/error.h"
 
 #include <fftw3.h>
-#include <sys/mman.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -27,15 +26,6 @@ void* checked(fftwf_plan plan) {
 
 fftwf_iodim dimension(std::size_t length, std::size_t in_stride, std::size_t out_stride) {
     return {static_cast<int>(length), static_cast<int>(in_stride), static_cast<int>(out_stride)};
-}
-
-/// Asks for huge pages where there is room for several: walks across a large buffer would otherwise
-/// wait for the table of pages.
-void use_huge_pages(void* memory, std::size_t num_bytes) {
-    constexpr std::size_t kPage = std::size_t{1} << 21;
-    std::size_t space = num_bytes;
-    if (num_bytes < 4 * kPage || std::align(kPage, kPage, memory, space) == nullptr) return;
-    ::madvise(memory, space / kPage * kPage, MADV_HUGEPAGE);
 }
 
 FftBuffer room_for(std::size_t length, std::size_t count, const Fft::Layout& layout) {
@@ -77,7 +67,6 @@ FftBuffer::FftBuffer(std::size_t num_floats) : num_floats_(num_floats) {
     if (!memory_) throw std::bad_alloc();
     void* first = memory_.get();
     data_ = static_cast<float*>(std::align(kAlignment, num_bytes, first, space));
-    use_huge_pages(data_, num_bytes);
 }
 
 void FftBuffer::Free::operator()(void* memory) const {
