@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace nlos {
@@ -52,12 +53,9 @@ struct SurfaceMean {
     double value() const { return weight_sum > 0.0 ? sum / weight_sum : 0.0; }
 };
 
-/// 1 / (1 + (share mean / peak)^power), for peaks that are positive.
-///
-/// power_of   raises to the power
-template <class PowerOf>
-double plateau_probability(double peak, double share_of_mean, const PowerOf& power_of) {
-    return peak > 0.0 ? 1.0 / (1.0 + power_of(share_of_mean / peak)) : 0.0;
+/// How far a peak stays behind a share of the mean; without end where it is none.
+double odds_against(double peak, double share_of_mean) {
+    return peak > 0.0 ? share_of_mean / peak : std::numeric_limits<double>::infinity();
 }
 
 /// Odds among neighbours, to the power of 12.
@@ -83,9 +81,7 @@ std::vector<double> probabilities_among_all(const std::vector<double>& peaks,
         if (std::abs(mean.value() - last) <= kTolerance * last) break;
         last = mean.value();
         std::ranges::transform(peaks, probabilities.begin(), [&](double peak) {
-            return plateau_probability(peak, shares.dimmest * last, [&](double odds) {
-                return std::pow(odds, shares.power);
-            });
+            return 1.0 / (1.0 + std::pow(odds_against(peak, shares.dimmest * last), shares.power));
         });
     }
     return probabilities;
@@ -147,7 +143,7 @@ std::vector<double> plateau_probabilities(const std::vector<double>& peaks,
         for (std::size_t k = 0; k < peaks.size(); ++k) {
             const double mean = SurfaceMean{sums[k], weight_sums[k]}.value();
             const double next =
-                among_all[k] * plateau_probability(peaks[k], shares.edge * mean, power_around);
+                among_all[k] / (1.0 + power_around(odds_against(peaks[k], shares.edge * mean)));
             change = std::max(change, std::abs(next - probabilities[k]));
             probabilities[k] = next;
         }
