@@ -2,6 +2,7 @@
 #include "nlos/fourier/fft.h"
 
 #include "renderer/core/error.h"
+#include "renderer/core/large_memory.h"
 
 #include <fftw3.h>
 
@@ -59,6 +60,12 @@ std::size_t good_fft_size(std::size_t n) {
     }
 }
 
+std::size_t row_stride(std::size_t num_floats) {
+    constexpr std::size_t kLine = 16;  // floats
+    const std::size_t lines = (num_floats + kLine - 1) / kLine;
+    return kLine * (lines | 1U);
+}
+
 FftBuffer::FftBuffer(std::size_t num_floats) : num_floats_(num_floats) {
     constexpr std::size_t kAlignment = 64;
     const std::size_t num_bytes = num_floats * sizeof(float);
@@ -67,6 +74,7 @@ FftBuffer::FftBuffer(std::size_t num_floats) : num_floats_(num_floats) {
     if (!memory_) throw std::bad_alloc();
     void* first = memory_.get();
     data_ = static_cast<float*>(std::align(kAlignment, num_bytes, first, space));
+    core::use_huge_pages(data_, num_bytes);
 }
 
 void FftBuffer::Free::operator()(void* memory) const {
@@ -93,12 +101,6 @@ Fft Fft::complex_to_real(std::size_t length, std::size_t count) {
     return Fft(
         Kind::ComplexToReal,
         checked(fftwf_plan_guru_dft_c2r(1, &row, 1, &rows, as_fftw(data), data, FFTW_ESTIMATE)));
-}
-
-std::size_t Fft::row_floats(std::size_t length) {
-    constexpr std::size_t kLine = 16;  // floats
-    const std::size_t lines = (length + 2 + kLine - 1) / kLine;
-    return kLine * (lines | 1U);
 }
 
 Fft Fft::complex_batch(std::size_t length,

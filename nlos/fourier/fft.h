@@ -12,8 +12,12 @@ using ComplexF = std::complex<float>;
 /// The smallest product of 2, 3, 5 and 7 that is at least `n`; transforms of such lengths are fast.
 std::size_t good_fft_size(std::size_t n);
 
+/// Floats from one row of `num_floats` to the next: neighbours lie in different cache sets, so that
+/// a walk down the rows does not throw out what it read.
+std::size_t row_stride(std::size_t num_floats);
+
 /// Memory aligned for transforms, zeroed at the start: the system does it page by page, in the
-/// thread that comes to a page first.
+/// thread that comes to a page first. Large buffers ask for huge pages.
 class FftBuffer {
  public:
     explicit FftBuffer(std::size_t num_floats);
@@ -43,9 +47,8 @@ class Fft {
     static Fft real_to_complex(std::size_t length, std::size_t count);
     static Fft complex_to_real(std::size_t length, std::size_t count);
 
-    /// Floats from one such row to the next. Neighbours lie in different cache sets, so that a walk
-    /// down the rows does not throw out what it read.
-    static std::size_t row_floats(std::size_t length);
+    /// Floats from one such row to the next.
+    static std::size_t row_floats(std::size_t length) { return row_stride(length + 2); }
 
     /// Element i of transform j stands at i * stride + j * distance.
     struct Layout {

@@ -63,7 +63,7 @@ class PaddedPlane {
 
  private:
     /// Distance of rows: not a power of two, which would crowd a column into few cache sets.
-    static std::size_t stride(std::size_t length) { return length + 8; }
+    static std::size_t stride(std::size_t length) { return row_stride(2 * length) / 2; }
 
     std::array<std::size_t, 2> size_;
     std::array<std::size_t, 2> padded_;

@@ -67,7 +67,7 @@ class VectorFilter {
         kernel_plane_.forward(work.x);
         kernel_plane_.forward(work.y);
         kernel_plane_.forward(work.z);
-        const std::size_t offset = n * cone_.num_columns();
+        const std::size_t offset = n * cone_.plane_stride();
         data_plane_.load(components.z.complex() + offset, work.data);
         data_plane_.forward(work.data);
         multiply_by_filters(work);
@@ -225,7 +225,8 @@ double directional_light_cone_transform_bytes(const MethodInput& input,
     const auto columns = static_cast<double>(cone.num_columns());
     const auto padded = static_cast<double>(cone.px * (cone.py + 8));
     const double spectra =
-        24.0 * static_cast<double>(largest_slab(cone.num_frequencies(), num_slabs)) * columns;
+        24.0 *
+        static_cast<double>(largest_slab(cone.num_frequencies(), num_slabs) * cone.plane_stride());
     const double volumes = 16.0 * columns * static_cast<double>(input.axes.z_m.size());
     return spectra + volumes +
            (66.0 * padded + 64.0 * static_cast<double>(cone.length)) * core::thread_count();

@@ -110,7 +110,7 @@ class RangeTransform {
                                row_floats / 2,
                                end - begin,
                                out + begin,
-                               grids_.num_columns(),
+                               grids_.plane_stride(),
                                grids_.num_frequencies()};
         copies.copy_to_planes();
     }
@@ -267,7 +267,7 @@ FftBuffer migrate(const MethodInput& input,
             auto work = lateral.make_workspace();
             for (std::size_t f = begin; f < end; ++f) {
                 lateral.forward(
-                    spectrum.complex() + f * grids.num_columns(), slab, f, work, field.complex());
+                    spectrum.complex() + f * grids.plane_stride(), slab, f, work, field.complex());
             }
         });
     const StoltMap map(*input.wall.grid, grids);
@@ -287,7 +287,7 @@ Volume fk_migration(const MethodInput& input,
     const FkGrids grids = make_grids(input);
     const std::size_t num_columns = grids.num_columns();
 
-    FftBuffer spectrum(2 * grids.num_frequencies() * num_columns);
+    FftBuffer spectrum(2 * grids.num_frequencies() * grids.plane_stride());
     const RangeTransform transform(input, grids, settings.falloff);
     parallel_blocks_with_progress(num_columns,
                                   kColumnsPerBatch,
@@ -338,8 +338,10 @@ double fk_migration_bytes(const MethodInput& input,
     const auto plane = static_cast<double>(grids.px * (grids.py + 8));
     const std::size_t pairs = largest_slab(num_pairs(grids), num_slabs);
     const auto rows = static_cast<double>(std::min(grids.py, 2 * pairs));
-    const double field = 8.0 * rows * static_cast<double>(grids.px * grids.num_planes());
-    const double spectrum = 8.0 * columns * static_cast<double>(grids.num_frequencies());
+    const double field = 8.0 * (rows * static_cast<double>(grids.px) + 8.0) *
+                         static_cast<double>(grids.num_planes());
+    const double spectrum =
+        8.0 * static_cast<double>(grids.plane_stride() * grids.num_frequencies());
     const double amplitudes =
         num_slabs > 1 ? 4.0 * columns * static_cast<double>(grids.num_depths()) : 0.0;
     const double volume = 4.0 * columns * static_cast<double>(grids.num_z);

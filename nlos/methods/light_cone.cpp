@@ -43,7 +43,7 @@ PlaneRows spectrum_rows(FftBuffer& rows,
             Fft::row_floats(cone.length) / 2,
             end - begin,
             spectrum.complex() + begin,
-            cone.num_columns(),
+            cone.plane_stride(),
             slab.size()};
 }
 
@@ -163,7 +163,7 @@ void ConeKernel::fill(std::size_t k, ComplexF* quadrant) const {
 }
 
 FftBuffer make_slab_spectrum(const Cone& cone, std::size_t num_slabs) {
-    return FftBuffer(2 * largest_slab(cone.num_frequencies(), num_slabs) * cone.num_columns());
+    return FftBuffer(2 * largest_slab(cone.num_frequencies(), num_slabs) * cone.plane_stride());
 }
 
 void fill_cone_spectrum(const MethodInput& input,

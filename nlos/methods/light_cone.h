@@ -32,6 +32,8 @@ struct Cone {
     double v_width() const { return v_edges[1] - v_edges[0]; }
     std::size_t num_frequencies() const { return length / 2 + 1; }
     std::size_t num_columns() const { return nx * ny; }
+    /// From the spectrum at one frequency to that at the next.
+    std::size_t plane_stride() const { return row_stride(2 * num_columns()) / 2; }
 };
 
 /// input          confocal scan with input.wall.grid

@@ -85,7 +85,8 @@ Volume light_cone_transform(const MethodInput& input,
             [&](std::size_t begin, std::size_t end) {
                 SlabFilter::Workspace work = filter.make_workspace();
                 for (std::size_t k = begin; k < end; ++k) {
-                    filter.apply(slab.begin + k, spectrum.complex() + k * cone.num_columns(), work);
+                    filter.apply(
+                        slab.begin + k, spectrum.complex() + k * cone.plane_stride(), work);
                 }
             });
         add_spectrum_to_depth(
@@ -102,7 +103,7 @@ double light_cone_transform_bytes(const MethodInput& input,
     const auto columns = static_cast<double>(cone.num_columns());
     const auto padded = static_cast<double>(cone.px * (cone.py + 8));
     const auto frequencies = static_cast<double>(largest_slab(cone.num_frequencies(), num_slabs));
-    const double spectrum = 8.0 * frequencies * columns;
+    const double spectrum = 8.0 * frequencies * static_cast<double>(cone.plane_stride());
     const double volume = 4.0 * columns * static_cast<double>(input.axes.z_m.size());
     const double per_thread = 30.0 * padded + 64.0 * static_cast<double>(cone.length + 2);
     return spectrum + volume + per_thread * core::thread_count() + 16.0 * padded;

@@ -27,6 +27,8 @@ struct FkGrids {
     std::size_t num_depths() const { return num_z * samples; }
     std::size_t num_planes() const { return std::max(num_frequencies(), num_depths()); }
     std::size_t num_columns() const { return nx * ny; }
+    /// From the columns at one frequency to those at the next.
+    std::size_t plane_stride() const { return row_stride(2 * num_columns()) / 2; }
     double period_m() const { return static_cast<double>(length) * bin_m; }
 };
 
@@ -40,7 +42,7 @@ struct RowSlab {
     std::size_t num_pairs() const { return begin.size() - 1; }
     /// Where row `row` of a plane begins.
     std::size_t offset(std::size_t plane, std::size_t row) const {
-        return (plane * ky.size() + row) * px;
+        return plane * (row_stride(2 * ky.size() * px) / 2) + row * px;
     }
 };
 

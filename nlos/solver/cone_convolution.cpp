@@ -65,7 +65,7 @@ ConeConvolution::ConeConvolution(
                 for (std::size_t i = 0; i < qx_ * qy_; ++i) own[i] *= factor[i];
             }
         });
-    first_.resize(cone.num_frequencies() * cone.num_columns());
+    first_.resize(cone.num_frequencies() * cone.plane_stride());
 }
 
 PlaneRows ConeConvolution::rows_of(FftBuffer& rows,
@@ -76,7 +76,7 @@ PlaneRows ConeConvolution::rows_of(FftBuffer& rows,
             Fft::row_floats(cone_.length) / 2,
             count,
             planes.data() + first_column,
-            cone_.num_columns(),
+            cone_.plane_stride(),
             cone_.num_frequencies()};
 }
 
@@ -131,7 +131,7 @@ void ConeConvolution::convolve(const ConeField& field, ConeField& result, bool i
                 if (is_adjoint) {
                     for (ComplexF& value : quadrant) value = std::conj(value);
                 }
-                ComplexF* values = first_.data() + k * cone_.num_columns();
+                ComplexF* values = first_.data() + k * cone_.plane_stride();
                 plane_.load(values, work);
                 plane_.forward(work);
                 plane_.multiply_by_quadrant(quadrant.data(), work);
@@ -204,8 +204,8 @@ void ConeConvolution::solve(ConeField& difference, ConeField& right) {
             PaddedPlane::Workspace a = plane_.make_workspace();
             PaddedPlane::Workspace b = plane_.make_workspace();
             for (std::size_t k = begin; k < end; ++k) {
-                ComplexF* difference_plane = first_.data() + k * cone_.num_columns();
-                ComplexF* right_plane = second_.data() + k * cone_.num_columns();
+                ComplexF* difference_plane = first_.data() + k * cone_.plane_stride();
+                ComplexF* right_plane = second_.data() + k * cone_.plane_stride();
                 plane_.load(difference_plane, a);
                 plane_.load(right_plane, b);
                 plane_.forward(a);
@@ -227,7 +227,9 @@ double ConeConvolution::bytes(const Cone& cone, double num_fields, bool is_confi
     const double columns = static_cast<double>(cone.num_columns());
     const double padded = static_cast<double>(cone.px * cone.py);
     const double quadrant = static_cast<double>((cone.px / 2 + 1) * (cone.py / 2 + 1));
-    return 8.0 * frequencies * ((is_confined ? 2.0 : 1.0) * padded + quadrant + 2.0 * columns) +
+    return 8.0 * frequencies *
+               ((is_confined ? 2.0 : 1.0) * padded + quadrant +
+                2.0 * static_cast<double>(cone.plane_stride())) +
            4.0 * num_fields * columns * static_cast<double>(cone.num_v());
 }
 
