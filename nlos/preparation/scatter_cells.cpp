@@ -149,18 +149,18 @@ void ScatterTransport::fill(std::size_t pair,
         static_cast<float>((geometry.legs_m[pair] - geometry.opl_start_m) / unit_m_);
     const auto per_bin = static_cast<float>(unit_m_ / geometry.bin_width_m);
     const auto last = static_cast<float>(num_bins_ - 1);
+    std::vector<float> places(num_cells_);  // -1 outside the sample's bins
+    for (std::size_t cell = 0; cell < num_cells_; ++cell) {
+        const float bin = (out.length[cell] + back.length[cell] + before) * per_bin - 0.5F;
+        places[cell] = bin >= 0.0F && bin < last ? bin : -1.0F;
+    }
     std::vector<Arrival> arrivals(num_cells_);
     std::size_t count = 0;
     for (std::size_t cell = 0; cell < num_cells_; ++cell) {
         if (cell % kBlock == 0) block_starts_[pair].push_back(count);
-        const float bin = (out.length[cell] + back.length[cell] + before) * per_bin - 0.5F;
-        const bool is_inside = bin >= 0.0F && bin < last;
-        const float whole = is_inside ? std::floor(bin) : 0.0F;
-        arrivals[count] = {static_cast<std::uint32_t>(cell),
-                           static_cast<std::int32_t>(whole),
-                           bin - whole,
-                           out.weight[cell] * back.weight[cell]};
-        count += is_inside ? 1 : 0;  // the next one takes its place unless it counts
+        arrivals[count] = {
+            static_cast<std::uint32_t>(cell), places[cell], out.weight[cell] * back.weight[cell]};
+        count += places[cell] >= 0.0F ? 1 : 0;  // the next one takes its place unless it counts
     }
     block_starts_[pair].push_back(count);
     arrivals_[pair].assign(arrivals.begin(), arrivals.begin() + static_cast<std::ptrdiff_t>(count));
@@ -183,8 +183,8 @@ std::vector<float> ScatterTransport::forward(const std::vector<double>& light,
                 if (k >= lanes[lane].size()) continue;
                 const Arrival& arrival = lanes[lane][k];
                 const double value = light[arrival.cell] * static_cast<double>(arrival.weight);
-                const auto late = static_cast<double>(arrival.late);
-                double* row = rows.data() + lane * num_bins_ + arrival.bin;
+                const auto late = static_cast<double>(arrival.late());
+                double* row = rows.data() + lane * num_bins_ + arrival.bin();
                 row[0] += value - late * value;
                 row[1] += late * value;
             }
@@ -203,20 +203,36 @@ std::vector<float> ScatterTransport::forward(const std::vector<double>& light,
 CellReach ScatterTransport::backward(const std::vector<float>& ratio,
                                      const std::vector<double>& gain,
                                      const PairSubset& subset) const {
+    using Sums = std::array<float, 2>;  // plain and rated
+    struct Bin {
+        Sums here, step;  // the step leads to the next bin
+    };
+    std::vector<Bin> bins(num_pairs_ * num_bins_);
+    for (std::size_t i = 0; i + 1 < bins.size(); ++i) {
+        bins[i] = {{observed_[i], ratio[i]},
+                   {observed_[i + 1] - observed_[i], ratio[i + 1] - ratio[i]}};
+    }
     CellReach reach{std::vector<float>(num_cells_), std::vector<float>(num_cells_)};
-    core::parallel_blocks(num_cells_, kBlock, [&](std::size_t begin, std::size_t) {
+    core::parallel_blocks(num_cells_, kBlock, [&](std::size_t begin, std::size_t end) {
+        std::array<Sums, kBlock> sums{};
+        const std::size_t block = begin / kBlock;
         for (std::size_t pair = subset.first; pair < num_pairs_; pair += subset.step) {
-            const float* seen = observed_.data() + pair * num_bins_;
-            const float* rated = ratio.data() + pair * num_bins_;
+            const Bin* const row = bins.data() + pair * num_bins_;
             const auto pair_gain = static_cast<float>(gain[pair]);
-            const std::size_t block = begin / kBlock;
-            const std::size_t end = block_starts_[pair][block + 1];
-            for (std::size_t k = block_starts_[pair][block]; k < end; ++k) {
-                const auto& [cell, bin, late, ungained] = arrivals_[pair][k];
-                const float weight = pair_gain * ungained;
-                reach.plain[cell] += weight * (seen[bin] + late * (seen[bin + 1] - seen[bin]));
-                reach.rated[cell] += weight * (rated[bin] + late * (rated[bin + 1] - rated[bin]));
+            const std::size_t last = block_starts_[pair][block + 1];
+            for (std::size_t k = block_starts_[pair][block]; k < last; ++k) {
+                const Arrival& arrival = arrivals_[pair][k];
+                const Bin& bin = row[arrival.bin()];
+                const float late = arrival.late();
+                const float weight = pair_gain * arrival.weight;
+                Sums& sum = sums[arrival.cell - begin];
+                for (std::size_t i = 0; i < 2; ++i)
+                    sum[i] += weight * (bin.here[i] + late * bin.step[i]);
             }
+        }
+        for (std::size_t cell = begin; cell < end; ++cell) {
+            reach.plain[cell] = sums[cell - begin][0];
+            reach.rated[cell] = sums[cell - begin][1];
         }
     });
     return reach;

@@ -72,9 +72,11 @@ class ScatterTransport {
     /// Light of a cell that reaches the sample's bins.
     struct Arrival {
         std::uint32_t cell;
-        std::int32_t bin;
-        float late;  ///< share of the light that falls into the next bin
+        float position;  ///< the bin, and the share of the light that falls into the next one
         float weight;
+
+        int bin() const { return static_cast<int>(position); }
+        float late() const { return position - static_cast<float>(bin()); }
     };
 
     void fill(std::size_t pair, const PathGeometry& geometry, const Eigen::ArrayX3f& positions);
