@@ -26,7 +26,7 @@ const std::vector<Container>& containers() {
 }
 
 std::size_t rows_of_read(const Shape& shape) {
-    constexpr std::size_t kValuesPerRead = std::size_t{1} << 22;
+    constexpr std::size_t kValuesPerRead = std::size_t{1} << 20;
     if (shape.empty()) return 1;
     return std::max<std::size_t>(1,
                                  kValuesPerRead / std::max<std::size_t>(1, values_per_row(shape)));

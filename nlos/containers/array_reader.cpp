@@ -267,9 +267,13 @@ std::optional<std::vector<double>> ArrayReader::real_attribute(const std::string
         where(object + " attribute " + name), "holds no numbers", "must hold a few numbers");
 }
 
+std::shared_ptr<const ArrayReader> open_arrays(const std::string& path) {
+    return find_container(path) == nullptr ? nullptr : std::make_shared<const ArrayReader>(path);
+}
+
 std::optional<std::string> container_of(const std::string& path) {
-    if (find_container(path) == nullptr) return std::nullopt;
-    return ArrayReader(path).container();
+    const auto file = open_arrays(path);
+    return file ? std::optional(file->container()) : std::nullopt;
 }
 
 }  // namespace nlos

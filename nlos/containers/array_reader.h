@@ -111,6 +111,10 @@ class ArrayReader {
     mutable std::map<std::string, std::optional<ArrayDescription>> described_;
 };
 
+/// The file open for reading; nothing when ArrayReader knows no container for it.
+/// Throws core::Error when a file of a known container is damaged.
+std::shared_ptr<const ArrayReader> open_arrays(const std::string& path);
+
 /// The container of a file, by content; nothing when ArrayReader knows none for it.
 /// Throws core::Error when a file of a known container is damaged.
 std::optional<std::string> container_of(const std::string& path);

@@ -16,37 +16,46 @@
 namespace nlos {
 namespace {
 
-const CaptureFormat* find_format(const std::string& path) {
-    // Folders are the layouts' business; whoever opens a pipe or a device may wait for ever.
-    if (!std::filesystem::is_regular_file(path)) return nullptr;
-    for (const CaptureFormat& format : capture_formats()) {
-        if (format.recognise(path)) return &format;
-    }
-    return nullptr;
+/// How a file or folder is read: by a format of its own or by a layout, or not at all.
+struct Reading {
+    std::string name;  ///< of the format or layout; empty: neither
+    CaptureFormat::Read by_format;
+    std::optional<LayoutSource> by_layout;
+};
+
+Reading by_layout(std::optional<LayoutSource> source) {
+    std::string name = source ? source->layout.title : "";
+    return {std::move(name), nullptr, std::move(source)};
 }
 
-/// The layout that was asked for, or that of a file or folder in no format of its own.
-std::optional<LayoutSource> find_layout_of(const std::string& path,
-                                           const CaptureReadSettings& settings) {
-    if (!settings.layout.empty()) return layout_source(path, find_layout(settings.layout));
-    return find_format(path) == nullptr ? find_layout_source(path) : std::nullopt;
+/// By the layout that was asked for, the file's format, or a layout that fits.
+Reading find_reading(const std::string& path, const CaptureReadSettings& settings) {
+    if (!settings.layout.empty()) {
+        return by_layout(layout_source(path, find_layout(settings.layout)));
+    }
+    // Folders are the layouts' business; whoever opens a pipe or a device may wait for ever.
+    if (std::filesystem::is_regular_file(path)) {
+        for (const CaptureFormat& format : capture_formats()) {
+            if (auto read = format.open(path)) return {format.name, std::move(read), std::nullopt};
+        }
+    }
+    return by_layout(find_layout_source(path));
 }
 
 /// The same for several files, which must be the frames of a sequence.
-std::optional<LayoutSource> find_layout_of(const std::vector<std::string>& paths,
-                                           const CaptureReadSettings& settings) {
+Reading find_reading(const std::vector<std::string>& paths, const CaptureReadSettings& settings) {
     for (const std::string& path : paths) {
         if (std::filesystem::exists(path)) continue;
         throw core::Error(path, "does not exist", "must be a capture file");
     }
-    auto source = find_layout_of(paths.front(), settings);
-    if (paths.size() == 1) return source;
-    if (!source) {
+    Reading reading = find_reading(paths.front(), settings);
+    if (paths.size() == 1) return reading;
+    if (!reading.by_layout) {
         throw core::Error(paths.front(),
                           fmt::format("is the first of {} files and of no layout", paths.size()),
                           "must be of a layout whose files are frames, or stand alone");
     }
-    return sequence_source(paths, source->layout);
+    return by_layout(sequence_source(paths, reading.by_layout->layout));
 }
 
 /// The file itself, or the first file of named arrays in a folder.
@@ -168,11 +177,12 @@ core::Capture read_capture(const std::vector<std::string>& paths,
     const std::string& path = paths.front();
     core::Capture capture;
     int zero_bins = 0;
-    if (const auto source = find_layout_of(paths, settings)) {
-        capture = read_layout_capture(*source, settings);
-        zero_bins = source->layout.bins.leading_unobserved;
-    } else if (const CaptureFormat* format = find_format(path)) {
-        capture = format->read(path, settings);
+    const Reading reading = find_reading(paths, settings);
+    if (reading.by_layout) {
+        capture = read_layout_capture(*reading.by_layout, settings);
+        zero_bins = reading.by_layout->layout.bins.leading_unobserved;
+    } else if (reading.by_format) {
+        capture = reading.by_format(settings);
         if (settings.frame) take_frame(*settings.frame, path, capture);
     } else {
         throw_unknown(path);
@@ -186,14 +196,13 @@ core::Capture read_capture(const std::vector<std::string>& paths,
 
 std::optional<std::string> capture_format(const std::string& path,
                                           const CaptureReadSettings& settings) {
-    if (const auto source = find_layout_of(path, settings)) return source->layout.title;
-    if (const CaptureFormat* format = find_format(path)) return format->name;
-    return std::nullopt;
+    const Reading reading = find_reading(path, settings);
+    return reading.name.empty() ? std::nullopt : std::optional(reading.name);
 }
 
 std::vector<std::string> missing_settings(const std::string& path,
                                           const CaptureReadSettings& settings) {
-    const auto source = find_layout_of(path, settings);
+    const auto source = find_reading(path, settings).by_layout;
     return source ? open_questions(source->layout, settings) : std::vector<std::string>{};
 }
 

@@ -5,6 +5,7 @@
 #include "renderer/core/capture/capture.h"
 
 #include <array>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,11 +15,12 @@ namespace nlos {
 /// One capture format that is read other than by a layout. To add one: write a .cpp with a function
 /// that returns its row, and list that function in capture_formats.cpp.
 struct CaptureFormat {
+    using Read = std::function<core::Capture(const CaptureReadSettings& settings)>;
+
     const char* name;  ///< for people
 
-    /// True when the file is of this format, be it damaged further on.
-    bool (*recognise)(const std::string& path);
-    core::Capture (*read)(const std::string& path, const CaptureReadSettings& settings);
+    /// What reads a file of this format, be it damaged further on; nothing for any other file.
+    Read (*open)(const std::string& path);
 };
 
 /// All formats, in the order in which a file is tried.

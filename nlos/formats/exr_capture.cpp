@@ -178,6 +178,11 @@ Capture read_exr(const std::string& path, const CaptureReadSettings& settings) {
     return capture;
 }
 
+CaptureFormat::Read open_exr(const std::string& path) {
+    if (!is_exr_file(path)) return nullptr;
+    return [path](const CaptureReadSettings& settings) { return read_exr(path, settings); };
+}
+
 }  // namespace
 
 std::vector<std::string> write_exr(const std::string& path,
@@ -222,7 +227,7 @@ std::vector<std::string> write_exr(const std::string& path,
 }
 
 CaptureFormat exr_format() {
-    return {"OpenEXR", is_exr_file, read_exr};
+    return {"OpenEXR", open_exr};
 }
 
 }  // namespace nlos

@@ -58,12 +58,7 @@ void write_scan(NpzWriter& file, const core::Scan& scan) {
     file.write_text("opl_origin", std::string(enum_name(scan.opl_origin)));
 }
 
-bool recognise_npz(const std::string& path) {
-    return container_of(path) == "npz" && ArrayReader(path).has_object("H");
-}
-
-Capture read_npz(const std::string& path, const CaptureReadSettings& settings) {
-    const ArrayReader file(path);
+Capture read_npz(const ArrayReader& file, const CaptureReadSettings& settings) {
     Capture capture = read_histograms(file, settings);
     if (file.has("unit")) {
         core::read_value(core::Json(file.read_text("unit")), file.where("unit"), capture.unit);
@@ -84,10 +79,16 @@ Capture read_npz(const std::string& path, const CaptureReadSettings& settings) {
     return capture;
 }
 
+CaptureFormat::Read open_npz(const std::string& path) {
+    const auto file = open_arrays(path);
+    if (!file || file->container() != "npz" || !file->has_object("H")) return nullptr;
+    return [file](const CaptureReadSettings& settings) { return read_npz(*file, settings); };
+}
+
 }  // namespace
 
 CaptureFormat npz_format() {
-    return {"NumPy .npz", recognise_npz, read_npz};
+    return {"NumPy .npz", open_npz};
 }
 
 std::vector<std::string> write_npz(const std::string& path,

@@ -222,7 +222,8 @@ Reconstruction read_volume(const std::string& path) {
 }
 
 bool is_volume_file(const std::string& path) {
-    return container_of(path) == "hdf5" && ArrayReader(path).has("volume");
+    const auto file = open_arrays(path);
+    return file && file->container() == "hdf5" && file->has("volume");
 }
 
 }  // namespace nlos

@@ -98,21 +98,22 @@ void read_own_group(const ArrayReader& file, Capture& capture) {
     if (file.has("nlos/velocity")) read_velocity(file, capture);
 }
 
-bool recognise_ytal(const std::string& path) {
-    return container_of(path) == "hdf5" && ArrayReader(path).has_object("H");
-}
-
-Capture read_ytal(const std::string& path, const CaptureReadSettings& settings) {
-    const ArrayReader file(path);
+Capture read_ytal(const ArrayReader& file, const CaptureReadSettings& settings) {
     Capture capture = read_histograms(file, settings);
     read_own_group(file, capture);
     return capture;
 }
 
+CaptureFormat::Read open_ytal(const std::string& path) {
+    const auto file = open_arrays(path);
+    if (!file || file->container() != "hdf5" || !file->has_object("H")) return nullptr;
+    return [file](const CaptureReadSettings& settings) { return read_ytal(*file, settings); };
+}
+
 }  // namespace
 
 CaptureFormat ytal_format() {
-    return {"y-tal HDF5", recognise_ytal, read_ytal};
+    return {"y-tal HDF5", open_ytal};
 }
 
 }  // namespace nlos
