@@ -10,6 +10,7 @@
 #include <cairo-svg.h>
 
 #include <algorithm>
+#include <new>
 #include <numbers>
 
 // DejaVu Sans (.ttf), which becomes part of the program: pictures need no font where it runs.
@@ -88,7 +89,11 @@ cairo_status_t append(void* bytes, const unsigned char* data, unsigned int size)
     }
 }
 
-CairoSurface make_surface(PictureFormat format, int width, int height, std::string& bytes) {
+CairoSurface make_surface(PictureFormat format,
+                          int width,
+                          int height,
+                          std::string& bytes,
+                          std::unique_ptr<unsigned char[]>& pixels) {
     const double width_pt = width * kPointsPerPixel;
     const double height_pt = height * kPointsPerPixel;
     switch (format) {
@@ -105,7 +110,12 @@ CairoSurface make_surface(PictureFormat format, int width, int height, std::stri
             return surface;
         }
     }
-    return CairoSurface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height));
+    const int stride = cairo_format_stride_for_width(CAIRO_FORMAT_RGB24, width);
+    const auto num_bytes = static_cast<std::size_t>(stride) * static_cast<std::size_t>(height);
+    pixels.reset(new (std::nothrow) unsigned char[num_bytes]);
+    if (!pixels) throw core::Failure("picture", "needs more memory than is free");
+    return CairoSurface(cairo_image_surface_create_for_data(
+        pixels.get(), CAIRO_FORMAT_RGB24, width, height, stride));
 }
 
 CairoSurface surface_of(const Raster& raster) {
@@ -151,13 +161,14 @@ void attach_png(cairo_surface_t* surface) {
 
 struct Canvas::Drawing {
     PictureFormat format;
-    std::string bytes;  // which the surface writes to
+    std::string bytes;                        // which a vector surface writes to
+    std::unique_ptr<unsigned char[]> pixels;  // of an image surface
     CairoSurface surface;
     CairoContext context;
 
     Drawing(int width, int height, PictureFormat stored_as)
         : format(stored_as),
-          surface(make_surface(format, width, height, bytes)),
+          surface(make_surface(format, width, height, bytes, pixels)),
           context(cairo_create(surface.get())) {
         if (format != PictureFormat::Png) {
             cairo_scale(context.get(), kPointsPerPixel, kPointsPerPixel);

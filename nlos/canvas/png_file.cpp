@@ -3,74 +3,76 @@
 
 #include "renderer/core/error.h"
 
-#include <png.h>
-#include <zlib.h>
+#include <isa-l/crc.h>
+#include <isa-l/igzip_lib.h>
 
 #include <cassert>
-#include <csetjmp>
 #include <cstddef>
 #include <cstdint>
-#include <exception>
+#include <memory>
 #include <string_view>
+#include <vector>
+
+// The format: PNG specification, third edition. ISA-L packs a drawing in an eighth of the time that
+// zlib takes, on which libpng is built.
 
 namespace nlos {
 namespace {
 
-constexpr int kLevel = 3;  // of zlib: from 4 on it is slow
+constexpr std::string_view kSignature = "\x89PNG\r\n\x1a\n";
 
-/// A writer of libpng, which jumps back to its caller on an error.
-struct PngWriter {
-    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
-    png_infop info = png ? png_create_info_struct(png) : nullptr;
+/// Packs bytes into a zlib stream.
+class Deflater {
+ public:
+    Deflater() : stream_(std::make_unique<isal_zstream>()), level_buffer_(ISAL_DEF_LVL1_DEFAULT) {
+        ::isal_deflate_init(stream_.get());
+        stream_->level = 1;
+        stream_->level_buf = level_buffer_.data();
+        stream_->level_buf_size = static_cast<std::uint32_t>(level_buffer_.size());
+        stream_->gzip_flag = IGZIP_ZLIB;
+    }
 
-    PngWriter() = default;
-    PngWriter(const PngWriter&) = delete;
-    PngWriter& operator=(const PngWriter&) = delete;
-    ~PngWriter() { png_destroy_write_struct(&png, &info); }
+    void add(std::vector<std::uint8_t>& bytes, bool is_last) {
+        stream_->next_in = bytes.data();
+        stream_->avail_in = static_cast<std::uint32_t>(bytes.size());
+        stream_->end_of_stream = is_last ? 1 : 0;
+        std::vector<std::uint8_t> out(kOutBytes);
+        do {
+            stream_->next_out = out.data();
+            stream_->avail_out = kOutBytes;
+            if (::isal_deflate(stream_.get()) != COMP_OK) {
+                throw core::Failure("picture", "cannot be stored as .png");
+            }
+            packed_.append(out.begin(), out.end() - stream_->avail_out);
+        } while (stream_->avail_out == 0);
+    }
+
+    const std::string& packed() const { return packed_; }
+
+ private:
+    static constexpr std::uint32_t kOutBytes = 1U << 16;
+    std::unique_ptr<isal_zstream> stream_;
+    std::vector<std::uint8_t> level_buffer_;
+    std::string packed_;
 };
 
-void append(png_structp png, png_bytep data, std::size_t size) {
-    auto* const bytes = static_cast<std::string*>(png_get_io_ptr(png));
-    try {
-        bytes->append(reinterpret_cast<const char*>(data), size);
-        return;
-    } catch (const std::exception&) {
-        bytes->clear();
+/// Red, green and blue of a row, less those of the row above unless that is null.
+void append_row(const unsigned char* pixels,
+                const unsigned char* above,
+                int width,
+                std::vector<std::uint8_t>& bytes) {
+    constexpr std::uint8_t kNone = 0;  // filters
+    constexpr std::uint8_t kUp = 2;
+    bytes.push_back(above == nullptr ? kNone : kUp);
+    std::size_t at = bytes.size();
+    bytes.resize(at + 3 * static_cast<std::size_t>(width));
+    for (std::ptrdiff_t i = 0; i < 4 * std::ptrdiff_t{width}; i += 4) {
+        for (const std::ptrdiff_t channel : {i + 2, i + 1, i}) {
+            const int difference = pixels[channel] - (above == nullptr ? 0 : above[channel]);
+            bytes[at++] = static_cast<std::uint8_t>(difference);
+        }
     }
-    png_error(png, "out of memory");
 }
-
-/// returns   false when libpng jumped back; nothing here needs a destructor
-bool write(png_structp png,
-           png_infop info,
-           const unsigned char* pixels,
-           int width,
-           int height,
-           int stride) {
-    if (setjmp(png_jmpbuf(png)) != 0) return false;
-    png_set_IHDR(png,
-                 info,
-                 static_cast<png_uint_32>(width),
-                 static_cast<png_uint_32>(height),
-                 8,
-                 PNG_COLOR_TYPE_RGB,
-                 PNG_INTERLACE_NONE,
-                 PNG_COMPRESSION_TYPE_DEFAULT,
-                 PNG_FILTER_TYPE_DEFAULT);
-    png_set_compression_level(png, kLevel);
-    png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_UP);
-    png_write_info(png, info);
-    png_set_bgr(png);
-    png_set_filler(png, 0, PNG_FILLER_AFTER);
-    for (int y = 0; y < height; ++y) png_write_row(png, pixels + std::ptrdiff_t{y} * stride);
-    png_write_end(png, info);
-    return true;
-}
-
-// Animations. The format: PNG specification, third edition, with the chunks acTL, fcTL and fdAT,
-// which libpng does not write.
-
-constexpr std::size_t kSignature = 8;  // bytes before the first chunk
 
 std::string big_endian(std::uint32_t value, int bytes) {
     std::string text;
@@ -88,16 +90,15 @@ std::uint32_t read_number(std::string_view bytes) {
 
 std::string chunk(const std::string& type, std::string_view data) {
     const std::string body = type + std::string(data);
-    const auto checksum =
-        ::crc32(0, reinterpret_cast<const Bytef*>(body.data()), static_cast<uInt>(body.size()));
-    return big_endian(static_cast<std::uint32_t>(data.size()), 4) + body +
-           big_endian(static_cast<std::uint32_t>(checksum), 4);
+    const std::uint32_t checksum =
+        ::crc32_gzip_refl(0, reinterpret_cast<const unsigned char*>(body.data()), body.size());
+    return big_endian(static_cast<std::uint32_t>(data.size()), 4) + body + big_endian(checksum, 4);
 }
 
 /// What the chunks of a type hold, in their order.
 std::vector<std::string_view> data_of(std::string_view png, std::string_view type) {
     std::vector<std::string_view> found;
-    for (std::size_t at = kSignature; at < png.size();) {
+    for (std::size_t at = kSignature.size(); at < png.size();) {
         const std::size_t size = read_number(png.substr(at));
         if (png.substr(at + 4, 4) == type) found.push_back(png.substr(at + 8, size));
         at += size + 12;
@@ -108,13 +109,23 @@ std::vector<std::string_view> data_of(std::string_view png, std::string_view typ
 }  // namespace
 
 std::string encode_png(const unsigned char* pixels, int width, int height, int stride) {
-    std::string bytes;
-    const PngWriter writer;
-    if (writer.info) png_set_write_fn(writer.png, &bytes, append, nullptr);
-    if (!writer.info || !write(writer.png, writer.info, pixels, width, height, stride)) {
-        throw core::Failure("picture", "cannot be stored as .png");
+    constexpr int kRowsAtOnce = 32;
+    constexpr char kRgbOfEightBits[] = {8, 2, 0, 0, 0};
+    Deflater deflater;
+    std::vector<std::uint8_t> bytes;
+    for (int y = 0; y < height; ++y) {
+        const unsigned char* const row = pixels + std::ptrdiff_t{y} * stride;
+        append_row(row, y > 0 ? row - stride : nullptr, width, bytes);
+        const bool is_last = y + 1 == height;
+        if (!is_last && (y + 1) % kRowsAtOnce != 0) continue;
+        deflater.add(bytes, is_last);
+        bytes.clear();
     }
-    return bytes;
+    const std::string header = big_endian(static_cast<std::uint32_t>(width), 4) +
+                               big_endian(static_cast<std::uint32_t>(height), 4) +
+                               std::string(kRgbOfEightBits, sizeof(kRgbOfEightBits));
+    return std::string(kSignature) + chunk("IHDR", header) + chunk("IDAT", deflater.packed()) +
+           chunk("IEND", "");
 }
 
 std::string join_animated_png(const std::vector<std::string>& frames, int frames_per_second) {
@@ -122,7 +133,7 @@ std::string join_animated_png(const std::vector<std::string>& frames, int frames
     const std::string_view header = data_of(frames.front(), "IHDR").front();
     std::uint32_t number = 0;  // of the next fcTL or fdAT
     std::string film =
-        frames.front().substr(0, kSignature) + chunk("IHDR", header) +
+        std::string(kSignature) + chunk("IHDR", header) +
         chunk("acTL", big_endian(static_cast<std::uint32_t>(frames.size()), 4) + big_endian(0, 4));
     for (const std::string& frame : frames) {
         assert(data_of(frame, "IHDR").front() == header);
