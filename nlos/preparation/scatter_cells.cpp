@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <numeric>
+#include <optional>
 #include <span>
 
 namespace nlos {
@@ -35,20 +37,17 @@ double farthest_m(const ScatterCells& cells) {
 
 /// Ways between a point of the wall and all cells, in the unit of `positions`.
 struct Legs {
-    std::vector<float> length;
-    std::vector<float> weight;  ///< cosine with the wall's normal over the squared length
+    Eigen::ArrayXf length;
+    Eigen::ArrayXf weight;  ///< cosine with the wall's normal over the squared length
 
     Legs(const Eigen::ArrayX3f& positions, const Vec3& point, const Vec3& normal)
-        : length(static_cast<std::size_t>(positions.rows())), weight(length.size()) {
+        : length(positions.rows()), weight(positions.rows()) {
         const Eigen::Vector3f from = point.cast<float>();
         const Eigen::Vector3f up = normal.cast<float>();
-        const float* const x = positions.col(0).data();
-        const float* const y = positions.col(1).data();
-        const float* const z = positions.col(2).data();
-        for (std::size_t i = 0; i < length.size(); ++i) {
-            const float dx = x[i] - from.x();
-            const float dy = y[i] - from.y();
-            const float dz = z[i] - from.z();
+        for (Eigen::Index i = 0; i < length.size(); ++i) {
+            const float dx = positions(i, 0) - from.x();
+            const float dy = positions(i, 1) - from.y();
+            const float dz = positions(i, 2) - from.z();
             const float squared = dx * dx + dy * dy + dz * dz;
             length[i] = std::sqrt(squared);
             weight[i] = std::abs(up.x() * dx + up.y() * dy + up.z() * dz) / (squared * length[i]);
@@ -143,27 +142,29 @@ void ScatterTransport::fill(std::size_t pair,
                             const Eigen::ArrayX3f& positions) {
     const Vec3 normal = geometry.world_from_wall.linear().col(2);
     const Legs out(positions, geometry.illumination[pair] / unit_m_, normal);
-    const bool returns = geometry.illumination[pair] == geometry.sensing[pair];
-    const Legs back = returns ? out : Legs(positions, geometry.sensing[pair] / unit_m_, normal);
+    std::optional<Legs> other;
+    if (geometry.illumination[pair] != geometry.sensing[pair]) {
+        other.emplace(positions, geometry.sensing[pair] / unit_m_, normal);
+    }
+    const Legs& back = other ? *other : out;
     const auto before =
         static_cast<float>((geometry.legs_m[pair] - geometry.opl_start_m) / unit_m_);
     const auto per_bin = static_cast<float>(unit_m_ / geometry.bin_width_m);
     const auto last = static_cast<float>(num_bins_ - 1);
-    std::vector<float> places(num_cells_);  // -1 outside the sample's bins
-    for (std::size_t cell = 0; cell < num_cells_; ++cell) {
-        const float bin = (out.length[cell] + back.length[cell] + before) * per_bin - 0.5F;
-        places[cell] = bin >= 0.0F && bin < last ? bin : -1.0F;
-    }
-    std::vector<Arrival> arrivals(num_cells_);
+    // The bin that each cell reaches, -1 outside the sample.
+    Eigen::ArrayXf places = (out.length + back.length + before) * per_bin - 0.5F;
+    places = (places >= 0.0F && places < last).select(places, -1.0F);
+    const Eigen::ArrayXf weights = out.weight * back.weight;
+    const auto arrivals = std::make_unique_for_overwrite<Arrival[]>(num_cells_);
     std::size_t count = 0;
     for (std::size_t cell = 0; cell < num_cells_; ++cell) {
         if (cell % kBlock == 0) block_starts_[pair].push_back(count);
-        arrivals[count] = {
-            static_cast<std::uint32_t>(cell), places[cell], out.weight[cell] * back.weight[cell]};
-        count += places[cell] >= 0.0F ? 1 : 0;  // the next one takes its place unless it counts
+        const auto i = static_cast<Eigen::Index>(cell);
+        arrivals[count] = {static_cast<std::uint32_t>(cell), places[i], weights[i]};
+        count += places[i] >= 0.0F ? 1 : 0;  // the next one takes its place unless it counts
     }
     block_starts_[pair].push_back(count);
-    arrivals_[pair].assign(arrivals.begin(), arrivals.begin() + static_cast<std::ptrdiff_t>(count));
+    arrivals_[pair].assign(arrivals.get(), arrivals.get() + count);
 }
 
 std::vector<float> ScatterTransport::forward(const std::vector<double>& light,
