@@ -11,6 +11,7 @@
 #include <zlib.h>
 
 #include <cmath>
+#include <random>
 
 namespace nlos {
 namespace {
@@ -171,6 +172,25 @@ std::vector<Chunk> chunks_of(const std::string& png) {
         at += size + 12;
     }
     return chunks;
+}
+
+TEST(PngFile, KeepsEveryPixelOfNoise) {
+    constexpr int kWidth = 301;
+    constexpr int kHeight = 203;
+    constexpr int kStride = 4 * kWidth + 12;
+    std::mt19937 generator(1);
+    std::vector<unsigned char> pixels(std::size_t{kStride} * kHeight);
+    for (unsigned char& byte : pixels) byte = static_cast<unsigned char>(generator());
+    const std::string png = encode_png(pixels.data(), kWidth, kHeight, kStride);
+    chunks_of(png);
+    const cv::Mat picture = decoded_png(png);
+    ASSERT_EQ(picture.size(), cv::Size(kWidth, kHeight));
+    const cv::Mat with_filler(kHeight, kWidth, CV_8UC4, pixels.data(), kStride);
+    cv::Mat channels[4];
+    cv::split(with_filler, channels);
+    cv::Mat expected;
+    cv::merge(channels, 3, expected);
+    EXPECT_EQ(cv::norm(picture, expected, cv::NORM_INF), 0.0);
 }
 
 TEST(AnimatedPng, HoldsEveryFrame) {

@@ -20,6 +20,15 @@ TEST(Fft, GoodSizesHaveSmallPrimeFactors) {
     EXPECT_EQ(good_fft_size(211), 216U);
 }
 
+TEST(Fft, RowsAreAnOddNumberOfCacheLinesApart) {
+    for (const std::size_t floats : {1U, 16U, 17U, 32U, 1024U, 2050U}) {
+        const std::size_t stride = row_stride(floats);
+        EXPECT_GE(stride, floats);
+        EXPECT_LT(stride, floats + 32);
+        EXPECT_EQ(stride % 32, 16U);
+    }
+}
+
 TEST(Fft, RealTransformAndItsInverseMultiplyByTheLength) {
     constexpr std::size_t kLength = 30;
     constexpr std::size_t kCount = 3;
