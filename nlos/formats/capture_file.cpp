@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/formats/capture_file.h"
 
+#include "nlos/containers/array_reader.h"
 #include "nlos/formats/capture_format.h"
 #include "nlos/formats/volume_file.h"
 #include "nlos/layouts/layout_capture.h"
