@@ -162,7 +162,7 @@ void attach_png(cairo_surface_t* surface) {
 struct Canvas::Drawing {
     PictureFormat format;
     std::string bytes;                        // which a vector surface writes to
-    std::unique_ptr<unsigned char[]> pixels;  // of an image surface
+    std::unique_ptr<unsigned char[]> pixels;  // of an image surface: cairo's own are small pages
     CairoSurface surface;
     CairoContext context;
 

@@ -8,20 +8,23 @@ namespace nlos {
 EvenTransform::EvenTransform(std::size_t nx, std::size_t ny)
     : nx_(nx),
       ny_(ny),
-      rows_(Fft::complex_batch(period_y(), nx, {1, stride(period_y())}, Fft::Direction::Forward)),
+      rows_(Fft::complex_batch(
+          period_y(), nx, {1, complex_row_stride(period_y())}, Fft::Direction::Forward)),
       columns_(Fft::complex_batch(period_x(),
                                   ny,
-                                  {stride(period_y()), 1},
-                                  {1, stride(period_x())},
+                                  {complex_row_stride(period_y()), 1},
+                                  {1, complex_row_stride(period_x())},
                                   Fft::Direction::Forward)) {}
 
 EvenTransform::Workspace EvenTransform::make_workspace() const {
-    return {FftBuffer(2 * period_x() * stride(period_y())),
-            FftBuffer(2 * ny_ * stride(period_x()))};
+    return {FftBuffer(2 * period_x() * complex_row_stride(period_y())),
+            FftBuffer(2 * ny_ * complex_row_stride(period_x()))};
 }
 
 void EvenTransform::run(ComplexF* values, Workspace& work) const {
-    const auto row = [&](std::size_t ix) { return work.rows.complex() + ix * stride(period_y()); };
+    const auto row = [&](std::size_t ix) {
+        return work.rows.complex() + ix * complex_row_stride(period_y());
+    };
     for (std::size_t ix = 0; ix < nx_; ++ix) {
         const ComplexF* half = values + ix * ny_;
         std::copy_n(half, ny_, row(ix));
@@ -33,7 +36,8 @@ void EvenTransform::run(ComplexF* values, Workspace& work) const {
     }
     columns_.run(work.rows, work.columns);
     for (std::size_t iy = 0; iy < ny_; ++iy) {
-        std::copy_n(work.columns.complex() + iy * stride(period_x()), nx_, values + iy * nx_);
+        std::copy_n(
+            work.columns.complex() + iy * complex_row_stride(period_x()), nx_, values + iy * nx_);
     }
 }
 

@@ -60,12 +60,6 @@ std::size_t good_fft_size(std::size_t n) {
     }
 }
 
-std::size_t row_stride(std::size_t num_floats) {
-    constexpr std::size_t kLine = 16;  // floats
-    const std::size_t lines = (num_floats + kLine - 1) / kLine;
-    return kLine * (lines | 1U);
-}
-
 FftBuffer::FftBuffer(std::size_t num_floats) : num_floats_(num_floats) {
     constexpr std::size_t kAlignment = 64;
     const std::size_t num_bytes = num_floats * sizeof(float);

@@ -14,7 +14,16 @@ std::size_t good_fft_size(std::size_t n);
 
 /// Floats from one row of `num_floats` to the next: neighbours lie in different cache sets, so that
 /// a walk down the rows does not throw out what it read.
-std::size_t row_stride(std::size_t num_floats);
+inline std::size_t row_stride(std::size_t num_floats) {
+    constexpr std::size_t kLine = 16;  // floats
+    const std::size_t lines = (num_floats + kLine - 1) / kLine;
+    return kLine * (lines | 1U);
+}
+
+/// The same of rows of complex numbers, counted in these.
+inline std::size_t complex_row_stride(std::size_t count) {
+    return row_stride(2 * count) / 2;
+}
 
 /// Memory aligned for transforms, zeroed at the start: the system does it page by page, in the
 /// thread that comes to a page first. Large buffers ask for huge pages.

@@ -10,22 +10,24 @@ using Direction = Fft::Direction;
 PaddedPlane::PaddedPlane(std::array<std::size_t, 2> size, std::array<std::size_t, 2> padded)
     : size_(size),
       padded_(padded),
-      rows_forward_(
-          Fft::complex_batch(padded[1], size[0], {1, stride(padded[1])}, Direction::Forward)),
+      rows_forward_(Fft::complex_batch(
+          padded[1], size[0], {1, complex_row_stride(padded[1])}, Direction::Forward)),
       columns_forward_(Fft::complex_batch(padded[0],
                                           padded[1],
-                                          {stride(padded[1]), 1},
-                                          {1, stride(padded[0])},
+                                          {complex_row_stride(padded[1]), 1},
+                                          {1, complex_row_stride(padded[0])},
                                           Direction::Forward)),
-      columns_inverse_(
-          Fft::complex_batch(padded[0], padded[1], {1, stride(padded[0])}, Direction::Inverse)),
-      rows_inverse_(Fft::complex_batch(
-          padded[1], size[0], {stride(padded[0]), 1}, {1, stride(padded[1])}, Direction::Inverse)) {
-}
+      columns_inverse_(Fft::complex_batch(
+          padded[0], padded[1], {1, complex_row_stride(padded[0])}, Direction::Inverse)),
+      rows_inverse_(Fft::complex_batch(padded[1],
+                                       size[0],
+                                       {complex_row_stride(padded[0]), 1},
+                                       {1, complex_row_stride(padded[1])},
+                                       Direction::Inverse)) {}
 
 PaddedPlane::Workspace PaddedPlane::make_workspace() const {
-    return {FftBuffer(2 * padded_[0] * stride(padded_[1])),
-            FftBuffer(2 * padded_[1] * stride(padded_[0]))};
+    return {FftBuffer(2 * padded_[0] * complex_row_stride(padded_[1])),
+            FftBuffer(2 * padded_[1] * complex_row_stride(padded_[0]))};
 }
 
 void PaddedPlane::load(const ComplexF* values, Workspace& work) const {

@@ -34,11 +34,11 @@ class PaddedPlane {
 
     /// Row ix of the values: py of them along y.
     ComplexF* row(Workspace& work, std::size_t ix) const {
-        return work.values.complex() + ix * stride(padded_[1]);
+        return work.values.complex() + ix * complex_row_stride(padded_[1]);
     }
     /// Row iy of the spectrum: px of it along kx.
     ComplexF* spectrum_row(Workspace& work, std::size_t iy) const {
-        return work.spectrum.complex() + iy * stride(padded_[0]);
+        return work.spectrum.complex() + iy * complex_row_stride(padded_[0]);
     }
 
     /// Copies values (nx, ny) into the workspace, padded by zeros.
@@ -63,7 +63,6 @@ class PaddedPlane {
 
  private:
     /// Distance of rows: not a power of two, which would crowd a column into few cache sets.
-    static std::size_t stride(std::size_t length) { return row_stride(2 * length) / 2; }
 
     std::array<std::size_t, 2> size_;
     std::array<std::size_t, 2> padded_;

@@ -223,7 +223,7 @@ double directional_light_cone_transform_bytes(const MethodInput& input,
                                               std::size_t num_slabs) {
     const Cone cone = make_cone(input, kSquaredRangeBinsPerBin);
     const auto columns = static_cast<double>(cone.num_columns());
-    const auto padded = static_cast<double>(cone.px * (cone.py + 8));
+    const auto padded = static_cast<double>(cone.px * complex_row_stride(cone.py));
     const double spectra =
         24.0 *
         static_cast<double>(largest_slab(cone.num_frequencies(), num_slabs) * cone.plane_stride());

@@ -335,11 +335,11 @@ double fk_migration_bytes(const MethodInput& input,
                           std::size_t num_slabs) {
     const FkGrids grids = make_grids(input);
     const auto columns = static_cast<double>(grids.num_columns());
-    const auto plane = static_cast<double>(grids.px * (grids.py + 8));
+    const auto plane = static_cast<double>(grids.px * complex_row_stride(grids.py));
     const std::size_t pairs = largest_slab(num_pairs(grids), num_slabs);
-    const auto rows = static_cast<double>(std::min(grids.py, 2 * pairs));
-    const double field = 8.0 * (rows * static_cast<double>(grids.px) + 8.0) *
-                         static_cast<double>(grids.num_planes());
+    const std::size_t rows = std::min(grids.py, 2 * pairs);
+    const double field =
+        8.0 * static_cast<double>(complex_row_stride(rows * grids.px) * grids.num_planes());
     const double spectrum =
         8.0 * static_cast<double>(grids.plane_stride() * grids.num_frequencies());
     const double amplitudes =

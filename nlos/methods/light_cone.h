@@ -33,7 +33,7 @@ struct Cone {
     std::size_t num_frequencies() const { return length / 2 + 1; }
     std::size_t num_columns() const { return nx * ny; }
     /// From the spectrum at one frequency to that at the next.
-    std::size_t plane_stride() const { return row_stride(2 * num_columns()) / 2; }
+    std::size_t plane_stride() const { return complex_row_stride(num_columns()); }
 };
 
 /// input          confocal scan with input.wall.grid

@@ -101,7 +101,7 @@ double light_cone_transform_bytes(const MethodInput& input,
                                   std::size_t num_slabs) {
     const Cone cone = make_cone(input, kSquaredRangeBinsPerBin);
     const auto columns = static_cast<double>(cone.num_columns());
-    const auto padded = static_cast<double>(cone.px * (cone.py + 8));
+    const auto padded = static_cast<double>(cone.px * complex_row_stride(cone.py));
     const auto frequencies = static_cast<double>(largest_slab(cone.num_frequencies(), num_slabs));
     const double spectrum = 8.0 * frequencies * static_cast<double>(cone.plane_stride());
     const double volume = 4.0 * columns * static_cast<double>(input.axes.z_m.size());

@@ -28,7 +28,7 @@ struct FkGrids {
     std::size_t num_planes() const { return std::max(num_frequencies(), num_depths()); }
     std::size_t num_columns() const { return nx * ny; }
     /// From the columns at one frequency to those at the next.
-    std::size_t plane_stride() const { return row_stride(2 * num_columns()) / 2; }
+    std::size_t plane_stride() const { return complex_row_stride(num_columns()); }
     double period_m() const { return static_cast<double>(length) * bin_m; }
 };
 
@@ -42,7 +42,7 @@ struct RowSlab {
     std::size_t num_pairs() const { return begin.size() - 1; }
     /// Where row `row` of a plane begins.
     std::size_t offset(std::size_t plane, std::size_t row) const {
-        return plane * (row_stride(2 * ky.size() * px) / 2) + row * px;
+        return plane * complex_row_stride(ky.size() * px) + row * px;
     }
 };
 

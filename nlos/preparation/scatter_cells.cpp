@@ -227,8 +227,9 @@ CellReach ScatterTransport::backward(const std::vector<float>& ratio,
                 const float late = arrival.late();
                 const float weight = pair_gain * arrival.weight;
                 Sums& sum = sums[arrival.cell - begin];
-                for (std::size_t i = 0; i < 2; ++i)
+                for (std::size_t i = 0; i < sum.size(); ++i) {
                     sum[i] += weight * (bin.here[i] + late * bin.step[i]);
+                }
             }
         }
         for (std::size_t cell = begin; cell < end; ++cell) {
