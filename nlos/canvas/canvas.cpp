@@ -8,9 +8,9 @@
 #include <cairo-ft.h>
 #include <cairo-pdf.h>
 #include <cairo-svg.h>
+#include <fmt/format.h>
 
 #include <algorithm>
-#include <new>
 #include <numbers>
 
 // DejaVu Sans (.ttf), which becomes part of the program: pictures need no font where it runs.
@@ -24,6 +24,7 @@ namespace {
 
 constexpr double kPointsPerPixel = 0.375;       // of files of lines
 constexpr int kRasterDetail = 2;                // pixels of images in them per pixel of a .png
+constexpr int kMaxSide = 32'767;                // of cairo's images, in pixels
 constexpr double kCapHeight = 1493.0 / 2048.0;  // of the font at size 1
 
 /// Deletes what cairo made.
@@ -110,10 +111,16 @@ CairoSurface make_surface(PictureFormat format,
             return surface;
         }
     }
+    if (std::max(width, height) > kMaxSide) {
+        throw core::Failure("picture",
+                            fmt::format("would have {} x {} pixels; at most {} a side can be drawn",
+                                        width,
+                                        height,
+                                        kMaxSide));
+    }
     const int stride = cairo_format_stride_for_width(CAIRO_FORMAT_RGB24, width);
-    const auto num_bytes = static_cast<std::size_t>(stride) * static_cast<std::size_t>(height);
-    pixels.reset(new (std::nothrow) unsigned char[num_bytes]);
-    if (!pixels) throw core::Failure("picture", "needs more memory than is free");
+    pixels = std::make_unique_for_overwrite<unsigned char[]>(static_cast<std::size_t>(stride) *
+                                                             static_cast<std::size_t>(height));
     return CairoSurface(cairo_image_surface_create_for_data(
         pixels.get(), CAIRO_FORMAT_RGB24, width, height, stride));
 }

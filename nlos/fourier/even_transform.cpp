@@ -9,16 +9,17 @@ EvenTransform::EvenTransform(std::size_t nx, std::size_t ny)
     : nx_(nx),
       ny_(ny),
       rows_(Fft::complex_batch(
-          period_y(), nx, {1, complex_row_stride(period_y())}, Fft::Direction::Forward)),
+          period_y(), in_fours(nx), {1, complex_row_stride(period_y())}, Fft::Direction::Forward)),
       columns_(Fft::complex_batch(period_x(),
-                                  ny,
+                                  in_fours(ny),
                                   {complex_row_stride(period_y()), 1},
                                   {1, complex_row_stride(period_x())},
                                   Fft::Direction::Forward)) {}
 
 EvenTransform::Workspace EvenTransform::make_workspace() const {
-    return {FftBuffer(2 * period_x() * complex_row_stride(period_y())),
-            FftBuffer(2 * ny_ * complex_row_stride(period_x()))};
+    const std::size_t num_rows = std::max(period_x(), in_fours(nx_));
+    return {FftBuffer(2 * num_rows * complex_row_stride(period_y())),
+            FftBuffer(2 * in_fours(ny_) * complex_row_stride(period_x()))};
 }
 
 void EvenTransform::run(ComplexF* values, Workspace& work) const {

@@ -27,7 +27,6 @@ class EvenTransform {
  private:
     std::size_t period_x() const { return 2 * (nx_ - 1); }
     std::size_t period_y() const { return 2 * (ny_ - 1); }
-    /// Distance of rows: not a power of two, which would crowd a column into few cache sets.
 
     std::size_t nx_, ny_;
     Fft rows_, columns_;

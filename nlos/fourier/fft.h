@@ -25,6 +25,12 @@ inline std::size_t complex_row_stride(std::size_t count) {
     return row_stride(2 * count) / 2;
 }
 
+/// How many transforms to ask for where `count` are needed and room for a few more is there: FFTW
+/// uses its widest vectors for whole fours alone, which makes 68 faster than 65.
+inline std::size_t in_fours(std::size_t count) {
+    return (count + 3) / 4 * 4;
+}
+
 /// Memory aligned for transforms, zeroed at the start: the system does it page by page, in the
 /// thread that comes to a page first. Large buffers ask for huge pages.
 class FftBuffer {

@@ -11,23 +11,23 @@ PaddedPlane::PaddedPlane(std::array<std::size_t, 2> size, std::array<std::size_t
     : size_(size),
       padded_(padded),
       rows_forward_(Fft::complex_batch(
-          padded[1], size[0], {1, complex_row_stride(padded[1])}, Direction::Forward)),
+          padded[1], in_fours(size[0]), {1, complex_row_stride(padded[1])}, Direction::Forward)),
       columns_forward_(Fft::complex_batch(padded[0],
-                                          padded[1],
+                                          in_fours(padded[1]),
                                           {complex_row_stride(padded[1]), 1},
                                           {1, complex_row_stride(padded[0])},
                                           Direction::Forward)),
       columns_inverse_(Fft::complex_batch(
-          padded[0], padded[1], {1, complex_row_stride(padded[0])}, Direction::Inverse)),
+          padded[0], in_fours(padded[1]), {1, complex_row_stride(padded[0])}, Direction::Inverse)),
       rows_inverse_(Fft::complex_batch(padded[1],
-                                       size[0],
+                                       in_fours(size[0]),
                                        {complex_row_stride(padded[0]), 1},
                                        {1, complex_row_stride(padded[1])},
                                        Direction::Inverse)) {}
 
 PaddedPlane::Workspace PaddedPlane::make_workspace() const {
-    return {FftBuffer(2 * padded_[0] * complex_row_stride(padded_[1])),
-            FftBuffer(2 * padded_[1] * complex_row_stride(padded_[0]))};
+    return {FftBuffer(2 * in_fours(padded_[0]) * complex_row_stride(padded_[1])),
+            FftBuffer(2 * in_fours(padded_[1]) * complex_row_stride(padded_[0]))};
 }
 
 void PaddedPlane::load(const ComplexF* values, Workspace& work) const {
@@ -64,6 +64,7 @@ void PaddedPlane::add_spectrum(Workspace& work, ComplexF* spectrum) const {
 }
 
 void PaddedPlane::forward(Workspace& work) const {
+    std::fill(row(work, size_[0]), row(work, in_fours(size_[0])), ComplexF{});
     rows_forward_.run(work.values);
     columns_forward_.run(work.values, work.spectrum);
 }

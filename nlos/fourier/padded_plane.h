@@ -26,7 +26,6 @@ class PaddedPlane {
  public:
     PaddedPlane(std::array<std::size_t, 2> size, std::array<std::size_t, 2> padded);
 
-    /// Rows of values beyond the first nx stay 0.
     struct Workspace {
         FftBuffer values, spectrum;
     };
@@ -53,7 +52,8 @@ class PaddedPlane {
     /// Adds the workspace's spectrum to `spectrum` (py, px).
     void add_spectrum(Workspace& work, ComplexF* spectrum) const;
 
-    /// Values to their spectrum and back; neither keeps what it reads.
+    /// Values, of which rows from nx on count as 0, to their spectrum and back; neither keeps what
+    /// it reads.
     void forward(Workspace& work) const;
     void inverse(Workspace& work) const;
 
@@ -62,8 +62,6 @@ class PaddedPlane {
     void multiply_by_quadrant(const ComplexF* quadrant, Workspace& work) const;
 
  private:
-    /// Distance of rows: not a power of two, which would crowd a column into few cache sets.
-
     std::array<std::size_t, 2> size_;
     std::array<std::size_t, 2> padded_;
     Fft rows_forward_, columns_forward_, columns_inverse_, rows_inverse_;

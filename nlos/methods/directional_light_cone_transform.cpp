@@ -20,10 +20,11 @@ constexpr int kNormalReach = 2;  // voxels on either side of the brightest that 
 double typical_depth_m(const MethodInput& input, const Cone& cone, double power) {
     const ConeData data(input, cone, power);
     std::vector<float> row(cone.num_v());
+    float* const first = row.data();
     double sum = 0.0;
     double moment = 0.0;
     for (std::size_t column = 0; column < cone.num_columns(); ++column) {
-        data.fill(column, row.data());
+        data.fill(column, {&first, 1});
         for (std::size_t i = 0; i < row.size(); ++i) {
             const double light = std::max(0.0, static_cast<double>(row[i]));
             sum += light;
@@ -51,19 +52,23 @@ class VectorFilter {
 
     struct Workspace {
         PaddedPlane::Workspace data, x, y, z;
+        ConeKernel::Spectrum kernel;
         FftBuffer quadrant;
     };
-    Workspace make_workspace() const {
+    /// For frequencies from k on.
+    Workspace make_workspace(std::size_t k) const {
         return {data_plane_.make_workspace(),
                 kernel_plane_.make_workspace(),
                 kernel_plane_.make_workspace(),
                 kernel_plane_.make_workspace(),
+                {kernel_, k},
                 FftBuffer(2 * kernel_.qx() * kernel_.qy())};
     }
 
-    /// Turns the data at frequency k, the n-th of `components.z`, into the three components.
-    void apply(std::size_t k, std::size_t n, Components& components, Workspace& work) const {
-        fill_kernels(k, work);
+    /// Turns the data at the workspace's next frequency, the n-th of `components.z`, into the three
+    /// components.
+    void apply(std::size_t n, Components& components, Workspace& work) const {
+        fill_kernels(work);
         kernel_plane_.forward(work.x);
         kernel_plane_.forward(work.y);
         kernel_plane_.forward(work.z);
@@ -79,8 +84,8 @@ class VectorFilter {
  private:
     /// K even in both offsets, K_x odd in dx, K_y odd in dy; an odd function is 0 half a period
     /// away, where both signs meet.
-    void fill_kernels(std::size_t k, Workspace& work) const {
-        kernel_.fill(k, work.quadrant.complex());
+    void fill_kernels(Workspace& work) const {
+        work.kernel.next(work.quadrant.complex());
         for (std::size_t ix = 0; ix < cone_.px; ++ix) {
             const std::size_t qx = std::min(ix, cone_.px - ix);
             const double dx = signed_offset(ix, cone_.px) * grid_.pitch_m[0] / depth_m_;
@@ -184,9 +189,10 @@ Volume directional_light_cone_transform(const MethodInput& input,
                                       kSlabsPerBlock,
                                       {progress, 0.1, 0.8, "deconvolution"},
                                       [&](std::size_t begin, std::size_t end) {
-                                          VectorFilter::Workspace work = filter.make_workspace();
+                                          VectorFilter::Workspace work =
+                                              filter.make_workspace(slab.begin + begin);
                                           for (std::size_t n = begin; n < end; ++n)
-                                              filter.apply(slab.begin + n, n, components, work);
+                                              filter.apply(n, components, work);
                                       });
         add_spectrum_to_depth(
             input, cone, components.x, slab, x, {progress, 0.8, 0.87, "to depth"});

@@ -47,6 +47,14 @@ PlaneRows spectrum_rows(FftBuffer& rows,
             slab.size()};
 }
 
+/// Where `count` rows begin.
+template <typename Float>
+std::vector<Float*> starts(Float* first, std::size_t stride, std::size_t count) {
+    std::vector<Float*> rows;
+    for (std::size_t i = 0; i < count; ++i) rows.push_back(first + i * stride);
+    return rows;
+}
+
 }  // namespace
 
 Cone make_cone(const MethodInput& input, double bins_per_bin) {
@@ -82,21 +90,30 @@ ConeData::ConeData(const MethodInput& input, const Cone& cone, double power)
       power_(power),
       common_(path_length_to_squared_range(input.time_axis, cone.min_leg_m, cone, power)) {}
 
-void ConeData::fill(std::size_t column, float* row) const {
-    const std::size_t pair = input_.wall.grid->point(column / cone_.ny, column % cone_.ny);
-    const float* histogram = input_.transient.histogram(pair).data();
+std::size_t ConeData::pair_of(std::size_t column) const {
+    return input_.wall.grid->point(column / cone_.ny, column % cone_.ny);
+}
+
+void ConeData::fill(std::size_t first_column, std::span<float* const> rows) const {
+    std::vector<const float*> histograms;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        histograms.push_back(input_.transient.histogram(pair_of(first_column + i)).data());
+    }
     if (cone_.is_same_for_all) {
-        common_.apply(histogram, row);
+        common_.apply(histograms, rows);
         return;
     }
-    path_length_to_squared_range(input_.time_axis, input_.scan.device_legs_m(pair), cone_, power_)
-        .apply(histogram, row);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const double leg_m = input_.scan.device_legs_m(pair_of(first_column + i));
+        path_length_to_squared_range(input_.time_axis, leg_m, cone_, power_)
+            .apply(histograms[i], rows[i]);
+    }
 }
 
 core::BinRange ConeData::observed(std::size_t column) const {
     const int num_v = static_cast<int>(cone_.num_v());
     const core::TimeAxis& axis = input_.time_axis;
-    const std::size_t pair = input_.wall.grid->point(column / cone_.ny, column % cone_.ny);
+    const std::size_t pair = pair_of(column);
     const core::BinRange range =
         input_.observed ? (*input_.observed)[pair] : core::BinRange{0, axis.num_bins};
     const bool begins_late = range.begin > 0 || input_.unobserved_before_m > 0.0;
@@ -127,7 +144,7 @@ ConservativeResampling squared_range_to_depth(const MethodInput& input,
 }
 
 ConeKernel::ConeKernel(const Cone& cone, const WallGrid& grid)
-    : qx_(cone.px / 2 + 1), qy_(cone.py / 2 + 1), length_(cone.length) {
+    : qx_(cone.px / 2 + 1), qy_(cone.py / 2 + 1) {
     for (std::size_t ix = 0; ix < qx_; ++ix) {
         for (std::size_t iy = 0; iy < qy_; ++iy) {
             const double dx = static_cast<double>(ix) * grid.pitch_m[0];
@@ -137,28 +154,44 @@ ConeKernel::ConeKernel(const Cone& cone, const WallGrid& grid)
             const double whole = std::floor(is_inside ? shift : 0.0);
             const double next = is_inside ? shift - whole : 0.0;
             const double here = is_inside ? 1.0 - next : 0.0;
-            entries_.push_back({static_cast<std::size_t>(whole),
-                                static_cast<float>(here),
-                                static_cast<float>(next)});
+            shift_.push_back(static_cast<std::uint32_t>(whole));
+            here_.push_back(static_cast<float>(here));
+            next_.push_back(static_cast<float>(next));
             const double copies =
                 (ix == 0 || ix + 1 == qx_ ? 1.0 : 2.0) * (iy == 0 || iy + 1 == qy_ ? 1.0 : 2.0);
             squared_norm_ += copies * (here * here + next * next);
         }
     }
-    for (std::size_t i = 0; i < length_; ++i) {
+    for (std::size_t i = 0; i < cone.length; ++i) {
         const double angle =
-            -2.0 * core::kPi * static_cast<double>(i) / static_cast<double>(length_);
+            -2.0 * core::kPi * static_cast<double>(i) / static_cast<double>(cone.length);
         phases_.emplace_back(static_cast<float>(std::cos(angle)),
                              static_cast<float>(std::sin(angle)));
     }
 }
 
-void ConeKernel::fill(std::size_t k, ComplexF* quadrant) const {
-    const ComplexF step = phases_[k % length_];
-    for (std::size_t i = 0; i < entries_.size(); ++i) {
-        const ConeEntry& e = entries_[i];
-        const ComplexF split{e.here + e.next * step.real(), e.next * step.imag()};
-        quadrant[i] = multiply(phases_[(e.shift * k) % length_], split);
+ConeKernel::Spectrum::Spectrum(const ConeKernel& kernel, std::size_t k) : kernel_(kernel), k_(k) {
+    for (const std::size_t shift : kernel.shift_) {
+        places_.push_back(static_cast<std::uint32_t>(shift * k % kernel.phases_.size()));
+    }
+}
+
+void ConeKernel::Spectrum::next(ComplexF* quadrant) {
+    const std::size_t size = places_.size();
+    const ComplexF* const phases = kernel_.phases_.data();
+    const float* const here = kernel_.here_.data();
+    const float* const next = kernel_.next_.data();
+    const std::uint32_t* const shift = kernel_.shift_.data();
+    std::uint32_t* const places = places_.data();
+    const auto period = static_cast<std::uint32_t>(kernel_.phases_.size());
+    const ComplexF step = phases[k_++ % period];
+    for (std::size_t i = 0; i < size; ++i) {
+        const ComplexF split{here[i] + next[i] * step.real(), next[i] * step.imag()};
+        quadrant[i] = multiply(phases[places[i]], split);
+    }
+    for (std::size_t i = 0; i < size; ++i) {
+        const std::uint32_t place = places[i] + shift[i];
+        places[i] = std::min(place, place - period);  // the difference of less than one is huge
     }
 }
 
@@ -179,9 +212,7 @@ void fill_cone_spectrum(const MethodInput& input,
     parallel_blocks_with_progress(
         num_columns, kColumnsPerBlock, span, [&](std::size_t begin, std::size_t end) {
             FftBuffer rows(kColumnsPerBlock * row_floats);
-            for (std::size_t column = begin; column < end; ++column) {
-                data.fill(column, rows.data() + (column - begin) * row_floats);
-            }
+            data.fill(begin, starts(rows.data(), row_floats, end - begin));
             forward.run(rows);
             spectrum_rows(rows, cone, begin, end, spectrum, slab).copy_to_planes();
         });
@@ -203,12 +234,11 @@ void add_spectrum_to_depth(const MethodInput& input,
             FftBuffer rows(kColumnsPerBlock * row_floats);
             spectrum_rows(rows, cone, begin, end, spectrum, slab).copy_to_rows();
             inverse.run(rows);
-            std::vector<float> share(nz);
-            for (std::size_t column = begin; column < end; ++column) {
-                to_depth.apply(rows.data() + (column - begin) * row_floats, share.data());
-                float* voxels = values.data() + column * nz;
-                for (std::size_t iz = 0; iz < nz; ++iz) voxels[iz] += share[iz];
-            }
+            std::vector<float> shares((end - begin) * nz);
+            const auto inputs = starts<const float>(rows.data(), row_floats, end - begin);
+            to_depth.apply(inputs, starts(shares.data(), nz, end - begin));
+            float* voxels = values.data() + begin * nz;
+            for (std::size_t i = 0; i < shares.size(); ++i) voxels[i] += shares[i];
         });
 }
 

@@ -6,12 +6,14 @@
 #include "nlos/methods/slabs.h"
 #include "nlos/preparation/conservative_resampling.h"
 
+#include <cstdint>
+#include <span>
 #include <vector>
 
 namespace nlos {
 
 /// Lateral planes that a task transforms together.
-inline constexpr std::size_t kSlabsPerBlock = 8;
+inline constexpr std::size_t kSlabsPerBlock = 16;
 
 /// Even bins of v = r^2 are 1 / (2 r) wide in r: as many as there are range bins would be coarser
 /// than those in the near half of the volume and pull depths there towards the wall.
@@ -47,13 +49,16 @@ class ConeData {
  public:
     ConeData(const MethodInput& input, const Cone& cone, double power);
 
-    /// Fills `row` with num_v() values of wall point (column / ny, column % ny).
-    void fill(std::size_t column, float* row) const;
+    /// Fills each of `rows` with num_v() values: the n-th with those of wall point
+    /// (column / ny, column % ny), column = first_column + n.
+    void fill(std::size_t first_column, std::span<float* const> rows) const;
 
     /// The bins of v of a wall point whose light was observed as a whole.
     core::BinRange observed(std::size_t column) const;
 
  private:
+    std::size_t pair_of(std::size_t column) const;
+
     const MethodInput& input_;
     const Cone& cone_;
     double power_;
@@ -69,7 +74,7 @@ ConservativeResampling squared_range_to_depth(const MethodInput& input,
 /// Where the cone meets one lateral offset: bin `shift` with weight `here`, the next one with
 /// `next`; the two sum to 1 unless the offset is off the axis.
 struct ConeEntry {
-    std::size_t shift = 0;
+    std::uint32_t shift = 0;
     float here = 0.0F, next = 0.0F;
 };
 
@@ -82,16 +87,35 @@ class ConeKernel {
     std::size_t qx() const { return qx_; }
     std::size_t qy() const { return qy_; }
     double squared_norm() const { return squared_norm_; }
-    const ConeEntry& entry(std::size_t ix, std::size_t iy) const { return entries_[ix * qy_ + iy]; }
+    ConeEntry entry(std::size_t ix, std::size_t iy) const {
+        const std::size_t i = ix * qy_ + iy;
+        return {shift_[i], here_[i], next_[i]};
+    }
 
-    /// Writes the quadrant's transform along v at frequency k.
-    void fill(std::size_t k, ComplexF* quadrant) const;
+    /// Transforms of the quadrant along v, one frequency after the other: a phase is looked up, and
+    /// its place in the table at the next frequency is a sum, where that of any would be a
+    /// division.
+    class Spectrum {
+     public:
+        /// kernel   must outlive the spectrum
+        /// k        the first frequency
+        Spectrum(const ConeKernel& kernel, std::size_t k);
+
+        /// Writes the quadrant, [x][y], at a frequency and turns to the next.
+        void next(ComplexF* quadrant);
+
+     private:
+        const ConeKernel& kernel_;
+        std::size_t k_;
+        std::vector<std::uint32_t> places_;  ///< of each entry's phase
+    };
 
  private:
-    std::size_t qx_, qy_, length_;
+    std::size_t qx_, qy_;
     double squared_norm_ = 0.0;
-    std::vector<ConeEntry> entries_;
-    std::vector<ComplexF> phases_;
+    std::vector<std::uint32_t> shift_;  ///< of each entry, [x][y]
+    std::vector<float> here_, next_;
+    std::vector<ComplexF> phases_;  ///< of a whole period
 };
 
 /// Room for the spectrum of the largest of `num_slabs` slabs. One buffer serves all of them:

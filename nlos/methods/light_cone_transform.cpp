@@ -20,17 +20,20 @@ class SlabFilter {
     struct Workspace {
         PaddedPlane::Workspace slab;
         EvenTransform::Workspace period;
+        ConeKernel::Spectrum kernel;
         std::vector<ComplexF> quadrant;
     };
-    Workspace make_workspace() const {
+    /// For frequencies from k on.
+    Workspace make_workspace(std::size_t k) const {
         return {plane_.make_workspace(),
                 kernel_transform_.make_workspace(),
+                {kernel_, k},
                 std::vector<ComplexF>(kernel_.qx() * kernel_.qy())};
     }
 
-    /// Filters frequency k of `slab` (nx, ny) in place.
-    void apply(std::size_t k, ComplexF* slab, Workspace& work) const {
-        kernel_.fill(k, work.quadrant.data());
+    /// Filters `slab` (nx, ny) in place, which is at the workspace's next frequency.
+    void apply(ComplexF* slab, Workspace& work) const {
+        work.kernel.next(work.quadrant.data());
         kernel_transform_.run(work.quadrant.data(), work.period);
         turn_into_wiener_filter(work.quadrant.data());
         plane_.load(slab, work.slab);
@@ -83,10 +86,9 @@ Volume light_cone_transform(const MethodInput& input,
             kSlabsPerBlock,
             {progress, 0.2, 0.8, "deconvolution"},
             [&](std::size_t begin, std::size_t end) {
-                SlabFilter::Workspace work = filter.make_workspace();
-                for (std::size_t k = begin; k < end; ++k) {
-                    filter.apply(
-                        slab.begin + k, spectrum.complex() + k * cone.plane_stride(), work);
+                SlabFilter::Workspace work = filter.make_workspace(slab.begin + begin);
+                for (std::size_t n = begin; n < end; ++n) {
+                    filter.apply(spectrum.complex() + n * cone.plane_stride(), work);
                 }
             });
         add_spectrum_to_depth(

@@ -186,15 +186,23 @@ std::optional<std::string> slips(const core::Capture& capture,
 std::optional<std::string> wrong_unit(const core::Capture& capture) {
     std::size_t lit = 0;
     std::size_t whole = 0;
-    float most = 0.0F;
-    for (const float value : capture.transient.values()) {
-        if (value == 0.0F) continue;
-        ++lit;
-        if (value > 0.0F && value == std::trunc(value)) ++whole;
-        most = std::max(most, value);
+    std::size_t several = 0;
+    for (std::size_t pair = 0; pair < capture.transient.num_pairs(); ++pair) {
+        int lit_here = 0;  // narrow counters and no branches: the loop runs over all of the data
+        int whole_here = 0;
+        int several_here = 0;
+        for (const float value : capture.transient.histogram(pair)) {
+            lit_here += static_cast<int>(value != 0.0F);
+            whole_here +=
+                static_cast<int>(value > 0.0F) & static_cast<int>(value == std::trunc(value));
+            several_here += static_cast<int>(value >= 2.0F);
+        }
+        lit += static_cast<std::size_t>(lit_here);
+        whole += static_cast<std::size_t>(whole_here);
+        several += static_cast<std::size_t>(several_here);
     }
     if (capture.unit == core::TransientUnit::Radiance && whole == lit && lit >= kMinLitValues &&
-        most >= 2.0F) {
+        several > 0) {
         return "radiance that is whole numbers throughout looks like counts: --set "
                "capture.unit=counts";
     }

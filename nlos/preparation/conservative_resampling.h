@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -29,23 +30,42 @@ class ConservativeResampling {
     std::size_t num_outputs() const { return rows_.size(); }
 
     /// Computes all output bins.
-    void apply(const float* input, float* output) const {
-        for (std::size_t row = 0; row < rows_.size(); ++row) {
-            const Row& r = rows_[row];
-            float sum = 0.0F;
-            for (std::size_t i = 0; i < r.count; ++i) {
-                sum += weights_[r.first_weight + i] * input[r.first_input + i];
-            }
-            output[row] = sum;
+    void apply(const float* input, float* output) const { apply_lanes<1>(&input, &output); }
+
+    /// Computes all output bins of several histograms, each as if it were alone.
+    void apply(std::span<const float* const> inputs, std::span<float* const> outputs) const {
+        std::size_t i = 0;
+        for (; i + kLanes <= inputs.size(); i += kLanes) {
+            apply_lanes<kLanes>(inputs.data() + i, outputs.data() + i);
         }
+        for (; i < inputs.size(); ++i) apply_lanes<1>(inputs.data() + i, outputs.data() + i);
     }
 
  private:
+    /// Histograms at once: rows have few inputs, whose number is hard to foresee.
+    static constexpr std::size_t kLanes = 8;
+
     struct Row {
         std::size_t first_input = 0;
         std::size_t first_weight = 0;
         std::size_t count = 0;
     };
+
+    template <std::size_t kCount>
+    void apply_lanes(const float* const* inputs, float* const* outputs) const {
+        for (std::size_t row = 0; row < rows_.size(); ++row) {
+            const Row& r = rows_[row];
+            std::array<float, kCount> sums{};
+            for (std::size_t i = 0; i < r.count; ++i) {
+                const float weight = weights_[r.first_weight + i];
+                for (std::size_t lane = 0; lane < kCount; ++lane) {
+                    sums[lane] += weight * inputs[lane][r.first_input + i];
+                }
+            }
+            for (std::size_t lane = 0; lane < kCount; ++lane) outputs[lane][row] = sums[lane];
+        }
+    }
+
     std::vector<Row> rows_;
     std::vector<float> weights_;
 };

@@ -93,9 +93,9 @@ std::optional<double> first_light_m(const core::Capture& capture,
     if (seen.empty()) return std::nullopt;
     const int first_seen = capture.observed_range(pair).begin;
     const auto excess = [&](std::size_t bin) { return static_cast<double>(seen[bin]) - ambient; };
-    const double threshold =
-        kFirstLightShare *
-        (static_cast<double>(*std::max_element(seen.begin(), seen.end())) - ambient);
+    const Eigen::Map<const Eigen::ArrayXf> values(seen.data(),
+                                                  static_cast<Eigen::Index>(seen.size()));
+    const double threshold = kFirstLightShare * (static_cast<double>(values.maxCoeff()) - ambient);
     if (!(threshold > 0.0)) return std::nullopt;
     std::size_t bin = 0;
     while (excess(bin) < threshold) ++bin;

@@ -128,18 +128,28 @@ ScatterTransport::ScatterTransport(const HistogramSample& sample,
       unit_m_(farthest_m(cells)),
       observed_(sample.observed),
       arrivals_(num_pairs_),
-      block_starts_(num_pairs_) {
+      block_starts_(num_pairs_),
+      reach_(num_cells_) {
     Eigen::ArrayX3f positions(num_cells_, 3);
     for (std::size_t i = 0; i < num_cells_; ++i) {
         const Vec3 position = position_of(cells.centers[i], geometry.world_from_wall) / unit_m_;
         positions.row(static_cast<Eigen::Index>(i)) = position.transpose().array().cast<float>();
     }
-    core::parallel_for(num_pairs_, [&](std::size_t pair) { fill(pair, geometry, positions); });
+    const auto size = static_cast<Eigen::Index>(num_cells_);
+    std::vector<Eigen::ArrayXf> reach((num_pairs_ + kPairsAtOnce - 1) / kPairsAtOnce);
+    core::parallel_blocks(num_pairs_, kPairsAtOnce, [&](std::size_t begin, std::size_t end) {
+        Eigen::ArrayXf& own = reach[begin / kPairsAtOnce];
+        own.setZero(size);
+        for (std::size_t pair = begin; pair < end; ++pair) fill(pair, geometry, positions, own);
+    });
+    Eigen::Map<Eigen::ArrayXf> sum(reach_.data(), size);
+    for (const Eigen::ArrayXf& part : reach) sum += part;
 }
 
 void ScatterTransport::fill(std::size_t pair,
                             const PathGeometry& geometry,
-                            const Eigen::ArrayX3f& positions) {
+                            const Eigen::ArrayX3f& positions,
+                            Eigen::ArrayXf& reach) {
     const Vec3 normal = geometry.world_from_wall.linear().col(2);
     const Legs out(positions, geometry.illumination[pair] / unit_m_, normal);
     std::optional<Legs> other;
@@ -151,50 +161,85 @@ void ScatterTransport::fill(std::size_t pair,
         static_cast<float>((geometry.legs_m[pair] - geometry.opl_start_m) / unit_m_);
     const auto per_bin = static_cast<float>(unit_m_ / geometry.bin_width_m);
     const auto last = static_cast<float>(num_bins_ - 1);
-    // The bin that each cell reaches, -1 outside the sample.
+    // Where each cell's light falls; that outside the sample has no weight.
     Eigen::ArrayXf places = (out.length + back.length + before) * per_bin - 0.5F;
-    places = (places >= 0.0F && places < last).select(places, -1.0F);
-    const Eigen::ArrayXf weights = out.weight * back.weight;
+    Eigen::ArrayXf weights = out.weight * back.weight;
+    weights = (places >= 0.0F && places < last).select(weights, 0.0F);
+    places = (places >= 0.0F && places < last).select(places, 0.0F);
+    add_reach(pair, places, weights, reach);
     const auto arrivals = std::make_unique_for_overwrite<Arrival[]>(num_cells_);
+    std::vector<std::size_t>& starts = block_starts_[pair];
     std::size_t count = 0;
-    for (std::size_t cell = 0; cell < num_cells_; ++cell) {
-        if (cell % kBlock == 0) block_starts_[pair].push_back(count);
-        const auto i = static_cast<Eigen::Index>(cell);
-        arrivals[count] = {static_cast<std::uint32_t>(cell), places[i], weights[i]};
-        count += places[i] >= 0.0F ? 1 : 0;  // the next one takes its place unless it counts
+    for (std::size_t begin = 0; begin < num_cells_; begin += kBlock) {
+        starts.push_back(count);
+        const std::size_t end = std::min(begin + kBlock, num_cells_);
+        for (std::size_t cell = begin; cell < end; ++cell) {
+            const auto i = static_cast<Eigen::Index>(cell);
+            arrivals[count] = {static_cast<std::uint32_t>(cell), places[i], weights[i]};
+            count += weights[i] > 0.0F ? 1 : 0;  // the next one takes its place unless it counts
+        }
     }
-    block_starts_[pair].push_back(count);
+    starts.push_back(count);
     arrivals_[pair].assign(arrivals.get(), arrivals.get() + count);
+}
+
+void ScatterTransport::add_reach(std::size_t pair,
+                                 const Eigen::ArrayXf& places,
+                                 const Eigen::ArrayXf& weights,
+                                 Eigen::ArrayXf& reach) const {
+    const auto observed = std::span(observed_).subspan(pair * num_bins_, num_bins_);
+    if (std::ranges::count(observed, 1.0F) == std::ssize(observed)) {
+        reach += weights;
+        return;
+    }
+    for (Eigen::Index i = 0; i < reach.size(); ++i) {
+        const auto bin = static_cast<std::size_t>(places[i]);
+        const float late = places[i] - static_cast<float>(bin);
+        reach[i] += weights[i] * ((1.0F - late) * observed[bin] + late * observed[bin + 1]);
+    }
 }
 
 std::vector<float> ScatterTransport::forward(const std::vector<double>& light,
                                              const PairSubset& subset) const {
+    /// Light that arrives in a bin, and the same times its positions: the mean position, up to 48
+    /// in single precision, says to some 1e-5 how much of it falls into the next bin.
+    struct alignas(8) Moments {
+        float light = 0.0F, positions = 0.0F;
+    };
+    const std::vector<float> sent(light.begin(), light.end());
     std::vector<float> model(num_pairs_ * num_bins_);
     const std::size_t count = (num_pairs_ - subset.first + subset.step - 1) / subset.step;
     core::parallel_blocks(count, kPairsAtOnce, [&](std::size_t begin, std::size_t end) {
-        std::vector<double> rows(kPairsAtOnce * num_bins_, 0.0);
+        const auto pair_of = [&](std::size_t lane) {
+            return subset.first + (begin + lane) * subset.step;
+        };
+        std::vector<Moments> rows(kPairsAtOnce * num_bins_);
+        const auto add = [&](std::size_t lane, const Arrival& arrival) {
+            const float value = sent[arrival.cell] * arrival.weight;
+            Moments& bin = rows[lane * num_bins_ + static_cast<std::size_t>(arrival.bin())];
+            bin.light += value;
+            bin.positions += arrival.position * value;
+        };
         std::array<std::span<const Arrival>, kPairsAtOnce> lanes;
-        std::size_t longest = 0;
-        for (std::size_t lane = begin; lane < end; ++lane) {
-            lanes[lane - begin] = arrivals_[subset.first + lane * subset.step];
-            longest = std::max(longest, lanes[lane - begin].size());
+        for (std::size_t lane = 0; lane < end - begin; ++lane) {
+            lanes[lane] = arrivals_[pair_of(lane)];
         }
-        for (std::size_t k = 0; k < longest; ++k) {
-            for (std::size_t lane = 0; lane < end - begin; ++lane) {
-                if (k >= lanes[lane].size()) continue;
-                const Arrival& arrival = lanes[lane][k];
-                const double value = light[arrival.cell] * static_cast<double>(arrival.weight);
-                const auto late = static_cast<double>(arrival.late());
-                double* row = rows.data() + lane * num_bins_ + arrival.bin();
-                row[0] += value - late * value;
-                row[1] += late * value;
-            }
+        const std::size_t shared =
+            std::ranges::min(lanes, {}, &std::span<const Arrival>::size).size();
+        for (std::size_t k = 0; k < shared; ++k) {
+            for (std::size_t lane = 0; lane < kPairsAtOnce; ++lane) add(lane, lanes[lane][k]);
         }
-        for (std::size_t lane = begin; lane < end; ++lane) {
-            const std::size_t first = (subset.first + lane * subset.step) * num_bins_;
+        for (std::size_t lane = 0; lane < end - begin; ++lane) {
+            for (const Arrival& arrival : lanes[lane].subspan(shared)) add(lane, arrival);
+        }
+        for (std::size_t lane = 0; lane < end - begin; ++lane) {
+            const std::size_t first = pair_of(lane) * num_bins_;
+            float late = 0.0F;  // from the bin before
             for (std::size_t bin = 0; bin < num_bins_; ++bin) {
-                model[first + bin] = observed_[first + bin] *
-                                     static_cast<float>(rows[(lane - begin) * num_bins_ + bin]);
+                const Moments& sum = rows[lane * num_bins_ + bin];
+                const float later = sum.positions - static_cast<float>(bin) * sum.light;
+                model[first + bin] = observed_[first + bin] * (sum.light - later + late);
+                late = later;
             }
         }
     });
@@ -206,12 +251,20 @@ CellReach ScatterTransport::backward(const std::vector<float>& ratio,
                                      const PairSubset& subset) const {
     using Sums = std::array<float, 2>;  // plain and rated
     struct Bin {
-        Sums here, step;  // the step leads to the next bin
+        Sums start, step;  // from here to the next bin: start + position * step
     };
     std::vector<Bin> bins(num_pairs_ * num_bins_);
-    for (std::size_t i = 0; i + 1 < bins.size(); ++i) {
-        bins[i] = {{observed_[i], ratio[i]},
-                   {observed_[i + 1] - observed_[i], ratio[i + 1] - ratio[i]}};
+    for (std::size_t pair = subset.first; pair < num_pairs_; pair += subset.step) {
+        const auto pair_gain = static_cast<float>(gain[pair]);
+        for (std::size_t bin = 0; bin + 1 < num_bins_; ++bin) {
+            const std::size_t i = pair * num_bins_ + bin;
+            const auto position = static_cast<float>(bin);
+            const Sums step{pair_gain * (observed_[i + 1] - observed_[i]),
+                            pair_gain * (ratio[i + 1] - ratio[i])};
+            bins[i] = {{pair_gain * observed_[i] - position * step[0],
+                        pair_gain * ratio[i] - position * step[1]},
+                       step};
+        }
     }
     CellReach reach{std::vector<float>(num_cells_), std::vector<float>(num_cells_)};
     core::parallel_blocks(num_cells_, kBlock, [&](std::size_t begin, std::size_t end) {
@@ -219,16 +272,13 @@ CellReach ScatterTransport::backward(const std::vector<float>& ratio,
         const std::size_t block = begin / kBlock;
         for (std::size_t pair = subset.first; pair < num_pairs_; pair += subset.step) {
             const Bin* const row = bins.data() + pair * num_bins_;
-            const auto pair_gain = static_cast<float>(gain[pair]);
             const std::size_t last = block_starts_[pair][block + 1];
             for (std::size_t k = block_starts_[pair][block]; k < last; ++k) {
                 const Arrival& arrival = arrivals_[pair][k];
                 const Bin& bin = row[arrival.bin()];
-                const float late = arrival.late();
-                const float weight = pair_gain * arrival.weight;
                 Sums& sum = sums[arrival.cell - begin];
                 for (std::size_t i = 0; i < sum.size(); ++i) {
-                    sum[i] += weight * (bin.here[i] + late * bin.step[i]);
+                    sum[i] += arrival.weight * (bin.start[i] + arrival.position * bin.step[i]);
                 }
             }
         }

@@ -58,6 +58,9 @@ class ScatterTransport {
                      const PathGeometry& geometry,
                      const ScatterCells& cells);
 
+    /// What each cell sends to observed bins of all pairs for unit light.
+    const std::vector<float>& reach() const { return reach_; }
+
     /// Histograms of the cells' light, [pair][bin]; 0 in bins that were not observed, and for pairs
     /// outside the subset.
     std::vector<float> forward(const std::vector<double>& light, const PairSubset& subset) const;
@@ -76,10 +79,18 @@ class ScatterTransport {
         float weight;
 
         int bin() const { return static_cast<int>(position); }
-        float late() const { return position - static_cast<float>(bin()); }
     };
 
-    void fill(std::size_t pair, const PathGeometry& geometry, const Eigen::ArrayX3f& positions);
+    /// Fills the arrivals of a pair and adds what they bring to `reach`.
+    void fill(std::size_t pair,
+              const PathGeometry& geometry,
+              const Eigen::ArrayX3f& positions,
+              Eigen::ArrayXf& reach);
+
+    void add_reach(std::size_t pair,
+                   const Eigen::ArrayXf& places,
+                   const Eigen::ArrayXf& weights,
+                   Eigen::ArrayXf& reach) const;
 
     std::size_t num_pairs_;
     std::size_t num_bins_;
@@ -88,6 +99,7 @@ class ScatterTransport {
     std::vector<float> observed_;                 ///< [pair][bin], 1 or 0
     std::vector<std::vector<Arrival>> arrivals_;  ///< of each pair, in the order of the cells
     std::vector<std::vector<std::size_t>> block_starts_;  ///< [pair][block of cells], in arrivals_
+    std::vector<float> reach_;
 };
 
 }  // namespace nlos

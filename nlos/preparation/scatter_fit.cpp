@@ -13,7 +13,7 @@ namespace {
 using core::Vec3;
 
 constexpr int kUpdates = 12;  // of the light, each by a subset of pairs
-constexpr std::size_t kMostSubsets = 4;
+constexpr std::size_t kMostSubsets = 6;
 constexpr std::size_t kSmallestSubset = 25;
 constexpr double kModelError = 0.1;  // of a value: cells are coarse, angles and shadows left out
 constexpr double kNearest = 0.02;    // of the farthest range; nearer cells see one point alone
@@ -145,21 +145,18 @@ void improve(const FitData& data,
     }
 }
 
-/// Fits the light of cells to a sample, in ordered subsets [Hudson1994]; returns the misfit.
-double fit_light(const HistogramSample& sample,
-                 const FitData& data,
-                 const ScatterTransport& transport,
-                 ScatterCells& cells) {
-    const std::size_t num_pairs = sample.pairs.size();
-    cells.reach =
-        transport.backward(sample.observed, std::vector<double>(num_pairs, 1.0), {}).plain;
+/// Fits the light of cells to a sample, in ordered subsets [Hudson1994].
+void fit_light(const HistogramSample& sample,
+               const FitData& data,
+               const ScatterTransport& transport,
+               ScatterCells& cells) {
+    cells.reach = transport.reach();
     if (cells.light.empty()) cells.light = even_light(cells.reach);
     const std::size_t subsets =
-        std::clamp<std::size_t>(num_pairs / kSmallestSubset, 1, kMostSubsets);
+        std::clamp<std::size_t>(sample.pairs.size() / kSmallestSubset, 1, kMostSubsets);
     for (std::size_t i = 0; i < kUpdates; ++i) {
         improve(data, transport, {i % subsets, subsets}, cells.light);
     }
-    return data.misfit(transport.forward(cells.light, {}));
 }
 
 }  // namespace
@@ -170,31 +167,36 @@ bool has_structure(const HistogramSample& sample) {
     return FitData(sample).misfit_of_mean() > kSignificance * noise;
 }
 
-ScatterFit::ScatterFit(const HistogramSample& sample, PathGeometry geometry)
+ScatterFit::ScatterFit(const HistogramSample& sample, PathGeometry geometry, int refinements)
     : sample_(&sample), geometry_(std::move(geometry)) {
     const auto [low_m, high_m] = range_limits(sample, geometry_);
-    if (high_m > low_m) fit(coarse_cells(low_m, high_m));
+    if (high_m > low_m) cells_ = coarse_cells(low_m, high_m);
+    for (int i = 0; i < refinements; ++i) {
+        fit(false);
+        cells_ = refined_cells(cells_);
+    }
+    fit(true);
 }
 
 void ScatterFit::refine() {
-    if (!cells_.centers.empty()) fit(refined_cells(cells_));
+    cells_ = refined_cells(cells_);
+    fit(true);
 }
 
-void ScatterFit::fit(ScatterCells cells) {
-    cells_ = std::move(cells);
+void ScatterFit::fit(bool is_last) {
     unexplained_ = 1.0;
     if (cells_.centers.empty()) return;
     const FitData data(*sample_);
     const ScatterTransport transport(*sample_, geometry_, cells_);
+    fit_light(*sample_, data, transport, cells_);
+    if (!is_last) return;
     const double share =
-        fit_light(*sample_, data, transport, cells_) / std::max(data.misfit_of_mean(), 1e-30);
+        data.misfit(transport.forward(cells_.light, {})) / std::max(data.misfit_of_mean(), 1e-30);
     if (std::isfinite(share)) unexplained_ = std::max(0.0, share);
 }
 
 double unexplained_share(const HistogramSample& sample, const PathGeometry& geometry) {
-    ScatterFit fit(sample, geometry);
-    for (int i = 0; i < ScatterFit::kRefinements; ++i) fit.refine();
-    return fit.unexplained();
+    return ScatterFit(sample, geometry, ScatterFit::kRefinements).unexplained();
 }
 
 }  // namespace nlos

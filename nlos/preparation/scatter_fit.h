@@ -10,15 +10,16 @@ namespace nlos {
 /// Cells in polar coordinates around the middle of the points, each not negative, are fitted by
 /// expectation maximisation [Shepp1982] over ordered subsets [Hudson1994] with a free gain per
 /// histogram, so that angles, materials and gains of pixels matter little. The first fit has coarse
-/// cells, and each refinement halves the heaviest of them; the others stay, since scenes that fill a
-/// room light up many. A fit costs some 1e7 to 2e7 terms for 196 pairs of 48 bins, and thrice as
+/// cells, and each refinement halves the heaviest of them; the others stay, since scenes that fill
+/// a room light up many. A fit costs some 1e7 to 2e7 terms for 196 pairs of 48 bins, and thrice as
 /// much refined to the end.
 class ScatterFit {
  public:
     static constexpr int kRefinements = 2;
 
-    /// sample   must outlive the fit
-    ScatterFit(const HistogramSample& sample, PathGeometry geometry);
+    /// sample        must outlive the fit
+    /// refinements   to begin with
+    ScatterFit(const HistogramSample& sample, PathGeometry geometry, int refinements = 0);
 
     void refine();
 
@@ -30,7 +31,8 @@ class ScatterFit {
     double unexplained() const { return unexplained_; }
 
  private:
-    void fit(ScatterCells cells);
+    /// Fits the cells' light, and what it leaves over if no cells follow these.
+    void fit(bool is_last);
 
     const HistogramSample* sample_;
     PathGeometry geometry_;

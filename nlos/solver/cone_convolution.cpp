@@ -58,9 +58,10 @@ ConeConvolution::ConeConvolution(
     core::parallel_blocks(
         cone.num_frequencies(), kSlabsPerBlock, [&](std::size_t begin, std::size_t end) {
             EvenTransform::Workspace work = transform.make_workspace();
+            ConeKernel::Spectrum spectrum(kernel, begin);
             for (std::size_t k = begin; k < end; ++k) {
                 ComplexF* own = kernel_.data() + k * qx_ * qy_;
-                kernel.fill(k, own);
+                spectrum.next(own);
                 transform.run(own, work);
                 for (std::size_t i = 0; i < qx_ * qy_; ++i) own[i] *= factor[i];
             }
