@@ -80,8 +80,16 @@ Cone make_cone(const MethodInput& input, double bins_per_bin) {
     cone.ny = input.wall.grid->size[1];
     cone.px = 2 * good_fft_size(cone.nx);
     cone.py = 2 * good_fft_size(cone.ny);
-    cone.length = 2 * good_fft_size(cone.num_v());
+    cone.length = cone_period(cone, *input.wall.grid);
     return cone;
+}
+
+std::size_t cone_period(const Cone& cone, const WallGrid& grid) {
+    const double farthest = std::pow(0.5 * grid.pitch_m[0] * static_cast<double>(cone.px), 2) +
+                            std::pow(0.5 * grid.pitch_m[1] * static_cast<double>(cone.py), 2);
+    const auto num_v = static_cast<double>(cone.num_v());
+    const double reach = std::min(num_v, std::ceil(farthest / cone.v_width()) + 2.0);
+    return 2 * good_fft_size(static_cast<std::size_t>(std::ceil(0.5 * (num_v + reach))));
 }
 
 ConeData::ConeData(const MethodInput& input, const Cone& cone, double power)

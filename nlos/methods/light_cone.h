@@ -26,7 +26,7 @@ struct Cone {
     std::vector<double> v_edges;  ///< squared range [m^2]
     std::size_t nx = 0, ny = 0;   ///< wall points
     std::size_t px = 0, py = 0;   ///< padded to at least twice
-    std::size_t length = 0;       ///< padded number of v bins
+    std::size_t length = 0;       ///< padded number of v bins, see cone_period()
     bool is_same_for_all = true;  ///< device legs are the same for every pair
     double min_leg_m = 0.0;       ///< the shortest device legs
 
@@ -42,6 +42,11 @@ struct Cone {
 /// bins_per_bin   bins of v for every bin of range
 /// throws         core::Error when the axis has no positive range
 Cone make_cone(const MethodInput& input, double bins_per_bin);
+
+/// The period of transforms along v, for a cone that lacks only that: an even number of bins, so
+/// many that nothing that the farthest wall point sees behind the end of the axis comes back at its
+/// start. Twice the axis is always enough; where the wall is small for the range, less is.
+std::size_t cone_period(const Cone& cone, const WallGrid& grid);
 
 /// The convolution's data g(v) of one wall point: bins of range [r_k, r_k+1] moved to bins of
 /// v = r^2, each multiplied by r^power; dr/dv is in the bins' widths.

@@ -90,15 +90,15 @@ std::vector<double> probabilities_among_all(const std::vector<double>& peaks,
 /// Sums over every column and its neighbours; columns stored [x][y].
 std::vector<double> sums_around(const std::vector<double>& values, std::size_t num_y) {
     std::vector<double> along_y(values);
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        if (i % num_y > 0) along_y[i] += values[i - 1];
-        if (i % num_y + 1 < num_y) along_y[i] += values[i + 1];
+    for (std::size_t first = 0; first < values.size(); first += num_y) {
+        const double* const row = values.data() + first;
+        double* const sums = along_y.data() + first;
+        for (std::size_t y = 1; y < num_y; ++y) sums[y] += row[y - 1];
+        for (std::size_t y = 0; y + 1 < num_y; ++y) sums[y] += row[y + 1];
     }
     std::vector<double> sums(along_y);
-    for (std::size_t i = 0; i + num_y < values.size(); ++i) {
-        sums[i] += along_y[i + num_y];
-        sums[i + num_y] += along_y[i];
-    }
+    for (std::size_t i = 0; i + num_y < values.size(); ++i) sums[i + num_y] += along_y[i];
+    for (std::size_t i = 0; i + num_y < values.size(); ++i) sums[i] += along_y[i + num_y];
     return sums;
 }
 

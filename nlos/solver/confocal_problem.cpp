@@ -161,11 +161,7 @@ Cone make_window_cone(const MethodInput& input, const core::TimeAxis& axis, doub
     cone.ny = grid.size[1];
     cone.px = 2 * good_fft_size(cone.nx);
     cone.py = 2 * good_fft_size(cone.ny);
-    // Nothing that the farthest wall point sees later than the window may come back at its start.
-    const double farthest = std::pow(grid.pitch_m[0] * static_cast<double>(cone.nx), 2) +
-                            std::pow(grid.pitch_m[1] * static_cast<double>(cone.ny), 2);
-    const double reach = std::min(num_bins, std::ceil(farthest / cone.v_width()) + 2.0);
-    cone.length = 2 * good_fft_size((cone.num_v() + static_cast<std::size_t>(reach) + 1) / 2);
+    cone.length = cone_period(cone, grid);
     return cone;
 }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numeric>
 
 namespace nlos {
@@ -63,6 +64,31 @@ TEST(ConservativeResampling, IgnoresEmptyBins) {
     float output = 0.0F;
     resampling.apply(input.data(), &output);
     EXPECT_FLOAT_EQ(output, 3.0F);
+}
+
+TEST(ConservativeResampling, TreatsManyHistogramsAsEachAlone) {
+    constexpr std::size_t kCount = 11, kInputs = 40;
+    const std::vector<double> from = even_edges(0.0, 1.0, kInputs);
+    std::vector<double> to = even_edges(0.0, 1.0, 25);
+    for (double& edge : to) edge *= edge;  // few inputs here, many there
+    const ConservativeResampling resampling(from, to, std::vector<double>(kInputs, 1.0));
+    std::vector<float> inputs;
+    for (std::size_t i = 0; i < kCount * kInputs; ++i) {
+        inputs.push_back(static_cast<float>(i * i % 17));
+    }
+    std::vector<float> outputs(kCount * resampling.num_outputs());
+    std::vector<const float*> from_each;
+    std::vector<float*> to_each;
+    for (std::size_t i = 0; i < kCount; ++i) {
+        from_each.push_back(inputs.data() + i * kInputs);
+        to_each.push_back(outputs.data() + i * resampling.num_outputs());
+    }
+    resampling.apply(from_each, to_each);
+    for (std::size_t i = 0; i < kCount; ++i) {
+        std::vector<float> alone(resampling.num_outputs());
+        resampling.apply(from_each[i], alone.data());
+        EXPECT_TRUE(std::equal(alone.begin(), alone.end(), to_each[i])) << i;
+    }
 }
 
 }  // namespace
