@@ -5,6 +5,7 @@
 #include "nlos/preparation/first_light.h"
 #include "nlos/preparation/histogram_preparation.h"
 #include "renderer/core/capture/sensor_footprint.h"
+#include "renderer/core/parallel.h"
 
 #include <fmt/format.h>
 
@@ -45,35 +46,54 @@ std::vector<double> ambient_of(const core::Capture& capture) {
     return std::vector<double>(capture.scan.num_pairs(), 0.0);
 }
 
+/// Light above the background, all of it and what arrives before the shortest possible path.
+struct EarlyLight {
+    double all = 0.0;
+    double early = 0.0;
+    double early_counts = 0.0;  ///< with the background
+    double earliest_m = 0.0;    ///< before that path
+
+    EarlyLight& operator+=(const EarlyLight& other) {
+        all += other.all;
+        early += other.early;
+        early_counts += other.early_counts;
+        earliest_m = std::max(earliest_m, other.earliest_m);
+        return *this;
+    }
+};
+
+EarlyLight early_light_of(const core::Capture& capture, std::size_t pair, double ambient) {
+    const core::TimeAxis& axis = capture.time_axis;
+    const double shortest =
+        (illumination_point(capture.scan, pair) - sensing_point(capture.scan, pair)).norm() +
+        capture.scan.device_legs_m(pair);
+    const auto seen = capture.observed_values(pair);
+    const Eigen::Map<const Eigen::ArrayXf> values(seen.data(),
+                                                  static_cast<Eigen::Index>(seen.size()));
+    EarlyLight light;
+    light.all = values.cast<double>().sum() - ambient * static_cast<double>(seen.size());
+    int end = capture.observed_range(pair).begin;
+    for (const float count : seen) {
+        const double before = shortest - axis.bin_begin_m(++end);
+        if (before < axis.bin_width_m) break;
+        const auto value = static_cast<double>(count);
+        light.early += value - ambient;
+        light.early_counts += value;
+        if (value > ambient) light.earliest_m = std::max(light.earliest_m, before);
+    }
+    return light;
+}
+
 /// Light, above the background, in bins that end before the shortest possible path. That of a patch
 /// of the wall, which a sensor's zone sees, is not known here.
 std::optional<std::string> early_light(const core::Capture& capture,
                                        const std::vector<double>& ambient) {
     if (core::recorded_sensor(capture)) return std::nullopt;
-    const core::TimeAxis& axis = capture.time_axis;
-    double early = 0.0;
-    double total = 0.0;
-    double early_counts = 0.0;
-    double earliest_m = 0.0;
-    for (std::size_t pair = 0; pair < capture.scan.num_pairs(); ++pair) {
-        const double shortest =
-            (illumination_point(capture.scan, pair) - sensing_point(capture.scan, pair)).norm() +
-            capture.scan.device_legs_m(pair);
-        const auto histogram = capture.transient.histogram(pair);
-        const core::BinRange observed = capture.observed_range(pair);
-        const Eigen::Map<const Eigen::ArrayXf> seen(histogram.data() + observed.begin,
-                                                    observed.size());
-        total += seen.cast<double>().sum() - ambient[pair] * observed.size();
-        for (int bin = observed.begin; bin < observed.end; ++bin) {
-            const double before = shortest - axis.bin_begin_m(bin + 1.0);
-            if (before < axis.bin_width_m) break;
-            const auto value = static_cast<double>(histogram[static_cast<std::size_t>(bin)]);
-            early += value - ambient[pair];
-            early_counts += value;
-            if (value > ambient[pair]) earliest_m = std::max(earliest_m, before);
-        }
-    }
-    if (!(total > 0.0) || early < kEarlyShare * total) return std::nullopt;
+    const auto [all, early, early_counts, earliest_m] =
+        core::parallel_sum<EarlyLight>(capture.scan.num_pairs(), {}, [&](std::size_t pair) {
+            return early_light_of(capture, pair, ambient[pair]);
+        });
+    if (!(all > 0.0) || early < kEarlyShare * all) return std::nullopt;
     if (capture.unit == core::TransientUnit::Counts &&
         early < kNoiseDeviations * std::sqrt(early_counts)) {
         return std::nullopt;
@@ -81,7 +101,7 @@ std::optional<std::string> early_light(const core::Capture& capture,
     return fmt::format(
         "{:.1f} % of the light arrives before the shortest possible path, up to "
         "{:.3g} m early; time zero looks late (capture.opl_shift_m moves it)",
-        100.0 * early / total,
+        100.0 * early / all,
         earliest_m);
 }
 
@@ -97,7 +117,8 @@ bool has_clear_onset(const core::Capture& capture, std::size_t pair, double ambi
 
 /// First light that moves along the wall faster than path lengths can.
 std::optional<std::string> fast_onset(const core::Capture& capture,
-                                      const std::vector<double>& ambient) {
+                                      const std::vector<double>& ambient,
+                                      const std::vector<std::optional<double>>& first_light) {
     const core::Scan& scan = capture.scan;
     if (!scan.sensing.grid) return std::nullopt;
     const auto [nx, ny] = *scan.sensing.grid;
@@ -105,7 +126,7 @@ std::optional<std::string> fast_onset(const core::Capture& capture,
     std::vector<std::optional<double>> onsets(nx * ny);
     for (std::size_t i = 0; i < onsets.size(); ++i) {
         if (has_clear_onset(capture, i, ambient[i])) {
-            onsets[i] = first_light_m(capture, i, ambient[i]);
+            onsets[i] = first_light[i];
         }
     }
     const double most = scan.pattern == core::ScanPattern::Confocal ? 2.0 : 1.0;
@@ -252,13 +273,14 @@ std::vector<std::string> capture_warnings(const core::Capture& capture) {
         warnings.push_back(*early);
         return warnings;  // no scale makes negative lengths positive
     }
-    const auto bend = bend_of_first_light(capture, ambient);
+    const std::vector<std::optional<double>> first_light = first_light_m(capture, ambient);
+    const auto bend = bend_of_first_light(capture, first_light);
     if (auto warning = slips(capture, ambient, bend)) {
         warnings.push_back(*warning);
         return warnings;
     }
     if (early) warnings.push_back(*early);
-    if (auto warning = fast_onset(capture, ambient)) {
+    if (auto warning = fast_onset(capture, ambient, first_light)) {
         warnings.push_back(*warning);
     } else if (auto other = bent_onset(capture, bend)) {
         warnings.push_back(*other);

@@ -2,6 +2,7 @@
 #include "nlos/preparation/first_light.h"
 
 #include "nlos/preparation/wall_frame.h"
+#include "renderer/core/parallel.h"
 
 #include <Eigen/LU>
 
@@ -28,12 +29,12 @@ struct RangeMap {
 
 RangeMap make_range_map(const core::Capture& capture,
                         const WallGrid& grid,
-                        const std::vector<double>& ambient) {
+                        const std::vector<std::optional<double>>& first_light) {
     RangeMap map{grid.size, grid.pitch_m, 0.5 * capture.time_axis.bin_width_m, {}, {}};
     for (std::size_t ix = 0; ix < grid.size[0]; ++ix) {
         for (std::size_t iy = 0; iy < grid.size[1]; ++iy) {
             const std::size_t pair = grid.point(ix, iy);
-            const std::optional<double> opl = first_light_m(capture, pair, ambient[pair]);
+            const std::optional<double>& opl = first_light[pair];
             map.ranges.push_back(opl ? std::optional(0.5 * *opl) : std::nullopt);
             map.may_be_missing.push_back(capture.observed_range(pair).size() <
                                          capture.time_axis.num_bins);
@@ -106,14 +107,23 @@ std::optional<double> first_light_m(const core::Capture& capture,
            capture.scan.device_legs_m(pair);
 }
 
-std::optional<BendOfFirstLight> bend_of_first_light(const core::Capture& capture,
-                                                    const std::vector<double>& ambient) {
+std::vector<std::optional<double>> first_light_m(const core::Capture& capture,
+                                                 const std::vector<double>& ambient) {
+    std::vector<std::optional<double>> first_light(capture.scan.sensing.size());
+    core::parallel_for(first_light.size(), [&](std::size_t pair) {
+        first_light[pair] = first_light_m(capture, pair, ambient[pair]);
+    });
+    return first_light;
+}
+
+std::optional<BendOfFirstLight> bend_of_first_light(
+    const core::Capture& capture, const std::vector<std::optional<double>>& first_light) {
     if (capture.scan.pattern != core::ScanPattern::Confocal) return std::nullopt;
     const WallFrame wall = derive_wall_frame(capture.scan);
     if (!wall.grid || std::min(wall.grid->size[0], wall.grid->size[1]) < kMinPoints) {
         return std::nullopt;
     }
-    const RangeMap map = make_range_map(capture, *wall.grid, ambient);
+    const RangeMap map = make_range_map(capture, *wall.grid, first_light);
     const std::array<std::size_t, 2> size{map.size[0] / kWindowsPerSide,
                                           map.size[1] / kWindowsPerSide};
     std::size_t num_windows = 0;

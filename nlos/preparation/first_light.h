@@ -18,6 +18,12 @@ inline constexpr double kFirstLightShare = 0.3;
 ///           the first of it may have come before
 std::optional<double> first_light_m(const core::Capture& capture, std::size_t pair, double ambient);
 
+/// The same of every sensing point: as lit by the first laser point where there are several.
+///
+/// ambient   background per bin of every pair
+std::vector<std::optional<double>> first_light_m(const core::Capture& capture,
+                                                 const std::vector<double>& ambient);
+
 /// By what factor the bins of a confocal capture look too wide for its wall, from how first light
 /// bends over the wall.
 ///
@@ -37,12 +43,12 @@ struct BendOfFirstLight {
     double uncertainty = 0.0;  ///< one standard deviation of k in its window
 };
 
-/// capture   confocal, points on an even planar grid
-/// ambient   background per bin of every pair
-/// returns   nothing for other captures, grids of fewer than 16 points a side, or when fewer than
-///           half of all windows are of use
-/// throws    nothing
-std::optional<BendOfFirstLight> bend_of_first_light(const core::Capture& capture,
-                                                    const std::vector<double>& ambient);
+/// capture       confocal, points on an even planar grid
+/// first_light   of every point, see first_light_m() [m]
+/// returns       nothing for other captures, grids of fewer than 16 points a side, or when fewer
+///               than half of all windows are of use
+/// throws        nothing
+std::optional<BendOfFirstLight> bend_of_first_light(
+    const core::Capture& capture, const std::vector<std::optional<double>>& first_light);
 
 }  // namespace nlos

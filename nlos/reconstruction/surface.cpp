@@ -72,7 +72,8 @@ std::size_t surface_voxel(std::span<const float> column,
 }
 
 std::size_t brightest_voxel(std::span<const float> column) {
-    return static_cast<std::size_t>(std::ranges::max_element(column) - column.begin());
+    return static_cast<std::size_t>(std::ranges::find(column, brightest_value(column)) -
+                                    column.begin());
 }
 
 double significant(const VolumeNoise& noise) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/reconstruction/surface_probability.h"
 
+#include <Eigen/Core>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -102,6 +104,15 @@ std::vector<double> sums_around(const std::vector<double>& values, std::size_t n
     return sums;
 }
 
+double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
+    const auto size = static_cast<Eigen::Index>(a.size());
+    if (size == 0) return 0.0;
+    return (Eigen::Map<const Eigen::ArrayXd>(a.data(), size) -
+            Eigen::Map<const Eigen::ArrayXd>(b.data(), size))
+        .abs()
+        .maxCoeff();
+}
+
 }  // namespace
 
 std::vector<double> false_discovery_rates(const std::vector<double>& p_values) {
@@ -132,6 +143,7 @@ std::vector<double> plateau_probabilities(const std::vector<double>& peaks,
     std::vector<double> probabilities = among_all;
     std::vector<double> own(peaks.size());
     std::vector<double> moment(peaks.size());
+    std::vector<double> next(peaks.size());
     for (int i = 0; i < kMaxIterations; ++i) {
         for (std::size_t k = 0; k < peaks.size(); ++k) {
             own[k] = SurfaceMean::weight_of(peaks[k], weights[k], probabilities[k]);
@@ -139,14 +151,13 @@ std::vector<double> plateau_probabilities(const std::vector<double>& peaks,
         }
         const std::vector<double> weight_sums = sums_around(own, num_y);
         const std::vector<double> sums = sums_around(moment, num_y);
-        double change = 0.0;
         for (std::size_t k = 0; k < peaks.size(); ++k) {
             const double mean = SurfaceMean{sums[k], weight_sums[k]}.value();
-            const double next =
+            next[k] =
                 among_all[k] / (1.0 + power_around(odds_against(peaks[k], shares.edge * mean)));
-            change = std::max(change, std::abs(next - probabilities[k]));
-            probabilities[k] = next;
         }
+        probabilities.swap(next);
+        const double change = largest_difference(probabilities, next);
         if (change <= kTolerance) break;
     }
     return probabilities;

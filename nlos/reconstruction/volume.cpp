@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/reconstruction/volume.h"
 
-#include <algorithm>
-
 namespace nlos {
+
+float brightest_value(std::span<const float> column) {
+    return Eigen::Map<const Eigen::ArrayXf>(column.data(), static_cast<Eigen::Index>(column.size()))
+        .maxCoeff();
+}
 
 std::vector<float> max_projection(const Volume& volume) {
     const std::size_t nz = volume.axes.z_m.size();
     std::vector<float> projection(volume.axes.x_m.size() * volume.axes.y_m.size(), 0.0F);
     if (nz == 0) return projection;
     for (std::size_t column = 0; column < projection.size(); ++column) {
-        const float* values = volume.values.data() + column * nz;
-        projection[column] = *std::max_element(values, values + nz);
+        projection[column] = brightest_value({volume.values.data() + column * nz, nz});
     }
     return projection;
 }

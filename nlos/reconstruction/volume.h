@@ -4,6 +4,7 @@
 #include "renderer/core/types.h"
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 namespace nlos {
@@ -34,6 +35,9 @@ struct Volume {
         return (ix * axes.y_m.size() + iy) * axes.z_m.size() + iz;
     }
 };
+
+/// The largest value of a column, which must not be empty: several are compared at a time.
+float brightest_value(std::span<const float> column);
 
 /// The brightest value along z of every column, stored [x][y].
 std::vector<float> max_projection(const Volume& volume);

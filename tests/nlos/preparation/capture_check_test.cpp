@@ -94,12 +94,16 @@ TEST(CaptureCheck, TellsTheFactorOfWrongBinsAndOfAWrongWall) {
     for (const double factor : {0.6, 1.0, 1.5}) {
         core::Capture bins = right;
         bins.time_axis.bin_width_m *= factor;
-        EXPECT_NEAR(std::sqrt(bend_of_first_light(bins, dark)->k), factor, 0.05 * factor);
+        EXPECT_NEAR(std::sqrt(bend_of_first_light(bins, first_light_m(bins, dark))->k),
+                    factor,
+                    0.05 * factor);
         core::Capture wall = right;
         for (core::WallPoints* points : {&wall.scan.sensing, &wall.scan.illumination}) {
             for (Vec3& position : points->positions) position /= factor;
         }
-        EXPECT_NEAR(std::sqrt(bend_of_first_light(wall, dark)->k), factor, 0.05 * factor);
+        EXPECT_NEAR(std::sqrt(bend_of_first_light(wall, first_light_m(wall, dark))->k),
+                    factor,
+                    0.05 * factor);
     }
 }
 
