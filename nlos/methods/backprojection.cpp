@@ -3,6 +3,7 @@
 
 #include "nlos/methods/methods.h"
 #include "nlos/methods/slabs.h"
+#include "renderer/core/large_memory.h"
 
 namespace nlos {
 namespace {
@@ -64,7 +65,7 @@ Volume backproject(const MethodInput& input,
         divide_by_observed_share(input, num_slabs, volume);
         return volume;
     }
-    Volume volume{input.axes, std::vector<float>(input.axes.num_voxels(), 0.0F), {}};
+    Volume volume{input.axes, core::zeros(input.axes.num_voxels()), {}};
     if (takes_fast_way(input)) {
         run_fast(input, settings.compensation, num_slabs, volume.values);
     } else {

@@ -2,6 +2,7 @@
 #include "nlos/fourier/padded_plane.h"
 #include "nlos/methods/light_cone.h"
 #include "nlos/methods/methods.h"
+#include "renderer/core/large_memory.h"
 
 #include <cmath>
 
@@ -177,7 +178,9 @@ Volume directional_light_cone_transform(const MethodInput& input,
     const double depth_m = typical_depth_m(input, cone, power);
     const VectorFilter filter(cone, *input.wall.grid, depth_m, *settings.snr);
     // 2 z f_x z_0 / z_0 and 2 z f_z / z: both rho n, up to a common factor.
-    std::vector<float> x(input.axes.num_voxels()), y(x.size()), z(x.size());
+    std::vector<float> x = core::zeros(input.axes.num_voxels());
+    std::vector<float> y = core::zeros(x.size());
+    std::vector<float> z = core::zeros(x.size());
     Components components{make_slab_spectrum(cone, num_slabs),
                           make_slab_spectrum(cone, num_slabs),
                           make_slab_spectrum(cone, num_slabs)};
@@ -203,7 +206,7 @@ Volume directional_light_cone_transform(const MethodInput& input,
     }
 
     const std::size_t num_z = input.axes.z_m.size();
-    Volume volume{input.axes, std::vector<float>(z.size()), {}};
+    Volume volume{input.axes, core::zeros(z.size()), {}};
     volume.normals.resize(cone.num_columns());
     core::parallel_for(cone.num_columns(), [&](std::size_t column) {
         const std::size_t first = column * num_z;

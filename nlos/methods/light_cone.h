@@ -13,7 +13,7 @@
 namespace nlos {
 
 /// Lateral planes that a task transforms together.
-inline constexpr std::size_t kSlabsPerBlock = 16;
+inline constexpr std::size_t kSlabsPerBlock = 8;
 
 /// Even bins of v = r^2 are 1 / (2 r) wide in r: as many as there are range bins would be coarser
 /// than those in the near half of the volume and pull depths there towards the wall.

@@ -3,6 +3,7 @@
 #include "nlos/fourier/padded_plane.h"
 #include "nlos/methods/light_cone.h"
 #include "nlos/methods/methods.h"
+#include "renderer/core/large_memory.h"
 
 namespace nlos {
 namespace {
@@ -75,7 +76,7 @@ Volume light_cone_transform(const MethodInput& input,
     const Cone cone = make_cone(input, kSquaredRangeBinsPerBin);
     const double power = falloff_power(settings.falloff);
     const SlabFilter filter(cone, *input.wall.grid, *settings.snr);
-    Volume volume{input.axes, std::vector<float>(input.axes.num_voxels()), {}};
+    Volume volume{input.axes, core::zeros(input.axes.num_voxels()), {}};
     FftBuffer spectrum = make_slab_spectrum(cone, num_slabs);
     for (const Slab& slab : split_into_slabs(cone.num_frequencies(), num_slabs)) {
         const core::Progress progress = slab.part_of(input.progress, cone.num_frequencies());

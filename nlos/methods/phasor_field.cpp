@@ -4,6 +4,7 @@
 #include "nlos/methods/plane_propagator.h"
 #include "nlos/methods/slabs.h"
 #include "nlos/methods/virtual_wave.h"
+#include "renderer/core/large_memory.h"
 
 #include <array>
 #include <cmath>
@@ -175,7 +176,7 @@ Volume phasor_field(const MethodInput& input,
                     const ReconstructSettings& settings,
                     std::size_t num_slabs) {
     if (!is_planar(input)) return phasor_backprojection(input, settings, num_slabs);
-    Volume volume{input.axes, std::vector<float>(input.axes.num_voxels()), {}};
+    Volume volume{input.axes, core::zeros(input.axes.num_voxels()), {}};
     for (const Slab& planes : plane_groups(input)) {
         propagate_to(planes, input, settings.phasor, num_slabs, volume);
     }
