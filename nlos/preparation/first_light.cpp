@@ -109,7 +109,9 @@ std::optional<double> first_light_m(const core::Capture& capture,
 
 std::vector<std::optional<double>> first_light_m(const core::Capture& capture,
                                                  const std::vector<double>& ambient) {
-    std::vector<std::optional<double>> first_light(capture.scan.sensing.size());
+    const core::Scan& scan = capture.scan;
+    std::vector<std::optional<double>> first_light(
+        std::min(scan.sensing.size(), scan.num_pairs()));  // a list may have fewer pairs
     core::parallel_for(first_light.size(), [&](std::size_t pair) {
         first_light[pair] = first_light_m(capture, pair, ambient[pair]);
     });

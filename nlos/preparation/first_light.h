@@ -18,7 +18,8 @@ inline constexpr double kFirstLightShare = 0.3;
 ///           the first of it may have come before
 std::optional<double> first_light_m(const core::Capture& capture, std::size_t pair, double ambient);
 
-/// The same of every sensing point: as lit by the first laser point where there are several.
+/// The same of as many pairs as there are sensing points: for every point of a confocal and of a
+/// single-laser scan, as the first laser point lights it in an exhaustive one.
 ///
 /// ambient   background per bin of every pair
 std::vector<std::optional<double>> first_light_m(const core::Capture& capture,
