@@ -199,7 +199,7 @@ void ConeKernel::Spectrum::next(ComplexF* quadrant) {
     }
     for (std::size_t i = 0; i < size; ++i) {
         const std::uint32_t place = places[i] + shift[i];
-        places[i] = std::min(place, place - period);  // the difference of less than one is huge
+        places[i] = std::min(place, place - period);  // below a period, the difference is huge
     }
 }
 

@@ -11,8 +11,8 @@ namespace nlos {
 /// expectation maximisation [Shepp1982] over ordered subsets [Hudson1994] with a free gain per
 /// histogram, so that angles, materials and gains of pixels matter little. The first fit has coarse
 /// cells, and each refinement halves the heaviest of them; the others stay, since scenes that fill
-/// a room light up many. A fit costs some 4e6 terms for 196 pairs of 48 bins, and four times as much
-/// refined to the end.
+/// a room light up many. A fit costs some 4e6 terms for 196 pairs of 48 bins, and four times as
+/// much refined to the end.
 class ScatterFit {
  public:
     static constexpr int kRefinements = 2;
